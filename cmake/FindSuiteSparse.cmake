@@ -1,0 +1,21 @@
+# SuiteSparse components as SuiteSparse::<COMPONENT>; only those asked for.
+find_path(SuiteSparse_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)
+set(_suitesparse_required SuiteSparse_INCLUDE_DIR)
+foreach(component ${SuiteSparse_FIND_COMPONENTS})
+  string(TOLOWER ${component} _lower)
+  find_library(SuiteSparse_${component}_LIBRARY ${_lower})
+  list(APPEND _suitesparse_required SuiteSparse_${component}_LIBRARY)
+endforeach()
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(SuiteSparse REQUIRED_VARS ${_suitesparse_required})
+if(SuiteSparse_FOUND)
+  foreach(component ${SuiteSparse_FIND_COMPONENTS})
+    if(NOT TARGET SuiteSparse::${component})
+      add_library(SuiteSparse::${component} UNKNOWN IMPORTED)
+      set_target_properties(SuiteSparse::${component} PROPERTIES
+        IMPORTED_LOCATION "${SuiteSparse_${component}_LIBRARY}"
+        INTERFACE_INCLUDE_DIRECTORIES "${SuiteSparse_INCLUDE_DIR}")
+    endif()
+  endforeach()
+endif()
+mark_as_advanced(SuiteSparse_INCLUDE_DIR)

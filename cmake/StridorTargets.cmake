@@ -1,0 +1,38 @@
+# One library per folder: the link graph is the include order of the folders.
+# core <- substructures <- coupling <- solvers <- models <- analysis <- io <- app
+
+add_library(stridor_options INTERFACE)
+target_compile_features(stridor_options INTERFACE cxx_std_20)
+target_compile_options(stridor_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow
+  # Eigen and fmt headers trip these two in g++ 12 at -O3; both are false positives there.
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-array-bounds>
+  $<$<BOOL:${STRIDOR_WERROR}>:-Werror>)
+target_include_directories(stridor_options INTERFACE "${PROJECT_SOURCE_DIR}")
+# Dense products of Eigen go to BLAS, which picks the instruction set of the machine at run time.
+target_compile_definitions(stridor_options INTERFACE EIGEN_USE_BLAS)
+target_link_libraries(stridor_options INTERFACE BLAS::BLAS)
+target_include_directories(stridor_options SYSTEM INTERFACE
+  "${SPECTRA_INCLUDE_DIR}" "${CLI11_INCLUDE_DIR}" "${NLOHMANN_JSON_INCLUDE_DIR}")
+
+# stridor_library(FOLDER SOURCES ... LINKS ...)
+function(stridor_library folder)
+  cmake_parse_arguments(arg "" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  add_library(stridor_${folder} STATIC ${arg_SOURCES})
+  target_link_libraries(stridor_${folder}
+    PUBLIC stridor_options ${arg_LINKS} PRIVATE ${arg_PRIVATE_LINKS})
+endfunction()
+
+# stridor_test(NAME LABEL unit|verification|scene SOURCES ... LINKS ...)
+# One program per call; every TEST in it becomes a ctest with that label.
+function(stridor_test name)
+  cmake_parse_arguments(arg "" "LABEL" "SOURCES;LINKS" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE stridor_options ${arg_LINKS} GTest::gtest GTest::gmock GTest::gtest_main)
+  # What is tested stands in the libraries; the tests themselves need not be fast, but must compile fast.
+  target_compile_options(${name} PRIVATE -O1)
+  target_compile_definitions(${name} PRIVATE
+    STRIDOR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" STRIDOR_PROGRAM="$<TARGET_FILE:stridor>")
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
+    PROPERTIES LABELS ${arg_LABEL} TIMEOUT 600)
+endfunction()

@@ -1,0 +1,38 @@
+#include "core/errors.hpp"
+
+#include <fmt/format.h>
+
+namespace stridor {
+namespace {
+
+std::string join(const std::vector<Problem>& problems) {
+  std::string text;
+  for (const Problem& problem : problems) {
+    if (!text.empty()) text += '\n';
+    text += problem.text();
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string Problem::text() const {
+  std::string place = source;
+  if (line > 0) place += fmt::format(":{}:{}", line, column);
+  if (!place.empty()) place += ": ";
+  if (!key.empty()) place += key + ": ";
+  return place + message;
+}
+
+ConfigError::ConfigError(std::vector<Problem> problems)
+    : std::runtime_error(join(problems)), problems_(std::move(problems)) {}
+
+ConfigError::ConfigError(std::string key, std::string message)
+    : ConfigError(std::vector<Problem>{{std::move(key), std::move(message), {}, 0, 0}}) {}
+
+FileError::FileError(const std::string& path, const std::string& dataset, const std::string& cause)
+    : std::runtime_error(dataset.empty()
+                             ? fmt::format("{}: {}", path, cause)
+                             : fmt::format("{}: dataset {}: {}", path, dataset, cause)) {}
+
+}  // namespace stridor

@@ -1,0 +1,62 @@
+// The doors through which stridor reports that something is wrong.
+//
+//   ConfigError            what the user wrote (scene, --set, command line)   exit 2
+//   NumericalError         the numbers failed: diverged, singular, lost       exit 3
+//   FileError              a file cannot be read or written                   exit 4
+//   Interrupted            stopped on request                                 exit 5
+//   std::invalid_argument  a broken precondition of a C++ call (a bug)        exit 1
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace stridor {
+
+/// One thing that is wrong with what the user wrote.
+struct Problem {
+  std::string key;      ///< dotted path, e.g. "time.step"; empty where the file as a whole is meant
+  std::string message;  ///< what is wrong, what was expected, what to do; one line, no place
+  std::string
+      source;      ///< file, or "--set key=value"; empty until the reader of the scene fills it in
+  int line = 0;    ///< 1-based; 0 where there is none
+  int column = 0;  ///< 1-based; 0 where there is none
+
+  /// "source:line:column: key: message", leaving out what is not known.
+  std::string text() const;
+};
+
+/// The scene or the command line is wrong. Holds all problems found, in the order of the file.
+class ConfigError : public std::runtime_error {
+ public:
+  explicit ConfigError(std::vector<Problem> problems);
+  ConfigError(std::string key, std::string message);
+
+  const std::vector<Problem>& problems() const { return problems_; }
+
+ private:
+  std::vector<Problem> problems_;
+};
+
+/// A file cannot be opened, read, written or is not what it should be.
+class FileError : public std::runtime_error {
+ public:
+  /// @param path    the file
+  /// @param dataset dataset or attribute inside it; empty where the file as a whole is meant
+  /// @param cause   what went wrong and what to do, one line
+  FileError(const std::string& path, const std::string& dataset, const std::string& cause);
+};
+
+/// The computation failed: singular, diverged, or left its range of validity.
+class NumericalError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The user asked the program to stop (Ctrl-C, SIGTERM).
+class Interrupted : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace stridor

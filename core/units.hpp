@@ -1,0 +1,21 @@
+// Numbers with units, as users write them: "75 mm", "2.38 GPa", "150 deg".
+#pragma once
+
+#include <string>
+
+namespace stridor {
+
+/// Reads a number, with or without a unit, and returns it in the given SI unit.
+///
+/// A bare number is taken to be in that unit already. A number with a unit is converted after a
+/// check of its dimension; angles are in rad ("deg", "°", "rad"), frequencies in Hz.
+///
+/// @param text what the user wrote
+/// @param unit SI unit of the result as UDUNITS-2 reads it, e.g. "m", "Pa", "kg m-3"; empty:
+/// dimensionless
+/// @throws std::invalid_argument with a message of one line (not a number; not finite; unknown
+/// unit;
+///         wrong dimension), without the place, which only the caller knows
+double parse_quantity(const std::string& text, const std::string& unit);
+
+}  // namespace stridor

@@ -1,0 +1,385 @@
+// Checks on the source text itself: which folder may include which, and what must not appear where.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <regex>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Strings = std::vector<std::string>;
+
+/// The folders of the program; each includes only from itself and from those before it.
+const Strings folders_in_order{"core",   "substructures", "coupling", "solvers",
+                               "models", "analysis",      "io",       "app"};
+
+/// Only these know in which formats scenes and runs are stored.
+constexpr std::array<std::string_view, 2> storage_folders{"io", "app"};
+/// These work on any system, so no model is named in them.
+constexpr std::array<std::string_view, 2> model_free_folders{"solvers", "analysis"};
+constexpr std::array<std::string_view, 8> model_words{
+    "sphere", "spheres", "disc", "discs", "cantilever", "cantilevers", "oblique", "obliques"};
+
+template <class Range>
+bool contains(const Range& range, std::string_view value) {
+  return std::find(std::begin(range), std::end(range), value) != std::end(range);
+}
+
+struct SourceLine {
+  std::string text;                ///< without comments
+  bool starts_in_literal = false;  ///< the line before it left a raw string open
+};
+
+/// The lines of a C++ text with every comment blanked out. String and character literals stay, so
+/// that a comment sign inside them is not taken for one.
+std::vector<SourceLine> lines_without_comments(std::string_view text) {
+  enum class State { code, line_comment, block_comment, string, character, raw_string };
+  std::vector<SourceLine> lines(1);
+  State state = State::code;
+  std::string raw_end;  // )delimiter" of the raw string being read
+  const auto is_word = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+  };
+
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const char next = i + 1 < text.size() ? text[i + 1] : '\0';
+    const char previous = i > 0 ? text[i - 1] : '\0';
+    if (c == '\n') {
+      if (state == State::line_comment && previous != '\\') state = State::code;
+      lines.push_back({"", state == State::raw_string});
+      continue;
+    }
+    std::string& line = lines.back().text;
+    switch (state) {
+      case State::code:
+        if (c == '/' && (next == '/' || next == '*')) {
+          state = next == '/' ? State::line_comment : State::block_comment;
+          line += "  ";
+          ++i;
+          continue;
+        }
+        if (c == '"' && previous == 'R') {
+          const std::size_t open = text.find('(', i);
+          if (open != std::string_view::npos) {
+            raw_end = ')';
+            raw_end += text.substr(i + 1, open - i - 1);
+            raw_end += '"';
+            state = State::raw_string;
+          }
+        } else if (c == '"') {
+          state = State::string;
+        } else if (c == '\'' && !is_word(previous)) {  // the ' in 1'000 opens nothing
+          state = State::character;
+        }
+        line += c;
+        break;
+      case State::line_comment:
+        break;
+      case State::block_comment:
+        if (c == '*' && next == '/') {
+          state = State::code;
+          ++i;
+        }
+        break;
+      case State::string:
+      case State::character:
+        line += c;
+        if (c == '\\' && next != '\n' && next != '\0') {
+          line += next;
+          ++i;
+        } else if (c == (state == State::string ? '"' : '\'')) {
+          state = State::code;
+        }
+        break;
+      case State::raw_string:
+        line += c;
+        if (text.substr(i, raw_end.size()) == raw_end) {
+          line += raw_end.substr(1);
+          i += raw_end.size() - 1;
+          state = State::code;
+        }
+        break;
+    }
+  }
+  return lines;
+}
+
+/// The first model word in a text. Words end where letters end and where case changes, so that
+/// SphereDrag and sphere_mass hold one and `discrete` does not.
+std::optional<std::string> model_word_in(const std::string& text) {
+  static const std::regex word("[A-Z]+(?![a-z])|[A-Z]?[a-z]+");
+  for (std::sregex_iterator match(text.begin(), text.end(), word), end; match != end; ++match) {
+    std::string lower = match->str();
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (contains(model_words, lower)) return lower;
+  }
+  return std::nullopt;
+}
+
+/// File name without the ".in" of a template that CMake fills in.
+fs::path compiled_name(const fs::path& file) {
+  return file.extension() == ".in" ? file.stem() : file.filename();
+}
+bool is_header(const fs::path& file) {
+  constexpr std::array<std::string_view, 4> extensions{".hpp", ".h", ".ipp", ".inl"};
+  return contains(extensions, compiled_name(file).extension().string());
+}
+bool is_source(const fs::path& file) {
+  constexpr std::array<std::string_view, 3> extensions{".cpp", ".cc", ".c"};
+  return contains(extensions, compiled_name(file).extension().string());
+}
+
+bool is_storage_header(const std::string& header) {
+  static const std::regex storage("(.*/)?(hdf5(_hl)?\\.h|H5[A-Za-z]*\\.h)|yaml-cpp/.*");
+  return std::regex_match(header, storage);
+}
+
+/// What is wrong with one #include of a file in `folder`.
+Strings problems_of_include(const std::string& folder, const std::string& header, bool is_quoted,
+                            const Strings& folders) {
+  Strings problems;
+  if (is_storage_header(header)) {
+    if (!contains(storage_folders, folder)) {
+      problems.push_back("includes " + header + ", which only io and app may");
+    }
+    return problems;
+  }
+  const fs::path path(header);
+  const std::string from = path.begin()->string();
+  const bool is_plain = std::none_of(
+      path.begin(), path.end(), [](const fs::path& part) { return part == "." || part == ".."; });
+  const auto place = std::find(folders.begin(), folders.end(), from);
+  if (place == folders.end() || std::next(path.begin()) == path.end() || !is_plain) {
+    if (is_quoted) problems.push_back("\"" + header + "\" is not written from the root");
+    return problems;
+  }
+  if (!is_quoted)
+    problems.push_back("<" + header + "> is a header of this program; write it in quotes");
+  if (place > std::find(folders.begin(), folders.end(), folder)) {
+    problems.push_back(folder + " includes \"" + header + "\", but " + from +
+                       " does not stand above it");
+  }
+  return problems;
+}
+
+/// Checks every C++ file below the folders of `root`.
+/// @param folders names of the folders, each of which may include from itself and those before it
+/// @return "file:line: what is wrong", in the order of the folders, then of the file names
+/// @throws std::invalid_argument where one of the folders does not exist
+Strings check_tree(const fs::path& root, const Strings& folders) {
+  static const std::regex include_line("^\\s*#\\s*include\\s*([<\"])([^>\"]+)[>\"].*");
+  static const std::regex pragma_once("^\\s*#\\s*pragma\\s+once\\s*$");
+  Strings problems;
+  for (const std::string& folder : folders) {
+    if (!fs::is_directory(root / folder)) {
+      throw std::invalid_argument("no folder '" + folder + "' in " + root.string());
+    }
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      if (is_header(entry.path()) || is_source(entry.path())) files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+
+    for (const fs::path& file : files) {
+      const std::string name = file.lexically_relative(root).generic_string();
+      const auto report = [&](std::size_t line, const std::string& problem) {
+        problems.push_back(name + ":" + std::to_string(line) + ": " + problem);
+      };
+      const bool is_model_free = contains(model_free_folders, folder);
+      if (is_model_free) {
+        if (const auto word = model_word_in(name)) report(1, "names a model: " + *word);
+      }
+
+      std::ifstream stream(file, std::ios::binary);
+      const std::string text{std::istreambuf_iterator<char>(stream),
+                             std::istreambuf_iterator<char>()};
+      const std::vector<SourceLine> lines = lines_without_comments(text);
+      bool has_pragma_once = false;
+      for (std::size_t i = 0; i < lines.size(); ++i) {
+        std::string line = lines[i].text;
+        if (!line.empty() && line.back() == '\r') line.pop_back();
+        std::smatch match;
+        if (!lines[i].starts_in_literal && std::regex_match(line, match, include_line)) {
+          for (const std::string& problem :
+               problems_of_include(folder, match[2], match[1] == "\"", folders)) {
+            report(i + 1, problem);
+          }
+          continue;
+        }
+        if (!lines[i].starts_in_literal && std::regex_match(line, pragma_once))
+          has_pragma_once = true;
+        if (is_model_free) {
+          if (const auto word = model_word_in(line)) report(i + 1, "names a model: " + *word);
+        }
+      }
+      if (is_header(file) && !has_pragma_once) report(1, "header without #pragma once");
+    }
+  }
+  return problems;
+}
+
+/// A source tree in a temporary folder, removed at the end of the test.
+class SourceText : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    root_ = fs::path(testing::TempDir()) /
+            ("stridor_" + std::string(test->name()) + "_" + std::to_string(getpid()));
+    fs::remove_all(root_);
+    for (const std::string& folder : folders_in_order) fs::create_directories(root_ / folder);
+  }
+  void TearDown() override { fs::remove_all(root_); }
+
+  void write(const std::string& name, const std::string& text) const {
+    fs::create_directories((root_ / name).parent_path());
+    std::ofstream stream(root_ / name);
+    stream << text;
+    ASSERT_TRUE(stream.flush()) << "cannot write " << root_ / name;
+  }
+  Strings problems() const { return check_tree(root_, folders_in_order); }
+
+  fs::path root_;
+};
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+TEST(IncludeOrder, HoldsInThisSourceTree) {
+  EXPECT_THAT(check_tree(STRIDOR_SOURCE_DIR, folders_in_order), IsEmpty());
+}
+
+TEST_F(SourceText, MayIncludeFromItsOwnFolderAndThoseAbove) {
+  write("coupling/gap.hpp", "#pragma once\n#include <vector>\n#include \"core/units.hpp\"\n");
+  write("coupling/gap.cpp", "#include \"coupling/gap.hpp\"\n#include \"substructures/beam.hpp\"\n");
+  write("app/main.cpp", "#include \"io/run_file.hpp\"\n#include \"core/version.hpp\"\n");
+  EXPECT_THAT(problems(), IsEmpty());
+}
+
+TEST_F(SourceText, MayNotIncludeFromAFolderBelow) {
+  write("core/units.cpp", "\n#include \"coupling/gap.hpp\"\n");
+  write("models/detail/drive.cpp", "  #  include \"analysis/locus.hpp\"  // for later\n");
+  EXPECT_THAT(
+      problems(),
+      ElementsAre("core/units.cpp:2: core includes \"coupling/gap.hpp\", but coupling does not "
+                  "stand above it",
+                  "models/detail/drive.cpp:1: models includes \"analysis/locus.hpp\", but analysis "
+                  "does not stand above it"));
+}
+
+TEST_F(SourceText, OrderIsThatOfTheListGiven) {
+  write("io/a.cpp", "#include \"core/b.hpp\"\n");
+  EXPECT_THAT(check_tree(root_, {"core", "io"}), IsEmpty());
+  EXPECT_THAT(
+      check_tree(root_, {"io", "core"}),
+      ElementsAre("io/a.cpp:1: io includes \"core/b.hpp\", but core does not stand above it"));
+}
+
+TEST_F(SourceText, QuotedIncludesAreWrittenFromTheRoot) {
+  write(
+      "coupling/gap.cpp",
+      "#include \"gap.hpp\"\n#include \"../core/units.hpp\"\n#include \"core/../core/units.hpp\"\n"
+      "#include \"vendor/tool.hpp\"\n#include \"core\"\n");
+  EXPECT_THAT(
+      problems(),
+      ElementsAre("coupling/gap.cpp:1: \"gap.hpp\" is not written from the root",
+                  "coupling/gap.cpp:2: \"../core/units.hpp\" is not written from the root",
+                  "coupling/gap.cpp:3: \"core/../core/units.hpp\" is not written from the root",
+                  "coupling/gap.cpp:4: \"vendor/tool.hpp\" is not written from the root",
+                  "coupling/gap.cpp:5: \"core\" is not written from the root"));
+}
+
+TEST_F(SourceText, AngleBracketsDoNotGetRoundTheOrder) {
+  write("core/units.cpp", "#include <io/run_file.hpp>\n#include <fmt/core.h>\n");
+  EXPECT_THAT(
+      problems(),
+      ElementsAre(
+          "core/units.cpp:1: <io/run_file.hpp> is a header of this program; write it in quotes",
+          "core/units.cpp:1: core includes \"io/run_file.hpp\", but io does not stand above it"));
+}
+
+TEST_F(SourceText, OnlyIoAndAppIncludeStorageHeaders) {
+  const std::string text =
+      "#include <hdf5.h>\n#include <hdf5_hl.h>\n#include \"hdf5/serial/H5Cpp.h\"\n"
+      "#include <yaml-cpp/yaml.h>\n";
+  write("analysis/ledger.cpp", text);
+  write("app/main.cpp", text);
+  write("io/run_file.cpp", text);
+  EXPECT_THAT(
+      problems(),
+      ElementsAre("analysis/ledger.cpp:1: includes hdf5.h, which only io and app may",
+                  "analysis/ledger.cpp:2: includes hdf5_hl.h, which only io and app may",
+                  "analysis/ledger.cpp:3: includes hdf5/serial/H5Cpp.h, which only io and app may",
+                  "analysis/ledger.cpp:4: includes yaml-cpp/yaml.h, which only io and app may"));
+}
+
+TEST_F(SourceText, SolversAndAnalysisNameNoModel) {
+  write("analysis/map.cpp", "const char* key = \"disc.speed\";\nint DISC_COUNT;\n");
+  write("solvers/oblique_step.cpp", "");
+  write("solvers/step.cpp", "struct SphereDrag {};\nint two_spheres;\ndouble cantilever_length;\n");
+  EXPECT_THAT(problems(), ElementsAre("solvers/oblique_step.cpp:1: names a model: oblique",
+                                      "solvers/step.cpp:1: names a model: sphere",
+                                      "solvers/step.cpp:2: names a model: spheres",
+                                      "solvers/step.cpp:3: names a model: cantilever",
+                                      "analysis/map.cpp:1: names a model: disc",
+                                      "analysis/map.cpp:2: names a model: disc"));
+}
+
+TEST_F(SourceText, CommentsLikeWordsAndOtherFoldersMayNameAModel) {
+  write("solvers/step.cpp",
+        "// as for the sphere \\\n   and the disc\nint discrete;  /* cantilever\n oblique */ int "
+        "discard;\n"
+        "double Discretisation, atmosphere;\nchar quote = '\"';  // sphere\nint many = 1'000;  // "
+        "disc's\n");
+  write("models/sphere.cpp", "struct Sphere {};\n");
+  EXPECT_THAT(problems(), IsEmpty());
+}
+
+TEST_F(SourceText, CommentSignsInLiteralsHideNothing) {
+  write("solvers/step.cpp",
+        "const char* a = \"http://\\\"\"; int sphere;\nconst char* b = R\"x(/* \" )\" )x\"; int "
+        "disc;\n");
+  EXPECT_THAT(problems(), ElementsAre("solvers/step.cpp:1: names a model: sphere",
+                                      "solvers/step.cpp:2: names a model: disc"));
+}
+
+TEST_F(SourceText, IncludesInCommentsAndRawStringsDoNotCount) {
+  write("core/units.cpp",
+        "// #include \"io/a.hpp\"\n/*\n#include \"io/b.hpp\"\n*/\nconst char* c = R\"(\n#include "
+        "\"io/c.hpp\"\n)\";\n");
+  EXPECT_THAT(problems(), IsEmpty());
+}
+
+TEST_F(SourceText, HeadersHavePragmaOnce) {
+  write("core/good.hpp", "// First a comment.\n#pragma once\n");
+  write("core/source.cpp", "int x;\n");
+  write("core/version.hpp.in", "int version;\n");
+  write("core/words.hpp", "// #pragma once\nint x;\n");
+  EXPECT_THAT(problems(), ElementsAre("core/version.hpp.in:1: header without #pragma once",
+                                      "core/words.hpp:1: header without #pragma once"));
+}
+
+TEST_F(SourceText, MissingFolderIsRejected) {
+  try {
+    check_tree(root_, {"core", "nowhere"});
+    FAIL() << "no exception";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(error.what(), "no folder 'nowhere' in " + root_.string());
+  }
+}
+
+}  // namespace
