@@ -1,0 +1,72 @@
+// Beams of rectangular section as plane-stress meshes.
+#pragma once
+
+#include "core/schema.hpp"
+#include "substructures/body_matrices.hpp"
+
+namespace stridor {
+
+enum class Support {
+  free,
+  clamped,  ///< all nodes of the end are held
+  pinned,   ///< the node on the axis is held, the end may turn
+  guided,   ///< all nodes share one vertical displacement, on which the drive's load acts, and
+           ///< follow the drive's horizontal motion; the end cannot turn
+};
+
+struct MaterialParameters {
+  double youngs_modulus = 0.0;  ///< E, Pa, > 0
+  double poissons_ratio = 0.0;  ///< ν, in (−1, 0.5)
+  double density = 0.0;         ///< ρ, kg/m³, > 0
+  static const Schema& schema();
+};
+
+struct MeshParameters {
+  int along = 0;    ///< elements along the axis, >= 1
+  int through = 0;  ///< elements through the thickness, >= 1
+  static const Schema& schema();
+};
+
+struct SupportParameters {
+  Support start = Support::free;
+  Support end = Support::free;
+  static const Schema& schema();
+};
+
+struct InterfaceParameters {
+  std::optional<double> spacing;  ///< distance of the master nodes kept, m; all nodes where absent
+  static const Schema& schema();
+};
+
+struct ReductionParameters {
+  int fixed_interface_modes = 0;  ///< number of Craig-Bampton modes kept, >= 0
+  static const Schema& schema();
+};
+
+struct BeamParameters {
+  double length = 0.0;     ///< along the axis, m, > 0
+  double thickness = 0.0;  ///< in the plane, m, > 0
+  double width = 0.0;      ///< out of the plane, m, > 0
+  double angle = 0.0;      ///< of the axis from start to end against +x, rad
+  MaterialParameters material;
+  MeshParameters mesh;
+  RayleighDamping damping;
+  SupportParameters supports;
+  InterfaceParameters interface;
+  ReductionParameters reduction;
+  static const Schema& schema();
+};
+
+/// Structured mesh of Q8 elements, supports applied.
+///
+/// The axis starts at the origin of the body's frame. Named points: `start_bottom`, `start_top`,
+/// `end_bottom`, `end_top` (corners; "top" is on the left of the axis direction), `start`, `end`
+/// (on the axis), `tip` (the lowest corner of the start; the bottom one on a tie) and, where
+/// exactly one end is free, `free_end` (its top corner). Surfaces: `top`, `bottom`, `start_face`,
+/// `end_face`.
+///
+/// @param parameters all within the ranges of the schema
+/// @throws std::invalid_argument if both ends are guided (the drive would have two loads to carry)
+BodyMatrices make_beam(const BeamParameters& parameters);
+
+}  // namespace stridor

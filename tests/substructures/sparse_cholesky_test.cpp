@@ -1,0 +1,153 @@
+#include "substructures/sparse_cholesky.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "core/errors.hpp"
+#include "tests/support/full_model.hpp"
+#include "tests/support/message_of.hpp"
+#include "tests/support/paper_beams.hpp"
+#include "tests/support/spring_chain.hpp"
+
+namespace stridor {
+namespace {
+
+using test::eps;
+using test::message_of;
+
+std::string refusal(const SparseMatrix& matrix) {
+  return message_of<NumericalError>([&] { SparseCholesky(matrix, "the stiffness"); });
+}
+
+std::string not_positive_definite(Eigen::Index size) {
+  const std::string n = std::to_string(size);
+  return "the stiffness (" + n + " x " + n +
+         ") is not positive definite: the supports and the interface leave a rigid motion free, or "
+         "the matrix is damaged";
+}
+
+SparseMatrix diagonal(const Eigen::VectorXd& entries) {
+  return Eigen::MatrixXd(entries.asDiagonal()).sparseView(0.0, 0.0);
+}
+
+TEST(SparseCholesky, SolvesTheSpringChain) {
+  // Forward error of a Cholesky solve: a small multiple of n eps cond, cond <= 4 (n+1)²/π².
+  for (const int n : {1, 2, 7, 100}) {
+    const SparseCholesky factor(test::chain_stiffness(n), "the chain");
+    EXPECT_EQ(factor.size(), n);
+    const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(n, n));
+    const double tolerance =
+        eps * 0.41 * (n + 1) * (n + 1) * test::chain_compliance(n, n / 2, n / 2);
+    for (int i = 0; i < n; ++i) {
+      for (int k = 0; k < n; ++k)
+        EXPECT_NEAR(inverse(i, k), test::chain_compliance(n, i, k), tolerance) << n;
+    }
+  }
+}
+
+TEST(SparseCholesky, LeavesAResidualOfRoundingForTheBeamsOfThePaper) {
+  // Backward stability: |K u − f| <= c n eps |K| |u| with a small c.
+  for (const BeamParameters& beam : {test::paper_cantilever(), [] {
+                                       BeamParameters held = test::paper_oblique();
+                                       held.supports.end = Support::clamped;
+                                       return held;
+                                     }()}) {
+    const BodyMatrices body = make_beam(beam);
+    const SparseCholesky factor(body.stiffness, "the beam");
+    const Eigen::VectorXd force = Eigen::VectorXd::LinSpaced(body.num_dofs(), -1.0, 1.0);
+    const Eigen::VectorXd displacement = factor.solve(force);
+    const double n = static_cast<double>(body.num_dofs());
+    EXPECT_LE((body.stiffness * displacement - force).norm(),
+              n * eps * body.stiffness.norm() * displacement.norm());
+  }
+}
+
+TEST(SparseCholesky, SolvesSeveralRightHandSidesAsOneByOne) {
+  const SparseCholesky factor(test::chain_stiffness(20), "the chain");
+  const Eigen::MatrixXd forces = Eigen::MatrixXd::Identity(20, 3);
+  const Eigen::MatrixXd together = factor.solve(forces);
+  ASSERT_EQ(together.cols(), 3);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    // Blocked and single solves may add up in a different order.
+    EXPECT_LE((together.col(i) - factor.solve(forces.col(i))).norm(), 20.0 * eps * 20.0);
+  }
+}
+
+TEST(SparseCholesky, SolvesNoRightHandSide) {
+  const SparseCholesky factor(test::chain_stiffness(5), "the chain");
+  const Eigen::MatrixXd none = factor.solve(Eigen::MatrixXd(5, 0));
+  EXPECT_EQ(none.rows(), 5);
+  EXPECT_EQ(none.cols(), 0);
+}
+
+TEST(SparseCholesky, OfSizeZeroIsNothing) {
+  const SparseCholesky factor(SparseMatrix(0, 0), "nothing");
+  EXPECT_EQ(factor.size(), 0);
+  const Eigen::MatrixXd solution = factor.solve(Eigen::MatrixXd(0, 4));
+  EXPECT_EQ(solution.rows(), 0);
+  EXPECT_EQ(solution.cols(), 4);
+}
+
+TEST(SparseCholesky, CanBeMoved) {
+  SparseCholesky first(test::chain_stiffness(3), "the chain");
+  SparseCholesky second(std::move(first));
+  EXPECT_EQ(second.size(), 3);
+  SparseCholesky third(test::chain_stiffness(8), "the chain");
+  third = std::move(second);
+  EXPECT_EQ(third.size(), 3);
+  EXPECT_NEAR(third.solve(Eigen::VectorXd::Unit(3, 1))(1), 1.0, 8.0 * eps);
+}
+
+TEST(SparseCholesky, ScaleOfTheMatrixDoesNotMatter) {
+  for (const double scale : {1e-30, 1.0, 1e30}) {
+    const SparseCholesky factor(scale * test::chain_stiffness(10), "the chain");
+    EXPECT_NEAR(factor.solve(scale * Eigen::VectorXd::Unit(10, 4))(4),
+                test::chain_compliance(10, 4, 4), 50.0 * eps * test::chain_compliance(10, 4, 4));
+  }
+}
+
+TEST(SparseCholesky, FreeBeamThrows) {
+  for (const double angle : {0.0, 0.3, test::leading_angle}) {
+    BeamParameters beam = test::paper_oblique(angle);
+    beam.supports = {};
+    const BodyMatrices body = make_beam(beam);
+    EXPECT_EQ(refusal(body.stiffness), not_positive_definite(body.num_dofs())) << angle;
+  }
+}
+
+TEST(SparseCholesky, BeamWithOneRigidMotionLeftThrows) {
+  BeamParameters beam = test::paper_oblique();
+  beam.supports = {Support::pinned, Support::free};
+  const BodyMatrices pinned = make_beam(beam);
+  EXPECT_EQ(refusal(pinned.stiffness), not_positive_definite(pinned.num_dofs()));
+  const BodyMatrices guided = make_beam(test::paper_oblique());
+  EXPECT_EQ(refusal(guided.stiffness), not_positive_definite(guided.num_dofs()));
+}
+
+TEST(SparseCholesky, VerySlenderCantileverIsAccepted) {
+  BeamParameters beam = test::paper_cantilever();
+  beam.thickness = 1e-4 * beam.length;
+  EXPECT_EQ(refusal(make_beam(beam).stiffness), "<no exception>");
+}
+
+TEST(SparseCholesky, IndefiniteMatrixThrows) {
+  EXPECT_EQ(refusal(diagonal(Eigen::Vector3d(1.0, -1.0, 2.0))), not_positive_definite(3));
+}
+
+TEST(SparseCholesky, ZeroMatrixThrows) {
+  EXPECT_EQ(refusal(diagonal(Eigen::Vector2d::Zero())), not_positive_definite(2));
+}
+
+TEST(SparseCholesky, MatrixThatIsNotANumberThrows) {
+  const double bad = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(refusal(diagonal(Eigen::Vector2d(1.0, bad))), not_positive_definite(2));
+  EXPECT_EQ(refusal(diagonal(Eigen::Vector2d(bad, 1.0))), not_positive_definite(2));
+}
+
+}  // namespace
+}  // namespace stridor
