@@ -1,0 +1,55 @@
+// What a scene says about contacts and about the drive.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/schema.hpp"
+#include "coupling/system.hpp"
+
+namespace stridor {
+
+struct FrictionParameters {
+  double coefficient = 0.0;  ///< μ once the drive's ramp has ended, >= 0
+  static const Schema& schema();
+};
+
+enum class OnViolation {
+  stop,  ///< end the run where persistent sliding is lost
+};
+
+enum class SlidingMode {
+  moving,  ///< the drive moves the slave along the master
+  frozen,  ///< the position is held, friction acts as in sliding
+};
+
+enum class SurfaceKind {
+  polyline,  ///< straight segments between the master nodes
+};
+
+/// One pair: slave points on a master surface.
+struct ContactParameters {
+  std::vector<std::string> slave;  ///< "<body>.<point>" or "<body>.<surface>" (every node of it)
+  std::string master;              ///< "<body>.<surface>"
+  ContactAssumption assumption = ContactAssumption::subs_b;
+  OnViolation on_violation = OnViolation::stop;
+  std::optional<double> armed_from;  ///< s; the drive's ramp where absent
+  double start = 0.0;  ///< of the first slave point, along the master from its first node, m
+  SlidingMode sliding = SlidingMode::moving;
+  SurfaceKind surface = SurfaceKind::polyline;
+  FrictionParameters friction;
+  static const Schema& schema();
+};
+
+struct DriveParameters {
+  TimeCurve velocity;  ///< of guided supports in +x, m/s; a constant rises over `ramp`
+  TimeCurve load;      ///< on guided supports in +y, N; a constant rises over `ramp`
+  double ramp = 0.0;   ///< s, >= 0
+  static const Schema& schema();
+};
+
+/// The drive as it acts: constants turned into ramps.
+Drive make_drive(const DriveParameters& parameters, SlidingMode sliding);
+
+}  // namespace stridor

@@ -1,0 +1,411 @@
+#include "models/model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/suggestion.hpp"
+
+namespace stridor {
+namespace {
+
+/// A contact pair with its names resolved to nodes.
+struct ResolvedPair {
+  std::string name;
+  std::string key;  ///< key path of its section
+  const ContactParameters* parameters = nullptr;
+  int slave_body = 0;
+  std::vector<int> slave_nodes;
+  std::string master_name;
+  int master_body = 0;
+  std::vector<int> master_nodes;
+};
+
+struct Body {
+  std::string name;
+  const SubstructureParameters* parameters = nullptr;
+  BodyMatrices matrices;
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();
+  bool is_placed = false;
+  std::vector<int> interface;  ///< DoFs kept
+  std::vector<int> watched;    ///< DoFs with a row, in order of the rows
+
+  int row_of(int dof) {
+    const auto found = std::find(watched.begin(), watched.end(), dof);
+    if (found != watched.end()) return static_cast<int>(found - watched.begin());
+    watched.push_back(dof);
+    return static_cast<int>(watched.size()) - 1;
+  }
+  PointRows rows_of(int node) {
+    const auto& dofs = matrices.node_dofs[static_cast<std::size_t>(node)];
+    return {row_of(dofs[0]), row_of(dofs[1])};
+  }
+  Eigen::Vector2d position(int node) const { return matrices.nodes.row(node).transpose() + place; }
+  void keep(int dof) {
+    if (dof != BodyMatrices::held &&
+        std::find(interface.begin(), interface.end(), dof) == interface.end()) {
+      interface.push_back(dof);
+    }
+  }
+  void keep_node(int node) {
+    for (const int dof : matrices.node_dofs[static_cast<std::size_t>(node)]) keep(dof);
+  }
+};
+
+template <class Map>
+std::vector<std::string> names_of(const Map& map) {
+  std::vector<std::string> names;
+  for (const auto& entry : map) names.push_back(entry.first);
+  return names;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// "<body>.<name>" split at the first dot; the body looked up.
+std::pair<int, std::string> split_name(const std::string& name, const std::vector<Body>& bodies,
+                                       const std::string& key) {
+  const std::size_t dot = name.find('.');
+  if (dot == std::string::npos || dot == 0 || dot + 1 == name.size()) {
+    throw ConfigError(key, fmt::format("'{}' is not of the form <body>.<point or surface>", name));
+  }
+  const std::string body_name = name.substr(0, dot);
+  std::vector<std::string> names;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (bodies[b].name == body_name) return {static_cast<int>(b), name.substr(dot + 1)};
+    names.push_back(bodies[b].name);
+  }
+  throw ConfigError(key, fmt::format("there is no substructure '{}'{} (there are: {})", body_name,
+                                     did_you_mean(body_name, names), listed(names)));
+}
+
+double node_distance(const BodyMatrices& body, const std::vector<int>& nodes, std::size_t k) {
+  return (body.nodes.row(nodes[k + 1]) - body.nodes.row(nodes[k])).norm();
+}
+
+/// The nodes of a surface that `interface.spacing` keeps.
+std::vector<int> spaced_nodes(const Body& body, const std::vector<int>& nodes) {
+  const auto& spacing = std::get<BeamParameters>(*body.parameters).interface.spacing;
+  if (!spacing) return nodes;
+  const double distance = node_distance(body.matrices, nodes, 0);
+  const double ratio = *spacing / distance;
+  const auto stride = static_cast<std::size_t>(std::llround(ratio));
+  const std::size_t num_intervals = nodes.size() - 1;
+  if (stride < 1 || std::abs(ratio - static_cast<double>(stride)) > 1e-6 * ratio ||
+      num_intervals % stride != 0) {
+    throw ConfigError(fmt::format("substructures.{}.interface.spacing", body.name),
+                      fmt::format("{:g} m must be a whole multiple of the node distance {:g} m and "
+                                  "divide the surface of {} such "
+                                  "intervals into equal parts",
+                                  *spacing, distance, num_intervals));
+  }
+  std::vector<int> kept;
+  for (std::size_t k = 0; k < nodes.size(); k += stride) kept.push_back(nodes[k]);
+  return kept;
+}
+
+ResolvedPair resolve_pair(const std::string& name, const std::string& key,
+                          const ContactParameters& parameters, const std::vector<Body>& bodies) {
+  ResolvedPair pair;
+  pair.name = name;
+  pair.key = key;
+  pair.parameters = &parameters;
+
+  const auto [master, surface] = split_name(parameters.master, bodies, key + ".master");
+  const auto& surfaces = bodies[static_cast<std::size_t>(master)].matrices.surfaces;
+  const auto found = surfaces.find(surface);
+  if (found == surfaces.end()) {
+    throw ConfigError(
+        key + ".master",
+        fmt::format("'{}' has no surface '{}'{} (it has: {})",
+                    bodies[static_cast<std::size_t>(master)].name, surface,
+                    did_you_mean(surface, names_of(surfaces)), listed(names_of(surfaces))));
+  }
+  pair.master_body = master;
+  pair.master_name = parameters.master;
+  pair.master_nodes = spaced_nodes(bodies[static_cast<std::size_t>(master)], found->second);
+
+  for (std::size_t k = 0; k < parameters.slave.size(); ++k) {
+    const auto [slave, point] = split_name(parameters.slave[k], bodies, key + ".slave");
+    const Body& body = bodies[static_cast<std::size_t>(slave)];
+    if (k == 0) pair.slave_body = slave;
+    if (slave != pair.slave_body) {
+      throw ConfigError(
+          key + ".slave",
+          "the points of one pair must belong to one body; use `contacts` for several pairs");
+    }
+    const auto node = body.matrices.points.find(point);
+    const auto edge = body.matrices.surfaces.find(point);
+    if (node != body.matrices.points.end()) {
+      pair.slave_nodes.push_back(node->second);
+    } else if (edge != body.matrices.surfaces.end()) {
+      pair.slave_nodes.insert(pair.slave_nodes.end(), edge->second.begin(), edge->second.end());
+    } else {
+      std::vector<std::string> known = names_of(body.matrices.points);
+      for (const std::string& other : names_of(body.matrices.surfaces)) known.push_back(other);
+      throw ConfigError(key + ".slave",
+                        fmt::format("'{}' has no point or surface '{}'{} (it has: {})", body.name,
+                                    point, did_you_mean(point, known), listed(known)));
+    }
+  }
+  if (pair.slave_body == pair.master_body) {
+    throw ConfigError(key + ".slave", "slave and master must be different bodies");
+  }
+  return pair;
+}
+
+MasterSurface make_surface(const ResolvedPair& pair, Body& body) {
+  MasterSurface surface;
+  surface.name = pair.master_name;
+  surface.body = pair.master_body;
+  double arc = 0.0;
+  for (std::size_t k = 0; k < pair.master_nodes.size(); ++k) {
+    if (k > 0) arc += node_distance(body.matrices, pair.master_nodes, k - 1);
+    surface.rows.push_back(body.rows_of(pair.master_nodes[k]));
+    surface.positions.push_back(body.position(pair.master_nodes[k]));
+    surface.arc_length.push_back(arc);
+  }
+  return surface;
+}
+
+/// Point at an arc length of the undeformed surface.
+Eigen::Vector2d point_at(const MasterSurface& surface, double arc) {
+  int segment = 0;
+  while (segment + 1 < surface.num_segments() &&
+         surface.arc_length[static_cast<std::size_t>(segment) + 1] < arc)
+    ++segment;
+  const auto s = static_cast<std::size_t>(segment);
+  const double xi =
+      (arc - surface.arc_length[s]) / (surface.arc_length[s + 1] - surface.arc_length[s]);
+  return (1.0 - xi) * surface.positions[s] + xi * surface.positions[s + 1];
+}
+
+/// Segment under a point of the undeformed configuration, and the projection; xi outside [0, 1]
+/// where the point is off the surface.
+std::pair<int, Projection> locate_on(const MasterSurface& surface, const Eigen::Vector2d& point) {
+  int segment = 0;
+  Projection projection = project(surface.undeformed_segment(0), point);
+  while (projection.xi > 1.0 && segment + 1 < surface.num_segments()) {
+    projection = project(surface.undeformed_segment(++segment), point);
+  }
+  return {segment, projection};
+}
+
+void place_slave(const ResolvedPair& pair, const MasterSurface& surface, Body& slave) {
+  const double start = pair.parameters->start;
+  const double length = surface.arc_length.back();
+  if (start > length * (1.0 + 1e-12)) {
+    throw ConfigError(
+        pair.key + ".start",
+        fmt::format("{:g} m is off the master '{}', which is {:g} m long; allowed: 0 to {:g} m",
+                    start, surface.name, length, length));
+  }
+  const Eigen::Vector2d target = point_at(surface, start);
+  const Eigen::Vector2d shift = target - slave.position(pair.slave_nodes.front());
+  if (!slave.is_placed) {
+    slave.place += shift;
+    slave.is_placed = true;
+  } else if (shift.norm() > 1e-9 * length) {
+    throw ConfigError(pair.key + ".start",
+                      fmt::format("'{}' is placed already, and its point stands {:g} m away from "
+                                  "the {:g} m asked for; a body can be "
+                                  "placed by one pair only",
+                                  slave.name, shift.norm(), start));
+  }
+}
+
+std::string type_name(const SubstructureParameters&) {
+  return "beam";
+}
+
+BodyMatrices make_body(const SubstructureParameters& parameters) {
+  return std::visit([](const BeamParameters& beam) { return make_beam(beam); }, parameters);
+}
+
+}  // namespace
+
+const Schema& InitialParameters::schema() {
+  static const Schema keys = SchemaOf<InitialParameters>("initial").choice(
+      "state", &InitialParameters::state, {{"rest", Kind::rest}},
+      {.doc = "State at the start: rest.", .optional = true});
+  return keys;
+}
+
+const Schema& ModelParameters::schema() {
+  static const Schema keys =
+      SchemaOf<ModelParameters>("model")
+          .named_variants("substructures", &ModelParameters::substructures, "type", {"beam"},
+                          {.doc = "The bodies, by name."})
+          .section("contact", &ModelParameters::contact,
+                   {.doc = "The contact pair, where there is one only.", .optional = true})
+          .named_sections("contacts", &ModelParameters::contacts,
+                          {.doc = "Several contact pairs, by name.", .optional = true})
+          .section("drive", &ModelParameters::drive,
+                   {.doc = "What moves and loads guided supports."})
+          .section("initial", &ModelParameters::initial,
+                   {.doc = "State at the start of a run.", .optional = true})
+          .check([](const ModelParameters& model, std::vector<Problem>& problems) {
+            if (model.contact && !model.contacts.empty()) {
+              problems.push_back(
+                  {"contacts",
+                   "give either `contact` (one pair) or `contacts` (several), not both",
+                   {},
+                   0,
+                   0});
+            }
+            if (!model.contact && model.contacts.empty()) {
+              problems.push_back({"contact",
+                                  "missing: a scene needs a contact pair (`contact`, or several by "
+                                  "name under `contacts`)",
+                                  {},
+                                  0,
+                                  0});
+            }
+            const auto pairs = model.pairs();
+            for (const auto& [name, pair] : pairs) {
+              if (pair.sliding != pairs.begin()->second.sliding) {
+                problems.push_back({"contacts." + name + ".sliding",
+                                    "must be the same for all pairs: one drive moves them",
+                                    {},
+                                    0,
+                                    0});
+              }
+            }
+          });
+  return keys;
+}
+
+std::map<std::string, ContactParameters> ModelParameters::pairs() const {
+  if (contact) return {{"contact", *contact}};
+  return contacts;
+}
+
+Model make_model(const ModelParameters& parameters,
+                 const std::vector<std::pair<PointName, std::string>>& observed) {
+  std::vector<Body> bodies;
+  for (const auto& [name, substructure] : parameters.substructures) {
+    Body body;
+    body.name = name;
+    body.parameters = &substructure;
+    body.matrices = make_body(substructure);
+    bodies.push_back(std::move(body));
+  }
+
+  const auto pairs = parameters.pairs();
+  std::vector<ResolvedPair> resolved;
+  for (const auto& [name, pair] : pairs) {
+    resolved.push_back(
+        resolve_pair(name, parameters.contact ? name : "contacts." + name, pair, bodies));
+  }
+
+  // A body that carries others stands before they are placed on it; chains are placed in order.
+  Model model;
+  System& system = model.system;
+  system.drive = make_drive(parameters.drive,
+                            pairs.empty() ? SlidingMode::moving : pairs.begin()->second.sliding);
+  std::vector<ResolvedPair*> waiting;
+  for (ResolvedPair& pair : resolved) waiting.push_back(&pair);
+  const auto is_waiting_slave = [&](int body) {
+    return std::any_of(waiting.begin(), waiting.end(), [&](const ResolvedPair* pair) {
+      return pair->slave_body == body && !bodies[static_cast<std::size_t>(body)].is_placed;
+    });
+  };
+  while (!waiting.empty()) {
+    const auto ready = std::find_if(waiting.begin(), waiting.end(), [&](const ResolvedPair* pair) {
+      return !is_waiting_slave(pair->master_body);
+    });
+    if (ready == waiting.end()) {
+      throw ConfigError(waiting.front()->key + ".master",
+                        "the pairs form a circle: no body of it can be placed first");
+    }
+    const ResolvedPair& pair = **ready;
+    Body& slave = bodies[static_cast<std::size_t>(pair.slave_body)];
+    Body& master = bodies[static_cast<std::size_t>(pair.master_body)];
+    MasterSurface surface = make_surface(pair, master);
+    place_slave(pair, surface, slave);
+    for (const int node : pair.master_nodes) master.keep_node(node);
+
+    for (std::size_t k = 0; k < pair.slave_nodes.size(); ++k) {
+      const int node = pair.slave_nodes[k];
+      slave.keep_node(node);
+      ContactPoint point;
+      point.name = pair.slave_nodes.size() == 1 ? pair.name : fmt::format("{}[{}]", pair.name, k);
+      point.slave_body = pair.slave_body;
+      point.slave_rows = slave.rows_of(node);
+      point.slave_position = slave.position(node);
+      point.surface = static_cast<int>(system.surfaces.size());
+      const auto [segment, projection] = locate_on(surface, point.slave_position);
+      const double length = surface.arc_length.back();
+      const double rounding = 1e-9;
+      if (projection.xi < -rounding || projection.xi > 1.0 + rounding) {
+        throw ConfigError(pair.key + ".start",
+                          fmt::format("slave point {} starts off the end of the master '{}'", k + 1,
+                                      surface.name));
+      }
+      const double gap = projection.normal.dot(
+          point.slave_position - surface.positions[static_cast<std::size_t>(segment)]);
+      if (std::abs(gap) > 1e-6 * length) {
+        throw ConfigError(pair.key + ".slave",
+                          fmt::format("slave point {} starts {:g} m away from the master '{}'; "
+                                      "every slave point must lie on it at the "
+                                      "start",
+                                      k + 1, gap, surface.name));
+      }
+      point.first_segment = segment;
+      point.assumption = pair.parameters->assumption;
+      point.friction =
+          TimeCurve::ramp(pair.parameters->friction.coefficient, parameters.drive.ramp);
+      point.armed_from = pair.parameters->armed_from.value_or(parameters.drive.ramp);
+      system.contacts.push_back(std::move(point));
+    }
+    system.surfaces.push_back(std::move(surface));
+    waiting.erase(ready);
+  }
+
+  for (const auto& [name, key] : observed) {
+    const auto [b, point] = split_name(name.body + "." + name.point, bodies, key);
+    Body& body = bodies[static_cast<std::size_t>(b)];
+    const auto node = body.matrices.points.find(point);
+    if (node == body.matrices.points.end()) {
+      const auto known = names_of(body.matrices.points);
+      throw ConfigError(key, fmt::format("'{}' has no point '{}'{} (it has: {})", body.name, point,
+                                         did_you_mean(point, known), listed(known)));
+    }
+    model.points[name] = {b, body.rows_of(node->second)};
+  }
+
+  for (Body& body : bodies) {
+    const std::string key = "substructures." + body.name;
+    SystemBody finished;
+    finished.name = body.name;
+    finished.follows_drive = body.matrices.follows_drive();
+    if (finished.follows_drive) {
+      body.keep(body.matrices.load_dof);
+      finished.load_row = body.row_of(body.matrices.load_dof);
+    }
+    const int num_modes =
+        std::get<BeamParameters>(*body.parameters).reduction.fixed_interface_modes;
+    const auto num_interior =
+        body.matrices.num_dofs() - static_cast<Eigen::Index>(body.interface.size());
+    if (num_modes > num_interior) {
+      throw ConfigError(key + ".reduction.fixed_interface_modes",
+                        fmt::format("{} modes asked, but the {} has only {} DoFs besides its "
+                                    "interface; take at most that",
+                                    num_modes, type_name(*body.parameters), num_interior));
+    }
+    try {
+      finished.reduced = make_craig_bampton(body.matrices, body.interface, num_modes, body.watched);
+      finished.modal = make_modal(finished.reduced);
+    } catch (const NumericalError& error) {
+      throw ConfigError(
+          key, fmt::format("cannot be reduced: {}. Give it supports or more contact points",
+                           error.what()));
+    }
+    system.bodies.push_back(std::move(finished));
+  }
+  return model;
+}
+
+}  // namespace stridor

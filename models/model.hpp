@@ -1,0 +1,69 @@
+// From the keys of a scene to the coupled system.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "coupling/contact_parameters.hpp"
+#include "coupling/system.hpp"
+#include "substructures/beam.hpp"
+
+namespace stridor {
+
+/// Every kind of substructure that a scene can hold, by its key `type`.
+using SubstructureParameters = std::variant<BeamParameters>;
+
+struct InitialParameters {
+  enum class Kind { rest } state = Kind::rest;
+  static const Schema& schema();
+};
+
+/// The part of a scene that describes the mechanics.
+struct ModelParameters {
+  std::map<std::string, SubstructureParameters> substructures;
+  std::optional<ContactParameters> contact;           ///< one pair, named "contact"
+  std::map<std::string, ContactParameters> contacts;  ///< several pairs by name
+  DriveParameters drive;
+  InitialParameters initial;
+  static const Schema& schema();
+
+  /// All pairs by name, whichever key they stand under.
+  std::map<std::string, ContactParameters> pairs() const;
+};
+
+/// A point of a body whose motion is wanted: "<body>.<point>".
+struct PointName {
+  std::string body;
+  std::string point;
+  auto operator<=>(const PointName&) const = default;
+};
+
+/// The system and where in it the wanted points are.
+struct Model {
+  struct Point {
+    int body = 0;
+    PointRows rows;
+  };
+  System system;
+  std::map<PointName, Point> points;
+};
+
+/// Builds, places and reduces the bodies and connects them.
+///
+/// The first body that is only ever a master keeps its frame as the global one; a slave body is
+/// placed so that its first slave point lies on the master at `start`.
+///
+/// @param observed points whose displacement must be recoverable besides the contact points; each
+/// is
+///                 paired with the key path that asks for it, for messages
+/// @throws ConfigError (key paths below "substructures", "contact", "contacts") if a name is
+/// unknown,
+///         a slave starts off its master, a body is left free to move rigidly within its interface,
+///         or a reduction asks for more modes than there are
+Model make_model(const ModelParameters& parameters,
+                 const std::vector<std::pair<PointName, std::string>>& observed);
+
+}  // namespace stridor

@@ -1,0 +1,158 @@
+#include "solvers/dense_two_step.hpp"
+
+#include <Eigen/Cholesky>
+
+#include "core/errors.hpp"
+
+namespace stridor {
+namespace {
+
+Eigen::Map<const Eigen::VectorXd> as_vector(std::span<const double> values) {
+  return {values.data(), static_cast<Eigen::Index>(values.size())};
+}
+
+std::span<const double> as_span(const Eigen::VectorXd& vector) {
+  return {vector.data(), static_cast<std::size_t>(vector.size())};
+}
+
+std::span<double> as_span(Eigen::VectorXd& vector) {
+  return {vector.data(), static_cast<std::size_t>(vector.size())};
+}
+
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& mass) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(mass);
+  if (factor.info() != Eigen::Success)
+    throw NumericalError("the reduced mass is not positive definite");
+  return factor.solve(Eigen::MatrixXd::Identity(mass.rows(), mass.cols()));
+}
+
+}  // namespace
+
+PublishedTwoStep::PublishedTwoStep(const ReducedBody& body, const Eigen::MatrixXd& patterns,
+                                   double step, int num_slots, double alpha,
+                                   std::span<const double> loads)
+    : Propagator(num_slots),
+      body_(body),
+      row_table_(body.rows.transpose()),
+      patterns_(patterns),
+      step_(step),
+      inverse_mass_(inverse_of(body.mass)),
+      load_(Eigen::VectorXd::Zero(body.size())),
+      current_(load_),
+      previous_(load_),
+      predicted_(load_),
+      contact_(load_),
+      acceleration_(load_) {
+  set_mass_damping(alpha);
+  set_loads(loads);
+  start();
+}
+
+double PublishedTwoStep::displacement(int row) const {
+  return row_table_.col(row).dot(current_);
+}
+
+double PublishedTwoStep::predicted_displacement(int row) const {
+  return row_table_.col(row).dot(predicted_);
+}
+
+double PublishedTwoStep::row_compliance(int row_a, int row_b) const {
+  return step_ * step_ * row_table_.col(row_a).dot(inverse_mass_ * row_table_.col(row_b));
+}
+
+void PublishedTwoStep::set_loads(std::span<const double> amplitudes) {
+  if (!amplitudes.empty()) load_ = patterns_ * as_vector(amplitudes);
+}
+
+void PublishedTwoStep::set_mass_damping(double alpha) {
+  damping_ = alpha * body_.mass + body_.damping.beta * body_.stiffness;
+}
+
+void PublishedTwoStep::advance_body(const double* forces, double* predicted) {
+  contact_.setZero();
+  for (int slot = 0; slot < num_slots(); ++slot)
+    contact_ += forces[slot] * row_table_.col(row(slot));
+  // Before the first step the prediction is that of the state at rest: no correction to make.
+  const Eigen::VectorXd corrected = predicted_ + (step_ * step_) * (inverse_mass_ * contact_);
+  previous_.swap(current_);
+  current_ = corrected;
+
+  contact_.noalias() = load_ - body_.stiffness * current_;
+  contact_.noalias() -= damping_ * ((current_ - previous_) / step_);
+  acceleration_.noalias() = inverse_mass_ * contact_;
+  predicted_ = (step_ * step_) * acceleration_ + 2.0 * current_ - previous_;
+  for (int slot = 0; slot < num_slots(); ++slot)
+    predicted[slot] = row_table_.col(row(slot)).dot(predicted_);
+}
+
+void PublishedTwoStep::save_body(State& state, const std::string& prefix) const {
+  state.put(prefix + "u", as_span(current_));
+  state.put(prefix + "u_previous", as_span(previous_));
+  state.put(prefix + "u_predicted", as_span(predicted_));
+}
+
+void PublishedTwoStep::load_body(const State& state, const std::string& prefix) {
+  state.get(prefix + "u", as_span(current_));
+  state.get(prefix + "u_previous", as_span(previous_));
+  state.get(prefix + "u_predicted", as_span(predicted_));
+}
+
+FusedTwoStep::FusedTwoStep(const ReducedBody& body, const Eigen::MatrixXd& patterns, double step,
+                           int num_slots, double alpha, std::span<const double> loads)
+    : Propagator(num_slots),
+      row_table_(body.rows.transpose()),
+      step_(step),
+      alpha_(alpha),
+      beta_(body.damping.beta),
+      load_(Eigen::VectorXd::Zero(body.size())),
+      current_(load_),
+      increment_(load_),
+      next_increment_(load_),
+      blend_(load_) {
+  const Eigen::MatrixXd inverse_mass = inverse_of(body.mass);
+  mass_to_stiffness_ = inverse_mass * body.stiffness;
+  slot_gain_ = (step * step) * inverse_mass * row_table_;
+  load_gain_ = (step * step) * inverse_mass * patterns;
+  set_loads(loads);
+  start();
+}
+
+double FusedTwoStep::displacement(int row) const {
+  return row_table_.col(row).dot(current_);
+}
+
+double FusedTwoStep::predicted_displacement(int row) const {
+  return row_table_.col(row).dot(current_ + next_increment_);
+}
+
+double FusedTwoStep::row_compliance(int row_a, int row_b) const {
+  return row_table_.col(row_a).dot(slot_gain_.col(row_b));
+}
+
+void FusedTwoStep::set_loads(std::span<const double> amplitudes) {
+  if (!amplitudes.empty()) load_ = load_gain_ * as_vector(amplitudes);
+}
+
+void FusedTwoStep::advance_body(const double* forces, double* predicted) {
+  increment_ = next_increment_;
+  for (int slot = 0; slot < num_slots(); ++slot)
+    increment_ += forces[slot] * slot_gain_.col(row(slot));
+  current_ += increment_;
+  blend_ = (step_ * step_) * current_ + (step_ * beta_) * increment_;
+  next_increment_ = (1.0 - step_ * alpha_) * increment_ + load_;
+  next_increment_.noalias() -= mass_to_stiffness_ * blend_;
+  for (int slot = 0; slot < num_slots(); ++slot)
+    predicted[slot] = predicted_displacement(row(slot));
+}
+
+void FusedTwoStep::save_body(State& state, const std::string& prefix) const {
+  state.put(prefix + "u", as_span(current_));
+  state.put(prefix + "next_increment", as_span(next_increment_));
+}
+
+void FusedTwoStep::load_body(const State& state, const std::string& prefix) {
+  state.get(prefix + "u", as_span(current_));
+  state.get(prefix + "next_increment", as_span(next_increment_));
+}
+
+}  // namespace stridor

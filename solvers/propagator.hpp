@@ -1,0 +1,88 @@
+// How one body moves from step to step under point forces.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/state.hpp"
+
+namespace stridor {
+
+/// Marches one body with a two-step scheme: u_{n+1} = u*_{n+1} + W f_n.
+///
+/// The contacts see a body through its slots: each slot watches one row of ReducedBody::rows (the
+/// displacement of a point in one direction). After construction and after every `advance` the body
+/// stands at t_n with u*_{n+1} predicted from the loads at t_n; `advance` takes the slot forces at
+/// t_n, corrects to u_{n+1} and predicts u*_{n+2}. Public functions keep the slots, the private
+/// hooks compute.
+class Propagator {
+ public:
+  virtual ~Propagator() = default;
+  Propagator(const Propagator&) = delete;
+  Propagator& operator=(const Propagator&) = delete;
+
+  int num_slots() const { return static_cast<int>(rows_.size()); }
+  int row(int slot) const { return rows_[at(slot)]; }
+
+  /// Lets a slot watch another row. Its increment is not known until the next `advance`.
+  /// Cost: a few products of the length of the body.
+  void watch(int slot, int row);
+
+  /// u*_{n+1} at a slot, m.
+  double predicted(int slot) const { return predicted_[at(slot)]; }
+  /// u_n at a slot, m.
+  double current(int slot) const { return current_[at(slot)]; }
+  /// u_n − u_{n−1} at a slot, m, for the row it watched when `advance` was called.
+  double increment(int slot) const { return increment_[at(slot)]; }
+  /// W between slots: displacement of `a` at t_{n+1} per force on `b` at t_n, m/N.
+  double compliance(int a, int b) const { return compliance_[at(a) * rows_.size() + at(b)]; }
+  const double* predicted() const { return predicted_.data(); }
+  const double* increments() const { return increment_.data(); }
+  const double* compliances() const { return compliance_.data(); }
+
+  /// @param forces on the slots at t_n, N
+  void advance(const double* forces);
+
+  /// u_n of any row, m. Cost: one product of the length of the body.
+  virtual double displacement(int row) const = 0;
+
+  /// Amplitudes of the load patterns for the next prediction (N and m/s²; see make_propagator).
+  virtual void set_loads(std::span<const double> amplitudes) = 0;
+  /// α of the Rayleigh damping for the next prediction, 1/s.
+  virtual void set_mass_damping(double alpha) = 0;
+
+  /// Everything that a later `load` into a propagator of the same body needs to go on bitwise
+  /// equally.
+  void save(State& state, const std::string& prefix) const;
+  /// @throws std::invalid_argument if the state is of another body or lacks arrays
+  void load(const State& state, const std::string& prefix);
+
+ protected:
+  explicit Propagator(int num_slots);
+
+  /// Sets u_n = u_{n−1} = 0 and predicts u*_1; the constructor of a derived class calls it last.
+  void start();
+
+  const std::vector<int>& rows() const { return rows_; }
+
+ private:
+  static std::size_t at(int slot) { return static_cast<std::size_t>(slot); }
+  void renew_compliance(int slot);
+
+  virtual void advance_body(const double* forces, double* predicted) = 0;
+  /// u*_{n+1} of a row.
+  virtual double predicted_displacement(int row) const = 0;
+  virtual double row_compliance(int row_a, int row_b) const = 0;
+  virtual void slot_changed(int slot) = 0;
+  virtual void save_body(State& state, const std::string& prefix) const = 0;
+  virtual void load_body(const State& state, const std::string& prefix) = 0;
+
+  std::vector<int> rows_;
+  std::vector<double> predicted_;
+  std::vector<double> current_;
+  std::vector<double> increment_;
+  std::vector<double> compliance_;
+};
+
+}  // namespace stridor

@@ -1,0 +1,225 @@
+#include "models/model.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/errors.hpp"
+#include "tests/support/paper_model.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+
+using ::testing::HasSubstr;
+
+/// Expects make_model to refuse the parameters at this key with this in the message.
+void expect_refusal(const ModelParameters& parameters, const std::string& key, const std::string& message,
+                    const std::vector<std::pair<PointName, std::string>>& observed = {}) {
+  try {
+    make_model(parameters, observed);
+    ADD_FAILURE() << "not refused: " << key << ": " << message;
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(error.problems().at(0).key, key);
+    EXPECT_THAT(error.problems().at(0).message, HasSubstr(message));
+  }
+}
+
+TEST(Model, PaperBeamsReduceToTheirPublishedSizes) {
+  const Model model = make_paper_model(paper_model());
+  ASSERT_EQ(model.system.bodies.size(), 2u);
+  EXPECT_EQ(model.system.bodies[0].name, "cantilever");
+  EXPECT_EQ(model.system.bodies[0].reduced.size(), 220);
+  EXPECT_EQ(model.system.bodies[1].reduced.size(), 23);
+  EXPECT_EQ(model.system.bodies[0].reduced.num_interface, 200);
+  EXPECT_EQ(model.system.bodies[1].reduced.num_interface, 3);
+  EXPECT_FALSE(model.system.bodies[0].follows_drive);
+  EXPECT_TRUE(model.system.bodies[1].follows_drive);
+}
+
+TEST(Model, SlavePointIsPlacedOnTheMasterAtItsStart) {
+  for (const double angle : {trailing_angle, leading_angle}) {
+    const Model model = make_paper_model(paper_model(angle));
+    const ContactPoint& contact = model.system.contacts.at(0);
+    EXPECT_NEAR(contact.slave_position.x(), 0.030, 1e-15);
+    EXPECT_NEAR(contact.slave_position.y(), 0.001, 1e-15);
+    const MasterSurface& surface = model.system.surfaces.at(0);
+    EXPECT_EQ(surface.num_segments(), 100);
+    EXPECT_NEAR(surface.arc_length.back(), 0.1, 1e-15);
+    const Segment segment = surface.undeformed_segment(contact.first_segment);
+    const double xi = project(segment, contact.slave_position).xi;
+    EXPECT_GE(xi, -1e-9);
+    EXPECT_LE(xi, 1.0 + 1e-9);
+  }
+}
+
+TEST(Model, InterfaceSpacingKeepsEveryKthNode) {
+  ModelParameters parameters = paper_model();
+  auto& cantilever = std::get<BeamParameters>(parameters.substructures["cantilever"]);
+  cantilever.interface.spacing = 0.005;
+  const Model model = make_paper_model(parameters);
+  EXPECT_EQ(model.system.surfaces[0].num_segments(), 20);
+  EXPECT_EQ(model.system.bodies[0].reduced.num_interface, 40);
+}
+
+TEST(Model, InterfaceSpacingMustFitTheMesh) {
+  ModelParameters parameters = paper_model();
+  auto& cantilever = std::get<BeamParameters>(parameters.substructures["cantilever"]);
+  cantilever.interface.spacing = 0.0015;
+  expect_refusal(parameters, "substructures.cantilever.interface.spacing", "must be a whole multiple of the node distance 0.001 m");
+  cantilever.interface.spacing = 0.003;
+  expect_refusal(parameters, "substructures.cantilever.interface.spacing", "divide the surface of 100 such intervals");
+}
+
+TEST(Model, ObservedPointOutsideTheInterfaceIsRecovered) {
+  const Model model = make_model(paper_model(), {{{"oblique", "end_top"}, "k"}, {{"cantilever", "end"}, "k"}});
+  EXPECT_EQ(model.points.size(), 2u);
+  // On the guided end the horizontal motion is held: a row of zeros.
+  const Model::Point guided = model.points.at({"oblique", "end_top"});
+  EXPECT_EQ(model.system.bodies[1].reduced.rows.row(guided.rows.x).norm(), 0.0);
+  const Model::Point interior = model.points.at({"cantilever", "end"});
+  EXPECT_GT(model.system.bodies[0].reduced.rows.row(interior.rows.y).norm(), 0.0);
+}
+
+TEST(Model, UnknownNamesAreRefusedWithSuggestions) {
+  ModelParameters parameters = paper_model();
+  parameters.contact->master = "cantilevr.top";
+  expect_refusal(parameters, "contact.master", "there is no substructure 'cantilevr', did you mean 'cantilever'?");
+  parameters = paper_model();
+  parameters.contact->master = "cantilever.topp";
+  expect_refusal(parameters, "contact.master", "'cantilever' has no surface 'topp', did you mean 'top'?");
+  parameters = paper_model();
+  parameters.contact->slave = {"oblique.tipp"};
+  expect_refusal(parameters, "contact.slave", "'oblique' has no point or surface 'tipp', did you mean 'tip'?");
+  parameters = paper_model();
+  parameters.contact->slave = {"oblique"};
+  expect_refusal(parameters, "contact.slave", "'oblique' is not of the form <body>.<point or surface>");
+  expect_refusal(paper_model(), "record.channels.0", "'cantilever' has no point 'free_and', did you mean 'free_end'?",
+                 {{{"cantilever", "free_and"}, "record.channels.0"}});
+}
+
+TEST(Model, StartOffTheMasterIsRefusedWithTheAllowedRange) {
+  ModelParameters parameters = paper_model();
+  parameters.contact->start = 0.2;
+  expect_refusal(parameters, "contact.start", "0.2 m is off the master 'cantilever.top', which is 0.1 m long; allowed: 0 to 0.1 m");
+}
+
+TEST(Model, SecondSlavePointOffTheEndOfTheMasterIsRefused) {
+  ModelParameters parameters = paper_model();
+  std::get<BeamParameters>(parameters.substructures["oblique"]).angle = 0.0;
+  parameters.contact->slave = {"oblique.start_bottom", "oblique.end_bottom"};
+  parameters.contact->start = 0.050;
+  expect_refusal(parameters, "contact.start", "slave point 2 starts off the end of the master 'cantilever.top'");
+}
+
+TEST(Model, SlavePointAboveTheMasterIsRefused) {
+  ModelParameters parameters = paper_model();
+  parameters.contact->slave = {"oblique.tip", "oblique.start_top"};
+  expect_refusal(parameters, "contact.slave", "slave point 2 starts 0.0012990");
+}
+
+TEST(Model, SlaveAndMasterMustDiffer) {
+  ModelParameters parameters = paper_model();
+  parameters.contact->slave = {"cantilever.free_end"};
+  expect_refusal(parameters, "contact.slave", "slave and master must be different bodies");
+}
+
+TEST(Model, PointsOfOnePairMustBelongToOneBody) {
+  ModelParameters parameters = paper_model();
+  parameters.substructures["third"] = paper_oblique(trailing_angle);
+  parameters.contact->slave = {"oblique.tip", "third.tip"};
+  expect_refusal(parameters, "contact.slave", "must belong to one body");
+}
+
+TEST(Model, SeveralPairsPlaceTheirBodies) {
+  ModelParameters parameters = paper_model();
+  parameters.substructures["second"] = paper_oblique(leading_angle);
+  ContactParameters first = *parameters.contact;
+  ContactParameters second = first;
+  second.slave = {"second.tip"};
+  second.start = 0.060;
+  parameters.contact.reset();
+  parameters.contacts = {{"one", first}, {"two", second}};
+  const Model model = make_paper_model(parameters);
+  ASSERT_EQ(model.system.contacts.size(), 2u);
+  EXPECT_EQ(model.system.contacts[0].name, "one");
+  EXPECT_NEAR(model.system.contacts[1].slave_position.x(), 0.060, 1e-15);
+  Simulation simulation(model.system, paper_time());
+  EXPECT_EQ(simulation.step_until(2000), StepOutcome::done) << simulation.failure();
+}
+
+TEST(Model, ABodyIsPlacedByOnePairOnly) {
+  ModelParameters parameters = paper_model();
+  ContactParameters first = *parameters.contact;
+  ContactParameters second = first;
+  second.start = 0.040;
+  parameters.contact.reset();
+  parameters.contacts = {{"one", first}, {"two", second}};
+  expect_refusal(parameters, "contacts.two.start", "'oblique' is placed already");
+}
+
+TEST(Model, PairsInACircleAreRefused) {
+  ModelParameters parameters = paper_model();
+  ContactParameters first = *parameters.contact;
+  ContactParameters second = first;
+  second.slave = {"cantilever.free_end"};
+  second.master = "oblique.top";
+  parameters.contact.reset();
+  parameters.contacts = {{"one", first}, {"two", second}};
+  expect_refusal(parameters, "contacts.one.master", "form a circle");
+}
+
+TEST(Model, TooManyModesAreRefusedWithTheNumberThereIs) {
+  ModelParameters parameters = paper_model();
+  std::get<BeamParameters>(parameters.substructures["cantilever"]).reduction.fixed_interface_modes = 301;
+  // 253 nodes, 3 of them clamped: 500 DoFs, 200 of them in the interface.
+  expect_refusal(parameters, "substructures.cantilever.reduction.fixed_interface_modes",
+                 "301 modes asked, but the beam has only 300 DoFs besides its interface");
+}
+
+TEST(Model, ABodyThatIsFreeToTurnIsRefused) {
+  ModelParameters parameters = paper_model();
+  std::get<BeamParameters>(parameters.substructures["oblique"]).supports.end = Support::free;
+  expect_refusal(parameters, "substructures.oblique", "cannot be reduced: the stiffness of the interior");
+}
+
+TEST(Model, ConstantsOfTheDriveRiseOverTheRamp) {
+  const Model model = make_paper_model(paper_model());
+  const Drive& drive = model.system.drive;
+  EXPECT_EQ(drive.velocity.value(0.0), 0.0);
+  EXPECT_EQ(drive.velocity.value(0.1), 0.030);
+  EXPECT_EQ(drive.load.value(0.2), -0.20);
+  EXPECT_NEAR(drive.displacement(1.0), 0.030 * 0.95, 1e-16);
+  EXPECT_EQ(model.system.contacts[0].friction.value(0.1), 0.30);
+  EXPECT_EQ(model.system.contacts[0].armed_from, 0.1);
+}
+
+TEST(ModelParameters, ContactAndContactsTogetherAreRefused) {
+  ModelParameters parameters = paper_model();
+  parameters.contacts["other"] = *parameters.contact;
+  std::vector<Problem> problems;
+  for (const auto& check : ModelParameters::schema().checks) check(&parameters, problems);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].key, "contacts");
+  parameters.contacts.clear();
+  parameters.contact.reset();
+  problems.clear();
+  for (const auto& check : ModelParameters::schema().checks) check(&parameters, problems);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_THAT(problems[0].message, HasSubstr("a scene needs a contact pair"));
+}
+
+TEST(ModelParameters, PairsMustAgreeOnSliding) {
+  ModelParameters parameters = paper_model();
+  ContactParameters frozen = *parameters.contact;
+  frozen.sliding = SlidingMode::frozen;
+  parameters.contacts = {{"one", *parameters.contact}, {"two", frozen}};
+  parameters.contact.reset();
+  std::vector<Problem> problems;
+  for (const auto& check : ModelParameters::schema().checks) check(&parameters, problems);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].key, "contacts.two.sliding");
+}
+
+}  // namespace
+}  // namespace stridor

@@ -1,0 +1,42 @@
+// The beam-on-beam system of the main scene, built without a scene file.
+#pragma once
+
+#include "models/model.hpp"
+#include "solvers/simulation.hpp"
+#include "tests/support/paper_beams.hpp"
+
+namespace stridor::test {
+
+inline ModelParameters paper_model(double angle = trailing_angle,
+                                   ContactAssumption assumption = ContactAssumption::subs_b) {
+  ModelParameters model;
+  model.substructures["oblique"] = paper_oblique(angle);
+  model.substructures["cantilever"] = paper_cantilever();
+  ContactParameters contact;
+  contact.slave = {"oblique.tip"};
+  contact.master = "cantilever.top";
+  contact.assumption = assumption;
+  contact.start = 0.030;
+  contact.friction.coefficient = 0.30;
+  model.contact = contact;
+  model.drive.velocity = TimeCurve(0.030);
+  model.drive.load = TimeCurve(-0.20);
+  model.drive.ramp = 0.1;
+  return model;
+}
+
+inline const PointName free_end{"cantilever", "free_end"};
+
+inline Model make_paper_model(const ModelParameters& parameters) {
+  return make_model(parameters, {{free_end, "record.channels.0"}});
+}
+
+inline TimeParameters paper_time(double step = 2.0e-7, Coordinates coordinates = Coordinates::modal) {
+  TimeParameters time;
+  time.coordinates = coordinates;
+  time.step = step;
+  time.end = 2.25;
+  return time;
+}
+
+}  // namespace stridor::test
