@@ -1,0 +1,47 @@
+// What every verb of the command line shares.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace stridor {
+
+/// Exit codes of the program.
+enum class ExitCode {
+  done = 0,
+  internal = 1,
+  bad_input = 2,
+  numbers_failed = 3,
+  file_trouble = 4,
+  stopped = 5
+};
+
+/// Keeps the order of the keys as they were set.
+using Json = nlohmann::ordered_json;
+
+/// Options that several verbs have.
+struct CommonOptions {
+  std::vector<std::string> sets;
+  bool json = false;
+  bool force = false;
+  int threads = 1;
+};
+
+void add_scene_options(CLI::App& verb, CommonOptions& options);
+void add_json_option(CLI::App& verb, CommonOptions& options);
+void add_force_option(CLI::App& verb, CommonOptions& options);
+
+/// A number for JSON; null where it is not finite.
+Json number(double value);
+
+/// Each verb declares itself; `action` receives what to do when it was given.
+using Action = std::function<ExitCode()>;
+void add_run_command(CLI::App& program, Action& action, const std::string& command_line);
+void add_check_command(CLI::App& program, Action& action);
+void add_info_command(CLI::App& program, Action& action);
+void add_plot_command(CLI::App& program, Action& action);
+
+}  // namespace stridor

@@ -1,0 +1,69 @@
+// stridor info: what a run file holds.
+#include <fmt/format.h>
+
+#include "app/command.hpp"
+#include "io/run_file.hpp"
+
+namespace stridor {
+namespace {
+
+struct InfoOptions {
+  CommonOptions common;
+  std::string file;
+};
+
+Json attribute_json(const std::variant<std::string, double>& value) {
+  if (const double* real = std::get_if<double>(&value)) return number(*real);
+  return std::get<std::string>(value);
+}
+
+ExitCode info(const InfoOptions& options) {
+  const RunFileReader file(options.file);
+  const RunFileHeader& header = file.header();
+  const std::vector<double>& times = file.times();
+  Json object = {
+      {"file", options.file},      {"version", header.version},       {"commit", header.commit},
+      {"command", header.command}, {"scene_hash", header.scene_hash}, {"date", header.date},
+      {"samples", times.size()}};
+  object["time"] =
+      times.empty() ? Json(nullptr) : Json{{"from", times.front()}, {"to", times.back()}};
+  object["series"] = Json::array();
+  for (const std::string& name : file.series_names()) {
+    object["series"].push_back({{"path", name}, {"units", file.units(name)}});
+  }
+  object["results"] = Json::object();
+  for (const auto& [name, value] : file.results()) object["results"][name] = attribute_json(value);
+
+  if (options.common.json) {
+    fmt::print("{}\n", object.dump(2));
+    return ExitCode::done;
+  }
+  const auto line = [](const std::string& name, const std::string& value) {
+    fmt::print("{:<48} {}\n", name, value);
+  };
+  line("made by", fmt::format("stridor {} ({}), {}", header.version, header.commit, header.date));
+  line("command", header.command);
+  line("scene hash", header.scene_hash);
+  line("samples", times.empty() ? "none"
+                                : fmt::format("{} from {:g} to {:g} s", times.size(), times.front(),
+                                              times.back()));
+  fmt::print("series\n");
+  for (const std::string& name : file.series_names()) line("  " + name, file.units(name));
+  fmt::print("results\n");
+  for (const auto& [name, value] : object["results"].items()) {
+    line("  " + name, value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App* verb = program.add_subcommand("info", "What a run file holds");
+  verb->add_option("file", options->file, "Run file (HDF5)")->required();
+  add_json_option(*verb, options->common);
+  verb->callback([options, &action] { action = [options] { return info(*options); }; });
+}
+
+}  // namespace stridor

@@ -1,0 +1,79 @@
+// The command line of stridor.
+#include <fmt/format.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "app/command.hpp"
+#include "core/errors.hpp"
+#include "core/stop_token.hpp"
+#include "core/version.hpp"
+
+namespace stridor {
+namespace {
+
+int report(const char* kind, const std::exception& error, ExitCode code) {
+  fmt::print(stderr, "stridor: {}\n{}\n", kind, error.what());
+  return static_cast<int>(code);
+}
+
+std::string joined_arguments(int argc, char** argv) {
+  std::string command;
+  for (int i = 0; i < argc; ++i) {
+    if (i > 0) command += ' ';
+    command += argv[i];
+  }
+  return command;
+}
+
+int run_program(int argc, char** argv) {
+  install_stop_signals();
+  // A reader that goes away, or a file that may not grow, are errors to report, not deaths.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+
+  CLI::App program{"stridor: friction-induced vibration of sliding flexible bodies", "stridor"};
+  program.set_version_flag("--version", fmt::format("stridor {} ({})", version, commit));
+  program.require_subcommand(1);
+  program.failure_message(CLI::FailureMessage::help);
+  Action action;
+  add_run_command(program, action, joined_arguments(argc, argv));
+  add_check_command(program, action);
+  add_info_command(program, action);
+  add_plot_command(program, action);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const bool is_failure = error.get_exit_code() != 0;
+    if (is_failure) {
+      fmt::print(stderr, "stridor: {}\nTry 'stridor --help' or 'stridor VERB --help'.\n",
+                 error.what());
+      return static_cast<int>(ExitCode::bad_input);
+    }
+    return program.exit(error);
+  }
+
+  try {
+    return static_cast<int>(action());
+  } catch (const ConfigError& error) {
+    return report("the input is wrong", error, ExitCode::bad_input);
+  } catch (const FileError& error) {
+    return report("file trouble", error, ExitCode::file_trouble);
+  } catch (const NumericalError& error) {
+    return report("the computation failed", error, ExitCode::numbers_failed);
+  } catch (const Interrupted& error) {
+    return report("stopped on request", error, ExitCode::stopped);
+  } catch (const std::bad_alloc& error) {
+    return report("out of memory", error, ExitCode::internal);
+  } catch (const std::exception& error) {
+    return report("internal error; please report it", error, ExitCode::internal);
+  }
+}
+
+}  // namespace
+}  // namespace stridor
+
+int main(int argc, char** argv) {
+  return stridor::run_program(argc, argv);
+}

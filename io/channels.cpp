@@ -1,0 +1,103 @@
+#include "io/channels.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/suggestion.hpp"
+
+namespace stridor {
+namespace {
+
+const std::vector<std::string> motions{"displacement", "velocity", "acceleration"};
+const std::vector<std::string> quantities{"force", "gap", "slip_velocity", "position"};
+
+std::vector<std::string> split(const std::string& name) {
+  std::vector<std::string> parts;
+  std::size_t from = 0;
+  for (std::size_t dot = name.find('.'); dot != std::string::npos; dot = name.find('.', from)) {
+    parts.push_back(name.substr(from, dot - from));
+    from = dot + 1;
+  }
+  parts.push_back(name.substr(from));
+  return parts;
+}
+
+std::optional<std::size_t> index_in(const std::vector<std::string>& names,
+                                    const std::string& name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+std::string one_of(const std::string& what, const std::string& written,
+                   const std::vector<std::string>& allowed) {
+  return fmt::format("there is no {} '{}'{} (there are: {})", what, written,
+                     did_you_mean(written, allowed), fmt::join(allowed, ", "));
+}
+
+/// @throws std::string with what is wrong
+Channel parse(const std::string& name, const ModelParameters& model) {
+  Channel channel;
+  channel.name = name;
+  const std::vector<std::string> parts = split(name);
+  if (parts.size() == 4) {
+    std::vector<std::string> bodies;
+    for (const auto& entry : model.substructures) bodies.push_back(entry.first);
+    if (!index_in(bodies, parts[0])) throw one_of("substructure", parts[0], bodies);
+    if (parts[2] != "x" && parts[2] != "y")
+      throw fmt::format("'{}' is not a direction; take x or y", parts[2]);
+    const auto motion = index_in(motions, parts[3]);
+    if (!motion) throw one_of("motion", parts[3], motions);
+    channel.point = PointName{parts[0], parts[1]};
+    channel.is_vertical = parts[2] == "y";
+    channel.derivative = static_cast<Derivative>(*motion);
+    return channel;
+  }
+  if (parts.size() == 2) {
+    std::vector<std::string> pairs;
+    for (const auto& entry : model.pairs()) pairs.push_back(entry.first);
+    if (!index_in(pairs, parts[0])) throw one_of("contact pair", parts[0], pairs);
+    const auto quantity = index_in(quantities, parts[1]);
+    if (!quantity) throw one_of("contact quantity", parts[1], quantities);
+    channel.pair = parts[0];
+    channel.quantity = static_cast<ContactQuantity>(*quantity);
+    return channel;
+  }
+  throw std::string(
+      "is neither <body>.<point>.<x|y>.<displacement|velocity|acceleration> nor "
+      "<contact>.<force|gap|slip_velocity|position>");
+}
+
+}  // namespace
+
+std::string Channel::units() const {
+  if (point) {
+    constexpr const char* units[] = {"m", "m/s", "m/s^2"};
+    return units[static_cast<std::size_t>(derivative)];
+  }
+  constexpr const char* units[] = {"N", "m", "m/s", "m"};
+  return units[static_cast<std::size_t>(quantity)];
+}
+
+std::vector<Channel> parse_channels(const RecordParameters& record, const ModelParameters& model) {
+  std::vector<Channel> channels;
+  std::vector<Problem> problems;
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < record.channels.size(); ++i) {
+    const std::string& name = record.channels[i];
+    const std::string key = fmt::format("record.channels.{}", i);
+    try {
+      if (!seen.insert(name).second) throw std::string("is listed twice");
+      channels.push_back(parse(name, model));
+      channels.back().key = key;
+    } catch (const std::string& wrong) {
+      problems.push_back({key, fmt::format("channel '{}': {}", name, wrong), {}, 0, 0});
+    }
+  }
+  if (!problems.empty()) throw ConfigError(std::move(problems));
+  return channels;
+}
+
+}  // namespace stridor

@@ -1,0 +1,63 @@
+// Histories over time as stacked panels.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/gnuplot.hpp"
+
+namespace stridor {
+
+/// A line in a panel. Values that are not finite leave a gap.
+struct Curve {
+  std::vector<double> times;   ///< s, ascending
+  std::vector<double> values;  ///< as many as times
+  std::string name;            ///< in the key; no key where all names of a panel are empty
+};
+
+/// One diagram of a stack.
+struct Panel {
+  std::string title;          ///< above the panel; may be empty
+  std::string label;          ///< what the axis shows, e.g. "contact force"
+  std::string units;          ///< e.g. "N"; empty where dimensionless
+  std::vector<Curve> curves;  ///< at least one; later ones are drawn over earlier ones
+};
+
+/// Points to draw instead of a long series so that the picture looks the same.
+///
+/// Time is cut into `num_columns` equal parts; each gives its smallest and its largest value at
+/// their own times. A series of at most 2·num_columns points is returned as it is. Parts in which
+/// nothing is finite give one NaN, a gap.
+///
+/// @throws std::invalid_argument if times and values differ in length, times do not ascend or
+///         num_columns is 0
+Curve envelope(const Curve& curve, std::size_t num_columns);
+
+/// How the numbers along an axis are written: value = offset + 10^exponent · number.
+struct AxisScale {
+  double offset = 0.0;  ///< taken off where the values differ only from the fifth digit on
+  int exponent = 0;     ///< multiple of 3; 0 for values between 10⁻² and 10⁵
+  double step = 0.1;    ///< between two tick marks, as a number
+  int decimals = 1;     ///< that the step needs
+};
+
+/// Scale of an axis with about `num_ticks` marks from lower to upper.
+/// @param lower, upper finite, lower < upper
+AxisScale axis_scale(double lower, double upper, int num_ticks);
+
+/// Draws panels one below the other over one time axis, 16 cm wide.
+///
+/// Long series are drawn as envelope() of 2000 columns. Panels without a finite value stay empty.
+///
+/// @param panels at least one
+/// @param figure .png, .svg or .pdf; replaced if it exists
+/// @param title  above the stack; may be empty
+/// @throws std::invalid_argument if there is no panel, a panel has no curve, or as envelope()
+/// @throws ConfigError, FileError as draw_figure()
+void plot_histories(const std::vector<Panel>& panels, const std::filesystem::path& figure,
+                    const std::string& title);
+
+}  // namespace stridor

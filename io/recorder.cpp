@@ -1,0 +1,177 @@
+#include "io/recorder.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace stridor {
+namespace {
+
+int steps_per_sample(double step, double interval) {
+  return static_cast<int>(std::lround(interval / step));
+}
+
+std::shared_ptr<const DecimationFilter> make_filter(const System& system, double step,
+                                                    double interval) {
+  const int ratio = steps_per_sample(step, interval);
+  const int stride = sampling_stride(system, step, ratio);
+  return std::make_shared<const DecimationFilter>(step * stride, ratio / stride);
+}
+
+/// Contacts of the system that belong to a pair: its name, or its name with an index.
+std::vector<int> contacts_of(const System& system, const std::string& pair) {
+  std::vector<int> contacts;
+  for (std::size_t i = 0; i < system.contacts.size(); ++i) {
+    const std::string& name = system.contacts[i].name;
+    if (name == pair || name.rfind(pair + "[", 0) == 0) contacts.push_back(static_cast<int>(i));
+  }
+  return contacts;
+}
+
+}  // namespace
+
+int sampling_stride(const System& system, double step, int ratio) {
+  constexpr double rings_below_damping_ratio = 0.05;
+  constexpr int fewest_samples = 10;
+  double highest = 0.0;  // rad/s
+  for (const SystemBody& body : system.bodies) {
+    const RayleighDamping& damping = body.modal.damping;
+    for (const double omega : body.modal.omega) {
+      const double damping_ratio =
+          omega > 0.0 ? (damping.alpha + damping.beta * omega * omega) / (2.0 * omega) : 0.0;
+      if (damping_ratio < rings_below_damping_ratio) highest = std::max(highest, omega);
+    }
+  }
+  const double longest =
+      highest > 0.0 ? std::numbers::pi / highest : std::numeric_limits<double>::infinity();
+  int stride = 1;
+  for (int divisor = 1; divisor <= ratio / fewest_samples; ++divisor) {
+    if (ratio % divisor == 0 && divisor * step <= longest) stride = divisor;
+  }
+  return stride;
+}
+
+double Recorder::Stream::value(const Simulation& simulation) const {
+  if (point) {
+    const double relative =
+        simulation.displacement(point->body, is_vertical ? point->rows.y : point->rows.x);
+    return follows_drive ? relative + simulation.drive_displacement() : relative;
+  }
+  switch (quantity) {
+    case ContactQuantity::force:
+      return simulation.contact_force(contact);
+    case ContactQuantity::slip_velocity:
+      return simulation.slip_velocity(contact);
+    case ContactQuantity::gap:
+      return simulation.contact_place(contact).gap;
+    case ContactQuantity::position:
+      break;
+  }
+  return simulation.contact_place(contact).position;
+}
+
+Recorder::Recorder(const Model& model, std::vector<Channel> channels, double step, double interval,
+                   RunFileWriter& writer)
+    : interval_(interval),
+      max_samples_(std::numeric_limits<std::int64_t>::max()),
+      writer_(&writer) {
+  const auto filter = make_filter(model.system, step, interval);
+  stride_ = steps_per_sample(step, interval) / filter->ratio();
+  for (const Channel& channel : channels) {
+    if (channel.point) {
+      const Model::Point& point = model.points.at(*channel.point);
+      // Displacement, velocity and acceleration of one point share one stream of samples.
+      std::size_t stream = 0;
+      while (stream < streams_.size() &&
+             !(streams_[stream].point && streams_[stream].point->body == point.body &&
+               streams_[stream].point->rows.x == point.rows.x &&
+               streams_[stream].point->rows.y == point.rows.y &&
+               streams_[stream].is_vertical == channel.is_vertical)) {
+        ++stream;
+      }
+      if (stream == streams_.size()) {
+        const bool follows =
+            !channel.is_vertical &&
+            model.system.bodies[static_cast<std::size_t>(point.body)].follows_drive;
+        streams_.push_back(
+            {point, channel.is_vertical, follows, 0, ContactQuantity::force, Decimator(filter)});
+      }
+      columns_.push_back({stream, channel.derivative});
+    } else {
+      for (const int contact : contacts_of(model.system, channel.pair)) {
+        columns_.push_back({streams_.size(), Derivative::none});
+        streams_.push_back(
+            {std::nullopt, false, false, contact, channel.quantity, Decimator(filter)});
+      }
+    }
+  }
+  row_.resize(columns_.size());
+  if (streams_.empty()) next_step_ = std::numeric_limits<std::int64_t>::max();
+}
+
+std::vector<SeriesSpec> Recorder::series(const Model& model, const std::vector<Channel>& channels,
+                                         double step, double interval) {
+  constexpr const char* quantity_names[] = {"force", "gap", "slip_velocity", "position"};
+  const std::string filter = make_filter(model.system, step, interval)->description();
+  std::vector<SeriesSpec> series;
+  for (const Channel& channel : channels) {
+    SeriesSpec spec{
+        "/channels/" + channel.name, channel.units(), SeriesKind::real, {{"filter", filter}}};
+    if (channel.point) {
+      series.push_back(spec);
+      continue;
+    }
+    for (const int contact : contacts_of(model.system, channel.pair)) {
+      SeriesSpec of_contact = spec;
+      of_contact.path = fmt::format("/contact/{}/{}",
+                                    model.system.contacts[static_cast<std::size_t>(contact)].name,
+                                    quantity_names[static_cast<std::size_t>(channel.quantity)]);
+      if (channel.quantity == ContactQuantity::force) {
+        of_contact.attributes.emplace_back("acts_at", "the time of the same row of /time");
+      }
+      series.push_back(of_contact);
+    }
+  }
+  return series;
+}
+
+void Recorder::sample(const Simulation& simulation) {
+  next_step_ += stride_;
+  bool is_due = false;
+  for (Stream& stream : streams_) is_due = stream.decimator.push(stream.value(simulation));
+  if (!is_due) return;
+  const std::int64_t number = streams_.front().decimator.num_outputs() - 1;
+  if (number >= max_samples_) return;
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    row_[i] = streams_[columns_[i].stream].decimator.value(columns_[i].derivative);
+  }
+  const auto before = std::chrono::steady_clock::now();
+  writer_->append(static_cast<double>(number) * interval_, row_);
+  output_seconds_ +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+}
+
+std::int64_t Recorder::latency() const {
+  return streams_.empty()
+             ? 0
+             : static_cast<std::int64_t>(streams_.front().decimator.latency()) * stride_;
+}
+
+void Recorder::save(State& state, const std::string& prefix) const {
+  state.put(prefix + "next_step", static_cast<double>(next_step_));
+  for (std::size_t i = 0; i < streams_.size(); ++i) {
+    streams_[i].decimator.save(state, fmt::format("{}streams/{}/", prefix, i));
+  }
+}
+
+void Recorder::load(const State& state, const std::string& prefix) {
+  next_step_ = static_cast<std::int64_t>(state.get(prefix + "next_step"));
+  for (std::size_t i = 0; i < streams_.size(); ++i) {
+    streams_[i].decimator.load(state, fmt::format("{}streams/{}/", prefix, i));
+  }
+}
+
+}  // namespace stridor

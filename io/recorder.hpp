@@ -1,0 +1,82 @@
+// From a running simulation to the channels of its run file.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "analysis/low_pass.hpp"
+#include "io/channels.hpp"
+#include "io/run_file.hpp"
+#include "solvers/simulation.hpp"
+
+namespace stridor {
+
+/// Every how many steps a recorder looks at a simulation.
+///
+/// The low-pass in front of the thinning needs samples fast enough that no vibration of the bodies
+/// folds into its pass band: at least twice the highest frequency with a damping ratio below 5 %
+/// (stiffer damped ones do not ring), and at least ten samples per recorded one where there are as
+/// many steps. Within that the fewest.
+///
+/// @param ratio steps per recorded sample
+/// @return a divisor of `ratio`
+int sampling_stride(const System& system, double step, int ratio);
+
+/// Low-passes, thins and writes the channels of a scene.
+///
+/// Every series is low-passed with linear phase, so that sample k is the value at k·interval.
+class Recorder : public SampleSink {
+ public:
+  /// @param writer receives the rows; must live longer
+  Recorder(const Model& model, std::vector<Channel> channels, double step, double interval,
+           RunFileWriter& writer);
+
+  /// What the run file must hold for these channels, in the order of the columns.
+  static std::vector<SeriesSpec> series(const Model& model, const std::vector<Channel>& channels,
+                                        double step, double interval);
+
+  std::int64_t next_step() const override { return next_step_; }
+  void sample(const Simulation& simulation) override;
+
+  /// Steps that must follow the last wanted sample before it is written.
+  std::int64_t latency() const;
+  /// Writes at most this many samples; later ones are dropped.
+  void limit_samples(std::int64_t count) { max_samples_ = count; }
+  /// Seconds spent in writing the file.
+  double output_seconds() const { return output_seconds_; }
+
+  void save(State& state, const std::string& prefix) const;
+  /// @throws std::invalid_argument if the state is of other channels
+  void load(const State& state, const std::string& prefix);
+
+ private:
+  /// One sampled quantity and its filter.
+  struct Stream {
+    std::optional<Model::Point> point;  ///< of a motion
+    bool is_vertical = false;
+    bool follows_drive = false;  ///< the drive's displacement is added
+    int contact = 0;
+    ContactQuantity quantity = ContactQuantity::force;
+    Decimator decimator;
+
+    double value(const Simulation& simulation) const;
+  };
+  /// One column of the run file.
+  struct Column {
+    std::size_t stream;
+    Derivative derivative;
+  };
+
+  int stride_;
+  double interval_;
+  std::int64_t next_step_ = 0;
+  std::int64_t max_samples_;
+  std::vector<Stream> streams_;
+  std::vector<Column> columns_;
+  std::vector<double> row_;
+  RunFileWriter* writer_;
+  double output_seconds_ = 0.0;
+};
+
+}  // namespace stridor

@@ -1,0 +1,161 @@
+#include "io/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+
+#include "io/channels.hpp"
+#include "io/resolved_scene.hpp"
+#include "io/scene_reader.hpp"
+
+namespace stridor {
+
+const Schema& RecordParameters::schema() {
+  static const Schema keys =
+      SchemaOf<RecordParameters>("record")
+          .real("interval", &RecordParameters::interval,
+                {.doc = "Time between recorded samples; a whole multiple of time.step.",
+                 .unit = "s",
+                 .range = Range::positive()})
+          .text_list(
+              "channels", &RecordParameters::channels,
+              {.doc =
+                   "What is recorded: <body>.<point>.<x|y>.<displacement|velocity|acceleration>, "
+                   "<contact>.<force|gap|slip_velocity|position>."});
+  return keys;
+}
+
+const Schema& MeasureParameters::schema() {
+  static const Schema keys =
+      SchemaOf<MeasureParameters>("measure")
+          .real("from", &MeasureParameters::from,
+                {.doc = "Start of the window of the statistics.",
+                 .unit = "s",
+                 .range = Range::non_negative(),
+                 .optional = true})
+          .real("to", &MeasureParameters::to,
+                {.doc = "End of the window of the statistics; default: end of the run.",
+                 .unit = "s",
+                 .range = Range::positive(),
+                 .optional = true})
+          .real_list("band", &MeasureParameters::band,
+                     {.doc = "Band of the r.m.s. values: lower and upper frequency; default: all "
+                             "frequencies.",
+                      .unit = "Hz",
+                      .range = Range::positive(),
+                      .optional = true})
+          .check([](const MeasureParameters& measure, std::vector<Problem>& problems) {
+            if (!measure.band.empty() &&
+                (measure.band.size() != 2 || measure.band[0] >= measure.band[1])) {
+              problems.push_back(
+                  {"band", "must be two frequencies, the lower one first", {}, 0, 0});
+            }
+            if (measure.to && *measure.to <= measure.from)
+              problems.push_back({"to", "must be later than `from`", {}, 0, 0});
+          });
+  return keys;
+}
+
+const Schema& Expectation::schema() {
+  static const Schema keys =
+      SchemaOf<Expectation>("expect")
+          .text("result", &Expectation::result,
+                {.doc = "Path of the number in the JSON object of `run`, e.g. contact_force.min."})
+          .real("value", &Expectation::value, {.doc = "What it should be, SI."})
+          .real("tolerance", &Expectation::tolerance,
+                {.doc = "Largest allowed absolute difference.", .range = Range::non_negative()});
+  return keys;
+}
+
+const Schema& Scene::schema() {
+  static const Schema keys =
+      SchemaOf<Scene>("scene")
+          .integer("format", &Scene::format,
+                   {.doc = "Version of the scene language: 1.", .range = Range::between(1, 1)})
+          .include(&Scene::model)
+          .section("time", &Scene::time, {.doc = "How the system is marched in time."})
+          .section("record", &Scene::record,
+                   {.doc = "What is written to the run file.", .optional = true})
+          .section("measure", &Scene::measure,
+                   {.doc = "Window and band of the statistics.", .optional = true})
+          .section_list("expect", &Scene::expect,
+                        {.doc = "Results that `run --verify` checks.", .optional = true})
+          .check([](const Scene& scene, std::vector<Problem>& problems) {
+            if (!scene.record) return;
+            const double ratio = scene.record->interval / scene.time.step;
+            if (ratio < 1.0 - 1e-9 || std::abs(ratio - std::round(ratio)) > 1e-6 || ratio > 1e5) {
+              problems.push_back({"record.interval",
+                                  fmt::format("{:g} s must be a whole multiple (1 to 100000) of "
+                                              "time.step = {:g} s, is {:g} of it; the "
+                                              "nearest is {:g} s",
+                                              scene.record->interval, scene.time.step, ratio,
+                                              std::max(1.0, std::round(ratio)) * scene.time.step),
+                                  {},
+                                  0,
+                                  0});
+            }
+            const double nyquist = 0.5 / scene.record->interval;
+            if (!scene.measure.band.empty() && scene.measure.band.back() >= nyquist) {
+              problems.push_back({"measure.band",
+                                  fmt::format("reaches {:g} Hz, but record.interval resolves only "
+                                              "frequencies below {:g} Hz",
+                                              scene.measure.band.back(), nyquist),
+                                  {},
+                                  0,
+                                  0});
+            }
+          });
+  return keys;
+}
+
+std::string LoadedScene::resolved() const {
+  return resolved_yaml(scene);
+}
+
+std::string LoadedScene::hash() const {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char character : resolved()) {
+    hash ^= static_cast<unsigned char>(character);
+    hash *= 1099511628211ULL;
+  }
+  return fmt::format("{:016x}", hash);
+}
+
+ConfigError LoadedScene::located(const ConfigError& error) const {
+  std::vector<Problem> problems = error.problems();
+  locate(problems, tree);
+  sort_by_place(problems);
+  return ConfigError(std::move(problems));
+}
+
+LoadedScene load_scene(const std::string& path, const std::vector<std::string>& sets) {
+  LoadedScene loaded;
+  loaded.path = path;
+  loaded.sets = sets;
+  loaded.tree = read_scene_file(path);
+  std::ifstream file(path, std::ios::binary);
+  loaded.text.assign(std::istreambuf_iterator<char>(file), {});
+  for (const std::string& assignment : sets) set_value(loaded.tree, assignment);
+  loaded.scene = read_as<Scene>(loaded.tree);
+  return loaded;
+}
+
+Model build_model(const LoadedScene& loaded) {
+  try {
+    const Scene& scene = loaded.scene;
+    std::vector<std::pair<PointName, std::string>> observed;
+    std::vector<Channel> channels;
+    if (scene.record) channels = parse_channels(*scene.record, scene.model);
+    for (const Channel& channel : channels) {
+      if (channel.point) observed.emplace_back(*channel.point, channel.key);
+    }
+    return make_model(scene.model, observed);
+  } catch (const ConfigError& error) {
+    throw loaded.located(error);
+  }
+}
+
+}  // namespace stridor

@@ -1,0 +1,72 @@
+// A whole scene: the model, how it is run, what is recorded and what is expected of it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/scene_tree.hpp"
+#include "models/model.hpp"
+#include "solvers/simulation.hpp"
+
+namespace stridor {
+
+struct RecordParameters {
+  double interval = 0.0;              ///< between samples, s, a multiple of time.step
+  std::vector<std::string> channels;  ///< "<body>.<point>.<x|y>.<displacement|velocity|acceleration>",
+                                      ///< "<contact>.<quantity>"
+  static const Schema& schema();
+};
+
+/// Window and band of the statistics.
+struct MeasureParameters {
+  double from = 0.0;         ///< s
+  std::optional<double> to;  ///< s; the end of the run where absent
+  std::vector<double> band;  ///< two frequencies, Hz; empty: no band-pass
+  static const Schema& schema();
+};
+
+/// One expected result of a scene, checked by `run --verify`.
+struct Expectation {
+  std::string result;  ///< path in the JSON object of the run, e.g. "contact_force.min"
+  double value = 0.0;
+  double tolerance = 0.0;  ///< largest allowed |result − value|
+  static const Schema& schema();
+};
+
+struct Scene {
+  int format = 0;
+  ModelParameters model;
+  TimeParameters time;
+  std::optional<RecordParameters> record;
+  MeasureParameters measure;
+  std::vector<Expectation> expect;
+  static const Schema& schema();
+};
+
+/// A scene together with where its keys stand.
+struct LoadedScene {
+  std::string path;
+  std::string text;  ///< as given, before --set
+  SceneNode tree;    ///< with --set applied
+  Scene scene;
+  std::vector<std::string> sets;
+
+  /// The scene with every key and default written out.
+  std::string resolved() const;
+  /// 16 hexadecimal digits that change with any key of the resolved scene (FNV-1a).
+  std::string hash() const;
+  /// The same error with the places of its keys in this scene.
+  ConfigError located(const ConfigError& error) const;
+};
+
+/// Reads a scene file and applies `--set key.path=value` settings.
+/// @throws ConfigError with all problems of the file, each with its place
+/// @throws FileError if the file cannot be read
+LoadedScene load_scene(const std::string& path, const std::vector<std::string>& sets);
+
+/// The model of a scene with the points that its channels ask for.
+/// @throws ConfigError with the place of the key in the scene
+Model build_model(const LoadedScene& loaded);
+
+}  // namespace stridor
