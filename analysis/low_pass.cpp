@@ -105,7 +105,8 @@ DecimationFilter::DecimationFilter(double input_interval, int ratio)
     const long double bend = low_pass(k - ratio) + low_pass(k + ratio) - 2.0L * low_pass(k);
     taps_[0][i] = static_cast<double>(low_pass(k));
     taps_[1][i] = static_cast<double>((8.0L * near - far) / (12.0L * h));
-    taps_[2][i] = static_cast<double>(bend / (static_cast<long double>(ratio) * h * static_cast<long double>(ratio) * h));
+    taps_[2][i] = static_cast<double>(
+        bend / (static_cast<long double>(ratio) * h * static_cast<long double>(ratio) * h));
   }
 }
 

@@ -24,8 +24,8 @@ enum class Derivative { none, first, second };
 /// of odd length 2H+1. What folds back into the pass band lies above 0.6 / dt_out and so is 80 dB
 /// down; what folds onto 0.4…0.5 / dt_out is not, so the thinned signal is clean up to 0.4 /
 /// dt_out. The first derivative convolves these taps with the 5-point central difference at dt_in,
-/// whose relative error is (ω dt_in)⁴/30: at the edge of the pass band 8·10⁻⁶ for ratio 50, 1.3·10⁻⁴
-/// for ratio 10. The second derivative is the second difference of the thinned signal,
+/// whose relative error is (ω dt_in)⁴/30: at the edge of the pass band 8·10⁻⁶ for ratio
+/// 50, 1.3·10⁻⁴ for ratio 10. The second derivative is the second difference of the thinned signal,
 ///
 ///     (x(t + dt_out) − 2 x(t) + x(t − dt_out)) / dt_out²,
 ///

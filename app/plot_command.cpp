@@ -69,7 +69,8 @@ ExitCode plot(const PlotOptions& options) {
     }
     const std::string name = channel_name(path);
     const std::size_t dot = name.rfind('.');
-    panels.push_back({name.substr(0, dot), name.substr(dot + 1), file.units(path), {std::move(curve)}});
+    panels.push_back(
+        {name.substr(0, dot), name.substr(dot + 1), file.units(path), {std::move(curve)}});
   }
   if (panels.empty())
     throw ConfigError(

@@ -206,14 +206,11 @@ ExitCode run(const RunOptions& options) {
   plan.measure_to = std::min(end_step, scene.measure.to ? to_step(*scene.measure.to) : end_step);
   Progress progress("run");
   auto last_flush = Clock::now();
-  double flush_seconds = 0.0;
   plan.on_progress = [&](const Simulation& running) {
     progress.report(running.time() / scene.time.end,
                     fmt::format("t = {:.4g} of {:.4g} s", running.time(), scene.time.end));
     if (seconds_since(last_flush) > 2.0) {
-      const auto before = Clock::now();
       writer.flush();
-      flush_seconds += seconds_since(before);
       last_flush = Clock::now();
     }
   };
@@ -221,19 +218,16 @@ ExitCode run(const RunOptions& options) {
   const double setup_seconds = seconds_since(setup_start) - output_seconds;
   const auto march_start = Clock::now();
   const MarchResult march_result = march(*simulation, &recorder, plan);
-  const double march_seconds =
-      seconds_since(march_start) - recorder.output_seconds() - flush_seconds;
+  const double march_seconds = seconds_since(march_start) - writer.write_seconds();
   progress.finish();
   // Losing the contact within the filter's look-ahead is no failure of the run that was asked for.
   const bool is_finished =
       march_result.end == MarchEnd::finished || simulation->step_index() >= end_step;
   const bool is_stopped = !is_finished && march_result.end == MarchEnd::stopped;
 
-  const auto close_start = Clock::now();
   writer.flush();
-  output_seconds += recorder.output_seconds() + flush_seconds + seconds_since(close_start);
-  const auto acceleration =
-      summarise_acceleration(RunFileReader(options.output), scene.measure);
+  output_seconds += writer.write_seconds();
+  const auto acceleration = summarise_acceleration(RunFileReader(options.output), scene.measure);
 
   const std::int64_t steps = simulation->step_index();
   Json results = {{"status", is_finished  ? "done"

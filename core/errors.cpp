@@ -18,7 +18,8 @@ std::string join(const std::vector<Problem>& problems) {
 
 std::string Problem::text() const {
   std::string place = source;
-  if (line > 0) place += fmt::format(":{}:{}", line, column);
+  if (line > 0 && !place.empty()) place += fmt::format(":{}", line);
+  if (line > 0 && column > 0 && !place.empty()) place += fmt::format(":{}", column);
   if (!place.empty()) place += ": ";
   if (!key.empty()) place += key + ": ";
   return place + message;

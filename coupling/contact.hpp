@@ -26,14 +26,32 @@ struct Projection {
   Eigen::Vector2d normal = Eigen::Vector2d::UnitY();  ///< tangent turned by +90°, out of the master
 };
 
+inline Eigen::Vector2d turned_left(const Eigen::Vector2d& vector) {
+  return {-vector.y(), vector.x()};
+}
+
 /// Orthogonal projection along the segment's own normal:
 /// t = (T2 − T1)/|T2 − T1|, ξ = t·(C − T1)/|T2 − T1|.
-Projection project(const Segment& segment, const Eigen::Vector2d& slave);
+inline Projection project(const Segment& segment, const Eigen::Vector2d& slave) {
+  const Eigen::Vector2d along = segment.second - segment.first;
+  const double inverse_length = 1.0 / along.norm();
+  Projection projection;
+  projection.tangent = along * inverse_length;
+  projection.normal = turned_left(projection.tangent);
+  projection.xi = projection.tangent.dot(slave - segment.first) * inverse_length;
+  return projection;
+}
 
 /// Projection along a given normal, which Subs-c takes from the undeformed segment:
 /// ξ = t·(C − T1)/t·(T2 − T1).
-Projection project_along(const Segment& segment, const Eigen::Vector2d& slave,
-                         const Eigen::Vector2d& tangent);
+inline Projection project_along(const Segment& segment, const Eigen::Vector2d& slave,
+                                const Eigen::Vector2d& tangent) {
+  Projection projection;
+  projection.tangent = tangent;
+  projection.normal = turned_left(tangent);
+  projection.xi = tangent.dot(slave - segment.first) / tangent.dot(segment.second - segment.first);
+  return projection;
+}
 
 /// One row of B_C or B_E: entries at the slave point (x, y) and at T1 and T2 (x, y each).
 struct ContactRow {
@@ -55,6 +73,13 @@ struct ContactRows {
 /// @param projection ξ, t, n
 /// @param friction   μ >= 0
 /// @param direction  χ = ±1, sign of the sliding velocity of C along t
-ContactRows make_rows(const Projection& projection, double friction, double direction);
+inline ContactRows make_rows(const Projection& projection, double friction, double direction) {
+  const Eigen::Vector2d& n = projection.normal;
+  const Eigen::Vector2d pull = n - (direction * friction) * projection.tangent;
+  const double w1 = 1.0 - projection.xi;
+  const double w2 = projection.xi;
+  return {{{-n.x(), -n.y()}, {w1 * n.x(), w1 * n.y(), w2 * n.x(), w2 * n.y()}},
+          {{-pull.x(), -pull.y()}, {w1 * pull.x(), w1 * pull.y(), w2 * pull.x(), w2 * pull.y()}}};
+}
 
 }  // namespace stridor

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -35,7 +34,7 @@ std::vector<int> contacts_of(const System& system, const std::string& pair) {
 
 int sampling_stride(const System& system, double step, int ratio) {
   constexpr double rings_below_damping_ratio = 0.05;
-  constexpr int fewest_samples = 10;
+  constexpr int fewest_samples = 5;
   double highest = 0.0;  // rad/s
   for (const SystemBody& body : system.bodies) {
     const RayleighDamping& damping = body.modal.damping;
@@ -45,11 +44,11 @@ int sampling_stride(const System& system, double step, int ratio) {
       if (damping_ratio < rings_below_damping_ratio) highest = std::max(highest, omega);
     }
   }
-  const double longest =
-      highest > 0.0 ? std::numbers::pi / highest : std::numeric_limits<double>::infinity();
+  const double stop_band_from = 0.6 / (ratio * step);  // of the filter, Hz
+  const double needed_rate = highest / (2.0 * std::numbers::pi) + stop_band_from;
   int stride = 1;
   for (int divisor = 1; divisor <= ratio / fewest_samples; ++divisor) {
-    if (ratio % divisor == 0 && divisor * step <= longest) stride = divisor;
+    if (ratio % divisor == 0 && divisor * step * needed_rate <= 1.0) stride = divisor;
   }
   return stride;
 }
@@ -148,10 +147,7 @@ void Recorder::sample(const Simulation& simulation) {
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     row_[i] = streams_[columns_[i].stream].decimator.value(columns_[i].derivative);
   }
-  const auto before = std::chrono::steady_clock::now();
   writer_->append(static_cast<double>(number) * interval_, row_);
-  output_seconds_ +=
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
 }
 
 std::int64_t Recorder::latency() const {

@@ -14,10 +14,12 @@ namespace stridor {
 
 /// Every how many steps a recorder looks at a simulation.
 ///
-/// The low-pass in front of the thinning needs samples fast enough that no vibration of the bodies
-/// folds into its pass band: at least twice the highest frequency with a damping ratio below 5 %
-/// (stiffer damped ones do not ring), and at least ten samples per recorded one where there are as
-/// many steps. Within that the fewest.
+/// The low-pass in front of the thinning takes what lies above 0.6 of the recording rate, but what
+/// lies near its own input rate folds below that. So the rate of looking is at least the highest
+/// frequency with a damping ratio below 5 % (stiffer damped modes do not ring) plus 0.6 of the
+/// recording rate, and at least five looks per recorded sample where there are as many steps.
+/// Within that the fewest. What changes from step to step, such as the chatter of the friction
+/// force in a start-up that violates persistent sliding, is not band-limited and does fold.
 ///
 /// @param ratio steps per recorded sample
 /// @return a divisor of `ratio`
@@ -43,8 +45,6 @@ class Recorder : public SampleSink {
   std::int64_t latency() const;
   /// Writes at most this many samples; later ones are dropped.
   void limit_samples(std::int64_t count) { max_samples_ = count; }
-  /// Seconds spent in writing the file.
-  double output_seconds() const { return output_seconds_; }
 
   void save(State& state, const std::string& prefix) const;
   /// @throws std::invalid_argument if the state is of other channels
@@ -76,7 +76,6 @@ class Recorder : public SampleSink {
   std::vector<Column> columns_;
   std::vector<double> row_;
   RunFileWriter* writer_;
-  double output_seconds_ = 0.0;
 };
 
 }  // namespace stridor

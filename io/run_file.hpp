@@ -131,6 +131,8 @@ class RunFileWriter {
 
   /// Rows on disk, len(/time).
   std::uint64_t num_written() const;
+  /// Time spent in writing blocks so far, s.
+  double write_seconds() const;
 
  private:
   struct Impl;

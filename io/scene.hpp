@@ -12,9 +12,10 @@
 namespace stridor {
 
 struct RecordParameters {
-  double interval = 0.0;              ///< between samples, s, a multiple of time.step
-  std::vector<std::string> channels;  ///< "<body>.<point>.<x|y>.<displacement|velocity|acceleration>",
-                                      ///< "<contact>.<quantity>"
+  double interval = 0.0;  ///< between samples, s, a multiple of time.step
+  std::vector<std::string>
+      channels;  ///< "<body>.<point>.<x|y>.<displacement|velocity|acceleration>",
+                 ///< "<contact>.<quantity>"
   static const Schema& schema();
 };
 

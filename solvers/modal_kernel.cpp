@@ -35,9 +35,15 @@ STRIDOR_INLINE double sum_of(const Vector& vector) {
   return partial[0];
 }
 
+/// Part `part` of a field of a block.
+template <class Vector, class Double>
+STRIDOR_INLINE auto& field(Double* block, ModalField which, std::size_t part) {
+  return at<Vector>(block, static_cast<std::size_t>(which) * modal_block + part);
+}
+
 /// The fused pass for 0, 2 or 4 slots.
 template <class Vector, int num_slots>
-STRIDOR_INLINE void fused_pass(const ModalArrays& modes, const double* const* rows,
+STRIDOR_INLINE void fused_pass(double* blocks, std::size_t num_blocks, const double* const* rows,
                                const double* forces, double* predicted) {
   constexpr bool has2 = num_slots >= 2;
   constexpr bool has4 = num_slots >= 4;
@@ -49,38 +55,41 @@ STRIDOR_INLINE void fused_pass(const ModalArrays& modes, const double* const* ro
   const double force1 = has2 ? forces[1] : 0.0;
   const double force2 = has4 ? forces[2] : 0.0;
   const double force3 = has4 ? forces[3] : 0.0;
-  double* const q = modes.position;
-  double* const d = modes.increment;
-  const double* const keep = modes.keep;
-  const double* const pull = modes.pull;
-  const double* const gain = modes.gain;
-  const double* const load = modes.load;
-  const std::size_t size = modes.size;
   Vector sum0{};
   Vector sum1{};
   Vector sum2{};
   Vector sum3{};
-  for (std::size_t i = 0; i < size; i += lanes<Vector>) {
-    Vector increment = at<Vector>(d, i);
-    if constexpr (has2) {
-      Vector modal_force = at<Vector>(row0, i) * force0 + at<Vector>(row1, i) * force1;
-      if constexpr (has4)
-        modal_force += at<Vector>(row2, i) * force2 + at<Vector>(row3, i) * force3;
-      increment += at<Vector>(gain, i) * modal_force;
-    }
-    const Vector position = at<Vector>(q, i) + increment;
-    const Vector next =
-        at<Vector>(keep, i) * increment - (at<Vector>(pull, i) * position - at<Vector>(load, i));
-    at<Vector>(q, i) = position;
-    at<Vector>(d, i) = next;
-    const Vector ahead = position + next;
-    if constexpr (has2) {
-      sum0 += at<Vector>(row0, i) * ahead;
-      sum1 += at<Vector>(row1, i) * ahead;
-    }
-    if constexpr (has4) {
-      sum2 += at<Vector>(row2, i) * ahead;
-      sum3 += at<Vector>(row3, i) * ahead;
+  for (std::size_t b = 0; b < num_blocks; ++b) {
+    double* const block = blocks + b * num_modal_fields * modal_block;
+    for (std::size_t part = 0; part < modal_block; part += lanes<Vector>) {
+      const std::size_t i = b * modal_block + part;
+      // The rows are read once, before the stores below that they might overlap for all the
+      // compiler knows.
+      const Vector r0 = has2 ? at<Vector>(row0, i) : Vector{};
+      const Vector r1 = has2 ? at<Vector>(row1, i) : Vector{};
+      const Vector r2 = has4 ? at<Vector>(row2, i) : Vector{};
+      const Vector r3 = has4 ? at<Vector>(row3, i) : Vector{};
+      Vector increment = field<Vector>(block, ModalField::increment, part);
+      if constexpr (has2) {
+        Vector modal_force = r0 * force0 + r1 * force1;
+        if constexpr (has4) modal_force += r2 * force2 + r3 * force3;
+        increment += field<Vector>(block, ModalField::gain, part) * modal_force;
+      }
+      const Vector position = field<Vector>(block, ModalField::position, part) + increment;
+      const Vector next = field<Vector>(block, ModalField::keep, part) * increment -
+                          (field<Vector>(block, ModalField::pull, part) * position -
+                           field<Vector>(block, ModalField::load, part));
+      field<Vector>(block, ModalField::position, part) = position;
+      field<Vector>(block, ModalField::increment, part) = next;
+      const Vector ahead = position + next;
+      if constexpr (has2) {
+        sum0 += r0 * ahead;
+        sum1 += r1 * ahead;
+      }
+      if constexpr (has4) {
+        sum2 += r2 * ahead;
+        sum3 += r3 * ahead;
+      }
     }
   }
   if constexpr (has2) {
@@ -94,82 +103,97 @@ STRIDOR_INLINE void fused_pass(const ModalArrays& modes, const double* const* ro
 }
 
 template <class Vector>
-STRIDOR_INLINE void advance(const ModalArrays& modes, const double* const* rows,
+STRIDOR_INLINE double gather(const double* blocks, std::size_t num_blocks, ModalField which,
+                             const double* row) {
+  // Four sums: one alone would wait for the latency of every addition.
+  constexpr std::size_t num_sums = 4;
+  constexpr std::size_t parts = modal_block / lanes<Vector>;
+  Vector sums[num_sums]{};
+  const auto add = [&](std::size_t piece, Vector & sum) __attribute__((always_inline)) {
+    const std::size_t b = piece / parts;
+    const std::size_t part = piece % parts * lanes<Vector>;
+    sum += at<Vector>(row, b * modal_block + part) *
+           field<Vector>(blocks + b * num_modal_fields * modal_block, which, part);
+  };
+  const std::size_t num_pieces = num_blocks * parts;
+  std::size_t piece = 0;
+  for (; piece + num_sums <= num_pieces; piece += num_sums) {
+    add(piece, sums[0]);
+    add(piece + 1, sums[1]);
+    add(piece + 2, sums[2]);
+    add(piece + 3, sums[3]);
+  }
+  for (; piece < num_pieces; ++piece) add(piece, sums[0]);
+  return sum_of<Vector>((sums[0] + sums[1]) + (sums[2] + sums[3]));
+}
+
+template <class Vector>
+STRIDOR_INLINE void advance(double* blocks, std::size_t num_blocks, const double* const* rows,
                             const double* forces, int num_slots, double* predicted) {
   // Slots beyond the fused ones stream the rows once more; a body rarely has any.
   const int fused = num_slots >= 4 ? 4 : num_slots >= 2 ? 2 : 0;
   for (int j = fused; j < num_slots; ++j) {
-    for (std::size_t i = 0; i < modes.size; i += lanes<Vector>) {
-      at<Vector>(modes.increment, i) +=
-          at<Vector>(modes.gain, i) * (at<Vector>(rows[j], i) * forces[j]);
+    for (std::size_t b = 0; b < num_blocks; ++b) {
+      double* const block = blocks + b * num_modal_fields * modal_block;
+      for (std::size_t part = 0; part < modal_block; part += lanes<Vector>) {
+        field<Vector>(block, ModalField::increment, part) +=
+            field<Vector>(block, ModalField::gain, part) *
+            (at<Vector>(rows[j], b * modal_block + part) * forces[j]);
+      }
     }
   }
   if (fused == 4) {
-    fused_pass<Vector, 4>(modes, rows, forces, predicted);
+    fused_pass<Vector, 4>(blocks, num_blocks, rows, forces, predicted);
   } else if (fused == 2) {
-    fused_pass<Vector, 2>(modes, rows, forces, predicted);
+    fused_pass<Vector, 2>(blocks, num_blocks, rows, forces, predicted);
   } else {
-    fused_pass<Vector, 0>(modes, rows, forces, predicted);
+    fused_pass<Vector, 0>(blocks, num_blocks, rows, forces, predicted);
   }
   for (int j = fused; j < num_slots; ++j) {
-    Vector sum{};
-    for (std::size_t i = 0; i < modes.size; i += lanes<Vector>) {
-      sum +=
-          at<Vector>(rows[j], i) * (at<Vector>(modes.position, i) + at<Vector>(modes.increment, i));
-    }
-    predicted[j] = sum_of(sum);
+    predicted[j] = gather<Vector>(blocks, num_blocks, ModalField::position, rows[j]) +
+                   gather<Vector>(blocks, num_blocks, ModalField::increment, rows[j]);
   }
 }
 
-template <class Vector>
-STRIDOR_INLINE double dot_product(const double* a, const double* b, std::size_t size) {
-  Vector even{};
-  Vector odd{};
-  std::size_t i = 0;
-  for (; i + 2 * lanes<Vector> <= size; i += 2 * lanes<Vector>) {
-    even += at<Vector>(a, i) * at<Vector>(b, i);
-    odd += at<Vector>(a, i + lanes<Vector>) * at<Vector>(b, i + lanes<Vector>);
-  }
-  if (i < size) even += at<Vector>(a, i) * at<Vector>(b, i);
-  return sum_of<Vector>(even + odd);
-}
-
-using Advance = void (*)(const ModalArrays&, const double* const*, const double*, int, double*);
-using Dot = double (*)(const double*, const double*, std::size_t);
+using Advance = void (*)(double*, std::size_t, const double* const*, const double*, int, double*);
+using Gather = double (*)(const double*, std::size_t, ModalField, const double*);
 
 struct Kernel {
   Advance advance;
-  Dot dot;
+  Gather gather;
 };
 
-void advance_portable(const ModalArrays& modes, const double* const* rows, const double* forces,
-                      int num_slots, double* predicted) {
-  advance<Vector4>(modes, rows, forces, num_slots, predicted);
+void advance_portable(double* blocks, std::size_t num_blocks, const double* const* rows,
+                      const double* forces, int num_slots, double* predicted) {
+  advance<Vector4>(blocks, num_blocks, rows, forces, num_slots, predicted);
 }
-double dot_portable(const double* a, const double* b, std::size_t size) {
-  return dot_product<Vector4>(a, b, size);
+double gather_portable(const double* blocks, std::size_t num_blocks, ModalField which,
+                       const double* row) {
+  return gather<Vector4>(blocks, num_blocks, which, row);
 }
 
 #if defined(__x86_64__)
-__attribute__((target("arch=x86-64-v3"))) void advance_v3(const ModalArrays& modes,
-                                                          const double* const* rows,
-                                                          const double* forces, int num_slots,
-                                                          double* predicted) {
-  advance<Vector4>(modes, rows, forces, num_slots, predicted);
+#define STRIDOR_V3 __attribute__((target("arch=x86-64-v3")))
+#define STRIDOR_V4 __attribute__((target("arch=x86-64-v4,prefer-vector-width=512")))
+STRIDOR_V3
+void advance_v3(double* blocks, std::size_t num_blocks, const double* const* rows,
+                const double* forces, int num_slots, double* predicted) {
+  advance<Vector4>(blocks, num_blocks, rows, forces, num_slots, predicted);
 }
-__attribute__((target("arch=x86-64-v3"))) double dot_v3(const double* a, const double* b,
-                                                        std::size_t size) {
-  return dot_product<Vector4>(a, b, size);
+STRIDOR_V3
+double gather_v3(const double* blocks, std::size_t num_blocks, ModalField which,
+                 const double* row) {
+  return gather<Vector4>(blocks, num_blocks, which, row);
 }
-__attribute__((target("arch=x86-64-v4,prefer-vector-width=512"))) void advance_v4(
-    const ModalArrays& modes, const double* const* rows, const double* forces, int num_slots,
-    double* predicted) {
-  advance<Vector8>(modes, rows, forces, num_slots, predicted);
+STRIDOR_V4
+void advance_v4(double* blocks, std::size_t num_blocks, const double* const* rows,
+                const double* forces, int num_slots, double* predicted) {
+  advance<Vector8>(blocks, num_blocks, rows, forces, num_slots, predicted);
 }
-__attribute__((target("arch=x86-64-v4,prefer-vector-width=512"))) double dot_v4(const double* a,
-                                                                                const double* b,
-                                                                                std::size_t size) {
-  return dot_product<Vector8>(a, b, size);
+STRIDOR_V4
+double gather_v4(const double* blocks, std::size_t num_blocks, ModalField which,
+                 const double* row) {
+  return gather<Vector8>(blocks, num_blocks, which, row);
 }
 #endif
 
@@ -181,23 +205,24 @@ Kernel kernel_of_this_processor() {
   const bool has_v4 = has_v3 && __builtin_cpu_supports("avx512f") &&
                       __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
                       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-  if (has_v4) return {advance_v4, dot_v4};
-  if (has_v3) return {advance_v3, dot_v3};
+  if (has_v4) return {advance_v4, gather_v4};
+  if (has_v3) return {advance_v3, gather_v3};
 #endif
-  return {advance_portable, dot_portable};
+  return {advance_portable, gather_portable};
 }
 
 const Kernel kernel = kernel_of_this_processor();
 
 }  // namespace
 
-void advance_modes(const ModalArrays& modes, const double* const* rows, const double* forces,
-                   int num_slots, double* predicted) {
-  kernel.advance(modes, rows, forces, num_slots, predicted);
+void advance_modes(double* blocks, std::size_t num_blocks, const double* const* rows,
+                   const double* forces, int num_slots, double* predicted) {
+  kernel.advance(blocks, num_blocks, rows, forces, num_slots, predicted);
 }
 
-double dot(const double* a, const double* b, std::size_t size) {
-  return kernel.dot(a, b, size);
+double gather_modes(const double* blocks, std::size_t num_blocks, ModalField field,
+                    const double* row) {
+  return kernel.gather(blocks, num_blocks, field, row);
 }
 
 }  // namespace stridor

@@ -5,19 +5,26 @@
 
 namespace stridor {
 
-/// Arrays of one body, one entry per mode, all 64-byte aligned and padded with zeros to a multiple
-/// of `modal_padding` entries.
-struct ModalArrays {
-  std::size_t size;    ///< padded length
-  double* position;    ///< q_n
-  double* increment;   ///< predicted increment d*_{n+1} = q*_{n+1} − q_n
-  const double* keep;  ///< s: part of the increment that the next step keeps
-  const double* pull;  ///< k: restoring increment per unit position
-  const double* gain;  ///< e: displacement per unit modal force
-  const double* load;  ///< e p: displacement by the prescribed loads
-};
+/// Modes are worked on in blocks of this many; rows are padded with zeros to whole blocks.
+inline constexpr std::size_t modal_block = 8;
 
-inline constexpr std::size_t modal_padding = 8;
+/// What a block holds, `modal_block` numbers each, one after the other: 6 cache lines that the pass
+/// reads as one stream.
+enum class ModalField : std::size_t {
+  position,   ///< q_n
+  increment,  ///< predicted increment d*_{n+1} = q*_{n+1} − q_n
+  keep,       ///< s: part of the increment that the next step keeps
+  pull,       ///< k: restoring increment per unit position
+  gain,       ///< e: displacement per unit modal force
+  load,       ///< e p: displacement by the prescribed loads
+};
+inline constexpr std::size_t num_modal_fields = 6;
+
+/// Place of a mode's number in the blocks of a body.
+constexpr std::size_t modal_index(std::size_t mode, ModalField field) {
+  return (mode / modal_block * num_modal_fields + static_cast<std::size_t>(field)) * modal_block +
+         mode % modal_block;
+}
 
 /// One step of every mode of a body (docs/theory.md, 3.2):
 ///
@@ -26,14 +33,16 @@ inline constexpr std::size_t modal_padding = 8;
 ///   d*_{n+2} = s d_{n+1} − k q_{n+1} + e p      predict
 ///   predicted_j = row_j · (q_{n+1} + d*_{n+2})  gather
 ///
-/// @param rows      num_slots pointers to padded rows
-/// @param forces    num_slots forces at t_n
-/// @param predicted num_slots displacements predicted for t_{n+2}
+/// @param blocks     num_blocks blocks, 64-byte aligned, unused entries zero
+/// @param rows       num_slots pointers to 64-byte aligned rows of num_blocks·modal_block entries
+/// @param forces     num_slots forces at t_n
+/// @param predicted  num_slots displacements predicted for t_{n+2}
 /// Vectorised for the processor at hand; results differ between processors by rounding only.
-void advance_modes(const ModalArrays& modes, const double* const* rows, const double* forces,
-                   int num_slots, double* predicted);
+void advance_modes(double* blocks, std::size_t num_blocks, const double* const* rows,
+                   const double* forces, int num_slots, double* predicted);
 
-/// Σ a_i b_i over a padded length.
-double dot(const double* a, const double* b, std::size_t size);
+/// row · field over all blocks.
+double gather_modes(const double* blocks, std::size_t num_blocks, ModalField field,
+                    const double* row);
 
 }  // namespace stridor

@@ -39,17 +39,20 @@ class ModalRecurrence : public Propagator {
   void save_body(State& state, const std::string& prefix) const override;
   void load_body(const State& state, const std::string& prefix) override;
 
+  double& number(std::size_t mode, ModalField field) { return blocks_[modal_index(mode, field)]; }
+  std::vector<double> numbers(ModalField field) const;
+  void set_numbers(ModalField field, const std::vector<double>& values);
   const double* row_data(int row) const {
-    return row_table_.data() + static_cast<std::size_t>(row) * padded_;
+    return row_table_.data() + static_cast<std::size_t>(row) * num_blocks_ * modal_block;
   }
 
   std::size_t size_;
-  std::size_t padded_;
+  std::size_t num_blocks_;
   double step_;
-  AlignedArray stiffness_damping_;  ///< h β ω²
-  AlignedArray position_, increment_, keep_, pull_, gain_, load_;
-  AlignedArray row_table_;           ///< padded rows, one after the other
-  Eigen::MatrixXd scaled_patterns_;  ///< e times the load patterns
+  AlignedArray blocks_;                ///< state and coefficients of every mode
+  AlignedArray row_table_;             ///< padded rows, one after the other
+  Eigen::VectorXd stiffness_damping_;  ///< h β ω²
+  Eigen::MatrixXd scaled_patterns_;    ///< e times the load patterns
   std::vector<const double*> slot_rows_;
 };
 

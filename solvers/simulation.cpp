@@ -18,7 +18,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// No contact of a computable scene carries this; beyond it the numbers have run away.
 constexpr double absurd_force = 1e30;
 constexpr const char* persistent_sliding_remedy =
-    "the assumption of persistent sliding no longer holds from here on; lower the friction coefficient, or raise "
+    "the assumption of persistent sliding no longer holds from here on; lower the friction "
+    "coefficient, or raise "
     "contact.armed_from if this is start-up";
 constexpr int slave_slots = 2;
 constexpr int master_slots = 4;
@@ -189,8 +190,8 @@ struct Simulation::Implementation {
     }
   }
 
-  /// Slave and segment with the displacements given by the slots, as seen from the undeformed T1: far
-  /// from the origin the gap would drown in the rounding of the positions.
+  /// Slave and segment with the displacements given by the slots, as seen from the undeformed T1:
+  /// far from the origin the gap would drown in the rounding of the positions.
   struct Place {
     Eigen::Vector2d slave;
     Segment segment;
@@ -206,7 +207,8 @@ struct Simulation::Implementation {
       return {displacement(body, slot), displacement(body, slot + 1)};
     };
     Place place;
-    place.slave = contact.point.slave_position - undeformed.first + moved(slave, contact.slave_slot);
+    place.slave =
+        contact.point.slave_position - undeformed.first + moved(slave, contact.slave_slot);
     place.slave.x() += relative_drive(contact, drive_at);
     place.segment.first = moved(master, contact.master_slot);
     place.segment.second =
@@ -417,11 +419,15 @@ struct Simulation::Implementation {
             "(drive.velocity)";
         break;
       case StepOutcome::pulling:
-        what = fmt::format("the contact force is {:.6g} N: a bilateral contact pulls where real bodies would part", contact.force);
+        what = fmt::format(
+            "the contact force is {:.6g} N: a bilateral contact pulls where real bodies would part",
+            contact.force);
         remedy = persistent_sliding_remedy;
         break;
       case StepOutcome::sliding_reversed:
-        what = fmt::format("the sliding velocity is {:.6g} m/s, against the drive: real bodies would stick", contact.slip_velocity);
+        what = fmt::format(
+            "the sliding velocity is {:.6g} m/s, against the drive: real bodies would stick",
+            contact.slip_velocity);
         remedy = persistent_sliding_remedy;
         break;
       case StepOutcome::jammed:

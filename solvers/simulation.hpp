@@ -31,8 +31,8 @@ struct TimeParameters {
   static const Schema& schema();
 };
 
-/// What a step ended with. Anything but `done` ends the run: bodies and channels stand at the time of
-/// the failure, contact forces may be those of the step before.
+/// What a step ended with. Anything but `done` ends the run: bodies and channels stand at the time
+/// of the failure, contact forces may be those of the step before.
 enum class StepOutcome {
   done,
   master_lost,       ///< a slave point has left the end of its master surface
@@ -44,10 +44,11 @@ enum class StepOutcome {
 
 /// Violations of persistent sliding by one contact, counted in steps.
 struct ViolationCount {
-  std::int64_t negative_force = 0;    ///< λ < 0
-  std::int64_t reversed_sliding = 0;  ///< sliding velocity against that of the drive (never while the drive stands still)
-  std::int64_t before_armed = 0;      ///< of the two, those before ContactPoint::armed_from
-  double last_time = 0.0;             ///< of the latest one, s
+  std::int64_t negative_force = 0;  ///< λ < 0
+  std::int64_t reversed_sliding =
+      0;  ///< sliding velocity against that of the drive (never while the drive stands still)
+  std::int64_t before_armed = 0;  ///< of the two, those before ContactPoint::armed_from
+  double last_time = 0.0;         ///< of the latest one, s
 
   std::int64_t total() const { return negative_force + reversed_sliding; }
 };

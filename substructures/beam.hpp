@@ -11,7 +11,7 @@ enum class Support {
   clamped,  ///< all nodes of the end are held
   pinned,   ///< the node on the axis is held, the end may turn
   guided,   ///< all nodes share one vertical displacement, on which the drive's load acts, and
-           ///< follow the drive's horizontal motion; the end cannot turn
+            ///< follow the drive's horizontal motion; the end cannot turn
 };
 
 struct MaterialParameters {

@@ -40,7 +40,8 @@ class ScaledInverse {
 /// has a part in all of them.
 double typical_omega_squared(const SparseCholesky& factor, const SparseMatrix& mass) {
   Eigen::VectorXd x(factor.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i) x(i) = 1.0 + 0.5 * std::sin(static_cast<double>(i + 1));
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    x(i) = 1.0 + 0.5 * std::sin(static_cast<double>(i + 1));
   const Eigen::VectorXd mass_x = mass * x;
   return x.dot(mass_x) / mass_x.dot(factor.solve(mass_x).col(0));
 }

@@ -11,12 +11,13 @@
 namespace stridor {
 
 ModalBody make_modal(const ReducedBody& body) {
-  // The eigensolver takes the Cholesky factor of the mass unseen.
-  if (body.mass.llt().info() != Eigen::Success) {
+  // The eigensolver takes the Cholesky factor of the mass unseen, and the factor takes NaN.
+  if (!body.mass.allFinite() || body.mass.llt().info() != Eigen::Success) {
     throw NumericalError("modal form: the reduced mass is not positive definite");
   }
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(body.stiffness, body.mass);
-  if (solver.info() != Eigen::Success) throw NumericalError("modal form: the eigensolver did not converge");
+  if (solver.info() != Eigen::Success)
+    throw NumericalError("modal form: the eigensolver did not converge");
   constexpr double rigid_ratio = 1e-6;
   const Eigen::VectorXd& squares = solver.eigenvalues();
   const double largest = squares.size() > 0 ? squares(squares.size() - 1) : 0.0;

@@ -14,7 +14,8 @@ using namespace test;
 using ::testing::HasSubstr;
 
 /// Expects make_model to refuse the parameters at this key with this in the message.
-void expect_refusal(const ModelParameters& parameters, const std::string& key, const std::string& message,
+void expect_refusal(const ModelParameters& parameters, const std::string& key,
+                    const std::string& message,
                     const std::vector<std::pair<PointName, std::string>>& observed = {}) {
   try {
     make_model(parameters, observed);
@@ -66,13 +67,16 @@ TEST(Model, InterfaceSpacingMustFitTheMesh) {
   ModelParameters parameters = paper_model();
   auto& cantilever = std::get<BeamParameters>(parameters.substructures["cantilever"]);
   cantilever.interface.spacing = 0.0015;
-  expect_refusal(parameters, "substructures.cantilever.interface.spacing", "must be a whole multiple of the node distance 0.001 m");
+  expect_refusal(parameters, "substructures.cantilever.interface.spacing",
+                 "must be a whole multiple of the node distance 0.001 m");
   cantilever.interface.spacing = 0.003;
-  expect_refusal(parameters, "substructures.cantilever.interface.spacing", "divide the surface of 100 such intervals");
+  expect_refusal(parameters, "substructures.cantilever.interface.spacing",
+                 "divide the surface of 100 such intervals");
 }
 
 TEST(Model, ObservedPointOutsideTheInterfaceIsRecovered) {
-  const Model model = make_model(paper_model(), {{{"oblique", "end_top"}, "k"}, {{"cantilever", "end"}, "k"}});
+  const Model model =
+      make_model(paper_model(), {{{"oblique", "end_top"}, "k"}, {{"cantilever", "end"}, "k"}});
   EXPECT_EQ(model.points.size(), 2u);
   // On the guided end the horizontal motion is held: a row of zeros.
   const Model::Point guided = model.points.at({"oblique", "end_top"});
@@ -84,24 +88,31 @@ TEST(Model, ObservedPointOutsideTheInterfaceIsRecovered) {
 TEST(Model, UnknownNamesAreRefusedWithSuggestions) {
   ModelParameters parameters = paper_model();
   parameters.contact->master = "cantilevr.top";
-  expect_refusal(parameters, "contact.master", "there is no substructure 'cantilevr', did you mean 'cantilever'?");
+  expect_refusal(parameters, "contact.master",
+                 "there is no substructure 'cantilevr', did you mean 'cantilever'?");
   parameters = paper_model();
   parameters.contact->master = "cantilever.topp";
-  expect_refusal(parameters, "contact.master", "'cantilever' has no surface 'topp', did you mean 'top'?");
+  expect_refusal(parameters, "contact.master",
+                 "'cantilever' has no surface 'topp', did you mean 'top'?");
   parameters = paper_model();
   parameters.contact->slave = {"oblique.tipp"};
-  expect_refusal(parameters, "contact.slave", "'oblique' has no point or surface 'tipp', did you mean 'tip'?");
+  expect_refusal(parameters, "contact.slave",
+                 "'oblique' has no point or surface 'tipp', did you mean 'tip'?");
   parameters = paper_model();
   parameters.contact->slave = {"oblique"};
-  expect_refusal(parameters, "contact.slave", "'oblique' is not of the form <body>.<point or surface>");
-  expect_refusal(paper_model(), "record.channels.0", "'cantilever' has no point 'free_and', did you mean 'free_end'?",
+  expect_refusal(parameters, "contact.slave",
+                 "'oblique' is not of the form <body>.<point or surface>");
+  expect_refusal(paper_model(), "record.channels.0",
+                 "'cantilever' has no point 'free_and', did you mean 'free_end'?",
                  {{{"cantilever", "free_and"}, "record.channels.0"}});
 }
 
 TEST(Model, StartOffTheMasterIsRefusedWithTheAllowedRange) {
   ModelParameters parameters = paper_model();
   parameters.contact->start = 0.2;
-  expect_refusal(parameters, "contact.start", "0.2 m is off the master 'cantilever.top', which is 0.1 m long; allowed: 0 to 0.1 m");
+  expect_refusal(
+      parameters, "contact.start",
+      "0.2 m is off the master 'cantilever.top', which is 0.1 m long; allowed: 0 to 0.1 m");
 }
 
 TEST(Model, SecondSlavePointOffTheEndOfTheMasterIsRefused) {
@@ -109,7 +120,8 @@ TEST(Model, SecondSlavePointOffTheEndOfTheMasterIsRefused) {
   std::get<BeamParameters>(parameters.substructures["oblique"]).angle = 0.0;
   parameters.contact->slave = {"oblique.start_bottom", "oblique.end_bottom"};
   parameters.contact->start = 0.050;
-  expect_refusal(parameters, "contact.start", "slave point 2 starts off the end of the master 'cantilever.top'");
+  expect_refusal(parameters, "contact.start",
+                 "slave point 2 starts off the end of the master 'cantilever.top'");
 }
 
 TEST(Model, SlavePointAboveTheMasterIsRefused) {
@@ -171,7 +183,8 @@ TEST(Model, PairsInACircleAreRefused) {
 
 TEST(Model, TooManyModesAreRefusedWithTheNumberThereIs) {
   ModelParameters parameters = paper_model();
-  std::get<BeamParameters>(parameters.substructures["cantilever"]).reduction.fixed_interface_modes = 301;
+  std::get<BeamParameters>(parameters.substructures["cantilever"]).reduction.fixed_interface_modes =
+      301;
   // 253 nodes, 3 of them clamped: 500 DoFs, 200 of them in the interface.
   expect_refusal(parameters, "substructures.cantilever.reduction.fixed_interface_modes",
                  "301 modes asked, but the beam has only 300 DoFs besides its interface");
@@ -180,7 +193,8 @@ TEST(Model, TooManyModesAreRefusedWithTheNumberThereIs) {
 TEST(Model, ABodyThatIsFreeToTurnIsRefused) {
   ModelParameters parameters = paper_model();
   std::get<BeamParameters>(parameters.substructures["oblique"]).supports.end = Support::free;
-  expect_refusal(parameters, "substructures.oblique", "cannot be reduced: the stiffness of the interior");
+  expect_refusal(parameters, "substructures.oblique",
+                 "cannot be reduced: the stiffness of the interior");
 }
 
 TEST(Model, ConstantsOfTheDriveRiseOverTheRamp) {

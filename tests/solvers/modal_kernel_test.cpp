@@ -18,33 +18,14 @@ AlignedArray random_array(std::size_t size, std::mt19937& generator) {
   return array;
 }
 
-/// The pass as its comment has it, one mode after the other.
-void advance_plainly(std::size_t size, AlignedArray& q, AlignedArray& d, const AlignedArray& keep, const AlignedArray& pull,
-                     const AlignedArray& gain, const AlignedArray& load, const std::vector<AlignedArray>& rows,
-                     const std::vector<double>& forces, std::vector<double>& predicted) {
-  predicted.assign(rows.size(), 0.0);
-  for (std::size_t i = 0; i < size; ++i) {
-    double modal_force = 0.0;
-    for (std::size_t j = 0; j < rows.size(); ++j) modal_force += rows[j][i] * forces[j];
-    const double increment = d[i] + gain[i] * modal_force;
-    q[i] += increment;
-    d[i] = keep[i] * increment - pull[i] * q[i] + load[i];
-    for (std::size_t j = 0; j < rows.size(); ++j) predicted[j] += rows[j][i] * (q[i] + d[i]);
-  }
-}
-
 class ModalKernelTest : public ::testing::TestWithParam<int> {};
 
 TEST_P(ModalKernelTest, DoesWhatItsEquationsSayForAnyNumberOfSlots) {
   const auto num_slots = static_cast<std::size_t>(GetParam());
-  for (const std::size_t size : {8u, 24u, 224u}) {
+  for (const std::size_t num_blocks : {1u, 3u, 28u}) {
+    const std::size_t size = num_blocks * modal_block;
     std::mt19937 generator(static_cast<unsigned>(size + num_slots));
-    AlignedArray q = random_array(size, generator);
-    AlignedArray d = random_array(size, generator);
-    const AlignedArray keep = random_array(size, generator);
-    const AlignedArray pull = random_array(size, generator);
-    const AlignedArray gain = random_array(size, generator);
-    const AlignedArray load = random_array(size, generator);
+    AlignedArray blocks = random_array(size * num_modal_fields, generator);
     std::vector<AlignedArray> rows;
     std::vector<const double*> row_pointers;
     std::vector<double> forces;
@@ -53,36 +34,51 @@ TEST_P(ModalKernelTest, DoesWhatItsEquationsSayForAnyNumberOfSlots) {
       forces.push_back(static_cast<double>(j) - 1.5);
     }
     for (const AlignedArray& row : rows) row_pointers.push_back(row.data());
-    AlignedArray plain_q(size);
-    AlignedArray plain_d(size);
+
+    // The pass as its comment has it, one mode after the other.
+    std::vector<double> position(size);
+    std::vector<double> increment(size);
+    std::vector<double> expected(num_slots, 0.0);
     for (std::size_t i = 0; i < size; ++i) {
-      plain_q[i] = q[i];
-      plain_d[i] = d[i];
+      const auto before = [&](ModalField field) { return blocks[modal_index(i, field)]; };
+      double modal_force = 0.0;
+      for (std::size_t j = 0; j < num_slots; ++j) modal_force += rows[j][i] * forces[j];
+      const double corrected =
+          before(ModalField::increment) + before(ModalField::gain) * modal_force;
+      position[i] = before(ModalField::position) + corrected;
+      increment[i] = before(ModalField::keep) * corrected - before(ModalField::pull) * position[i] +
+                     before(ModalField::load);
+      for (std::size_t j = 0; j < num_slots; ++j)
+        expected[j] += rows[j][i] * (position[i] + increment[i]);
     }
+
     std::vector<double> predicted(num_slots);
-    std::vector<double> plain_predicted;
-    advance_modes({size, q.data(), d.data(), keep.data(), pull.data(), gain.data(), load.data()}, row_pointers.data(),
-                  forces.data(), static_cast<int>(num_slots), predicted.data());
-    advance_plainly(size, plain_q, plain_d, keep, pull, gain, load, rows, forces, plain_predicted);
+    advance_modes(blocks.data(), num_blocks, row_pointers.data(), forces.data(),
+                  static_cast<int>(num_slots), predicted.data());
     // Some tens of operations on numbers of order 10, in another order and with fused products.
     for (std::size_t i = 0; i < size; ++i) {
-      EXPECT_NEAR(q[i], plain_q[i], 1e-13);
-      EXPECT_NEAR(d[i], plain_d[i], 1e-13);
+      EXPECT_NEAR(blocks[modal_index(i, ModalField::position)], position[i], 1e-13);
+      EXPECT_NEAR(blocks[modal_index(i, ModalField::increment)], increment[i], 1e-13);
     }
-    for (std::size_t j = 0; j < num_slots; ++j) EXPECT_NEAR(predicted[j], plain_predicted[j], 1e-12 * static_cast<double>(size));
+    for (std::size_t j = 0; j < num_slots; ++j)
+      EXPECT_NEAR(predicted[j], expected[j], 1e-12 * static_cast<double>(size));
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Slots, ModalKernelTest, ::testing::Values(0, 1, 2, 3, 4, 5, 6, 9, 40));
 
-TEST(ModalKernel, DotProductOfAnyPaddedLength) {
-  for (const std::size_t size : {8u, 16u, 24u, 40u, 224u}) {
+TEST(ModalKernel, GatherIsTheProductOfARowWithOneField) {
+  for (const std::size_t num_blocks : {1u, 2u, 5u, 28u}) {
+    const std::size_t size = num_blocks * modal_block;
     std::mt19937 generator(static_cast<unsigned>(size));
-    const AlignedArray a = random_array(size, generator);
-    const AlignedArray b = random_array(size, generator);
-    double plain = 0.0;
-    for (std::size_t i = 0; i < size; ++i) plain += a[i] * b[i];
-    EXPECT_NEAR(dot(a.data(), b.data(), size), plain, 1e-15 * static_cast<double>(size));
+    const AlignedArray blocks = random_array(size * num_modal_fields, generator);
+    const AlignedArray row = random_array(size, generator);
+    for (const ModalField field : {ModalField::position, ModalField::increment, ModalField::load}) {
+      double plain = 0.0;
+      for (std::size_t i = 0; i < size; ++i) plain += row[i] * blocks[modal_index(i, field)];
+      EXPECT_NEAR(gather_modes(blocks.data(), num_blocks, field, row.data()), plain,
+                  1e-15 * static_cast<double>(size));
+    }
   }
 }
 

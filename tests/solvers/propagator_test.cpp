@@ -35,24 +35,28 @@ ReducedBody oscillator(double mass, double stiffness, double alpha, double beta)
 }
 
 struct ModalForm {
-  static std::unique_ptr<Propagator> make(const ReducedBody& body, const Eigen::MatrixXd& patterns, double step, int slots,
-                                          std::span<const double> loads) {
+  static std::unique_ptr<Propagator> make(const ReducedBody& body, const Eigen::MatrixXd& patterns,
+                                          double step, int slots, std::span<const double> loads) {
     // Patterns are given in reduced coordinates; a row of the body turns them into modal ones.
     const ModalBody modal = make_modal(body);
-    const Eigen::MatrixXd modal_patterns = modal.rows.transpose() * body.rows.transpose().inverse() * patterns;
-    return std::make_unique<ModalRecurrence>(modal, modal_patterns, step, slots, body.damping.alpha_at(0.0), loads);
+    const Eigen::MatrixXd modal_patterns =
+        modal.rows.transpose() * body.rows.transpose().inverse() * patterns;
+    return std::make_unique<ModalRecurrence>(modal, modal_patterns, step, slots,
+                                             body.damping.alpha_at(0.0), loads);
   }
 };
 struct PublishedForm {
-  static std::unique_ptr<Propagator> make(const ReducedBody& body, const Eigen::MatrixXd& patterns, double step, int slots,
-                                          std::span<const double> loads) {
-    return std::make_unique<PublishedTwoStep>(body, patterns, step, slots, body.damping.alpha_at(0.0), loads);
+  static std::unique_ptr<Propagator> make(const ReducedBody& body, const Eigen::MatrixXd& patterns,
+                                          double step, int slots, std::span<const double> loads) {
+    return std::make_unique<PublishedTwoStep>(body, patterns, step, slots,
+                                              body.damping.alpha_at(0.0), loads);
   }
 };
 struct FusedForm {
-  static std::unique_ptr<Propagator> make(const ReducedBody& body, const Eigen::MatrixXd& patterns, double step, int slots,
-                                          std::span<const double> loads) {
-    return std::make_unique<FusedTwoStep>(body, patterns, step, slots, body.damping.alpha_at(0.0), loads);
+  static std::unique_ptr<Propagator> make(const ReducedBody& body, const Eigen::MatrixXd& patterns,
+                                          double step, int slots, std::span<const double> loads) {
+    return std::make_unique<FusedTwoStep>(body, patterns, step, slots, body.damping.alpha_at(0.0),
+                                          loads);
   }
 };
 
@@ -77,7 +81,8 @@ double error_at_one(double alpha, double beta, int num_steps) {
     return std::exp(-t) * (a + c * v + stiffness * u);
   };
   const double start[] = {0.0};
-  const auto body = Form::make(oscillator(1.0, stiffness, alpha, beta), Eigen::MatrixXd::Identity(1, 1), step, 0, start);
+  const auto body = Form::make(oscillator(1.0, stiffness, alpha, beta),
+                               Eigen::MatrixXd::Identity(1, 1), step, 0, start);
   for (int n = 1; n <= num_steps; ++n) {
     const double load[] = {force(n * step)};
     body->set_loads(load);
@@ -89,7 +94,8 @@ double error_at_one(double alpha, double beta, int num_steps) {
 TYPED_TEST(PropagatorTest, IsSecondOrderInTheStepWithoutDamping) {
   // Two halvings in the asymptotic range; the band leaves room for the next term of the expansion.
   for (const int n : {200, 400}) {
-    const double order = std::log2(error_at_one<TypeParam>(0.0, 0.0, n) / error_at_one<TypeParam>(0.0, 0.0, 2 * n));
+    const double order =
+        std::log2(error_at_one<TypeParam>(0.0, 0.0, n) / error_at_one<TypeParam>(0.0, 0.0, 2 * n));
     EXPECT_GT(order, 1.9);
     EXPECT_LT(order, 2.1);
   }
@@ -97,7 +103,8 @@ TYPED_TEST(PropagatorTest, IsSecondOrderInTheStepWithoutDamping) {
 
 TYPED_TEST(PropagatorTest, IsFirstOrderInTheStepWithDamping) {
   for (const int n : {400, 800}) {
-    const double order = std::log2(error_at_one<TypeParam>(2.0, 0.05, n) / error_at_one<TypeParam>(2.0, 0.05, 2 * n));
+    const double order = std::log2(error_at_one<TypeParam>(2.0, 0.05, n) /
+                                   error_at_one<TypeParam>(2.0, 0.05, 2 * n));
     EXPECT_GT(order, 0.9);
     EXPECT_LT(order, 1.1);
   }
@@ -109,13 +116,16 @@ TYPED_TEST(PropagatorTest, MatchesTheSchemeWrittenOutForOneOscillator) {
   constexpr double stiffness = 25.0;
   constexpr double c = 0.3 + 0.002 * stiffness;
   const double amplitude[] = {2.0};
-  const auto body = TypeParam::make(oscillator(1.0, stiffness, 0.3, 0.002), Eigen::MatrixXd::Identity(1, 1), step, 1, amplitude);
+  const auto body = TypeParam::make(oscillator(1.0, stiffness, 0.3, 0.002),
+                                    Eigen::MatrixXd::Identity(1, 1), step, 1, amplitude);
   body->watch(0, 0);
   double previous = 0.0;
   double current = 0.0;
   for (int n = 0; n < 500; ++n) {
     const double contact = n % 7 == 0 ? 1.5 : 0.0;
-    const double next = step * step * (2.0 + contact - c * (current - previous) / step - stiffness * current) + 2 * current - previous;
+    const double next =
+        step * step * (2.0 + contact - c * (current - previous) / step - stiffness * current) +
+        2 * current - previous;
     body->advance(&contact);
     previous = current;
     current = next;
@@ -131,8 +141,10 @@ TYPED_TEST(PropagatorTest, CorrectionIsComplianceTimesForce) {
   body->watch(0, 0);
   body->watch(1, 2);
   const double forces[] = {3.0, -1.0};
-  const double expected0 = body->predicted(0) + body->compliance(0, 0) * 3.0 - body->compliance(0, 1) * 1.0;
-  const double expected1 = body->predicted(1) + body->compliance(1, 0) * 3.0 - body->compliance(1, 1) * 1.0;
+  const double expected0 =
+      body->predicted(0) + body->compliance(0, 0) * 3.0 - body->compliance(0, 1) * 1.0;
+  const double expected1 =
+      body->predicted(1) + body->compliance(1, 0) * 3.0 - body->compliance(1, 1) * 1.0;
   body->advance(forces);
   // One multiply-add each.
   EXPECT_NEAR(body->displacement(0), expected0, 1e-17);
@@ -199,7 +211,8 @@ TYPED_TEST(PropagatorTest, GoesOnBitwiseAfterSaveAndLoad) {
     straight->advance(forces);
     resumed->advance(forces);
   }
-  for (int row = 0; row < 3; ++row) EXPECT_EQ(straight->displacement(row), resumed->displacement(row));
+  for (int row = 0; row < 3; ++row)
+    EXPECT_EQ(straight->displacement(row), resumed->displacement(row));
   for (int slot = 0; slot < 2; ++slot) {
     EXPECT_EQ(straight->predicted(slot), resumed->predicted(slot));
     EXPECT_EQ(straight->increment(slot), resumed->increment(slot));
@@ -217,14 +230,17 @@ TYPED_TEST(PropagatorTest, RefusesTheStateOfAnotherBody) {
 
 TYPED_TEST(PropagatorTest, MassDampingCanChangeOnTheWay) {
   constexpr double step = 0.01;
-  const auto body = TypeParam::make(oscillator(1.0, 25.0, 4.0, 0.0), Eigen::MatrixXd(1, 0), step, 1, {});
+  const auto body =
+      TypeParam::make(oscillator(1.0, 25.0, 4.0, 0.0), Eigen::MatrixXd(1, 0), step, 1, {});
   body->watch(0, 0);
   double previous = 0.0;
   double current = 0.0;
   double alpha = 4.0;
   for (int n = 0; n < 300; ++n) {
     const double push = n == 0 ? 100.0 : 0.0;
-    const double next = step * step * (push - alpha * (current - previous) / step - 25.0 * current) + 2 * current - previous;
+    const double next =
+        step * step * (push - alpha * (current - previous) / step - 25.0 * current) + 2 * current -
+        previous;
     alpha = n < 150 ? 4.0 : 0.1;
     body->set_mass_damping(alpha);
     body->advance(&push);

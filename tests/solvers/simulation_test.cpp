@@ -20,7 +20,8 @@ constexpr double paper_step = 2.0e-7;
 
 TEST(Simulation, ModalAndDenseFormsAgreeOver4000Steps) {
   // The forms differ by rounding only; 1e-9 leaves room for its growth over the steps.
-  for (const auto assumption : {ContactAssumption::subs_a, ContactAssumption::subs_b, ContactAssumption::subs_c}) {
+  for (const auto assumption :
+       {ContactAssumption::subs_a, ContactAssumption::subs_b, ContactAssumption::subs_c}) {
     ModelParameters parameters = paper_model(trailing_angle, assumption);
     parameters.drive.ramp = 1e-3;
     parameters.contact->armed_from = 1.0;
@@ -44,7 +45,8 @@ TEST(Simulation, ModalAndDenseFormsAgreeOver4000Steps) {
       for (const Simulation* dense : {&published, &fused}) {
         force_difference = std::max(force_difference, std::abs(dense->contact_force(0) - force));
         displacement_difference =
-            std::max(displacement_difference, std::abs(dense->displacement(tip.body, tip.rows.y) - displacement));
+            std::max(displacement_difference,
+                     std::abs(dense->displacement(tip.body, tip.rows.y) - displacement));
       }
     }
     EXPECT_LT(force_difference, 1e-9 * largest_force);
@@ -69,11 +71,13 @@ TEST(Simulation, StepJustBelowTheLimitStaysBounded) {
   Simulation simulation(model.system, paper_time(0.999 * step_limit(model.system).step));
   ASSERT_EQ(simulation.step_until(100'000), StepOutcome::done) << simulation.failure();
   // The load has reached smoothstep(0.29) of 0.2 N by then.
-  EXPECT_NEAR(simulation.contact_force(0), 0.2 * TimeCurve::ramp(1.0, 0.1).value(simulation.time()), 2e-3);
+  EXPECT_NEAR(simulation.contact_force(0), 0.2 * TimeCurve::ramp(1.0, 0.1).value(simulation.time()),
+              2e-3);
 }
 
 /// Runs straight to `end` and by way of a saved state, and compares every number of both ends.
-void expect_bitwise_resume(const ModelParameters& parameters, const TimeParameters& time, std::int64_t stop, std::int64_t end) {
+void expect_bitwise_resume(const ModelParameters& parameters, const TimeParameters& time,
+                           std::int64_t stop, std::int64_t end) {
   const Model model = make_paper_model(parameters);
   Simulation straight(model.system, time);
   ASSERT_EQ(straight.step_until(stop), StepOutcome::done) << straight.failure();
@@ -89,7 +93,8 @@ void expect_bitwise_resume(const ModelParameters& parameters, const TimeParamete
 
 TEST(Simulation, SaveLoadAndGoOnIsBitwiseTheUninterruptedRun) {
   // In the ramp, and in every form.
-  for (const auto coordinates : {Coordinates::modal, Coordinates::craig_bampton, Coordinates::craig_bampton_fused}) {
+  for (const auto coordinates :
+       {Coordinates::modal, Coordinates::craig_bampton, Coordinates::craig_bampton_fused}) {
     expect_bitwise_resume(paper_model(), paper_time(paper_step, coordinates), 1500, 3000);
   }
 }
@@ -106,7 +111,8 @@ TEST(Simulation, ResumesBitwiseInTheMiddleOfTheDampingSchedule) {
 
 TEST(Simulation, ResumesBitwiseAcrossTheNodesOfTheMaster) {
   // 10 m/s passes a node every 500 steps.
-  for (const auto assumption : {ContactAssumption::subs_a, ContactAssumption::subs_b, ContactAssumption::subs_c}) {
+  for (const auto assumption :
+       {ContactAssumption::subs_a, ContactAssumption::subs_b, ContactAssumption::subs_c}) {
     ModelParameters parameters = paper_model(leading_angle, assumption);
     parameters.drive.velocity = TimeCurve(10.0);
     parameters.drive.ramp = 5e-4;
@@ -142,8 +148,8 @@ TEST(Simulation, ClosesTheGapOfSubsBInEveryStep) {
     const double before = simulation.contact_place(0).position;
     ASSERT_EQ(simulation.step(), StepOutcome::done) << simulation.failure();
     const ContactPlace place = simulation.contact_place(0);
-    // Within a segment only rounding is left. Where the point has just moved on, the gap is seen along
-    // the next segment: kink (below 5e-3 here) times way per step (2e-6 m).
+    // Within a segment only rounding is left. Where the point has just moved on, the gap is seen
+    // along the next segment: kink (below 5e-3 here) times way per step (2e-6 m).
     EXPECT_LT(std::abs(place.gap), 1e-8);
     EXPECT_GE(place.position - before, -1e-7);
   }
@@ -179,7 +185,8 @@ TEST(Simulation, SeveralContactsSettleOnTheSolutionOfTheStaticSaddlePointProblem
   const System& system = model.system;
   ASSERT_EQ(system.contacts.size(), 2u);
 
-  // K q + B_Eᵀ λ = f, B_C (X + rows q) = 0 with the rows of the undeformed geometry, written out densely.
+  // K q + B_Eᵀ λ = f, B_C (X + rows q) = 0 with the rows of the undeformed geometry, written out
+  // densely.
   const Eigen::Index n0 = system.bodies[0].reduced.size();
   const Eigen::Index n1 = system.bodies[1].reduced.size();
   const Eigen::Index n = n0 + n1;
@@ -191,7 +198,8 @@ TEST(Simulation, SeveralContactsSettleOnTheSolutionOfTheStaticSaddlePointProblem
   for (std::size_t b = 0; b < 2; ++b) {
     const SystemBody& body = system.bodies[b];
     if (!body.follows_drive) continue;
-    right.segment(offset(static_cast<int>(b)), body.reduced.size()) = -0.2 * body.reduced.rows.row(body.load_row).transpose();
+    right.segment(offset(static_cast<int>(b)), body.reduced.size()) =
+        -0.2 * body.reduced.rows.row(body.load_row).transpose();
   }
   for (int i = 0; i < 2; ++i) {
     const ContactPoint& contact = system.contacts[static_cast<std::size_t>(i)];
@@ -207,10 +215,12 @@ TEST(Simulation, SeveralContactsSettleOnTheSolutionOfTheStaticSaddlePointProblem
     const auto s = static_cast<std::size_t>(contact.first_segment);
     const PointRows points[] = {contact.slave_rows, surface.rows[s], surface.rows[s + 1]};
     const int bodies[] = {contact.slave_body, surface.body, surface.body};
-    const double c[] = {rows.compatibility.slave[0],  rows.compatibility.slave[1],  rows.compatibility.master[0],
-                        rows.compatibility.master[1], rows.compatibility.master[2], rows.compatibility.master[3]};
-    const double e[] = {rows.equilibrium.slave[0],  rows.equilibrium.slave[1],  rows.equilibrium.master[0],
-                        rows.equilibrium.master[1], rows.equilibrium.master[2], rows.equilibrium.master[3]};
+    const double c[] = {rows.compatibility.slave[0],  rows.compatibility.slave[1],
+                        rows.compatibility.master[0], rows.compatibility.master[1],
+                        rows.compatibility.master[2], rows.compatibility.master[3]};
+    const double e[] = {rows.equilibrium.slave[0],  rows.equilibrium.slave[1],
+                        rows.equilibrium.master[0], rows.equilibrium.master[1],
+                        rows.equilibrium.master[2], rows.equilibrium.master[3]};
     for (std::size_t k = 0; k < 3; ++k) {
       add(bodies[k], points[k].x, c[2 * k], e[2 * k]);
       add(bodies[k], points[k].y, c[2 * k + 1], e[2 * k + 1]);
@@ -264,8 +274,9 @@ TEST(Simulation, StaticForceOfSubsBBalancesTheLoadOnTheSaggedMaster) {
   const int segment = 80;
   const auto deformed = [&](int node) -> Eigen::Vector2d {
     const auto k = static_cast<std::size_t>(node);
-    return surface.positions[k] + Eigen::Vector2d(simulation.displacement(surface.body, surface.rows[k].x),
-                                                  simulation.displacement(surface.body, surface.rows[k].y));
+    return surface.positions[k] +
+           Eigen::Vector2d(simulation.displacement(surface.body, surface.rows[k].x),
+                           simulation.displacement(surface.body, surface.rows[k].y));
   };
   const Eigen::Vector2d along = (deformed(segment + 1) - deformed(segment)).normalized();
   const double expected = 0.2 / (along.x() - 0.3 * along.y());
@@ -287,7 +298,8 @@ TEST(Simulation, LeavingTheEndOfTheMasterIsAnOutcomeWithPlaceAndRemedy) {
   EXPECT_LT(simulation.time(), 2e-3);
   EXPECT_THAT(simulation.failure(), HasSubstr("contact at t = 0.00"));
   EXPECT_THAT(simulation.failure(), HasSubstr("position 0.1 m"));
-  EXPECT_THAT(simulation.failure(), HasSubstr("has left the end of the surface cantilever.top (0.1 m long)"));
+  EXPECT_THAT(simulation.failure(),
+              HasSubstr("has left the end of the surface cantilever.top (0.1 m long)"));
   EXPECT_THAT(simulation.failure(), HasSubstr("Remedy: end the run earlier (time.end)"));
 }
 
@@ -300,14 +312,16 @@ TEST(Simulation, PullingContactIsCountedUntilArmedAndThenAnOutcome) {
   Simulation simulation(model.system, paper_time());
   EXPECT_EQ(simulation.step_until(20'000), StepOutcome::pulling);
   EXPECT_NEAR(simulation.time(), 2e-3, 2 * paper_step);
-  EXPECT_THAT(simulation.failure(), HasSubstr("a bilateral contact pulls where real bodies would part"));
+  EXPECT_THAT(simulation.failure(),
+              HasSubstr("a bilateral contact pulls where real bodies would part"));
   const ViolationCount& count = simulation.violations(0);
   EXPECT_GT(count.before_armed, 5000);
   EXPECT_EQ(count.total(), count.before_armed + 1);
 }
 
 TEST(Simulation, ReversedSlidingIsAnOutcome) {
-  // The tip of a beam that is hit by its load at once swings back faster than the drive moves it on.
+  // The tip of a beam that is hit by its load at once swings back faster than the drive moves it
+  // on.
   ModelParameters parameters = paper_model();
   parameters.drive.velocity = TimeCurve(1e-4);
   parameters.drive.load = TimeCurve(TimeTable{{0.0, 1e-3, 1.1e-3}, {-0.2, -0.2, -2.0}});
@@ -320,7 +334,8 @@ TEST(Simulation, ReversedSlidingIsAnOutcome) {
 }
 
 TEST(Simulation, JammingIsNamed) {
-  // B_C W B_Eᵀ = a + μ b with b < 0 for one way of leaning: with enough friction no force closes the gap.
+  // B_C W B_Eᵀ = a + μ b with b < 0 for one way of leaning: with enough friction no force closes
+  // the gap.
   bool was_jammed = false;
   for (const double angle : {trailing_angle, leading_angle}) {
     ModelParameters parameters = paper_model(angle);
@@ -343,7 +358,8 @@ TEST(Simulation, ForceExtremesStartAnewFromThePresentForce) {
   Simulation simulation(model.system, paper_time());
   ASSERT_EQ(simulation.step_until(2000), StepOutcome::done);
   simulation.reset_force_extremes();
-  EXPECT_EQ(simulation.force_extremes(0), std::make_pair(simulation.contact_force(0), simulation.contact_force(0)));
+  EXPECT_EQ(simulation.force_extremes(0),
+            std::make_pair(simulation.contact_force(0), simulation.contact_force(0)));
   double low = simulation.contact_force(0);
   double high = low;
   for (int n = 0; n < 100; ++n) {

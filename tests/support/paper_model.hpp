@@ -31,7 +31,8 @@ inline Model make_paper_model(const ModelParameters& parameters) {
   return make_model(parameters, {{free_end, "record.channels.0"}});
 }
 
-inline TimeParameters paper_time(double step = 2.0e-7, Coordinates coordinates = Coordinates::modal) {
+inline TimeParameters paper_time(double step = 2.0e-7,
+                                 Coordinates coordinates = Coordinates::modal) {
   TimeParameters time;
   time.coordinates = coordinates;
   time.step = step;

@@ -1,5 +1,3 @@
-#include "io/run_file.hpp"
-
 #include <fcntl.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -12,127 +10,22 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
+#include <cstdio>
 #include <ctime>
 #include <exception>
-#include <functional>
 #include <set>
 #include <stdexcept>
 
 #include "core/errors.hpp"
+#include "io/hdf5_handles.hpp"
+#include "io/run_file.hpp"
 
 namespace stridor {
 namespace {
 
 constexpr hsize_t chunk_rows = 16384;
-
-// ---------------------------------------------------------------- handles and errors of HDF5
-
-// Owns one HDF5 identifier of any kind.
-class Handle {
- public:
-  using Close = herr_t (*)(hid_t);
-  Handle() = default;
-  Handle(hid_t id, Close how) : id_(id), close_(how) {}
-  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
-  Handle& operator=(Handle&& other) noexcept {
-    if (this != &other) {
-      close();
-      id_ = std::exchange(other.id_, -1);
-      close_ = other.close_;
-    }
-    return *this;
-  }
-  ~Handle() { close(); }
-
-  hid_t id() const { return id_; }
-  bool is_open() const { return id_ >= 0; }
-  herr_t close() { return id_ < 0 ? 0 : close_(std::exchange(id_, -1)); }
-
- private:
-  hid_t id_ = -1;
-  Close close_ = nullptr;
-};
-
-// HDF5 prints its error stack by default; here it is kept and read instead.
-class QuietErrors {
- public:
-  QuietErrors() {
-    // Before anything else of HDF5: a file whose closing failed stays in its books, and its
-    // clean-up at exit crashes over it. All handles are closed here, there is nothing for it to
-    // clean up.
-    H5dont_atexit();
-    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  QuietErrors(const QuietErrors&) = delete;
-  QuietErrors& operator=(const QuietErrors&) = delete;
-  ~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
-
- private:
-  H5E_auto2_t function_ = nullptr;
-  void* data_ = nullptr;
-};
-
-herr_t keep_description(unsigned, const H5E_error2_t* error, void* text) {
-  // Upwards: the first one is the innermost and the most telling.
-  auto& description = *static_cast<std::string*>(text);
-  if (description.empty() && error->desc != nullptr) description = error->desc;
-  return 0;
-}
-
-// What HDF5 says about the call that has just failed; the text of errno where there is one.
-std::string hdf5_cause() {
-  std::string description;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_description, &description);
-  const std::string marker = "error message = '";
-  const auto begin = description.find(marker);
-  if (begin != std::string::npos) {
-    const auto text = begin + marker.size();
-    return description.substr(text, description.find('\'', text) - text);
-  }
-  return description.empty() ? "HDF5 gives no reason" : "HDF5: " + description;
-}
-
-std::string errno_text(int number) {
-  return std::strerror(number);
-}
-
-// Turns failed HDF5 calls into FileErrors that name the file and the dataset.
-class Checker {
- public:
-  explicit Checker(std::string path) : path_(std::move(path)) {}
-  const std::string& path() const { return path_; }
-
-  [[noreturn]] void fail(const std::string& dataset, const std::string& what) const {
-    throw FileError(path_, dataset, fmt::format("{}: {}", what, hdf5_cause()));
-  }
-  void check(herr_t status, const std::string& dataset, const char* what) const {
-    if (status < 0) fail(dataset, what);
-  }
-  Handle own(hid_t id, Handle::Close close, const std::string& dataset, const char* what) const {
-    if (id < 0) fail(dataset, what);
-    return {id, close};
-  }
-
- private:
-  std::string path_;
-};
-
-Handle file_access(const Checker& at) {
-  // Locks fail on many network file systems and would keep readers out while a run goes on.
-#if H5_VERSION_GE(1, 10, 7)
-  Handle access = at.own(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "", "cannot set up HDF5");
-  at.check(H5Pset_file_locking(access.id(), false, true), "", "cannot switch file locking off");
-#else
-  setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0);
-  Handle access = at.own(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "", "cannot set up HDF5");
-#endif
-  at.check(H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG), "", "cannot set up HDF5");
-  return access;
-}
 
 Handle link_creation(const Checker& at) {
   Handle links = at.own(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "", "cannot set up HDF5");
@@ -176,12 +69,6 @@ void write_text(const Checker& at, hid_t file, const Handle& links, const std::s
       H5Dclose, path, "cannot make the dataset");
   at.check(H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()), path,
            "cannot write");
-}
-
-bool is_object_path(const std::string& path) {
-  return path.size() >= 2 && path.front() == '/' && path.back() != '/' &&
-         path.find("//") == std::string::npos && path.find("/./") == std::string::npos &&
-         path.find('\0') == std::string::npos && !path.ends_with("/.");
 }
 
 void check_object_path(const std::string& path) {
@@ -261,13 +148,13 @@ class PartFile {
 
 }  // namespace
 
-void check_output(const std::string& path, Overwrite overwrite) { check_target(path, overwrite); }
+void check_output(const std::string& path, Overwrite overwrite) {
+  check_target(path, overwrite);
+}
 
 std::string utc_now() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
 }
-
-// ==================================================================== writer
 
 struct RunFileWriter::Impl {
   struct Column {
@@ -310,6 +197,7 @@ struct RunFileWriter::Impl {
   std::vector<double> times;  // not yet written
   std::vector<std::uint8_t> states;
   std::uint64_t num_written = 0;
+  double write_seconds = 0.0;
   bool closed = false;
   bool broken = false;
 };
@@ -492,6 +380,7 @@ void RunFileWriter::Impl::flush() {
   require_usable();
   if (times.empty()) return;
   const QuietErrors quiet;
+  const auto start = std::chrono::steady_clock::now();
   if (options.reservation == RunFileOptions::Reservation::on) reserve(times.size());
   modify([this] {
     for (const Column& column : columns) {
@@ -504,6 +393,7 @@ void RunFileWriter::Impl::flush() {
   num_written += times.size();
   times.clear();
   for (Column& column : columns) column.rows.clear();
+  write_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 // @return what went wrong, empty if nothing
@@ -675,274 +565,8 @@ std::uint64_t RunFileWriter::num_written() const {
   return impl_->num_written;
 }
 
-// ==================================================================== reader
-
-namespace {
-
-std::string read_text(const Checker& at, hid_t type, const std::string& dataset,
-                      const std::function<herr_t(hid_t, void*)>& read) {
-  if (H5Tis_variable_str(type) > 0) {
-    char* text = nullptr;
-    const Handle memory = at.own(H5Tcopy(type), H5Tclose, dataset, "cannot be read");
-    at.check(read(memory.id(), &text), dataset, "cannot be read");
-    const std::string result = text != nullptr ? text : "";
-    H5free_memory(text);
-    return result;
-  }
-  std::string text(H5Tget_size(type), '\0');
-  at.check(read(type, text.data()), dataset, "cannot be read");
-  return text.substr(0, text.find('\0'));
-}
-
-using Values = std::map<std::string, std::variant<std::string, double>>;
-
-// Text or one number; anything else (references of dimension scales, arrays) is not given.
-void read_attribute(const Checker& at, hid_t object, const std::string& path,
-                    const std::string& name, Values& values) {
-  const Handle attribute = at.own(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, path,
-                                  "cannot read an attribute");
-  const Handle type =
-      at.own(H5Aget_type(attribute.id()), H5Tclose, path, "cannot read an attribute");
-  const Handle space =
-      at.own(H5Aget_space(attribute.id()), H5Sclose, path, "cannot read an attribute");
-  if (H5Sget_simple_extent_npoints(space.id()) != 1) return;
-  const H5T_class_t kind = H5Tget_class(type.id());
-  if (kind == H5T_STRING) {
-    values[name] = read_text(at, type.id(), path, [&](hid_t memory, void* target) {
-      return H5Aread(attribute.id(), memory, target);
-    });
-  } else if (kind == H5T_FLOAT || kind == H5T_INTEGER) {
-    double number = 0.0;
-    at.check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &number), path, "cannot read an attribute");
-    values[name] = number;
-  }
-}
-
-herr_t keep_name(hid_t, const char* name, const H5A_info_t*, void* names) {
-  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
-  return 0;
-}
-
-Values read_attributes(const Checker& at, hid_t object, const std::string& path) {
-  std::vector<std::string> names;
-  at.check(H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep_name, &names), path,
-           "cannot read its attributes");
-  Values values;
-  for (const std::string& name : names) read_attribute(at, object, path, name, values);
-  return values;
-}
-
-herr_t keep_dataset(hid_t, const char* name, const H5O_info_t* info, void* paths) {
-  if (info->type == H5O_TYPE_DATASET)
-    static_cast<std::vector<std::string>*>(paths)->push_back("/" + std::string(name));
-  return 0;
-}
-
-}  // namespace
-
-struct RunFileReader::Impl {
-  explicit Impl(const std::string& path) : at(path) {}
-  ~Impl() {
-    const QuietErrors quiet;
-    file.close();
-  }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
-
-  void open_file();
-  void read_header();
-  std::string text(const std::string& path) const;
-  Handle open_array(const std::string& path, hsize_t& length) const;
-  std::vector<double> read_array(const std::string& path, const std::uint64_t* wanted) const;
-  std::vector<std::string> arrays(bool series) const;
-
-  Checker at;
-  Handle file;
-  RunFileHeader header;
-  std::vector<double> times;
-};
-
-void RunFileReader::Impl::open_file() {
-  const std::string& path = at.path();
-  struct stat status = {};
-  if (stat(path.c_str(), &status) != 0 || ::access(path.c_str(), R_OK) != 0) {
-    throw FileError(path, "", "cannot be opened: " + errno_text(errno));
-  }
-  if (S_ISDIR(status.st_mode)) throw FileError(path, "", "is a folder");
-  const htri_t is_hdf5 = H5Fis_hdf5(path.c_str());
-  if (is_hdf5 == 0) throw FileError(path, "", "is not an HDF5 file");
-  const Handle access = file_access(at);
-  file = at.own(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose, "",
-                "is damaged or truncated");
-}
-
-void RunFileReader::Impl::read_header() {
-  const Values values = read_attributes(at, file.id(), "/");
-  const auto format = values.find("format");
-  const double* number = format == values.end() ? nullptr : std::get_if<double>(&format->second);
-  if (number == nullptr)
-    throw FileError(at.path(), "", "is not a run file of stridor (no attribute 'format')");
-  if (*number > run_file_format) {
-    throw FileError(
-        at.path(), "",
-        fmt::format("has format {:g}, this program reads formats up to {}; use a newer one",
-                    *number, run_file_format));
-  }
-  if (*number != run_file_format)
-    throw FileError(at.path(), "", fmt::format("has the unknown format {:g}", *number));
-  for (const auto& [name, target] :
-       {std::pair{"version", &header.version}, std::pair{"commit", &header.commit},
-        std::pair{"command", &header.command}, std::pair{"scene_hash", &header.scene_hash},
-        std::pair{"date", &header.date}}) {
-    const auto found = values.find(name);
-    const std::string* value =
-        found == values.end() ? nullptr : std::get_if<std::string>(&found->second);
-    if (value == nullptr) {
-      throw FileError(at.path(), "",
-                      fmt::format("is not a run file of stridor (no attribute '{}')", name));
-    }
-    *target = *value;
-  }
-  header.scene_text = text("/scene/text");
-  header.scene_resolved = text("/scene/resolved");
-  times = read_array("/time", nullptr);
-}
-
-std::string RunFileReader::Impl::text(const std::string& path) const {
-  if (H5LTpath_valid(file.id(), path.c_str(), true) <= 0)
-    throw FileError(at.path(), path, "is missing");
-  const Handle dataset =
-      at.own(H5Dopen2(file.id(), path.c_str(), H5P_DEFAULT), H5Dclose, path, "cannot be opened");
-  const Handle type = at.own(H5Dget_type(dataset.id()), H5Tclose, path, "cannot be read");
-  const Handle space = at.own(H5Dget_space(dataset.id()), H5Sclose, path, "cannot be read");
-  if (H5Tget_class(type.id()) != H5T_STRING || H5Sget_simple_extent_npoints(space.id()) != 1) {
-    throw FileError(at.path(), path, "is not text");
-  }
-  return read_text(at, type.id(), path, [&](hid_t memory, void* target) {
-    return H5Dread(dataset.id(), memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, target);
-  });
-}
-
-Handle RunFileReader::Impl::open_array(const std::string& path, hsize_t& length) const {
-  if (!is_object_path(path) || H5LTpath_valid(file.id(), path.c_str(), true) <= 0) {
-    throw FileError(at.path(), path, "is missing");
-  }
-  Handle dataset =
-      at.own(H5Dopen2(file.id(), path.c_str(), H5P_DEFAULT), H5Dclose, path, "is not a dataset");
-  const Handle type = at.own(H5Dget_type(dataset.id()), H5Tclose, path, "cannot be read");
-  const H5T_class_t kind = H5Tget_class(type.id());
-  if (kind != H5T_FLOAT && kind != H5T_INTEGER)
-    throw FileError(at.path(), path, "does not hold real numbers");
-  const Handle space = at.own(H5Dget_space(dataset.id()), H5Sclose, path, "cannot be read");
-  if (const int rank = H5Sget_simple_extent_ndims(space.id()); rank != 1) {
-    throw FileError(at.path(), path, fmt::format("has {} dimensions, expected 1", rank));
-  }
-  at.check(H5Sget_simple_extent_dims(space.id(), &length, nullptr), path, "cannot be read");
-  return dataset;
-}
-
-std::vector<double> RunFileReader::Impl::read_array(const std::string& path,
-                                                    const std::uint64_t* wanted) const {
-  hsize_t length = 0;
-  const Handle dataset = open_array(path, length);
-  if (wanted != nullptr && length < *wanted) {
-    throw FileError(at.path(), path, fmt::format("has {} rows, but /time has {}", length, *wanted));
-  }
-  const hsize_t count = wanted != nullptr ? *wanted : length;
-  const hsize_t offset = 0;
-  std::vector<double> values(count);
-  if (count == 0) return values;
-  const Handle source = at.own(H5Dget_space(dataset.id()), H5Sclose, path, "cannot be read");
-  at.check(H5Sselect_hyperslab(source.id(), H5S_SELECT_SET, &offset, nullptr, &count, nullptr),
-           path, "cannot be read");
-  const Handle target =
-      at.own(H5Screate_simple(1, &count, nullptr), H5Sclose, path, "cannot be read");
-  at.check(H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, target.id(), source.id(), H5P_DEFAULT,
-                   values.data()),
-           path, "cannot be read");
-  return values;
-}
-
-std::vector<std::string> RunFileReader::Impl::arrays(bool series) const {
-  std::vector<std::string> datasets;
-  at.check(
-      H5Ovisit2(file.id(), H5_INDEX_NAME, H5_ITER_INC, keep_dataset, &datasets, H5O_INFO_BASIC), "",
-      "cannot be searched");
-  std::vector<std::string> found;
-  for (const std::string& path : datasets) {
-    const Handle dataset =
-        at.own(H5Dopen2(file.id(), path.c_str(), H5P_DEFAULT), H5Dclose, path, "cannot be opened");
-    const Handle space = at.own(H5Dget_space(dataset.id()), H5Sclose, path, "cannot be read");
-    if (path == "/time" || H5Sget_simple_extent_ndims(space.id()) != 1) continue;
-    if ((H5Aexists(dataset.id(), "DIMENSION_LIST") > 0) == series) found.push_back(path);
-  }
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
-RunFileReader::RunFileReader(const std::string& path) : impl_(std::make_unique<Impl>(path)) {
-  const QuietErrors quiet;
-  impl_->open_file();
-  impl_->read_header();
-}
-
-RunFileReader::~RunFileReader() = default;
-RunFileReader::RunFileReader(RunFileReader&&) noexcept = default;
-RunFileReader& RunFileReader::operator=(RunFileReader&&) noexcept = default;
-
-const RunFileHeader& RunFileReader::header() const {
-  return impl_->header;
-}
-const std::vector<double>& RunFileReader::times() const {
-  return impl_->times;
-}
-
-std::vector<std::string> RunFileReader::series_names() const {
-  const QuietErrors quiet;
-  return impl_->arrays(true);
-}
-
-std::vector<std::string> RunFileReader::static_names() const {
-  const QuietErrors quiet;
-  return impl_->arrays(false);
-}
-
-bool RunFileReader::has(const std::string& path) const {
-  const QuietErrors quiet;
-  return is_object_path(path) && H5LTpath_valid(impl_->file.id(), path.c_str(), true) > 0;
-}
-
-std::vector<double> RunFileReader::series(const std::string& path) const {
-  const QuietErrors quiet;
-  const std::uint64_t count = impl_->times.size();
-  return impl_->read_array(path, &count);
-}
-
-std::vector<double> RunFileReader::static_array(const std::string& path) const {
-  const QuietErrors quiet;
-  return impl_->read_array(path, nullptr);
-}
-
-std::string RunFileReader::units(const std::string& path) const {
-  const auto all = attributes(path);
-  const auto found = all.find("units");
-  const std::string* text = found == all.end() ? nullptr : std::get_if<std::string>(&found->second);
-  if (text == nullptr) throw FileError(impl_->at.path(), path, "has no attribute 'units'");
-  return *text;
-}
-
-std::map<std::string, std::variant<std::string, double>> RunFileReader::attributes(
-    const std::string& path) const {
-  if (!has(path)) throw FileError(impl_->at.path(), path, "is missing");
-  const QuietErrors quiet;
-  const Handle object = impl_->at.own(H5Oopen(impl_->file.id(), path.c_str(), H5P_DEFAULT),
-                                      H5Oclose, path, "cannot be opened");
-  return read_attributes(impl_->at, object.id(), path);
-}
-
-std::map<std::string, std::variant<std::string, double>> RunFileReader::results() const {
-  if (!has("/results")) return {};
-  return attributes("/results");
+double RunFileWriter::write_seconds() const {
+  return impl_->write_seconds;
 }
 
 }  // namespace stridor

@@ -1,0 +1,66 @@
+#include "io/channels.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/errors.hpp"
+#include "tests/support/paper_model.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+
+TEST(Channels, MotionsAndContactQuantitiesAreRead) {
+  RecordParameters record;
+  record.channels = {"cantilever.free_end.y.acceleration", "oblique.tip.x.velocity",
+                     "contact.slip_velocity"};
+  const auto channels = parse_channels(record, paper_model());
+  ASSERT_EQ(channels.size(), 3u);
+  EXPECT_EQ(*channels[0].point, (PointName{"cantilever", "free_end"}));
+  EXPECT_TRUE(channels[0].is_vertical);
+  EXPECT_EQ(channels[0].derivative, Derivative::second);
+  EXPECT_EQ(channels[0].units(), "m/s^2");
+  EXPECT_FALSE(channels[1].is_vertical);
+  EXPECT_EQ(channels[1].units(), "m/s");
+  EXPECT_FALSE(channels[2].point.has_value());
+  EXPECT_EQ(channels[2].pair, "contact");
+  EXPECT_EQ(channels[2].quantity, ContactQuantity::slip_velocity);
+}
+
+TEST(Channels, EveryWrongNameIsReportedAtItsPlaceInTheList) {
+  RecordParameters record;
+  record.channels = {"contact.force",
+                     "cantlever.free_end.y.velocity",
+                     "oblique.tip.z.velocity",
+                     "oblique.tip.x.speed",
+                     "contac.force",
+                     "contact.pressure",
+                     "oblique.tip",
+                     "a.b.c.d.e",
+                     "contact.force"};
+  try {
+    parse_channels(record, paper_model());
+    FAIL() << "not refused";
+  } catch (const ConfigError& error) {
+    const auto& problems = error.problems();
+    ASSERT_EQ(problems.size(), 8u);
+    EXPECT_EQ(problems[0].key, "record.channels.1");
+    EXPECT_THAT(problems[0].message,
+                HasSubstr("there is no substructure 'cantlever', did you mean 'cantilever'?"));
+    EXPECT_THAT(problems[1].message, HasSubstr("'z' is not a direction; take x or y"));
+    EXPECT_THAT(problems[2].message, HasSubstr("there is no motion 'speed'"));
+    EXPECT_THAT(problems[3].message,
+                HasSubstr("there is no contact pair 'contac', did you mean 'contact'?"));
+    EXPECT_THAT(problems[4].message, HasSubstr("there is no contact quantity 'pressure' (there "
+                                               "are: force, gap, slip_velocity, position)"));
+    EXPECT_THAT(problems[5].message, HasSubstr("there is no contact pair 'oblique'"));
+    EXPECT_THAT(problems[6].message, HasSubstr("is neither <body>.<point>"));
+    EXPECT_EQ(problems[7].key, "record.channels.8");
+    EXPECT_THAT(problems[7].message, HasSubstr("is listed twice"));
+  }
+}
+
+}  // namespace
+}  // namespace stridor

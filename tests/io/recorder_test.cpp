@@ -1,0 +1,162 @@
+#include "io/recorder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "solvers/march.hpp"
+#include "tests/support/paper_model.hpp"
+#include "tests/support/program.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+
+/// Channels of the main scene, all motions of the free end and all quantities of the contact.
+std::vector<Channel> all_channels(const ModelParameters& parameters) {
+  RecordParameters record;
+  record.channels = {"cantilever.free_end.y.displacement",
+                     "cantilever.free_end.y.velocity",
+                     "cantilever.free_end.y.acceleration",
+                     "contact.force",
+                     "contact.gap",
+                     "contact.slip_velocity",
+                     "contact.position"};
+  return parse_channels(record, parameters);
+}
+
+/// Full load within 1 ms, so that there is something to record.
+ModelParameters lively_model() {
+  ModelParameters parameters = paper_model(leading_angle);
+  parameters.drive.ramp = 1e-3;
+  parameters.contact->armed_from = 1.0;
+  return parameters;
+}
+
+RunFileReader record_run(const Model& model, const std::vector<Channel>& channels, double interval,
+                         std::int64_t steps, const std::string& path) {
+  Simulation simulation(model.system, paper_time());
+  RunFileWriter writer(path, Overwrite::yes, {}, Recorder::series(model, channels, 2e-7, interval));
+  Recorder recorder(model, channels, 2e-7, interval, writer);
+  MarchPlan plan;
+  plan.last_step = steps + recorder.latency();
+  EXPECT_EQ(march(simulation, &recorder, plan).end, MarchEnd::finished) << simulation.failure();
+  writer.close();
+  return RunFileReader(path);
+}
+
+TEST(Recorder, WithOneStepPerSampleWritesWhatTheSimulationHolds) {
+  const TemporaryFolder folder;
+  const ModelParameters parameters = lively_model();
+  const Model model = make_paper_model(parameters);
+  const auto channels = all_channels(parameters);
+  const RunFileReader file = record_run(model, channels, 2e-7, 500, (folder / "a.h5").string());
+  const Model::Point point = model.points.at(free_end);
+  Simulation simulation(model.system, paper_time());
+  const auto displacement = file.series("/channels/cantilever.free_end.y.displacement");
+  const auto force = file.series("/contact/contact/force");
+  const auto slip = file.series("/contact/contact/slip_velocity");
+  const auto position = file.series("/contact/contact/position");
+  for (std::size_t n = 0; n <= 500; ++n) {
+    EXPECT_EQ(displacement[n], simulation.displacement(point.body, point.rows.y));
+    EXPECT_EQ(force[n], simulation.contact_force(0));
+    EXPECT_EQ(slip[n], simulation.slip_velocity(0));
+    EXPECT_EQ(position[n], simulation.contact_place(0).position);
+    simulation.step();
+  }
+}
+
+TEST(Recorder, LooksOftenEnoughThatNothingFoldsIntoTheRecord) {
+  // The same record made from every step and from every tenth differ only by the ripple of the two
+  // filters (1e-4 of the signal each) and by what a coarser look folds back.
+  const TemporaryFolder folder;
+  const ModelParameters parameters = lively_model();
+  const Model model = make_paper_model(parameters);
+  const auto channels = all_channels(parameters);
+  EXPECT_EQ(sampling_stride(model.system, 2e-7, 50), 10);
+  const RunFileReader thinned =
+      record_run(model, channels, 1e-5, 25'000, (folder / "a.h5").string());
+  const RunFileReader full = record_run(model, channels, 2e-7, 25'000, (folder / "b.h5").string());
+  for (const std::string name :
+       {"/channels/cantilever.free_end.y.displacement", "/channels/cantilever.free_end.y.velocity",
+        "/contact/contact/force", "/contact/contact/slip_velocity"}) {
+    const auto from_some = thinned.series(name);
+    const auto all = full.series(name);
+    Decimator decimator(std::make_shared<const DecimationFilter>(2e-7, 50));
+    std::vector<double> from_all;
+    for (const double value : all) {
+      if (decimator.push(value)) from_all.push_back(decimator.value(Derivative::none));
+    }
+    double largest = 0.0;
+    double difference = 0.0;
+    for (std::size_t k = 0; k < std::min(from_all.size(), from_some.size()); ++k) {
+      largest = std::max(largest, std::abs(from_all[k]));
+      difference = std::max(difference, std::abs(from_all[k] - from_some[k]));
+    }
+    EXPECT_LT(difference, 2e-4 * largest) << name;
+  }
+}
+
+TEST(Recorder, StrideFollowsTheRingingModesAndTheRatio) {
+  const Model model = make_paper_model(paper_model());
+  EXPECT_EQ(sampling_stride(model.system, 2e-7, 1), 1);
+  EXPECT_EQ(sampling_stride(model.system, 2e-7, 7), 1);
+  // At least five looks per sample.
+  EXPECT_EQ(sampling_stride(model.system, 2e-7, 10), 2);
+  ModelParameters undamped = paper_model();
+  for (auto& [name, body] : undamped.substructures)
+    std::get<BeamParameters>(body).damping.beta = 0.0;
+  // 967 kHz ring on, so 967 + 60 kHz are needed: of the divisors 1, 2, 5, 10 of 50 only 2 gives it.
+  EXPECT_EQ(sampling_stride(make_paper_model(undamped).system, 2e-7, 50), 2);
+}
+
+TEST(Recorder, GoesOnBitwiseAfterSaveAndLoad) {
+  const TemporaryFolder folder;
+  const ModelParameters parameters = lively_model();
+  const Model model = make_paper_model(parameters);
+  const auto channels = all_channels(parameters);
+  const auto straight =
+      record_run(model, channels, 1e-5, 10'000, (folder / "straight.h5").string());
+
+  const std::string path = (folder / "resumed.h5").string();
+  RunFileWriter writer(path, Overwrite::no, {}, Recorder::series(model, channels, 2e-7, 1e-5));
+  State state;
+  {
+    Simulation simulation(model.system, paper_time());
+    Recorder recorder(model, channels, 2e-7, 1e-5, writer);
+    MarchPlan plan;
+    plan.last_step = 4321;
+    ASSERT_EQ(march(simulation, &recorder, plan).end, MarchEnd::finished);
+    state = simulation.save();
+    recorder.save(state, "recorder/");
+  }
+  Simulation simulation(model.system, paper_time());
+  Recorder recorder(model, channels, 2e-7, 1e-5, writer);
+  simulation.load(state);
+  recorder.load(state, "recorder/");
+  MarchPlan plan;
+  plan.last_step = 10'000 + recorder.latency();
+  ASSERT_EQ(march(simulation, &recorder, plan).end, MarchEnd::finished);
+  writer.close();
+  const RunFileReader resumed(path);
+  EXPECT_EQ(resumed.times(), straight.times());
+  for (const std::string& name : straight.series_names())
+    EXPECT_EQ(resumed.series(name), straight.series(name)) << name;
+}
+
+TEST(Recorder, HorizontalMotionOfADrivenBodyIncludesTheDrive) {
+  const TemporaryFolder folder;
+  ModelParameters parameters = lively_model();
+  RecordParameters record;
+  record.channels = {"oblique.end_top.x.displacement"};
+  const auto channels = parse_channels(record, parameters);
+  const Model model = make_model(parameters, {{*channels[0].point, channels[0].key}});
+  const RunFileReader file = record_run(model, channels, 2e-7, 10'000, (folder / "a.h5").string());
+  // The guided end follows the drive exactly: v (t − ramp/2).
+  EXPECT_NEAR(file.series("/channels/oblique.end_top.x.displacement").at(10'000),
+              0.030 * (2e-3 - 0.5e-3), 1e-17);
+}
+
+}  // namespace
+}  // namespace stridor

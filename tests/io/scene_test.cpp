@@ -1,0 +1,73 @@
+#include "io/scene.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/errors.hpp"
+#include "io/scene_reader.hpp"
+#include "tests/support/program.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+
+TEST(Scene, MainSceneHoldsThePublishedModel) {
+  const Scene scene = load_scene(scene_path("beam_on_beam.yaml"), {}).scene;
+  const auto& oblique = std::get<BeamParameters>(scene.model.substructures.at("oblique"));
+  EXPECT_DOUBLE_EQ(oblique.length, 0.075);
+  EXPECT_NEAR(oblique.angle, 0.52359877559829887, 1e-15);
+  EXPECT_DOUBLE_EQ(oblique.material.youngs_modulus, 71e9);
+  EXPECT_EQ(oblique.supports.end, Support::guided);
+  EXPECT_EQ(*oblique.damping.alpha_start, 40.0);
+  EXPECT_EQ(scene.model.contact->assumption, ContactAssumption::subs_b);
+  EXPECT_DOUBLE_EQ(scene.model.contact->start, 0.030);
+  EXPECT_DOUBLE_EQ(scene.measure.band.at(0), 2500.0);
+  EXPECT_EQ(scene.time.step, 2e-7);
+}
+
+TEST(Scene, ResolvedSceneReadsBackToTheSameSceneAndHash) {
+  const LoadedScene loaded = load_scene(scene_path("beam_on_beam_leading.yaml"), {});
+  const TemporaryFolder folder;
+  write_file(folder / "resolved.yaml", loaded.resolved());
+  const LoadedScene again = load_scene((folder / "resolved.yaml").string(), {});
+  EXPECT_EQ(again.resolved(), loaded.resolved());
+  EXPECT_EQ(again.hash(), loaded.hash());
+  EXPECT_EQ(loaded.hash().size(), 16u);
+}
+
+TEST(Scene, HashChangesWithAnyKey) {
+  const std::string hash = load_scene(scene_path("beam_on_beam.yaml"), {}).hash();
+  EXPECT_NE(
+      load_scene(scene_path("beam_on_beam.yaml"), {"contact.friction.coefficient=0.31"}).hash(),
+      hash);
+  EXPECT_EQ(
+      load_scene(scene_path("beam_on_beam.yaml"), {"contact.friction.coefficient=0.3"}).hash(),
+      hash);
+}
+
+TEST(Scene, ErrorsOfTheModelAreGivenTheirPlaceInTheFile) {
+  const TemporaryFolder folder;
+  std::string text = contents_of(scene_path("beam_on_beam.yaml"));
+  text.replace(text.find("start: 30 mm"), 12, "start: 300 mm");
+  write_file(folder / "off.yaml", text);
+  try {
+    build_model(load_scene((folder / "off.yaml").string(), {}));
+    FAIL() << "not refused";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("off.yaml:37:10: contact.start: 0.3 m is off the master"));
+  }
+}
+
+TEST(Scene, SceneWithoutRecordIsAllowed) {
+  const TemporaryFolder folder;
+  std::string text = contents_of(scene_path("beam_on_beam.yaml"));
+  const std::size_t record = text.find("record:");
+  text.erase(record, text.find("measure:") - record);
+  write_file(folder / "quiet.yaml", text);
+  EXPECT_FALSE(load_scene((folder / "quiet.yaml").string(), {}).scene.record.has_value());
+}
+
+}  // namespace
+}  // namespace stridor

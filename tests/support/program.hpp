@@ -1,0 +1,102 @@
+// The built program, run as a user would run it.
+#pragma once
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace stridor::test {
+
+/// A folder of its own that is removed at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "stridor-XXXXXX").string();
+    path_ = mkdtemp(name.data());
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string contents_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+inline void write_file(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+struct ProgramResult {
+  int exit_code = -1;  ///< −1 where the program died of a signal
+  std::string out;
+  std::string err;
+};
+
+/// Starts the program, waits for it and collects what it printed.
+class Program {
+ public:
+  explicit Program(std::vector<std::string> arguments) : arguments_(std::move(arguments)) {}
+
+  /// Largest file it may write, bytes: a disk that runs full.
+  Program& with_file_limit(rlim_t bytes) {
+    file_limit_ = bytes;
+    return *this;
+  }
+
+  void start() {
+    child_ = fork();
+    if (child_ != 0) return;
+    if (file_limit_ != RLIM_INFINITY) {
+      const rlimit limit{file_limit_, file_limit_};
+      setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    if (std::freopen((folder_ / "out").c_str(), "w", stdout) == nullptr) _exit(99);
+    if (std::freopen((folder_ / "err").c_str(), "w", stderr) == nullptr) _exit(99);
+    std::vector<char*> argv{const_cast<char*>(STRIDOR_PROGRAM)};
+    for (std::string& argument : arguments_) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    execv(argv[0], argv.data());
+    _exit(98);
+  }
+
+  void send(int signal) const { kill(child_, signal); }
+
+  ProgramResult wait() const {
+    int status = 0;
+    waitpid(child_, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents_of(folder_ / "out"),
+            contents_of(folder_ / "err")};
+  }
+
+  ProgramResult run() {
+    start();
+    return wait();
+  }
+
+ private:
+  std::vector<std::string> arguments_;
+  rlim_t file_limit_ = RLIM_INFINITY;
+  TemporaryFolder folder_;
+  pid_t child_ = -1;
+};
+
+inline std::string scene_path(const std::string& name) {
+  return std::string(STRIDOR_SOURCE_DIR) + "/scenes/" + name;
+}
+
+}  // namespace stridor::test
