@@ -10,6 +10,8 @@ void add_scene_options(CLI::App& verb, CommonOptions& options) {
       ->take_all()
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
+  verb.add_option("--threads", options.threads, "Threads to use; a single run uses one")
+      ->check(CLI::Range(1, 1024));
 }
 
 void add_json_option(CLI::App& verb, CommonOptions& options) {

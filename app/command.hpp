@@ -43,5 +43,6 @@ void add_run_command(CLI::App& program, Action& action, const std::string& comma
 void add_check_command(CLI::App& program, Action& action);
 void add_info_command(CLI::App& program, Action& action);
 void add_plot_command(CLI::App& program, Action& action);
+void add_schema_command(CLI::App& program, Action& action);
 
 }  // namespace stridor

@@ -42,6 +42,7 @@ int run_program(int argc, char** argv) {
   add_check_command(program, action);
   add_info_command(program, action);
   add_plot_command(program, action);
+  add_schema_command(program, action);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

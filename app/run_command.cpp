@@ -14,6 +14,7 @@
 #include "core/version.hpp"
 #include "io/recorder.hpp"
 #include "io/run_summary.hpp"
+#include "solvers/make_propagator.hpp"
 #include "solvers/march.hpp"
 
 namespace stridor {

@@ -8,8 +8,7 @@
 #include <limits>
 
 #include "core/errors.hpp"
-#include "solvers/dense_two_step.hpp"
-#include "solvers/modal_recurrence.hpp"
+#include "solvers/make_propagator.hpp"
 
 namespace stridor {
 namespace {
@@ -23,36 +22,6 @@ constexpr const char* persistent_sliding_remedy =
     "contact.armed_from if this is start-up";
 constexpr int slave_slots = 2;
 constexpr int master_slots = 4;
-
-/// Load patterns of a body in given coordinates: the drive's load, and the inertia of its motion.
-Eigen::MatrixXd load_patterns(const SystemBody& body, const Eigen::MatrixXd& rows,
-                              const Eigen::VectorXd& base_inertia) {
-  if (!body.follows_drive) return Eigen::MatrixXd(rows.cols(), 0);
-  Eigen::MatrixXd patterns(rows.cols(), 2);
-  patterns.col(0) = rows.row(body.load_row).transpose();
-  patterns.col(1) = -base_inertia;
-  return patterns;
-}
-
-std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimeParameters& time,
-                                            int num_slots, std::span<const double> loads) {
-  const double alpha = body.modal.damping.alpha_at(0.0);
-  const Eigen::MatrixXd reduced_patterns =
-      load_patterns(body, body.reduced.rows, body.reduced.base_inertia);
-  switch (time.coordinates) {
-    case Coordinates::craig_bampton:
-      return std::make_unique<PublishedTwoStep>(body.reduced, reduced_patterns, time.step,
-                                                num_slots, alpha, loads);
-    case Coordinates::craig_bampton_fused:
-      return std::make_unique<FusedTwoStep>(body.reduced, reduced_patterns, time.step, num_slots,
-                                            alpha, loads);
-    case Coordinates::modal:
-      break;
-  }
-  return std::make_unique<ModalRecurrence>(
-      body.modal, load_patterns(body, body.modal.rows, body.modal.base_inertia), time.step,
-      num_slots, alpha, loads);
-}
 
 /// b_Cᵀ W b_E over the slots that two rows share.
 template <std::size_t n>
@@ -68,43 +37,6 @@ double coupling(const std::array<double, n>& row_c, const std::array<double, n>&
 }
 
 }  // namespace
-
-const Schema& TimeParameters::schema() {
-  static const Schema keys =
-      SchemaOf<TimeParameters>("time")
-          .choice("integrator", &TimeParameters::integrator,
-                  {{"central_difference", Integrator::central_difference}},
-                  {.doc = "Scheme that marches the bodies.", .optional = true})
-          .choice("coordinates", &TimeParameters::coordinates,
-                  {{"modal", Coordinates::modal},
-                   {"craig_bampton", Coordinates::craig_bampton},
-                   {"craig_bampton_fused", Coordinates::craig_bampton_fused}},
-                  {.doc = "modal: one recurrence per mode; craig_bampton: the published dense "
-                          "form, kept as a baseline; "
-                          "craig_bampton_fused: the same with constants folded in.",
-                   .optional = true})
-          .real("step", &TimeParameters::step,
-                {.doc = "Time step.", .unit = "s", .range = Range::positive()})
-          .real("end", &TimeParameters::end,
-                {.doc = "End of the run.", .unit = "s", .range = Range::positive()})
-          .check([](const TimeParameters& time, std::vector<Problem>& problems) {
-            if (time.end < time.step)
-              problems.push_back({"end", "is shorter than one step", {}, 0, 0});
-            if (time.end / time.step > 1e15) {
-              problems.push_back({"step", "the run would take more than 1e15 steps", {}, 0, 0});
-            }
-          });
-  return keys;
-}
-
-StepLimit step_limit(const System& system) {
-  StepLimit limit{infinity, ""};
-  for (const SystemBody& body : system.bodies) {
-    const double step = central_difference_limit(body.modal);
-    if (step < limit.step) limit = {step, body.name};
-  }
-  return limit;
-}
 
 /// A contact while it runs.
 struct RunningContact {

@@ -7,29 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "core/schema.hpp"
+#include "core/state.hpp"
 #include "coupling/system.hpp"
-#include "solvers/propagator.hpp"
+#include "solvers/time_parameters.hpp"
 
 namespace stridor {
-
-enum class Integrator {
-  central_difference,  ///< predictor-corrector of BDF: first order in h with damping
-};
-
-enum class Coordinates {
-  modal,                ///< one recurrence per mode
-  craig_bampton,        ///< the published dense form, line by line
-  craig_bampton_fused,  ///< the same with constants folded in advance
-};
-
-struct TimeParameters {
-  Integrator integrator = Integrator::central_difference;
-  Coordinates coordinates = Coordinates::modal;
-  double step = 0.0;  ///< h, s, > 0
-  double end = 0.0;   ///< s, > 0
-  static const Schema& schema();
-};
 
 /// What a step ended with. Anything but `done` ends the run: bodies and channels stand at the time
 /// of the failure, contact forces may be those of the step before.
@@ -113,13 +95,6 @@ class Simulation {
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
-
-/// Largest stable step over all bodies of the central difference, s, and the body that sets it.
-struct StepLimit {
-  double step;
-  std::string body;
-};
-StepLimit step_limit(const System& system);
 
 /// Where the samples of a run go. Called between steps, never inside one.
 class SampleSink {

@@ -182,7 +182,7 @@ TEST(Program, EveryErrorOfAFileIsReportedAtOnceWithItsPlace) {
   write_file(folder / "bad.yaml", scene);
   const ProgramResult text = Program({"check", (folder / "bad.yaml").string()}).run();
   EXPECT_EQ(text.exit_code, 2);
-  EXPECT_THAT(text.err, HasSubstr("bad.yaml:11:5: substructures.oblique.thicknes: unknown key "
+  EXPECT_THAT(text.err, HasSubstr("bad.yaml:12:5: substructures.oblique.thicknes: unknown key "
                                   "'thicknes', did you mean 'thickness'?"));
   const ProgramResult json = Program({"check", (folder / "bad.yaml").string(), "--json"}).run();
   EXPECT_EQ(json.exit_code, 2);
@@ -303,6 +303,13 @@ TEST(Program, VerifyComparesWithTheExpectBlock) {
   EXPECT_EQ(bad.exit_code, 3);
   EXPECT_THAT(bad.err, HasSubstr("step_limit: expected 1e-06 within 1e-09, got 2.916"));
   EXPECT_THAT(bad.err, HasSubstr("no.such: expected 0, but the run has no such number"));
+}
+
+TEST(Program, SchemaPrintsTheJsonSchemaAndTheReferenceOfScenes) {
+  const ProgramResult result = Program({"schema"}).run();
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(Json::parse(result.out)["properties"].contains("substructures"));
+  EXPECT_THAT(Program({"schema", "--reference"}).run().out, HasSubstr("# Scene reference"));
 }
 
 TEST(Program, InfoAndPlotReadARunFile) {

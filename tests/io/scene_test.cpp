@@ -56,7 +56,7 @@ TEST(Scene, ErrorsOfTheModelAreGivenTheirPlaceInTheFile) {
     build_model(load_scene((folder / "off.yaml").string(), {}));
     FAIL() << "not refused";
   } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("off.yaml:37:10: contact.start: 0.3 m is off the master"));
+    EXPECT_THAT(error.what(), HasSubstr("off.yaml:38:10: contact.start: 0.3 m is off the master"));
   }
 }
 

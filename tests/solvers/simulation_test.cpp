@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/errors.hpp"
+#include "solvers/make_propagator.hpp"
 #include "tests/support/paper_model.hpp"
 
 namespace stridor {

@@ -1,0 +1,33 @@
+#include "solvers/time_parameters.hpp"
+
+namespace stridor {
+
+const Schema& TimeParameters::schema() {
+  static const Schema keys =
+      SchemaOf<TimeParameters>("time")
+          .choice("integrator", &TimeParameters::integrator,
+                  {{"central_difference", Integrator::central_difference}},
+                  {.doc = "Scheme that marches the bodies.", .optional = true})
+          .choice("coordinates", &TimeParameters::coordinates,
+                  {{"modal", Coordinates::modal},
+                   {"craig_bampton", Coordinates::craig_bampton},
+                   {"craig_bampton_fused", Coordinates::craig_bampton_fused}},
+                  {.doc = "modal: one recurrence per mode; craig_bampton: the published dense "
+                          "form, kept as a baseline; "
+                          "craig_bampton_fused: the same with constants folded in.",
+                   .optional = true})
+          .real("step", &TimeParameters::step,
+                {.doc = "Time step.", .unit = "s", .range = Range::positive()})
+          .real("end", &TimeParameters::end,
+                {.doc = "End of the run.", .unit = "s", .range = Range::positive()})
+          .check([](const TimeParameters& time, std::vector<Problem>& problems) {
+            if (time.end < time.step)
+              problems.push_back({"end", "is shorter than one step", {}, 0, 0});
+            if (time.end / time.step > 1e15) {
+              problems.push_back({"step", "the run would take more than 1e15 steps", {}, 0, 0});
+            }
+          });
+  return keys;
+}
+
+}  // namespace stridor
