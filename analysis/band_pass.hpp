@@ -39,9 +39,7 @@ double band_pass_gain(double frequency, double interval, Band band);
 /// @throws std::invalid_argument if interval, band or a sample is out of range, or if the padded
 ///         signal exceeds 2³¹ − 1 samples
 ///
-/// Cost: two FFTs of the padded length, about 16 bytes of memory per padded sample. Plans are made
-/// under a lock of this function; other users of FFTW's planner in other threads need their own
-/// care.
+/// Cost: two FFTs of the padded length, about 32 bytes of memory per padded sample.
 std::vector<double> band_pass(std::span<const double> samples, double interval, Band band);
 
 }  // namespace stridor

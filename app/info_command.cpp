@@ -17,6 +17,18 @@ Json attribute_json(const std::variant<std::string, double>& value) {
   return std::get<std::string>(value);
 }
 
+/// The bursts that `run` found; empty where it found none or did not look.
+Json bursts_json(const RunFileReader& file) {
+  Json list = Json::array();
+  for (const char* property : {"start", "end", "frequency", "peak", "gain"}) {
+    const std::string path = std::string("/bursts/") + property;
+    if (!file.has(path)) return Json::array();
+    const std::vector<double> values = file.static_array(path);
+    for (std::size_t i = 0; i < values.size(); ++i) list[i][property] = number(values[i]);
+  }
+  return list;
+}
+
 ExitCode info(const InfoOptions& options) {
   const RunFileReader file(options.file);
   const RunFileHeader& header = file.header();
@@ -33,6 +45,7 @@ ExitCode info(const InfoOptions& options) {
   }
   object["results"] = Json::object();
   for (const auto& [name, value] : file.results()) object["results"][name] = attribute_json(value);
+  object["bursts"] = bursts_json(file);
 
   if (options.common.json) {
     fmt::print("{}\n", object.dump(2));
@@ -49,6 +62,12 @@ ExitCode info(const InfoOptions& options) {
                                               times.back()));
   fmt::print("series\n");
   for (const std::string& name : file.series_names()) line("  " + name, file.units(name));
+  for (const Json& burst : object["bursts"]) {
+    line("burst", fmt::format("{:.3f} to {:.3f} s, {:.0f} Hz, peak {:.4g} m/s^2, gain {:.2f}",
+                              burst["start"].get<double>(), burst["end"].get<double>(),
+                              burst["frequency"].get<double>(), burst["peak"].get<double>(),
+                              burst["gain"].get<double>()));
+  }
   fmt::print("results\n");
   for (const auto& [name, value] : object["results"].items()) {
     line("  " + name, value.is_string() ? value.get<std::string>() : value.dump());

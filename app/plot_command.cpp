@@ -69,8 +69,9 @@ ExitCode plot(const PlotOptions& options) {
     }
     const std::string name = channel_name(path);
     const std::size_t dot = name.rfind('.');
-    panels.push_back(
-        {name.substr(0, dot), name.substr(dot + 1), file.units(path), {std::move(curve)}});
+    std::string quantity = name.substr(dot + 1);
+    std::replace(quantity.begin(), quantity.end(), '_', ' ');
+    panels.push_back({name.substr(0, dot), quantity, file.units(path), {std::move(curve)}});
   }
   if (panels.empty())
     throw ConfigError(

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 #include <numbers>
+#include <tuple>
 
 #include "app/command.hpp"
 #include "app/progress.hpp"
@@ -66,6 +67,33 @@ void store_results(RunFileWriter& writer, const std::string& prefix, const Json&
     if (value.is_object()) store_results(writer, prefix + name + ".", value);
     if (value.is_number()) writer.write_result(prefix + name, value.get<double>());
     if (value.is_string()) writer.write_result(prefix + name, value.get<std::string>());
+  }
+}
+
+Json bursts_json(const std::vector<Burst>& bursts) {
+  Json list = Json::array();
+  for (const Burst& burst : bursts) {
+    list.push_back({{"start", burst.start},
+                    {"end", burst.end},
+                    {"frequency", burst.frequency},
+                    {"peak", burst.peak},
+                    {"gain", burst.gain}});
+  }
+  return list;
+}
+
+/// One array per property of the bursts, so that any reader of HDF5 can take them.
+void store_bursts(RunFileWriter& writer, const std::vector<Burst>& bursts) {
+  const std::vector<std::tuple<const char*, double Burst::*, const char*>> properties{
+      {"start", &Burst::start, "s"},
+      {"end", &Burst::end, "s"},
+      {"frequency", &Burst::frequency, "Hz"},
+      {"peak", &Burst::peak, "m/s^2"},
+      {"gain", &Burst::gain, "1"}};
+  for (const auto& [name, member, units] : properties) {
+    std::vector<double> values;
+    for (const Burst& burst : bursts) values.push_back(burst.*member);
+    writer.write_static(std::string("/bursts/") + name, values, units);
   }
 }
 
@@ -163,6 +191,15 @@ void print_summary(const Json& results, const std::string& output) {
     fmt::print("{:<24}peak {} m/s^2, r.m.s. in band {} m/s^2\n", "free-end acceleration",
                text(acceleration["peak"]), text(acceleration["rms"]));
   }
+  if (!results["bursts"].is_null() && results["bursts"].empty()) {
+    fmt::print("{:<24}none\n", "bursts");
+  }
+  for (const Json& burst : results["bursts"]) {
+    fmt::print("{:<24}{:.3f} to {:.3f} s, {:.0f} Hz, peak {:.4g} m/s^2, gain {:.2f}\n", "burst",
+               burst["start"].get<double>(), burst["end"].get<double>(),
+               burst["frequency"].get<double>(), burst["peak"].get<double>(),
+               burst["gain"].get<double>());
+  }
   fmt::print("{:<24}{} steps ({} of them before the contacts were armed)\n", "sliding violated",
              results["violations"].get<std::int64_t>(),
              results["violation_details"]["before_armed"].get<std::int64_t>());
@@ -250,9 +287,14 @@ ExitCode run(const RunOptions& options) {
                                         {"channel", acceleration->channel}};
   }
   results.update(violations_json(*simulation));
+  results["bursts"] = nullptr;
+  if (acceleration && acceleration->bursts) results["bursts"] = bursts_json(*acceleration->bursts);
   results["energy_error"] = nullptr;
   results["file"] = options.output;
   store_results(writer, "", results);
+  if (acceleration && acceleration->bursts && !acceleration->bursts->empty()) {
+    store_bursts(writer, *acceleration->bursts);
+  }
   writer.close();
 
   if (options.common.json) {

@@ -1,5 +1,6 @@
 #include "io/run_summary.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "analysis/band_pass.hpp"
@@ -34,12 +35,18 @@ std::optional<AccelerationSummary> summarise_acceleration(const RunFileReader& f
   const IndexRange range = samples_in(window, times.front(), interval, times.size());
   if (range.is_empty()) return std::nullopt;
   const std::vector<double> values = file.series(*channel);
-  AccelerationSummary summary{channel->substr(channel->rfind('/') + 1), peak(range.of(values)),
-                              0.0};
+  AccelerationSummary summary{channel->substr(channel->rfind('/') + 1), peak(range.of(values)), 0.0,
+                              std::nullopt};
   if (measure.band.empty()) {
     summary.rms = rms(range.of(values));
   } else {
-    summary.rms = rms(range.of(band_pass(values, interval, {measure.band[0], measure.band[1]})));
+    const Band band{measure.band[0], measure.band[1]};
+    summary.rms = rms(range.of(band_pass(values, interval, band)));
+    BurstParameters parameters;
+    parameters.band = band;
+    parameters.measured = window;
+    parameters.smoothing = std::max(parameters.smoothing, 1.0 / band.lower);
+    summary.bursts = find_bursts(values, interval, parameters, times.front());
   }
   return summary;
 }

@@ -3,7 +3,9 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "analysis/bursts.hpp"
 #include "io/run_file.hpp"
 #include "io/scene.hpp"
 
@@ -14,6 +16,8 @@ struct AccelerationSummary {
   std::string channel;
   double peak = 0.0;  ///< largest absolute recorded value, m/s²
   double rms = 0.0;   ///< within `measure.band`, m/s²
+  /// Bursts in the band; nothing where the scene gives none.
+  std::optional<std::vector<Burst>> bursts;
 };
 
 /// Reads the acceleration of a free end off a run file: of the first channel

@@ -35,7 +35,7 @@ TEST(Program, RunPrintsOneJsonObjectWithThePromisedKeys) {
   const Json object = Json::parse(result.out);
   for (const char* key :
        {"steps", "step", "step_limit", "wall_s", "setup_s", "output_s", "step_ns", "contact_force",
-        "free_end_acceleration", "violations", "energy_error", "status"}) {
+        "free_end_acceleration", "violations", "bursts", "energy_error", "status"}) {
     EXPECT_TRUE(object.contains(key)) << key;
   }
   EXPECT_EQ(object["status"], "done");

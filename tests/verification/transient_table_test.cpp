@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "analysis/band_pass.hpp"
+#include "analysis/bursts.hpp"
 #include "analysis/statistics.hpp"
 #include "io/recorder.hpp"
 #include "io/scene.hpp"
@@ -76,6 +77,24 @@ TEST_P(TransientTableTest, AgreesWithTheReference) {
   EXPECT_NEAR(rms(window(1.75, 1.95).of(band)), row.b2, 0.05 * row.b2);
   EXPECT_NEAR(rms(window(2.05, 2.15).of(band)), row.b3, 0.05 * row.b3);
   EXPECT_NEAR(rms(window(2.15, 2.24).of(band)), row.b4, 0.05 * row.b4);
+
+  // Three bursts near 3.5 kHz with the assumptions that let the contact point vibrate, none
+  // without.
+  BurstParameters parameters;
+  parameters.band = {2500.0, 15000.0};
+  parameters.measured = {0.4, 2.25};
+  const std::vector<Burst> bursts = find_bursts(acceleration, interval, parameters);
+  const bool has_bursts = std::string(row.assumption) != "subs_a";
+  ASSERT_EQ(bursts.size(), has_bursts ? 3u : 0u);
+  for (const Burst& burst : bursts) {
+    EXPECT_NEAR(burst.frequency, 3520.0, 0.02 * 3520.0);
+    EXPECT_GT(burst.gain, 2.5);
+  }
+  if (has_bursts) {
+    EXPECT_NEAR(bursts[0].start, 1.52, 0.05);
+    EXPECT_NEAR(bursts[1].start, 1.78, 0.05);
+    EXPECT_NEAR(bursts[2].start, 2.08, 0.05);
+  }
 
   // Violations of persistent sliding end with the start-up.
   EXPECT_LT(simulation.violations(0).last_time, 7e-3);
