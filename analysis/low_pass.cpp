@@ -50,10 +50,10 @@ std::vector<long double> low_pass_half(int ratio) {
   return taps;
 }
 
-// The function is compiled twice where the tool chain can choose at start-up; without fused
-// multiply-add both give the same bits.
+// The function is compiled for several instruction sets where the tool chain can choose at
+// start-up; without fused multiply-add all give the same bits.
 #if defined(__x86_64__) && defined(__ELF__) && defined(__GLIBC__)
-#define STRIDOR_CLONES __attribute__((target_clones("avx2", "default")))
+#define STRIDOR_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define STRIDOR_CLONES
 #endif

@@ -9,8 +9,8 @@
 namespace stridor {
 namespace {
 
-/// Steps between looks at the clock and the stop request: about a tenth of a millisecond.
-constexpr std::int64_t block = 256;
+/// Steps between looks at the clock and the stop request: a fraction of a millisecond.
+constexpr std::int64_t block = 1024;
 
 }  // namespace
 
@@ -31,6 +31,8 @@ MarchResult march(Simulation& simulation, SampleSink* sink, const MarchPlan& pla
   const auto start = Clock::now();
   auto next_report = start + std::chrono::milliseconds(250);
   std::int64_t next_look = 0;
+  constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
+  std::int64_t sink_next = sink != nullptr ? sink->next_step() : never;
   while (true) {
     const std::int64_t now = simulation.step_index();
     if (!is_open && now >= plan.measure_from && now <= plan.measure_to) {
@@ -38,7 +40,10 @@ MarchResult march(Simulation& simulation, SampleSink* sink, const MarchPlan& pla
       simulation.reset_force_extremes();
     }
     if (now >= plan.measure_to) close_window();
-    if (sink != nullptr && sink->next_step() == now) sink->sample(simulation);
+    if (sink_next == now) {
+      sink->sample(simulation);
+      sink_next = sink->next_step();
+    }
     if (now >= plan.last_step) break;
     if (now >= next_look) {
       next_look = now + block;
@@ -51,11 +56,20 @@ MarchResult march(Simulation& simulation, SampleSink* sink, const MarchPlan& pla
         next_report = Clock::now() + std::chrono::milliseconds(250);
       }
     }
-    std::int64_t target = std::min(plan.last_step, next_look);
-    if (sink != nullptr) target = std::min(target, std::max(sink->next_step(), now + 1));
-    if (!is_open && plan.measure_from > now) target = std::min(target, plan.measure_from);
-    if (is_open && !was_closed && plan.measure_to > now) target = std::min(target, plan.measure_to);
-    if (simulation.step_until(target) != StepOutcome::done) {
+    // Up to the next event only the sink interrupts the steps.
+    std::int64_t event = std::min(plan.last_step, next_look);
+    if (!is_open && plan.measure_from > now) event = std::min(event, plan.measure_from);
+    if (is_open && !was_closed && plan.measure_to > now) event = std::min(event, plan.measure_to);
+    StepOutcome outcome = StepOutcome::done;
+    while (sink_next < event && outcome == StepOutcome::done) {
+      outcome = simulation.step_until(sink_next);
+      if (outcome == StepOutcome::done) {
+        sink->sample(simulation);
+        sink_next = sink->next_step();
+      }
+    }
+    if (outcome == StepOutcome::done) outcome = simulation.step_until(event);
+    if (outcome != StepOutcome::done) {
       result.end = MarchEnd::failed;
       break;
     }
