@@ -7,6 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/clones.hpp"
+
 namespace stridor {
 namespace {
 
@@ -49,14 +51,6 @@ std::vector<long double> low_pass_half(int ratio) {
   for (long double& tap : taps) tap /= sum;
   return taps;
 }
-
-// The function is compiled for several instruction sets where the tool chain can choose at
-// start-up; without fused multiply-add all give the same bits.
-#if defined(__x86_64__) && defined(__ELF__) && defined(__GLIBC__)
-#define STRIDOR_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define STRIDOR_CLONES
-#endif
 
 // Σ tᵢ (xᵢ − x₀) in 16 partial sums that the language keeps apart: enough to hide the latency of
 // the additions, and a fixed order of summation.
@@ -155,6 +149,11 @@ bool Decimator::due() {
   until_due_ = filter_->ratio();
   ++num_outputs_;
   return true;
+}
+
+double Decimator::sample() const {
+  if (num_outputs_ == 0) throw std::invalid_argument("Decimator: no output is due yet");
+  return buffer_[end_ - 1 - static_cast<std::size_t>(latency())];
 }
 
 double Decimator::value(Derivative derivative) const {

@@ -102,6 +102,9 @@ class Decimator {
   ///
   /// Any number of derivatives may be asked for; each costs one pass over the window.
   double value(Derivative derivative) const;
+  /// The input sample that the due output belongs to, as it came in: for what must not be filtered
+  /// (states, energies) and yet stand beside filtered values of the same instant. Valid as value().
+  double sample() const;
 
   /// Input samples that must follow a sample before its output is known.
   int latency() const { return filter_->half_length(); }

@@ -113,6 +113,33 @@ double density_weight(std::size_t line, std::size_t num_lines, bool ends_at_nyqu
 
 }  // namespace
 
+const std::vector<std::pair<std::string, WindowKind>>& window_names() {
+  static const std::vector<std::pair<std::string, WindowKind>> names{
+      {"hann", WindowKind::hann},
+      {"blackman_harris", WindowKind::blackman_harris},
+      {"rectangular", WindowKind::rectangular}};
+  return names;
+}
+
+std::string window_name(WindowKind kind) {
+  for (const auto& [name, meaning] : window_names()) {
+    if (meaning == kind) return name;
+  }
+  return {};
+}
+
+std::size_t main_lobe_lines(WindowKind kind) {
+  switch (kind) {
+    case WindowKind::hann:
+      return 2;
+    case WindowKind::blackman_harris:
+      return 4;
+    case WindowKind::rectangular:
+      break;
+  }
+  return 1;
+}
+
 std::vector<double> make_window(WindowKind kind, std::size_t length) {
   if (length < 2) {
     throw std::invalid_argument(
@@ -206,6 +233,13 @@ double decibels(double value, double reference) {
         fmt::format("decibels: the reference {:g} is not positive and finite", reference));
   }
   return 20.0 * std::log10(value / reference);
+}
+
+double standard_reference(const std::string& units) {
+  if (units == "m/s^2" || units == "N") return 1e-6;
+  if (units == "m/s") return 1e-9;
+  if (units == "m") return 1e-12;
+  return 1.0;
 }
 
 }  // namespace stridor

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace stridor {
@@ -18,6 +20,15 @@ namespace stridor {
 /// With lines 1/(n dt) apart, a sine fills 2, 4, 1 lines to either side, falls beyond them below
 /// −31, −92, −13 dB, and half-way between two lines reads 1.42, 0.83, 3.92 dB too low.
 enum class WindowKind { hann, blackman_harris, rectangular };
+
+/// Every window with the name by which scenes and the command line call it.
+const std::vector<std::pair<std::string, WindowKind>>& window_names();
+
+/// The name of a window in window_names().
+std::string window_name(WindowKind kind);
+
+/// Lines from the middle of a sine's peak to where the window has its first zero: 2, 4, 1.
+std::size_t main_lobe_lines(WindowKind kind);
 
 /// The weights of a window. @throws std::invalid_argument if the length is below 2
 std::vector<double> make_window(WindowKind kind, std::size_t length);
@@ -97,5 +108,12 @@ std::vector<double> power_spectral_density(const Spectrum& spectrum);
 /// @param reference positive, in the same unit; say which wherever the result is shown
 /// @throws std::invalid_argument if either is out of range
 double decibels(double value, double reference);
+
+/// The reference that ISO 1683:2015 gives for levels of a quantity, in its SI unit.
+///
+///     m/s^2  1 µm/s²      m/s  1 nm/s      m  1 pm      N  1 µN
+///
+/// @return 1 for any other unit
+double standard_reference(const std::string& units);
 
 }  // namespace stridor

@@ -1,8 +1,11 @@
 // stridor info: what a run file holds.
 #include <fmt/format.h>
 
+#include "app/burst_text.hpp"
 #include "app/command.hpp"
+#include "app/damage_guard.hpp"
 #include "io/run_file.hpp"
+#include "io/run_summary.hpp"
 
 namespace stridor {
 namespace {
@@ -18,18 +21,20 @@ Json attribute_json(const std::variant<std::string, double>& value) {
 }
 
 /// The bursts that `run` found; empty where it found none or did not look.
-Json bursts_json(const RunFileReader& file) {
+Json bursts_json(const std::vector<Burst>& bursts) {
   Json list = Json::array();
-  for (const char* property : {"start", "end", "frequency", "peak", "gain"}) {
-    const std::string path = std::string("/bursts/") + property;
-    if (!file.has(path)) return Json::array();
-    const std::vector<double> values = file.static_array(path);
-    for (std::size_t i = 0; i < values.size(); ++i) list[i][property] = number(values[i]);
+  for (const Burst& burst : bursts) {
+    list.push_back({{"start", number(burst.start)},
+                    {"end", number(burst.end)},
+                    {"frequency", number(burst.frequency)},
+                    {"peak", number(burst.peak)},
+                    {"gain", number(burst.gain)}});
   }
   return list;
 }
 
 ExitCode info(const InfoOptions& options) {
+  const DamageGuard guard(options.file);
   const RunFileReader file(options.file);
   const RunFileHeader& header = file.header();
   const std::vector<double>& times = file.times();
@@ -45,7 +50,7 @@ ExitCode info(const InfoOptions& options) {
   }
   object["results"] = Json::object();
   for (const auto& [name, value] : file.results()) object["results"][name] = attribute_json(value);
-  object["bursts"] = bursts_json(file);
+  object["bursts"] = bursts_json(recorded_bursts(file, options.file));
 
   if (options.common.json) {
     fmt::print("{}\n", object.dump(2));
@@ -62,12 +67,7 @@ ExitCode info(const InfoOptions& options) {
                                               times.back()));
   fmt::print("series\n");
   for (const std::string& name : file.series_names()) line("  " + name, file.units(name));
-  for (const Json& burst : object["bursts"]) {
-    line("burst", fmt::format("{:.3f} to {:.3f} s, {:.0f} Hz, peak {:.4g} m/s^2, gain {:.2f}",
-                              burst["start"].get<double>(), burst["end"].get<double>(),
-                              burst["frequency"].get<double>(), burst["peak"].get<double>(),
-                              burst["gain"].get<double>()));
-  }
+  for (const Json& burst : object["bursts"]) line("burst", burst_text(burst));
   fmt::print("results\n");
   for (const auto& [name, value] : object["results"].items()) {
     line("  " + name, value.is_string() ? value.get<std::string>() : value.dump());

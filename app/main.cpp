@@ -13,8 +13,8 @@
 namespace stridor {
 namespace {
 
-int report(const char* kind, const std::exception& error, ExitCode code) {
-  fmt::print(stderr, "stridor: {}\n{}\n", kind, error.what());
+int report(const char* kind, const std::string& message, ExitCode code) {
+  fmt::print(stderr, "stridor: {}\n{}\n", kind, message);
   return static_cast<int>(code);
 }
 
@@ -38,11 +38,18 @@ int run_program(int argc, char** argv) {
   program.require_subcommand(1);
   program.failure_message(CLI::FailureMessage::help);
   Action action;
-  add_run_command(program, action, joined_arguments(argc, argv));
+  const std::string command = joined_arguments(argc, argv);
+  add_run_command(program, action, command);
   add_check_command(program, action);
   add_info_command(program, action);
   add_plot_command(program, action);
   add_schema_command(program, action);
+  add_compare_command(program, action, command);
+  add_spectrogram_command(program, action);
+  add_eig_command(program, action);
+  add_locus_command(program, action, command);
+  add_threshold_command(program, action);
+  add_map_command(program, action, command);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -58,17 +65,17 @@ int run_program(int argc, char** argv) {
   try {
     return static_cast<int>(action());
   } catch (const ConfigError& error) {
-    return report("the input is wrong", error, ExitCode::bad_input);
+    return report("the input is wrong", error.report(), ExitCode::bad_input);
   } catch (const FileError& error) {
-    return report("file trouble", error, ExitCode::file_trouble);
+    return report("file trouble", error.what(), ExitCode::file_trouble);
   } catch (const NumericalError& error) {
-    return report("the computation failed", error, ExitCode::numbers_failed);
+    return report("the computation failed", error.what(), ExitCode::numbers_failed);
   } catch (const Interrupted& error) {
-    return report("stopped on request", error, ExitCode::stopped);
+    return report("stopped on request", error.what(), ExitCode::stopped);
   } catch (const std::bad_alloc& error) {
-    return report("out of memory", error, ExitCode::internal);
+    return report("out of memory", error.what(), ExitCode::internal);
   } catch (const std::exception& error) {
-    return report("internal error; please report it", error, ExitCode::internal);
+    return report("internal error; please report it", error.what(), ExitCode::internal);
   }
 }
 

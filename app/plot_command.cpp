@@ -2,83 +2,257 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <limits>
+#include <map>
 
-#include "app/command.hpp"
+#include "app/pictures.hpp"
 #include "core/errors.hpp"
-#include "core/suggestion.hpp"
+#include "io/axes.hpp"
 #include "io/history_plot.hpp"
-#include "io/run_file.hpp"
+#include "io/phase_plot.hpp"
+#include "io/spectrum_plot.hpp"
 
 namespace stridor {
 namespace {
 
-struct PlotOptions {
-  CommonOptions common;
-  std::string file;
-  std::string kind = "history";
-  std::string output;
-  std::vector<std::string> channels;
-  double from = -std::numeric_limits<double>::infinity();
-  double to = std::numeric_limits<double>::infinity();
+struct PlotOptions : PictureOptions {
+  std::string kind;
+  std::optional<std::string> scale;
 };
 
-/// "/channels/cantilever.free_end.y.acceleration" as the user wrote it, "/contact/contact/force" as
-/// "contact.force".
-std::string channel_name(const std::string& path) {
-  if (path.rfind("/channels/", 0) == 0) return path.substr(10);
-  std::string name = path.substr(path.find('/', 1) + 1);
-  std::replace(name.begin(), name.end(), '/', '.');
-  return name;
+/// An option that only some kinds of pictures have.
+void refuse_option(const PlotOptions& options, const char* name,
+                   const std::optional<std::string>& value) {
+  if (value) throw ConfigError(name, fmt::format("means nothing for --kind {}", options.kind));
 }
 
-std::vector<std::string> wanted_series(const PlotOptions& options, const RunFileReader& file) {
-  const std::vector<std::string> all = file.series_names();
-  if (options.channels.empty()) return all;
-  std::vector<std::string> names;
-  for (const std::string& path : all) names.push_back(channel_name(path));
+/// The series asked for, all of them where none was.
+std::vector<std::string> wanted_series(const PlotOptions& options, const RecordedStretch& run) {
   std::vector<std::string> wanted;
-  for (const std::string& channel : options.channels) {
-    const auto found = std::find(names.begin(), names.end(), channel);
-    if (found == names.end()) {
-      throw ConfigError("--channel",
-                        fmt::format("{} has no channel '{}'{} (it has: {})", options.file, channel,
-                                    did_you_mean(channel, names), fmt::join(names, ", ")));
-    }
-    wanted.push_back(all[static_cast<std::size_t>(found - names.begin())]);
+  for (const std::string& channel : options.channels)
+    wanted.push_back(find_series(run, channel, "--channel"));
+  if (wanted.empty()) wanted = run.file.series_names();
+  if (wanted.empty()) {
+    throw ConfigError(
+        "", run.path + " holds no series to plot; name channels under `record` in the scene");
   }
   return wanted;
 }
 
-ExitCode plot(const PlotOptions& options) {
-  check_figure_name(options.output);
-  if (!options.common.force && std::filesystem::exists(options.output)) {
-    throw FileError(options.output, "", "exists; use --force to overwrite it");
-  }
-  const RunFileReader file(options.file);
+/// The point or contact of a channel, and its quantity: "cantilever.free_end.y", "acceleration".
+std::pair<std::string, std::string> split_name(const std::string& name) {
+  const std::size_t dot = name.rfind('.');
+  return {name.substr(0, dot), name.substr(dot + 1)};
+}
+
+std::string quantity_words(const std::string& name) {
+  std::string words = split_name(name).second;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+/// What a kind of picture adds to the JSON object.
+using Drawn = Json;
+
+Drawn draw_history(const PlotOptions& options, const RecordedStretch& run) {
   std::vector<Panel> panels;
-  for (const std::string& path : wanted_series(options, file)) {
-    Curve curve;
-    const std::vector<double> values = file.series(path);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const double time = file.times()[i];
-      if (time < options.from || time > options.to) continue;
-      curve.times.push_back(time);
-      curve.values.push_back(values[i]);
-    }
-    const std::string name = channel_name(path);
-    const std::size_t dot = name.rfind('.');
-    std::string quantity = name.substr(dot + 1);
-    std::replace(quantity.begin(), quantity.end(), '_', ' ');
-    panels.push_back({name.substr(0, dot), quantity, file.units(path), {std::move(curve)}});
+  for (const std::string& series : wanted_series(options, run)) {
+    const std::string name = channel_name(series);
+    panels.push_back({split_name(name).first,
+                      quantity_words(name),
+                      typeset_units(run.file.units(series)),
+                      {{run.times(), run.values(series), ""}}});
   }
-  if (panels.empty())
-    throw ConfigError(
-        "", options.file + " holds no series to plot; name channels under `record` in the scene");
   plot_histories(panels, options.output, "");
+  return {{"panels", panels.size()}};
+}
+
+// ---------------------------------------------------------------- one channel against another
+
+constexpr const char* no_silent_derivatives =
+    "nothing is integrated or differentiated for a picture";
+
+/// What belongs to a quantity in a phase plot: displacement with velocity, position along the
+/// master with the slip velocity; empty where nothing does.
+std::string partner_of(const std::string& name) {
+  static const std::map<std::string, std::string> partners{{"displacement", "velocity"},
+                                                           {"velocity", "displacement"},
+                                                           {"position", "slip_velocity"},
+                                                           {"slip_velocity", "position"}};
+  const auto [place, quantity] = split_name(name);
+  const auto found = partners.find(quantity);
+  return found == partners.end() ? "" : place + "." + found->second;
+}
+
+bool is_derivative(const std::string& name) {
+  const std::string quantity = split_name(name).second;
+  return quantity == "velocity" || quantity == "slip_velocity";
+}
+
+/// The pair that a phase plot shows where the user names no channel.
+std::pair<std::string, std::string> default_pair(const RecordedStretch& run,
+                                                 const std::vector<std::string>& names) {
+  for (const char* quantity : {"position", "displacement"}) {
+    for (const std::string& name : names) {
+      const std::string partner = partner_of(name);
+      if (split_name(name).second == quantity &&
+          std::find(names.begin(), names.end(), partner) != names.end())
+        return {name, partner};
+    }
+  }
+  std::string remedy;
+  for (const std::string& name : names) {
+    const auto [place, quantity] = split_name(name);
+    if (const std::string partner = partner_of(name); !partner.empty()) {
+      remedy = fmt::format("record {} with {}", partner, name);
+      break;
+    }
+    if (quantity == "acceleration" && remedy.empty())
+      remedy = fmt::format("record {0}.displacement and {0}.velocity", place);
+  }
+  if (remedy.empty()) remedy = "record a displacement and the velocity of the same point";
+  throw ConfigError(
+      "--channel",
+      fmt::format("{} holds no displacement with its velocity, and {}; {} (record.channels of the "
+                  "scene), or name two channels: --channel A --channel B",
+                  run.path, no_silent_derivatives, remedy));
+}
+
+/// The series across and up.
+std::pair<std::string, std::string> phase_series(const PlotOptions& options,
+                                                 const RecordedStretch& run) {
+  std::vector<std::string> names;
+  for (const std::string& series : run.file.series_names()) names.push_back(channel_name(series));
+  const auto series_of = [&](const std::string& name) {
+    return find_series(run, name, "--channel");
+  };
+  const std::vector<std::string>& channels = options.channels;
+  if (channels.size() > 2)
+    throw ConfigError("--channel", "a phase plot shows one channel against one other");
+  if (channels.size() == 2) return {series_of(channels[0]), series_of(channels[1])};
+  if (channels.empty()) {
+    const auto [across, up] = default_pair(run, names);
+    return {series_of(across), series_of(up)};
+  }
+  const std::string series = series_of(channels[0]);
+  const std::string partner = partner_of(channels[0]);
+  if (std::find(names.begin(), names.end(), partner) == names.end()) {
+    throw ConfigError(
+        "--channel",
+        partner.empty()
+            ? fmt::format("name a second channel against which to show {}", channels[0])
+            : fmt::format("{} is not recorded, and {}; add it to record.channels of the scene, or "
+                          "name another channel against which to show {}",
+                          partner, no_silent_derivatives, channels[0]));
+  }
+  return is_derivative(channels[0]) ? std::pair{series_of(partner), series}
+                                    : std::pair{series, series_of(partner)};
+}
+
+Drawn draw_phase(const PlotOptions& options, const RecordedStretch& run) {
+  const auto [across, up] = phase_series(options, run);
+  const auto axis = [&](const std::string& series) {
+    return PhaseAxis{channel_name(series), run.file.units(series), run.values(series)};
+  };
+  plot_phase(axis(across), axis(up),
+             fmt::format("From {:.6g} s (ring) to {:.6g} s (dot). {}.", run.first_time(),
+                         run.last_time(), source_text(run)),
+             options.output);
+  return {{"across", channel_name(across)},
+          {"up", channel_name(up)},
+          {"from", run.first_time()},
+          {"to", run.last_time()}};
+}
+
+// ---------------------------------------------------------------- amplitude over frequency
+
+AmplitudeScale amplitude_scale(const PlotOptions& options) {
+  if (!options.scale || *options.scale == "db") return AmplitudeScale::level;
+  if (*options.scale == "linear") return AmplitudeScale::linear;
+  throw ConfigError("--scale", fmt::format("'{}' is neither db nor linear", *options.scale));
+}
+
+Drawn draw_spectrum(const PlotOptions& options, const RecordedStretch& run) {
+  const RecordedSettings scene = recorded_settings(run.file, run.path);
+  // An eighth of the stretch: 15 pieces at half overlap, a compromise of lines and scatter.
+  const auto [parameters, max_frequency] = settle_pieces(
+      options, run, scene, std::nullopt, [&](double) { return run.duration() / 8.0; }, 0.5);
+  SpectrumPicture picture;
+  picture.scale = amplitude_scale(options);
+  picture.max_frequency = max_frequency;
+  if (options.range) picture.range = option_value("--range", *options.range, "", Range::positive());
+  picture.mean_lines = main_lobe_lines(parameters.window);
+
+  std::vector<SpectrumPanel> panels;
+  Json channels = Json::array();
+  for (const std::string& series : wanted_series(options, run)) {
+    const std::string units = run.file.units(series);
+    auto panel = std::find_if(panels.begin(), panels.end(),
+                              [&](const SpectrumPanel& other) { return other.units == units; });
+    if (panel == panels.end()) {
+      if (options.reference && !panels.empty()) {
+        throw ConfigError("--reference",
+                          fmt::format("the channels have several units ({}, {}); choose those of "
+                                      "one with --channel",
+                                      panels.front().units, units));
+      }
+      panels.push_back({units, settle_reference(options, units), {}});
+      panel = panels.end() - 1;
+    }
+    panel->curves.push_back(
+        {channel_name(series), make_spectrum(run.finite_values(series), run.interval, parameters)});
+    channels.push_back(
+        {{"channel", channel_name(series)}, {"units", units}, {"reference", panel->reference}});
+  }
+  const std::vector<NumberedBurst> bursts = bursts_in(run);
+  for (const auto& [number, burst] : bursts)
+    picture.marks.push_back({burst.frequency, std::to_string(number)});
+  const std::size_t num_pieces = panels.front().curves.front().spectrum.num_pieces;
+  picture.caption = fmt::format(
+      "Peak amplitudes, r.m.s. of {} pieces from {:.6g} to {:.6g} s: {}. {}.", num_pieces,
+      run.first_time(), run.last_time(), pieces_text(parameters, run.interval), source_text(run));
+  if (!bursts.empty()) picture.caption += " Dashed: frequencies of the bursts.";
+  plot_spectra(panels, picture, options.output);
+  return {{"channels", channels},
+          {"window", window_name(parameters.window)},
+          {"length", static_cast<double>(parameters.length) * run.interval},
+          {"length_samples", parameters.length},
+          {"overlap", parameters.overlap},
+          {"pieces", num_pieces},
+          {"from", run.first_time()},
+          {"to", run.last_time()},
+          {"max_frequency", max_frequency},
+          {"scale", picture.scale == AmplitudeScale::level ? "db" : "linear"},
+          {"bursts", bursts.size()}};
+}
+
+// ---------------------------------------------------------------- the verb
+
+void check_options(const PlotOptions& options) {
+  const bool is_spectrogram = options.kind == "spectrogram";
+  const bool is_spectrum = options.kind == "spectrum";
+  if (!is_spectrogram) refuse_option(options, "--data", options.data);
+  if (!is_spectrum) refuse_option(options, "--scale", options.scale);
+  if (is_spectrogram || is_spectrum) return;
+  refuse_option(options, "--window", options.window);
+  refuse_option(options, "--length", options.length);
+  refuse_option(options, "--overlap", options.overlap);
+  refuse_option(options, "--max-frequency", options.max_frequency);
+  refuse_option(options, "--reference", options.reference);
+  refuse_option(options, "--range", options.range);
+}
+
+ExitCode plot(const PlotOptions& options) {
+  check_options(options);
+  if (options.kind == "spectrogram") return draw_spectrogram(options);
+  check_figure(options);
+  const RecordedStretch run = open_stretch(options);
+  const Drawn drawn = options.kind == "history" ? draw_history(options, run)
+                      : options.kind == "phase" ? draw_phase(options, run)
+                                                : draw_spectrum(options, run);
   if (options.common.json) {
-    fmt::print("{}\n", Json{{"figure", options.output}, {"panels", panels.size()}}.dump(2));
+    Json object = {{"figure", options.output}};
+    object.update(drawn);
+    fmt::print("{}\n", object.dump(2));
   } else {
     fmt::print("{}\n", options.output);
   }
@@ -91,18 +265,21 @@ void add_plot_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<PlotOptions>();
   CLI::App* verb = program.add_subcommand("plot", "Pictures of a run file");
   verb->add_option("file", options->file, "Run file (HDF5)")->required();
-  verb->add_option("--kind", options->kind, "What to draw")
-      ->check(CLI::IsMember({"history"}))
+  verb->add_option("--kind", options->kind,
+                   "history, spectrogram, phase (one channel against another) or spectrum")
+      ->check(CLI::IsMember({"history", "spectrogram", "phase", "spectrum"}))
       ->required();
   verb->add_option("-o,--output", options->output, "Figure to write: .png, .svg or .pdf")
       ->required();
-  verb->add_option("--channel", options->channels, "Channel to draw (repeatable); default: all")
+  verb->add_option("--channel", options->channels,
+                   "Channel to draw (repeatable); default: all, for a phase plot the first pair of "
+                   "displacement and velocity")
       ->take_all()
       ->allow_extra_args(false);
-  verb->add_option("--from", options->from, "Start of the time axis, s");
-  verb->add_option("--to", options->to, "End of the time axis, s");
-  add_json_option(*verb, options->common);
-  add_force_option(*verb, options->common);
+  add_spectrum_options(*verb, *options);
+  verb->add_option("--scale", options->scale, "Amplitudes of a spectrum: db or linear");
+  add_data_option(*verb, *options);
+  add_picture_options(*verb, *options);
   verb->callback([options, &action] { action = [options] { return plot(*options); }; });
 }
 

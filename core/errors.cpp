@@ -31,6 +31,16 @@ ConfigError::ConfigError(std::vector<Problem> problems)
 ConfigError::ConfigError(std::string key, std::string message)
     : ConfigError(std::vector<Problem>{{std::move(key), std::move(message), {}, 0, 0}}) {}
 
+std::string ConfigError::report() const {
+  std::string text;
+  for (const Problem& problem : problems_) {
+    if (!text.empty()) text += '\n';
+    text += problem.text();
+    if (!problem.excerpt.empty()) text += '\n' + problem.excerpt;
+  }
+  return text;
+}
+
 FileError::FileError(const std::string& path, const std::string& dataset, const std::string& cause)
     : std::runtime_error(dataset.empty()
                              ? fmt::format("{}: {}", path, cause)

@@ -21,6 +21,7 @@ struct Problem {
       source;      ///< file, or "--set key=value"; empty until the reader of the scene fills it in
   int line = 0;    ///< 1-based; 0 where there is none
   int column = 0;  ///< 1-based; 0 where there is none
+  std::string excerpt{};  ///< what was written there, with a caret (core/excerpt.hpp); may be empty
 
   /// "source:line:column: key: message", leaving out what is not known.
   std::string text() const;
@@ -33,6 +34,8 @@ class ConfigError : public std::runtime_error {
   ConfigError(std::string key, std::string message);
 
   const std::vector<Problem>& problems() const { return problems_; }
+  /// The text of every problem, each followed by its excerpt; `what()` is the texts alone.
+  std::string report() const;
 
  private:
   std::vector<Problem> problems_;

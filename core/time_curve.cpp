@@ -40,9 +40,9 @@ std::size_t TimeCurve::interval(double time) const {
 
 double TimeCurve::value(double time) const {
   const auto& [times, values] = table_;
+  if (time >= times.back()) return values.back();  // without a search: it is asked in every step
   const std::size_t i = interval(time);
   if (i == 0) return values.front();
-  if (i == times.size()) return values.back();
   const double x = (time - times[i - 1]) / (times[i] - times[i - 1]);
   const double r = x * x * x * (10.0 + x * (-15.0 + 6.0 * x));
   return values[i - 1] + (values[i] - values[i - 1]) * r;

@@ -11,6 +11,7 @@ enum class ContactAssumption {
   subs_a,  ///< prescribed rigid sliding on the undeformed master
   subs_b,  ///< predicted positions of both bodies, normal of the predicted segment
   subs_c,  ///< predicted positions of both bodies, normal of the undeformed segment
+  film,    ///< kinematics of subs_b; sticks, slips and lifts off (FiLM)
 };
 
 /// Ends of a master segment, T1 to T2, with the body on the right-hand side of that direction.

@@ -1,14 +1,72 @@
 #include "coupling/contact_parameters.hpp"
 
+#include <fmt/format.h>
+
 namespace stridor {
 
 const Schema& FrictionParameters::schema() {
+  using Kind = FrictionLaw::Kind;
   static const Schema keys =
       SchemaOf<FrictionParameters>("friction")
+          .choice(
+              "law", &FrictionParameters::law,
+              {{"constant", Kind::constant},
+               {"static_dynamic", Kind::static_dynamic},
+               {"stribeck", Kind::stribeck}},
+              {.doc = "constant: `coefficient`; static_dynamic: `static` at rest, `dynamic` in "
+                      "sliding; stribeck: from `static` to `dynamic` as exp(-|v|/decay_velocity).",
+               .optional = true})
           .real("coefficient", &FrictionParameters::coefficient,
-                {.doc = "Coulomb friction coefficient; rises with drive.ramp.",
-                 .range = Range::non_negative()});
+                {.doc = "Coulomb friction coefficient of the constant law; rises with drive.ramp.",
+                 .range = Range::non_negative(),
+                 .optional = true})
+          .real("static", &FrictionParameters::static_coefficient,
+                {.doc = "Coefficient at rest; rises with drive.ramp.",
+                 .range = Range::non_negative(),
+                 .optional = true})
+          .real("dynamic", &FrictionParameters::dynamic_coefficient,
+                {.doc = "Coefficient in (fast) sliding; rises with drive.ramp.",
+                 .range = Range::non_negative(),
+                 .optional = true})
+          .real("decay_velocity", &FrictionParameters::decay_velocity,
+                {.doc = "Sliding velocity over which the Stribeck law falls by 1/e.",
+                 .unit = "m s-1",
+                 .range = Range::positive(),
+                 .optional = true})
+          .check([](const FrictionParameters& friction, std::vector<Problem>& problems) {
+            const bool is_constant = friction.law == Kind::constant;
+            const auto demand = [&](const char* key, bool is_given, bool is_wanted) {
+              if (is_given == is_wanted) return;
+              const char* law = is_constant                      ? "constant"
+                                : friction.law == Kind::stribeck ? "stribeck"
+                                                                 : "static_dynamic";
+              problems.push_back({key,
+                                  fmt::format("{} by the {} friction law",
+                                              is_wanted ? "missing: needed" : "not used", law),
+                                  {},
+                                  0,
+                                  0});
+            };
+            demand("coefficient", friction.coefficient.has_value(), is_constant);
+            demand("static", friction.static_coefficient.has_value(), !is_constant);
+            demand("dynamic", friction.dynamic_coefficient.has_value(), !is_constant);
+            demand("decay_velocity", friction.decay_velocity.has_value(),
+                   friction.law == Kind::stribeck);
+            if (friction.static_coefficient && friction.dynamic_coefficient &&
+                friction.law == Kind::static_dynamic &&
+                *friction.static_coefficient < *friction.dynamic_coefficient) {
+              problems.push_back({"static", "must not be below `dynamic`", {}, 0, 0});
+            }
+          });
   return keys;
+}
+
+FrictionLaw make_friction_law(const FrictionParameters& parameters) {
+  if (parameters.law == FrictionLaw::Kind::constant) {
+    return constant_friction(parameters.coefficient.value());
+  }
+  return {parameters.law, parameters.static_coefficient.value(),
+          parameters.dynamic_coefficient.value(), parameters.decay_velocity.value_or(1.0)};
 }
 
 const Schema& ContactParameters::schema() {
@@ -17,16 +75,24 @@ const Schema& ContactParameters::schema() {
           .text_list("slave", &ContactParameters::slave,
                      {.doc = "Slave: <body>.<point>, <body>.<surface> (every node of it), or a "
                              "list of them."})
-          .text("master", &ContactParameters::master, {.doc = "Master surface: <body>.<surface>."})
+          .text("master", &ContactParameters::master,
+                {.doc = "Master surface: <body>.<surface>, or `rigid`: a rigid straight line along "
+                        "+x without end, below the slave."})
           .choice("assumption", &ContactParameters::assumption,
                   {{"subs_a", ContactAssumption::subs_a},
                    {"subs_b", ContactAssumption::subs_b},
-                   {"subs_c", ContactAssumption::subs_c}},
+                   {"subs_c", ContactAssumption::subs_c},
+                   {"film", ContactAssumption::film}},
                   {.doc = "subs_a: prescribed sliding on the undeformed master; subs_b: deformed "
-                          "positions and normal; "
-                          "subs_c: deformed positions, undeformed normal."})
-          .choice("on_violation", &ContactParameters::on_violation, {{"stop", OnViolation::stop}},
-                  {.doc = "What to do when persistent sliding is lost.", .optional = true})
+                          "positions and normal; subs_c: deformed positions, undeformed normal; "
+                          "all three slide persistently. film: as subs_b, with stick, slip and "
+                          "lift-off."})
+          .choice(
+              "on_violation", &ContactParameters::on_violation,
+              {{"stop", OnViolation::stop}, {"unilateral", OnViolation::unilateral}},
+              {.doc = "What becomes of an armed contact that loses persistent sliding: stop the "
+                      "run, or let it stick, slip and lift off.",
+               .optional = true})
           .real("armed_from", &ContactParameters::armed_from,
                 {.doc = "Violations of persistent sliding before this time are counted, not acted "
                         "on; default drive.ramp.",

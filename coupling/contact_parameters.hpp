@@ -10,14 +10,17 @@
 
 namespace stridor {
 
+/// Coefficients hold once the drive's ramp has ended.
 struct FrictionParameters {
-  double coefficient = 0.0;  ///< μ once the drive's ramp has ended, >= 0
+  FrictionLaw::Kind law = FrictionLaw::Kind::constant;
+  std::optional<double> coefficient;          ///< μ of the constant law, ≥ 0
+  std::optional<double> static_coefficient;   ///< μ_s, ≥ 0
+  std::optional<double> dynamic_coefficient;  ///< μ_d, ≥ 0
+  std::optional<double> decay_velocity;       ///< v_d, m/s, > 0
   static const Schema& schema();
 };
 
-enum class OnViolation {
-  stop,  ///< end the run where persistent sliding is lost
-};
+FrictionLaw make_friction_law(const FrictionParameters& parameters);
 
 enum class SlidingMode {
   moving,  ///< the drive moves the slave along the master
@@ -31,7 +34,7 @@ enum class SurfaceKind {
 /// One pair: slave points on a master surface.
 struct ContactParameters {
   std::vector<std::string> slave;  ///< "<body>.<point>" or "<body>.<surface>" (every node of it)
-  std::string master;              ///< "<body>.<surface>"
+  std::string master;              ///< "<body>.<surface>", or "rigid"
   ContactAssumption assumption = ContactAssumption::subs_b;
   OnViolation on_violation = OnViolation::stop;
   std::optional<double> armed_from;  ///< s; the drive's ramp where absent

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "core/time_curve.hpp"
 #include "coupling/contact.hpp"
+#include "coupling/friction_law.hpp"
 #include "substructures/modal_body.hpp"
 
 namespace stridor {
@@ -24,21 +26,31 @@ struct SystemBody {
   ModalBody modal;  ///< the same body in its modes
   bool follows_drive = false;
   int load_row = -1;  ///< row on which the drive's load acts; −1 where none
+  /// Motion at t = 0 in reduced coordinates, m and m/s; empty for a body at rest.
+  Eigen::VectorXd initial_displacement;
+  Eigen::VectorXd initial_velocity;
 };
 
 /// A master surface: nodes in order, the body on their right-hand side.
 struct MasterSurface {
-  std::string name;  ///< "<body>.<surface>"
+  std::string name;  ///< "<body>.<surface>", or "rigid"
   int body = 0;
   std::vector<PointRows> rows;
   std::vector<Eigen::Vector2d> positions;  ///< undeformed, global, m
   std::vector<double> arc_length;          ///< along the undeformed surface from its first node, m
+  bool is_endless = false;                 ///< the first and last segment go on for ever
 
   int num_segments() const { return static_cast<int>(positions.size()) - 1; }
   Segment undeformed_segment(int segment) const {
     const auto s = static_cast<std::size_t>(segment);
     return {positions[s], positions[s + 1]};
   }
+};
+
+/// What becomes of a contact whose assumption of persistent sliding is violated once it is armed.
+enum class OnViolation {
+  stop,        ///< the run ends
+  unilateral,  ///< it sticks, slips and lifts off
 };
 
 /// One slave point on one master surface.
@@ -50,9 +62,18 @@ struct ContactPoint {
   int surface = 0;                 ///< index into System::surfaces
   int first_segment = 0;           ///< of the surface, under the undeformed slave point
   ContactAssumption assumption = ContactAssumption::subs_b;
-  TimeCurve friction;  ///< μ(t)
-  double armed_from =
-      0.0;  ///< violations of persistent sliding before this time are only counted, s
+  FrictionLaw friction;
+  TimeCurve friction_rise{1.0};  ///< factor on the law over time
+  OnViolation on_violation = OnViolation::stop;
+  /// Violations of persistent sliding before this time are only counted, s.
+  double armed_from = 0.0;
+
+  /// From this time on the contact sticks, slips and lifts off; before it slides bilaterally.
+  double unilateral_from() const {
+    if (assumption == ContactAssumption::film) return -std::numeric_limits<double>::infinity();
+    return on_violation == OnViolation::unilateral ? armed_from
+                                                   : std::numeric_limits<double>::infinity();
+  }
 };
 
 /// What moves the system from outside.

@@ -11,7 +11,24 @@ namespace stridor {
 namespace {
 
 const std::vector<std::string> motions{"displacement", "velocity", "acceleration"};
-const std::vector<std::string> quantities{"force", "gap", "slip_velocity", "position"};
+const std::vector<std::string> quantities{"force",          "gap",  "slip_velocity", "position",
+                                          "friction_force", "state"};
+
+constexpr EnergyEntry energy_entries[] = {
+    {"kinetic", &EnergyBalance::kinetic,
+     "kinetic energy of the motion relative to the drive, half a time step before the row"},
+    {"strain", &EnergyBalance::strain, "strain energy, half a time step before the row"},
+    {"damping_loss", &EnergyBalance::damping_loss,
+     "taken out by the damping of the bodies since t = 0"},
+    {"friction_loss", &EnergyBalance::friction_loss, "taken out by friction since t = 0"},
+    {"contact_work", &EnergyBalance::contact_work,
+     "work of the normal contact forces since t = 0, negative: taken out"},
+    {"drive_work", &EnergyBalance::drive_work,
+     "work of the drive since t = 0, without what moves the bodies rigidly"},
+    {"load_work", &EnergyBalance::load_work, "work of the load since t = 0"},
+    {"balance_error", &EnergyBalance::balance_error,
+     "kinetic + strain - their initial value + damping_loss + friction_loss - contact_work - "
+     "drive_work - load_work"}};
 
 std::vector<std::string> split(const std::string& name) {
   std::vector<std::string> parts;
@@ -67,18 +84,27 @@ Channel parse(const std::string& name, const ModelParameters& model) {
   }
   throw std::string(
       "is neither <body>.<point>.<x|y>.<displacement|velocity|acceleration> nor "
-      "<contact>.<force|gap|slip_velocity|position>");
+      "<contact>.<force|gap|slip_velocity|position|friction_force|state>");
 }
 
 }  // namespace
+
+const std::string& name_of(ContactQuantity quantity) {
+  return quantities[static_cast<std::size_t>(quantity)];
+}
 
 std::string Channel::units() const {
   if (point) {
     constexpr const char* units[] = {"m", "m/s", "m/s^2"};
     return units[static_cast<std::size_t>(derivative)];
   }
-  constexpr const char* units[] = {"N", "m", "m/s", "m"};
+  if (energy != nullptr) return "J";
+  constexpr const char* units[] = {"N", "m", "m/s", "m", "N", "1"};
   return units[static_cast<std::size_t>(quantity)];
+}
+
+bool Channel::is_filtered() const {
+  return energy == nullptr && (point || quantity != ContactQuantity::state);
 }
 
 std::vector<Channel> parse_channels(const RecordParameters& record, const ModelParameters& model) {
@@ -97,6 +123,15 @@ std::vector<Channel> parse_channels(const RecordParameters& record, const ModelP
     }
   }
   if (!problems.empty()) throw ConfigError(std::move(problems));
+  if (record.energy) {
+    for (const EnergyEntry& entry : energy_entries) {
+      Channel channel;
+      channel.name = std::string("energy.") + entry.name;
+      channel.key = "record.energy";
+      channel.energy = &entry;
+      channels.push_back(channel);
+    }
+  }
   return channels;
 }
 

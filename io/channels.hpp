@@ -7,12 +7,22 @@
 
 #include "analysis/low_pass.hpp"
 #include "io/scene.hpp"
+#include "solvers/energy_ledger.hpp"
 
 namespace stridor {
 
-enum class ContactQuantity { force, gap, slip_velocity, position };
+enum class ContactQuantity { force, gap, slip_velocity, position, friction_force, state };
+const std::string& name_of(ContactQuantity quantity);
 
-/// One recorded channel: the motion of a point, or a quantity of a contact pair.
+/// An entry of the energy ledger as it is recorded.
+struct EnergyEntry {
+  const char* name;
+  double EnergyBalance::*value;
+  const char* definition;
+};
+
+/// One recorded channel: the motion of a point, a quantity of a contact pair, or an entry of the
+/// energy ledger.
 struct Channel {
   std::string name;  ///< as written in the scene
   std::string key;   ///< its key path, for messages
@@ -24,11 +34,16 @@ struct Channel {
   std::string pair;  ///< of a contact quantity
   ContactQuantity quantity = ContactQuantity::force;
 
+  const EnergyEntry* energy = nullptr;  ///< of the ledger
+
   std::string units() const;
+  /// False for states, which mean nothing between their values, and for energies, whose sums must
+  /// hold in every row.
+  bool is_filtered() const;
 };
 
-/// Reads the channel names of a scene. Bodies and pairs are looked up; points are left to
-/// make_model.
+/// Reads the channel names of a scene, and adds the entries of the energy ledger where it is to be
+/// recorded. Bodies and pairs are looked up; points are left to make_model.
 /// @throws ConfigError with all wrong names, and with names given twice
 std::vector<Channel> parse_channels(const RecordParameters& record, const ModelParameters& model);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 
 namespace stridor {
 namespace {
@@ -59,6 +60,11 @@ double Recorder::Stream::value(const Simulation& simulation) const {
         simulation.displacement(point->body, is_vertical ? point->rows.y : point->rows.x);
     return follows_drive ? relative + simulation.drive_displacement() : relative;
   }
+  if (energy != nullptr) {
+    if (simulation.energy() == nullptr)
+      throw std::invalid_argument("Recorder: the simulation keeps no account of its energy");
+    return simulation.energy()->balance().*energy->value;
+  }
   switch (quantity) {
     case ContactQuantity::force:
       return simulation.contact_force(contact);
@@ -66,6 +72,10 @@ double Recorder::Stream::value(const Simulation& simulation) const {
       return simulation.slip_velocity(contact);
     case ContactQuantity::gap:
       return simulation.contact_place(contact).gap;
+    case ContactQuantity::friction_force:
+      return simulation.friction_force(contact);
+    case ContactQuantity::state:
+      return static_cast<double>(simulation.contact_state(contact));
     case ContactQuantity::position:
       break;
   }
@@ -95,16 +105,23 @@ Recorder::Recorder(const Model& model, std::vector<Channel> channels, double ste
         const bool follows =
             !channel.is_vertical &&
             model.system.bodies[static_cast<std::size_t>(point.body)].follows_drive;
-        streams_.push_back(
-            {point, channel.is_vertical, follows, 0, ContactQuantity::force, Decimator(filter)});
+        streams_.push_back({point, channel.is_vertical, follows, 0, ContactQuantity::force, nullptr,
+                            Decimator(filter)});
       }
       columns_.push_back({stream, channel.derivative});
+      continue;
+    }
+    const std::optional<Derivative> taken =
+        channel.is_filtered() ? std::optional(Derivative::none) : std::nullopt;
+    const auto add = [&](int contact) {
+      columns_.push_back({streams_.size(), taken});
+      streams_.push_back({std::nullopt, false, false, contact, channel.quantity, channel.energy,
+                          Decimator(filter)});
+    };
+    if (channel.energy != nullptr) {
+      add(0);
     } else {
-      for (const int contact : contacts_of(model.system, channel.pair)) {
-        columns_.push_back({streams_.size(), Derivative::none});
-        streams_.push_back(
-            {std::nullopt, false, false, contact, channel.quantity, Decimator(filter)});
-      }
+      for (const int contact : contacts_of(model.system, channel.pair)) add(contact);
     }
   }
   row_.resize(columns_.size());
@@ -113,12 +130,18 @@ Recorder::Recorder(const Model& model, std::vector<Channel> channels, double ste
 
 std::vector<SeriesSpec> Recorder::series(const Model& model, const std::vector<Channel>& channels,
                                          double step, double interval) {
-  constexpr const char* quantity_names[] = {"force", "gap", "slip_velocity", "position"};
-  const std::string filter = make_filter(model.system, step, interval)->description();
+  const std::string low_pass = make_filter(model.system, step, interval)->description();
   std::vector<SeriesSpec> series;
   for (const Channel& channel : channels) {
+    const std::string filter = channel.is_filtered() ? low_pass : "none";
     SeriesSpec spec{
         "/channels/" + channel.name, channel.units(), SeriesKind::real, {{"filter", filter}}};
+    if (channel.energy != nullptr) {
+      spec.path = std::string("/energy/") + channel.energy->name;
+      spec.attributes.emplace_back("definition", channel.energy->definition);
+      series.push_back(spec);
+      continue;
+    }
     if (channel.point) {
       series.push_back(spec);
       continue;
@@ -127,9 +150,15 @@ std::vector<SeriesSpec> Recorder::series(const Model& model, const std::vector<C
       SeriesSpec of_contact = spec;
       of_contact.path = fmt::format("/contact/{}/{}",
                                     model.system.contacts[static_cast<std::size_t>(contact)].name,
-                                    quantity_names[static_cast<std::size_t>(channel.quantity)]);
-      if (channel.quantity == ContactQuantity::force) {
+                                    name_of(channel.quantity));
+      const bool is_state = channel.quantity == ContactQuantity::state;
+      if (is_state || channel.quantity == ContactQuantity::force ||
+          channel.quantity == ContactQuantity::friction_force) {
         of_contact.attributes.emplace_back("acts_at", "the time of the same row of /time");
+      }
+      if (is_state) {
+        of_contact.kind = SeriesKind::state;
+        of_contact.attributes.emplace_back("meaning", "0 open, 1 stick, 2 slip");
       }
       series.push_back(of_contact);
     }
@@ -145,7 +174,9 @@ void Recorder::sample(const Simulation& simulation) {
   const std::int64_t number = streams_.front().decimator.num_outputs() - 1;
   if (number >= max_samples_) return;
   for (std::size_t i = 0; i < columns_.size(); ++i) {
-    row_[i] = streams_[columns_[i].stream].decimator.value(columns_[i].derivative);
+    const Decimator& decimator = streams_[columns_[i].stream].decimator;
+    const std::optional<Derivative> derivative = columns_[i].derivative;
+    row_[i] = derivative ? decimator.value(*derivative) : decimator.sample();
   }
   writer_->append(static_cast<double>(number) * interval_, row_);
 }

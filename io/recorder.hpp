@@ -27,7 +27,8 @@ int sampling_stride(const System& system, double step, int ratio);
 
 /// Low-passes, thins and writes the channels of a scene.
 ///
-/// Every series is low-passed with linear phase, so that sample k is the value at k·interval.
+/// Every series is low-passed with linear phase, so that sample k is the value at k·interval;
+/// states and energies are taken at that instant as they are.
 class Recorder : public SampleSink {
  public:
   /// @param writer receives the rows; must live longer
@@ -39,6 +40,8 @@ class Recorder : public SampleSink {
                                         double step, double interval);
 
   std::int64_t next_step() const override { return next_step_; }
+  /// @throws FileError if a row cannot be written
+  /// @throws std::invalid_argument if an energy is to be recorded that the simulation does not keep
   void sample(const Simulation& simulation) override;
 
   /// Steps that must follow the last wanted sample before it is written.
@@ -58,6 +61,7 @@ class Recorder : public SampleSink {
     bool follows_drive = false;  ///< the drive's displacement is added
     int contact = 0;
     ContactQuantity quantity = ContactQuantity::force;
+    const EnergyEntry* energy = nullptr;
     Decimator decimator;
 
     double value(const Simulation& simulation) const;
@@ -65,7 +69,7 @@ class Recorder : public SampleSink {
   /// One column of the run file.
   struct Column {
     std::size_t stream;
-    Derivative derivative;
+    std::optional<Derivative> derivative;  ///< of the low-passed stream; none: the sample itself
   };
 
   int stride_;

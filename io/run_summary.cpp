@@ -1,10 +1,16 @@
 #include "io/run_summary.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 #include "analysis/band_pass.hpp"
 #include "analysis/statistics.hpp"
+#include "core/errors.hpp"
+#include "io/scene_reader.hpp"
 
 namespace stridor {
 namespace {
@@ -14,6 +20,14 @@ bool ends_with(const std::string& text, const std::string& ending) {
          text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
 }
 
+/// Fills `section` where the scene has it.
+template <class Section, class Member>
+void read_if_present(const SceneNode& scene, const char* name, Member& section) {
+  if (const SceneEntry* entry = scene.entry(name)) section = read_as<Section>(entry->value);
+}
+
+}  // namespace
+
 std::optional<std::string> acceleration_channel(const RunFileReader& file) {
   std::optional<std::string> any;
   for (const std::string& name : file.series_names()) {
@@ -22,8 +36,6 @@ std::optional<std::string> acceleration_channel(const RunFileReader& file) {
   }
   return any;
 }
-
-}  // namespace
 
 std::optional<AccelerationSummary> summarise_acceleration(const RunFileReader& file,
                                                           const MeasureParameters& measure) {
@@ -49,6 +61,62 @@ std::optional<AccelerationSummary> summarise_acceleration(const RunFileReader& f
     summary.bursts = find_bursts(values, interval, parameters, times.front());
   }
   return summary;
+}
+
+std::vector<Burst> recorded_bursts(const RunFileReader& file, const std::string& path) {
+  if (!file.has("/bursts")) return {};
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Burst> bursts;
+  for (const auto& [name, member] :
+       {std::pair{"/bursts/start", &Burst::start}, std::pair{"/bursts/end", &Burst::end},
+        std::pair{"/bursts/frequency", &Burst::frequency}, std::pair{"/bursts/peak", &Burst::peak},
+        std::pair{"/bursts/gain", &Burst::gain}}) {
+    const std::vector<double> values = file.static_array(name);
+    if (member == &Burst::start) {
+      bursts.assign(values.size(), {unknown, unknown, unknown, unknown, unknown, unknown, unknown});
+    }
+    if (values.size() != bursts.size()) {
+      throw FileError(
+          path, name,
+          fmt::format("has {} entries, but /bursts/start has {}", values.size(), bursts.size()));
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!std::isfinite(values[i]))
+        throw FileError(path, name, fmt::format("is not finite in entry {}", i));
+      bursts[i].*member = values[i];
+      if (member == &Burst::end && values[i] < bursts[i].start)
+        throw FileError(path, name, fmt::format("lies before the start in entry {}", i));
+    }
+  }
+  return bursts;
+}
+
+RecordedSettings recorded_settings(const RunFileReader& file, const std::string& path) {
+  RecordedSettings settings;
+  try {
+    const SceneNode scene = read_scene_text(file.header().scene_resolved, "/scene/resolved");
+    read_if_present<MeasureParameters>(scene, "measure", settings.measure);
+    read_if_present<SpectrogramSection>(scene, "spectrogram", settings.spectrogram);
+  } catch (const ConfigError& error) {
+    throw FileError(path, "/scene/resolved",
+                    fmt::format("cannot be read as a scene: {}", error.what()));
+  }
+  return settings;
+}
+
+double sampling_interval(const RunFileReader& file, const std::string& path) {
+  const std::vector<double>& times = file.times();
+  if (times.size() < 2) return 0.0;
+  const double interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const double expected = times.front() + static_cast<double>(i) * interval;
+    if (!(interval > 0.0 && std::abs(times[i] - expected) <= 1e-3 * interval)) {
+      throw FileError(path, "/time",
+                      fmt::format("is not equidistant: row {} is {:g} s, expected {:g} s", i,
+                                  times[i], expected));
+    }
+  }
+  return interval;
 }
 
 }  // namespace stridor

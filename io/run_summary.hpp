@@ -1,4 +1,4 @@
-// The numbers that a run is summed up in.
+// The numbers that a run is summed up in, and what pictures of it need to know.
 #pragma once
 
 #include <optional>
@@ -20,11 +20,39 @@ struct AccelerationSummary {
   std::optional<std::vector<Burst>> bursts;
 };
 
-/// Reads the acceleration of a free end off a run file: of the first channel
-/// "<body>.free_end.y.acceleration", else of the first acceleration channel.
+/// The path of the acceleration that a run is summed up by: the first channel
+/// "<body>.free_end.y.acceleration", else the first acceleration channel.
+std::optional<std::string> acceleration_channel(const RunFileReader& file);
+
+/// Reads the acceleration_channel() of a run file.
 /// @return nothing where there is no such channel or the window holds no sample
 /// @throws FileError if the file cannot be read
 std::optional<AccelerationSummary> summarise_acceleration(const RunFileReader& file,
                                                           const MeasureParameters& measure);
+
+/// The bursts that `run` stored under /bursts; empty where it found none or did not look. Their
+/// `growth` and `peak_time` are not stored and NaN.
+/// @param path of the file, for messages
+/// @throws FileError naming the dataset if one is missing, unlike the others in length, not finite,
+///         or a burst ends before it starts
+std::vector<Burst> recorded_bursts(const RunFileReader& file, const std::string& path);
+
+/// What the scene in a run file says of how its results are read.
+struct RecordedSettings {
+  MeasureParameters measure;
+  std::optional<SpectrogramSection> spectrogram;
+};
+
+/// Reads these sections of /scene/resolved, and no others, which another version of the program may
+/// have written.
+/// @param path of the file, for messages
+/// @throws FileError naming /scene/resolved if they cannot be read
+RecordedSettings recorded_settings(const RunFileReader& file, const std::string& path);
+
+/// Time between the samples of a run file, s.
+/// @param path of the file, for messages
+/// @return 0 where there are fewer than two samples
+/// @throws FileError naming /time if the samples are not equidistant within 10⁻³ of the interval
+double sampling_interval(const RunFileReader& file, const std::string& path);
 
 }  // namespace stridor

@@ -2,16 +2,54 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
 
+#include "core/suggestion.hpp"
 #include "io/channels.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_reader.hpp"
 
 namespace stridor {
+namespace {
+
+/// Checks the section `spectrogram` against what the scene records.
+void check_spectrogram(const Scene& scene, std::vector<Problem>& problems) {
+  if (!scene.spectrogram) return;
+  const SpectrogramSection& section = *scene.spectrogram;
+  const auto report = [&](const char* key, std::string message) {
+    problems.push_back({std::string("spectrogram.") + key, std::move(message), {}, 0, 0});
+  };
+  const std::vector<std::string> channels =
+      scene.record ? scene.record->channels : std::vector<std::string>{};
+  if (section.channel) {
+    // A pair with several slave points records "pair[0].force" for the channel "pair.force".
+    std::string channel = *section.channel;
+    const std::size_t open = channel.find('[');
+    const std::size_t close = channel.find(']', open);
+    if (close != std::string::npos) channel.erase(open, close + 1 - open);
+    if (std::find(channels.begin(), channels.end(), channel) == channels.end()) {
+      report("channel", fmt::format("'{}' is not among record.channels{}", *section.channel,
+                                    did_you_mean(*section.channel, channels)));
+    }
+  }
+  if (!scene.record) return;
+  const double interval = scene.record->interval;
+  if (section.length && (*section.length < 2.0 * interval || *section.length > scene.time.end)) {
+    report("length", fmt::format("{:g} s must be at least two times record.interval = {:g} s and "
+                                 "at most time.end = {:g} s",
+                                 *section.length, interval, scene.time.end));
+  }
+  if (section.max_frequency && *section.max_frequency > 0.5 / interval) {
+    report("max_frequency",
+           fmt::format("{:g} Hz is above {:g} Hz, the highest frequency that record.interval "
+                       "resolves",
+                       *section.max_frequency, 0.5 / interval));
+  }
+}
+
+}  // namespace
 
 const Schema& RecordParameters::schema() {
   static const Schema keys =
@@ -24,7 +62,11 @@ const Schema& RecordParameters::schema() {
               "channels", &RecordParameters::channels,
               {.doc =
                    "What is recorded: <body>.<point>.<x|y>.<displacement|velocity|acceleration>, "
-                   "<contact>.<force|gap|slip_velocity|position>."});
+                   "<contact>.<force|gap|slip_velocity|position|friction_force|state>."})
+          .flag("energy", &RecordParameters::energy,
+                {.doc = "Whether the energy ledger is kept and recorded under /energy; a step then "
+                        "costs about two and a half times as much.",
+                 .optional = true});
   return keys;
 }
 
@@ -59,6 +101,34 @@ const Schema& MeasureParameters::schema() {
   return keys;
 }
 
+const Schema& SpectrogramSection::schema() {
+  static const Schema keys =
+      SchemaOf<SpectrogramSection>("spectrogram")
+          .text("channel", &SpectrogramSection::channel,
+                {.doc = "Which recorded channel; default: the acceleration in which bursts are "
+                        "sought.",
+                 .optional = true})
+          .choice("window", &SpectrogramSection::window, window_names(),
+                  {.doc = "Weights of the pieces that are transformed.", .optional = true})
+          .real("length", &SpectrogramSection::length,
+                {.doc = "Duration of a piece; default: (duration/max_frequency)^1/2, with which "
+                        "the picture has as many lines as columns without overlap.",
+                 .unit = "s",
+                 .range = Range::positive(),
+                 .optional = true})
+          .real("overlap", &SpectrogramSection::overlap,
+                {.doc = "Part of a piece that it shares with the next.",
+                 .range = {0.0, 1.0, false, true},
+                 .optional = true})
+          .real("max_frequency", &SpectrogramSection::max_frequency,
+                {.doc = "End of the frequency axis; default: upper end of measure.band, else "
+                        "0.4/record.interval.",
+                 .unit = "Hz",
+                 .range = Range::positive(),
+                 .optional = true});
+  return keys;
+}
+
 const Schema& Expectation::schema() {
   static const Schema keys =
       SchemaOf<Expectation>("expect")
@@ -81,8 +151,13 @@ const Schema& Scene::schema() {
                    {.doc = "What is written to the run file.", .optional = true})
           .section("measure", &Scene::measure,
                    {.doc = "Window and band of the statistics.", .optional = true})
+          .section("spectrogram", &Scene::spectrogram,
+                   {.doc = "How the spectrogram of the run is made; options of the verb "
+                           "`spectrogram` win over it.",
+                    .optional = true})
           .section_list("expect", &Scene::expect,
                         {.doc = "Results that `run --verify` checks.", .optional = true})
+          .check(check_spectrogram)
           .check([](const Scene& scene, std::vector<Problem>& problems) {
             if (!scene.record) return;
             const double ratio = scene.record->interval / scene.time.step;
@@ -136,8 +211,7 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
   loaded.path = path;
   loaded.sets = sets;
   loaded.tree = read_scene_file(path);
-  std::ifstream file(path, std::ios::binary);
-  loaded.text.assign(std::istreambuf_iterator<char>(file), {});
+  loaded.text = loaded.tree.document;
   for (const std::string& assignment : sets) set_value(loaded.tree, assignment);
   loaded.scene = read_as<Scene>(loaded.tree);
   return loaded;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/spectrogram.hpp"
 #include "io/scene_tree.hpp"
 #include "models/model.hpp"
 #include "solvers/simulation.hpp"
@@ -14,8 +15,9 @@ namespace stridor {
 struct RecordParameters {
   double interval = 0.0;  ///< between samples, s, a multiple of time.step
   std::vector<std::string>
-      channels;  ///< "<body>.<point>.<x|y>.<displacement|velocity|acceleration>",
-                 ///< "<contact>.<quantity>"
+      channels;         ///< "<body>.<point>.<x|y>.<displacement|velocity|acceleration>",
+                        ///< "<contact>.<quantity>"
+  bool energy = false;  ///< the energy ledger
   static const Schema& schema();
 };
 
@@ -24,6 +26,16 @@ struct MeasureParameters {
   double from = 0.0;         ///< s
   std::optional<double> to;  ///< s; the end of the run where absent
   std::vector<double> band;  ///< two frequencies, Hz; empty: no band-pass
+  static const Schema& schema();
+};
+
+/// How the spectrogram of a run is made, where its command line does not say otherwise.
+struct SpectrogramSection {
+  std::optional<std::string> channel;  ///< one of record.channels
+  WindowKind window = WindowKind::hann;
+  std::optional<double> length;         ///< of a piece, s
+  double overlap = 0.75;                ///< part of a piece shared with the next
+  std::optional<double> max_frequency;  ///< Hz, end of the picture
   static const Schema& schema();
 };
 
@@ -41,6 +53,7 @@ struct Scene {
   TimeParameters time;
   std::optional<RecordParameters> record;
   MeasureParameters measure;
+  std::optional<SpectrogramSection> spectrogram;
   std::vector<Expectation> expect;
   static const Schema& schema();
 };

@@ -93,6 +93,14 @@ std::vector<std::string> names_of(const std::vector<Alternative>& alternatives) 
   return names;
 }
 
+/// The names that a map may hold.
+std::vector<std::string> known_keys(const Schema& schema, const std::string& discriminator) {
+  std::vector<std::string> names;
+  if (!discriminator.empty()) names.push_back(discriminator);
+  for (const Key& key : schema.keys) names.push_back(key.name);
+  return names;
+}
+
 class Reader {
  public:
   explicit Reader(std::vector<Problem>& problems) : problems_(problems) {}
@@ -108,7 +116,7 @@ class Reader {
       const std::string key_path = join_path(path, entry.key);
       const Key* key = schema.find(entry.key);
       if (!key) {
-        report_unknown(entry, schema, discriminator, key_path);
+        report_unknown(entry, known_keys(schema, discriminator), key_path);
         collect_text_problems(entry.value, key_path, problems_);
       } else if (entry.value.kind == Kind::null) {
         report(entry.place, key_path, fmt::format("has no value, expected {}", expected_of(*key)));
@@ -129,7 +137,7 @@ class Reader {
 
  private:
   void report(const Place& place, const std::string& path, std::string message) {
-    problems_.push_back({path, std::move(message), place.source, place.line, place.column});
+    problems_.push_back(problem_at(place, path, std::move(message)));
   }
 
   /// Those of this node alone; the nodes below it add their own when they are read.
@@ -158,11 +166,8 @@ class Reader {
     return true;
   }
 
-  void report_unknown(const SceneEntry& entry, const Schema& schema,
-                      const std::string& discriminator, const std::string& path) {
-    std::vector<std::string> known;
-    if (!discriminator.empty()) known.push_back(discriminator);
-    for (const Key& key : schema.keys) known.push_back(key.name);
+  void report_unknown(const SceneEntry& entry, const std::vector<std::string>& known,
+                      const std::string& path) {
     std::string advice = did_you_mean(entry.key, known);
     if (advice.empty() && entry.value.kind == Kind::null &&
         entry.key.find(':') != std::string::npos) {
@@ -171,6 +176,22 @@ class Reader {
       advice = fmt::format("; known here: {}", joined(known));
     }
     report(entry.place, path, fmt::format("unknown key {}{}", quoted(entry.key), advice));
+  }
+
+  /// Where it is not known which alternative a map is: the keys that none of them has. One of these
+  /// may be the misspelt discriminator.
+  void report_unknown_to_all(const SceneNode& node, const Key& key, const std::string& path) {
+    std::vector<std::string> known{key.discriminator};
+    for (const Alternative& alternative : key.alternatives) {
+      for (const std::string& name : known_keys(alternative.schema(), "")) {
+        if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+      }
+    }
+    for (const SceneEntry& entry : node.entries) {
+      if (std::find(known.begin(), known.end(), entry.key) == known.end()) {
+        report_unknown(entry, known, join_path(path, entry.key));
+      }
+    }
   }
 
   void run_checks(const SceneNode& node, const Schema& schema, const void* object,
@@ -241,6 +262,7 @@ class Reader {
       if (!is_kind(entry.value, Kind::map, "a map", entry_path)) continue;
       const auto alternative = choose_alternative(entry.value, key, entry_path);
       if (!alternative) {
+        report_unknown_to_all(entry.value, key, entry_path);
         collect_text_problems(entry.value, entry_path, problems_);
         continue;
       }

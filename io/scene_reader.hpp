@@ -39,6 +39,7 @@ T read_as(const SceneNode& node) {
   read_section(node, T::schema(), &object, "", problems);
   if (!problems.empty()) {
     sort_by_place(problems);
+    add_excerpts(problems, node);
     throw ConfigError(std::move(problems));
   }
   return object;

@@ -21,14 +21,14 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/excerpt.hpp"
+#include "core/utf8.hpp"
+
 namespace stridor {
 namespace {
 
-enum class Lines { numbered, none };
-
-Problem problem_at(const Place& place, std::string key, std::string message) {
-  return {std::move(key), std::move(message), place.source, place.line, place.column};
-}
+const std::string kSet = "--set ";
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 [[noreturn]] void fail(const Place& place, std::string key, std::string message) {
   throw ConfigError(std::vector<Problem>{problem_at(place, std::move(key), std::move(message))});
@@ -56,17 +56,26 @@ std::size_t height(const SceneNode& node) {
 /// it is expanded, and an alias inside its own anchor is seen instead of making a cycle.
 class TreeBuilder : public YAML::EventHandler {
  public:
-  TreeBuilder(const std::string& source, Lines lines)
-      : source_(source), lines_(lines), last_place_{source, 0, 0} {
-    if (lines == Lines::numbered) last_place_ = {source, 1, 1};
-  }
+  /// @param start place of the first character; without a line where the text has none
+  /// @param end   place behind the last character
+  TreeBuilder(Place start, Place end)
+      : start_(std::move(start)), end_(std::move(end)), last_place_(start_) {}
 
   SceneNode take_root() { return std::move(root_); }
   /// Of the scalar read last: where to look when the parser only notices a fault at the end.
   const Place& last_place() const { return last_place_; }
+  /// Of the map or list that was begun last and is not complete.
+  const Place& open_place() const { return frames_.empty() ? start_ : frames_.back().node.place; }
+  const Place& end() const { return end_; }
+  /// Never behind the end, where the parser is given more than the text.
   Place place_at(const YAML::Mark& mark) const {
-    if (lines_ == Lines::none || mark.is_null()) return {source_, 0, 0};
-    return {source_, mark.line + 1, mark.column + 1};
+    if (mark.is_null()) return {start_.source, 0, 0};
+    Place place{start_.source, mark.line + 1, mark.column + 1};
+    if (start_.line == 0) {
+      if (mark.line > 0) return end_;
+      place = {start_.source, 0, start_.column + mark.column};
+    }
+    return std::pair(place.line, place.column) < std::pair(end_.line, end_.column) ? place : end_;
   }
 
   void OnDocumentStart(const YAML::Mark& mark) override {
@@ -239,8 +248,8 @@ class TreeBuilder : public YAML::EventHandler {
     return joined;
   }
 
-  std::string source_;
-  Lines lines_;
+  Place start_;
+  Place end_;
   SceneNode root_;
   Place last_place_;
   std::vector<Frame> frames_;
@@ -249,48 +258,29 @@ class TreeBuilder : public YAML::EventHandler {
   int num_documents_ = 0;
 };
 
-/// Length in bytes of the UTF-8 character at `text[i]`, 0 where there is none.
-std::size_t utf8_length(std::string_view text, std::size_t i) {
-  const auto byte = [&](std::size_t k) {
-    return static_cast<unsigned>(static_cast<unsigned char>(text[k]));
-  };
-  const unsigned first = byte(i);
-  if (first < 0x80) return 1;
-  const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-  if (first < 0xC2 || first > 0xF4 || i + length > text.size()) return 0;
-  unsigned code = first & (0x7Fu >> length);
-  for (std::size_t k = 1; k < length; ++k) {
-    if ((byte(i + k) & 0xC0u) != 0x80u) return 0;
-    code = (code << 6u) | (byte(i + k) & 0x3Fu);
-  }
-  const bool is_overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
-  const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
-  return is_overlong || is_surrogate || code > 0x10FFFF ? 0 : length;
-}
-
 /// Refuses what is not text: yaml-cpp ends silently at a byte 4, and a message with broken UTF-8 in
 /// it could not be written as JSON.
-void check_characters(const std::string& text, const std::string& source, Lines lines) {
-  Place place{source, 1, 1};
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = utf8_length(text, i);
+/// @param place of the first character
+void check_characters(const std::string& text, Place place) {
+  for (std::size_t i = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+       i < text.size();) {
+    const Utf8Character character = utf8_at(text, i);
     const auto byte = static_cast<unsigned char>(text[i]);
     const bool is_control =
         (byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r') || byte == 0x7F;
-    if (length == 0 || is_control) {
-      if (lines == Lines::none) place = {source, 0, 0};
+    if (character.length == 0 || is_control) {
       fail(place, "",
-           length == 0
+           character.length == 0
                ? fmt::format("byte 0x{:02X} is not UTF-8; save the text as UTF-8", byte)
                : fmt::format("control character 0x{:02X}; a scene is plain text in UTF-8", byte));
     }
-    if (byte == '\n') {
+    if (byte == '\n' && place.line > 0) {
       ++place.line;
       place.column = 1;
     } else {
-      place.column += static_cast<int>(length);
+      place.column += static_cast<int>(character.length);
     }
-    i += length;
+    i += character.length;
   }
 }
 
@@ -311,10 +301,6 @@ std::string explain(const std::string& said) {
     return "the map does not go on like this; check indentation, colons and quotes";
   if (is(ErrorMsg::END_OF_SEQ))
     return "the list does not go on like this; check indentation and dashes";
-  if (is(ErrorMsg::END_OF_MAP_FLOW))
-    return "the map that begins here has no '}', or a comma is missing";
-  if (is(ErrorMsg::END_OF_SEQ_FLOW))
-    return "the list that begins here has no ']', or a comma is missing";
   if (is(ErrorMsg::FLOW_END)) return "a closing bracket without its opening one";
   if (is(ErrorMsg::MAP_VALUE)) return "a ':' where no key can be; quote a text that holds ': '";
   if (is(ErrorMsg::MAP_KEY)) return "a key where none can be; check the indentation";
@@ -324,9 +310,42 @@ std::string explain(const std::string& said) {
   return "not YAML: " + printable(said);
 }
 
-SceneNode parse(const std::string& text, const std::string& source, Lines lines) {
-  check_characters(text, source, lines);
-  TreeBuilder builder(source, lines);
+/// Just behind the last line of a text.
+Place end_of(const std::string& text, const Place& start) {
+  if (start.line == 0) return {start.source, 0, start.column + static_cast<int>(text.size())};
+  const std::size_t size = text.ends_with('\n') ? text.size() - 1 : text.size();
+  const auto end = text.begin() + static_cast<std::ptrdiff_t>(size);
+  const auto num_breaks = std::count(text.begin(), end, '\n');
+  const auto line_begin = std::find(std::make_reverse_iterator(end), text.rend(), '\n').base();
+  return {start.source, start.line + static_cast<int>(num_breaks),
+          static_cast<int>(end - line_begin) + 1};
+}
+
+[[noreturn]] void fail_to_parse(const YAML::Exception& error, const TreeBuilder& builder) {
+  using namespace YAML;
+  if (error.msg == ErrorMsg::DOC_IN_SCALAR || error.msg == ErrorMsg::EOF_IN_SCALAR) {
+    fail(builder.last_place(), "", "a quote opened after here is never closed");
+  }
+  const Place place = builder.place_at(error.mark);
+  const bool is_map = error.msg == ErrorMsg::END_OF_MAP_FLOW;
+  if (is_map || error.msg == ErrorMsg::END_OF_SEQ_FLOW) {
+    const std::string what = is_map ? "map" : "list";
+    const char bracket = is_map ? '}' : ']';
+    const Place& open = builder.open_place();
+    if (place == builder.end()) {
+      fail(open, "", fmt::format("the {} that begins here is never closed by '{}'", what, bracket));
+    }
+    const std::string line = open.line > 0 ? fmt::format(" of line {}", open.line) : "";
+    fail(place, "",
+         fmt::format("a ',' or '{}' is missing before this in the {}{}", bracket, what, line));
+  }
+  fail(place, "", explain(error.msg));
+}
+
+/// @param start place of the first character; without a line for a text of one line
+SceneNode parse(const std::string& text, const Place& start) {
+  check_characters(text, start);
+  TreeBuilder builder(start, end_of(text, start));
   try {
     // yaml-cpp 0.7 takes the end of the text for the end of a quote that was never closed, and so
     // swallows the rest of a scene; at an explicit end of the document it notices.
@@ -335,12 +354,46 @@ SceneNode parse(const std::string& text, const std::string& source, Lines lines)
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const YAML::Exception& error) {
-    if (error.msg == YAML::ErrorMsg::DOC_IN_SCALAR || error.msg == YAML::ErrorMsg::EOF_IN_SCALAR) {
-      fail(builder.last_place(), "", "a quote opened after here is never closed");
-    }
-    fail(builder.place_at(error.mark), "", explain(error.msg));
+    fail_to_parse(error, builder);
   }
   return builder.take_root();
+}
+
+SceneNode parse_scene(const std::string& text, const std::string& source) {
+  SceneNode root = parse(text, {source, 1, 1});
+  if (root.kind == SceneNode::Kind::null) {
+    fail({source, 1, 1}, "", "the scene is empty; expected a map of keys");
+  }
+  if (root.kind != SceneNode::Kind::map) {
+    fail(root.place, "",
+         fmt::format("expected a map of keys ('key: value', with a space after the colon), got {}",
+                     root.kind == SceneNode::Kind::list ? "a list" : "a single value"));
+  }
+  return root;
+}
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    lines.push_back(line);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+void add_excerpts(std::vector<Problem>& problems, const std::string& source,
+                  std::string_view text) {
+  const std::vector<std::string_view> lines = lines_of(text);
+  for (Problem& problem : problems) {
+    if (problem.source != source || problem.line < 1 || !problem.excerpt.empty()) continue;
+    const auto index = static_cast<std::size_t>(problem.line) - 1;
+    if (index >= lines.size() || lines[index].empty()) continue;
+    problem.excerpt = excerpt_of(lines[index], problem.line, problem.column);
+  }
 }
 
 struct CloseFile {
@@ -401,16 +454,15 @@ std::string join_path(const std::string& path, const std::string& key) {
 }
 
 SceneNode read_scene_text(const std::string& text, const std::string& source_name) {
-  SceneNode root = parse(text, source_name, Lines::numbered);
-  if (root.kind == SceneNode::Kind::null) {
-    fail({source_name, 1, 1}, "", "the scene is empty; expected a map of keys");
+  try {
+    SceneNode root = parse_scene(text, source_name);
+    root.document = text;
+    return root;
+  } catch (const ConfigError& error) {
+    std::vector<Problem> problems = error.problems();
+    add_excerpts(problems, source_name, text);
+    throw ConfigError(std::move(problems));
   }
-  if (root.kind != SceneNode::Kind::map) {
-    fail(root.place, "",
-         fmt::format("expected a map of keys ('key: value', with a space after the colon), got {}",
-                     root.kind == SceneNode::Kind::list ? "a list" : "a single value"));
-  }
-  return root;
 }
 
 SceneNode read_scene_file(const std::string& path) {
@@ -443,34 +495,48 @@ SceneNode read_scene_file(const std::string& path) {
 }
 
 void set_value(SceneNode& root, const std::string& assignment) {
-  check_characters(assignment, "--set", Lines::none);
-  if (assignment.find_first_of("\r\n") != std::string::npos) {
-    fail({"--set", 0, 0}, "", "has a line break; write --set key.path=value in one line");
+  const auto column = [](std::size_t i) { return static_cast<int>(kSet.size() + i) + 1; };
+  if (assignment.size() > SceneLimits::assignment) {
+    fail({kSet + printable(assignment.substr(0, 40)) + "...", 0, 0}, "",
+         fmt::format("is longer than {} KiB; write it into the scene",
+                     SceneLimits::assignment / 1024));
   }
-  const Place place{"--set " + assignment, 0, 0};
+  check_characters(assignment, {kSet + printable(assignment), 0, column(0)});
+  const std::size_t line_break = assignment.find_first_of("\r\n");
+  if (line_break != std::string::npos) {
+    fail({kSet + printable(assignment), 0, column(line_break)}, "",
+         "has a line break; write --set key.path=value in one line");
+  }
+  const auto at = [source = kSet + assignment, &column](std::size_t i) {
+    return Place{source, 0, column(i)};
+  };
   const std::size_t equals = assignment.find('=');
-  if (equals == std::string::npos) fail(place, "", "has no '='; write --set key.path=value");
+  if (equals == std::string::npos) {
+    fail(at(assignment.size()), "", "has no '='; write --set key.path=value");
+  }
   const std::string path = assignment.substr(0, equals);
   const std::vector<std::string> names = split(path);
   if (std::any_of(names.begin(), names.end(), [](const std::string& name) {
-        return name.empty() || name.find_first_of(" \t\r\n") != std::string::npos;
+        return name.empty() || name.find_first_of(" \t") != std::string::npos;
       })) {
-    fail(place, "", fmt::format("'{}' is not a key path; write --set key.path=value", path));
+    fail(at(0), "", fmt::format("'{}' is not a key path; write --set key.path=value", path));
   }
   const std::string written = assignment.substr(equals + 1);
-  if (written.find_first_not_of(" \t\r\n") == std::string::npos) {
-    fail(place, path, "has no value; write --set key.path=value");
+  if (written.find_first_not_of(" \t") == std::string::npos) {
+    fail(at(assignment.size()), path, "has no value; write --set key.path=value");
   }
-  SceneNode value = parse(written, place.source, Lines::none);
+  SceneNode value = parse(written, at(equals + 1));
   if (names.size() + height(value) > SceneLimits::levels) {
-    fail(place, path,
+    fail(at(0), path,
          fmt::format("maps and lists are nested deeper than {} levels", SceneLimits::levels));
   }
 
   // Nothing can go wrong any more once the path has left what exists, so a throw leaves no trace.
   SceneNode* node = &root;
   std::string walked;
+  std::size_t begin = 0;  // of the name in the assignment
   for (const std::string& name : names) {
+    const Place place = at(begin);
     if (node->kind == SceneNode::Kind::scalar) {
       fail(place, path, fmt::format("'{}' is a single value and holds no key '{}'", walked, name));
     }
@@ -495,12 +561,14 @@ void set_value(SceneNode& root, const std::string& assignment) {
       if (entry == node->entries.end()) {
         entry = node->entries.insert(entry, SceneEntry{name, place, {}});
         entry->value.place = place;
+        if (!is_last) entry->value.kind = SceneNode::Kind::map;
       } else if (is_last) {
         entry->place = place;
       }
       node = &entry->value;
     }
     walked = join_path(walked, name);
+    begin += name.size() + 1;
   }
   *node = std::move(value);
 }
@@ -514,15 +582,33 @@ Place place_of(const SceneNode& root, const std::string& path) {
   return find_nearest(root, path).node->place;
 }
 
+Problem problem_at(const Place& place, std::string key, std::string message) {
+  if (place.line > 0) {
+    return {std::move(key), std::move(message), place.source, place.line, place.column};
+  }
+  return {std::move(key),
+          std::move(message),
+          place.source,
+          0,
+          0,
+          place.column > 0 ? excerpt_of(place.source, 0, place.column) : ""};
+}
+
+void add_excerpts(std::vector<Problem>& problems, const SceneNode& root) {
+  add_excerpts(problems, root.place.source, root.document);
+}
+
 void locate(std::vector<Problem>& problems, const SceneNode& root) {
   for (Problem& problem : problems) {
     if (!problem.source.empty()) continue;
     const Place place = place_of(root, problem.key);
-    problem.source = place.source;
-    if (problem.key.empty()) continue;
-    problem.line = place.line;
-    problem.column = place.column;
+    if (problem.key.empty()) {
+      problem.source = place.source;
+    } else {
+      problem = problem_at(place, std::move(problem.key), std::move(problem.message));
+    }
   }
+  add_excerpts(problems, root);
 }
 
 void sort_by_place(std::vector<Problem>& problems) {

@@ -17,7 +17,7 @@ namespace stridor {
 struct Place {
   std::string source;  ///< file, or "--set key.path=value"
   int line = 0;        ///< 1-based; 0 where the source has no lines (--set)
-  int column = 0;      ///< 1-based, in bytes; 0 where the source has no lines
+  int column = 0;      ///< 1-based, in bytes; without lines in `source` itself; 0: unknown
   bool operator==(const Place&) const = default;
 };
 
@@ -39,6 +39,7 @@ struct SceneNode {
   /// What the text itself has wrong here (a duplicate key, a merge key, a tag, ...), with keys
   /// relative to this node. Kept so that they are reported along with everything else.
   std::vector<Problem> problems;
+  std::string document;  ///< of the map at the top: what was read, for the excerpts of messages
 
   /// The entry of a map with this name, or nullptr.
   const SceneEntry* entry(const std::string& key) const;
@@ -56,6 +57,7 @@ struct SceneLimits {
   static constexpr std::size_t bytes = 4 * 1024 * 1024;  ///< of a file
   static constexpr std::size_t nodes = 100000;           ///< with every alias expanded
   static constexpr std::size_t levels = 32;              ///< of maps and lists inside one another
+  static constexpr std::size_t assignment = 16 * 1024;   ///< bytes of a `--set`
 };
 
 /// Reads a scene from YAML text.
@@ -83,8 +85,8 @@ SceneNode read_scene_file(const std::string& path);
 /// @param assignment "key.path=value"
 /// @throws ConfigError, with the source "--set key.path=value", if there is no '=', no key or no
 /// value,
-///         if the value is not YAML, or if the path leads through a single value, through a name in
-///         a list or past the end of a list
+///         if it passes SceneLimits, if the value is not YAML, or if the path leads through a
+///         single value, through a name in a list or past the end of a list
 void set_value(SceneNode& root, const std::string& assignment);
 
 /// The value at a dotted path ("substructures.oblique.length", "expect.0.value"), or nullptr.
@@ -94,8 +96,18 @@ const SceneNode* find(const SceneNode& root, const std::string& path);
 /// The place of the value at a dotted path, or of its nearest ancestor that was written.
 Place place_of(const SceneNode& root, const std::string& path);
 
+/// A problem at a place. One of `--set` has its excerpt, the assignment, from the beginning; one of
+/// a file gets it from `add_excerpts`, since the place does not hold the line.
+/// @param key path of the key that is meant
+Problem problem_at(const Place& place, std::string key, std::string message);
+
+/// Gives the problems that lie in the file of this scene the line there as their excerpt.
+/// @param root map at the top
+void add_excerpts(std::vector<Problem>& problems, const SceneNode& root);
+
 /// Gives every problem without a source the place of its key, or of the nearest ancestor that was
-/// written. A problem without key, which means the whole scene, gets the source alone.
+/// written, and its excerpt. A problem without key, which means the whole scene, gets the source
+/// alone.
 void locate(std::vector<Problem>& problems, const SceneNode& root);
 
 /// Sorts by place, those of the file before those of `--set`; equal places keep their order.

@@ -6,11 +6,15 @@
 #include <cmath>
 
 #include "core/suggestion.hpp"
+#include "models/body_cache.hpp"
+#include "models/initial_motion.hpp"
 
 namespace stridor {
 namespace {
 
-/// A contact pair with its names resolved to nodes.
+constexpr const char* rigid_name = "rigid";
+
+/// A contact pair with its names resolved to nodes. A rigid master has no nodes.
 struct ResolvedPair {
   std::string name;
   std::string key;  ///< key path of its section
@@ -24,7 +28,7 @@ struct ResolvedPair {
 
 struct Body {
   std::string name;
-  const SubstructureParameters* parameters = nullptr;
+  const SubstructureParameters* parameters = nullptr;  ///< null for the rigid master
   BodyMatrices matrices;
   Eigen::Vector2d place = Eigen::Vector2d::Zero();
   bool is_placed = false;
@@ -74,6 +78,7 @@ std::pair<int, std::string> split_name(const std::string& name, const std::vecto
   const std::string body_name = name.substr(0, dot);
   std::vector<std::string> names;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (bodies[b].parameters == nullptr) continue;  // the rigid master has no points
     if (bodies[b].name == body_name) return {static_cast<int>(b), name.substr(dot + 1)};
     names.push_back(bodies[b].name);
   }
@@ -106,29 +111,12 @@ std::vector<int> spaced_nodes(const Body& body, const std::vector<int>& nodes) {
   return kept;
 }
 
-ResolvedPair resolve_pair(const std::string& name, const std::string& key,
-                          const ContactParameters& parameters, const std::vector<Body>& bodies) {
-  ResolvedPair pair;
-  pair.name = name;
-  pair.key = key;
-  pair.parameters = &parameters;
-
-  const auto [master, surface] = split_name(parameters.master, bodies, key + ".master");
-  const auto& surfaces = bodies[static_cast<std::size_t>(master)].matrices.surfaces;
-  const auto found = surfaces.find(surface);
-  if (found == surfaces.end()) {
-    throw ConfigError(
-        key + ".master",
-        fmt::format("'{}' has no surface '{}'{} (it has: {})",
-                    bodies[static_cast<std::size_t>(master)].name, surface,
-                    did_you_mean(surface, names_of(surfaces)), listed(names_of(surfaces))));
-  }
-  pair.master_body = master;
-  pair.master_name = parameters.master;
-  pair.master_nodes = spaced_nodes(bodies[static_cast<std::size_t>(master)], found->second);
-
-  for (std::size_t k = 0; k < parameters.slave.size(); ++k) {
-    const auto [slave, point] = split_name(parameters.slave[k], bodies, key + ".slave");
+/// The slave points of a pair, edges node by node.
+void resolve_slaves(ResolvedPair& pair, const std::vector<Body>& bodies) {
+  const std::string& key = pair.key;
+  const std::vector<std::string>& names = pair.parameters->slave;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto [slave, point] = split_name(names[k], bodies, key + ".slave");
     const Body& body = bodies[static_cast<std::size_t>(slave)];
     if (k == 0) pair.slave_body = slave;
     if (slave != pair.slave_body) {
@@ -150,6 +138,35 @@ ResolvedPair resolve_pair(const std::string& name, const std::string& key,
                                     point, did_you_mean(point, known), listed(known)));
     }
   }
+}
+
+ResolvedPair resolve_pair(const std::string& name, const std::string& key,
+                          const ContactParameters& parameters, const std::vector<Body>& bodies) {
+  ResolvedPair pair;
+  pair.name = name;
+  pair.key = key;
+  pair.parameters = &parameters;
+
+  pair.master_name = parameters.master;
+  if (parameters.master == rigid_name) {
+    // The rigid master is the last body, without degrees of freedom.
+    pair.master_body = static_cast<int>(bodies.size()) - 1;
+    resolve_slaves(pair, bodies);
+    return pair;
+  }
+  const auto [master, surface] = split_name(parameters.master, bodies, key + ".master");
+  const auto& surfaces = bodies[static_cast<std::size_t>(master)].matrices.surfaces;
+  const auto found = surfaces.find(surface);
+  if (found == surfaces.end()) {
+    throw ConfigError(
+        key + ".master",
+        fmt::format("'{}' has no surface '{}'{} (it has: {})",
+                    bodies[static_cast<std::size_t>(master)].name, surface,
+                    did_you_mean(surface, names_of(surfaces)), listed(names_of(surfaces))));
+  }
+  pair.master_body = master;
+  pair.master_nodes = spaced_nodes(bodies[static_cast<std::size_t>(master)], found->second);
+  resolve_slaves(pair, bodies);
   if (pair.slave_body == pair.master_body) {
     throw ConfigError(key + ".slave", "slave and master must be different bodies");
   }
@@ -160,6 +177,13 @@ MasterSurface make_surface(const ResolvedPair& pair, Body& body) {
   MasterSurface surface;
   surface.name = pair.master_name;
   surface.body = pair.master_body;
+  if (pair.master_name == rigid_name) {
+    surface.rows = {{0, 0}, {0, 0}};
+    surface.positions = {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(1.0, 0.0)};
+    surface.arc_length = {0.0, 1.0};
+    surface.is_endless = true;
+    return surface;
+  }
   double arc = 0.0;
   for (std::size_t k = 0; k < pair.master_nodes.size(); ++k) {
     if (k > 0) arc += node_distance(body.matrices, pair.master_nodes, k - 1);
@@ -196,7 +220,7 @@ std::pair<int, Projection> locate_on(const MasterSurface& surface, const Eigen::
 void place_slave(const ResolvedPair& pair, const MasterSurface& surface, Body& slave) {
   const double start = pair.parameters->start;
   const double length = surface.arc_length.back();
-  if (start > length * (1.0 + 1e-12)) {
+  if (!surface.is_endless && start > length * (1.0 + 1e-12)) {
     throw ConfigError(
         pair.key + ".start",
         fmt::format("{:g} m is off the master '{}', which is {:g} m long; allowed: 0 to {:g} m",
@@ -216,22 +240,112 @@ void place_slave(const ResolvedPair& pair, const MasterSurface& surface, Body& s
   }
 }
 
+/// A node of a body by the name of its point.
+int node_at(const Body& body, const std::string& point, const std::string& key) {
+  const auto node = body.matrices.points.find(point);
+  if (node != body.matrices.points.end()) return node->second;
+  const auto known = names_of(body.matrices.points);
+  throw ConfigError(key, fmt::format("'{}' has no point '{}'{} (it has: {})", body.name, point,
+                                     did_you_mean(point, known), listed(known)));
+}
+
+/// The initial displacements or velocities of a scene with their names resolved.
+struct InitialMotion {
+  struct Entry {
+    std::string key;
+    int body = 0;
+    std::optional<PointRows> rows;  ///< of a point; none for the whole body
+    Eigen::Vector2d value;
+  };
+  std::vector<Entry> entries;
+
+  template <MotionKind kind>
+  InitialMotion(const std::vector<InitialMotionParameters<kind>>& given, const std::string& key,
+                std::vector<Body>& bodies) {
+    for (std::size_t k = 0; k < given.size(); ++k) {
+      Entry entry{fmt::format("{}.{}", key, k), 0, std::nullopt, {given[k].x, given[k].y}};
+      const std::string& at = given[k].at;
+      const bool is_point = at.find('.') != std::string::npos;
+      const auto [b, point] = split_name(is_point ? at : at + ".all", bodies, entry.key + ".at");
+      entry.body = b;
+      Body& body = bodies[static_cast<std::size_t>(b)];
+      if (is_point) entry.rows = body.rows_of(node_at(body, point, entry.key + ".at"));
+      entries.push_back(std::move(entry));
+    }
+  }
+
+  /// The motion of one body in reduced coordinates; empty where nothing is given.
+  Eigen::VectorXd of(int body, const Body& built, const SystemBody& finished) const {
+    Eigen::VectorXd motion;
+    std::vector<PrescribedRow> prescribed;
+    std::string key;
+    const auto add = [&](const Eigen::VectorXd& part) {
+      motion = motion.size() == 0 ? part : Eigen::VectorXd(motion + part);
+    };
+    for (const Entry& entry : entries) {
+      if (entry.body != body) continue;
+      if (entry.rows) {
+        key = entry.key;
+        if (entry.value.x() != 0.0) prescribed.push_back({entry.rows->x, entry.value.x()});
+        if (entry.value.y() != 0.0) prescribed.push_back({entry.rows->y, entry.value.y()});
+      } else {
+        add(translation(entry, built, finished));
+      }
+    }
+    if (!prescribed.empty()) {
+      try {
+        add(static_shape(finished.modal, prescribed));
+      } catch (const NumericalError& error) {
+        throw ConfigError(key + ".at", error.what());
+      }
+    }
+    return motion;
+  }
+
+  /// Constraint modes carry a body along with its interface; that is a translation where no support
+  /// resists it.
+  static Eigen::VectorXd translation(const Entry& entry, const Body& built,
+                                     const SystemBody& finished) {
+    Eigen::VectorXd motion = Eigen::VectorXd::Zero(finished.reduced.size());
+    const Eigen::MatrixXd& stiffness = finished.reduced.stiffness;
+    for (Eigen::Index direction = 0; direction < 2; ++direction) {
+      if (entry.value(direction) == 0.0) continue;
+      Eigen::VectorXd unit = Eigen::VectorXd::Zero(finished.reduced.size());
+      for (std::size_t k = 0; k < built.interface.size(); ++k) {
+        for (const auto& dofs : built.matrices.node_dofs) {
+          if (dofs[static_cast<std::size_t>(direction)] == built.interface[k])
+            unit(static_cast<Eigen::Index>(k)) = 1.0;
+        }
+      }
+      const double energy = unit.dot(stiffness * unit);
+      const double scale = unit.dot(stiffness.cwiseAbs() * unit);
+      // A body without interface DoFs in this direction is held by its supports alone.
+      if (unit.isZero() || !(energy <= 1e-9 * scale)) {
+        throw ConfigError(entry.key + ".at",
+                          fmt::format("the supports of '{}' do not let all of it move alike; name "
+                                      "a point of it",
+                                      built.name));
+      }
+      motion += entry.value(direction) * unit;
+    }
+    return motion;
+  }
+};
+
+/// The rigid master: its one row stays where it is.
+SystemBody make_rigid_body() {
+  SystemBody body;
+  body.name = rigid_name;
+  body.reduced.rows.resize(1, 0);
+  body.modal.rows.resize(1, 0);
+  return body;
+}
+
 std::string type_name(const SubstructureParameters&) {
   return "beam";
 }
 
-BodyMatrices make_body(const SubstructureParameters& parameters) {
-  return std::visit([](const BeamParameters& beam) { return make_beam(beam); }, parameters);
-}
-
 }  // namespace
-
-const Schema& InitialParameters::schema() {
-  static const Schema keys = SchemaOf<InitialParameters>("initial").choice(
-      "state", &InitialParameters::state, {{"rest", Kind::rest}},
-      {.doc = "State at the start: rest.", .optional = true});
-  return keys;
-}
 
 const Schema& ModelParameters::schema() {
   static const Schema keys =
@@ -284,16 +398,33 @@ std::map<std::string, ContactParameters> ModelParameters::pairs() const {
 
 Model make_model(const ModelParameters& parameters,
                  const std::vector<std::pair<PointName, std::string>>& observed) {
+  BodyCache cache;
+  return make_model(parameters, observed, cache);
+}
+
+Model make_model(const ModelParameters& parameters,
+                 const std::vector<std::pair<PointName, std::string>>& observed, BodyCache& cache) {
   std::vector<Body> bodies;
   for (const auto& [name, substructure] : parameters.substructures) {
+    if (name == rigid_name) {
+      throw ConfigError("substructures." + name,
+                        "'rigid' is the name of the rigid master; give the body another");
+    }
     Body body;
     body.name = name;
     body.parameters = &substructure;
-    body.matrices = make_body(substructure);
+    body.matrices = cache.matrices(substructure);
     bodies.push_back(std::move(body));
   }
-
   const auto pairs = parameters.pairs();
+  const bool has_rigid_master = std::any_of(pairs.begin(), pairs.end(), [](const auto& pair) {
+    return pair.second.master == rigid_name;
+  });
+  if (has_rigid_master) {
+    bodies.emplace_back();
+    bodies.back().name = rigid_name;
+  }
+
   std::vector<ResolvedPair> resolved;
   for (const auto& [name, pair] : pairs) {
     resolved.push_back(
@@ -339,7 +470,7 @@ Model make_model(const ModelParameters& parameters,
       const auto [segment, projection] = locate_on(surface, point.slave_position);
       const double length = surface.arc_length.back();
       const double rounding = 1e-9;
-      if (projection.xi < -rounding || projection.xi > 1.0 + rounding) {
+      if (!surface.is_endless && (projection.xi < -rounding || projection.xi > 1.0 + rounding)) {
         throw ConfigError(pair.key + ".start",
                           fmt::format("slave point {} starts off the end of the master '{}'", k + 1,
                                       surface.name));
@@ -355,8 +486,9 @@ Model make_model(const ModelParameters& parameters,
       }
       point.first_segment = segment;
       point.assumption = pair.parameters->assumption;
-      point.friction =
-          TimeCurve::ramp(pair.parameters->friction.coefficient, parameters.drive.ramp);
+      point.friction = make_friction_law(pair.parameters->friction);
+      point.friction_rise = TimeCurve::ramp(1.0, parameters.drive.ramp);
+      point.on_violation = pair.parameters->on_violation;
       point.armed_from = pair.parameters->armed_from.value_or(parameters.drive.ramp);
       system.contacts.push_back(std::move(point));
     }
@@ -367,16 +499,17 @@ Model make_model(const ModelParameters& parameters,
   for (const auto& [name, key] : observed) {
     const auto [b, point] = split_name(name.body + "." + name.point, bodies, key);
     Body& body = bodies[static_cast<std::size_t>(b)];
-    const auto node = body.matrices.points.find(point);
-    if (node == body.matrices.points.end()) {
-      const auto known = names_of(body.matrices.points);
-      throw ConfigError(key, fmt::format("'{}' has no point '{}'{} (it has: {})", body.name, point,
-                                         did_you_mean(point, known), listed(known)));
-    }
-    model.points[name] = {b, body.rows_of(node->second)};
+    model.points[name] = {b, body.rows_of(node_at(body, point, key))};
   }
 
+  const InitialMotion displacement(parameters.initial.displacement, "initial.displacement", bodies);
+  const InitialMotion velocity(parameters.initial.velocity, "initial.velocity", bodies);
   for (Body& body : bodies) {
+    if (body.parameters == nullptr) {
+      system.bodies.push_back(make_rigid_body());
+      model.placements.emplace_back();
+      continue;
+    }
     const std::string key = "substructures." + body.name;
     SystemBody finished;
     finished.name = body.name;
@@ -396,14 +529,20 @@ Model make_model(const ModelParameters& parameters,
                                     num_modes, type_name(*body.parameters), num_interior));
     }
     try {
-      finished.reduced = make_craig_bampton(body.matrices, body.interface, num_modes, body.watched);
-      finished.modal = make_modal(finished.reduced);
+      BodyCache::Reduction reduction =
+          cache.reduce(*body.parameters, body.matrices, body.interface, num_modes, body.watched);
+      finished.reduced = std::move(reduction.reduced);
+      finished.modal = std::move(reduction.modal);
     } catch (const NumericalError& error) {
       throw ConfigError(
           key, fmt::format("cannot be reduced: {}. Give it supports or more contact points",
                            error.what()));
     }
+    const auto number = static_cast<int>(system.bodies.size());
+    finished.initial_displacement = displacement.of(number, body, finished);
+    finished.initial_velocity = velocity.of(number, body, finished);
     system.bodies.push_back(std::move(finished));
+    model.placements.push_back({body.place, body.interface});
   }
   return model;
 }

@@ -9,17 +9,13 @@
 
 #include "coupling/contact_parameters.hpp"
 #include "coupling/system.hpp"
+#include "models/initial_parameters.hpp"
 #include "substructures/beam.hpp"
 
 namespace stridor {
 
 /// Every kind of substructure that a scene can hold, by its key `type`.
 using SubstructureParameters = std::variant<BeamParameters>;
-
-struct InitialParameters {
-  enum class Kind { rest } state = Kind::rest;
-  static const Schema& schema();
-};
 
 /// The part of a scene that describes the mechanics.
 struct ModelParameters {
@@ -47,11 +43,19 @@ struct Model {
     int body = 0;
     PointRows rows;
   };
+  /// Where a body stands and what its reduction kept.
+  struct Placement {
+    Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< of its frame, m
+    std::vector<int> interface;                       ///< DoFs, as of make_craig_bampton()
+  };
   System system;
   std::map<PointName, Point> points;
+  std::vector<Placement> placements;  ///< of the bodies of the system
 };
 
-/// Builds, places and reduces the bodies and connects them.
+/// Builds, places and reduces the bodies, connects them and sets them moving. The initial state is
+/// left at rest where `initial.state` is another than that; see initial_state.hpp of io and
+/// find_equilibrium().
 ///
 /// The first body that is only ever a master keeps its frame as the global one; a slave body is
 /// placed so that its first slave point lies on the master at `start`.
@@ -65,5 +69,11 @@ struct Model {
 ///         or a reduction asks for more modes than there are
 Model make_model(const ModelParameters& parameters,
                  const std::vector<std::pair<PointName, std::string>>& observed);
+
+class BodyCache;
+
+/// The same with bodies and reductions from a cache where it has them.
+Model make_model(const ModelParameters& parameters,
+                 const std::vector<std::pair<PointName, std::string>>& observed, BodyCache& cache);
 
 }  // namespace stridor

@@ -11,6 +11,10 @@ Eigen::Map<const Eigen::VectorXd> as_vector(std::span<const double> values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 
+Eigen::Map<Eigen::VectorXd> as_vector(std::span<double> values) {
+  return {values.data(), static_cast<Eigen::Index>(values.size())};
+}
+
 std::span<const double> as_span(const Eigen::VectorXd& vector) {
   return {vector.data(), static_cast<std::size_t>(vector.size())};
 }
@@ -52,6 +56,22 @@ double PublishedTwoStep::displacement(int row) const {
   return row_table_.col(row).dot(current_);
 }
 
+Propagator::Motion PublishedTwoStep::motion() const {
+  return {current_, (current_ - previous_) / step_};
+}
+
+void PublishedTwoStep::foresee(const double* forces, std::span<double> position,
+                               std::span<double> increment) const {
+  auto contact = as_vector(position);  // scratch at first
+  contact.setZero();
+  for (int slot = 0; slot < num_slots(); ++slot)
+    contact += forces[slot] * row_table_.col(row(slot));
+  auto next = as_vector(increment);
+  next.noalias() = inverse_mass_ * contact;
+  next = predicted_ + (step_ * step_) * next - current_;
+  as_vector(position) = current_;
+}
+
 double PublishedTwoStep::predicted_displacement(int row) const {
   return row_table_.col(row).dot(predicted_);
 }
@@ -76,13 +96,27 @@ void PublishedTwoStep::advance_body(const double* forces, double* predicted) {
   const Eigen::VectorXd corrected = predicted_ + (step_ * step_) * (inverse_mass_ * contact_);
   previous_.swap(current_);
   current_ = corrected;
+  predict();
+  for (int slot = 0; slot < num_slots(); ++slot)
+    predicted[slot] = row_table_.col(row(slot)).dot(predicted_);
+}
 
+void PublishedTwoStep::predict() {
   contact_.noalias() = load_ - body_.stiffness * current_;
   contact_.noalias() -= damping_ * ((current_ - previous_) / step_);
   acceleration_.noalias() = inverse_mass_ * contact_;
   predicted_ = (step_ * step_) * acceleration_ + 2.0 * current_ - previous_;
-  for (int slot = 0; slot < num_slots(); ++slot)
-    predicted[slot] = row_table_.col(row(slot)).dot(predicted_);
+}
+
+void PublishedTwoStep::set_body_motion(const Eigen::VectorXd& displacement,
+                                       const Eigen::VectorXd& velocity) {
+  current_ = displacement;
+  previous_ = displacement - step_ * velocity;
+  predict();
+}
+
+double PublishedTwoStep::initial_increment(int row, const Eigen::VectorXd& velocity) const {
+  return step_ * row_table_.col(row).dot(velocity);
 }
 
 void PublishedTwoStep::save_body(State& state, const std::string& prefix) const {
@@ -121,6 +155,18 @@ double FusedTwoStep::displacement(int row) const {
   return row_table_.col(row).dot(current_);
 }
 
+Propagator::Motion FusedTwoStep::motion() const {
+  return {current_, increment_ / step_};
+}
+
+void FusedTwoStep::foresee(const double* forces, std::span<double> position,
+                           std::span<double> increment) const {
+  auto next = as_vector(increment);
+  next = next_increment_;
+  for (int slot = 0; slot < num_slots(); ++slot) next += forces[slot] * slot_gain_.col(row(slot));
+  as_vector(position) = current_;
+}
+
 double FusedTwoStep::predicted_displacement(int row) const {
   return row_table_.col(row).dot(current_ + next_increment_);
 }
@@ -138,11 +184,26 @@ void FusedTwoStep::advance_body(const double* forces, double* predicted) {
   for (int slot = 0; slot < num_slots(); ++slot)
     increment_ += forces[slot] * slot_gain_.col(row(slot));
   current_ += increment_;
+  predict();
+  for (int slot = 0; slot < num_slots(); ++slot)
+    predicted[slot] = predicted_displacement(row(slot));
+}
+
+void FusedTwoStep::predict() {
   blend_ = (step_ * step_) * current_ + (step_ * beta_) * increment_;
   next_increment_ = (1.0 - step_ * alpha_) * increment_ + load_;
   next_increment_.noalias() -= mass_to_stiffness_ * blend_;
-  for (int slot = 0; slot < num_slots(); ++slot)
-    predicted[slot] = predicted_displacement(row(slot));
+}
+
+void FusedTwoStep::set_body_motion(const Eigen::VectorXd& displacement,
+                                   const Eigen::VectorXd& velocity) {
+  current_ = displacement;
+  increment_ = step_ * velocity;
+  predict();
+}
+
+double FusedTwoStep::initial_increment(int row, const Eigen::VectorXd& velocity) const {
+  return step_ * row_table_.col(row).dot(velocity);
 }
 
 void FusedTwoStep::save_body(State& state, const std::string& prefix) const {

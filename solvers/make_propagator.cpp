@@ -1,5 +1,6 @@
 #include "solvers/make_propagator.hpp"
 
+#include <Eigen/LU>
 #include <limits>
 
 #include "solvers/dense_two_step.hpp"
@@ -23,21 +24,48 @@ Eigen::MatrixXd load_patterns(const SystemBody& body, const Eigen::MatrixXd& row
 std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimeParameters& time,
                                             int num_slots, std::span<const double> loads) {
   const double alpha = body.modal.damping.alpha_at(0.0);
-  const Eigen::MatrixXd reduced_patterns =
-      load_patterns(body, body.reduced.rows, body.reduced.base_inertia);
-  switch (time.coordinates) {
-    case Coordinates::craig_bampton:
-      return std::make_unique<PublishedTwoStep>(body.reduced, reduced_patterns, time.step,
-                                                num_slots, alpha, loads);
-    case Coordinates::craig_bampton_fused:
-      return std::make_unique<FusedTwoStep>(body.reduced, reduced_patterns, time.step, num_slots,
-                                            alpha, loads);
+  const auto patterns = [&](const Eigen::MatrixXd& rows, const Eigen::VectorXd& base_inertia) {
+    return load_patterns(body, rows, base_inertia);
+  };
+  std::unique_ptr<Propagator> propagator;
+  // A body without degrees of freedom is the same in all coordinates, but BLAS takes no empty
+  // matrix.
+  switch (body.reduced.size() == 0 ? Coordinates::modal : time.coordinates) {
     case Coordinates::modal:
+      propagator = std::make_unique<ModalRecurrence>(
+          body.modal, patterns(body.modal.rows, body.modal.base_inertia), time.step, num_slots,
+          alpha, loads);
+      break;
+    case Coordinates::craig_bampton:
+      propagator = std::make_unique<PublishedTwoStep>(
+          body.reduced, patterns(body.reduced.rows, body.reduced.base_inertia), time.step,
+          num_slots, alpha, loads);
+      break;
+    case Coordinates::craig_bampton_fused:
+      propagator = std::make_unique<FusedTwoStep>(
+          body.reduced, patterns(body.reduced.rows, body.reduced.base_inertia), time.step,
+          num_slots, alpha, loads);
       break;
   }
-  return std::make_unique<ModalRecurrence>(
-      body.modal, load_patterns(body, body.modal.rows, body.modal.base_inertia), time.step,
-      num_slots, alpha, loads);
+  return propagator;
+}
+
+void start_motion(Propagator& propagator, const SystemBody& body, const TimeParameters& time) {
+  const auto n = body.reduced.size();
+  const bool starts_at_rest =
+      body.initial_displacement.size() == 0 && body.initial_velocity.size() == 0;
+  if (starts_at_rest) return;
+  const auto or_zero = [&](const Eigen::VectorXd& given) -> Eigen::VectorXd {
+    return given.size() == 0 ? Eigen::VectorXd(Eigen::VectorXd::Zero(n)) : given;
+  };
+  Eigen::VectorXd displacement = or_zero(body.initial_displacement);
+  Eigen::VectorXd velocity = or_zero(body.initial_velocity);
+  if (time.coordinates == Coordinates::modal) {
+    const auto shapes = body.modal.shapes.partialPivLu();
+    displacement = shapes.solve(displacement).eval();
+    velocity = shapes.solve(velocity).eval();
+  }
+  propagator.set_motion(displacement, velocity);
 }
 
 StepLimit step_limit(const System& system) {

@@ -21,6 +21,10 @@ namespace stridor {
 std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimeParameters& time,
                                             int num_slots, std::span<const double> loads);
 
+/// Gives it the displacements and velocities that the body starts with. To be called when its slots
+/// watch the rows that they start with, whose increments follow from the velocities.
+void start_motion(Propagator& propagator, const SystemBody& body, const TimeParameters& time);
+
 /// Largest stable step over all bodies of the central difference, s, and the body that sets it.
 struct StepLimit {
   double step;

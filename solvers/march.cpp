@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <utility>
 
 #include "core/stop_token.hpp"
 
@@ -14,68 +15,75 @@ constexpr std::int64_t block = 1024;
 
 }  // namespace
 
-MarchResult march(Simulation& simulation, SampleSink* sink, const MarchPlan& plan) {
-  using Clock = std::chrono::steady_clock;
-  MarchResult result;
-  result.force_extremes.resize(static_cast<std::size_t>(simulation.num_contacts()));
-  bool is_open = false;
-  bool was_closed = false;
-  const auto close_window = [&] {
-    if (!is_open || was_closed) return;
-    was_closed = true;
-    for (int i = 0; i < simulation.num_contacts(); ++i) {
-      result.force_extremes[static_cast<std::size_t>(i)] = simulation.force_extremes(i);
-    }
-  };
+March::March(Simulation& simulation, SampleSink* sink, MarchPlan plan)
+    : simulation_(&simulation),
+      sink_(sink),
+      plan_(std::move(plan)),
+      sink_next_(sink != nullptr ? sink->next_step() : std::numeric_limits<std::int64_t>::max()),
+      closed_statistics_(static_cast<std::size_t>(simulation.num_contacts())) {}
 
-  const auto start = Clock::now();
-  auto next_report = start + std::chrono::milliseconds(250);
-  std::int64_t next_look = 0;
-  constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
-  std::int64_t sink_next = sink != nullptr ? sink->next_step() : never;
+void March::note_window(std::int64_t now) {
+  if (window_ == Window::ahead && now >= plan_.measure_from && now <= plan_.measure_to) {
+    window_ = Window::open;
+    simulation_->reset_statistics();
+  }
+  if (window_ == Window::open && now >= plan_.measure_to) {
+    closed_statistics_ = statistics();
+    window_ = Window::closed;
+  }
+}
+
+MeasuredContacts March::statistics() const {
+  MeasuredContacts measured = closed_statistics_;
+  if (window_ != Window::open) return measured;
+  for (int i = 0; i < simulation_->num_contacts(); ++i)
+    measured[static_cast<std::size_t>(i)] = simulation_->statistics(i);
+  return measured;
+}
+
+MarchEnd March::run_until(std::int64_t step) {
+  using Clock = std::chrono::steady_clock;
+  const std::int64_t last_step = std::min(step, plan_.last_step);
+  auto next_report = Clock::now() + std::chrono::milliseconds(250);
+  std::int64_t next_look = simulation_->step_index();
   while (true) {
-    const std::int64_t now = simulation.step_index();
-    if (!is_open && now >= plan.measure_from && now <= plan.measure_to) {
-      is_open = true;
-      simulation.reset_force_extremes();
+    const std::int64_t now = simulation_->step_index();
+    note_window(now);
+    if (sink_next_ == now) {
+      sink_->sample(*simulation_);
+      sink_next_ = sink_->next_step();
     }
-    if (now >= plan.measure_to) close_window();
-    if (sink_next == now) {
-      sink->sample(simulation);
-      sink_next = sink->next_step();
-    }
-    if (now >= plan.last_step) break;
+    if (now >= last_step) return MarchEnd::finished;
     if (now >= next_look) {
       next_look = now + block;
-      if (stop_requested()) {
-        result.end = MarchEnd::stopped;
-        break;
-      }
-      if (plan.on_progress && Clock::now() >= next_report) {
-        plan.on_progress(simulation);
+      if (stop_requested()) return MarchEnd::stopped;
+      if (plan_.on_progress && Clock::now() >= next_report) {
+        plan_.on_progress(*simulation_);
         next_report = Clock::now() + std::chrono::milliseconds(250);
       }
     }
     // Up to the next event only the sink interrupts the steps.
-    std::int64_t event = std::min(plan.last_step, next_look);
-    if (!is_open && plan.measure_from > now) event = std::min(event, plan.measure_from);
-    if (is_open && !was_closed && plan.measure_to > now) event = std::min(event, plan.measure_to);
+    std::int64_t event = std::min(last_step, next_look);
+    if (window_ == Window::ahead && plan_.measure_from > now)
+      event = std::min(event, plan_.measure_from);
+    if (window_ == Window::open) event = std::min(event, plan_.measure_to);
     StepOutcome outcome = StepOutcome::done;
-    while (sink_next < event && outcome == StepOutcome::done) {
-      outcome = simulation.step_until(sink_next);
+    while (sink_next_ < event && outcome == StepOutcome::done) {
+      outcome = simulation_->step_until(sink_next_);
       if (outcome == StepOutcome::done) {
-        sink->sample(simulation);
-        sink_next = sink->next_step();
+        sink_->sample(*simulation_);
+        sink_next_ = sink_->next_step();
       }
     }
-    if (outcome == StepOutcome::done) outcome = simulation.step_until(event);
-    if (outcome != StepOutcome::done) {
-      result.end = MarchEnd::failed;
-      break;
-    }
+    if (outcome == StepOutcome::done) outcome = simulation_->step_until(event);
+    if (outcome != StepOutcome::done) return MarchEnd::failed;
   }
-  close_window();
-  return result;
+}
+
+MarchResult march(Simulation& simulation, SampleSink* sink, const MarchPlan& plan) {
+  March whole(simulation, sink, plan);
+  const MarchEnd end = whole.run_until(plan.last_step);
+  return {end, whole.statistics()};
 }
 
 }  // namespace stridor

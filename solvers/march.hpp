@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <vector>
 
 #include "solvers/simulation.hpp"
 
@@ -15,26 +17,54 @@ enum class MarchEnd {
 
 struct MarchPlan {
   std::int64_t last_step = 0;
-  /// Window of the force extremes, in steps, both ends included; outside it they are not tracked.
+  /// Window of the contact statistics, in steps, both ends included; outside it they are not
+  /// tracked.
   std::int64_t measure_from = 0;
   std::int64_t measure_to = 0;
   /// Called about four times a second of wall time, between steps.
   std::function<void(const Simulation&)> on_progress;
 };
 
-/// Extremes of λ of every contact over the window of a plan; empty where no step fell into it.
-using ForceExtremes = std::vector<std::optional<std::pair<double, double>>>;
+/// What every contact did over the window of a plan; empty where no step fell into it.
+using MeasuredContacts = std::vector<std::optional<ContactStatistics>>;
 
 struct MarchResult {
   MarchEnd end = MarchEnd::finished;
-  ForceExtremes force_extremes;
+  MeasuredContacts statistics;
 };
 
-/// Steps a simulation to the end of the plan, handing it to the sink whenever that is due.
+/// Steps a simulation through a plan, at once or in stretches, handing it to the sink whenever that
+/// is due.
 ///
 /// The samples at the present step are taken first, so a fresh simulation is sampled at t = 0. A
 /// simulation that was loaded must come with a sink that was loaded.
-/// @throws whatever the sink throws; the simulation stands between two steps then
+class March {
+ public:
+  /// @param simulation, sink must live longer; the sink may be null
+  March(Simulation& simulation, SampleSink* sink, MarchPlan plan);
+
+  /// Steps until `step` or the end of the plan, whichever comes first.
+  /// @return `finished` where it got there; after anything else it must not be called again
+  /// @throws whatever the sink throws; the simulation stands between two steps then
+  MarchEnd run_until(std::int64_t step);
+
+  /// Statistics of the window as far as it was run.
+  MeasuredContacts statistics() const;
+
+ private:
+  enum class Window { ahead, open, closed };
+
+  void note_window(std::int64_t now);
+
+  Simulation* simulation_;
+  SampleSink* sink_;
+  MarchPlan plan_;
+  std::int64_t sink_next_;
+  Window window_ = Window::ahead;
+  MeasuredContacts closed_statistics_;
+};
+
+/// Runs a whole plan.
 MarchResult march(Simulation& simulation, SampleSink* sink, const MarchPlan& plan);
 
 }  // namespace stridor

@@ -1,6 +1,42 @@
 #include "solvers/modal_recurrence.hpp"
 
+#include "core/clones.hpp"
+
 namespace stridor {
+namespace {
+
+/// A block of one field or row; split by the compiler where the instruction set has shorter
+/// vectors.
+using Block = double __attribute__((vector_size(modal_block * sizeof(double))));
+/// The same in an array that need not be aligned.
+using LooseBlock =
+    double __attribute__((vector_size(modal_block * sizeof(double)), aligned(alignof(double))));
+
+/// d_{n+1} = d*_{n+1} + e Σ_j row_j f_j, and q_n out of its blocks. Arguments as advance_modes().
+STRIDOR_CLONES
+void foresee_modes(const double* blocks, std::size_t num_modes, const double* const* rows,
+                   const double* forces, int num_slots, double* position, double* increment) {
+  const auto* fields = reinterpret_cast<const Block*>(blocks);
+  for (std::size_t first = 0; first < num_modes; first += modal_block, fields += num_modal_fields) {
+    Block force{};
+    for (int slot = 0; slot < num_slots; ++slot)
+      force += *reinterpret_cast<const Block*>(rows[slot] + first) * forces[slot];
+    const Block next = fields[static_cast<std::size_t>(ModalField::increment)] +
+                       fields[static_cast<std::size_t>(ModalField::gain)] * force;
+    const Block& present = fields[static_cast<std::size_t>(ModalField::position)];
+    if (first + modal_block <= num_modes) {
+      *reinterpret_cast<LooseBlock*>(position + first) = present;
+      *reinterpret_cast<LooseBlock*>(increment + first) = next;
+    } else {
+      for (std::size_t j = 0; first + j < num_modes; ++j) {
+        position[first + j] = present[j];
+        increment[first + j] = next[j];
+      }
+    }
+  }
+}
+
+}  // namespace
 
 ModalRecurrence::ModalRecurrence(const ModalBody& body, const Eigen::MatrixXd& patterns,
                                  double step, int num_slots, double alpha,
@@ -31,6 +67,27 @@ ModalRecurrence::ModalRecurrence(const ModalBody& body, const Eigen::MatrixXd& p
 
 double ModalRecurrence::displacement(int row) const {
   return gather_modes(blocks_.data(), num_blocks_, ModalField::position, row_data(row));
+}
+
+Propagator::Motion ModalRecurrence::motion() const {
+  Motion motion{Eigen::VectorXd(size_), Eigen::VectorXd(size_)};
+  for (std::size_t i = 0; i < size_; ++i) {
+    const auto mode = static_cast<Eigen::Index>(i);
+    const auto field = [&](ModalField f) { return blocks_[modal_index(i, f)]; };
+    const double q = field(ModalField::position);
+    motion.displacement(mode) = q;
+    // d*_{n+1} = s d_n − k q_n + e p, solved for d_n.
+    motion.velocity(mode) =
+        (field(ModalField::increment) + field(ModalField::pull) * q - field(ModalField::load)) /
+        (field(ModalField::keep) * step_);
+  }
+  return motion;
+}
+
+void ModalRecurrence::foresee(const double* forces, std::span<double> position,
+                              std::span<double> increment) const {
+  foresee_modes(blocks_.data(), size_, slot_rows_.data(), forces, num_slots(), position.data(),
+                increment.data());
 }
 
 double ModalRecurrence::predicted_displacement(int row) const {
@@ -70,6 +127,25 @@ void ModalRecurrence::advance_body(const double* forces, double* predicted) {
 
 void ModalRecurrence::slot_changed(int slot) {
   slot_rows_[static_cast<std::size_t>(slot)] = row_data(row(slot));
+}
+
+void ModalRecurrence::set_body_motion(const Eigen::VectorXd& displacement,
+                                      const Eigen::VectorXd& velocity) {
+  for (std::size_t i = 0; i < size_; ++i) {
+    const auto mode = static_cast<Eigen::Index>(i);
+    const double q = displacement(mode);
+    number(i, ModalField::position) = q;
+    number(i, ModalField::increment) = number(i, ModalField::keep) * step_ * velocity(mode) -
+                                       number(i, ModalField::pull) * q +
+                                       number(i, ModalField::load);
+  }
+}
+
+double ModalRecurrence::initial_increment(int row, const Eigen::VectorXd& velocity) const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < size_; ++i)
+    sum += row_data(row)[i] * velocity(static_cast<Eigen::Index>(i));
+  return step_ * sum;
 }
 
 std::vector<double> ModalRecurrence::numbers(ModalField field) const {

@@ -28,6 +28,9 @@ class ModalRecurrence : public Propagator {
                   int num_slots, double alpha, std::span<const double> loads);
 
   double displacement(int row) const override;
+  Motion motion() const override;
+  void foresee(const double* forces, std::span<double> position,
+               std::span<double> increment) const override;
   void set_loads(std::span<const double> amplitudes) override;
   void set_mass_damping(double alpha) override;
 
@@ -36,6 +39,9 @@ class ModalRecurrence : public Propagator {
   double predicted_displacement(int row) const override;
   double row_compliance(int row_a, int row_b) const override;
   void slot_changed(int slot) override;
+  void set_body_motion(const Eigen::VectorXd& displacement,
+                       const Eigen::VectorXd& velocity) override;
+  double initial_increment(int row, const Eigen::VectorXd& velocity) const override;
   void save_body(State& state, const std::string& prefix) const override;
   void load_body(const State& state, const std::string& prefix) override;
 

@@ -23,6 +23,14 @@ void Propagator::watch(int slot, int row) {
   renew_compliance(slot);
 }
 
+void Propagator::set_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity) {
+  set_body_motion(displacement, velocity);
+  for (int slot = 0; slot < num_slots(); ++slot) {
+    watch(slot, row(slot));
+    increment_[at(slot)] = initial_increment(row(slot), velocity);
+  }
+}
+
 void Propagator::renew_compliance(int slot) {
   for (int other = 0; other < num_slots(); ++other) {
     compliance_[at(slot) * rows_.size() + at(other)] = row_compliance(row(slot), row(other));

@@ -1,6 +1,7 @@
 // How one body moves from step to step under point forces.
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,15 +38,32 @@ class Propagator {
   double increment(int slot) const { return increment_[at(slot)]; }
   /// W between slots: displacement of `a` at t_{n+1} per force on `b` at t_n, m/N.
   double compliance(int a, int b) const { return compliance_[at(a) * rows_.size() + at(b)]; }
-  const double* predicted() const { return predicted_.data(); }
   const double* increments() const { return increment_.data(); }
   const double* compliances() const { return compliance_.data(); }
+
+  /// Makes u_n = u and u_n − u_{n−1} = h v, in the coordinates of the body, and predicts anew from
+  /// the loads and the damping set last.
+  void set_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity);
 
   /// @param forces on the slots at t_n, N
   void advance(const double* forces);
 
   /// u_n of any row, m. Cost: one product of the length of the body.
   virtual double displacement(int row) const = 0;
+
+  /// u_n and (u_n − u_{n−1})/h in the coordinates of the body.
+  struct Motion {
+    Eigen::VectorXd displacement;
+    Eigen::VectorXd velocity;
+  };
+  virtual Motion motion() const = 0;
+
+  /// The step that `advance` would make with these forces: u_n and u_{n+1} − u_n in the coordinates
+  /// of the body, which stays where it is.
+  /// @param forces on the slots at t_n, N
+  /// Cost: less than that of `advance`. No allocation.
+  virtual void foresee(const double* forces, std::span<double> position,
+                       std::span<double> increment) const = 0;
 
   /// Amplitudes of the load patterns for the next prediction (N and m/s²; see make_propagator).
   virtual void set_loads(std::span<const double> amplitudes) = 0;
@@ -75,6 +93,10 @@ class Propagator {
   virtual double predicted_displacement(int row) const = 0;
   virtual double row_compliance(int row_a, int row_b) const = 0;
   virtual void slot_changed(int slot) = 0;
+  virtual void set_body_motion(const Eigen::VectorXd& displacement,
+                               const Eigen::VectorXd& velocity) = 0;
+  /// u_n − u_{n−1} of a row as set_body_motion() has left it.
+  virtual double initial_increment(int row, const Eigen::VectorXd& velocity) const = 0;
   virtual void save_body(State& state, const std::string& prefix) const = 0;
   virtual void load_body(const State& state, const std::string& prefix) = 0;
 

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/errors.hpp"
 #include "solvers/make_propagator.hpp"
@@ -13,28 +13,14 @@
 namespace stridor {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// No contact of a computable scene carries this; beyond it the numbers have run away.
 constexpr double absurd_force = 1e30;
 constexpr const char* persistent_sliding_remedy =
-    "the assumption of persistent sliding no longer holds from here on; lower the friction "
-    "coefficient, or raise "
-    "contact.armed_from if this is start-up";
+    "the assumption of persistent sliding no longer holds from here on; let the contact stick and "
+    "lift off (contact.assumption: film, or contact.on_violation: unilateral), lower the friction "
+    "coefficient, or raise contact.armed_from if this is start-up";
 constexpr int slave_slots = 2;
 constexpr int master_slots = 4;
-
-/// b_Cᵀ W b_E over the slots that two rows share.
-template <std::size_t n>
-double coupling(const std::array<double, n>& row_c, const std::array<double, n>& row_e,
-                const double* compliance, std::size_t stride) {
-  double sum = 0.0;
-  for (std::size_t a = 0; a < n; ++a) {
-    double displacement = 0.0;
-    for (std::size_t b = 0; b < n; ++b) displacement += compliance[a * stride + b] * row_e[b];
-    sum += row_c[a] * displacement;
-  }
-  return sum;
-}
 
 }  // namespace
 
@@ -45,20 +31,26 @@ struct RunningContact {
   int master_slot = 0;  ///< first of its slots on the master body
   bool slave_follows_drive = false;
   bool master_follows_drive = false;
+  double unilateral_from = 0.0;
+  bool tracks_slip = false;  ///< it is unilateral or may become so
 
   // State: the projection found with the positions predicted for t_{n+1}, and what follows from it.
   int segment = 0;
   Projection projection;
-  double direction = 1.0;  ///< χ
-  double force = 0.0;      ///< λ_n
+  double force = 0.0;           ///< λ_n
+  double friction_force = 0.0;  ///< λ_t
+  ContactState state = ContactState::open;
   double slip_velocity = 0.0;
-  double force_min = infinity;
-  double force_max = -infinity;
+  /// Place on the master, along its undeformed surface, that the slave was over at the end of the
+  /// last step; the material point that a sticking contact keeps.
+  double anchor = 0.0;
+  ContactStatistics statistics;
   ViolationCount violations;
 
   // Scratch of one step.
-  ContactRows rows;
-  double friction = 0.0;
+  double friction = 0.0;  ///< μ, for messages
+  double place = 0.0;     ///< as anchor, for the predicted positions
+  double stretch = 1.0;   ///< deformed length of the segment along the tangent by undeformed length
 };
 
 struct Simulation::Implementation {
@@ -76,14 +68,15 @@ struct Simulation::Implementation {
   // What no longer changes is not computed again.
   double loads_constant_from = 0.0;
   double drive_constant_from = 0.0;
-  double friction_constant_from = 0.0;
   double end_displacement = 0.0;  ///< of the drive at drive_constant_from
   double end_velocity = 0.0;
 
-  // Scratch for several contacts.
-  Eigen::MatrixXd delassus;
-  Eigen::VectorXd penetration;  ///< B_C U*
-  Eigen::PartialPivLU<Eigen::MatrixXd> factor;
+  std::optional<EnergyLedger> ledger;
+  std::vector<ContactAction> actions;   ///< of the ledger's step, per contact
+  std::vector<double> slip_velocities;  ///< likewise
+
+  ContactSolver solver{0};
+  std::vector<LocalProblem> local;  ///< per contact
 
   const MasterSurface& surface_of(const RunningContact& contact) const {
     return surfaces[static_cast<std::size_t>(contact.point.surface)];
@@ -105,10 +98,6 @@ struct Simulation::Implementation {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       if (follows_drive[b]) bodies[b]->set_loads(amplitudes);
     }
-  }
-
-  void set_friction(double at) {
-    for (RunningContact& contact : contacts) contact.friction = contact.point.friction.value(at);
   }
 
   void watch_segment(RunningContact& contact, int segment) {
@@ -159,11 +148,12 @@ struct Simulation::Implementation {
 
   Projection projection_of(const RunningContact& contact, const Place& place,
                            double drive_at) const {
-    if (contact.point.assumption == ContactAssumption::subs_b) {
+    const ContactAssumption assumption = contact.point.assumption;
+    if (assumption == ContactAssumption::subs_b || assumption == ContactAssumption::film) {
       return project(place.segment, place.slave);
     }
     const Segment undeformed = surface_of(contact).undeformed_segment(contact.segment);
-    if (contact.point.assumption == ContactAssumption::subs_c) {
+    if (assumption == ContactAssumption::subs_c) {
       const Eigen::Vector2d along = undeformed.second - undeformed.first;
       return project_along(place.segment, place.slave, along / along.norm());
     }
@@ -184,116 +174,215 @@ struct Simulation::Implementation {
       const int wanted = xi > 1.0 ? 1 : xi < 0.0 ? -1 : 0;
       if (wanted == 0 || wanted == -heading) return true;
       const int next = contact.segment + wanted;
-      if (next < 0 || next > last) return false;
+      if (next < 0 || next > last) return surface_of(contact).is_endless;
       watch_segment(contact, next);
       heading = wanted;
     }
   }
 
-  /// Contact forces at t_n such that B_C U = 0 at t_{n+1}: (B_C W B_Eᵀ) λ = B_C U*.
-  StepOutcome solve() {
-    const double next_time = time(index + 1);
-    const double drive_at = drive_displacement(next_time);
-    if (time(index) < friction_constant_from) set_friction(next_time);
+  /// Takes projection, material point and slip velocity from the motion at the present time.
+  void stand(RunningContact& contact) {
+    const double now = time(index);
+    const auto current = [](const Propagator& body, int slot) { return body.current(slot); };
+    const Place place = place_of(contact, drive_displacement(now), current);
+    contact.projection = projection_of(contact, place, drive_displacement(now));
+    contact.anchor = place_along(contact, place);
+    update_slip_velocity(contact, sliding_velocity(now));
+  }
 
+  /// Where the slave stands along the undeformed master, as far as slip is concerned: the
+  /// projection itself; under Subs-a, whose projection is prescribed, that and the displacements
+  /// along it.
+  double place_along(const RunningContact& contact, const Place& place) const {
+    const MasterSurface& surface = surface_of(contact);
+    const Projection& p = contact.projection;
+    const auto s = static_cast<std::size_t>(contact.segment);
+    double along =
+        surface.arc_length[s] + p.xi * (surface.arc_length[s + 1] - surface.arc_length[s]);
+    if (contact.point.assumption == ContactAssumption::subs_a) {
+      along += p.tangent.dot(place.slave - (1.0 - p.xi) * place.segment.first -
+                             p.xi * place.segment.second);
+    }
+    return along;
+  }
+
+  /// Poses the problem of one contact for the step to t_{n+1}. @returns false where it has left its
+  /// master
+  bool pose(RunningContact& contact, LocalProblem& problem, double drive_at, double rise) {
+    Place place;
+    if (!find_projection(contact, drive_at, place)) return false;
+    const Projection& p = contact.projection;
+    problem.penetration = p.xi * p.normal.dot(place.segment.second - place.segment.first) -
+                          p.normal.dot(place.slave - place.segment.first);
+    problem.sliding_friction =
+        rise * sliding_friction(contact.point.friction, contact.slip_velocity);
+    problem.direction = contact.slip_velocity < 0.0 ? -1.0 : 1.0;
+    problem.is_unilateral = time(index) >= contact.unilateral_from;
+    if (!contact.tracks_slip) return true;
+    const MasterSurface& surface = surface_of(contact);
+    const auto s = static_cast<std::size_t>(contact.segment);
+    contact.place = place_along(contact, place);
+    contact.stretch = p.tangent.dot(place.segment.second - place.segment.first) /
+                      (surface.arc_length[s + 1] - surface.arc_length[s]);
+    if (drive.is_frozen) {
+      // Held in place, the material of the master slides away below.
+      const double velocity =
+          0.5 * (sliding_velocity(time(index)) + sliding_velocity(time(index + 1)));
+      contact.anchor -= p.tangent.x() * relative_drive(contact, velocity * step);
+    }
+    problem.slip = (contact.place - contact.anchor) * contact.stretch;
+    // A contact that stuck is held by the static limit; one whose sliding would turn round in this
+    // step passes through rest on the way.
+    const bool may_rest =
+        contact.state == ContactState::stick || problem.slip * problem.direction <= 0.0;
+    problem.sticking_friction =
+        may_rest ? rise * contact.point.friction.static_coefficient : problem.sliding_friction;
+    return true;
+  }
+
+  /// Contact forces at t_n: those that make gap and slip at t_{n+1} what the contacts allow.
+  StepOutcome solve() {
+    const double drive_at = drive_displacement(time(index + 1));
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       RunningContact& contact = contacts[i];
-      Place place;
-      if (!find_projection(contact, drive_at, place)) {
-        return fail(contact, StepOutcome::master_lost);
-      }
-      contact.direction = contact.slip_velocity < 0.0 ? -1.0 : 1.0;
-      contact.rows = make_rows(contact.projection, contact.friction, contact.direction);
-      const Projection& p = contact.projection;
-      penetration[static_cast<Eigen::Index>(i)] =
-          p.xi * p.normal.dot(place.segment.second - place.segment.first) -
-          p.normal.dot(place.slave - place.segment.first);
+      const double rise = contact.point.friction_rise.value(time(index + 1));
+      if (!pose(contact, local[i], drive_at, rise)) return fail(contact, StepOutcome::master_lost);
     }
-
-    if (contacts.size() == 1) {
-      RunningContact& contact = contacts[0];
-      const double compliance = contact_compliance(contact, contact);
-      if (!(compliance > 0.0))
-        return fail(contact, std::isnan(compliance) ? StepOutcome::diverged : StepOutcome::jammed);
-      contact.force = penetration[0] / compliance;
-    } else if (contacts.size() > 1) {
-      for (std::size_t i = 0; i < contacts.size(); ++i) {
-        for (std::size_t j = 0; j < contacts.size(); ++j) {
-          delassus(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-              contact_compliance(contacts[i], contacts[j]);
-        }
-        if (!(delassus(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) > 0.0)) {
-          return fail(contacts[i], StepOutcome::jammed);
-        }
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      for (std::size_t j = 0; j < contacts.size(); ++j) fill_delassus(i, j);
+    }
+    const ContactAnswer answer = solver.solve(local);
+    if (answer.status != ContactStatus::converged) {
+      RunningContact& contact = contacts[static_cast<std::size_t>(answer.contact)];
+      const LocalProblem& problem = local[static_cast<std::size_t>(answer.contact)];
+      contact.friction = problem.sliding_friction;
+      contact.force = problem.normal;
+      if (!std::isfinite(problem.penetration)) {
+        contact.force = problem.penetration;
+        return fail(contact, StepOutcome::diverged);
       }
-      factor.compute(delassus);
-      penetration = factor.solve(penetration).eval();
-      for (std::size_t i = 0; i < contacts.size(); ++i)
-        contacts[i].force = penetration[static_cast<Eigen::Index>(i)];
+      return fail(contact, answer.status == ContactStatus::jammed ? StepOutcome::jammed
+                                                                  : StepOutcome::not_converged);
     }
 
     StepOutcome outcome = StepOutcome::done;
-    for (RunningContact& contact : contacts) {
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      RunningContact& contact = contacts[i];
+      contact.force = local[i].normal;
+      contact.friction_force = local[i].tangential;
+      contact.state = local[i].state;
       if (!(std::abs(contact.force) < absurd_force)) return fail(contact, StepOutcome::diverged);
-      contact.force_min = std::min(contact.force_min, contact.force);
-      contact.force_max = std::max(contact.force_max, contact.force);
-      if (contact.force < 0.0 && !tolerate(contact, contact.violations.negative_force)) {
+      count(contact);
+      if (contact.tracks_slip) move_anchor(contact, i);
+      if (local[i].is_unilateral) {
+        note_unilateral(contact);
+      } else if (contact.force < 0.0 && !tolerate(contact, contact.violations.negative_force)) {
         outcome = fail(contact, StepOutcome::pulling);
       }
-    }
-    for (const RunningContact& contact : contacts) {
-      double* slave =
-          forces[static_cast<std::size_t>(contact.point.slave_body)].data() + contact.slave_slot;
-      const auto master_body = surface_of(contact).body;
-      double* master = forces[static_cast<std::size_t>(master_body)].data() + contact.master_slot;
-      for (std::size_t k = 0; k < slave_slots; ++k)
-        slave[k] = -contact.rows.equilibrium.slave[k] * contact.force;
-      for (std::size_t k = 0; k < master_slots; ++k)
-        master[k] = -contact.rows.equilibrium.master[k] * contact.force;
+      apply_forces(contact);
     }
     return outcome;
   }
 
-  /// b_C,i W b_E,jᵀ: by how much a force at contact j opens the gap of contact i, m/N.
-  double contact_compliance(const RunningContact& i, const RunningContact& j) const {
+  static void count(RunningContact& contact) {
+    ContactStatistics& statistics = contact.statistics;
+    statistics.force_min = std::min(statistics.force_min, contact.force);
+    statistics.force_max = std::max(statistics.force_max, contact.force);
+    ++statistics.steps;
+    if (contact.state == ContactState::stick) ++statistics.sticking;
+    if (contact.state == ContactState::open) ++statistics.open;
+  }
+
+  /// The material point of a contact that does not stick moves with its corrected slip.
+  void move_anchor(RunningContact& contact, std::size_t i) {
+    if (contact.state == ContactState::stick) return;
+    double slip = local[i].slip;
+    const auto row = static_cast<Eigen::Index>(2 * i + 1);
+    for (std::size_t j = 0; j < contacts.size(); ++j) {
+      const auto column = static_cast<Eigen::Index>(2 * j);
+      slip -= solver.delassus()(row, column) * local[j].normal +
+              solver.delassus()(row, column + 1) * local[j].tangential;
+    }
+    contact.anchor += slip / contact.stretch;
+  }
+
+  /// Counts what persistent sliding would not have allowed, where it had been assumed.
+  void note_unilateral(RunningContact& contact) {
+    if (contact.point.assumption == ContactAssumption::film) return;
+    if (contact.state == ContactState::open) note(contact, contact.violations.negative_force);
+    if (contact.state == ContactState::stick) note(contact, contact.violations.reversed_sliding);
+  }
+
+  void apply_forces(const RunningContact& contact) {
+    const Projection& p = contact.projection;
+    const Eigen::Vector2d force = contact.force * p.normal - contact.friction_force * p.tangent;
+    double* slave =
+        forces[static_cast<std::size_t>(contact.point.slave_body)].data() + contact.slave_slot;
+    double* master =
+        forces[static_cast<std::size_t>(surface_of(contact).body)].data() + contact.master_slot;
+    slave[0] = force.x();
+    slave[1] = force.y();
+    master[0] = -(1.0 - p.xi) * force.x();
+    master[1] = -(1.0 - p.xi) * force.y();
+    master[2] = -p.xi * force.x();
+    master[3] = -p.xi * force.y();
+  }
+
+  /// Displacement of the slave of contact i relative to its master per force (x, y) on the slave of
+  /// contact j and against its master.
+  Eigen::Matrix2d relative_compliance(const RunningContact& i, const RunningContact& j) const {
     const int master_i = surface_of(i).body;
     const int master_j = surface_of(j).body;
-    const auto shared = [&](int body_i, int slot_i, const auto& row_i, int body_j, int slot_j,
-                            const auto& row_j) {
-      if (body_i != body_j) return 0.0;
-      const Propagator& body = *bodies[static_cast<std::size_t>(body_i)];
-      double sum = 0.0;
-      for (std::size_t a = 0; a < row_i.size(); ++a) {
-        for (std::size_t b = 0; b < row_j.size(); ++b) {
-          sum += row_i[a] *
-                 body.compliance(slot_i + static_cast<int>(a), slot_j + static_cast<int>(b)) *
-                 row_j[b];
+    const auto block = [](const Propagator& body, int slot_a, int slot_b) {
+      const auto stride = static_cast<std::size_t>(body.num_slots());
+      const double* c = body.compliances() + static_cast<std::size_t>(slot_a) * stride + slot_b;
+      Eigen::Matrix2d w;
+      w << c[0], c[1], c[stride], c[stride + 1];
+      return w;
+    };
+    const double weights_i[] = {1.0 - i.projection.xi, i.projection.xi};
+    const double weights_j[] = {1.0 - j.projection.xi, j.projection.xi};
+    Eigen::Matrix2d w = Eigen::Matrix2d::Zero();
+    if (i.point.slave_body == j.point.slave_body) {
+      w += block(*bodies[static_cast<std::size_t>(i.point.slave_body)], i.slave_slot, j.slave_slot);
+    }
+    if (master_i == master_j) {
+      const Propagator& master = *bodies[static_cast<std::size_t>(master_i)];
+      for (int a = 0; a < 2; ++a) {
+        for (int b = 0; b < 2; ++b) {
+          w += weights_i[a] * weights_j[b] *
+               block(master, i.master_slot + 2 * a, j.master_slot + 2 * b);
         }
       }
-      return sum;
-    };
-    if (&i == &j && i.point.slave_body != master_i) {
-      // The common case, without the tests for shared bodies.
-      const Propagator& slave = *bodies[static_cast<std::size_t>(i.point.slave_body)];
-      const Propagator& master = *bodies[static_cast<std::size_t>(master_i)];
-      const auto slave_stride = static_cast<std::size_t>(slave.num_slots());
-      const auto master_stride = static_cast<std::size_t>(master.num_slots());
-      return coupling(
-                 i.rows.compatibility.slave, i.rows.equilibrium.slave,
-                 slave.compliances() + static_cast<std::size_t>(i.slave_slot) * (slave_stride + 1),
-                 slave_stride) +
-             coupling(i.rows.compatibility.master, i.rows.equilibrium.master,
-                      master.compliances() +
-                          static_cast<std::size_t>(i.master_slot) * (master_stride + 1),
-                      master_stride);
     }
-    const auto& c = i.rows.compatibility;
-    const auto& e = j.rows.equilibrium;
-    return shared(i.point.slave_body, i.slave_slot, c.slave, j.point.slave_body, j.slave_slot,
-                  e.slave) +
-           shared(i.point.slave_body, i.slave_slot, c.slave, master_j, j.master_slot, e.master) +
-           shared(master_i, i.master_slot, c.master, j.point.slave_body, j.slave_slot, e.slave) +
-           shared(master_i, i.master_slot, c.master, master_j, j.master_slot, e.master);
+    if (i.point.slave_body == master_j) {
+      const Propagator& body = *bodies[static_cast<std::size_t>(master_j)];
+      for (int b = 0; b < 2; ++b)
+        w -= weights_j[b] * block(body, i.slave_slot, j.master_slot + 2 * b);
+    }
+    if (master_i == j.point.slave_body) {
+      const Propagator& body = *bodies[static_cast<std::size_t>(master_i)];
+      for (int a = 0; a < 2; ++a)
+        w -= weights_i[a] * block(body, i.master_slot + 2 * a, j.slave_slot);
+    }
+    return w;
+  }
+
+  /// Rows n and t of contact i against columns n and t of contact j: b_i W b_jᵀ with b_n = −n and
+  /// b_t = t on the slave.
+  void fill_delassus(std::size_t i, std::size_t j) {
+    const Eigen::Matrix2d w = relative_compliance(contacts[i], contacts[j]);
+    const Projection& p = contacts[i].projection;
+    const Projection& q = contacts[j].projection;
+    const Eigen::Vector2d wn = w * q.normal;
+    const Eigen::Vector2d wt = w * q.tangent;
+    const auto row = static_cast<Eigen::Index>(2 * i);
+    const auto column = static_cast<Eigen::Index>(2 * j);
+    Eigen::MatrixXd& delassus = solver.delassus();
+    delassus(row, column) = p.normal.dot(wn);
+    delassus(row, column + 1) = -p.normal.dot(wt);
+    delassus(row + 1, column) = -p.tangent.dot(wn);
+    delassus(row + 1, column + 1) = p.tangent.dot(wt);
   }
 
   /// From t_n to t_{n+1} with the forces that `solve` found.
@@ -310,17 +399,8 @@ struct Simulation::Implementation {
     StepOutcome outcome = StepOutcome::done;
     const double drive_velocity = sliding_velocity(next_time);
     for (RunningContact& contact : contacts) {
-      const Projection& p = contact.projection;
-      const double* c = bodies[static_cast<std::size_t>(contact.point.slave_body)]->increments() +
-                        contact.slave_slot;
-      const auto master_body = surface_of(contact).body;
-      const double* m =
-          bodies[static_cast<std::size_t>(master_body)]->increments() + contact.master_slot;
-      const double x = c[0] - (1.0 - p.xi) * m[0] - p.xi * m[2];
-      const double y = c[1] - (1.0 - p.xi) * m[1] - p.xi * m[3];
-      const double driven = relative_drive(contact, drive_velocity) * p.tangent.x();
-      contact.slip_velocity = (p.tangent.x() * x + p.tangent.y() * y) / step + driven;
-      if (contact.slip_velocity * driven < 0.0 &&
+      const double driven = update_slip_velocity(contact, drive_velocity);
+      if (contact.slip_velocity * driven < 0.0 && next_time < contact.unilateral_from &&
           !tolerate(contact, contact.violations.reversed_sliding)) {
         outcome = fail(contact, StepOutcome::sliding_reversed);
       }
@@ -328,10 +408,50 @@ struct Simulation::Implementation {
     return outcome;
   }
 
-  /// Counts a violation of persistent sliding; false where the contact is armed.
-  bool tolerate(RunningContact& contact, std::int64_t& counter) {
+  /// `advance` with an entry in the ledger.
+  StepOutcome advance_on_account() {
+    const double acting_at = time(index);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const auto body = static_cast<int>(b);
+      bodies[b]->foresee(forces[b].data(), ledger->position(body), ledger->increment(body));
+    }
+    const StepOutcome outcome = advance();
+    // What the contacts have done stands until they are solved anew.
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      actions[i] = action_of(contacts[i]);
+      slip_velocities[i] = contacts[i].slip_velocity;
+    }
+    ledger->add(acting_at, actions, slip_velocities);
+    return outcome;
+  }
+
+  static ContactAction action_of(const RunningContact& contact) {
+    return {contact.segment, contact.projection, contact.force, contact.friction_force,
+            contact.state};
+  }
+
+  /// t·(v_C − v_M) from the increments of the last step. @returns the drive's part of it
+  double update_slip_velocity(RunningContact& contact, double drive_velocity) const {
+    const Projection& p = contact.projection;
+    const double* c = bodies[static_cast<std::size_t>(contact.point.slave_body)]->increments() +
+                      contact.slave_slot;
+    const double* m = bodies[static_cast<std::size_t>(surface_of(contact).body)]->increments() +
+                      contact.master_slot;
+    const double x = c[0] - (1.0 - p.xi) * m[0] - p.xi * m[2];
+    const double y = c[1] - (1.0 - p.xi) * m[1] - p.xi * m[3];
+    const double driven = relative_drive(contact, drive_velocity) * p.tangent.x();
+    contact.slip_velocity = (p.tangent.x() * x + p.tangent.y() * y) / step + driven;
+    return driven;
+  }
+
+  void note(RunningContact& contact, std::int64_t& counter) {
     ++counter;
     contact.violations.last_time = time(index);
+  }
+
+  /// Counts a violation of persistent sliding; false where the contact is armed.
+  bool tolerate(RunningContact& contact, std::int64_t& counter) {
+    note(contact, counter);
     if (time(index) >= contact.point.armed_from) return false;
     ++contact.violations.before_armed;
     return true;
@@ -368,6 +488,12 @@ struct Simulation::Implementation {
             contact.friction);
         remedy = "lower the friction coefficient or change the angle of the bodies";
         break;
+      case StepOutcome::not_converged:
+        what = fmt::format(
+            "the contact forces have not settled in the sweeps allowed (force {:.6g} N)",
+            contact.force);
+        remedy = "take a smaller time.step, or let time.contact_sweeps be larger";
+        break;
       case StepOutcome::diverged:
         what = fmt::format("the contact force is {:.3g} N: the computation has diverged",
                            contact.force);
@@ -389,7 +515,7 @@ struct Simulation::Implementation {
   }
 };
 
-Simulation::Simulation(const System& system, const TimeParameters& time)
+Simulation::Simulation(const System& system, const TimeParameters& time, Accounts accounts)
     : implementation_(std::make_unique<Implementation>()) {
   const StepLimit limit = step_limit(system);
   if (!(time.step <= limit.step)) {
@@ -422,8 +548,8 @@ Simulation::Simulation(const System& system, const TimeParameters& time)
     num_slots[master] += master_slots;
     contact.slave_follows_drive = system.bodies[slave].follows_drive;
     contact.master_follows_drive = system.bodies[master].follows_drive;
-    run.friction_constant_from =
-        std::max(run.friction_constant_from, point.friction.constant_from());
+    contact.unilateral_from = point.unilateral_from();
+    contact.tracks_slip = contact.unilateral_from < std::numeric_limits<double>::infinity();
     run.contacts.push_back(contact);
   }
   const double loads[] = {system.drive.load.value(0.0), system.drive.acceleration(0.0)};
@@ -436,17 +562,23 @@ Simulation::Simulation(const System& system, const TimeParameters& time)
     run.damping.push_back(body.modal.damping);
     run.forces.emplace_back(static_cast<std::size_t>(num_slots[b]), 0.0);
   }
-  const auto count = static_cast<Eigen::Index>(run.contacts.size());
-  run.delassus = Eigen::MatrixXd::Zero(count, count);
-  run.penetration = Eigen::VectorXd::Zero(count);
-  run.factor = Eigen::PartialPivLU<Eigen::MatrixXd>(count);
+  run.solver = ContactSolver(static_cast<int>(run.contacts.size()),
+                             {time.contact_tolerance, static_cast<int>(time.contact_sweeps)});
+  run.local.resize(run.contacts.size());
+  if (accounts == Accounts::energy) {
+    run.ledger.emplace(system, time);
+    run.actions.resize(run.contacts.size());
+    run.slip_velocities.resize(run.contacts.size());
+  }
   for (RunningContact& contact : run.contacts) {
     Propagator& slave = *run.bodies[static_cast<std::size_t>(contact.point.slave_body)];
     slave.watch(contact.slave_slot, contact.point.slave_rows.x);
     slave.watch(contact.slave_slot + 1, contact.point.slave_rows.y);
     run.watch_segment(contact, contact.point.first_segment);
   }
-  run.set_friction(run.time(1));
+  for (std::size_t b = 0; b < system.bodies.size(); ++b)
+    start_motion(*run.bodies[b], system.bodies[b], time);
+  for (RunningContact& contact : run.contacts) run.stand(contact);
   if (run.solve() != StepOutcome::done) throw NumericalError(run.failure);
 }
 
@@ -455,8 +587,9 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 StepOutcome Simulation::step() {
-  const StepOutcome outcome = implementation_->advance();
-  return outcome == StepOutcome::done ? implementation_->solve() : outcome;
+  Implementation& run = *implementation_;
+  const StepOutcome outcome = run.ledger ? run.advance_on_account() : run.advance();
+  return outcome == StepOutcome::done ? run.solve() : outcome;
 }
 
 StepOutcome Simulation::step_until(std::int64_t target) {
@@ -479,6 +612,10 @@ double Simulation::displacement(int body, int row) const {
   return implementation_->bodies[static_cast<std::size_t>(body)]->displacement(row);
 }
 
+Propagator::Motion Simulation::motion(int body) const {
+  return implementation_->bodies[static_cast<std::size_t>(body)]->motion();
+}
+
 double Simulation::drive_displacement() const {
   return implementation_->drive_displacement(time());
 }
@@ -489,6 +626,18 @@ int Simulation::num_contacts() const {
 
 double Simulation::contact_force(int contact) const {
   return implementation_->contacts[static_cast<std::size_t>(contact)].force;
+}
+
+double Simulation::friction_force(int contact) const {
+  return implementation_->contacts[static_cast<std::size_t>(contact)].friction_force;
+}
+
+ContactState Simulation::contact_state(int contact) const {
+  return implementation_->contacts[static_cast<std::size_t>(contact)].state;
+}
+
+ContactAction Simulation::contact_action(int contact) const {
+  return Implementation::action_of(implementation_->contacts[static_cast<std::size_t>(contact)]);
 }
 
 double Simulation::slip_velocity(int contact) const {
@@ -512,15 +661,19 @@ const ViolationCount& Simulation::violations(int contact) const {
   return implementation_->contacts[static_cast<std::size_t>(contact)].violations;
 }
 
-std::pair<double, double> Simulation::force_extremes(int contact) const {
-  const RunningContact& running = implementation_->contacts[static_cast<std::size_t>(contact)];
-  return {running.force_min, running.force_max};
+const ContactStatistics& Simulation::statistics(int contact) const {
+  return implementation_->contacts[static_cast<std::size_t>(contact)].statistics;
 }
 
-void Simulation::reset_force_extremes() {
+void Simulation::reset_statistics() {
   for (RunningContact& contact : implementation_->contacts) {
-    contact.force_min = contact.force_max = contact.force;
+    contact.statistics = {};
+    Implementation::count(contact);
   }
+}
+
+const EnergyLedger* Simulation::energy() const {
+  return implementation_->ledger ? &*implementation_->ledger : nullptr;
 }
 
 const std::string& Simulation::failure() const {
@@ -545,17 +698,23 @@ State Simulation::save() const {
                              c.projection.tangent.y(),
                              c.projection.normal.x(),
                              c.projection.normal.y(),
-                             c.direction,
                              c.force,
+                             c.friction_force,
+                             static_cast<double>(c.state),
                              c.slip_velocity,
-                             c.force_min,
-                             c.force_max,
+                             c.anchor,
+                             c.statistics.force_min,
+                             c.statistics.force_max,
+                             static_cast<double>(c.statistics.steps),
+                             static_cast<double>(c.statistics.sticking),
+                             static_cast<double>(c.statistics.open),
                              static_cast<double>(c.violations.negative_force),
                              static_cast<double>(c.violations.reversed_sliding),
                              static_cast<double>(c.violations.before_armed),
                              c.violations.last_time};
     state.put(fmt::format("contacts/{}", i), values);
   }
+  if (run.ledger) run.ledger->save(state, "energy/");
   return state;
 }
 
@@ -565,7 +724,6 @@ void Simulation::load(const State& state) {
     throw std::invalid_argument("Simulation::load: the state has another time step");
   run.index = static_cast<std::int64_t>(state.get("index"));
   run.set_loads(run.time(run.index));
-  run.set_friction(run.time(run.index + 1));
   for (std::size_t b = 0; b < run.bodies.size(); ++b) {
     const std::string prefix = fmt::format("bodies/{}/", b);
     run.bodies[b]->set_mass_damping(run.damping[b].alpha_at(run.time(run.index)));
@@ -574,18 +732,24 @@ void Simulation::load(const State& state) {
   }
   for (std::size_t i = 0; i < run.contacts.size(); ++i) {
     RunningContact& c = run.contacts[i];
-    double values[15];
+    double values[20];
     state.get(fmt::format("contacts/{}", i), values);
+    const auto count = [&](int k) { return static_cast<std::int64_t>(values[k]); };
     c.segment = static_cast<int>(values[0]);
     c.projection = {values[1], {values[2], values[3]}, {values[4], values[5]}};
-    c.direction = values[6];
-    c.force = values[7];
-    c.slip_velocity = values[8];
-    c.force_min = values[9];
-    c.force_max = values[10];
-    c.violations = {static_cast<std::int64_t>(values[11]), static_cast<std::int64_t>(values[12]),
-                    static_cast<std::int64_t>(values[13]), values[14]};
+    c.force = values[6];
+    c.friction_force = values[7];
+    c.state = static_cast<ContactState>(count(8));
+    c.slip_velocity = values[9];
+    c.anchor = values[10];
+    c.statistics = {values[11], values[12], count(13), count(14), count(15)};
+    c.violations = {count(16), count(17), count(18), values[19]};
+    // The guess that the next step starts from.
+    run.local[i].normal = c.force;
+    run.local[i].tangential = c.friction_force;
+    run.local[i].state = c.state;
   }
+  if (run.ledger) run.ledger->load(state, "energy/");
 }
 
 }  // namespace stridor

@@ -2,13 +2,16 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/state.hpp"
 #include "coupling/system.hpp"
+#include "solvers/contact_solver.hpp"
+#include "solvers/energy_ledger.hpp"
+#include "solvers/propagator.hpp"
 #include "solvers/time_parameters.hpp"
 
 namespace stridor {
@@ -21,18 +24,29 @@ enum class StepOutcome {
   pulling,           ///< λ < 0 at an armed contact: the assumption of persistent sliding is lost
   sliding_reversed,  ///< an armed contact slides against the drive: likewise
   jammed,            ///< b_C W b_Eᵀ of a contact is not positive: no contact force closes its gap
+  not_converged,     ///< the forces of several contacts have not settled
   diverged,          ///< a contact force is not finite or beyond any use
 };
 
-/// Violations of persistent sliding by one contact, counted in steps.
+/// Violations of persistent sliding by one contact, counted in steps; none with FiLM, which does
+/// not assume it.
 struct ViolationCount {
-  std::int64_t negative_force = 0;  ///< λ < 0
-  std::int64_t reversed_sliding =
-      0;  ///< sliding velocity against that of the drive (never while the drive stands still)
+  std::int64_t negative_force = 0;  ///< λ < 0, or lifted off where the contact is unilateral
+  /// Sliding velocity against that of the drive (never while the drive stands still), or sticking.
+  std::int64_t reversed_sliding = 0;
   std::int64_t before_armed = 0;  ///< of the two, those before ContactPoint::armed_from
   double last_time = 0.0;         ///< of the latest one, s
 
   std::int64_t total() const { return negative_force + reversed_sliding; }
+};
+
+/// What a contact did over a stretch of steps.
+struct ContactStatistics {
+  double force_min = std::numeric_limits<double>::infinity();   ///< of λ, N
+  double force_max = -std::numeric_limits<double>::infinity();  ///< of λ, N
+  std::int64_t steps = 0;
+  std::int64_t sticking = 0;  ///< steps that ended in stick
+  std::int64_t open = 0;      ///< steps without contact
 };
 
 /// Where a slave point stands on its master.
@@ -41,16 +55,22 @@ struct ContactPlace {
   double position;  ///< along the undeformed master from its first node, m
 };
 
-/// Bodies, contacts and drive marched together with the sliding contact assumptions Subs-a, -b, -c
-/// (docs/theory.md, 3.1). After construction and after every `step` everything at t_n is known,
-/// contact forces λ_n included.
+/// What a simulation keeps account of from its start.
+enum class Accounts {
+  none,
+  energy,  ///< a step costs two and a half times as much
+};
+
+/// Bodies, contacts and drive marched together under the contact assumptions Subs-a, -b, -c and
+/// FiLM (docs/theory.md, 3.1). After construction and after every `step` everything at t_n is
+/// known, contact forces λ_n included.
 class Simulation {
  public:
   /// @param system copied in what it needs; not referenced afterwards
   /// @param time   step h > 0 at most `step_limit(system)`; `end` is not used here
   /// @throws ConfigError for `time.step` if h is above the limit, naming both
   /// @throws NumericalError if the start itself fails (outcome other than `done`)
-  Simulation(const System& system, const TimeParameters& time);
+  Simulation(const System& system, const TimeParameters& time, Accounts accounts = Accounts::none);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
@@ -66,28 +86,38 @@ class Simulation {
 
   /// u_n of a row of a body, m, relative to its place that follows the drive.
   double displacement(int body, int row) const;
+  /// u_n and its rate by backward difference, of a body in the coordinates that it is marched in.
+  Propagator::Motion motion(int body) const;
   /// Displacement of the bodies that follow the drive, m.
   double drive_displacement() const;
 
   int num_contacts() const;
   /// λ_n, N, compression positive.
   double contact_force(int contact) const;
+  /// λ_t, N, positive against sliding of the slave along +t.
+  double friction_force(int contact) const;
+  ContactState contact_state(int contact) const;
+  /// What a contact does to its bodies from t_n to t_{n+1}.
+  ContactAction contact_action(int contact) const;
   /// Of the slave relative to the master along the tangent at t_n, m/s.
   double slip_velocity(int contact) const;
   /// At t_n.
   ContactPlace contact_place(int contact) const;
   const ViolationCount& violations(int contact) const;
-  /// Smallest and largest λ since the start or the last reset, that of the present step included.
-  std::pair<double, double> force_extremes(int contact) const;
-  void reset_force_extremes();
+  /// Since the start or the last reset, the present step included.
+  const ContactStatistics& statistics(int contact) const;
+  void reset_statistics();
+
+  /// Up to t_n; null unless Accounts::energy was asked for.
+  const EnergyLedger* energy() const;
 
   /// What went wrong in the last step that did not end with `done`: where, when, by how much, what
   /// to do.
   const std::string& failure() const;
 
   State save() const;
-  /// Goes on from a state saved by a simulation of the same system and step, bitwise as if never
-  /// stopped.
+  /// Goes on from a state saved by a simulation of the same system, step and accounts, bitwise as
+  /// if never stopped.
   /// @throws std::invalid_argument if the state does not fit; the simulation must not be used then
   void load(const State& state);
 

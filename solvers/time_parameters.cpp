@@ -20,6 +20,17 @@ const Schema& TimeParameters::schema() {
                 {.doc = "Time step.", .unit = "s", .range = Range::positive()})
           .real("end", &TimeParameters::end,
                 {.doc = "End of the run.", .unit = "s", .range = Range::positive()})
+          .real(
+              "contact_tolerance", &TimeParameters::contact_tolerance,
+              {.doc = "Several unilateral contacts: largest change of a contact force in the last "
+                      "sweep, relative to the largest force.",
+               .range = Range::inside(0.0, 1.0),
+               .optional = true})
+          .integer("contact_sweeps", &TimeParameters::contact_sweeps,
+                   {.doc = "Several unilateral contacts: most Gauss-Seidel sweeps in a step; where "
+                           "they do not suffice the run ends.",
+                    .optional = true,
+                    .range = Range::between(1, 1e6)})
           .check([](const TimeParameters& time, std::vector<Problem>& problems) {
             if (time.end < time.step)
               problems.push_back({"end", "is shorter than one step", {}, 0, 0});

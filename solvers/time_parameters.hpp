@@ -1,6 +1,8 @@
 // What a scene says about marching in time.
 #pragma once
 
+#include <cstdint>
+
 #include "core/schema.hpp"
 
 namespace stridor {
@@ -20,6 +22,10 @@ struct TimeParameters {
   Coordinates coordinates = Coordinates::modal;
   double step = 0.0;  ///< h, s, > 0
   double end = 0.0;   ///< s, > 0
+  /// Largest change of a contact force in the last sweep over several contacts, relative to the
+  /// largest force, > 0.
+  double contact_tolerance = 1e-12;
+  std::int64_t contact_sweeps = 1000;  ///< most sweeps over several contacts in a step, ≥ 1
   static const Schema& schema();
 };
 

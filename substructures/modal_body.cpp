@@ -33,9 +33,10 @@ ModalBody make_modal(const ReducedBody& body) {
     }
     modal.omega(i) = squares(i) <= rigid_below ? 0.0 : std::sqrt(squares(i));
   }
-  modal.rows = body.rows * solver.eigenvectors();
+  modal.shapes = solver.eigenvectors();
+  modal.rows = body.rows * modal.shapes;
   if (body.base_inertia.size() > 0)
-    modal.base_inertia = solver.eigenvectors().transpose() * body.base_inertia;
+    modal.base_inertia = modal.shapes.transpose() * body.base_inertia;
   return modal;
 }
 

@@ -12,6 +12,7 @@ struct ModalBody {
   RayleighDamping damping;
   Eigen::MatrixXd rows;          ///< as ReducedBody::rows, in modal coordinates
   Eigen::VectorXd base_inertia;  ///< as ReducedBody::base_inertia, in modal coordinates
+  Eigen::MatrixXd shapes;        ///< Φ, reduced coordinates of every mode: q_reduced = Φ q_modal
 
   Eigen::Index size() const { return omega.size(); }
 };

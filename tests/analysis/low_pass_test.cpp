@@ -182,6 +182,22 @@ TEST(Decimator, ChirpComesOutInStepWithTheInput) {
   EXPECT_LT(largest_difference(output.value, dt_out, first_settled(*filter), x), 1e-3);
 }
 
+TEST(Decimator, SampleIsTheInputOfTheSameInstantUntouched) {
+  for (const int thinning : {1, 3, 50}) {
+    const auto filter = make_filter(dt_in, thinning);
+    Decimator decimator(filter);
+    // A stream of numbers that no filter would leave alone.
+    const auto signal = [](int i) { return static_cast<double>((i * 7919) % 104729); };
+    int next = 0;
+    for (int i = 0; i < 5000; ++i) {
+      if (!decimator.push(signal(i))) continue;
+      ASSERT_EQ(decimator.sample(), signal(next)) << thinning;
+      next += thinning;
+    }
+    EXPECT_GT(next, 3000);
+  }
+}
+
 TEST(Decimator, StreamIsAtRestBeforeTheFirstSample) {
   const auto filter = make_filter();
   // A smooth start from rest at 0.4: what comes out equals the same stream with explicit rest
@@ -263,6 +279,7 @@ TEST(Decimator, ResumedStreamIsBitwiseTheSame) {
       for (const Derivative d : {Derivative::none, Derivative::first, Derivative::second}) {
         ASSERT_EQ(straight.value(d), resumed.value(d)) << "stopped at " << stop << ", sample " << i;
       }
+      ASSERT_EQ(straight.sample(), resumed.sample());
     }
   }
 }
@@ -304,6 +321,8 @@ TEST(Decimator, MissingFilterAndEarlyValueAreRejected) {
   Decimator decimator(make_filter());
   decimator.push(1.0);
   EXPECT_THAT([&] { decimator.value(Derivative::none); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("no output is due yet")));
+  EXPECT_THAT([&] { decimator.sample(); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("no output is due yet")));
 }
 

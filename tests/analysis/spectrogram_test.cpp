@@ -284,6 +284,26 @@ TEST(Spectrogram, RejectsWhatItCannotUse) {
   expect_rejection([&] { make_spectrum(broken, dt, good); }, "the samples must be finite");
 }
 
+TEST(Spectrogram, WindowsHaveNamesAndMainLobes) {
+  EXPECT_EQ(window_names().size(), 3U);
+  for (const auto& [name, kind] : window_names()) EXPECT_EQ(window_name(kind), name);
+  // A constant stands in the main lobe about 0 Hz and nowhere else, down to the side lobes.
+  for (const WindowKind kind : all_windows) {
+    const Spectrum s = make_spectrum(std::vector<double>(600, 1.0), dt, {kind, 600, 0.0});
+    const std::size_t lobe = main_lobe_lines(kind);
+    EXPECT_GT(s.amplitude[lobe - 1], 1e-3);
+    for (std::size_t k = lobe; k < s.amplitude.size(); ++k) EXPECT_NEAR(s.amplitude[k], 0.0, 1e-13);
+  }
+}
+
+TEST(Decibels, ReferencesAreThoseOfTheStandard) {
+  EXPECT_EQ(standard_reference("m/s^2"), 1e-6);
+  EXPECT_EQ(standard_reference("m/s"), 1e-9);
+  EXPECT_EQ(standard_reference("m"), 1e-12);
+  EXPECT_EQ(standard_reference("N"), 1e-6);
+  EXPECT_EQ(standard_reference("1"), 1.0);
+}
+
 TEST(Decibels, AreTwentyTimesTheLogarithmOfAnAmplitudeRatio) {
   EXPECT_NEAR(decibels(20.0, 2.0), 20.0, 1e-13);
   EXPECT_NEAR(decibels(1e-3, 1.0), -60.0, 1e-13);

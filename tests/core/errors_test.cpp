@@ -45,6 +45,13 @@ TEST(ConfigError, SaysAllProblemsInOrderOneLineEach) {
   EXPECT_EQ(error.problems()[1].key, "a");
 }
 
+TEST(ConfigError, ReportShowsTheExcerptBelowEachProblem) {
+  const ConfigError error(
+      {{"a", "first", "s.yaml", 1, 1, "    1 | a: x\n      | ^"}, {"b", "second", "s.yaml", 2, 3}});
+  EXPECT_EQ(error.report(), "s.yaml:1:1: a: first\n    1 | a: x\n      | ^\ns.yaml:2:3: b: second");
+  EXPECT_STREQ(error.what(), "s.yaml:1:1: a: first\ns.yaml:2:3: b: second");
+}
+
 TEST(ConfigError, OfOneKeyHasNoPlaceYet) {
   const ConfigError error("drive.ramp", "must be >= 0");
   EXPECT_STREQ(error.what(), "drive.ramp: must be >= 0");

@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace stridor {
 namespace {
 
+using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 
@@ -102,10 +104,25 @@ TEST(ContactParameters, ChoicesMeanWhatTheySay) {
   EXPECT_EQ(contact.assumption, ContactAssumption::subs_b);
   choose("assumption", "subs_c");
   EXPECT_EQ(contact.assumption, ContactAssumption::subs_c);
+  choose("assumption", "film");
+  EXPECT_EQ(contact.assumption, ContactAssumption::film);
+  EXPECT_EQ(contact.on_violation, OnViolation::stop);
+  choose("on_violation", "unilateral");
+  EXPECT_EQ(contact.on_violation, OnViolation::unilateral);
+  choose("on_violation", "stop");
+  EXPECT_EQ(contact.on_violation, OnViolation::stop);
   choose("sliding", "frozen");
   EXPECT_EQ(contact.sliding, SlidingMode::frozen);
   choose("sliding", "moving");
   EXPECT_EQ(contact.sliding, SlidingMode::moving);
+  FrictionParameters friction;
+  const auto choose_law = [&](const char* text) {
+    FrictionParameters::schema().find("law")->assign(&friction, Value(std::string(text)));
+    return friction.law;
+  };
+  EXPECT_EQ(choose_law("static_dynamic"), FrictionLaw::Kind::static_dynamic);
+  EXPECT_EQ(choose_law("stribeck"), FrictionLaw::Kind::stribeck);
+  EXPECT_EQ(choose_law("constant"), FrictionLaw::Kind::constant);
 }
 
 TEST(ContactParameters, PhysicalQuantitiesHaveNoDefault) {
@@ -113,7 +130,105 @@ TEST(ContactParameters, PhysicalQuantitiesHaveNoDefault) {
     EXPECT_FALSE(ContactParameters::schema().find(key)->is_optional) << key;
   for (const char* key : {"velocity", "load", "ramp"})
     EXPECT_FALSE(DriveParameters::schema().find(key)->is_optional) << key;
-  EXPECT_FALSE(FrictionParameters::schema().find("coefficient")->is_optional);
+  // Which coefficients of friction are needed depends on the law: see FrictionParameters.
+  EXPECT_EQ(FrictionParameters{}.coefficient, std::nullopt);
+}
+
+using Kind = FrictionLaw::Kind;
+
+/// Complaints about friction keys, one line each.
+std::vector<std::string> complaints(const FrictionParameters& friction) {
+  std::vector<Problem> problems;
+  for (const auto& check : FrictionParameters::schema().checks) check(&friction, problems);
+  std::vector<std::string> lines;
+  for (const Problem& problem : problems) lines.push_back(problem.text());
+  return lines;
+}
+
+TEST(FrictionParameters, EveryLawNeedsItsOwnKeys) {
+  FrictionParameters friction;
+  EXPECT_THAT(complaints(friction),
+              ElementsAre("coefficient: missing: needed by the constant friction law"));
+  friction.law = Kind::static_dynamic;
+  EXPECT_THAT(complaints(friction),
+              ElementsAre("static: missing: needed by the static_dynamic friction law",
+                          "dynamic: missing: needed by the static_dynamic friction law"));
+  friction.law = Kind::stribeck;
+  EXPECT_THAT(complaints(friction),
+              ElementsAre("static: missing: needed by the stribeck friction law",
+                          "dynamic: missing: needed by the stribeck friction law",
+                          "decay_velocity: missing: needed by the stribeck friction law"));
+}
+
+TEST(FrictionParameters, KeysOfOtherLawsAreRefused) {
+  const FrictionParameters all{Kind::constant, 0.3, 0.4, 0.3, 0.01};
+  FrictionParameters friction = all;
+  EXPECT_THAT(complaints(friction),
+              ElementsAre("static: not used by the constant friction law",
+                          "dynamic: not used by the constant friction law",
+                          "decay_velocity: not used by the constant friction law"));
+  friction.law = Kind::static_dynamic;
+  EXPECT_THAT(complaints(friction),
+              ElementsAre("coefficient: not used by the static_dynamic friction law",
+                          "decay_velocity: not used by the static_dynamic friction law"));
+  friction.law = Kind::stribeck;
+  EXPECT_THAT(complaints(friction),
+              ElementsAre("coefficient: not used by the stribeck friction law"));
+}
+
+TEST(FrictionParameters, CompleteLawsAreTaken) {
+  EXPECT_THAT(complaints({Kind::constant, 0.3, {}, {}, {}}), IsEmpty());
+  EXPECT_THAT(complaints({Kind::constant, 0.0, {}, {}, {}}), IsEmpty());
+  EXPECT_THAT(complaints({Kind::static_dynamic, {}, 0.4, 0.3, {}}), IsEmpty());
+  EXPECT_THAT(complaints({Kind::stribeck, {}, 0.4, 0.3, 0.01}), IsEmpty());
+  // A law may rise with the speed.
+  EXPECT_THAT(complaints({Kind::stribeck, {}, 0.3, 0.4, 0.01}), IsEmpty());
+}
+
+TEST(FrictionParameters, AtRestNoLessThanInSlidingUnlessTheLawIsContinuous) {
+  EXPECT_THAT(complaints({Kind::static_dynamic, {}, 0.3, 0.4, {}}),
+              ElementsAre("static: must not be below `dynamic`"));
+  EXPECT_THAT(complaints({Kind::static_dynamic, {}, 0.3, 0.3, {}}), IsEmpty());
+}
+
+TEST(FrictionParameters, CoefficientsMayBeZeroButNotNegativeAndTheDecayVelocityIsPositive) {
+  const Schema& schema = FrictionParameters::schema();
+  for (const char* key : {"coefficient", "static", "dynamic"}) {
+    EXPECT_TRUE(schema.find(key)->range.contains(0.0)) << key;
+    EXPECT_FALSE(schema.find(key)->range.contains(-1e-9)) << key;
+  }
+  EXPECT_FALSE(schema.find("decay_velocity")->range.contains(0.0));
+  EXPECT_TRUE(schema.find("decay_velocity")->range.contains(1e-9));
+}
+
+TEST(FrictionParameters, BecomeTheLawThatTheyName) {
+  const FrictionLaw constant = make_friction_law({Kind::constant, 0.3, {}, {}, {}});
+  EXPECT_EQ(constant.kind, Kind::constant);
+  EXPECT_EQ(constant.static_coefficient, 0.3);
+  EXPECT_EQ(constant.dynamic_coefficient, 0.3);
+  const FrictionLaw jump = make_friction_law({Kind::static_dynamic, {}, 0.4, 0.3, {}});
+  EXPECT_EQ(jump.kind, Kind::static_dynamic);
+  EXPECT_EQ(jump.static_coefficient, 0.4);
+  EXPECT_EQ(jump.dynamic_coefficient, 0.3);
+  const FrictionLaw stribeck = make_friction_law({Kind::stribeck, {}, 0.4, 0.3, 0.01});
+  EXPECT_EQ(stribeck.kind, Kind::stribeck);
+  EXPECT_EQ(stribeck.static_coefficient, 0.4);
+  EXPECT_EQ(stribeck.dynamic_coefficient, 0.3);
+  EXPECT_EQ(stribeck.decay_velocity, 0.01);
+}
+
+TEST(ContactPoint, IsUnilateralFromTheStartWithFilmAndFromItsArmingOnDemand) {
+  ContactPoint contact;
+  contact.armed_from = 0.1;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(contact.unilateral_from(), infinity);
+  contact.on_violation = OnViolation::unilateral;
+  EXPECT_EQ(contact.unilateral_from(), 0.1);
+  for (const OnViolation any : {OnViolation::stop, OnViolation::unilateral}) {
+    contact.assumption = ContactAssumption::film;
+    contact.on_violation = any;
+    EXPECT_EQ(contact.unilateral_from(), -infinity);
+  }
 }
 
 }  // namespace

@@ -8,8 +8,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -17,22 +15,19 @@
 
 #include "core/errors.hpp"
 #include "io/history_plot.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace stridor {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace test;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 using ::testing::ThrowsMessage;
-
-std::string content(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 // Sets an environment variable for one test.
 class ScopedVariable {
@@ -61,22 +56,9 @@ class ScopedVariable {
 
 class WithFolder : public ::testing::Test {
  protected:
-  WithFolder() {
-    std::string pattern = (fs::temp_directory_path() / "stridor-gnuplot-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~WithFolder() override {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  std::vector<std::string> files() const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder_))
-      names.push_back(entry.path().filename().string());
-    return names;
-  }
+  std::vector<std::string> files() const { return folder_.files(); }
 
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 using Gnuplot = WithFolder;
@@ -92,17 +74,17 @@ TEST_F(Gnuplot, EndingOfTheNameChoosesTheFormat) {
   draw_figure(folder_ / "a.png", "plot sin(x)");
   draw_figure(folder_ / "a.svg", "plot sin(x)");
   draw_figure(folder_ / "a.pdf", "plot sin(x)");
-  EXPECT_THAT(content(folder_ / "a.png"), StartsWith("\x89PNG"));
-  EXPECT_THAT(content(folder_ / "a.svg"),
+  EXPECT_THAT(contents_of(folder_ / "a.png"), StartsWith("\x89PNG"));
+  EXPECT_THAT(contents_of(folder_ / "a.svg"),
               AllOf(HasSubstr("<svg"), HasSubstr("</svg>"), HasSubstr("DejaVu Sans")));
-  EXPECT_THAT(content(folder_ / "a.pdf"), StartsWith("%PDF"));
+  EXPECT_THAT(contents_of(folder_ / "a.pdf"), StartsWith("%PDF"));
   EXPECT_EQ(files().size(), 3U);
 }
 
 TEST_F(Gnuplot, PngHasTheSizeAskedFor) {
   draw_figure(folder_ / "a.png", "plot sin(x)", {.width = 8.0, .height = 5.0, .font_size = 10.0});
   // Bytes 16 to 23 of a PNG are width and height, most significant byte first; 100 dots per cm.
-  const std::string bytes = content(folder_ / "a.png");
+  const std::string bytes = contents_of(folder_ / "a.png");
   const auto number = [&](std::size_t at) {
     unsigned value = 0;
     for (std::size_t i = 0; i < 4; ++i)
@@ -118,7 +100,7 @@ TEST_F(Gnuplot, OddNamesAndQuotesDoNoHarm) {
   draw_figure(odd,
               "set title " + gnuplot_string("it's `touch z` \"q\"\n!touch w") + "\nplot sin(x)");
   EXPECT_THAT(files(), ElementsAre(odd.filename().string()));
-  EXPECT_THAT(content(odd), HasSubstr("`touch z`"));
+  EXPECT_THAT(contents_of(odd), HasSubstr("`touch z`"));
   EXPECT_EQ(gnuplot_string("a'b\nc"), "'a''b c'");
 }
 
@@ -132,11 +114,11 @@ TEST_F(Gnuplot, OtherEndingsAreRejected) {
 }
 
 TEST_F(Gnuplot, ErrorInTheScriptKeepsTheOldFigure) {
-  std::ofstream(folder_ / "a.png") << "old";
+  write_file(folder_ / "a.png", "old");
   expect_file_error(
       [&] { draw_figure(folder_ / "a.png", "plot nonsense(x)"); },
       AllOf(HasSubstr("a.png"), HasSubstr("gnuplot failed"), HasSubstr("undefined function")));
-  EXPECT_EQ(content(folder_ / "a.png"), "old");
+  EXPECT_EQ(contents_of(folder_ / "a.png"), "old");
   EXPECT_THAT(files(), ElementsAre("a.png"));
 }
 
@@ -156,15 +138,15 @@ TEST_F(Gnuplot, NoPictureIsAnError) {
 }
 
 TEST_F(Gnuplot, GnuplotThatIsKilledIsReported) {
-  std::ofstream(folder_ / "gnuplot") << "#!/bin/sh\nkill -9 $$\n";
+  write_file(folder_ / "gnuplot", "#!/bin/sh\nkill -9 $$\n");
   fs::permissions(folder_ / "gnuplot", fs::perms::owner_all);
-  const ScopedVariable path("PATH", folder_.string());
+  const ScopedVariable path("PATH", folder_.path().string());
   expect_file_error([&] { draw_figure(folder_ / "a.png", "plot sin(x)"); },
                     HasSubstr("was ended by signal 9"));
 }
 
 TEST_F(Gnuplot, MissingGnuplotSaysWhatToInstall) {
-  const ScopedVariable path("PATH", folder_.string());
+  const ScopedVariable path("PATH", folder_.path().string());
   expect_file_error([&] { draw_figure(folder_ / "a.png", "plot sin(x)"); },
                     AllOf(HasSubstr("gnuplot is not installed"), HasSubstr("gnuplot-nox"),
                           HasSubstr("fonts-dejavu-core")));
@@ -183,10 +165,9 @@ TEST_F(Gnuplot, UnusableTargetsAreRejected) {
 
 TEST_F(Gnuplot, FolderWithoutWritePermissionIsRejected) {
   if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
-  fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
+  fs::permissions(folder_.path(), fs::perms::owner_read | fs::perms::owner_exec);
   expect_file_error([&] { draw_figure(folder_ / "a.png", "plot sin(x)"); },
                     HasSubstr("cannot write in the folder"));
-  fs::permissions(folder_, fs::perms::owner_all);
 }
 
 TEST_F(Gnuplot, TemporaryFolderThatCannotBeMadeIsReported) {
@@ -196,12 +177,12 @@ TEST_F(Gnuplot, TemporaryFolderThatCannotBeMadeIsReported) {
 }
 
 TEST_F(Gnuplot, FontsAreLookedForInSubfolders) {
-  EXPECT_FALSE(has_fonts({folder_, folder_ / "none"}));
+  EXPECT_FALSE(has_fonts({folder_.path(), folder_ / "none"}));
   fs::create_directories(folder_ / "truetype/dejavu");
-  std::ofstream(folder_ / "truetype/dejavu/readme.txt") << "x";
-  EXPECT_FALSE(has_fonts({folder_}));
-  std::ofstream(folder_ / "truetype/dejavu/DejaVuSans.ttf") << "x";
-  EXPECT_TRUE(has_fonts({folder_ / "none", folder_}));
+  write_file(folder_ / "truetype/dejavu/readme.txt", "x");
+  EXPECT_FALSE(has_fonts({folder_.path()}));
+  write_file(folder_ / "truetype/dejavu/DejaVuSans.ttf", "x");
+  EXPECT_TRUE(has_fonts({folder_ / "none", folder_.path()}));
 }
 
 // ---------------------------------------------------------------- envelope and axes
@@ -300,7 +281,7 @@ TEST_F(HistoryPlot, LongSeriesMakeSmallFiles) {
     EXPECT_LT(fs::file_size(folder_ / name), 300000U) << name;
     EXPECT_GT(fs::file_size(folder_ / name), 5000U) << name;
   }
-  const std::string svg = content(folder_ / "a.svg");
+  const std::string svg = contents_of(folder_ / "a.svg");
   for (const char* text : {"acceleration (m/s²)", "contact force (N)", "time (s)", "beam_on_beam",
                            "Subs-b", "0.1985"}) {
     EXPECT_THAT(svg, HasSubstr(text));
@@ -318,11 +299,11 @@ TEST_F(HistoryPlot, DegenerateDataAreDrawn) {
       {"about an offset", "force", "N", {{{0.0, 1.0, 2.0}, {0.2, 0.2 + 1e-8, 0.2}, ""}}},
   };
   for (const char* name : {"a.svg", "a.png", "a.pdf"}) plot_histories(panels, folder_ / name, "");
-  EXPECT_THAT(content(folder_ / "a.svg"),
+  EXPECT_THAT(contents_of(folder_ / "a.svg"),
               AllOf(HasSubstr("force (10⁻⁹ N)"), HasSubstr("minus 0.2 N")));
   plot_histories({{"", "x", "", {{{}, {}, ""}}}}, folder_ / "empty.svg", "");
   plot_histories({{"", "x", "", {{{0.0, 2e-6}, {1.0, 2.0}, ""}}}}, folder_ / "short.svg", "");
-  EXPECT_THAT(content(folder_ / "short.svg"), HasSubstr("time (µs)"));
+  EXPECT_THAT(contents_of(folder_ / "short.svg"), HasSubstr("time (µs)"));
 }
 
 TEST_F(HistoryPlot, WrongPanelsAreRejected) {

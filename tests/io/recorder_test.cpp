@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "solvers/march.hpp"
+#include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 #include "tests/support/program.hpp"
 
@@ -22,7 +24,10 @@ std::vector<Channel> all_channels(const ModelParameters& parameters) {
                      "contact.force",
                      "contact.gap",
                      "contact.slip_velocity",
-                     "contact.position"};
+                     "contact.position",
+                     "contact.friction_force",
+                     "contact.state"};
+  record.energy = true;
   return parse_channels(record, parameters);
 }
 
@@ -36,7 +41,7 @@ ModelParameters lively_model() {
 
 RunFileReader record_run(const Model& model, const std::vector<Channel>& channels, double interval,
                          std::int64_t steps, const std::string& path) {
-  Simulation simulation(model.system, paper_time());
+  Simulation simulation(model.system, paper_time(), Accounts::energy);
   RunFileWriter writer(path, Overwrite::yes, {}, Recorder::series(model, channels, 2e-7, interval));
   Recorder recorder(model, channels, 2e-7, interval, writer);
   MarchPlan plan;
@@ -53,16 +58,24 @@ TEST(Recorder, WithOneStepPerSampleWritesWhatTheSimulationHolds) {
   const auto channels = all_channels(parameters);
   const RunFileReader file = record_run(model, channels, 2e-7, 500, (folder / "a.h5").string());
   const Model::Point point = model.points.at(free_end);
-  Simulation simulation(model.system, paper_time());
+  Simulation simulation(model.system, paper_time(), Accounts::energy);
   const auto displacement = file.series("/channels/cantilever.free_end.y.displacement");
   const auto force = file.series("/contact/contact/force");
   const auto slip = file.series("/contact/contact/slip_velocity");
   const auto position = file.series("/contact/contact/position");
+  const auto friction = file.series("/contact/contact/friction_force");
+  const auto state = file.series("/contact/contact/state");
+  const auto kinetic = file.series("/energy/kinetic");
+  const auto error = file.series("/energy/balance_error");
   for (std::size_t n = 0; n <= 500; ++n) {
     EXPECT_EQ(displacement[n], simulation.displacement(point.body, point.rows.y));
     EXPECT_EQ(force[n], simulation.contact_force(0));
     EXPECT_EQ(slip[n], simulation.slip_velocity(0));
     EXPECT_EQ(position[n], simulation.contact_place(0).position);
+    EXPECT_EQ(friction[n], simulation.friction_force(0));
+    EXPECT_EQ(state[n], static_cast<double>(simulation.contact_state(0)));
+    EXPECT_EQ(kinetic[n], simulation.energy()->balance().kinetic);
+    EXPECT_EQ(error[n], simulation.energy()->balance().balance_error);
     simulation.step();
   }
 }
@@ -80,7 +93,8 @@ TEST(Recorder, LooksOftenEnoughThatNothingFoldsIntoTheRecord) {
   const RunFileReader full = record_run(model, channels, 2e-7, 25'000, (folder / "b.h5").string());
   for (const std::string name :
        {"/channels/cantilever.free_end.y.displacement", "/channels/cantilever.free_end.y.velocity",
-        "/contact/contact/force", "/contact/contact/slip_velocity"}) {
+        "/contact/contact/force", "/contact/contact/slip_velocity",
+        "/contact/contact/friction_force"}) {
     const auto from_some = thinned.series(name);
     const auto all = full.series(name);
     Decimator decimator(std::make_shared<const DecimationFilter>(2e-7, 50));
@@ -96,6 +110,57 @@ TEST(Recorder, LooksOftenEnoughThatNothingFoldsIntoTheRecord) {
     }
     EXPECT_LT(difference, 2e-4 * largest) << name;
   }
+}
+
+TEST(Recorder, StatesAndEnergiesStandUnfilteredBesideFilteredRows) {
+  // FiLM sticks, slips and lifts off here. Every row of a state or an energy is what the simulation
+  // holds at the time of that row, whatever the low-pass of the other columns has seen before.
+  const TemporaryFolder folder;
+  ModelParameters parameters = paper_model(trailing_angle, ContactAssumption::film);
+  parameters.drive.ramp = 1e-3;
+  const Model model = make_paper_model(parameters);
+  const auto channels = all_channels(parameters);
+  const RunFileReader file =
+      record_run(model, channels, 1e-5, 25'000, (folder / "film.h5").string());
+  ASSERT_GE(file.times().size(), 501u);
+  const auto state = file.series("/contact/contact/state");
+  const auto friction_loss = file.series("/energy/friction_loss");
+  const auto strain = file.series("/energy/strain");
+  Simulation simulation(model.system, paper_time(), Accounts::energy);
+  std::array<int, 3> seen{};
+  for (std::size_t k = 0; k <= 500; ++k) {
+    ASSERT_EQ(simulation.step_until(static_cast<std::int64_t>(50 * k)), StepOutcome::done);
+    ASSERT_EQ(state[k], static_cast<double>(simulation.contact_state(0))) << k;
+    ASSERT_EQ(friction_loss[k], simulation.energy()->balance().friction_loss) << k;
+    ASSERT_EQ(strain[k], simulation.energy()->balance().strain) << k;
+    ++seen[static_cast<std::size_t>(state[k])];
+  }
+  for (const int count : seen) EXPECT_GT(count, 0);
+
+  const auto text = [&](const std::string& path, const std::string& name) {
+    return std::get<std::string>(file.attributes(path).at(name));
+  };
+  EXPECT_EQ(text("/contact/contact/state", "meaning"), "0 open, 1 stick, 2 slip");
+  EXPECT_EQ(text("/contact/contact/state", "filter"), "none");
+  EXPECT_EQ(text("/energy/strain", "filter"), "none");
+  EXPECT_EQ(text("/energy/strain", "definition"), "strain energy, half a time step before the row");
+  EXPECT_EQ(file.units("/energy/strain"), "J");
+  EXPECT_NE(text("/contact/contact/friction_force", "filter"), "none");
+  EXPECT_EQ(text("/contact/contact/friction_force", "acts_at"),
+            "the time of the same row of /time");
+}
+
+TEST(Recorder, RefusesEnergiesThatTheSimulationDoesNotKeep) {
+  const TemporaryFolder folder;
+  const ModelParameters parameters = lively_model();
+  const Model model = make_paper_model(parameters);
+  const auto channels = all_channels(parameters);
+  RunFileWriter writer((folder / "a.h5").string(), Overwrite::no, {},
+                       Recorder::series(model, channels, 2e-7, 1e-5));
+  Recorder recorder(model, channels, 2e-7, 1e-5, writer);
+  const Simulation simulation(model.system, paper_time());
+  EXPECT_EQ(message_of<std::invalid_argument>([&] { recorder.sample(simulation); }),
+            "Recorder: the simulation keeps no account of its energy");
 }
 
 TEST(Recorder, StrideFollowsTheRingingModesAndTheRatio) {
@@ -123,7 +188,7 @@ TEST(Recorder, GoesOnBitwiseAfterSaveAndLoad) {
   RunFileWriter writer(path, Overwrite::no, {}, Recorder::series(model, channels, 2e-7, 1e-5));
   State state;
   {
-    Simulation simulation(model.system, paper_time());
+    Simulation simulation(model.system, paper_time(), Accounts::energy);
     Recorder recorder(model, channels, 2e-7, 1e-5, writer);
     MarchPlan plan;
     plan.last_step = 4321;
@@ -131,7 +196,7 @@ TEST(Recorder, GoesOnBitwiseAfterSaveAndLoad) {
     state = simulation.save();
     recorder.save(state, "recorder/");
   }
-  Simulation simulation(model.system, paper_time());
+  Simulation simulation(model.system, paper_time(), Accounts::energy);
   Recorder recorder(model, channels, 2e-7, 1e-5, writer);
   simulation.load(state);
   recorder.load(state, "recorder/");

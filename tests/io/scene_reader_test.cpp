@@ -5,8 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -361,6 +359,25 @@ TEST(SceneReader, CurveIsCheckedAtItsPlaces) {
               "is given twice");
 }
 
+TEST(SceneReader, MisspeltDiscriminatorIsFound) {
+  const auto problems = problems_in(with("type: lumped", "tpye: lumped"));
+  ASSERT_THAT(problems, SizeIs(2));
+  expect_problem(problems[0], line_of("  tip:"), 3, "bodies.tip.type",
+                 "required key 'type' is missing, expected one of beam, lumped");
+  expect_problem(problems[1], line_of("type: lumped"), 5, "bodies.tip.tpye",
+                 "unknown key 'tpye', did you mean 'type'?");
+}
+
+TEST(SceneReader, KeyThatNoAlternativeKnowsIsReportedThoughTheDiscriminatorIsWrong) {
+  const auto problems =
+      problems_in(with("type: lumped\n    mass: 2 g", "type: x\n    mass: 2 g\n    colour: red"));
+  ASSERT_THAT(problems, SizeIs(2));
+  EXPECT_EQ(problems[0].key, "bodies.tip.type");
+  expect_problem(problems[1], line_of("mass:") + 1, 5, "bodies.tip.colour",
+                 "unknown key 'colour'; known here: type, length, angle, elements, modes, "
+                 "material, mass");
+}
+
 // --- sections
 // ---------------------------------------------------------------------------------------
 
@@ -453,6 +470,35 @@ TEST(SceneReader, ProblemFromSetNamesItAndComesLast) {
               HasSubstr("--set contcat.start=1: contcat: unknown key 'contcat'"));
 }
 
+TEST(SceneReader, ProblemShowsItsLineWithACaret) {
+  EXPECT_EQ(problems_in(with("scheme: exact", "scheme:  exakt  # µ")).at(0).excerpt,
+            "    3 | scheme:  exakt  # µ\n"
+            "      |          ^");
+  EXPECT_EQ(problems_in("title: x\nvelocity: 1\nbodies: {}\n").at(0).excerpt,
+            "    1 | title: x\n"
+            "      | ^");
+}
+
+TEST(SceneReader, ProblemFromSetShowsTheAssignmentWithACaret) {
+  SceneNode root = read_scene_text(kExampleText, "s.yaml");
+  set_value(root, "bodies.oblique.length=-3");
+  set_value(root, "bodies.tip.mas=1");
+  set_value(root, "velocity={times: [0, 1], values: [0, 2 kg]}");
+  std::vector<std::string> excerpts;
+  for (const Problem& problem : problems_of(root)) {
+    EXPECT_EQ(problem.line, 0);
+    EXPECT_EQ(problem.column, 0);
+    excerpts.push_back(problem.excerpt);
+  }
+  EXPECT_THAT(excerpts, testing::UnorderedElementsAre(
+                            "      | --set bodies.oblique.length=-3\n"
+                            "      |                             ^",
+                            "      | --set bodies.tip.mas=1\n"
+                            "      |                  ^",
+                            "      | --set velocity={times: [0, 1], values: [0, 2 kg]}\n"
+                            "      |                                            ^"));
+}
+
 TEST(SceneReader, ValuesFromSetAreTyped) {
   SceneNode root = read_scene_text(kExampleText, "s.yaml");
   set_value(root, "velocity={times: [0, 1], values: [0, 40 mm/s]}");
@@ -481,193 +527,6 @@ TEST(SceneReader, AllProblemsComeAtOnceInTheOrderOfTheFile) {
   ASSERT_THAT(problems, SizeIs(6));
   for (std::size_t i = 1; i < problems.size(); ++i)
     EXPECT_LE(problems[i - 1].line, problems[i].line);
-}
-
-/// Calls back for every key below `node` that is declared and written: its declaration, entry, key
-/// path and the map that holds it.
-using See =
-    std::function<void(const Key&, const SceneEntry&, const std::string&, const std::string&)>;
-
-void walk(const SceneNode& node, const Schema& schema, const std::string& path, const See& see) {
-  for (const Key& key : schema.keys) {
-    const SceneEntry* entry = node.entry(key.name);
-    ASSERT_NE(entry, nullptr) << "the example leaves out " << key.name;
-    const std::string key_path = join_path(path, key.name);
-    see(key, *entry, key_path, path);
-    if (key.kind == KeyKind::section) {
-      walk(entry->value, key.alternatives[0].schema(), key_path, see);
-    } else if (key.kind == KeyKind::section_list) {
-      for (std::size_t i = 0; i < entry->value.items.size(); ++i) {
-        walk(entry->value.items[i], key.alternatives[0].schema(), fmt::format("{}.{}", key_path, i),
-             see);
-      }
-    } else if (key.kind == KeyKind::named_sections) {
-      for (const SceneEntry& named : entry->value.entries) {
-        for (const Alternative& alternative : key.alternatives) {
-          const SceneEntry* type = named.value.entry("type");
-          if (!type || type->value.text == alternative.name) {
-            walk(named.value, alternative.schema(), join_path(key_path, named.key), see);
-          }
-        }
-      }
-    }
-  }
-}
-
-int last_line(const SceneNode& node, int line) {
-  line = std::max(line, node.place.line);
-  for (const SceneEntry& entry : node.entries)
-    line = std::max(line, last_line(entry.value, entry.place.line));
-  for (const SceneNode& item : node.items) line = last_line(item, line);
-  return line;
-}
-
-/// One way to spoil a key, and where that must be noticed.
-struct Mutant {
-  std::string what;
-  std::string text;
-  std::string key;
-  int line = 0;
-  std::string message;
-};
-
-class MutantMaker {
- public:
-  MutantMaker() {
-    std::string line;
-    for (const char c : kExampleText) {
-      if (c == '\n') {
-        lines_.push_back(line);
-        line.clear();
-      } else {
-        line += c;
-      }
-    }
-  }
-
-  std::vector<Mutant> mutants_of(const Key& key, const SceneEntry& entry, const std::string& path,
-                                 const std::string& map_path, int map_line) const {
-    const int first = entry.place.line;
-    const int last = last_line(entry.value, first);
-    const std::string indent(static_cast<std::size_t>(entry.place.column) - 1, ' ');
-    const auto put = [&](const std::string& value) {
-      return replaced(first, last, {indent + key.name + ": " + value});
-    };
-    const bool is_list = key.kind == KeyKind::real_list;
-    const auto put_number = [&](const std::string& number) {
-      return put(is_list ? "[" + number + "]" : number);
-    };
-    const std::string number_path = is_list ? path + ".0" : path;
-
-    std::vector<Mutant> mutants;
-    if (!key.is_optional) {
-      mutants.push_back({"dropped", replaced(first, last, {}), path, map_line,
-                         "is missing, expected " + expected_of(key)});
-    }
-    std::vector<std::string> twice;
-    for (int copy = 0; copy < 2; ++copy) {
-      twice.insert(twice.end(), lines_.begin() + first - 1, lines_.begin() + last);
-    }
-    mutants.push_back({"doubled", replaced(first, last, twice), path, last + 1, "is given twice"});
-    mutants.push_back({"empty", put(""), path, first, "has no value"});
-    mutants.push_back(
-        {"misspelt",
-         replaced(
-             first, first,
-             {indent + key.name + "x" +
-              lines_[static_cast<std::size_t>(first) - 1].substr(indent.size() + key.name.size())}),
-         join_path(map_path, key.name + "x"), first, "did you mean '" + key.name + "'?"});
-    const bool takes_map = key.kind == KeyKind::curve || key.kind == KeyKind::section ||
-                           key.kind == KeyKind::named_sections;
-    const std::string wrong = takes_map ? "[[1]]" : "{zz: 1}";
-    mutants.push_back(
-        {"mistyped", put(wrong), path, first, takes_map ? "got a list" : "got a map"});
-
-    const bool is_real = key.kind == KeyKind::real || is_list || key.kind == KeyKind::curve;
-    if (is_real) {
-      mutants.push_back({"wrong unit", put_number("1 kg2"), number_path, first, "has unit kg2"});
-      mutants.push_back({"not finite", put_number(".nan"), number_path, first, "must be finite"});
-    }
-    if (is_real || key.kind == KeyKind::integer) {
-      if (std::isfinite(key.range.low)) {
-        mutants.push_back({"too low", put_number(fmt::format("{}", key.range.low - 1.0)),
-                           number_path, first, "must be "});
-      }
-      if (std::isfinite(key.range.high)) {
-        mutants.push_back({"too high", put_number(fmt::format("{}", key.range.high + 1.0)),
-                           number_path, first, "must be "});
-      }
-      if (std::isfinite(key.range.low) && key.range.excludes_low) {
-        mutants.push_back({"at the open bound", put_number(fmt::format("{}", key.range.low)),
-                           number_path, first, "must be "});
-      }
-    }
-    if (key.kind == KeyKind::integer)
-      mutants.push_back({"broken", put("1.5"), path, first, "expected a whole number"});
-    if (key.kind == KeyKind::choice || key.kind == KeyKind::flag) {
-      mutants.push_back(
-          {"not among the choices", put("sometimes"), path, first, "got 'sometimes'"});
-    }
-    return mutants;
-  }
-
- private:
-  std::string replaced(int first, int last, const std::vector<std::string>& with_lines) const {
-    std::string text;
-    for (int i = 1; i <= static_cast<int>(lines_.size()); ++i) {
-      if (i == first) {
-        for (const std::string& line : with_lines) text += line + "\n";
-      }
-      if (i < first || i > last) text += lines_[static_cast<std::size_t>(i) - 1] + "\n";
-    }
-    return text;
-  }
-
-  std::vector<std::string> lines_;
-};
-
-TEST(SceneReader, EveryKeySpoiltInEveryWayIsReportedAtItsPlace) {
-  const SceneNode root = read_scene_text(kExampleText, "s.yaml");
-  ASSERT_THAT(problems_of(root), IsEmpty());
-  const MutantMaker maker;
-  int num_mutants = 0;
-  std::set<KeyKind> kinds;
-  walk(root, Example::schema(), "",
-       [&](const Key& key, const SceneEntry& entry, const std::string& path,
-           const std::string& map_path) {
-         kinds.insert(key.kind);
-         for (const Mutant& mutant :
-              maker.mutants_of(key, entry, path, map_path, place_of(root, map_path).line)) {
-           ++num_mutants;
-           const auto problems = problems_in(mutant.text);
-           const bool is_found =
-               std::any_of(problems.begin(), problems.end(), [&](const Problem& problem) {
-                 return problem.key == mutant.key && problem.line == mutant.line &&
-                        problem.column > 0 && problem.source == "s.yaml" &&
-                        problem.message.find(mutant.message) != std::string::npos;
-               });
-           EXPECT_TRUE(is_found) << path << " " << mutant.what << ": expected '" << mutant.message
-                                 << "' for " << mutant.key << " in line " << mutant.line
-                                 << ", got\n"
-                                 << ConfigError(problems).what() << "\nin\n"
-                                 << mutant.text;
-         }
-       });
-  EXPECT_THAT(kinds, SizeIs(11)) << "the example does not hold every kind of key";
-  EXPECT_GT(num_mutants, 150);
-}
-
-TEST(SceneReader, EveryScalarSpoiltAtOnceIsReported) {
-  // All problems at once, and none twice: every leaf of the example becomes a list of lists.
-  SceneNode root = read_scene_text(kExampleText, "s.yaml");
-  std::vector<std::string> leaves;
-  walk(root, Example::schema(), "",
-       [&](const Key& key, const SceneEntry&, const std::string& path, const std::string&) {
-         if (key.assign) leaves.push_back(path);
-       });
-  for (const std::string& leaf : leaves) set_value(root, leaf + "=[[1]]");
-  const auto problems = problems_of(root);
-  EXPECT_THAT(problems, SizeIs(leaves.size()));
 }
 
 }  // namespace

@@ -60,6 +60,12 @@ TEST(Scene, ErrorsOfTheModelAreGivenTheirPlaceInTheFile) {
   }
 }
 
+TEST(Scene, EnergyIsRecordedWhereAskedFor) {
+  EXPECT_FALSE(load_scene(scene_path("beam_on_beam.yaml"), {}).scene.record->energy);
+  EXPECT_TRUE(
+      load_scene(scene_path("beam_on_beam.yaml"), {"record.energy=true"}).scene.record->energy);
+}
+
 TEST(Scene, SceneWithoutRecordIsAllowed) {
   const TemporaryFolder folder;
   std::string text = contents_of(scene_path("beam_on_beam.yaml"));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/errors.hpp"
+#include "solvers/make_propagator.hpp"
 #include "tests/support/paper_model.hpp"
 
 namespace stridor {
@@ -204,8 +205,145 @@ TEST(Model, ConstantsOfTheDriveRiseOverTheRamp) {
   EXPECT_EQ(drive.velocity.value(0.1), 0.030);
   EXPECT_EQ(drive.load.value(0.2), -0.20);
   EXPECT_NEAR(drive.displacement(1.0), 0.030 * 0.95, 1e-16);
-  EXPECT_EQ(model.system.contacts[0].friction.value(0.1), 0.30);
+  EXPECT_EQ(sliding_friction(model.system.contacts[0].friction, 0.03), 0.30);
   EXPECT_EQ(model.system.contacts[0].armed_from, 0.1);
+}
+
+/// The oblique beam on rigid ground, alone.
+ModelParameters on_rigid_ground() {
+  ModelParameters parameters = paper_model();
+  parameters.substructures.erase("cantilever");
+  parameters.contact->master = "rigid";
+  return parameters;
+}
+
+TEST(Model, TheRigidMasterIsAnEndlessLineUnderTheSlave) {
+  ModelParameters parameters = on_rigid_ground();
+  parameters.contact->start = 7.25;  // no end to be off
+  const Model model = make_model(parameters, {});
+  const System& system = model.system;
+  ASSERT_EQ(system.bodies.size(), 2u);
+  EXPECT_EQ(system.bodies[1].name, "rigid");
+  EXPECT_EQ(system.bodies[1].reduced.size(), 0);
+  EXPECT_EQ(system.bodies[1].modal.size(), 0);
+  EXPECT_FALSE(system.bodies[1].follows_drive);
+  const MasterSurface& surface = system.surfaces.at(0);
+  EXPECT_EQ(surface.name, "rigid");
+  EXPECT_EQ(surface.body, 1);
+  EXPECT_TRUE(surface.is_endless);
+  const ContactPoint& contact = system.contacts.at(0);
+  EXPECT_NEAR(contact.slave_position.x(), 7.25, 1e-15);
+  EXPECT_NEAR(contact.slave_position.y(), 0.0, 1e-15);
+  // The ground sets no limit to the step.
+  EXPECT_EQ(step_limit(system).body, "oblique");
+}
+
+TEST(Model, OnRigidGroundTheContactCarriesTheLoadInEveryForm) {
+  ModelParameters parameters = on_rigid_ground();
+  parameters.contact->assumption = ContactAssumption::film;
+  parameters.contact->friction.coefficient = 0.0;
+  auto& oblique = std::get<BeamParameters>(parameters.substructures["oblique"]);
+  oblique.damping.alpha = 2000.0;
+  oblique.damping.alpha_start.reset();
+  oblique.damping.hold = oblique.damping.fade = 0.0;
+  parameters.drive.ramp = 1e-3;
+  const Model model = make_model(parameters, {});
+  double force = 0.0;
+  for (const Coordinates form : {Coordinates::modal, Coordinates::craig_bampton_fused}) {
+    Simulation simulation(model.system, paper_time(2e-7, form));
+    ASSERT_EQ(simulation.step_until(150'000), StepOutcome::done) << simulation.failure();
+    // 30 ms at 1000 1/s leave e^-30 of the start; the rest is rounding of displacements of a
+    // millimetre over the compliance h² B_C M⁻¹ B_Eᵀ.
+    EXPECT_NEAR(simulation.contact_force(0), 0.2, 1e-8);
+    EXPECT_NEAR(simulation.contact_place(0).gap, 0.0, 1e-12);
+    if (form == Coordinates::modal) force = simulation.contact_force(0);
+    EXPECT_NEAR(simulation.contact_force(0), force, 1e-8);
+    // The drive has gone on beyond the one metre that the line is drawn with, or would: it has
+    // none.
+    EXPECT_GT(simulation.contact_place(0).position, 0.030);
+  }
+}
+
+TEST(Model, SlidingOnRigidGroundFindsNoEnd) {
+  ModelParameters parameters = on_rigid_ground();
+  parameters.drive.velocity = TimeCurve(1000.0);
+  parameters.drive.ramp = 1e-3;
+  parameters.contact->armed_from = 1.0;
+  for (const double velocity : {1000.0, -1000.0}) {
+    parameters.drive.velocity = TimeCurve(velocity);
+    const Model model = make_model(parameters, {});
+    Simulation simulation(model.system, paper_time());
+    ASSERT_EQ(simulation.step_until(20'000), StepOutcome::done) << simulation.failure();
+    // 4 ms at 1 m per ms, half a ramp less; the tip is bent by centimetres. The line is drawn from
+    // 0 to 1 m.
+    EXPECT_NEAR(simulation.contact_place(0).position, 0.030 + velocity * 3.5e-3, 0.3);
+  }
+}
+
+TEST(Model, AnEdgeAndAPointOnRigidGroundAreContactsOfTheirPairs) {
+  // Two pairs on the ground: the lower edge of a flat beam, and the tip of an oblique one.
+  ModelParameters parameters = on_rigid_ground();
+  BeamParameters flat = paper_oblique(0.0);
+  flat.mesh.along = 3;
+  flat.reduction.fixed_interface_modes = 5;
+  flat.supports.end = Support::guided;
+  parameters.substructures["flat"] = flat;
+  ContactParameters edge = *parameters.contact;
+  edge.slave = {"flat.bottom"};
+  edge.start = 0.5;
+  parameters.contacts = {{"edge", edge}, {"tip", *parameters.contact}};
+  parameters.contact.reset();
+  const Model model = make_model(parameters, {});
+  const System& system = model.system;
+  ASSERT_EQ(system.contacts.size(), 8u);
+  EXPECT_EQ(system.contacts[0].name, "edge[0]");
+  EXPECT_EQ(system.contacts[6].name, "edge[6]");
+  EXPECT_EQ(system.contacts[7].name, "tip");
+  for (const ContactPoint& contact : system.contacts)
+    EXPECT_NEAR(contact.slave_position.y(), 0.0, 1e-15);
+  EXPECT_NEAR(system.contacts[0].slave_position.x(), 0.5, 1e-15);
+  EXPECT_NEAR(system.contacts[7].slave_position.x(), 0.030, 1e-15);
+  // One rigid body carries both.
+  ASSERT_EQ(system.bodies.size(), 3u);
+  EXPECT_EQ(system.bodies[2].name, "rigid");
+  EXPECT_EQ(system.surfaces[0].body, 2);
+  EXPECT_EQ(system.surfaces[1].body, 2);
+}
+
+TEST(Model, APointOfASlaveOnRigidGroundMustLieOnIt) {
+  ModelParameters parameters = on_rigid_ground();
+  parameters.contact->slave = {"oblique.tip", "oblique.start_top"};
+  expect_refusal(parameters, "contact.slave", "slave point 2 starts 0.0012990");
+  expect_refusal(parameters, "contact.slave", "m away from the master 'rigid'");
+}
+
+TEST(Model, TheRigidMasterHasNoPointsOfItsOwn) {
+  ModelParameters parameters = on_rigid_ground();
+  parameters.contact->slave = {"rigid.tip"};
+  expect_refusal(parameters, "contact.slave",
+                 "there is no substructure 'rigid' (there are: oblique)");
+  expect_refusal(on_rigid_ground(), "record.channels.0",
+                 "there is no substructure 'rigid' (there are: oblique)",
+                 {{{"rigid", "tip"}, "record.channels.0"}});
+}
+
+TEST(Model, ASubstructureMayNotTakeTheNameOfTheRigidMaster) {
+  ModelParameters parameters = on_rigid_ground();
+  parameters.substructures["rigid"] = paper_oblique();
+  expect_refusal(parameters, "substructures.rigid", "'rigid' is the name of the rigid master");
+}
+
+TEST(Model, FrictionLawsRiseWithTheRamp) {
+  ModelParameters parameters = paper_model();
+  parameters.contact->friction = {FrictionLaw::Kind::stribeck, {}, 0.4, 0.3, 0.01};
+  const Model model = make_paper_model(parameters);
+  const ContactPoint& contact = model.system.contacts.at(0);
+  EXPECT_EQ(contact.friction.kind, FrictionLaw::Kind::stribeck);
+  EXPECT_EQ(contact.friction.static_coefficient, 0.4);
+  EXPECT_EQ(contact.friction.decay_velocity, 0.01);
+  EXPECT_EQ(contact.friction_rise.value(0.0), 0.0);
+  EXPECT_EQ(contact.friction_rise.value(0.05), 0.5);
+  EXPECT_EQ(contact.friction_rise.value(0.1), 1.0);
 }
 
 TEST(ModelParameters, ContactAndContactsTogetherAreRefused) {

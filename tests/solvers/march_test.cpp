@@ -67,8 +67,9 @@ TEST(March, ForceExtremesAreThoseOfTheWindow) {
     low = std::min(low, reference.contact_force(0));
     high = std::max(high, reference.contact_force(0));
   }
-  ASSERT_TRUE(result.force_extremes.at(0).has_value());
-  EXPECT_EQ(*result.force_extremes[0], std::make_pair(low, high));
+  ASSERT_TRUE(result.statistics.at(0).has_value());
+  EXPECT_EQ(result.statistics[0]->force_min, low);
+  EXPECT_EQ(result.statistics[0]->force_max, high);
 }
 
 TEST(March, AWindowThatIsNotReachedIsEmpty) {
@@ -78,7 +79,7 @@ TEST(March, AWindowThatIsNotReachedIsEmpty) {
   plan.last_step = 100;
   plan.measure_from = 200;
   plan.measure_to = 300;
-  EXPECT_FALSE(march(simulation, nullptr, plan).force_extremes.at(0).has_value());
+  EXPECT_FALSE(march(simulation, nullptr, plan).statistics.at(0).has_value());
 }
 
 TEST(March, StopsOnRequest) {

@@ -155,6 +155,42 @@ TYPED_TEST(PropagatorTest, CorrectionIsComplianceTimesForce) {
   EXPECT_NEAR(body->compliance(0, 1), 0.0, 1e-18);
 }
 
+TYPED_TEST(PropagatorTest, ForeseesTheStepThatItThenMakes) {
+  // Any number of slots; nine masses, so that the modes do not fill whole blocks.
+  for (const int num_slots : {0, 1, 2, 5}) {
+    ReducedBody many;
+    many.mass = Eigen::VectorXd::LinSpaced(9, 1.0, 2.0).asDiagonal();
+    many.stiffness = Eigen::VectorXd::LinSpaced(9, 100.0, 900.0).asDiagonal();
+    many.stiffness.diagonal(1).setConstant(-20.0);
+    many.stiffness.diagonal(-1).setConstant(-20.0);
+    many.damping.alpha = 0.5;
+    many.damping.beta = 1e-3;
+    many.rows = Eigen::MatrixXd::Identity(9, 9);
+    const double load[] = {3.0};
+    const auto body =
+        TypeParam::make(many, Eigen::VectorXd::LinSpaced(9, -1.0, 1.0), 0.01, num_slots, load);
+    for (int slot = 0; slot < num_slots; ++slot) body->watch(slot, 2 * slot);
+    std::vector<double> forces(static_cast<std::size_t>(num_slots));
+    std::vector<double> position(9);
+    std::vector<double> increment(9);
+    for (int n = 0; n < 50; ++n) {
+      for (int slot = 0; slot < num_slots; ++slot)
+        forces[static_cast<std::size_t>(slot)] = std::sin(0.3 * n + slot);
+      const Eigen::VectorXd before = body->motion().displacement;
+      body->foresee(forces.data(), position, increment);
+      body->advance(forces.data());
+      const Propagator::Motion after = body->motion();
+      for (Eigen::Index i = 0; i < 9; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        ASSERT_EQ(position[k], before(i));
+        // Rounding of displacements of 0.1.
+        ASSERT_NEAR(position[k] + increment[k], after.displacement(i), 1e-16);
+        ASSERT_NEAR(increment[k], 0.01 * after.velocity(i), 1e-15);
+      }
+    }
+  }
+}
+
 TYPED_TEST(PropagatorTest, WatchingAnotherRowShowsItsPresentAndPredictedPlace) {
   const auto body = TypeParam::make(chain(0.5, 1e-3), Eigen::MatrixXd(3, 0), 0.01, 1, {});
   body->watch(0, 0);

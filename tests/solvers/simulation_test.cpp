@@ -354,13 +354,14 @@ TEST(Simulation, JammingIsNamed) {
   EXPECT_TRUE(was_jammed);
 }
 
-TEST(Simulation, ForceExtremesStartAnewFromThePresentForce) {
+TEST(Simulation, StatisticsStartAnewFromThePresentForce) {
   const Model model = make_paper_model(paper_model());
   Simulation simulation(model.system, paper_time());
   ASSERT_EQ(simulation.step_until(2000), StepOutcome::done);
-  simulation.reset_force_extremes();
-  EXPECT_EQ(simulation.force_extremes(0),
-            std::make_pair(simulation.contact_force(0), simulation.contact_force(0)));
+  simulation.reset_statistics();
+  EXPECT_EQ(simulation.statistics(0).force_min, simulation.contact_force(0));
+  EXPECT_EQ(simulation.statistics(0).force_max, simulation.contact_force(0));
+  EXPECT_EQ(simulation.statistics(0).steps, 1);
   double low = simulation.contact_force(0);
   double high = low;
   for (int n = 0; n < 100; ++n) {
@@ -368,7 +369,10 @@ TEST(Simulation, ForceExtremesStartAnewFromThePresentForce) {
     low = std::min(low, simulation.contact_force(0));
     high = std::max(high, simulation.contact_force(0));
   }
-  EXPECT_EQ(simulation.force_extremes(0), std::make_pair(low, high));
+  EXPECT_EQ(simulation.statistics(0).force_min, low);
+  EXPECT_EQ(simulation.statistics(0).force_max, high);
+  EXPECT_EQ(simulation.statistics(0).steps, 101);
+  EXPECT_EQ(simulation.statistics(0).sticking, 0);
 }
 
 }  // namespace

@@ -1,0 +1,90 @@
+#include "analysis/explanation.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+namespace stridor {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// Sᵀ(A S q) for a matrix on the slots that may be empty.
+Eigen::VectorXcd through_slots(const Pencil& pencil, const Eigen::MatrixXd& matrix,
+                               const Eigen::VectorXcd& q) {
+  if (matrix.size() == 0) return Eigen::VectorXcd::Zero(q.size());
+  return pencil.slots.transpose() * (matrix * (pencil.slots * q));
+}
+
+}  // namespace
+
+ModeQuotients mode_quotients(const Pencil& pencil, Complex s, const Eigen::VectorXcd& right) {
+  const Eigen::VectorXcd q = right.normalized();
+  const Eigen::MatrixXd gap_rows = pencil.compatibility * pencil.slots;
+  const Eigen::MatrixXd force_rows = pencil.equilibrium * pencil.slots;
+  const Eigen::PartialPivLU<Eigen::MatrixXd> delassus(
+      Eigen::MatrixXd(gap_rows * force_rows.transpose()));
+  // q̄ᵀ P v
+  const auto form = [&](const Eigen::VectorXcd& v) {
+    const Eigen::VectorXcd gaps = gap_rows * v;
+    Eigen::VectorXcd forces(gaps.size());
+    forces.real() = delassus.solve(Eigen::VectorXd(gaps.real()));
+    forces.imag() = delassus.solve(Eigen::VectorXd(gaps.imag()));
+    return q.dot(v) - q.dot(force_rows.transpose() * forces);
+  };
+  const Eigen::VectorXcd damped = pencil.damping.cast<Complex>().cwiseProduct(q) +
+                                  through_slots(pencil, pencil.slot_damping, q);
+  const Eigen::VectorXcd stiff =
+      pencil.omega.array().square().matrix().cast<Complex>().cwiseProduct(q) +
+      through_slots(pencil, pencil.slot_stiffness, q);
+  const Complex velocity = form(damped);
+  const Complex position = form(stiff);
+  ModeQuotients quotients;
+  quotients.damping = velocity.real();
+  quotients.gyroscopic = velocity.imag();
+  quotients.stiffness = position.real();
+  quotients.circulatory = position.imag();
+  quotients.residual = std::abs(s * s + velocity * s + position) / std::norm(s);
+  return quotients;
+}
+
+ModeEnergy mode_energy(const Pencil& pencil, Complex s, const Eigenvector& vector) {
+  const double length = vector.right.norm();
+  const Eigen::VectorXcd q = vector.right / length;
+  const Eigen::VectorXcd velocity = s * q;
+  const Eigen::VectorXcd force =
+      pencil.slots.transpose() * (pencil.equilibrium.transpose() * (vector.force / length)) +
+      through_slots(pencil, pencil.slot_stiffness, q) +
+      through_slots(pencil, pencil.slot_damping, velocity);
+  const double energy =
+      0.25 * (std::norm(s) + pencil.omega.cwiseProduct(q.cwiseAbs()).squaredNorm());
+  ModeEnergy result;
+  result.from_contact = -0.25 * velocity.dot(force).real() / energy;
+  result.by_damping = -0.25 * (pencil.damping.array() * velocity.array().abs2()).sum() / energy;
+  result.residual = std::abs(result.from_contact + result.by_damping - s.real()) / std::abs(s);
+  return result;
+}
+
+Pencil frictionless(const Pencil& pencil) {
+  Pencil without = pencil;
+  without.damping.setZero();
+  without.equilibrium = without.compatibility;
+  without.slot_stiffness.resize(0, 0);
+  without.slot_damping.resize(0, 0);
+  return without;
+}
+
+std::vector<Participation> participations(const Pencil& pencil,
+                                          const std::vector<Eigenvalue>& eigenvalues,
+                                          const Eigen::VectorXcd& right) {
+  const Pencil without = frictionless(pencil);
+  std::vector<Participation> shares;
+  for (const Eigenvalue& one : eigenvalues) {
+    const Eigenvector mode = eigenvector(without, one.s);
+    shares.push_back({one.frequency(), modal_assurance(mode.right, right)});
+  }
+  std::sort(shares.begin(), shares.end(),
+            [](const Participation& a, const Participation& b) { return a.share > b.share; });
+  return shares;
+}
+
+}  // namespace stridor

@@ -1,0 +1,288 @@
+// stridor locus: eigenvalues of a scene along one of its keys.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <memory>
+#include <numbers>
+
+#include "app/progress.hpp"
+#include "app/stability.hpp"
+#include "core/errors.hpp"
+#include "core/version.hpp"
+#include "io/gnuplot.hpp"
+#include "io/locus_file.hpp"
+#include "io/locus_plot.hpp"
+
+namespace stridor {
+namespace {
+
+struct LocusCommandOptions {
+  StabilityOptions stability;
+  RangeOptions range;
+  std::optional<std::string> output;
+  std::optional<std::string> figure;
+  std::optional<std::string> history;
+  std::string command_line;
+};
+
+constexpr double never = std::numeric_limits<double>::quiet_NaN();
+
+/// Time at which a run of the scene first comes to a sliding state; NaN where it never does.
+class PassingTimes {
+ public:
+  PassingTimes(const Scene& scene, StabilityFamily& family)
+      : drive_(make_drive(scene.model.drive, scene.model.pairs().begin()->second.sliding)),
+        end_(scene.time.end),
+        family_(&family) {}
+
+  /// @param position of the contact
+  double at(double position) const {
+    const SlidingState state = family_->at(std::array{position});
+    if (!state.is_on_the_way) return never;
+    const double wanted = state.equilibrium.state.drive_displacement;
+    const auto missing = [&](double time) { return drive_.displacement(time) - wanted; };
+    if (missing(0.0) == 0.0) return 0.0;
+    constexpr int num_steps = 1000;
+    double before = 0.0;
+    for (int i = 1; i <= num_steps; ++i) {
+      const double after = end_ * i / num_steps;
+      if (missing(before) * missing(after) <= 0.0) return bisected(missing, before, after);
+      before = after;
+    }
+    return never;
+  }
+
+ private:
+  template <class Function>
+  static double bisected(const Function& function, double low, double high) {
+    const bool rises = function(low) < 0.0;
+    while (true) {
+      const double middle = 0.5 * (low + high);
+      if (middle <= low || middle >= high) return middle;
+      ((function(middle) < 0.0) == rises ? low : high) = middle;
+    }
+  }
+
+  Drive drive_;
+  double end_;
+  StabilityFamily* family_;
+};
+
+std::vector<TimedWindow> timed_windows(const Locus& locus,
+                                       const std::optional<PassingTimes>& times) {
+  std::vector<TimedWindow> timed;
+  for (const UnstableWindow& window : locus.unstable) {
+    TimedWindow one{window, never, never, never};
+    if (times) {
+      one.from_time = times->at(window.from);
+      one.to_time = times->at(window.to);
+      // A window is passed at constant speed, as good as.
+      one.gain = window.growth_integral * (one.to_time - one.from_time) / (window.to - window.from);
+    }
+    timed.push_back(one);
+  }
+  return timed;
+}
+
+Json complex_list(const std::vector<std::complex<double>>& eigenvalues) {
+  Json list = Json::array();
+  for (const std::complex<double>& s : eigenvalues) list.push_back({s.real(), s.imag()});
+  return list;
+}
+
+Json windows_json(const std::vector<TimedWindow>& windows) {
+  Json list = Json::array();
+  for (const TimedWindow& one : windows) {
+    list.push_back({{"from", one.window.from},
+                    {"to", one.window.to},
+                    {"frequency", one.window.frequency},
+                    {"growth_max", one.window.growth_max},
+                    {"growth_integral", number(one.window.growth_integral)},
+                    {"value_max", one.window.value_max},
+                    {"from_time", number(one.from_time)},
+                    {"to_time", number(one.to_time)},
+                    {"gain", number(one.gain)}});
+  }
+  return list;
+}
+
+/// The branches as curves; single values where there are no branches, or one value only.
+std::vector<LocusCurve> curves_of(const Locus& locus, double highest) {
+  std::vector<LocusCurve> curves;
+  const auto add = [&](LocusCurve& curve, double value, std::complex<double> s) {
+    const double frequency = s.imag() / (2.0 * std::numbers::pi);
+    const bool is_shown = frequency <= highest;
+    curve.parameter.push_back(value);
+    curve.growth.push_back(is_shown ? s.real() : never);
+    curve.frequency.push_back(is_shown ? frequency : never);
+  };
+  for (std::size_t k = 0; k < locus.branches.size(); ++k) {
+    // The samples, and the places between them where the branch crosses the axis or grows most.
+    std::map<double, std::complex<double>> points;
+    const auto add_point = [&](double value, double growth, double frequency) {
+      points[value] = {growth, 2.0 * std::numbers::pi * frequency};
+    };
+    const Branch& branch = locus.branches[k];
+    for (std::size_t i = 0; i < branch.values.size(); ++i) points[branch.values[i]] = branch.s[i];
+    for (const UnstableWindow& window : locus.unstable) {
+      if (static_cast<std::size_t>(window.branch) == k)
+        add_point(window.value_max, window.growth_max, window.frequency);
+    }
+    for (const Crossing& crossing : locus.crossings)
+      if (static_cast<std::size_t>(crossing.branch) == k)
+        add_point(crossing.value, 0.0, crossing.frequency);
+    curves.emplace_back();
+    for (const auto& [value, s] : points) add(curves.back(), value, s);
+  }
+  if (!locus.branches.empty()) return curves;
+  for (std::size_t i = 0; i < locus.values.size(); ++i) {
+    for (const std::complex<double>& s : locus.eigenvalues[i]) {
+      curves.emplace_back();
+      add(curves.back(), locus.values[i], s);
+    }
+  }
+  return curves;
+}
+
+/// The highest frequency of the eigenvalues asked for.
+double highest_frequency(const Locus& locus) {
+  double highest = 0.0;
+  for (const auto& list : locus.eigenvalues)
+    if (!list.empty()) highest = std::max(highest, list.back().imag() / (2.0 * std::numbers::pi));
+  return highest;
+}
+
+void print_windows(const std::vector<TimedWindow>& windows, const NumericKey& key) {
+  if (windows.empty()) {
+    fmt::print("no eigenvalue grows\n");
+    return;
+  }
+  fmt::print("{:>12}  {:>12}  {:>14}  {:>12}  {:>8}  {:>19}\n", "from", "to", "frequency (Hz)",
+             "growth (1/s)", "gain", "time (s)");
+  for (const TimedWindow& one : windows) {
+    const UnstableWindow& window = one.window;
+    fmt::print("{:>12.8g}  {:>12.8g}  {:>14.2f}  {:>12.4f}", window.from, window.to,
+               window.frequency, window.growth_max);
+    if (std::isfinite(one.from_time) && std::isfinite(one.to_time))
+      fmt::print("  {:>8.3f}  {:>8.4f} to {:.4f}", one.gain, one.from_time, one.to_time);
+    fmt::print("\n");
+  }
+  fmt::print("unstable windows of {}{}\n", key.path,
+             key.unit.empty() ? "" : fmt::format(" ({})", printed_units(key)));
+}
+
+Overwrite overwrite_of(const CommonOptions& common) {
+  return common.force ? Overwrite::yes : Overwrite::no;
+}
+
+void check_outputs(const LocusCommandOptions& options) {
+  if (options.output) check_output(*options.output, overwrite_of(options.stability.common));
+  for (const auto& figure : {options.figure, options.history}) {
+    if (!figure) continue;
+    check_figure_name(*figure);
+    if (!options.stability.common.force && std::filesystem::exists(*figure))
+      throw FileError(*figure, "", "exists; use --force to overwrite it");
+  }
+}
+
+ExitCode locus(const LocusCommandOptions& options) {
+  check_outputs(options);
+  const StabilityOptions& stability = options.stability;
+  const LoadedScene loaded = load_scene(stability.scene, stability.common.sets);
+  const KeyRange range = make_range(loaded.scene, options.range);
+  StabilityFamily family(loaded, {range.key}, stability.geometry());
+  Progress progress("locus");
+  double reached = 0.0;
+  const double first = range.values.front();
+  const double width = std::max(range.values.back() - first, std::numeric_limits<double>::min());
+  family.on_value([&](double value) {
+    reached = std::max(reached, (value - first) / width);
+    progress.report(reached, value_text(range.key, value));
+  });
+  const Locus found =
+      locus_along(family, range.key, 0, {first}, range.values, stability.locus_options());
+  progress.finish();
+
+  std::optional<PassingTimes> times;
+  if (start_key(loaded.scene.model) == range.key.path) times.emplace(loaded.scene, family);
+  const std::vector<TimedWindow> windows = timed_windows(found, times);
+  const std::string units = printed_units(range.key);
+  if (options.output) {
+    write_locus_file(*options.output, overwrite_of(stability.common), found, windows, units,
+                     {{"parameter", range.key.path},
+                      {"units", units},
+                      {"about", stability.about},
+                      {"method", stability.method},
+                      {"scene", stability.scene},
+                      {"scene_hash", loaded.hash()},
+                      {"scene_resolved", loaded.resolved()},
+                      {"command", options.command_line},
+                      {"version", std::string(version)},
+                      {"commit", std::string(commit)},
+                      {"date", utc_now()}});
+  }
+  if (options.figure || options.history) {
+    LocusPicture picture;
+    picture.parameter = range.key.path;
+    picture.units = units;
+    picture.curves = curves_of(found, highest_frequency(found));
+    for (const UnstableWindow& window : found.unstable)
+      picture.windows.push_back({window.from, window.to, window.frequency, window.growth_max});
+    picture.caption = fmt::format(
+        "The {} lowest eigenvalues about the {} geometry, {} from {} to {}; {}, scene {}.",
+        stability.count, stability.about, range.key.path, range.values.front(), range.values.back(),
+        std::filesystem::path(stability.scene).filename().string(), loaded.hash());
+    if (options.figure) plot_locus(picture, *options.figure);
+    if (options.history) plot_locus_histories(picture, *options.history);
+  }
+
+  if (stability.common.json) {
+    Json object = {{"parameter", range.key.path},
+                   {"units", units},
+                   {"about", stability.about},
+                   {"method", stability.method},
+                   {"values", range.values},
+                   {"eigenvalues", Json::array()},
+                   {"unstable", windows_json(windows)},
+                   {"unverified", found.unverified},
+                   {"file", options.output ? Json(*options.output) : Json(nullptr)}};
+    for (const auto& list : found.eigenvalues) object["eigenvalues"].push_back(complex_list(list));
+    fmt::print("{}\n", object.dump(2));
+    return ExitCode::done;
+  }
+  print_windows(windows, range.key);
+  if (!found.unverified.empty()) {
+    fmt::print(
+        "at {} value(s) it could not be verified that no eigenvalue is missing, the first "
+        "is {:.9g}; compare with --method dense\n",
+        found.unverified.size(), found.unverified.front());
+  }
+  for (const auto& file : {options.output, options.figure, options.history})
+    if (file) fmt::print("{}\n", *file);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_locus_command(CLI::App& program, Action& action, const std::string& command_line) {
+  auto options = std::make_shared<LocusCommandOptions>();
+  options->command_line = command_line;
+  CLI::App* verb = program.add_subcommand("locus", "Eigenvalues along one key of a scene");
+  add_stability_options(*verb, options->stability);
+  add_range_options(*verb, options->range);
+  verb->add_option("-o,--output", options->output,
+                   "File to write (HDF5), as `spectrogram --predict` reads it");
+  verb->add_option("--figure", options->figure,
+                   "Picture of frequency against growth rate: .png, .svg or .pdf");
+  verb->add_option("--history", options->history,
+                   "Picture of growth rate and frequency against the parameter");
+  add_force_option(*verb, options->stability.common);
+  verb->callback([options, &action] { action = [options] { return locus(*options); }; });
+}
+
+}  // namespace stridor

@@ -1,0 +1,280 @@
+// stridor map: stability of a scene over two of its keys.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "app/progress.hpp"
+#include "app/stability.hpp"
+#include "core/errors.hpp"
+#include "core/stop_token.hpp"
+#include "core/version.hpp"
+#include "io/gnuplot.hpp"
+#include "io/locus_file.hpp"
+#include "io/locus_plot.hpp"
+
+namespace stridor {
+namespace {
+
+struct MapOptions {
+  StabilityOptions stability;
+  std::vector<std::string> x;  ///< key, first value, last value, number of values
+  std::vector<std::string> y;
+  std::string scale = "linear";
+  std::optional<std::string> x_scale;
+  std::optional<std::string> y_scale;
+  std::optional<std::string> output;
+  std::optional<std::string> figure;
+  std::string command_line;
+};
+
+struct Axis {
+  NumericKey key;
+  std::vector<double> values;
+  bool is_logarithmic = false;
+};
+
+Axis make_axis(const Scene& scene, const std::vector<std::string>& written, const char* option,
+               const std::string& scale) {
+  Axis axis{find_stability_key(scene, written[0], option), {}, scale == "log"};
+  const double from = parse_value(axis.key, written[1], option);
+  const double to = parse_value(axis.key, written[2], option);
+  if (!(from < to)) {
+    throw ConfigError(option, fmt::format("'{}' must be less than '{}'", written[1], written[2]));
+  }
+  const NumericKey number{option, "", Range::between(2, 100000), true};
+  axis.values =
+      spaced_values(axis.key, from, to, static_cast<int>(parse_value(number, written[3], option)),
+                    axis.is_logarithmic ? Spacing::logarithmic : Spacing::linear);
+  return axis;
+}
+
+/// What is found along one line of the grid.
+struct LineResult {
+  std::vector<double> growth;   ///< at every value, 1/s
+  std::vector<double> changes;  ///< of stability, ascending
+  std::exception_ptr failure;
+};
+
+double largest_growth(const std::vector<std::complex<double>>& eigenvalues) {
+  double largest = -std::numeric_limits<double>::infinity();
+  for (const std::complex<double>& s : eigenvalues) largest = std::max(largest, s.real());
+  return largest;
+}
+
+/// @param varied index of the key along the line: 0 for x
+LineResult trace_line(StabilityFamily& family, const std::array<Axis, 2>& axes, std::size_t varied,
+                      double other, const LocusOptions& options) {
+  const Axis& axis = axes[varied];
+  std::vector<double> values(2, other);
+  values[varied] = axis.values.front();
+  LineResult result;
+  try {
+    const Locus locus = locus_along(family, axis.key, varied, values, axis.values, options);
+    for (const auto& eigenvalues : locus.eigenvalues)
+      result.growth.push_back(largest_growth(eigenvalues));
+    for (const StabilityChange& change : stability_changes(locus)) {
+      double value = change.value;
+      if (axis.key.is_integer) {
+        const auto after = std::find(axis.values.begin(), axis.values.end(), value);
+        value = 0.5 * (*(after - 1) + value);
+      }
+      if (result.changes.empty() || value > result.changes.back()) result.changes.push_back(value);
+    }
+    return result;
+  } catch (const NumericalError&) {
+    // Somewhere on the line there is no equilibrium; what there is remains a result.
+    result = {};
+  }
+  for (const double value : axis.values) {
+    values[varied] = value;
+    double growth = std::numeric_limits<double>::quiet_NaN();
+    try {
+      const EigenvalueMethod method = options.method == LocusMethod::dense
+                                          ? EigenvalueMethod::dense
+                                          : EigenvalueMethod::secular;
+      std::vector<std::complex<double>> found;
+      for (const Eigenvalue& one :
+           lowest_eigenvalues(family.at(values).pencil, method, options.count))
+        found.push_back(one.s);
+      growth = largest_growth(found);
+    } catch (const NumericalError&) {
+    }
+    result.growth.push_back(growth);
+  }
+  return result;
+}
+
+/// Traces all rows, then all columns. Every line is a job of its own and begins from nothing, so
+/// that the results do not depend on which thread takes it.
+std::vector<LineResult> trace_lines(const LoadedScene& loaded, const std::array<Axis, 2>& axes,
+                                    const StabilityOptions& stability) {
+  const std::size_t num_rows = axes[1].values.size();
+  const std::size_t num_lines = num_rows + axes[0].values.size();
+  std::vector<LineResult> results(num_lines);
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> has_failed{false};
+  std::mutex printing;
+  Progress progress("map");
+  std::size_t num_done = 0;
+  const auto work = [&] {
+    StabilityFamily family(loaded, {axes[0].key, axes[1].key}, stability.geometry());
+    while (!has_failed) {
+      const std::size_t line = next++;
+      if (line >= num_lines) return;
+      try {
+        const bool is_row = line < num_rows;
+        results[line] = trace_line(family, axes, is_row ? 0 : 1,
+                                   is_row ? axes[1].values[line] : axes[0].values[line - num_rows],
+                                   stability.locus_options());
+      } catch (...) {
+        results[line].failure = std::current_exception();
+        has_failed = true;
+      }
+      const std::lock_guard lock(printing);
+      ++num_done;
+      progress.report(static_cast<double>(num_done) / static_cast<double>(num_lines),
+                      fmt::format("line {} of {}", num_done, num_lines));
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int i = 1; i < stability.common.threads; ++i) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  progress.finish();
+  for (const LineResult& result : results)
+    if (result.failure) std::rethrow_exception(result.failure);
+  return results;
+}
+
+StabilityMap make_map(const LoadedScene& loaded, const std::array<Axis, 2>& axes,
+                      const StabilityOptions& stability) {
+  const std::vector<LineResult> lines = trace_lines(loaded, axes, stability);
+  StabilityMap map;
+  map.x = axes[0].values;
+  map.y = axes[1].values;
+  GridCrossings crossings{map.x, map.y, {}, {}};
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const bool is_row = i < map.y.size();
+    if (is_row) map.growth.push_back(lines[i].growth);
+    (is_row ? crossings.along_x : crossings.along_y).push_back(lines[i].changes);
+  }
+  map.boundary = boundary_lines(crossings);
+  return map;
+}
+
+void draw(const MapOptions& options, const std::array<Axis, 2>& axes, const StabilityMap& map,
+          const LoadedScene& loaded) {
+  StabilityMapPicture picture;
+  const auto axis_of = [](const Axis& axis) {
+    return MapAxis{axis.key.path, printed_units(axis.key), axis.values, axis.is_logarithmic};
+  };
+  picture.x = axis_of(axes[0]);
+  picture.y = axis_of(axes[1]);
+  picture.growth = map.growth;
+  for (const BoundaryLine& line : map.boundary) {
+    picture.boundary.emplace_back();
+    for (const auto& point : line) picture.boundary.back().push_back({point[0], point[1]});
+  }
+  picture.caption = fmt::format(
+      "Largest growth rate of the {} lowest eigenvalues about the {} geometry, {} by {} values; "
+      "line: boundary of stability. {}, scene {}.",
+      options.stability.count, options.stability.about, map.x.size(), map.y.size(),
+      std::filesystem::path(options.stability.scene).filename().string(), loaded.hash());
+  plot_stability_map(picture, *options.figure);
+}
+
+ExitCode map(const MapOptions& options) {
+  const StabilityOptions& stability = options.stability;
+  const Overwrite overwrite = stability.common.force ? Overwrite::yes : Overwrite::no;
+  if (options.output) check_output(*options.output, overwrite);
+  if (options.figure) {
+    check_figure_name(*options.figure);
+    if (overwrite == Overwrite::no && std::filesystem::exists(*options.figure))
+      throw FileError(*options.figure, "", "exists; use --force to overwrite it");
+  }
+  const LoadedScene loaded = load_scene(stability.scene, stability.common.sets);
+  const std::array<Axis, 2> axes{
+      make_axis(loaded.scene, options.x, "--x", options.x_scale.value_or(options.scale)),
+      make_axis(loaded.scene, options.y, "--y", options.y_scale.value_or(options.scale))};
+  if (axes[0].key.path == axes[1].key.path)
+    throw ConfigError("--y", fmt::format("'{}' is the key of --x already", axes[1].key.path));
+  const StabilityMap found = make_map(loaded, axes, stability);
+
+  if (options.output) {
+    write_map_file(*options.output, overwrite, found, printed_units(axes[0].key),
+                   printed_units(axes[1].key),
+                   {{"x", axes[0].key.path},
+                    {"y", axes[1].key.path},
+                    {"about", stability.about},
+                    {"method", stability.method},
+                    {"scene", stability.scene},
+                    {"scene_hash", loaded.hash()},
+                    {"scene_resolved", loaded.resolved()},
+                    {"command", options.command_line},
+                    {"version", std::string(version)},
+                    {"commit", std::string(commit)},
+                    {"date", utc_now()}});
+  }
+  if (options.figure) draw(options, axes, found, loaded);
+
+  if (stability.common.json) {
+    Json object = {{"x_parameter", axes[0].key.path},
+                   {"y_parameter", axes[1].key.path},
+                   {"about", stability.about},
+                   {"method", stability.method},
+                   {"x", found.x},
+                   {"y", found.y},
+                   {"growth", Json::array()},
+                   {"boundary", found.boundary}};
+    for (const auto& row : found.growth) {
+      Json numbers = Json::array();
+      for (const double value : row) numbers.push_back(number(value));
+      object["growth"].push_back(std::move(numbers));
+    }
+    fmt::print("{}\n", object.dump(2));
+    return ExitCode::done;
+  }
+  std::size_t num_unstable = 0;
+  for (const auto& row : found.growth)
+    num_unstable += static_cast<std::size_t>(
+        std::count_if(row.begin(), row.end(), [](double growth) { return growth > 0.0; }));
+  fmt::print("{} of {} points are unstable; the boundary has {} line(s)\n", num_unstable,
+             found.x.size() * found.y.size(), found.boundary.size());
+  for (const auto& file : {options.output, options.figure})
+    if (file) fmt::print("{}\n", *file);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_map_command(CLI::App& program, Action& action, const std::string& command_line) {
+  auto options = std::make_shared<MapOptions>();
+  options->command_line = command_line;
+  options->stability.common.threads =
+      std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  CLI::App* verb = program.add_subcommand("map", "Stability of a scene over two of its keys");
+  add_stability_options(*verb, options->stability);
+  const auto add_axis = [&](const char* name, std::vector<std::string>& axis, const char* says) {
+    verb->add_option(name, axis, says)->required()->expected(4)->type_name("KEY FROM TO POINTS");
+  };
+  add_axis("--x", options->x, "Key along x, its first and last value, and how many");
+  add_axis("--y", options->y, "Key along y, likewise");
+  const CLI::IsMember scales({"linear", "log"});
+  verb->add_option("--scale", options->scale, "Spacing of the values: linear (default) or log")
+      ->check(scales);
+  verb->add_option("--x-scale", options->x_scale, "The same along x only")->check(scales);
+  verb->add_option("--y-scale", options->y_scale, "The same along y only")->check(scales);
+  verb->add_option("-o,--output", options->output, "File to write (HDF5)");
+  verb->add_option("--figure", options->figure, "Picture to draw: .png, .svg or .pdf");
+  add_force_option(*verb, options->stability.common);
+  verb->callback([options, &action] { action = [options] { return map(*options); }; });
+}
+
+}  // namespace stridor

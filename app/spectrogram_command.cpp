@@ -1,0 +1,182 @@
+// stridor spectrogram: amplitude over time and frequency of one channel of a run file.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "app/pictures.hpp"
+#include "core/errors.hpp"
+#include "io/axes.hpp"
+#include "io/spectrogram_file.hpp"
+#include "io/spectrogram_plot.hpp"
+
+namespace stridor {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Amplitudes of a spectrogram held in memory, 2 GB.
+constexpr double most_amplitudes = 2.5e8;
+
+/// Checks before anything is computed that --data can be written.
+void check_data_file(const PictureOptions& options) {
+  if (!options.data) return;
+  std::error_code missing;
+  if (fs::equivalent(*options.data, options.file, missing))
+    throw ConfigError("--data", fmt::format("'{}' is the run file itself", *options.data));
+  if (fs::path(*options.data) == fs::path(options.output))
+    throw ConfigError("--data", fmt::format("'{}' is also the figure", *options.data));
+  check_output(*options.data, options.common.force ? Overwrite::yes : Overwrite::no);
+}
+
+std::string chosen_series(const PictureOptions& options, const RecordedStretch& run,
+                          const std::optional<SpectrogramSection>& section) {
+  if (options.channels.size() > 1)
+    throw ConfigError("--channel", "a spectrogram shows one channel; give the option once");
+  if (!options.channels.empty()) return find_series(run, options.channels.front(), "--channel");
+  if (section && section->channel)
+    return find_series(run, *section->channel, "spectrogram.channel");
+  if (const auto series = acceleration_channel(run.file)) return *series;
+  std::vector<std::string> names;
+  for (const std::string& series : run.file.series_names()) names.push_back(channel_name(series));
+  throw ConfigError("--channel", fmt::format("{} has no acceleration; name one of its channels: {}",
+                                             run.path, fmt::join(names, ", ")));
+}
+
+void check_size(const SpectrogramParameters& parameters, const RecordedStretch& run) {
+  const double length = static_cast<double>(parameters.length);
+  const double pieces = static_cast<double>(run.samples.size()) /
+                        std::max(1.0, std::round(length * (1.0 - parameters.overlap)));
+  if (pieces * (0.5 * length + 1.0) <= most_amplitudes) return;
+  throw ConfigError("--overlap",
+                    fmt::format("{} pieces of {} lines do not fit into memory; lower the overlap, "
+                                "or choose a shorter stretch with --from, --to",
+                                std::llround(pieces), parameters.length / 2 + 1));
+}
+
+std::vector<SpectrogramMark> burst_marks(const std::vector<NumberedBurst>& bursts) {
+  std::vector<SpectrogramMark> marks;
+  for (const auto& [number, burst] : bursts) {
+    marks.push_back({burst.start, burst.end, burst.frequency,
+                     fmt::format("{}: {}", number, quantity_text(burst.frequency, "Hz")),
+                     std::to_string(number), MarkStyle::found});
+  }
+  return marks;
+}
+
+/// The channel in which `run` looked for bursts.
+std::string burst_channel(const RunFileReader& file) {
+  const auto results = file.results();
+  const auto found = results.find("free_end_acceleration.channel");
+  const std::string* name =
+      found == results.end() ? nullptr : std::get_if<std::string>(&found->second);
+  return name != nullptr ? *name : "the run";
+}
+
+Attributes data_attributes(const Json& settings, const RecordedStretch& run) {
+  const RunFileHeader& header = run.file.header();
+  Attributes attributes{{"run_file", run.path},
+                        {"run_command", header.command},
+                        {"scene_hash", header.scene_hash},
+                        {"version", header.version},
+                        {"commit", header.commit},
+                        {"interval", run.interval}};
+  for (const auto& [name, value] : settings.items()) {
+    if (value.is_number()) attributes.emplace_back(name, value.get<double>());
+    if (value.is_string()) attributes.emplace_back(name, value.get<std::string>());
+  }
+  return attributes;
+}
+
+}  // namespace
+
+ExitCode draw_spectrogram(const PictureOptions& options) {
+  check_figure(options);
+  check_data_file(options);
+  const RecordedStretch run = open_stretch(options);
+  const RecordedSettings scene = recorded_settings(run.file, run.path);
+  const std::string series = chosen_series(options, run, scene.spectrogram);
+  const std::string units = run.file.units(series);
+  const auto [parameters, max_frequency] = settle_pieces(
+      options, run, scene, scene.spectrogram,
+      [&](double highest) { return std::sqrt(run.duration() / highest); }, 0.75);
+  check_size(parameters, run);
+  SpectrogramPicture picture;
+  picture.title = channel_name(series);
+  picture.units = units;
+  picture.max_frequency = max_frequency;
+  picture.reference = settle_reference(options, units);
+  if (options.range) picture.range = option_value("--range", *options.range, "", Range::positive());
+  picture.mean_lines = main_lobe_lines(parameters.window);
+  const std::vector<NumberedBurst> bursts = bursts_in(run);
+  picture.marks = burst_marks(bursts);
+  picture.caption = fmt::format("Peak amplitudes: {}. {}.", pieces_text(parameters, run.interval),
+                                source_text(run));
+  if (!bursts.empty()) {
+    picture.caption += fmt::format(" Dashed: bursts in {}, frequency at the steepest rise.",
+                                   burst_channel(run.file));
+  }
+
+  const Spectrogram spectrogram =
+      make_spectrogram(run.finite_values(series), run.interval, parameters, run.first_time());
+  const double highest = highest_amplitude(spectrogram, picture.max_frequency, picture.mean_lines);
+  const Json settings = {{"channel", picture.title},
+                         {"units", units},
+                         {"window", window_name(parameters.window)},
+                         {"length", static_cast<double>(parameters.length) * run.interval},
+                         {"length_samples", parameters.length},
+                         {"overlap", parameters.overlap},
+                         {"from", run.first_time()},
+                         {"to", run.last_time()}};
+  if (options.data) {
+    write_spectrogram_file(*options.data, options.common.force ? Overwrite::yes : Overwrite::no,
+                           spectrogram, units, data_attributes(settings, run));
+  }
+  plot_spectrogram(spectrogram, picture, options.output);
+
+  if (options.common.json) {
+    Json object = {{"figure", options.output},
+                   {"data", options.data ? Json(*options.data) : Json(nullptr)}};
+    object.update(settings);
+    object["max_frequency"] = max_frequency;
+    object["reference"] = picture.reference;
+    object["range"] = picture.range;
+    object["pieces"] = spectrogram.times.size();
+    object["line_spacing"] = spectrogram.frequencies[1];
+    object["highest_amplitude"] = highest;
+    object["highest_level"] =
+        highest > 0.0 ? number(decibels(highest, picture.reference)) : Json(nullptr);
+    object["bursts"] = bursts.size();
+    fmt::print("{}\n", object.dump(2));
+  } else {
+    fmt::print("{}\n", options.output);
+    if (options.data) fmt::print("{}\n", *options.data);
+  }
+  return ExitCode::done;
+}
+
+void add_spectrogram_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<PictureOptions>();
+  CLI::App* verb =
+      program.add_subcommand("spectrogram", "Amplitude over time and frequency of one channel");
+  verb->add_option("file", options->file, "Run file (HDF5)")->required();
+  verb->add_option("-o,--output", options->output,
+                   "Figure to write: .png, .svg or .pdf; default: FILE_spectrogram.png");
+  verb->add_option("--channel", options->channels,
+                   "Channel to show; default: the acceleration in which bursts are sought")
+      ->take_all()
+      ->allow_extra_args(false);
+  add_spectrum_options(*verb, *options);
+  add_data_option(*verb, *options);
+  add_picture_options(*verb, *options);
+  verb->callback([options, &action] {
+    if (options->output.empty()) {
+      fs::path figure = options->file;
+      figure.replace_filename(figure.stem().string() + "_spectrogram.png");
+      options->output = figure.string();
+    }
+    action = [options] { return draw_spectrogram(*options); };
+  });
+}
+
+}  // namespace stridor

@@ -1,0 +1,338 @@
+#include "app/stability.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/errors.hpp"
+#include "core/stop_token.hpp"
+#include "solvers/dense_eigenvalues.hpp"
+#include "solvers/secular_eigenvalues.hpp"
+
+namespace stridor {
+namespace {
+
+/// Displacement of a point of a body, without that of the drive.
+Json displacement_json(const System& system, const Equilibrium& equilibrium, int body,
+                       const PointRows& rows) {
+  const auto b = static_cast<std::size_t>(body);
+  const Eigen::MatrixXd& shapes = system.bodies[b].modal.rows;
+  const Eigen::VectorXd& modal = equilibrium.displacement[b];
+  return {number(shapes.row(rows.x).dot(modal)), number(shapes.row(rows.y).dot(modal))};
+}
+
+Json contact_json(const System& system, const Equilibrium& equilibrium, std::size_t i) {
+  const ContactEquilibrium& contact = equilibrium.contacts[i];
+  const ContactPoint& point = system.contacts[i];
+  return {
+      {"closed", contact.is_closed},
+      {"force", number(contact.force)},
+      {"friction_force", number(contact.friction_force)},
+      {"friction", number(contact.friction)},
+      {"direction", contact.direction},
+      {"slip_velocity", number(contact.slip_velocity)},
+      {"position", number(contact.position)},
+      {"gap", number(contact.gap)},
+      {"angle", number(std::atan2(contact.projection.tangent.y(), contact.projection.tangent.x()))},
+      {"displacement", displacement_json(system, equilibrium, point.slave_body, point.slave_rows)}};
+}
+
+}  // namespace
+
+ContactGeometry StabilityOptions::geometry() const {
+  return about == "deformed" ? ContactGeometry::deformed : ContactGeometry::undeformed;
+}
+
+EigenvalueMethod StabilityOptions::eigenvalue_method() const {
+  return method == "dense" ? EigenvalueMethod::dense : EigenvalueMethod::secular;
+}
+
+LocusOptions StabilityOptions::locus_options() const {
+  LocusOptions options;
+  options.method = method == "dense" ? LocusMethod::dense : LocusMethod::secular;
+  options.count = count;
+  return options;
+}
+
+void add_range_options(CLI::App& verb, RangeOptions& options) {
+  verb.add_option("--parameter", options.parameter,
+                  "Key of the scene that varies; default: contact.start");
+  verb.add_option("--from", options.from, "Its first value, SI or with a unit")->required();
+  verb.add_option("--to", options.to, "Its last value")->required();
+  verb.add_option("--points", options.points, "How many values, the ends included")
+      ->check(CLI::Range(1, 1000000));
+}
+
+void add_stability_options(CLI::App& verb, StabilityOptions& options) {
+  verb.add_option("scene", options.scene, "Scene file (YAML)")->required();
+  verb.add_option("--about", options.about,
+                  "Geometry about which the system is linearised: undeformed (default), or that of "
+                  "the deformed sliding equilibrium")
+      ->check(CLI::IsMember({"undeformed", "deformed"}));
+  verb.add_option("--method", options.method,
+                  "secular (default): zeros of the secular function; dense: all eigenvalues of the "
+                  "assembled matrices, as a check")
+      ->check(CLI::IsMember({"secular", "dense"}));
+  verb.add_option("--count", options.count,
+                  "How many eigenvalues with positive frequency, lowest first")
+      ->check(CLI::Range(1, 100000));
+  add_scene_options(verb, options.common);
+  add_json_option(verb, options.common);
+}
+
+NumericKey find_stability_key(const Scene& scene, const std::string& path,
+                              const std::string& option) {
+  const NumericKey key = find_numeric_key(scene, path, option);
+  const std::string section = path.substr(0, path.find('.'));
+  const bool is_mechanical =
+      section != "initial" && ModelParameters::schema().find(section) != nullptr;
+  if (!is_mechanical)
+    throw ConfigError(option, fmt::format("'{}' has no influence on the eigenvalues", path));
+  return key;
+}
+
+KeyRange make_range(const Scene& scene, const RangeOptions& options) {
+  std::string path = options.parameter;
+  if (path.empty()) {
+    const auto start = start_key(scene.model);
+    if (!start) throw ConfigError("--parameter", "the scene has several contact pairs; name a key");
+    path = *start;
+  }
+  KeyRange range{find_stability_key(scene, path, "--parameter"), {}};
+  const double from = parse_value(range.key, options.from, "--from");
+  const double to = parse_value(range.key, options.to, "--to");
+  if (from > to) {
+    throw ConfigError("--from", fmt::format("'{}' is beyond --to '{}'", options.from, options.to));
+  }
+  range.values = spaced_values(range.key, from, to, options.points, Spacing::linear);
+  return range;
+}
+
+SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry geometry,
+                              const std::string& what) {
+  const System& system = member.model->system;
+  const std::string where = what.empty() ? "" : " at " + what;
+  SlidingState state;
+  try {
+    const EquilibriumState asked =
+        stridor::sliding_state(system, member.drive_displacement, geometry);
+    state.equilibrium = geometry == ContactGeometry::deformed && member.position
+                            ? find_equilibrium_at(system, 0, *member.position, asked)
+                            : find_equilibrium(system, asked);
+  } catch (const NumericalError& error) {
+    throw NumericalError(fmt::format("no sliding equilibrium{}: {}", where, error.what()));
+  }
+  if (state.equilibrium.status != EquilibriumStatus::converged) {
+    throw NumericalError(
+        fmt::format("no sliding equilibrium{}: {}", where, state.equilibrium.failure));
+  }
+  const auto& contacts = state.equilibrium.contacts;
+  if (std::none_of(contacts.begin(), contacts.end(),
+                   [](const ContactEquilibrium& contact) { return contact.is_closed; })) {
+    throw NumericalError(fmt::format("every contact is open in equilibrium{}", where));
+  }
+  state.pencil = linearise(system, state.equilibrium);
+  state.is_on_the_way = member.position.has_value();
+  return state;
+}
+
+std::string printed_units(const NumericKey& key) {
+  std::string above;
+  std::string below;
+  for (std::size_t begin = 0; begin < key.unit.size();) {
+    const std::size_t end = std::min(key.unit.find(' ', begin), key.unit.size());
+    std::string factor = key.unit.substr(begin, end - begin);
+    begin = end + 1;
+    const std::size_t digits = factor.find_first_of("-0123456789");
+    std::string power = digits == std::string::npos ? "1" : factor.substr(digits);
+    factor.erase(std::min(digits, factor.size()));
+    const bool is_below = power.front() == '-';
+    if (is_below) power.erase(0, 1);
+    if (power != "1") factor += '^' + power;
+    std::string& list = is_below ? below : above;
+    list += (list.empty() ? "" : " ") + factor;
+  }
+  if (above.empty()) above = "1";
+  return below.empty() ? above : above + '/' + below;
+}
+
+std::string value_text(const NumericKey& key, double value) {
+  return fmt::format("{} = {:.9g}{}", key.path, value,
+                     key.unit.empty() ? "" : " " + printed_units(key));
+}
+
+std::vector<Eigenvalue> lowest_eigenvalues(const Pencil& pencil, EigenvalueMethod method,
+                                           int count) {
+  if (method == EigenvalueMethod::secular)
+    return secular_eigenvalues(pencil, SpectrumWindow::lowest(count));
+  std::vector<Eigenvalue> all = dense_eigenvalues(pencil);
+  const auto first = std::find_if(all.begin(), all.end(),
+                                  [](const Eigenvalue& one) { return one.s.imag() > 0.0; });
+  const std::ptrdiff_t kept = std::min<std::ptrdiff_t>(count, all.end() - first);
+  all.erase(first + kept, all.end());
+  return all;
+}
+
+StabilityFamily::StabilityFamily(const LoadedScene& loaded, std::vector<NumericKey> keys,
+                                 ContactGeometry geometry)
+    : family_(loaded, std::move(keys)),
+      geometry_(geometry),
+      start_key_(start_key(loaded.scene.model)) {}
+
+SlidingState StabilityFamily::at(std::span<const double> values) {
+  std::string what;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    what += (i > 0 ? ", " : "") + value_text(family_.keys()[i], values[i]);
+  return sliding_state_of(family_.at(values), geometry_, what);
+}
+
+PencilFamily StabilityFamily::along(std::size_t key, std::vector<double> values, double from,
+                                    double to) {
+  PencilFamily along;
+  values[key] = from;
+  along.kinks = kinks(key, values, from, to);
+  along.place = [this, key, values](double value, Pencil& pencil) mutable {
+    if (stop_requested()) throw Interrupted("nothing has been written");
+    values[key] = value;
+    pencil = at(values).pencil;
+    if (report_) report_(value);
+  };
+  return along;
+}
+
+/// Positions at which the contact passes a master node, if the position is what varies.
+std::vector<double> StabilityFamily::kinks(std::size_t key, const std::vector<double>& values,
+                                           double from, double to) {
+  std::vector<double> found;
+  if (!start_key_ || family_.keys()[key].path != *start_key_) return found;
+  const System& system = family_.at(values).model->system;
+  const MasterSurface& surface =
+      system.surfaces[static_cast<std::size_t>(system.contacts.front().surface)];
+  std::copy_if(surface.arc_length.begin(), surface.arc_length.end(), std::back_inserter(found),
+               [&](double node) { return node > from && node < to; });
+  return found;
+}
+
+namespace {
+
+/// The locus along whole numbers.
+Locus locus_at(PencilFamily family, const std::vector<double>& range, const LocusOptions& options) {
+  Locus locus;
+  locus.values = range;
+  Pencil pencil;
+  const EigenvalueMethod method =
+      options.method == LocusMethod::dense ? EigenvalueMethod::dense : EigenvalueMethod::secular;
+  bool was_growing = false;
+  for (const double value : range) {
+    family.place(value, pencil);
+    locus.eigenvalues.emplace_back();
+    const Eigenvalue* fastest = nullptr;
+    const std::vector<Eigenvalue> eigenvalues = lowest_eigenvalues(pencil, method, options.count);
+    for (const Eigenvalue& one : eigenvalues) {
+      locus.eigenvalues.back().push_back(one.s);
+      if (is_growing(one) && (fastest == nullptr || one.growth() > fastest->growth()))
+        fastest = &one;
+    }
+    if (fastest != nullptr) {
+      if (!was_growing) locus.unstable.push_back({value, value, 0.0, 0.0, 0.0, value, 0});
+      UnstableWindow& window = locus.unstable.back();
+      window.to = value;
+      if (fastest->growth() > window.growth_max) {
+        window.growth_max = fastest->growth();
+        window.frequency = fastest->frequency();
+        window.value_max = value;
+      }
+    }
+    const bool is_change = !locus.eigenvalues.empty() && locus.eigenvalues.size() > 1 &&
+                           was_growing != (fastest != nullptr);
+    if (is_change) {
+      locus.crossings.push_back({value, locus.unstable.back().frequency, was_growing ? -1 : 1, 0});
+    }
+    was_growing = fastest != nullptr;
+  }
+  return locus;
+}
+
+}  // namespace
+
+Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t key,
+                  const std::vector<double>& values, const std::vector<double>& range,
+                  const LocusOptions& options) {
+  // An end that is not allowed is named as it was given, before anything is computed in between.
+  std::vector<double> ends = values;
+  for (const double end : {range.front(), range.back()}) {
+    ends[key] = end;
+    family.at(ends);
+  }
+  const PencilFamily pencils = family.along(key, values, range.front(), range.back());
+  return varied.is_integer ? locus_at(pencils, range, options)
+                           : trace_locus(pencils, range, options);
+}
+
+std::vector<StabilityChange> stability_changes(const Locus& locus) {
+  // Between two crossings the number of growing eigenvalues is that of the windows there.
+  const auto num_growing = [&](double value) {
+    return std::count_if(locus.unstable.begin(), locus.unstable.end(), [&](const auto& window) {
+      return window.from < value && value < window.to;
+    });
+  };
+  std::vector<StabilityChange> changes;
+  for (std::size_t i = 0; i < locus.crossings.size(); ++i) {
+    const Crossing& crossing = locus.crossings[i];
+    const double before = i == 0 ? locus.values.front() : locus.crossings[i - 1].value;
+    const double after =
+        i + 1 == locus.crossings.size() ? locus.values.back() : locus.crossings[i + 1].value;
+    const bool was_stable = num_growing(0.5 * (before + crossing.value)) == 0;
+    const bool is_stable = num_growing(0.5 * (crossing.value + after)) == 0;
+    if (was_stable != is_stable)
+      changes.push_back({crossing.value, crossing.frequency, was_stable});
+  }
+  return changes;
+}
+
+bool is_growing(const Eigenvalue& eigenvalue) {
+  constexpr double rounding = 1e-10;
+  return eigenvalue.growth() > rounding * std::abs(eigenvalue.s);
+}
+
+double trusted_frequency(const System& system) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const SystemBody& body : system.bodies) {
+    const Eigen::Index n = body.reduced.size();
+    if (n == body.reduced.num_interface) continue;
+    // The stiffness of fixed-interface modes is diagonal and ascends.
+    const double omega = std::sqrt(body.reduced.stiffness(n - 1, n - 1));
+    lowest = std::min(lowest, omega / (2.0 * std::numbers::pi));
+  }
+  return 0.5 * lowest;
+}
+
+Json eigenvalues_json(const std::vector<Eigenvalue>& eigenvalues) {
+  Json list = Json::array();
+  for (const Eigenvalue& one : eigenvalues) list.push_back({one.s.real(), one.s.imag()});
+  return list;
+}
+
+Json equilibrium_json(const Model& model, const Equilibrium& equilibrium) {
+  const System& system = model.system;
+  Json object;
+  if (system.contacts.size() == 1) {
+    object = contact_json(system, equilibrium, 0);
+  } else {
+    for (std::size_t i = 0; i < system.contacts.size(); ++i)
+      object["contacts"][system.contacts[i].name] = contact_json(system, equilibrium, i);
+  }
+  object["drive_displacement"] = number(equilibrium.state.drive_displacement);
+  object["residual"] = number(equilibrium.residual);
+  object["points"] = Json::object();
+  for (const auto& [name, point] : model.points) {
+    object["points"][name.body + "." + name.point] =
+        displacement_json(system, equilibrium, point.body, point.rows);
+  }
+  return object;
+}
+
+}  // namespace stridor

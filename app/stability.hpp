@@ -1,0 +1,155 @@
+// What the verbs about small vibrations share: the sliding state of a scene and its eigenvalues.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/locus.hpp"
+#include "app/command.hpp"
+#include "io/scene_family.hpp"
+#include "solvers/linearise.hpp"
+
+namespace stridor {
+
+enum class EigenvalueMethod { secular, dense };
+
+/// What the user asked for, as written.
+struct StabilityOptions {
+  CommonOptions common;
+  std::string scene;
+  std::string about = "undeformed";
+  std::string method = "secular";
+  int count = 20;
+
+  ContactGeometry geometry() const;
+  EigenvalueMethod eigenvalue_method() const;
+  LocusOptions locus_options() const;
+};
+
+/// A range of one key, as written.
+struct RangeOptions {
+  std::string parameter;  ///< empty: the position at which the pair starts
+  std::string from;
+  std::string to;
+  int points = 101;
+};
+
+/// --parameter, --from, --to, --points.
+void add_range_options(CLI::App& verb, RangeOptions& options);
+
+/// The scene, --about, --method, --count, --set, --threads and --json.
+void add_stability_options(CLI::App& verb, StabilityOptions& options);
+
+/// The key that a verb varies. Only keys of bodies, contacts and drive change eigenvalues.
+/// @param option where the path was written
+/// @throws ConfigError as find_numeric_key(), or if the key changes no eigenvalue
+NumericKey find_stability_key(const Scene& scene, const std::string& path,
+                              const std::string& option);
+
+/// A sliding equilibrium and the small motion about it.
+struct SlidingState {
+  Equilibrium equilibrium;
+  Pencil pencil;
+  bool is_on_the_way = false;  ///< the drive puts the scene there, `equilibrium.state` says how far
+};
+
+/// The state of a member of a family. About the deformed geometry the contact stands where the
+/// member wants it on the deformed master; the drive is displaced accordingly.
+/// @param what names the member in messages, e.g. "contact.start = 0.05"; empty where there is one
+/// @throws NumericalError if there is no equilibrium, or every contact is open
+SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry geometry,
+                              const std::string& what);
+
+/// The unit of a key as it is printed and stored: "1/s" for "s-1", "kg/m^3" for "kg m-3", "1" where
+/// dimensionless.
+std::string printed_units(const NumericKey& key);
+
+/// "contact.start = 0.05 m".
+std::string value_text(const NumericKey& key, double value);
+
+/// A key and the values at which eigenvalues are wanted.
+struct KeyRange {
+  NumericKey key;
+  std::vector<double> values;  ///< strictly ascending
+};
+
+/// @throws ConfigError if the key, an end of the range or the number of points is wrong
+KeyRange make_range(const Scene& scene, const RangeOptions& options);
+
+/// Small motions of a scene as some of its keys vary.
+class StabilityFamily {
+ public:
+  StabilityFamily(const LoadedScene& loaded, std::vector<NumericKey> keys,
+                  ContactGeometry geometry);
+
+  /// @param values one per key
+  /// @throws ConfigError, NumericalError naming the values
+  SlidingState at(std::span<const double> values);
+
+  /// The pencils along one of the keys.
+  /// @param key      its index
+  /// @param values   of all keys; that of `key` varies
+  /// @param from, to where master nodes count as kinks
+  /// @return refers to this object
+  PencilFamily along(std::size_t key, std::vector<double> values, double from, double to);
+
+  /// Called with the value of the key that varies whenever a pencil along it is made.
+  void on_value(std::function<void(double)> report) { report_ = std::move(report); }
+
+ private:
+  std::vector<double> kinks(std::size_t key, const std::vector<double>& values, double from,
+                            double to);
+
+  SceneFamily family_;
+  ContactGeometry geometry_;
+  std::optional<std::string> start_key_;
+  std::function<void(double)> report_;
+};
+
+/// Follows eigenvalues along one key of a family. Along a key of whole numbers nothing is put
+/// between the values, there are no branches, and windows end at the first and last value at which
+/// something grows.
+/// @param key    index of the one that varies
+/// @param values of all keys
+/// @param range  values of that key, strictly ascending
+/// @throws ConfigError, NumericalError
+Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t key,
+                  const std::vector<double>& values, const std::vector<double>& range,
+                  const LocusOptions& options);
+
+/// A value at which the system as a whole becomes stable or unstable.
+struct StabilityChange {
+  double value = 0.0;
+  double frequency = 0.0;  ///< Hz, of the eigenvalue on the imaginary axis
+  bool is_unstable_beyond = false;
+};
+
+/// Of all crossings those at which the number of growing eigenvalues leaves or reaches zero.
+std::vector<StabilityChange> stability_changes(const Locus& locus);
+
+/// Real eigenvalues, then the lowest `count` with positive imaginary part; those there are where
+/// there are fewer.
+/// @throws NumericalError if they cannot be found
+std::vector<Eigenvalue> lowest_eigenvalues(const Pencil& pencil, EigenvalueMethod method,
+                                           int count);
+
+/// Whether a motion grows: Re s > 0 by more than rounding, 1e-10 |s|.
+bool is_growing(const Eigenvalue& eigenvalue);
+
+/// Frequency up to which the reduced bodies answer as the full ones, Hz; infinite where no mode was
+/// left out.
+///
+/// Half the frequency of the highest fixed-interface mode that any body keeps: what the modes left
+/// out add below that is quasi-static up to a share of (f/f_cut)² ≤ 1/4, and that share is of a
+/// residual flexibility which constraint modes carry already. A body that keeps no such mode does
+/// not say how high its first one is, and gives no limit.
+double trusted_frequency(const System& system);
+
+Json eigenvalues_json(const std::vector<Eigenvalue>& eigenvalues);
+
+/// Force, place and sliding of every contact, and displacements.
+Json equilibrium_json(const Model& model, const Equilibrium& equilibrium);
+
+}  // namespace stridor

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Makes the figures of README.md and of docs/tutorial.md anew; takes about a minute.
+# Usage: docs/figures/make.sh [STRIDOR], by default build/release/stridor of this source tree.
+set -euo pipefail
+here=$(CDPATH='' cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
+source_folder=$here/../..
+stridor=${1:-$source_folder/build/release/stridor}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+"$stridor" run "$source_folder/scenes/beam_on_beam.yaml" -o "$work/beam_on_beam.h5" >/dev/null
+"$stridor" spectrogram "$work/beam_on_beam.h5" -o "$here/beam_on_beam_spectrogram.png" --force
+"$stridor" plot "$work/beam_on_beam.h5" --kind history -o "$here/beam_on_beam_history.png" --force
+
+"$stridor" run "$source_folder/scenes/examples/ruler.yaml" -o "$work/ruler.h5" >/dev/null
+"$stridor" plot "$work/ruler.h5" --kind history -o "$here/ruler_history.png" --force
+"$stridor" spectrogram "$work/ruler.h5" -o "$here/ruler_spectrogram.png" --force
+"$stridor" plot "$work/ruler.h5" --kind spectrum --channel ruler.free_end.y.acceleration \
+  -o "$here/ruler_spectrum.png" --force
+"$stridor" compare "$source_folder/scenes/beam_on_beam.yaml" -o "$work/compare" >/dev/null
+cp "$work/compare/accelerations.png" "$here/compare_accelerations.png"

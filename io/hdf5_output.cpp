@@ -1,0 +1,59 @@
+#include "io/hdf5_output.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+
+#include "core/errors.hpp"
+
+namespace stridor {
+
+Handle text_type(const Checker& at, std::size_t length, const std::string& dataset) {
+  Handle type = at.own(H5Tcopy(H5T_C_S1), H5Tclose, dataset, "cannot make a text type");
+  at.check(H5Tset_size(type.id(), length + 1), dataset, "cannot make a text type");
+  at.check(H5Tset_cset(type.id(), H5T_CSET_UTF8), dataset, "cannot make a text type");
+  return type;
+}
+
+void write_attribute(const Checker& at, hid_t object, const std::string& dataset,
+                     const std::string& name, const std::variant<std::string, double>& value) {
+  const Handle space = at.own(H5Screate(H5S_SCALAR), H5Sclose, dataset, "cannot make an attribute");
+  const std::string* text = std::get_if<std::string>(&value);
+  const Handle type =
+      text != nullptr ? text_type(at, text->size(), dataset)
+                      : at.own(H5Tcopy(H5T_IEEE_F64LE), H5Tclose, dataset, "cannot make a type");
+  const std::string what = fmt::format("cannot write attribute '{}'", name);
+  const Handle attribute =
+      at.own(H5Acreate2(object, name.c_str(), type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT),
+             H5Aclose, dataset, what.c_str());
+  const herr_t status =
+      text != nullptr ? H5Awrite(attribute.id(), type.id(), text->c_str())
+                      : H5Awrite(attribute.id(), H5T_NATIVE_DOUBLE, std::get_if<double>(&value));
+  at.check(status, dataset, what.c_str());
+}
+
+PartFile::PartFile(std::string final_path)
+    : final_path_(std::move(final_path)), path_(fmt::format("{}.part-{}", final_path_, getpid())) {}
+
+PartFile::~PartFile() {
+  if (is_made_) unlink(path_.c_str());
+}
+
+void PartFile::move_to_final(Overwrite overwrite) {
+  int status = -1;
+  if (overwrite == Overwrite::no) {
+    // Another process may have made the file meanwhile; not every file system can tell.
+    status = renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, final_path_.c_str(), RENAME_NOREPLACE);
+    if (status != 0 && errno == EEXIST)
+      throw FileError(final_path_, "", "exists; use --force to overwrite it");
+  }
+  if (status != 0) status = std::rename(path_.c_str(), final_path_.c_str());
+  if (status != 0)
+    throw FileError(final_path_, "", "cannot be given its name: " + errno_text(errno));
+  is_made_ = false;
+}
+
+}  // namespace stridor

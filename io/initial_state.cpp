@@ -1,0 +1,125 @@
+#include "io/initial_state.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "core/errors.hpp"
+#include "io/run_file.hpp"
+#include "solvers/dense_eigenvalues.hpp"
+#include "solvers/equilibrium.hpp"
+#include "solvers/linearise.hpp"
+
+namespace stridor {
+namespace {
+
+constexpr const char* state_key = "initial.state";
+
+Eigen::VectorXd as_vector(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// The reduced coordinates of two bodies mean the same where all their frequencies agree.
+void check_modes(const RunFileReader& file, const std::string& path, const SystemBody& body) {
+  constexpr double tolerance = 1e-6;
+  const auto refuse = [&](const std::string& why) {
+    throw ConfigError(state_key, fmt::format("{} cannot start '{}': {}", path, body.name, why));
+  };
+  const std::string dataset = "/modal/" + body.name + "/frequency";
+  if (!file.has(dataset)) refuse("it holds no body of that name");
+  const Eigen::VectorXd recorded = as_vector(file.static_array(dataset));
+  const Eigen::VectorXd frequency = body.modal.omega / (2.0 * std::numbers::pi);
+  if (recorded.size() != frequency.size()) {
+    refuse(fmt::format("its body has {} modes, this one {}", recorded.size(), frequency.size()));
+  }
+  for (Eigen::Index i = 0; i < frequency.size(); ++i) {
+    if (!(std::abs(recorded(i) - frequency(i)) <= tolerance * frequency.maxCoeff())) {
+      refuse(fmt::format("mode {} of its body has {:.6g} Hz, that of this one {:.6g} Hz", i + 1,
+                         recorded(i), frequency(i)));
+    }
+  }
+}
+
+void start_from_file(System& system, const std::string& path) {
+  const RunFileReader file(path);
+  for (SystemBody& body : system.bodies) {
+    if (body.modal.size() == 0) continue;
+    check_modes(file, path, body);
+    const std::string group = "/final/" + body.name;
+    body.initial_displacement = as_vector(file.static_array(group + "/displacement"));
+    body.initial_velocity = as_vector(file.static_array(group + "/velocity"));
+    for (const auto& [name, motion] : {std::pair{"/displacement", &body.initial_displacement},
+                                       std::pair{"/velocity", &body.initial_velocity}}) {
+      if (motion->size() != body.reduced.size() || !motion->allFinite()) {
+        throw FileError(path, group + name,
+                        fmt::format("should be {} finite numbers", body.reduced.size()));
+      }
+    }
+  }
+}
+
+/// Steady sliding under what acts at t = 0.
+Equilibrium equilibrium_at_start(const System& system) {
+  EquilibriumState state;
+  state.drive_velocity = system.drive.velocity.value(0.0);
+  state.load = system.drive.load.value(0.0);
+  state.friction_factor = 1.0;
+  for (const ContactPoint& contact : system.contacts)
+    state.friction_factor = std::min(state.friction_factor, contact.friction_rise.value(0.0));
+  if (state.friction_factor < 1.0) {
+    throw ConfigError(state_key,
+                      "equilibrium is that under the loads of t = 0, but with drive.ramp they are "
+                      "still zero there; set drive.ramp: 0");
+  }
+  Equilibrium equilibrium = find_equilibrium(system, state);
+  if (equilibrium.status != EquilibriumStatus::converged)
+    throw ConfigError(state_key, "there is no sliding equilibrium: " + equilibrium.failure);
+  return equilibrium;
+}
+
+void perturb(System& system, const Equilibrium& equilibrium,
+             const PerturbationParameters& perturbation) {
+  const Pencil pencil = linearise(system, equilibrium);
+  std::vector<Eigenvalue> eigenvalues = dense_eigenvalues(pencil, DenseWork::eigenvalues);
+  std::erase_if(eigenvalues, [](const Eigenvalue& one) { return !(one.s.imag() > 0.0); });
+  const auto number = static_cast<std::size_t>(perturbation.eigenvalue);
+  if (number > eigenvalues.size()) {
+    throw ConfigError("initial.perturbation.eigenvalue",
+                      fmt::format("{} is more than the {} eigenvalues with positive frequency",
+                                  number, eigenvalues.size()));
+  }
+  const std::complex<double> s = eigenvalues[number - 1].s;
+  add_perturbation(system, eigenvector(pencil, s).right, s, perturbation.amplitude);
+}
+
+Eigen::VectorXd sum(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  if (a.size() == 0) return b;
+  if (b.size() == 0) return a;
+  return a + b;
+}
+
+}  // namespace
+
+void set_initial_state(System& system, const Scene& scene) {
+  const InitialParameters& initial = scene.model.initial;
+  if (initial.state == InitialParameters::rest) return;
+  const std::vector<SystemBody> prescribed = system.bodies;
+  if (initial.is_file()) {
+    start_from_file(system, initial.state);
+  } else {
+    const Equilibrium equilibrium = equilibrium_at_start(system);
+    apply_initial_motion(system, equilibrium);
+    if (initial.perturbation) perturb(system, equilibrium, *initial.perturbation);
+  }
+  for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+    SystemBody& body = system.bodies[b];
+    body.initial_displacement = sum(body.initial_displacement, prescribed[b].initial_displacement);
+    body.initial_velocity = sum(body.initial_velocity, prescribed[b].initial_velocity);
+  }
+}
+
+}  // namespace stridor

@@ -1,0 +1,18 @@
+// The state in which the bodies of a scene start.
+#pragma once
+
+#include "io/scene.hpp"
+
+namespace stridor {
+
+/// Adds the state that `initial.state` names, and the eigenvector of `initial.perturbation`, to the
+/// displacements and velocities that the system starts with.
+///
+/// @param system of the scene's model
+/// @throws ConfigError (key paths below "initial") if there is no such equilibrium or eigenvalue,
+/// or
+///         the run file is of other bodies
+/// @throws FileError naming file and dataset if the run file cannot be read
+void set_initial_state(System& system, const Scene& scene);
+
+}  // namespace stridor

@@ -1,0 +1,193 @@
+#include "io/locus_file.hpp"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+#include <hdf5_hl.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numbers>
+
+#include "core/errors.hpp"
+#include "io/hdf5_output.hpp"
+
+namespace stridor {
+namespace {
+
+/// A column of /unstable: its name, unit and the member it holds.
+struct Column {
+  const char* name;
+  const char* units;  ///< null: that of the parameter
+  double& (*of)(TimedWindow&);
+};
+
+const std::array<Column, 9> columns{{
+    {"from", nullptr, [](TimedWindow& w) -> double& { return w.window.from; }},
+    {"to", nullptr, [](TimedWindow& w) -> double& { return w.window.to; }},
+    {"frequency", "Hz", [](TimedWindow& w) -> double& { return w.window.frequency; }},
+    {"growth_max", "1/s", [](TimedWindow& w) -> double& { return w.window.growth_max; }},
+    {"growth_integral", "unit of the parameter/s",
+     [](TimedWindow& w) -> double& { return w.window.growth_integral; }},
+    {"value_max", nullptr, [](TimedWindow& w) -> double& { return w.window.value_max; }},
+    {"from_time", "s", [](TimedWindow& w) -> double& { return w.from_time; }},
+    {"to_time", "s", [](TimedWindow& w) -> double& { return w.to_time; }},
+    {"gain", "1", [](TimedWindow& w) -> double& { return w.gain; }},
+}};
+
+class Writer {
+ public:
+  Writer(const Checker& at, hid_t file) : at_(at), file_(file) {}
+
+  void make_group(const std::string& path) const {
+    at_.own(H5Gcreate2(file_, path.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, path,
+            "cannot make the group");
+  }
+
+  void write(const std::string& path, const std::vector<hsize_t>& shape,
+             const std::vector<double>& values, const std::string& units) const {
+    at_.check(H5LTmake_dataset_double(file_, path.c_str(), static_cast<int>(shape.size()),
+                                      shape.data(), values.data()),
+              path, "cannot be written");
+    const Handle dataset =
+        at_.own(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose, path, "cannot be opened");
+    write_attribute(at_, dataset.id(), path, "units", units);
+  }
+
+  void write(const std::string& path, const std::vector<double>& values,
+             const std::string& units) const {
+    write(path, {values.size()}, values, units);
+  }
+
+ private:
+  const Checker& at_;
+  hid_t file_;
+};
+
+void write_eigenvalues(const Writer& writer, const Locus& locus) {
+  std::size_t most = 0;
+  for (const auto& list : locus.eigenvalues) most = std::max(most, list.size());
+  std::vector<double> growth;
+  std::vector<double> frequency;
+  for (const auto& list : locus.eigenvalues) {
+    for (std::size_t i = 0; i < most; ++i) {
+      constexpr double none = std::numeric_limits<double>::quiet_NaN();
+      growth.push_back(i < list.size() ? list[i].real() : none);
+      frequency.push_back(i < list.size() ? list[i].imag() / (2.0 * std::numbers::pi) : none);
+    }
+  }
+  writer.make_group("/eigenvalues");
+  writer.write("/eigenvalues/growth", {locus.eigenvalues.size(), most}, growth, "1/s");
+  writer.write("/eigenvalues/frequency", {locus.eigenvalues.size(), most}, frequency, "Hz");
+}
+
+void write_branches(const Writer& writer, const Locus& locus, const std::string& units) {
+  writer.make_group("/branches");
+  for (std::size_t k = 0; k < locus.branches.size(); ++k) {
+    const Branch& branch = locus.branches[k];
+    std::vector<double> growth;
+    std::vector<double> frequency;
+    for (const std::complex<double>& s : branch.s) {
+      growth.push_back(s.real());
+      frequency.push_back(s.imag() / (2.0 * std::numbers::pi));
+    }
+    const std::string group = fmt::format("/branches/{:03}", k);
+    writer.make_group(group);
+    writer.write(group + "/value", branch.values, units);
+    writer.write(group + "/growth", growth, "1/s");
+    writer.write(group + "/frequency", frequency, "Hz");
+  }
+}
+
+/// Makes a file, lets it be filled and gives it its name.
+template <class Fill>
+void write_file(const std::string& path, Overwrite overwrite, const char* kind,
+                const Attributes& attributes, const Fill& fill) {
+  const QuietErrors quiet;
+  check_output(path, overwrite);
+  const Checker at(path);
+  PartFile part(path);
+  const Handle access = file_access(at);
+  Handle file = at.own(H5Fcreate(part.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()),
+                       H5Fclose, "", "cannot be made");
+  part.made();
+  write_attribute(at, file.id(), "", "kind", std::string(kind));
+  for (const auto& [name, value] : attributes) write_attribute(at, file.id(), "", name, value);
+  fill(Writer(at, file.id()));
+  at.check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "", "cannot be written");
+  at.check(file.close(), "", "cannot be closed");
+  part.move_to_final(overwrite);
+}
+
+}  // namespace
+
+void write_locus_file(const std::string& path, Overwrite overwrite, const Locus& locus,
+                      const std::vector<TimedWindow>& windows, const std::string& units,
+                      const Attributes& attributes) {
+  write_file(path, overwrite, "locus", attributes, [&](const Writer& writer) {
+    writer.write("/values", locus.values, units);
+    write_eigenvalues(writer, locus);
+    write_branches(writer, locus, units);
+    writer.make_group("/unstable");
+    for (const Column& column : columns) {
+      std::vector<double> values;
+      for (TimedWindow window : windows) values.push_back(column.of(window));
+      writer.write(std::string("/unstable/") + column.name, values,
+                   column.units != nullptr ? column.units : units);
+    }
+  });
+}
+
+void write_map_file(const std::string& path, Overwrite overwrite, const StabilityMap& map,
+                    const std::string& x_units, const std::string& y_units,
+                    const Attributes& attributes) {
+  write_file(path, overwrite, "stability map", attributes, [&](const Writer& writer) {
+    writer.write("/x", map.x, x_units);
+    writer.write("/y", map.y, y_units);
+    std::vector<double> growth;
+    for (const auto& row : map.growth) growth.insert(growth.end(), row.begin(), row.end());
+    writer.write("/growth", {map.y.size(), map.x.size()}, growth, "1/s");
+    writer.make_group("/boundary");
+    for (std::size_t k = 0; k < map.boundary.size(); ++k) {
+      std::vector<double> points;
+      for (const auto& point : map.boundary[k])
+        points.insert(points.end(), point.begin(), point.end());
+      writer.write(fmt::format("/boundary/{:03}", k), {map.boundary[k].size(), 2}, points,
+                   x_units + ", " + y_units);
+    }
+  });
+}
+
+std::vector<TimedWindow> read_locus_windows(const std::string& path) {
+  const QuietErrors quiet;
+  const Checker at(path);
+  const Handle access = file_access(at);
+  const Handle file =
+      at.own(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose, "", "cannot be opened");
+  if (H5Lexists(file.id(), "/unstable", H5P_DEFAULT) <= 0)
+    throw FileError(path, "/unstable", "is missing; a file of `stridor locus -o` is needed");
+  std::vector<TimedWindow> windows;
+  for (const Column& column : columns) {
+    const std::string dataset = std::string("/unstable/") + column.name;
+    hsize_t size = 0;
+    int rank = 0;
+    at.check(H5LTget_dataset_ndims(file.id(), dataset.c_str(), &rank), dataset, "cannot be read");
+    if (rank != 1) throw FileError(path, dataset, fmt::format("has {} dimensions, not 1", rank));
+    at.check(H5LTget_dataset_info(file.id(), dataset.c_str(), &size, nullptr, nullptr), dataset,
+             "cannot be read");
+    std::vector<double> values(size);
+    if (size > 0) {
+      at.check(H5LTread_dataset_double(file.id(), dataset.c_str(), values.data()), dataset,
+               "cannot be read");
+    }
+    if (&column == &columns.front()) windows.resize(size);
+    if (windows.size() != size) {
+      throw FileError(path, dataset,
+                      fmt::format("has {} entries, /unstable/from {}", size, windows.size()));
+    }
+    for (std::size_t i = 0; i < size; ++i) column.of(windows[i]) = values[i];
+  }
+  return windows;
+}
+
+}  // namespace stridor

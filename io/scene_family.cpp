@@ -1,0 +1,266 @@
+#include "io/scene_family.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/suggestion.hpp"
+#include "core/units.hpp"
+#include "io/channels.hpp"
+#include "io/scene_reader.hpp"
+#include "solvers/equilibrium.hpp"
+
+namespace stridor {
+namespace {
+
+std::vector<std::string> key_names(const Schema& schema) {
+  std::vector<std::string> names;
+  for (const Key& key : schema.keys) names.push_back(key.name);
+  return names;
+}
+
+[[noreturn]] void fail_unknown(const std::string& option, const std::string& path,
+                               const std::string& part, const std::string& below,
+                               const std::vector<std::string>& known) {
+  std::string advice = did_you_mean(part, known);
+  if (advice.empty()) advice = fmt::format("; known there: {}", fmt::join(known, ", "));
+  throw ConfigError(option, fmt::format("'{}': there is no key '{}'{}{}", path, part,
+                                        below.empty() ? "" : " in '" + below + "'", advice));
+}
+
+/// An entry of named sections and what it holds.
+struct NamedEntry {
+  std::string name;
+  std::size_t alternative = 0;
+  const void* object = nullptr;
+};
+
+std::vector<NamedEntry> entries_of(const Key& key, const void* object) {
+  std::vector<NamedEntry> entries;
+  if (object == nullptr) return entries;
+  key.visit(object, [&](const std::string& name, std::size_t alternative, const void* entry) {
+    entries.push_back({name, alternative, entry});
+  });
+  return entries;
+}
+
+bool is_straight_along_drive(const MasterSurface& surface) {
+  constexpr double negligible = 1e-12;
+  for (int s = 0; s < surface.num_segments(); ++s) {
+    const Segment segment = surface.undeformed_segment(s);
+    const Eigen::Vector2d along = segment.second - segment.first;
+    if (!(along.x() > 0.0 && std::abs(along.y()) <= negligible * along.x())) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+NumericKey find_numeric_key(const Scene& scene, const std::string& path,
+                            const std::string& option) {
+  const Schema* schema = &Scene::schema();
+  const void* object = &scene;
+  std::string walked;
+  for (std::size_t begin = 0; begin <= path.size();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    const std::string part = path.substr(begin, end - begin);
+    const Key* key = schema->find(part);
+    if (key == nullptr) fail_unknown(option, path, part, walked, key_names(*schema));
+    walked = join_path(walked, part);
+    begin = end + 1;
+    const bool is_last = end == path.size();
+    switch (key->kind) {
+      case KeyKind::section: {
+        if (is_last) {
+          throw ConfigError(option,
+                            fmt::format("'{}' is a section; name one of its numbers ({})", path,
+                                        fmt::join(key_names(key->alternatives[0].schema()), ", ")));
+        }
+        const auto entries = entries_of(*key, object);
+        object = entries.empty() ? nullptr : entries.front().object;
+        schema = &key->alternatives[0].schema();
+        break;
+      }
+      case KeyKind::named_sections: {
+        const auto entries = entries_of(*key, object);
+        std::vector<std::string> names;
+        for (const NamedEntry& entry : entries) names.push_back(entry.name);
+        const std::size_t stop =
+            std::min(path.find('.', std::min(begin, path.size())), path.size());
+        const std::string name = is_last ? "" : path.substr(begin, stop - begin);
+        const auto found = std::find(names.begin(), names.end(), name);
+        if (found == names.end()) fail_unknown(option, path, name, walked, names);
+        const NamedEntry& entry = entries[static_cast<std::size_t>(found - names.begin())];
+        schema = &key->alternatives[entry.alternative].schema();
+        object = entry.object;
+        walked = join_path(walked, name);
+        begin = stop + 1;
+        if (stop == path.size()) {
+          throw ConfigError(option, fmt::format("'{}' is a section; name one of its numbers ({})",
+                                                path, fmt::join(key_names(*schema), ", ")));
+        }
+        break;
+      }
+      case KeyKind::integer:
+      case KeyKind::real:
+      case KeyKind::curve:
+        if (!is_last) fail_unknown(option, path, path.substr(begin), walked, {});
+        return {path, key->unit, key->range, key->kind == KeyKind::integer};
+      case KeyKind::flag:
+      case KeyKind::text:
+      case KeyKind::choice:
+      case KeyKind::real_list:
+      case KeyKind::text_list:
+      case KeyKind::section_list:
+        throw ConfigError(option, fmt::format("'{}' is no number that could be varied, but {}",
+                                              walked, expected_of(*key)));
+    }
+  }
+  throw ConfigError(option, fmt::format("'{}' is not a key path", path));
+}
+
+double parse_value(const NumericKey& key, const std::string& text, const std::string& option) {
+  double value = 0.0;
+  try {
+    value = parse_quantity(text, key.unit);
+  } catch (const std::invalid_argument& error) {
+    throw ConfigError(option, fmt::format("{} ({})", error.what(), key.path));
+  }
+  if (key.is_integer && value != std::round(value)) {
+    throw ConfigError(option, fmt::format("'{}' must be a whole number, as {} is", text, key.path));
+  }
+  if (!key.range.contains(value)) {
+    throw ConfigError(option, fmt::format("{} must be {}{}{}, got '{}'", key.path, key.range.text(),
+                                          key.unit.empty() ? "" : " ", key.unit, text));
+  }
+  return value;
+}
+
+std::vector<double> spaced_values(const NumericKey& key, double from, double to, int count,
+                                  Spacing spacing) {
+  if (count < 1) throw ConfigError("--points", fmt::format("must be at least 1, got {}", count));
+  if (from == to) return {from};
+  if (count < 2) {
+    throw ConfigError("--points", fmt::format("1 point is enough only where both ends of the range "
+                                              "of {} are the same",
+                                              key.path));
+  }
+  if (spacing == Spacing::logarithmic && !(from > 0.0 && to > 0.0)) {
+    throw ConfigError("--scale", fmt::format("a logarithmic scale needs positive values of {}, got "
+                                             "{:g} to {:g}",
+                                             key.path, from, to));
+  }
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / (count - 1);
+    double value = spacing == Spacing::linear ? (1.0 - share) * from + share * to
+                                              : from * std::pow(to / from, share);
+    if (i == 0) value = from;
+    if (i == count - 1) value = to;
+    if (key.is_integer && value != std::round(value)) {
+      throw ConfigError("--points",
+                        fmt::format("{} points from {:g} to {:g} are not whole numbers, as {} is; "
+                                    "{:g} points would be",
+                                    count, from, to, key.path, std::abs(to - from) + 1.0));
+    }
+    values.push_back(value);
+  }
+  return values;
+}
+
+std::optional<std::string> start_key(const ModelParameters& model) {
+  if (model.contact) return "contact.start";
+  if (model.contacts.size() != 1) return std::nullopt;
+  return "contacts." + model.contacts.begin()->first + ".start";
+}
+
+SceneFamily::SceneFamily(LoadedScene loaded, std::vector<NumericKey> keys)
+    : loaded_(std::move(loaded)), keys_(std::move(keys)) {
+  const auto start = start_key(loaded_.scene.model);
+  for (std::size_t i = 0; i < keys_.size(); ++i)
+    if (start && keys_[i].path == *start) start_key_ = i;
+}
+
+SceneFamily::Member SceneFamily::at(std::span<const double> values) {
+  if (values.size() != keys_.size()) {
+    throw std::invalid_argument(
+        fmt::format("SceneFamily: {} values for {} keys", values.size(), keys_.size()));
+  }
+  Settings settings;
+  for (std::size_t i = 0; i < keys_.size(); ++i)
+    if (i != start_key_) settings.emplace_back(keys_[i].path, values[i]);
+  if (start_key_) {
+    // Always from the start in the scene, so that the answer does not depend on what was asked
+    // before.
+    try {
+      build(settings);
+      if (const auto displacement = displacement_to(values[*start_key_]))
+        return {&*model_, *displacement, values[*start_key_]};
+    } catch (const ConfigError&) {
+      // The start in the scene need not fit the other values.
+    }
+    settings.emplace_back(keys_[*start_key_].path, values[*start_key_]);
+  }
+  build(settings);
+  return {&*model_, 0.0, position()};
+}
+
+/// Displacement of the drive from the model to a start; nothing where that is not the same as
+/// starting there.
+std::optional<double> SceneFamily::displacement_to(double start) const {
+  const System& system = model_->system;
+  const ContactPoint& point = system.contacts.front();
+  const MasterSurface& surface = system.surfaces[static_cast<std::size_t>(point.surface)];
+  const auto follows = [&](int body) {
+    return system.bodies[static_cast<std::size_t>(body)].follows_drive;
+  };
+  const bool is_on_master =
+      surface.is_endless || (start >= 0.0 && start <= surface.arc_length.back());
+  if (!is_on_master || !follows(point.slave_body) || follows(surface.body) ||
+      !is_straight_along_drive(surface)) {
+    return std::nullopt;
+  }
+  return drive_displacement_at(system, 0, start);
+}
+
+std::optional<double> SceneFamily::position() const {
+  if (!start_key(loaded_.scene.model) || !displacement_to(start_)) return std::nullopt;
+  return start_;
+}
+
+/// Makes the model of the scene with some keys set, unless it is there.
+void SceneFamily::build(const Settings& settings) {
+  if (model_ && settings == built_) return;
+  model_.reset();
+  LoadedScene changed = loaded_;
+  try {
+    for (const auto& [path, value] : settings)
+      set_value(changed.tree, fmt::format("{}={}", path, value));
+    changed.scene = read_as<Scene>(changed.tree);
+    const Scene& scene = changed.scene;
+    std::vector<std::pair<PointName, std::string>> observed;
+    if (scene.record) {
+      for (const Channel& channel : parse_channels(*scene.record, scene.model))
+        if (channel.point) observed.emplace_back(*channel.point, channel.key);
+    }
+    model_ = make_model(scene.model, observed, cache_);
+    built_ = settings;
+    start_ = scene.model.pairs().begin()->second.start;
+  } catch (const ConfigError& error) {
+    // The user wrote the ends of a range, not this value.
+    std::vector<Problem> problems = changed.located(error).problems();
+    for (Problem& problem : problems) {
+      for (const auto& [path, value] : settings) {
+        const std::string written = fmt::format("{}={}", path, value);
+        if (problem.source != "--set " + written) continue;
+        problem.source = written;
+        problem.excerpt.clear();
+      }
+    }
+    throw ConfigError(std::move(problems));
+  }
+}
+
+}  // namespace stridor

@@ -1,0 +1,118 @@
+#include "models/body_cache.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace stridor {
+namespace {
+
+void append(std::string& text, const Value& value) {
+  const auto write = [&](const auto& content) {
+    using Content = std::decay_t<decltype(content)>;
+    if constexpr (std::is_same_v<Content, std::monostate>) {
+      text += '-';
+    } else if constexpr (std::is_same_v<Content, TimeTable>) {
+      text += fmt::format("{} {}", content.times, content.values);
+    } else {
+      text += fmt::format("{}", content);
+    }
+  };
+  std::visit(write, value);
+}
+
+/// The keys of a struct and what they hold, in the order of their declaration.
+void append_keys(std::string& text, const Schema& schema, const void* object) {
+  for (const Key& key : schema.keys) {
+    text += key.name + '=';
+    if (key.read) append(text, key.read(object));
+    if (key.visit) {
+      key.visit(object, [&](const std::string& name, std::size_t alternative, const void* entry) {
+        text += name + '{';
+        append_keys(text, key.alternatives[alternative].schema(), entry);
+        text += '}';
+      });
+    }
+    text += ';';
+  }
+}
+
+const RayleighDamping& damping_of(const SubstructureParameters& parameters) {
+  return std::visit([](const auto& body) -> const RayleighDamping& { return body.damping; },
+                    parameters);
+}
+
+/// What is the same for two bodies that differ at most in their damping.
+std::string key_of(SubstructureParameters parameters) {
+  std::string text = std::to_string(parameters.index()) + ':';
+  std::visit(
+      [&](auto& body) {
+        body.damping = {};
+        append_keys(text, std::decay_t<decltype(body)>::schema(), &body);
+      },
+      parameters);
+  return text;
+}
+
+BodyMatrices make_body(const SubstructureParameters& parameters) {
+  return std::visit([](const BeamParameters& beam) { return make_beam(beam); }, parameters);
+}
+
+}  // namespace
+
+BodyCache::BodyCache(std::size_t capacity) : capacity_(capacity) {
+  if (capacity == 0) throw std::invalid_argument("BodyCache: the capacity is 0");
+}
+
+template <class Content>
+Content* BodyCache::find(Store<Content>& store, const std::string& key) {
+  for (Entry<Content>& entry : store) {
+    if (entry.key != key) continue;
+    entry.last_use = ++num_uses_;
+    return &entry.content;
+  }
+  return nullptr;
+}
+
+template <class Content>
+Content& BodyCache::keep(Store<Content>& store, std::string key, Content content) {
+  if (store.size() >= capacity_) {
+    store.erase(std::min_element(store.begin(), store.end(), [](const auto& a, const auto& b) {
+      return a.last_use < b.last_use;
+    }));
+  }
+  store.push_back({std::move(key), std::move(content), ++num_uses_});
+  return store.back().content;
+}
+
+BodyMatrices BodyCache::matrices(const SubstructureParameters& parameters) {
+  const std::string key = key_of(parameters);
+  const BodyMatrices* found = find(bodies_, key);
+  if (found == nullptr) found = &keep(bodies_, key, make_body(parameters));
+  BodyMatrices body = *found;
+  body.damping = damping_of(parameters);
+  return body;
+}
+
+BodyCache::Reduction BodyCache::reduce(const SubstructureParameters& parameters,
+                                       const BodyMatrices& body, std::span<const int> interface,
+                                       Eigen::Index num_modes, std::span<const int> watched) {
+  const std::string key = fmt::format("{}|{}|{}|{}", key_of(parameters), fmt::join(interface, ","),
+                                      num_modes, fmt::join(watched, ","));
+  const Reduction* found = find(reductions_, key);
+  if (found == nullptr) {
+    Reduction reduction;
+    reduction.reduced = make_craig_bampton(body, interface, num_modes, watched);
+    reduction.modal = make_modal(reduction.reduced);
+    ++num_reductions_;
+    found = &keep(reductions_, key, std::move(reduction));
+  }
+  Reduction reduction = *found;
+  reduction.reduced.damping = damping_of(parameters);
+  reduction.modal.damping = damping_of(parameters);
+  return reduction;
+}
+
+}  // namespace stridor

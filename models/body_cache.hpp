@@ -1,0 +1,66 @@
+// Bodies and their reductions, kept for the next system that needs the same ones.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "models/model.hpp"
+
+namespace stridor {
+
+/// Makes bodies from their parameters and reduces them, each once.
+///
+/// What belongs together is found by the resolved keys of a body, all of them but the damping,
+/// which is proportional and leaves meshes, shapes and frequencies alone; for a reduction also by
+/// the DoFs kept and watched. What has not been used for longest is forgotten first.
+class BodyCache {
+ public:
+  /// @param capacity bodies, and reductions, kept at most; > 0
+  /// @throws std::invalid_argument if `capacity` is 0
+  explicit BodyCache(std::size_t capacity = 16);
+
+  /// Matrices of a body with its supports, by its kind.
+  /// @throws as make_beam()
+  BodyMatrices matrices(const SubstructureParameters& parameters);
+
+  struct Reduction {
+    ReducedBody reduced;
+    ModalBody modal;
+  };
+
+  /// Craig-Bampton reduction of a body and its modes; arguments as of make_craig_bampton().
+  /// @param parameters of the body
+  /// @param body       its matrices
+  /// @throws as make_craig_bampton() and make_modal()
+  Reduction reduce(const SubstructureParameters& parameters, const BodyMatrices& body,
+                   std::span<const int> interface, Eigen::Index num_modes,
+                   std::span<const int> watched);
+
+  /// Reductions computed so far, those forgotten included.
+  std::int64_t num_reductions() const { return num_reductions_; }
+
+ private:
+  template <class Content>
+  struct Entry {
+    std::string key;
+    Content content;
+    std::int64_t last_use = 0;
+  };
+  template <class Content>
+  using Store = std::vector<Entry<Content>>;
+
+  template <class Content>
+  Content* find(Store<Content>& store, const std::string& key);
+  template <class Content>
+  Content& keep(Store<Content>& store, std::string key, Content content);
+
+  std::size_t capacity_;
+  std::int64_t num_uses_ = 0;
+  std::int64_t num_reductions_ = 0;
+  Store<BodyMatrices> bodies_;
+  Store<Reduction> reductions_;
+};
+
+}  // namespace stridor

@@ -1,0 +1,48 @@
+#include "models/mode_shape.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace stridor {
+
+std::vector<BodyShape> mode_shape(
+    const Model& model, const std::map<std::string, SubstructureParameters>& substructures,
+    const Equilibrium& equilibrium, const Eigen::VectorXcd& mode, BodyCache& cache) {
+  Eigen::Index num_modes = 0;
+  for (const SystemBody& body : model.system.bodies) num_modes += body.modal.size();
+  if (mode.size() != num_modes) {
+    throw std::invalid_argument(fmt::format(
+        "mode_shape: the mode has {} entries, the bodies have {} modes", mode.size(), num_modes));
+  }
+  std::vector<BodyShape> shapes;
+  Eigen::Index first = 0;
+  for (std::size_t b = 0; b < model.system.bodies.size(); ++b) {
+    const SystemBody& body = model.system.bodies[b];
+    const Eigen::Index size = body.modal.size();
+    const Eigen::VectorXcd part = mode.segment(first, size);
+    first += size;
+    const auto parameters = substructures.find(body.name);
+    if (parameters == substructures.end()) continue;
+    const BodyMatrices matrices = cache.matrices(parameters->second);
+    const Model::Placement& placement = model.placements[b];
+    const Eigen::MatrixXd recovery = recovery_matrix(
+        matrices, placement.interface, body.reduced.size() - body.reduced.num_interface);
+
+    BodyShape shape;
+    shape.name = body.name;
+    shape.displacement = node_displacements(matrices, recovery * (body.modal.shapes * part));
+    shape.nodes = matrices.nodes.rowwise() + placement.place.transpose();
+    if (body.follows_drive) shape.nodes.col(0).array() += equilibrium.state.drive_displacement;
+    if (equilibrium.state.geometry == ContactGeometry::deformed) {
+      const Eigen::VectorXd static_part =
+          recovery * (body.modal.shapes * equilibrium.displacement[b]);
+      shape.nodes += node_displacements(matrices, static_part.cast<std::complex<double>>()).real();
+    }
+    for (const auto& [name, nodes] : matrices.surfaces) shape.outlines.push_back(nodes);
+    shapes.push_back(std::move(shape));
+  }
+  return shapes;
+}
+
+}  // namespace stridor

@@ -1,0 +1,88 @@
+// The contact forces of one step: persistent sliding, or stick, slip and lift-off.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <span>
+#include <vector>
+
+namespace stridor {
+
+enum class ContactState {
+  open,   ///< no force
+  stick,  ///< closed, no slip in the step
+  slip,   ///< closed, friction at its limit
+};
+
+/// One contact as the solver sees it in a step (docs/theory.md, 2.4).
+///
+/// Forces are λ_n, compression positive, and λ_t, against the slip when positive; both act over the
+/// step and change penetration and slip by −W (λ_n, λ_t) with W the Delassus operator.
+struct LocalProblem {
+  double penetration = 0.0;        ///< −gap at the end of the step without contact forces, m
+  double slip = 0.0;               ///< along the tangent over the step, likewise, m
+  double sliding_friction = 0.0;   ///< μ while sliding
+  double sticking_friction = 0.0;  ///< μ up to which it sticks in this step
+  double direction = 1.0;          ///< χ of persistent sliding, ±1
+  bool is_unilateral = false;      ///< false: persistent sliding, λ_n of either sign
+
+  // Answer; on entry the guess from which the iteration starts.
+  double normal = 0.0;      ///< λ_n, N
+  double tangential = 0.0;  ///< λ_t, N
+  ContactState state = ContactState::open;
+};
+
+enum class ContactStatus {
+  converged,
+  jammed,         ///< no contact force closes the gap of the contact named
+  not_converged,  ///< the iteration has used up its sweeps; the contact named moved last
+};
+
+struct ContactAnswer {
+  ContactStatus status = ContactStatus::converged;
+  int contact = 0;  ///< the one to blame
+  int sweeps = 0;
+};
+
+struct ContactSolverParameters {
+  double tolerance =
+      1e-12;  ///< largest change of a force in a sweep, relative to the largest force
+  int max_sweeps = 1000;
+};
+
+/// Solves the contacts of one step.
+///
+/// Unilateral contacts obey, at the end of the step,
+///
+///   0 ≤ λ_n ⟂ gap ≥ 0,   |λ_t| ≤ μ λ_n,   slip = 0 where |λ_t| < μ λ_n,
+///
+/// bilateral ones gap = 0 and λ_t = χ μ λ_n. Contacts that all slide bilaterally are one linear
+/// system. Otherwise the contacts are visited in turn, each solved exactly under the forces of the
+/// others (Gauss-Seidel over 2 x 2 blocks), until no force changes any more; for a single contact
+/// the first visit is the answer. Sticking is tried first, with the sign of its friction force the
+/// direction of sliding where that exceeds the limit (FiLM: Carpenter, Taylor, Katona 1991).
+class ContactSolver {
+ public:
+  explicit ContactSolver(int num_contacts, ContactSolverParameters parameters = {});
+
+  /// W, 2n x 2n, row and column 2i for the normal and 2i+1 for the tangent of contact i; to be
+  /// filled before `solve`.
+  Eigen::MatrixXd& delassus() { return delassus_; }
+
+  /// @param contacts problems in, answers out
+  /// No allocation.
+  ContactAnswer solve(std::span<LocalProblem> contacts);
+
+ private:
+  ContactAnswer solve_bilateral(std::span<LocalProblem> contacts);
+  ContactAnswer iterate(std::span<LocalProblem> contacts);
+
+  ContactSolverParameters parameters_;
+  Eigen::MatrixXd delassus_;
+  Eigen::MatrixXd sliding_;  ///< B_C W B_Eᵀ
+  Eigen::VectorXd right_side_;
+  Eigen::VectorXd forces_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> factor_;
+};
+
+}  // namespace stridor

@@ -1,0 +1,153 @@
+#include "solvers/dense_eigenvalues.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+#include "core/errors.hpp"
+
+extern "C" void dgeevx_(const char* balance, const char* left, const char* right, const char* sense,
+                        const int* n, double* a, const int* lda, double* wr, double* wi, double* vl,
+                        const int* ldvl, double* vr, const int* ldvr, int* ilo, int* ihi,
+                        double* scale, double* abnrm, double* rconde, double* rcondv, double* work,
+                        const int* lwork, int* iwork, int* info);
+
+namespace stridor {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// Orthonormal basis of the vectors that every row maps to zero.
+Eigen::MatrixXd null_space(const Eigen::MatrixXd& rows, const char* name) {
+  const Eigen::Index n = rows.cols();
+  if (rows.rows() == 0) return Eigen::MatrixXd::Identity(n, n);
+  Eigen::VectorXd lengths = rows.rowwise().norm();
+  for (double& length : lengths) length = length > 0.0 ? 1.0 / length : 1.0;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(
+      Eigen::MatrixXd(rows.transpose() * lengths.asDiagonal()));
+  qr.setThreshold(1e-12);
+  if (qr.rank() < rows.rows()) {
+    throw NumericalError(fmt::format("dense eigenvalues: the {} rows of {} have rank {}",
+                                     rows.rows(), name, qr.rank()));
+  }
+  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(n, n);
+  return Q.rightCols(n - rows.rows());
+}
+
+/// ω of every mode, that of rigid ones replaced by the lowest elastic one.
+Eigen::VectorXd displacement_scale(const Pencil& pencil) {
+  double slowest = 0.0;
+  for (const double omega : pencil.omega) {
+    if (omega > 0.0 && (slowest == 0.0 || omega < slowest)) slowest = omega;
+  }
+  return pencil.omega.cwiseMax(slowest > 0.0 ? slowest : 1.0);
+}
+
+struct LapackResult {
+  Eigen::VectorXd re, im;
+  Eigen::MatrixXd vectors;  ///< in LAPACK's packing: a pair holds real and imaginary part
+};
+
+LapackResult eigenvalues_of(Eigen::MatrixXd matrix, bool with_vectors) {
+  const auto n = static_cast<int>(matrix.rows());
+  LapackResult result;
+  result.re.resize(n);
+  result.im.resize(n);
+  result.vectors.resize(with_vectors ? n : 1, with_vectors ? n : 1);
+  Eigen::VectorXd scale(n);
+  const int ldvr = with_vectors ? n : 1;
+  const int one = 1;
+  int ilo = 0;
+  int ihi = 0;
+  double norm = 0.0;
+  double unused = 0.0;
+  int unused_integer = 0;
+  int info = 0;
+  const auto call = [&](double* work, int size) {
+    dgeevx_("B", "N", with_vectors ? "V" : "N", "N", &n, matrix.data(), &n, result.re.data(),
+            result.im.data(), &unused, &one, result.vectors.data(), &ldvr, &ilo, &ihi, scale.data(),
+            &norm, &unused, &unused, work, &size, &unused_integer, &info);
+  };
+  double wanted = 0.0;
+  call(&wanted, -1);
+  Eigen::VectorXd work(static_cast<Eigen::Index>(wanted));
+  call(work.data(), static_cast<int>(work.size()));
+  if (info != 0) {
+    throw NumericalError(
+        fmt::format("dense eigenvalues: the QR iteration failed at {} of {}", info, n));
+  }
+  return result;
+}
+
+}  // namespace
+
+DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work) {
+  check_pencil(pencil);
+  const Eigen::MatrixXd gap_rows = pencil.compatibility * pencil.slots;
+  const Eigen::MatrixXd force_rows = pencil.equilibrium * pencil.slots;
+  const Eigen::VectorXd W = displacement_scale(pencil);
+  const Eigen::VectorXd inverse_W = W.cwiseInverse();
+  const Eigen::MatrixXd L_C = null_space(gap_rows, "B_C");
+  const Eigen::MatrixXd L_E = null_space(force_rows, "B_E");
+  const Eigen::MatrixXd L_p = null_space(gap_rows * inverse_W.asDiagonal(), "B_C");
+
+  Eigen::MatrixXd K = pencil.omega.array().square().matrix().asDiagonal();
+  Eigen::MatrixXd C = pencil.damping.asDiagonal();
+  if (pencil.slot_stiffness.size() > 0)
+    K += pencil.slots.transpose() * pencil.slot_stiffness * pencil.slots;
+  if (pencil.slot_damping.size() > 0)
+    C += pencil.slots.transpose() * pencil.slot_damping * pencil.slots;
+
+  const Eigen::Index size = pencil.num_modes() - pencil.num_constraints();
+  const Eigen::PartialPivLU<Eigen::MatrixXd> mass(Eigen::MatrixXd(L_E.transpose() * L_C));
+  const double rcond = mass.rcond();
+  if (!(rcond > 1e-14)) {
+    throw NumericalError(
+        fmt::format("dense eigenvalues: the reduced mass matrix is singular "
+                    "(reciprocal condition {:.1e}): the contact jams",
+                    rcond));
+  }
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(2 * size, 2 * size);
+  matrix.topRightCorner(size, size) = L_p.transpose() * W.asDiagonal() * L_C;
+  matrix.bottomLeftCorner(size, size) =
+      -mass.solve(L_E.transpose() * (K * (inverse_W.asDiagonal() * L_p)));
+  matrix.bottomRightCorner(size, size) = -mass.solve(L_E.transpose() * (C * L_C));
+
+  const bool with_vectors = work == DenseWork::residuals;
+  const LapackResult found = eigenvalues_of(std::move(matrix), with_vectors);
+  std::vector<Eigen::Index> order;
+  for (Eigen::Index i = 0; i < 2 * size; ++i) {
+    if (found.im(i) >= 0.0) order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return std::pair(found.im(a), found.re(a)) < std::pair(found.im(b), found.re(b));
+  });
+
+  DenseSpectrum spectrum;
+  if (with_vectors) {
+    spectrum.right.resize(pencil.num_modes(), static_cast<Eigen::Index>(order.size()));
+  }
+  for (const Eigen::Index i : order) {
+    Eigenvalue eigenvalue{Complex(found.re(i), found.im(i)), 0.0};
+    if (with_vectors) {
+      Eigen::VectorXcd scaled = found.vectors.col(i).head(size).cast<Complex>();
+      if (found.im(i) > 0.0) scaled.imag() = found.vectors.col(i + 1).head(size);
+      Eigen::VectorXcd q = inverse_W.asDiagonal() * (L_p * scaled);
+      q.normalize();
+      eigenvalue.residual = relative_residual(pencil, eigenvalue.s, q);
+      spectrum.right.col(static_cast<Eigen::Index>(spectrum.eigenvalues.size())) = q;
+    }
+    spectrum.eigenvalues.push_back(eigenvalue);
+  }
+  return spectrum;
+}
+
+std::vector<Eigenvalue> dense_eigenvalues(const Pencil& pencil, DenseWork work) {
+  return dense_spectrum(pencil, work).eigenvalues;
+}
+
+}  // namespace stridor

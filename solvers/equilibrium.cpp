@@ -1,0 +1,660 @@
+#include "solvers/equilibrium.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "core/errors.hpp"
+
+namespace stridor {
+namespace {
+
+constexpr int num_contact_slots = SlotVector::SizeAtCompileTime;
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+/// The combination of slots that sees `vector` at the slave against the master below it.
+SlotVector relative(const Eigen::Vector2d& vector, double xi) {
+  SlotVector slots;
+  slots << vector, -(1.0 - xi) * vector, -xi * vector;
+  return slots;
+}
+
+/// How often the drive moves the slave of a contact against its master: +1, 0 or −1 times.
+double share_of_drive(const System& system, const ContactPoint& point) {
+  const int master = system.surfaces[at(point.surface)].body;
+  return (system.bodies[at(point.slave_body)].follows_drive ? 1.0 : 0.0) -
+         (system.bodies[at(master)].follows_drive ? 1.0 : 0.0);
+}
+
+/// Segment and ξ of a position along the undeformed surface; at a node the segment before it.
+/// @throws std::invalid_argument if it is off the surface
+std::pair<int, double> place_on(const MasterSurface& surface, double position) {
+  const double length = surface.arc_length.back();
+  constexpr double rounding = 1e-12;
+  if (!surface.is_endless && !(position >= 0.0 && position <= length * (1.0 + rounding))) {
+    throw std::invalid_argument(fmt::format("position {:g} m is off the master {}, 0 to {:g} m",
+                                            position, surface.name, length));
+  }
+  int segment = 0;
+  while (segment + 1 < surface.num_segments() &&
+         surface.arc_length[at(segment + 1)] < position - rounding * length)
+    ++segment;
+  const double start = surface.arc_length[at(segment)];
+  return {segment, (position - start) / (surface.arc_length[at(segment + 1)] - start)};
+}
+
+/// Moves `segment` towards the place where xi lies in [0, 1], one segment at a time and never
+/// turning back.
+class SegmentSearch {
+ public:
+  enum class Step { stay, moved, lost };
+
+  Step look(const MasterSurface& surface, double xi, int& segment) {
+    const int wanted = xi > 1.0 ? 1 : xi < 0.0 ? -1 : 0;
+    if (wanted == 0 || wanted == -heading_) return Step::stay;
+    const int next = segment + wanted;
+    if (next < 0 || next >= surface.num_segments()) {
+      const double beyond = wanted > 0 ? xi - 1.0 : -xi;
+      return surface.is_endless || beyond <= rounding ? Step::stay : Step::lost;
+    }
+    segment = next;
+    heading_ = wanted;
+    return Step::moved;
+  }
+
+ private:
+  static constexpr double rounding = 1e-9;  ///< by which a slave on the very end may seem beyond it
+  int heading_ = 0;
+};
+
+}  // namespace
+
+ContactLinearisation linearise_contact(const ContactPositions& positions, const FrictionLaw& law,
+                                       double friction_factor, const LinearisationTerms& terms) {
+  const Eigen::Vector2d along = positions.segment.second - positions.segment.first;
+  const Eigen::Vector2d arm = positions.slave - positions.segment.first;
+  const bool is_prescribed = positions.assumption == ContactAssumption::subs_a;
+  const bool has_fixed_normal = positions.assumption == ContactAssumption::subs_c;
+
+  ContactLinearisation contact;
+  contact.projection = is_prescribed      ? positions.prescribed
+                       : has_fixed_normal ? project_along(positions.segment, positions.slave,
+                                                          positions.prescribed.tangent)
+                                          : project(positions.segment, positions.slave);
+  const auto& [xi, tangent, normal] = contact.projection;
+  contact.gap = normal.dot(arm) - xi * normal.dot(along);
+  contact.slip_velocity = positions.driven_velocity * tangent.x();
+  contact.direction = contact.slip_velocity < 0.0 ? -1.0 : 1.0;
+  contact.friction = friction_factor * sliding_friction(law, contact.slip_velocity);
+  contact.friction_slope =
+      contact.direction * friction_factor * sliding_friction_slope(law, contact.slip_velocity);
+
+  const double coefficient = contact.direction * contact.friction;
+  const Eigen::Vector2d push = normal - coefficient * tangent;
+  const SlotVector along_normal = relative(normal, xi);
+  const SlotVector along_tangent = relative(tangent, xi);
+  contact.gap_row = -along_normal;
+  contact.force_row = -relative(push, xi);
+  contact.force_by_position.setZero();
+  contact.force_by_velocity.setZero();
+
+  // How ξ, the angle of the normal and v_r change with the displacements.
+  SlotVector& shift = contact.shift_row.setZero();
+  SlotVector turn = SlotVector::Zero();
+  if (has_fixed_normal) {
+    const double projected_length = tangent.dot(along);
+    shift = along_tangent / projected_length;
+    if (terms.slope) contact.gap_row += normal.dot(along) * shift;
+  } else if (!is_prescribed) {
+    const double length = along.norm();
+    turn << Eigen::Vector2d::Zero(), -normal / length, normal / length;
+    shift = along_tangent / length + (contact.gap / length) * turn;
+  }
+  if (terms.turning_normal) contact.force_by_position += along_tangent * turn.transpose();
+  if (terms.turning_friction)
+    contact.force_by_position += coefficient * along_normal * turn.transpose();
+  if (terms.shift) {
+    SlotVector transfer;  // from T1 to T2
+    transfer << Eigen::Vector2d::Zero(), -push, push;
+    contact.force_by_position += transfer * shift.transpose();
+  }
+  if (terms.friction_slope) {
+    const SlotVector friction_row = contact.direction * contact.friction_slope * along_tangent;
+    contact.force_by_position +=
+        positions.driven_velocity * normal.x() * friction_row * turn.transpose();
+    contact.force_by_velocity += friction_row * along_tangent.transpose();
+  }
+  return contact;
+}
+
+EquilibriumState sliding_state(const System& system, double drive_displacement,
+                               ContactGeometry geometry) {
+  const auto last = std::numeric_limits<double>::infinity();
+  return {drive_displacement, system.drive.velocity.value(last), system.drive.load.value(last), 1.0,
+          geometry};
+}
+
+double drive_displacement_at(const System& system, int contact, double position) {
+  const ContactPoint& point = system.contacts[at(contact)];
+  const MasterSurface& surface = system.surfaces[at(point.surface)];
+  const auto [segment, xi] = place_on(surface, position);
+  const Segment undeformed = surface.undeformed_segment(segment);
+  const Projection start = project(undeformed, point.slave_position);
+  const double rate = share_of_drive(system, point) * start.tangent.x();
+  constexpr double negligible = 1e-9;
+  if (std::abs(rate) < negligible) {
+    throw std::invalid_argument(fmt::format(
+        "drive_displacement_at: the drive does not move {} along its master", point.name));
+  }
+  return (xi - start.xi) * (undeformed.second - undeformed.first).norm() / rate;
+}
+
+namespace {
+
+/// A contact while its equilibrium is sought.
+struct SoughtContact {
+  const ContactPoint* point = nullptr;
+  const MasterSurface* surface = nullptr;
+  double share_of_drive = 0.0;
+  bool is_unilateral = false;
+  SegmentSearch search;
+  ContactEquilibrium result;
+};
+
+/// Place on its master that a contact is to have.
+struct Target {
+  int contact = 0;
+  int segment = 0;
+  double xi = 0.0;
+};
+
+/// Where the slots and rigid modes of one body stand among all, and its rows there.
+struct BodySlots {
+  std::vector<int> slots;
+  Eigen::MatrixXd rows;  ///< slots x modes
+  Eigen::Index num_rigid = 0;
+  Eigen::Index first_rigid = 0;
+};
+
+class Search {
+ public:
+  /// @param target where a contact is to stand; the displacement of the drive is sought then, from
+  ///               that in `state`
+  Search(const System& system, const EquilibriumState& state,
+         const EquilibriumParameters& parameters, std::optional<Target> target = {})
+      : system_(system), parameters_(parameters), target_(target) {
+    if (!(state.friction_factor >= 0.0))
+      throw std::invalid_argument("find_equilibrium: the friction factor is negative");
+    answer_.state = state;
+    for (const SystemBody& body : system.bodies) {
+      BodySlots slots;
+      slots.num_rigid = (body.modal.omega.array() == 0.0).count();
+      slots.first_rigid = num_rigid_;
+      num_rigid_ += slots.num_rigid;
+      bodies_.push_back(std::move(slots));
+    }
+    for (const ContactPoint& point : system.contacts) contacts_.push_back(make_contact(point));
+    num_contacts_ = static_cast<Eigen::Index>(contacts_.size());
+    num_slots_ = num_contact_slots * num_contacts_;
+    unknowns_ = Eigen::VectorXd::Zero(num_slots_ + num_contacts_ + num_rigid_ + num_targets());
+    if (target_) {
+      contacts_[at(target_->contact)].result.segment = target_->segment;
+      unknowns_(unknowns_.size() - 1) = state.drive_displacement;
+    }
+  }
+
+  Equilibrium run() {
+    answer_.status = find();
+    if (answer_.status == EquilibriumStatus::converged) answer_.failure.clear();
+    finish();
+    return std::move(answer_);
+  }
+
+ private:
+  SoughtContact make_contact(const ContactPoint& point) const {
+    const EquilibriumState& state = answer_.state;
+    SoughtContact contact;
+    contact.point = &point;
+    contact.surface = &system_.surfaces[at(point.surface)];
+    contact.share_of_drive = share_of_drive(system_, point);
+    contact.is_unilateral = point.unilateral_from() < std::numeric_limits<double>::infinity();
+    contact.result.segment = point.first_segment;
+    contact.result.positions.assumption = state.geometry == ContactGeometry::undeformed
+                                              ? ContactAssumption::subs_a
+                                              : point.assumption;
+    contact.result.positions.driven_velocity = contact.share_of_drive * state.drive_velocity;
+    return contact;
+  }
+
+  Eigen::Index num_targets() const { return target_ ? 1 : 0; }
+  bool is_target(const SoughtContact& contact) const {
+    return target_ && &contact == &contacts_[at(target_->contact)];
+  }
+
+  EquilibriumStatus find() {
+    for (SoughtContact& contact : contacts_) {
+      if (is_target(contact)) {
+        prescribe(contact);
+        continue;
+      }
+      SegmentSearch search;
+      SegmentSearch::Step step = SegmentSearch::Step::moved;
+      while (step == SegmentSearch::Step::moved) {
+        prescribe(contact);
+        step = search.look(*contact.surface, contact.result.positions.prescribed.xi,
+                           contact.result.segment);
+        if (step == SegmentSearch::Step::lost) return lose(contact);
+      }
+    }
+    for (int pass = 0; pass < parameters_.max_passes; ++pass) {
+      gather();
+      if (!iterate()) return EquilibriumStatus::not_converged;
+      bool has_moved = false;
+      for (SoughtContact& contact : contacts_) {
+        if (is_target(contact)) continue;
+        switch (contact.search.look(*contact.surface, contact.result.projection.xi,
+                                    contact.result.segment)) {
+          case SegmentSearch::Step::lost:
+            return lose(contact);
+          case SegmentSearch::Step::moved:
+            has_moved = true;
+            break;
+          case SegmentSearch::Step::stay:
+            break;
+        }
+      }
+      if (!has_moved && !switch_contacts()) return EquilibriumStatus::converged;
+    }
+    answer_.failure = fmt::format("segments or open contacts still change after {} passes",
+                                  parameters_.max_passes);
+    return EquilibriumStatus::not_converged;
+  }
+
+  EquilibriumStatus lose(const SoughtContact& contact) {
+    answer_.failure =
+        fmt::format("{}: the slave point stands beyond the end of the surface {} ({:.6g} m long)",
+                    contact.point->name, contact.surface->name, contact.surface->arc_length.back());
+    return EquilibriumStatus::master_lost;
+  }
+
+  void prescribe(SoughtContact& contact) const {
+    const double displacement = contact.share_of_drive * answer_.state.drive_displacement;
+    contact.result.positions.prescribed =
+        project(contact.surface->undeformed_segment(contact.result.segment),
+                contact.point->slave_position + Eigen::Vector2d(displacement, 0.0));
+  }
+
+  /// Rows and static flexibility at the slots of the present segments.
+  void gather() {
+    for (BodySlots& body : bodies_) body.slots.clear();
+    std::vector<std::vector<int>> watched(bodies_.size());
+    const auto watch = [&](int body, int slot, const PointRows& rows) {
+      bodies_[at(body)].slots.insert(bodies_[at(body)].slots.end(), {slot, slot + 1});
+      watched[at(body)].insert(watched[at(body)].end(), {rows.x, rows.y});
+    };
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      const SoughtContact& contact = contacts_[i];
+      const int slot = num_contact_slots * static_cast<int>(i);
+      watch(contact.point->slave_body, slot, contact.point->slave_rows);
+      for (int end = 0; end < 2; ++end) {
+        watch(contact.surface->body, slot + 2 * (end + 1),
+              contact.surface->rows[at(contact.result.segment + end)]);
+      }
+    }
+
+    flexibility_ = Eigen::MatrixXd::Zero(num_slots_, num_slots_);
+    rigid_rows_ = Eigen::MatrixXd::Zero(num_slots_, num_rigid_);
+    loaded_ = Eigen::VectorXd::Zero(num_slots_);
+    rigid_load_ = Eigen::VectorXd::Zero(num_rigid_);
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      const ModalBody& modal = system_.bodies[b].modal;
+      BodySlots& body = bodies_[b];
+      // Rigid modes come first, ω ascending.
+      const Eigen::Index num_elastic = modal.size() - body.num_rigid;
+      const auto columns = Eigen::seqN(body.first_rigid, body.num_rigid);
+      const int load_row = system_.bodies[b].load_row;
+      Eigen::VectorXd load = Eigen::VectorXd::Zero(modal.size());
+      if (load_row >= 0) load = answer_.state.load * modal.rows.row(load_row).transpose();
+      rigid_load_(columns) = load.head(body.num_rigid);
+      if (body.slots.empty()) continue;
+
+      const auto omega = modal.omega.tail(num_elastic);
+      body.rows = modal.rows(watched[b], Eigen::all);
+      const Eigen::MatrixXd scaled =
+          body.rows.rightCols(num_elastic) * omega.cwiseInverse().asDiagonal();
+      flexibility_(body.slots, body.slots) = scaled * scaled.transpose();
+      rigid_rows_(body.slots, columns) = body.rows.leftCols(body.num_rigid);
+      loaded_(body.slots) = scaled * load.tail(num_elastic).cwiseQuotient(omega);
+    }
+  }
+
+  /// Positions of a contact for given displacements of its slots.
+  void place(SoughtContact& contact, const SlotVector& slots) const {
+    prescribe(contact);
+    const Segment undeformed = contact.surface->undeformed_segment(contact.result.segment);
+    ContactPositions& positions = contact.result.positions;
+    positions.slave = contact.point->slave_position - undeformed.first + slots.head<2>();
+    positions.slave.x() += contact.share_of_drive * answer_.state.drive_displacement;
+    positions.segment.first = slots.segment<2>(2);
+    positions.segment.second = undeformed.second - undeformed.first + slots.tail<2>();
+  }
+
+  /// The equations
+  ///
+  ///   z − z_load − S_r a + R B_Eᵀλ = 0,   gap = 0 (or λ = 0),   S_rᵀ B_Eᵀλ − load_r = 0
+  ///
+  /// for the displacements z of the slots, λ and the rigid amplitudes a, in this order; with a
+  /// target, ξ of its contact for the displacement of the drive at the end.
+  struct Equations {
+    Eigen::VectorXd values;
+    Eigen::VectorXd scale;       ///< what each of them is made of
+    Eigen::MatrixXd derivative;  ///< with respect to the unknowns
+    double residual = 0.0;       ///< largest value by scale
+  };
+
+  Equations evaluate(const Eigen::VectorXd& unknowns) {
+    const Eigen::Index size = unknowns.size();
+    const Eigen::Index first_rigid = num_slots_ + num_contacts_;
+    if (target_) answer_.state.drive_displacement = unknowns(size - 1);
+    Equations equations{Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size),
+                        Eigen::MatrixXd::Zero(size, size), 0.0};
+    equations.values.segment(first_rigid, num_rigid_) = -rigid_load_;
+    equations.scale.segment(first_rigid, num_rigid_) = rigid_load_.cwiseAbs();
+    double length = 0.0;
+    if (num_contacts_ > 0) {
+      equations.values.head(num_slots_) = unknowns.head(num_slots_) - loaded_ -
+                                          rigid_rows_ * unknowns.segment(first_rigid, num_rigid_);
+      equations.derivative.topLeftCorner(num_slots_, num_slots_).setIdentity();
+      equations.derivative.block(0, first_rigid, num_slots_, num_rigid_) = -rigid_rows_;
+      length = unknowns.head(num_slots_).cwiseAbs().maxCoeff();
+    }
+    for (Eigen::Index i = 0; i < num_contacts_; ++i)
+      length = std::max(length, add_contact(equations, i, unknowns));
+    equations.scale.head(first_rigid).setConstant(length);
+    if (target_) equations.scale(size - 1) = length;
+    for (Eigen::Index k = 0; k < size; ++k) {
+      const double value = std::abs(equations.values(k));
+      // Zero by zero where nothing loads the equation: it is satisfied.
+      if (value > 0.0)
+        equations.residual = std::max(equations.residual, value / equations.scale(k));
+    }
+    if (!equations.values.allFinite()) equations.residual = std::numeric_limits<double>::infinity();
+    return equations;
+  }
+
+  /// Adds what a contact contributes and notes its state. @returns the largest length in it, m
+  double add_contact(Equations& equations, Eigen::Index index, const Eigen::VectorXd& unknowns) {
+    constexpr Eigen::Index width = num_contact_slots;
+    const Eigen::Index first = width * index;
+    const Eigen::Index row = num_slots_ + index;
+    const Eigen::Index last = unknowns.size() - 1;
+    SoughtContact& contact = contacts_[static_cast<std::size_t>(index)];
+    place(contact, unknowns.segment<width>(first));
+    const ContactPositions& positions = contact.result.positions;
+    const ContactLinearisation local =
+        linearise_contact(positions, contact.point->friction, answer_.state.friction_factor);
+    const double force = unknowns(row);
+    ContactEquilibrium& result = contact.result;
+    result.projection = local.projection;
+    result.gap = local.gap;
+    result.force = force;
+    result.friction = local.friction;
+    result.direction = local.direction;
+    result.friction_force = local.direction * local.friction * force;
+    result.slip_velocity = local.slip_velocity;
+
+    auto& [values, scale, derivative, residual] = equations;
+    const SlotMatrix by_position = force * local.force_by_position;
+    const SlotVector by_drive = contact.share_of_drive * by_position.col(0);
+    const auto flexibility = flexibility_.middleCols<width>(first);
+    values.head(num_slots_) += flexibility * (force * local.force_row);
+    derivative.block(0, first, num_slots_, width) += flexibility * by_position;
+    derivative.col(row).head(num_slots_) = flexibility * local.force_row;
+    if (target_) derivative.col(last).head(num_slots_) += flexibility * by_drive;
+
+    const Eigen::Index first_rigid = num_slots_ + num_contacts_;
+    const auto rigid = rigid_rows_.middleRows<width>(first).transpose();
+    values.segment(first_rigid, num_rigid_) += rigid * (force * local.force_row);
+    scale.segment(first_rigid, num_rigid_) +=
+        rigid.cwiseAbs() * (force * local.force_row).cwiseAbs();
+    derivative.block(first_rigid, first, num_rigid_, width) = rigid * by_position;
+    derivative.col(row).segment(first_rigid, num_rigid_) = rigid * local.force_row;
+    if (target_) derivative.col(last).segment(first_rigid, num_rigid_) += rigid * by_drive;
+
+    if (result.is_closed) {
+      values(row) = local.gap;
+      derivative.block<1, width>(row, first) = -local.gap_row.transpose();
+      if (target_) derivative(row, last) = -local.gap_row[0] * contact.share_of_drive;
+    } else {
+      values(row) = force;
+      derivative(row, row) = 1.0;
+    }
+    const double segment_length = (positions.segment.second - positions.segment.first).norm();
+    if (is_target(contact)) {
+      values(last) = segment_length * (local.projection.xi - target_->xi);
+      derivative.block<1, width>(last, first) = segment_length * local.shift_row.transpose();
+      derivative(last, last) = segment_length * local.shift_row[0] * contact.share_of_drive;
+    }
+    return std::max(segment_length, (positions.slave - positions.segment.first).norm());
+  }
+
+  /// Newton's method for the present segments and open contacts. Goes one step further than the
+  /// tolerance asks for, which is cheap and takes the error down to rounding.
+  /// @returns false where it does not converge; `failure` says how
+  bool iterate() {
+    constexpr double smallest_fraction = 1e-4;
+    Equations present = evaluate(unknowns_);
+    for (int iteration = 0; iteration < parameters_.max_iterations; ++iteration) {
+      const bool is_converged = present.residual <= parameters_.tolerance;
+      const Eigen::VectorXd step = solve(present);
+      ++answer_.iterations;
+      double fraction = 1.0;
+      Equations next = evaluate(unknowns_ - step);
+      while (!(next.residual < present.residual) && !is_converged && fraction > smallest_fraction) {
+        fraction *= 0.5;
+        next = evaluate(unknowns_ - fraction * step);
+      }
+      const bool has_improved = next.residual < present.residual;
+      if (has_improved) {
+        unknowns_ -= fraction * step;
+        present = std::move(next);
+      } else {
+        evaluate(unknowns_);
+      }
+      answer_.residual = present.residual;
+      if (is_converged) return true;
+      if (!has_improved) break;
+    }
+    answer_.failure = fmt::format("the residual stays at {:.3g} after {} Newton steps",
+                                  answer_.residual, answer_.iterations);
+    return false;
+  }
+
+  /// Newton step. Rows and columns are brought to the same size first: they mix m, N and m kg^½.
+  Eigen::VectorXd solve(const Equations& equations) const {
+    const Eigen::Index size = unknowns_.size();
+    if (size == 0) return {};
+    Eigen::MatrixXd matrix = equations.derivative;
+    Eigen::VectorXd row_scale = Eigen::VectorXd::Ones(size);
+    Eigen::VectorXd column_scale = Eigen::VectorXd::Ones(size);
+    const auto inverse_root = [](double largest) {
+      return largest > 0.0 ? 1.0 / std::sqrt(largest) : 1.0;
+    };
+    constexpr int num_balancings = 4;
+    for (int k = 0; k < num_balancings; ++k) {
+      const Eigen::VectorXd rows = matrix.cwiseAbs().rowwise().maxCoeff().unaryExpr(inverse_root);
+      const Eigen::VectorXd columns =
+          matrix.cwiseAbs().colwise().maxCoeff().transpose().unaryExpr(inverse_root);
+      matrix = rows.asDiagonal() * matrix * columns.asDiagonal();
+      row_scale.array() *= rows.array();
+      column_scale.array() *= columns.array();
+    }
+    const Eigen::PartialPivLU<Eigen::MatrixXd> factor(matrix);
+    constexpr double singular_below = 1e-14;
+    // The estimate of the condition is not made for pivots that vanish.
+    const double smallest_pivot = factor.matrixLU().diagonal().cwiseAbs().minCoeff();
+    if (!(smallest_pivot > singular_below) || !(factor.rcond() > singular_below))
+      refuse_singular(matrix);
+    return column_scale.cwiseProduct(factor.solve(row_scale.cwiseProduct(equations.values)).eval());
+  }
+
+  [[noreturn]] void refuse_singular(const Eigen::MatrixXd& matrix) const {
+    if (!matrix.allFinite()) throw NumericalError("equilibrium: the equations are not finite");
+    // The direction of the smallest pivot, however small that is.
+    Eigen::FullPivLU<Eigen::MatrixXd> factor(matrix);
+    const double smallest = std::abs(factor.matrixLU().diagonal().tail<1>().value());
+    factor.setThreshold(smallest > 0.0 ? 2.0 * smallest / factor.maxPivot() : 0.0);
+    const Eigen::VectorXd free = factor.kernel().col(0).cwiseAbs();
+    const Eigen::VectorXd rigid = free.segment(num_slots_ + num_contacts_, num_rigid_);
+    constexpr double negligible = 1e-3;
+    if (num_rigid_ > 0 && rigid.maxCoeff() > negligible * free.maxCoeff()) {
+      Eigen::Index mode = 0;
+      rigid.maxCoeff(&mode);
+      std::size_t b = 0;
+      while (mode >= bodies_[b].first_rigid + bodies_[b].num_rigid) ++b;
+      throw NumericalError(
+          fmt::format("equilibrium: the body '{}' is free to move: neither its supports nor closed "
+                      "contacts hold it, or friction jams them",
+                      system_.bodies[b].name));
+    }
+    Eigen::Index contact = 0;
+    free.segment(num_slots_, num_contacts_).maxCoeff(&contact);
+    throw NumericalError(
+        fmt::format("equilibrium: the force of {} is undetermined: friction jams it, or other "
+                    "contacts hold the same motion",
+                    contacts_[static_cast<std::size_t>(contact)].point->name));
+  }
+
+  /// Opens unilateral contacts that pull and closes those that penetrate. All at once as long as
+  /// that may lead somewhere, then only the worst one, so that it does not go in circles.
+  /// @returns whether there was any
+  bool switch_contacts() {
+    constexpr int free_switches = 10;
+    double largest_force = 0.0;
+    double largest_length = 0.0;
+    for (const SoughtContact& contact : contacts_) {
+      const ContactPositions& positions = contact.result.positions;
+      largest_force = std::max(largest_force, std::abs(contact.result.force));
+      largest_length =
+          std::max(largest_length, (positions.segment.second - positions.segment.first).norm());
+    }
+    SoughtContact* worst = nullptr;
+    double worst_violation = 0.0;
+    for (SoughtContact& contact : contacts_) {
+      if (!contact.is_unilateral) continue;
+      const double violation = contact.result.is_closed ? -contact.result.force / largest_force
+                                                        : -contact.result.gap / largest_length;
+      if (!(violation > 100.0 * parameters_.tolerance)) continue;
+      if (num_switches_ < free_switches) toggle(contact);
+      if (violation > worst_violation) {
+        worst = &contact;
+        worst_violation = violation;
+      }
+    }
+    if (worst == nullptr) return false;
+    if (num_switches_ >= free_switches) toggle(*worst);
+    ++num_switches_;
+    for (SoughtContact& contact : contacts_) contact.search = {};
+    return true;
+  }
+
+  void toggle(SoughtContact& contact) {
+    contact.result.is_closed = !contact.result.is_closed;
+    unknowns_(num_slots_ + (&contact - contacts_.data())) = 0.0;
+  }
+
+  /// Displacements of all modes, and the places on the masters.
+  void finish() {
+    Eigen::VectorXd forces = Eigen::VectorXd::Zero(num_slots_);
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      ContactEquilibrium& result = contacts_[i].result;
+      const auto s = at(result.segment);
+      const std::vector<double>& arc = contacts_[i].surface->arc_length;
+      result.position = arc[s] + result.projection.xi * (arc[s + 1] - arc[s]);
+      const ContactRows rows = make_rows(result.projection, result.friction, result.direction);
+      auto slots =
+          forces.segment<num_contact_slots>(num_contact_slots * static_cast<Eigen::Index>(i));
+      slots << rows.equilibrium.slave[0], rows.equilibrium.slave[1], rows.equilibrium.master[0],
+          rows.equilibrium.master[1], rows.equilibrium.master[2], rows.equilibrium.master[3];
+      slots *= -result.force;
+      answer_.contacts.push_back(result);
+    }
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      const ModalBody& modal = system_.bodies[b].modal;
+      const BodySlots& body = bodies_[b];
+      Eigen::VectorXd modes = Eigen::VectorXd::Zero(modal.size());
+      if (!body.slots.empty() && body.rows.size() > 0)
+        modes = body.rows.transpose() * forces(body.slots);
+      if (system_.bodies[b].load_row >= 0)
+        modes += answer_.state.load * modal.rows.row(system_.bodies[b].load_row).transpose();
+      const Eigen::Index num_elastic = modal.size() - body.num_rigid;
+      modes.tail(num_elastic).array() /= modal.omega.tail(num_elastic).array().square();
+      modes.head(body.num_rigid) =
+          unknowns_.segment(num_slots_ + num_contacts_ + body.first_rigid, body.num_rigid);
+      answer_.displacement.push_back(std::move(modes));
+    }
+  }
+
+  const System& system_;
+  EquilibriumParameters parameters_;
+  std::optional<Target> target_;
+  Equilibrium answer_;
+  std::vector<SoughtContact> contacts_;
+  std::vector<BodySlots> bodies_;
+  Eigen::Index num_contacts_ = 0;
+  Eigen::Index num_slots_ = 0;
+  Eigen::Index num_rigid_ = 0;
+  int num_switches_ = 0;
+  Eigen::VectorXd unknowns_;     ///< displacements of the slots, contact forces, rigid amplitudes
+  Eigen::MatrixXd flexibility_;  ///< R = S diag(1/ω²) Sᵀ over the elastic modes, m/N
+  Eigen::MatrixXd rigid_rows_;   ///< S_r
+  Eigen::VectorXd loaded_;       ///< displacements of the slots by the load, elastic, m
+  Eigen::VectorXd rigid_load_;   ///< load on the rigid modes
+};
+
+}  // namespace
+
+Equilibrium find_equilibrium(const System& system, const EquilibriumState& state,
+                             const EquilibriumParameters& parameters) {
+  return Search(system, state, parameters).run();
+}
+
+Equilibrium find_equilibrium_at(const System& system, int contact, double position,
+                                const EquilibriumState& state,
+                                const EquilibriumParameters& parameters) {
+  EquilibriumState start = state;
+  start.drive_displacement = drive_displacement_at(system, contact, position);
+  const bool is_prescribed = state.geometry == ContactGeometry::undeformed ||
+                             system.contacts[at(contact)].assumption == ContactAssumption::subs_a;
+  if (is_prescribed) return find_equilibrium(system, start, parameters);
+  const auto [segment, xi] =
+      place_on(system.surfaces[at(system.contacts[at(contact)].surface)], position);
+  return Search(system, start, parameters, Target{contact, segment, xi}).run();
+}
+
+void apply_initial_motion(System& system, const Equilibrium& equilibrium) {
+  if (equilibrium.status != EquilibriumStatus::converged)
+    throw std::invalid_argument("apply_initial_motion: the equilibrium has not converged");
+  if (equilibrium.state.drive_displacement != 0.0) {
+    throw std::invalid_argument(fmt::format(
+        "apply_initial_motion: a run starts with the drive at 0, the equilibrium has it "
+        "at {:g} m",
+        equilibrium.state.drive_displacement));
+  }
+  for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+    SystemBody& body = system.bodies[b];
+    body.initial_displacement = body.modal.shapes * equilibrium.displacement[b];
+    body.initial_velocity = Eigen::VectorXd::Zero(body.initial_displacement.size());
+  }
+}
+
+}  // namespace stridor

@@ -1,0 +1,177 @@
+// Static equilibrium of a sliding system, and the kinematics of one contact with its derivatives.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "coupling/system.hpp"
+
+namespace stridor {
+
+/// Geometry in which the contacts are evaluated.
+enum class ContactGeometry {
+  undeformed,  ///< every contact where the drive puts it on the undeformed master, as under Subs-a
+  deformed,    ///< every contact as its assumption says
+};
+
+/// A contact with positions as seen from the undeformed T1 of its segment, where the rounding of a
+/// position far from the origin does not drown the gap.
+struct ContactPositions {
+  ContactAssumption assumption = ContactAssumption::subs_b;
+  Eigen::Vector2d slave = Eigen::Vector2d::Zero();  ///< displaced by drive and deformation, m
+  /// Deformed, m.
+  Segment segment{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+  /// Of the slave displaced by the drive alone, on the undeformed segment.
+  Projection prescribed;
+  double driven_velocity = 0.0;  ///< of the slave against the master in +x, by the drive alone, m/s
+};
+
+using SlotVector = Eigen::Matrix<double, 6, 1>;  ///< slave x, y, T1 x, y, T2 x, y
+using SlotMatrix = Eigen::Matrix<double, 6, 6>;
+
+/// Parts of the derivative of a contact, each of which can be left out to see what it does.
+struct LinearisationTerms {
+  bool turning_normal = true;    ///< the normal force turns with the segment
+  bool turning_friction = true;  ///< the friction force turns with the segment
+  bool shift = true;             ///< the force moves along the segment with ξ
+  bool slope = true;  ///< Subs-c: the gap changes as ξ moves along a segment that is not parallel
+                      ///< to the undeformed one
+  bool friction_slope = true;  ///< μ changes with the sliding velocity
+};
+
+/// One sliding contact and its derivatives with respect to the displacements z of its slots
+/// (docs/theory.md, 6.2).
+struct ContactLinearisation {
+  Projection projection;
+  double gap = 0.0;              ///< m
+  double slip_velocity = 0.0;    ///< v_r for ż = 0, m/s
+  double direction = 1.0;        ///< χ
+  double friction = 0.0;         ///< μ(v_r)
+  double friction_slope = 0.0;   ///< dμ/dv_r, s/m
+  SlotVector gap_row;            ///< −∂gap/∂z; the row of B_C but for the slope of Subs-c
+  SlotVector shift_row;          ///< ∂ξ/∂z, 1/m
+  SlotVector force_row;          ///< row of B_E
+  SlotMatrix force_by_position;  ///< ∂(row of B_E)ᵀ/∂z, 1/m
+  SlotMatrix force_by_velocity;  ///< ∂(row of B_E)ᵀ/∂ż, s/m
+};
+
+/// Gap, rows and derivatives of a sliding contact under its assumption.
+///
+/// Exact derivatives of the kinematics that `Simulation` marches with, away from v_r = 0.
+/// @param positions       where it is
+/// @param law             friction law
+/// @param friction_factor on the law, >= 0
+/// @param terms           which parts of the derivatives are wanted; gap, rows of B_C and B_E and
+///                        friction do not depend on it
+ContactLinearisation linearise_contact(const ContactPositions& positions, const FrictionLaw& law,
+                                       double friction_factor,
+                                       const LinearisationTerms& terms = {});
+
+/// What holds the system in its equilibrium from outside.
+struct EquilibriumState {
+  double drive_displacement = 0.0;  ///< of the bodies that follow the drive, in +x, m
+  double drive_velocity = 0.0;      ///< likewise; gives χ and μ(v) only, m/s
+  double load = 0.0;                ///< on the loaded rows, N
+  double friction_factor = 0.0;     ///< on every friction law, >= 0
+  ContactGeometry geometry = ContactGeometry::deformed;
+};
+
+/// Load, velocity and friction as they are once drive and friction no longer rise.
+/// @param drive_displacement of the bodies that follow the drive, in +x, m
+EquilibriumState sliding_state(const System& system, double drive_displacement,
+                               ContactGeometry geometry = ContactGeometry::deformed);
+
+/// Displacement of the drive that puts the undeformed slave point of a contact at a position.
+///
+/// @param contact  index into System::contacts
+/// @param position along the undeformed master from its first node, m; within its length, or
+///                 anywhere where the master is endless
+/// @return in +x, m
+/// @throws std::invalid_argument if the position is off the master, or the drive cannot get there
+///         because it moves slave and master alike or at right angles to the surface
+double drive_displacement_at(const System& system, int contact, double position);
+
+/// One contact in equilibrium.
+struct ContactEquilibrium {
+  bool is_closed = true;  ///< false: lifted off, without force
+  int segment = 0;
+  ContactPositions positions;
+  Projection projection;
+  double gap = 0.0;             ///< m; 0 but for rounding where it is closed
+  double position = 0.0;        ///< along the undeformed master from its first node, m
+  double force = 0.0;           ///< λ_n, N
+  double friction_force = 0.0;  ///< λ_t = χ μ λ_n, N
+  double friction = 0.0;        ///< μ
+  double direction = 1.0;       ///< χ
+  double slip_velocity = 0.0;   ///< v_r, m/s
+};
+
+enum class EquilibriumStatus {
+  converged,
+  master_lost,    ///< a slave point stands beyond the end of its master surface
+  not_converged,  ///< the iteration was given up
+};
+
+struct Equilibrium {
+  EquilibriumStatus status = EquilibriumStatus::not_converged;
+  EquilibriumState state;                     ///< as asked for
+  std::vector<Eigen::VectorXd> displacement;  ///< of every body, modal coordinates, m kg^½
+  std::vector<ContactEquilibrium> contacts;
+  double residual = 0.0;  ///< largest of displacement, gap and force, relative to what they are of
+  int iterations = 0;     ///< Newton steps over all passes
+  std::string failure;    ///< what went wrong; empty where converged
+};
+
+struct EquilibriumParameters {
+  double tolerance = 1e-12;  ///< largest residual of a converged equilibrium, > 0
+  int max_iterations = 40;   ///< Newton steps in one pass
+  int max_passes = 1000;     ///< passes with other segments or other open contacts
+};
+
+/// Static equilibrium of the sliding system (docs/theory.md, 6.1).
+///
+///   K q = f − B_E(q)ᵀ λ,   gap(q) = 0
+///
+/// for the contacts that slide bilaterally; 0 ≤ λ ⟂ gap ≥ 0 for those that may lift off, at
+/// whatever time (ContactPoint::unilateral_from). χ and μ(v) are those of the drive's velocity.
+/// Elastic modes are eliminated; unknown are the displacements of the contact slots, λ and the
+/// amplitudes of the rigid modes. Newton's method with the exact derivative, halving the step until
+/// the residual falls. As in `Simulation`, a contact moves from segment to segment without turning
+/// back; next to a node ξ may come out slightly beyond [0, 1].
+///
+/// A body that nothing but the curvature of its master would hold counts as free.
+/// A bilateral contact may come out pulling (λ < 0): then the equilibrium is none of real bodies.
+/// @return with status and residual; contacts and displacements are those of the last iterate where
+///         it has not converged
+/// @throws NumericalError if the system is singular, naming the body that is free to move or the
+///         contact whose force is undetermined, or if its numbers are not finite
+/// @throws std::invalid_argument if the friction factor is negative
+/// Cost: a dense system of 7 unknowns per contact and one per rigid mode in each Newton step.
+Equilibrium find_equilibrium(const System& system, const EquilibriumState& state,
+                             const EquilibriumParameters& parameters = {});
+
+/// The same with the drive displaced such that a contact stands at a given place of its deformed
+/// master: friction and load bend the slave away from where the drive alone would put it.
+///
+/// The segment is that of the position, the one before it where that is a node.
+/// @param contact  index into System::contacts
+/// @param position along the undeformed master from its first node (ContactEquilibrium::position),
+/// m
+/// @param state    its drive displacement is not used
+/// @return `state.drive_displacement` is the one found. Under Subs-a and in the undeformed geometry
+///         it is drive_displacement_at()
+/// @throws NumericalError as find_equilibrium()
+/// @throws std::invalid_argument as drive_displacement_at() and find_equilibrium()
+Equilibrium find_equilibrium_at(const System& system, int contact, double position,
+                                const EquilibriumState& state,
+                                const EquilibriumParameters& parameters = {});
+
+/// Lets the bodies start in an equilibrium, without velocity relative to the drive.
+///
+/// @param system      its initial displacements and velocities are overwritten
+/// @param equilibrium of this system with the drive at displacement 0, where a run starts
+/// @throws std::invalid_argument if it has not converged or belongs to another place of the drive
+void apply_initial_motion(System& system, const Equilibrium& equilibrium);
+
+}  // namespace stridor

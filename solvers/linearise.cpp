@@ -1,0 +1,86 @@
+#include "solvers/linearise.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <vector>
+
+namespace stridor {
+namespace {
+
+ContactRow row_of(const SlotVector& slots) {
+  return {{slots[0], slots[1]}, {slots[2], slots[3], slots[4], slots[5]}};
+}
+
+/// Adds the reduced form of modal coordinates to a state that may be empty.
+void add_motion(Eigen::VectorXd& state, const Eigen::MatrixXd& shapes,
+                const Eigen::VectorXd& modal) {
+  if (state.size() == 0) state = Eigen::VectorXd::Zero(shapes.rows());
+  state += shapes * modal;
+}
+
+}  // namespace
+
+Pencil linearise(const System& system, const Equilibrium& equilibrium,
+                 const LinearisationTerms& terms) {
+  if (equilibrium.status != EquilibriumStatus::converged)
+    throw std::invalid_argument("linearise: the equilibrium has not converged");
+  Pencil pencil = make_modal_pencil(system);
+  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(pencil.num_slots(), pencil.num_slots());
+  Eigen::MatrixXd damping = stiffness;
+  std::vector<Eigen::Index> kept_slots;
+  std::vector<Eigen::Index> kept_constraints;
+  for (std::size_t i = 0; i < equilibrium.contacts.size(); ++i) {
+    const ContactEquilibrium& contact = equilibrium.contacts[i];
+    if (!contact.is_closed) continue;
+    const ContactLinearisation local = linearise_contact(
+        contact.positions, system.contacts[i].friction, equilibrium.state.friction_factor, terms);
+    const auto constraint = static_cast<Eigen::Index>(i);
+    const Eigen::Index first = slots_per_contact * constraint;
+    place_contact(pencil, system, static_cast<int>(i), contact.segment,
+                  {row_of(local.gap_row), row_of(local.force_row)});
+    stiffness.block<slots_per_contact, slots_per_contact>(first, first) =
+        contact.force * local.force_by_position;
+    damping.block<slots_per_contact, slots_per_contact>(first, first) =
+        contact.force * local.force_by_velocity;
+    kept_constraints.push_back(constraint);
+    for (Eigen::Index k = 0; k < slots_per_contact; ++k) kept_slots.push_back(first + k);
+  }
+  pencil.slots = pencil.slots(kept_slots, Eigen::all).eval();
+  pencil.compatibility = pencil.compatibility(kept_constraints, kept_slots).eval();
+  pencil.equilibrium = pencil.equilibrium(kept_constraints, kept_slots).eval();
+  if (!stiffness.isZero(0.0)) pencil.slot_stiffness = stiffness(kept_slots, kept_slots);
+  if (!damping.isZero(0.0)) pencil.slot_damping = damping(kept_slots, kept_slots);
+  return pencil;
+}
+
+void add_perturbation(System& system, const Eigen::VectorXcd& vector, std::complex<double> s,
+                      double amplitude) {
+  Eigen::Index num_modes = 0;
+  for (const SystemBody& body : system.bodies) num_modes += body.modal.size();
+  if (vector.size() != num_modes) {
+    throw std::invalid_argument(
+        fmt::format("add_perturbation: the eigenvector has {} entries, the bodies have {} modes",
+                    vector.size(), num_modes));
+  }
+  std::complex<double> largest = 0.0;
+  Eigen::Index first = 0;
+  for (const SystemBody& body : system.bodies) {
+    const Eigen::VectorXcd rows = body.modal.rows * vector.segment(first, body.modal.size());
+    for (const std::complex<double>& row : rows)
+      if (std::abs(row) > std::abs(largest)) largest = row;
+    first += body.modal.size();
+  }
+  if (!(std::abs(largest) > 0.0))
+    throw std::invalid_argument("add_perturbation: the eigenvector moves no row of the bodies");
+  const std::complex<double> scale = amplitude / largest;
+  first = 0;
+  for (SystemBody& body : system.bodies) {
+    const Eigen::VectorXcd motion = scale * vector.segment(first, body.modal.size());
+    add_motion(body.initial_displacement, body.modal.shapes, motion.real());
+    add_motion(body.initial_velocity, body.modal.shapes, (s * motion).real());
+    first += body.modal.size();
+  }
+}
+
+}  // namespace stridor

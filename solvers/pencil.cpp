@@ -1,0 +1,384 @@
+#include "solvers/pencil.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+namespace stridor {
+namespace {
+
+using Complex = std::complex<double>;
+
+[[noreturn]] void reject(const std::string& message) {
+  throw std::invalid_argument("pencil: " + message);
+}
+
+void check_size(const char* name, const Eigen::MatrixXd& matrix, Eigen::Index rows,
+                Eigen::Index columns) {
+  if (matrix.rows() != rows || matrix.cols() != columns) {
+    reject(fmt::format("{} is {} x {} instead of {} x {}", name, matrix.rows(), matrix.cols(), rows,
+                       columns));
+  }
+  if (!matrix.allFinite()) reject(fmt::format("{} is not finite", name));
+}
+
+/// Columns of `source` at `columns`.
+Eigen::MatrixXd columns_of(const Eigen::MatrixXd& source,
+                           const std::vector<Eigen::Index>& columns) {
+  return source(Eigen::all, columns);
+}
+
+/// Residual modes of the dropped ones: frequency, damping and slots of each.
+struct ResidualModes {
+  Eigen::VectorXd omega;
+  Eigen::VectorXd damping;
+  Eigen::MatrixXd slots;
+};
+
+ResidualModes residual_modes(const Eigen::VectorXd& omega, const Eigen::VectorXd& damping,
+                             const Eigen::MatrixXd& slots) {
+  const Eigen::VectorXd flexibility = omega.array().square().inverse();
+  const Eigen::MatrixXd R0 = slots * flexibility.asDiagonal() * slots.transpose();
+  // R₀ = F Fᵀ with a column per direction in which the dropped modes move the slots at all.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(R0);
+  const Eigen::VectorXd& stretches = directions.eigenvalues();
+  const double rounding = 1e-13 * stretches.cwiseAbs().maxCoeff();
+  const auto num_modes = static_cast<Eigen::Index>((stretches.array() > rounding).count());
+  const Eigen::MatrixXd basis = directions.eigenvectors().rightCols(num_modes) *
+                                stretches.tail(num_modes).cwiseSqrt().asDiagonal();
+  const Eigen::MatrixXd to_basis =
+      stretches.tail(num_modes).cwiseSqrt().cwiseInverse().asDiagonal() *
+      directions.eigenvectors().rightCols(num_modes).transpose();
+
+  const Eigen::MatrixXd reduced = to_basis * slots;
+  const Eigen::VectorXd inertia = flexibility.array().square();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> shapes(
+      Eigen::MatrixXd(reduced * inertia.asDiagonal() * reduced.transpose()));
+  const Eigen::MatrixXd seen = shapes.eigenvectors().transpose() * reduced;
+
+  ResidualModes residual;
+  residual.omega = shapes.eigenvalues().cwiseSqrt().cwiseInverse();
+  residual.damping.resize(num_modes);
+  for (Eigen::Index r = 0; r < num_modes; ++r) {
+    const double R1 =
+        (seen.row(r).transpose().array().square() * damping.array() * inertia.array()).sum();
+    residual.damping(r) = residual.omega(r) * residual.omega(r) * R1;
+  }
+  residual.slots = basis * shapes.eigenvectors() * residual.omega.asDiagonal();
+  return residual;
+}
+
+/// rows · slots. Few rows with few entries, many modes: plain loops along the columns, which are
+/// contiguous, where Eigen would set up a blocked product.
+void multiply(const Eigen::Ref<const Eigen::MatrixXd>& rows, const Eigen::MatrixXd& slots,
+              Eigen::Ref<Eigen::MatrixXd> product) {
+  for (Eigen::Index i = 0; i < slots.cols(); ++i) {
+    for (Eigen::Index a = 0; a < rows.rows(); ++a) {
+      double sum = 0.0;
+      for (Eigen::Index slot = 0; slot < slots.rows(); ++slot)
+        sum += rows(a, slot) * slots(slot, i);
+      product(a, i) = sum;
+    }
+  }
+}
+
+/// Segment under a point of the undeformed master and the projection on it.
+std::pair<int, Projection> undeformed_place(const MasterSurface& surface,
+                                            const Eigen::Vector2d& point, int first) {
+  const int last = surface.num_segments() - 1;
+  int segment = std::clamp(first, 0, last);
+  Projection projection = project(surface.undeformed_segment(segment), point);
+  while (projection.xi > 1.0 && segment < last) {
+    projection = project(surface.undeformed_segment(++segment), point);
+  }
+  while (projection.xi < 0.0 && segment > 0) {
+    projection = project(surface.undeformed_segment(--segment), point);
+    if (projection.xi > 1.0) break;  // between two segments that diverge
+  }
+  return {segment, projection};
+}
+
+/// Null vector of a nearly singular matrix, after both its sides are scaled.
+Eigen::VectorXcd null_vector(Eigen::MatrixXcd matrix) {
+  Eigen::VectorXd column_scale = matrix.cwiseAbs().colwise().maxCoeff().transpose();
+  for (double& scale : column_scale) scale = scale > 0.0 ? 1.0 / scale : 1.0;
+  matrix = matrix * column_scale.asDiagonal();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    const double largest = matrix.row(i).cwiseAbs().maxCoeff();
+    if (largest > 0.0) matrix.row(i) /= largest;
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(matrix, Eigen::ComputeFullV);
+  return column_scale.asDiagonal() * svd.matrixV().col(matrix.cols() - 1);
+}
+
+}  // namespace
+
+double Eigenvalue::frequency() const {
+  return s.imag() / (2.0 * std::numbers::pi);
+}
+
+void check_pencil(const Pencil& pencil) {
+  const Eigen::Index n = pencil.num_modes();
+  const Eigen::Index m = pencil.num_slots();
+  const Eigen::Index k = pencil.num_constraints();
+  check_size("omega", pencil.omega, n, 1);
+  check_size("damping", pencil.damping, n, 1);
+  check_size("slots", pencil.slots, m, n);
+  check_size("compatibility", pencil.compatibility, k, m);
+  check_size("equilibrium", pencil.equilibrium, k, m);
+  if (pencil.slot_stiffness.size() > 0) check_size("slot_stiffness", pencil.slot_stiffness, m, m);
+  if (pencil.slot_damping.size() > 0) check_size("slot_damping", pencil.slot_damping, m, m);
+  if (k >= n) reject(fmt::format("{} constraints leave nothing of {} modes", k, n));
+  if ((pencil.omega.array() < 0.0).any()) reject("omega is negative");
+}
+
+Pencil make_modal_pencil(const System& system) {
+  Eigen::Index n = 0;
+  for (const SystemBody& body : system.bodies) n += body.modal.size();
+  Pencil pencil;
+  pencil.omega.resize(n);
+  pencil.damping.resize(n);
+  Eigen::Index first = 0;
+  for (const SystemBody& body : system.bodies) {
+    const Eigen::Index size = body.modal.size();
+    pencil.omega.segment(first, size) = body.modal.omega;
+    pencil.damping.segment(first, size) =
+        body.modal.damping.alpha + body.modal.damping.beta * body.modal.omega.array().square();
+    first += size;
+  }
+  const auto k = static_cast<Eigen::Index>(system.contacts.size());
+  pencil.slots.setZero(slots_per_contact * k, n);
+  pencil.compatibility.setZero(k, slots_per_contact * k);
+  pencil.equilibrium.setZero(k, slots_per_contact * k);
+  return pencil;
+}
+
+void place_contact(Pencil& pencil, const System& system, int contact, int segment,
+                   const ContactRows& rows) {
+  const ContactPoint& point = system.contacts[static_cast<std::size_t>(contact)];
+  const MasterSurface& surface = system.surfaces[static_cast<std::size_t>(point.surface)];
+  const auto s = static_cast<std::size_t>(segment);
+  const Eigen::Index slot = slots_per_contact * contact;
+  pencil.slots.middleRows(slot, slots_per_contact).setZero();
+  Eigen::Index first = 0;
+  for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+    const ModalBody& modal = system.bodies[b].modal;
+    const auto body = static_cast<int>(b);
+    // Mode by mode: the rows of neighbouring nodes lie side by side in a column.
+    const auto fill = [&](Eigen::Index at, std::initializer_list<int> watched) {
+      for (Eigen::Index i = 0; i < modal.size(); ++i) {
+        Eigen::Index row = slot + at;
+        for (const int source : watched) pencil.slots(row++, first + i) = modal.rows(source, i);
+      }
+    };
+    if (body == point.slave_body) fill(0, {point.slave_rows.x, point.slave_rows.y});
+    if (body == surface.body) {
+      const PointRows& T1 = surface.rows[s];
+      const PointRows& T2 = surface.rows[s + 1];
+      fill(2, {T1.x, T1.y, T2.x, T2.y});
+    }
+    first += modal.size();
+  }
+  const auto set_row = [&](Eigen::MatrixXd& matrix, const ContactRow& row) {
+    for (Eigen::Index i = 0; i < 2; ++i)
+      matrix(contact, slot + i) = row.slave[static_cast<std::size_t>(i)];
+    for (Eigen::Index i = 0; i < 4; ++i)
+      matrix(contact, slot + 2 + i) = row.master[static_cast<std::size_t>(i)];
+  };
+  set_row(pencil.compatibility, rows.compatibility);
+  set_row(pencil.equilibrium, rows.equilibrium);
+}
+
+void place_undeformed(Pencil& pencil, const System& system, double drive_displacement,
+                      double friction, double direction) {
+  for (std::size_t c = 0; c < system.contacts.size(); ++c) {
+    const ContactPoint& point = system.contacts[c];
+    const MasterSurface& surface = system.surfaces[static_cast<std::size_t>(point.surface)];
+    const auto driven = [&](int body) {
+      return system.bodies[static_cast<std::size_t>(body)].follows_drive ? drive_displacement : 0.0;
+    };
+    // The surface may follow the drive, too; seen from it, only the difference moves the slave.
+    const Eigen::Vector2d slave =
+        point.slave_position +
+        Eigen::Vector2d(driven(point.slave_body) - driven(surface.body), 0.0);
+    const auto [segment, projection] = undeformed_place(surface, slave, point.first_segment);
+    constexpr double rounding = 1e-9;
+    const bool is_off = (segment == 0 && projection.xi < -rounding) ||
+                        (segment == surface.num_segments() - 1 && projection.xi > 1.0 + rounding);
+    if (is_off && !surface.is_endless) {
+      throw std::invalid_argument(
+          fmt::format("pencil: contact '{}' is beyond the end of its master at a drive "
+                      "displacement of {:g} m",
+                      point.name, drive_displacement));
+    }
+    place_contact(pencil, system, static_cast<int>(c), segment,
+                  make_rows(projection, friction, direction));
+  }
+}
+
+Pencil with_residual_modes(const Pencil& pencil, double cutoff) {
+  check_pencil(pencil);
+  if (!(cutoff > 0.0)) reject(fmt::format("the cut-off must be positive, is {:g} rad/s", cutoff));
+  std::vector<Eigen::Index> kept;
+  std::vector<Eigen::Index> dropped;
+  for (Eigen::Index i = 0; i < pencil.num_modes(); ++i) {
+    (pencil.omega(i) > cutoff ? dropped : kept).push_back(i);
+  }
+  if (dropped.empty()) return pencil;
+  const ResidualModes residual = residual_modes(pencil.omega(dropped), pencil.damping(dropped),
+                                                columns_of(pencil.slots, dropped));
+  const auto num_kept = static_cast<Eigen::Index>(kept.size());
+  const Eigen::Index n = num_kept + residual.omega.size();
+  Pencil reduced = pencil;
+  reduced.omega.resize(n);
+  reduced.damping.resize(n);
+  reduced.slots.resize(pencil.num_slots(), n);
+  reduced.omega << pencil.omega(kept), residual.omega;
+  reduced.damping << pencil.damping(kept), residual.damping;
+  reduced.slots << columns_of(pencil.slots, kept), residual.slots;
+  check_pencil(reduced);
+  return reduced;
+}
+
+ModalRows modal_rows(const Pencil& pencil) {
+  ModalRows rows;
+  rows.num_constraints = pencil.num_constraints();
+  const Eigen::Index k = rows.num_constraints;
+  const Eigen::Index m = pencil.num_slots();
+  Eigen::MatrixXd stacked(m, 0);
+  const auto append = [&](const Eigen::MatrixXd& matrix) {
+    const double size = matrix.size() > 0 ? matrix.norm() : 0.0;
+    if (size == 0.0) return;
+    stacked.conservativeResize(m, stacked.cols() + m);
+    stacked.rightCols(m) = matrix.transpose() / size;
+  };
+  append(pencil.slot_stiffness);
+  append(pencil.slot_damping);
+  Eigen::MatrixXd V(0, m);
+  if (stacked.cols() > 0) {
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(stacked);
+    qr.setThreshold(1e-14);
+    const Eigen::MatrixXd Q = qr.householderQ();
+    V = Q.leftCols(qr.rank()).transpose();
+  }
+  rows.rank = V.rows();
+  const Eigen::Index r = rows.rank;
+  rows.outputs.resize(k + r, pencil.num_modes());
+  multiply(pencil.compatibility, pencil.slots, rows.outputs.topRows(k));
+  rows.inputs.setZero(k + 2 * r, pencil.num_modes());
+  multiply(pencil.equilibrium, pencil.slots, rows.inputs.topRows(k));
+  if (r > 0) {
+    multiply(V, pencil.slots, rows.outputs.bottomRows(r));
+    const auto fill = [&](const Eigen::MatrixXd& matrix, Eigen::Index first) {
+      if (matrix.size() > 0)
+        rows.inputs.middleRows(first, r) = (matrix * V.transpose()).transpose() * pencil.slots;
+    };
+    fill(pencil.slot_stiffness, k);
+    fill(pencil.slot_damping, k + r);
+  }
+  return rows;
+}
+
+Eigenvector eigenvector(const Pencil& pencil, Complex s) {
+  check_pencil(pencil);
+  const ModalRows rows = modal_rows(pencil);
+  const Eigen::Index n = pencil.num_modes();
+  const Eigen::Index k = rows.num_constraints;
+  const Eigen::Index size = k + rows.rank;
+  const Eigen::ArrayXcd d = s * s + s * pencil.damping.array().cast<Complex>() +
+                            pencil.omega.array().square().cast<Complex>();
+  // Modes at their pole would be divided by next to nothing: they stay unknowns.
+  Eigen::Index nearest = 0;
+  d.abs().minCoeff(&nearest);
+  std::vector<Eigen::Index> near;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (i == nearest || std::abs(d(i)) < 1e-8 * std::norm(s)) near.push_back(i);
+  }
+  Eigen::ArrayXcd inverse = d.inverse();
+  for (const Eigen::Index i : near) inverse(i) = 0.0;
+
+  const Eigen::MatrixXcd outputs = rows.outputs.cast<Complex>();
+  Eigen::MatrixXcd inputs = rows.inputs.topRows(size).cast<Complex>();
+  if (rows.rank > 0) inputs.bottomRows(rows.rank) += s * rows.inputs.bottomRows(rows.rank);
+  const auto num_near = static_cast<Eigen::Index>(near.size());
+  Eigen::MatrixXcd bordered = Eigen::MatrixXcd::Zero(size + num_near, size + num_near);
+  if (size > 0) {
+    bordered.topLeftCorner(size, size) =
+        outputs * inverse.matrix().asDiagonal() * inputs.transpose();
+  }
+  bordered.topLeftCorner(size, size).diagonal().tail(rows.rank).array() += 1.0;
+  for (Eigen::Index j = 0; j < num_near; ++j) {
+    const Eigen::Index i = near[static_cast<std::size_t>(j)];
+    bordered.block(0, size + j, size, 1) = outputs.col(i);
+    bordered.block(size + j, 0, 1, size) = -inputs.col(i).transpose();
+    bordered(size + j, size + j) = d(i);
+  }
+
+  Eigenvector vector;
+  const Eigen::VectorXcd right = null_vector(bordered);
+  const Eigen::VectorXcd left = null_vector(bordered.transpose());
+  vector.right = Eigen::VectorXcd::Zero(n);
+  Eigen::VectorXcd transposed = Eigen::VectorXcd::Zero(n);
+  if (size > 0) {
+    vector.right -= (inverse * (inputs.transpose() * right.head(size)).array()).matrix();
+    transposed -= (inverse * (outputs.transpose() * left.head(size)).array()).matrix();
+  }
+  for (Eigen::Index j = 0; j < num_near; ++j) {
+    const Eigen::Index i = near[static_cast<std::size_t>(j)];
+    vector.right(i) = -right(size + j);
+    transposed(i) = left(size + j);
+  }
+  const double length = vector.right.norm();
+  vector.right /= length;
+  vector.force = right.head(k) / length;
+  vector.left = transposed.conjugate().normalized();
+  return vector;
+}
+
+double relative_residual(const Pencil& pencil, Complex s, const Eigen::VectorXcd& right) {
+  const Eigen::VectorXd scale = (pencil.omega.array() + std::abs(s)).inverse();
+  const auto scaled_norm = [&](const Eigen::VectorXcd& term) {
+    return scale.cwiseProduct(term.cwiseAbs()).norm();
+  };
+  const Eigen::VectorXcd y = pencil.slots * right;
+  Eigen::VectorXcd slot_force = Eigen::VectorXcd::Zero(pencil.num_slots());
+  if (pencil.slot_stiffness.size() > 0) slot_force += pencil.slot_stiffness * y;
+  if (pencil.slot_damping.size() > 0) slot_force += s * (pencil.slot_damping * y);
+  const Eigen::VectorXcd inertia = s * s * right;
+  const Eigen::VectorXcd damping = s * pencil.damping.cast<Complex>().cwiseProduct(right);
+  const Eigen::VectorXcd stiffness =
+      pencil.omega.array().square().matrix().cast<Complex>().cwiseProduct(right);
+  const Eigen::VectorXcd contact = pencil.slots.transpose() * slot_force;
+  const Eigen::VectorXcd without = inertia + damping + stiffness + contact;
+  const double terms =
+      scaled_norm(inertia) + scaled_norm(damping) + scaled_norm(stiffness) + scaled_norm(contact);
+
+  const Eigen::MatrixXd force_columns =
+      scale.asDiagonal() * (pencil.equilibrium * pencil.slots).transpose();
+  const Eigen::VectorXcd target = scale.cast<Complex>().cwiseProduct(without);
+  Eigen::VectorXcd rest = target;
+  if (force_columns.cols() > 0) {
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(force_columns);
+    rest.real() -= force_columns * qr.solve(Eigen::VectorXd(target.real()));
+    rest.imag() -= force_columns * qr.solve(Eigen::VectorXd(target.imag()));
+  }
+  const Eigen::MatrixXd gap_rows = pencil.compatibility * pencil.slots;
+  const double gaps = (gap_rows * right).norm();
+  const double gap_terms = (gap_rows.cwiseAbs() * right.cwiseAbs()).norm();
+  return rest.norm() / (terms + (target - rest).norm()) +
+         (gap_terms > 0.0 ? gaps / gap_terms : 0.0);
+}
+
+double modal_assurance(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b) {
+  return std::norm(a.dot(b)) / (a.squaredNorm() * b.squaredNorm());
+}
+
+}  // namespace stridor

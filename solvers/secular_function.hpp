@@ -1,0 +1,137 @@
+// The secular function of a pencil: its zeros are the eigenvalues.
+#pragma once
+
+#include <array>
+#include <complex>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "solvers/aligned_array.hpp"
+#include "solvers/pencil.hpp"
+#include "solvers/secular_kernel.hpp"
+
+namespace stridor {
+
+/// Characteristic function of a pencil, reduced to its contacts (docs/theory.md, 7.3).
+///
+///   A(s) = [ b_C D⁻¹ b_Eᵀ        b_C D⁻¹ p(s)ᵀ  ]
+///          [ v D⁻¹ b_Eᵀ      1 + v D⁻¹ p(s)ᵀ    ],   D = diag(s² + c s + ω²),  p = p_G + s p_H
+///   P(s) = det A(s) Π d_i(s)
+///
+/// P is the characteristic polynomial. With one contact and without G and H, A is the number
+/// f(s) = Σ b_C,i b_E,i/(s² + c_i s + ω_i²). Modes whose residue vanishes are zeros of P like the
+/// others.
+///
+/// P overflows, and f has poles next to its zeros. What is evaluated is the logarithmic derivative
+/// of F(s) = det A Π_near d_i, in which the pole nearest to s is multiplied out; F is smooth where
+/// f is not, and a zero that coincides with a pole is one like any other.
+class SecularFunction {
+ public:
+  /// @throws std::invalid_argument as check_pencil()
+  explicit SecularFunction(const Pencil& pencil);
+
+  /// Takes over another pencil; the cost is much lower where its ω and c are the same as before.
+  /// @throws std::invalid_argument as check_pencil(); the function is then unchanged
+  void assign(const Pencil& pencil);
+
+  Eigen::Index num_modes() const { return num_modes_; }
+  Eigen::Index num_constraints() const { return rows_.num_constraints; }
+  /// Zeros of P, 2 (n − k).
+  Eigen::Index num_zeros() const { return 2 * (num_modes_ - rows_.num_constraints); }
+  /// Imaginary parts of the poles, √(ω² − c²/4) or 0, ascending; one per mode.
+  const std::vector<double>& pole_heights() const { return heights_; }
+  /// The poles of mode i, in ascending ω: that with the larger imaginary part, or the right one of
+  /// two real ones, first.
+  std::array<std::complex<double>, 2> poles(Eigen::Index i) const;
+  /// A length beyond every pole and, unless B_C S Sᵀ B_Eᵀ is almost singular, every zero, 1/s.
+  double extent() const { return extent_; }
+
+  /// F'/F at a number, and what was multiplied out of the poles.
+  struct LogSlope {
+    std::complex<double> value;  ///< F'/F
+    bool is_zero = false;        ///< F(s) = 0 to the last bit; value is then 0
+  };
+
+  /// @param hint mode nearest to s if known, else any; becomes that mode
+  LogSlope log_slope(std::complex<double> s, int& hint);
+
+  /// P_W'/P_W, with P_W = det A Π_W d_i for the modes of lower height than a limit.
+  ///
+  /// Has no poles below the limit, so that the zeros below it can be divided out one by one.
+  LogSlope log_slope_below(std::complex<double> s, double height, int& hint);
+
+  /// A zero by Newton's method on F.
+  struct Zero {
+    std::complex<double> s;
+    bool is_converged = false;
+    int evaluations = 0;
+  };
+
+  /// @param guess   where to start; a real start stays real
+  /// @param spacing distance from which on other zeros can be felt; the error of a step δ is taken
+  ///                to be δ²/spacing
+  /// @param hint    as log_slope()
+  Zero find_zero(std::complex<double> guess, double spacing, int& hint);
+
+  /// Zeros with |Im s| < height, conjugates and real ones counted one by one, by the argument
+  /// principle.
+  ///
+  ///   zeros − poles = (1/π) change of arg det A along +X, +X + i h, −X + i h, −X
+  ///
+  /// with X of eight times extent(). Two samples on the line are closer together than half their
+  /// distance to the nearest pole, and another one is put between where arg turns by more than
+  /// 1 rad.
+  /// @return nothing where a zero or pole is too close to the line to tell on which side it is
+  std::optional<int> count_zeros_below(double height);
+
+ private:
+  using Complex = std::complex<double>;
+
+  /// Samples of 1/d along the line of count_zeros_below().
+  struct Line {
+    std::vector<Complex> places;  ///< from right to left
+    AlignedArray inverses;        ///< of each place: real parts of 1/d, then imaginary parts
+    std::vector<Complex> values;  ///< det A
+  };
+
+  void assign_modes(const Pencil& pencil);
+  void assign_rows(const Pencil& pencil);
+  bool is_scalar() const { return rows_.num_constraints == 1 && rows_.rank == 0; }
+  Complex denominator(std::size_t i, Complex s) const;
+  Complex denominator_slope(std::size_t i, Complex s) const;
+  /// Mode with the smallest |d|.
+  int nearest_mode(Complex s) const;
+  /// Sets near_ to the modes whose poles are multiplied out of F(s), and hint to the nearest.
+  void find_near(Complex s, double least, int& hint);
+  LogSlope scalar_log_slope(Complex s, int& hint);
+  LogSlope matrix_log_slope(Complex s, int& hint);
+  /// Bordered matrix of F and its derivative, for the modes in near_.
+  void form_bordered(Complex s);
+  /// det A from 1/d of every mode.
+  Complex determinant(const double* inverse_re, const double* inverse_im, Complex s);
+  Complex determinant_at(Complex s);
+  Line& line_at(double height);
+
+  Eigen::VectorXd given_omega_, given_damping_;  ///< as in the pencil, to see whether they change
+  std::vector<Eigen::Index> order_;              ///< modes of the pencil in ascending ω
+  Eigen::Index num_modes_ = 0;
+  std::size_t padded_ = 0;
+  AlignedArray omega_, damping_;
+  std::vector<std::vector<int>> clusters_;  ///< of every mode: others whose poles nearly coincide
+  std::vector<double> heights_;
+  std::vector<double> height_of_;  ///< by mode
+  double extent_ = 0.0;
+  std::map<double, Line> lines_;
+
+  ModalRows rows_;                     ///< in ascending ω
+  std::vector<AlignedArray> weights_;  ///< of each pair of an output and an input, outputs fastest
+
+  AlignedArray mask_;
+  double mask_height_ = -1.0;
+  AlignedArray value_re_, value_im_, slope_re_, slope_im_, norm_;  ///< scratch
+  std::vector<int> near_;
+  Eigen::MatrixXcd bordered_, bordered_slope_;
+};
+
+}  // namespace stridor

@@ -1,0 +1,638 @@
+// The pictures that the program makes of run files, and what it says where it cannot.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <hdf5.h>
+#include <hdf5_hl.h>
+
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <random>
+
+#include "app/damage_guard.hpp"
+#include "io/run_file.hpp"
+#include "tests/support/program.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+using Json = nlohmann::json;
+
+constexpr double interval = 1e-4;
+constexpr std::size_t num_rows = 4000;  // 0.4 s
+constexpr double tone = 1000.0;         // Hz, from 0.2 to 0.3 s
+
+/// How a run file of these tests differs from the usual one.
+struct RunContents {
+  std::vector<std::string> channels{"/channels/beam.tip.y.acceleration",
+                                    "/channels/beam.tip.y.displacement",
+                                    "/channels/beam.tip.y.velocity", "/contact/contact/force"};
+  std::string scene = "format: 1\nmeasure: {from: 0.05, band: [500.0, 2000.0]}\n";
+  bool has_bursts = true;
+  std::size_t rows = num_rows;
+};
+
+std::string units_of(const std::string& path) {
+  if (path.ends_with("acceleration")) return "m/s^2";
+  if (path.ends_with("velocity")) return "m/s";
+  if (path.ends_with("force")) return "N";
+  return "m";
+}
+
+/// A tone of amplitude 2 in the acceleration, and its integrals; a constant force.
+double value_at(const std::string& path, double time) {
+  if (path.ends_with("force")) return 0.2;
+  if (time < 0.2 || time > 0.3) return 0.0;
+  const double omega = 2.0 * std::numbers::pi * tone;
+  if (path.ends_with("acceleration")) return 2.0 * std::sin(omega * time);
+  if (path.ends_with("velocity")) return -2.0 / omega * std::cos(omega * time);
+  return -2.0 / (omega * omega) * std::sin(omega * time);
+}
+
+class Pictures : public ::testing::Test {
+ protected:
+  /// Writes a run file as `run` would have left it. @return its path
+  std::string make_run(const RunContents& contents = {}, const std::string& name = "run.h5") const {
+    std::vector<SeriesSpec> series;
+    for (const std::string& path : contents.channels)
+      series.push_back({path, units_of(path), SeriesKind::real, {}});
+    RunFileHeader header{.version = "0.1.0",
+                         .commit = "abcdef",
+                         .command = "stridor run scene.yaml",
+                         .scene_hash = "0123456789abcdef",
+                         .date = "2024-05-17T08:30:00Z",
+                         .scene_text = "format: 1\n",
+                         .scene_resolved = contents.scene};
+    RunFileWriter writer(path(name), Overwrite::yes, header, series);
+    for (std::size_t i = 0; i < contents.rows; ++i) {
+      const double time = static_cast<double>(i) * interval;
+      std::vector<double> row;
+      for (const std::string& channel : contents.channels) row.push_back(value_at(channel, time));
+      writer.append(time, row);
+    }
+    if (contents.has_bursts) {
+      for (const auto& [property, value, units] :
+           {std::tuple{"start", 0.2, "s"}, std::tuple{"end", 0.3, "s"},
+            std::tuple{"frequency", tone, "Hz"}, std::tuple{"peak", 2.0, "m/s^2"},
+            std::tuple{"gain", 5.0, "1"}})
+        writer.write_static(std::string("/bursts/") + property, {&value, 1}, units);
+      writer.write_result("free_end_acceleration.channel", "beam.tip.y.acceleration");
+    }
+    writer.close();
+    return path(name);
+  }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+
+  /// Runs the program and expects it to succeed. @return its JSON object
+  static Json json_of(std::vector<std::string> arguments) {
+    arguments.emplace_back("--json");
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return Json::parse(result.out, nullptr, false);
+  }
+
+  /// Changes a finished file behind the back of the program.
+  static void edit(const std::string& file, const std::function<void(hid_t)>& action) {
+    const hid_t id = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    ASSERT_GE(id, 0);
+    action(id);
+    ASSERT_GE(H5Fclose(id), 0);
+  }
+
+  TemporaryFolder folder_;
+};
+
+// ---------------------------------------------------------------- spectrogram
+
+TEST_F(Pictures, SpectrogramIsDrawnBesideTheRunFileAndSaysHow) {
+  const std::string run = make_run();
+  const Json object = json_of({"spectrogram", run});
+  EXPECT_THAT(contents_of(path("run_spectrogram.png")), StartsWith("\x89PNG"));
+  EXPECT_EQ(object["figure"], path("run_spectrogram.png"));
+  EXPECT_EQ(object["data"], nullptr);
+  EXPECT_EQ(object["channel"], "beam.tip.y.acceleration");
+  EXPECT_EQ(object["units"], "m/s^2");
+  EXPECT_EQ(object["window"], "hann");
+  EXPECT_EQ(object["overlap"], 0.75);
+  EXPECT_EQ(object["max_frequency"], 2000.0);  // the end of measure.band
+  // (0.4 s/2000 Hz)^1/2 is 141 samples; the next length with small prime factors is 144.
+  EXPECT_EQ(object["length_samples"], 144);
+  EXPECT_NEAR(object["length"].get<double>(), 0.0144, 1e-12);
+  EXPECT_EQ(object["pieces"], 1 + (4000 - 144) / 36);
+  EXPECT_EQ(object["reference"], 1e-6);
+  EXPECT_EQ(object["range"], 60.0);
+  EXPECT_EQ(object["bursts"], 1);
+  // 1 kHz lies 0.4 of a line beside line 14: a Hann window reads at least 1.42 dB less than 2.
+  EXPECT_LE(object["highest_amplitude"].get<double>(), 2.0 + 1e-3);
+  EXPECT_GE(object["highest_amplitude"].get<double>(), 2.0 * std::pow(10.0, -1.43 / 20.0));
+  EXPECT_NEAR(object["highest_level"].get<double>(), 126.0, 1.5);
+}
+
+TEST_F(Pictures, SpectrogramMarksBurstsAndNamesReferenceAndSettings) {
+  const std::string run = make_run();
+  ASSERT_EQ(Program({"spectrogram", run, "-o", path("a.svg")}).run().exit_code, 0);
+  const std::string svg = contents_of(path("a.svg"));
+  for (const char* text : {"amplitude (dB re 1 µm/s²)", "time (s)", "frequency (kHz)", "1: 1 kHz",
+                           "Hann window", "14.4 ms", "75 %", "0123456789abcdef", "Dashed"}) {
+    EXPECT_THAT(svg, HasSubstr(text));
+  }
+}
+
+TEST_F(Pictures, SpectrogramWithoutBurstsIsDrawn) {
+  RunContents quiet;
+  quiet.has_bursts = false;
+  const std::string run = make_run(quiet);
+  EXPECT_EQ(json_of({"spectrogram", run, "-o", path("a.svg")})["bursts"], 0);
+  EXPECT_THAT(contents_of(path("a.svg")), Not(HasSubstr("Dashed")));
+}
+
+TEST_F(Pictures, SceneGivesTheSettingsAndTheCommandLineWins) {
+  RunContents contents;
+  contents.scene +=
+      "spectrogram: {channel: beam.tip.y.velocity, window: blackman_harris, length: 0.02, overlap: "
+      "0.5, max_frequency: 1500.0}\n";
+  const std::string run = make_run(contents);
+  const Json scene = json_of({"spectrogram", run, "-o", path("a.svg")});
+  EXPECT_EQ(scene["channel"], "beam.tip.y.velocity");
+  EXPECT_EQ(scene["window"], "blackman_harris");
+  EXPECT_EQ(scene["length_samples"], 200);
+  EXPECT_EQ(scene["overlap"], 0.5);
+  EXPECT_EQ(scene["max_frequency"], 1500.0);
+  EXPECT_EQ(scene["reference"], 1e-9);
+  EXPECT_THAT(contents_of(path("a.svg")),
+              AllOf(HasSubstr("Blackman-Harris"), HasSubstr("20 ms"), HasSubstr("dB re 1 nm/s")));
+  const Json given = json_of(
+      {"spectrogram", run,     "-o",       path("b.svg"), "--channel",       "contact.force",
+       "--window",    "hann",  "--length", "40 ms",       "--overlap",       "25 %",
+       "--range",     "80",    "--from",   "100 ms",      "--max-frequency", "1 kHz",
+       "--reference", "20 mN", "--to",     "0.35"});
+  EXPECT_EQ(given["channel"], "contact.force");
+  EXPECT_EQ(given["window"], "hann");
+  EXPECT_EQ(given["length_samples"], 400);
+  EXPECT_EQ(given["overlap"], 0.25);
+  EXPECT_EQ(given["max_frequency"], 1000.0);
+  EXPECT_EQ(given["reference"], 0.02);
+  EXPECT_EQ(given["range"], 80.0);
+  EXPECT_NEAR(given["from"].get<double>(), 0.1, 1e-12);
+  EXPECT_NEAR(given["to"].get<double>(), 0.35, 1e-12);
+  EXPECT_THAT(contents_of(path("b.svg")), HasSubstr("dB re 20 mN"));
+}
+
+TEST_F(Pictures, PlotMakesTheSameSpectrogram) {
+  const std::string run = make_run();
+  Json verb = json_of({"spectrogram", run, "-o", path("a.svg"), "--length", "10 ms"});
+  Json plot =
+      json_of({"plot", run, "--kind", "spectrogram", "-o", path("b.svg"), "--length", "10 ms"});
+  verb.erase("figure");
+  plot.erase("figure");
+  EXPECT_EQ(verb, plot);
+  EXPECT_EQ(contents_of(path("a.svg")), contents_of(path("b.svg")));
+}
+
+TEST_F(Pictures, DataHoldTheToneWhereItIs) {
+  const std::string run = make_run();
+  const std::string data = path("data.h5");
+  json_of({"spectrogram", run, "-o", path("a.svg"), "--data", data, "--length", "10 ms",
+           "--overlap", "0.5", "--window", "hann"});
+  const hid_t file = H5Fopen(data.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  ASSERT_GE(file, 0);
+  hsize_t shape[2] = {};
+  H5LTget_dataset_info(file, "/amplitude", shape, nullptr, nullptr);
+  ASSERT_EQ(shape[0], 79u);  // 1 + 3900/50
+  ASSERT_EQ(shape[1], 51u);
+  std::vector<double> amplitude(shape[0] * shape[1]);
+  std::vector<double> times(shape[0]);
+  H5LTread_dataset_double(file, "/amplitude", amplitude.data());
+  H5LTread_dataset_double(file, "/times", times.data());
+  for (std::size_t j = 0; j < times.size(); ++j) {
+    // Ten periods to a piece: the tone stands exactly on line 10. A Hann window weighs its
+    // outermost samples by next to nothing.
+    const double at_tone = amplitude[j * shape[1] + 10];
+    if (times[j] > 0.2051 && times[j] < 0.2949) {
+      EXPECT_NEAR(at_tone, 2.0, 1e-3) << times[j];
+    }
+    if (times[j] < 0.1949 || times[j] > 0.3051) {
+      EXPECT_EQ(at_tone, 0.0) << times[j];
+    }
+  }
+  const auto text = [&](const char* name) {
+    char buffer[300] = {};
+    H5LTget_attribute_string(file, "/", name, buffer);
+    return std::string(buffer);
+  };
+  const auto real = [&](const char* name) {
+    double value = 0.0;
+    H5LTget_attribute_double(file, "/", name, &value);
+    return value;
+  };
+  EXPECT_EQ(text("window"), "hann");
+  EXPECT_EQ(text("channel"), "beam.tip.y.acceleration");
+  EXPECT_EQ(text("scene_hash"), "0123456789abcdef");
+  EXPECT_EQ(text("run_file"), run);
+  EXPECT_NEAR(real("length"), 0.01, 1e-12);
+  EXPECT_EQ(real("overlap"), 0.5);
+  EXPECT_EQ(real("interval"), interval);
+  H5Fclose(file);
+}
+
+TEST_F(Pictures, FilesThatExistAreKeptWithoutForce) {
+  const std::string run = make_run();
+  const std::string before = contents_of(run);
+  write_file(path("a.png"), "old");
+  write_file(path("data.h5"), "old");
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"spectrogram", run, "-o", path("a.png")},
+        {"spectrogram", run, "-o", path("b.png"), "--data", path("data.h5")},
+        {"plot", run, "--kind", "spectrogram", "-o", path("a.png")},
+        {"plot", run, "--kind", "history", "-o", path("a.png")},
+        {"plot", run, "--kind", "spectrum", "-o", path("a.png")},
+        {"plot", run, "--kind", "phase", "-o", path("a.png")}}) {
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 4) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("exists; use --force to overwrite it"));
+  }
+  EXPECT_EQ(contents_of(path("a.png")), "old");
+  EXPECT_EQ(contents_of(path("data.h5")), "old");
+  EXPECT_FALSE(exists("b.png"));
+  EXPECT_EQ(Program({"spectrogram", run, "-o", path("a.png"), "--data", path("data.h5"), "--force"})
+                .run()
+                .exit_code,
+            0);
+  EXPECT_THAT(contents_of(path("a.png")), StartsWith("\x89PNG"));
+  EXPECT_THAT(contents_of(path("data.h5")), StartsWith("\x89HDF"));
+  EXPECT_EQ(contents_of(run), before);
+}
+
+TEST_F(Pictures, RunFileItselfIsNeverReplacedByTheData) {
+  const std::string run = make_run();
+  const std::string before = contents_of(run);
+  const ProgramResult result =
+      Program({"spectrogram", run, "--data",
+               path("../") + folder_.path().filename().string() + "/run.h5", "--force"})
+          .run();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("is the run file itself"));
+  EXPECT_EQ(contents_of(run), before);
+}
+
+// ---------------------------------------------------------------- other kinds
+
+TEST_F(Pictures, SpectrumGathersChannelsByUnitAndMarksBursts) {
+  const std::string run = make_run();
+  const Json object = json_of({"plot", run, "--kind", "spectrum", "-o", path("a.svg")});
+  ASSERT_EQ(object["channels"].size(), 4u);
+  EXPECT_EQ(object["scale"], "db");
+  EXPECT_EQ(object["bursts"], 1);
+  EXPECT_EQ(object["overlap"], 0.5);
+  EXPECT_EQ(object["length_samples"], 500);  // an eighth of 0.4 s
+  const std::string svg = contents_of(path("a.svg"));
+  for (const char* text : {"(dB re 1 µm/s²)", "(dB re 1 nm/s)", "(dB re 1 pm)", "(dB re 1 µN)",
+                           "1: 1 kHz", "contact.force", "50 ms"}) {
+    EXPECT_THAT(svg, HasSubstr(text));
+  }
+  json_of({"plot", run, "--kind", "spectrum", "-o", path("b.svg"), "--scale", "linear", "--channel",
+           "beam.tip.y.velocity"});
+  EXPECT_THAT(contents_of(path("b.svg")), AllOf(HasSubstr("m/s"), Not(HasSubstr("dB"))));
+}
+
+TEST_F(Pictures, PhaseShowsDisplacementAgainstVelocityOfOnePoint) {
+  const std::string run = make_run();
+  const Json pair = json_of({"plot", run, "--kind", "phase", "-o", path("a.svg")});
+  EXPECT_EQ(pair["across"], "beam.tip.y.displacement");
+  EXPECT_EQ(pair["up"], "beam.tip.y.velocity");
+  EXPECT_THAT(contents_of(path("a.svg")), AllOf(HasSubstr("beam.tip.y.displacement (10⁻⁹ m)"),
+                                                HasSubstr("beam.tip.y.velocity (10⁻⁶ m/s)")));
+  const Json one = json_of(
+      {"plot", run, "--kind", "phase", "-o", path("b.svg"), "--channel", "beam.tip.y.velocity"});
+  EXPECT_EQ(one["across"], "beam.tip.y.displacement");
+  const Json two = json_of({"plot", run, "--kind", "phase", "-o", path("c.svg"), "--channel",
+                            "contact.force", "--channel", "beam.tip.y.velocity"});
+  EXPECT_EQ(two["across"], "contact.force");
+  EXPECT_EQ(two["up"], "beam.tip.y.velocity");
+}
+
+TEST_F(Pictures, PhaseTakesTheSlipOfAContactFirst) {
+  RunContents contents;
+  contents.channels.emplace_back("/contact/contact/position");
+  contents.channels.emplace_back("/contact/contact/slip_velocity");
+  const Json object = json_of({"plot", make_run(contents), "--kind", "phase", "-o", path("a.svg")});
+  EXPECT_EQ(object["across"], "contact.position");
+  EXPECT_EQ(object["up"], "contact.slip_velocity");
+}
+
+TEST_F(Pictures, PhaseSaysWhatToRecordInsteadOfIntegrating) {
+  const auto message = [&](std::vector<std::string> channels, std::vector<std::string> more) {
+    RunContents contents;
+    contents.channels = std::move(channels);
+    std::vector<std::string> arguments{"plot", make_run(contents), "--kind", "phase",
+                                       "-o",   path("a.svg")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr("--channel"));
+    return result.err;
+  };
+  EXPECT_THAT(message({"/channels/beam.tip.y.velocity"}, {}),
+              AllOf(HasSubstr("nothing is integrated"),
+                    HasSubstr("record beam.tip.y.displacement with beam.tip.y.velocity")));
+  EXPECT_THAT(message({"/channels/beam.tip.y.acceleration"}, {}),
+              HasSubstr("record beam.tip.y.displacement and beam.tip.y.velocity"));
+  EXPECT_THAT(message({"/contact/contact/force"}, {}),
+              HasSubstr("record a displacement and the velocity of the same point"));
+  EXPECT_THAT(
+      message({"/channels/beam.tip.y.velocity"}, {"--channel", "beam.tip.y.velocity"}),
+      AllOf(HasSubstr("beam.tip.y.displacement is not recorded"), HasSubstr("add it to record")));
+  EXPECT_THAT(message({"/contact/contact/force"}, {"--channel", "contact.force"}),
+              HasSubstr("name a second channel"));
+  EXPECT_THAT(message({"/contact/contact/force"}, {"--channel", "contact.force", "--channel",
+                                                   "contact.force", "--channel", "contact.force"}),
+              HasSubstr("one channel against one other"));
+  EXPECT_FALSE(exists("a.svg"));
+}
+
+// ---------------------------------------------------------------- what is refused
+
+struct BadUsage {
+  std::vector<std::string> arguments;  ///< behind the verb and the run file
+  std::string message;
+};
+
+void PrintTo(const BadUsage& usage, std::ostream* stream) {
+  for (const std::string& word : usage.arguments) *stream << word << ' ';
+}
+
+class BadUsageTest : public Pictures, public ::testing::WithParamInterface<BadUsage> {};
+
+TEST_P(BadUsageTest, IsRefusedWithTheRemedyAndLeavesNoFile) {
+  const std::string run = make_run();
+  std::vector<std::string> arguments = GetParam().arguments;
+  arguments.insert(arguments.begin() + 1, run);
+  if (std::find(arguments.begin(), arguments.end(), "-o") == arguments.end()) {
+    arguments.emplace_back("-o");
+    arguments.push_back(path("a.svg"));
+  }
+  const ProgramResult result = Program(arguments).run();
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  EXPECT_THAT(result.err, HasSubstr(GetParam().message));
+  EXPECT_TRUE(result.out.empty()) << result.out;
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Options, BadUsageTest,
+    ::testing::Values(
+        BadUsage{{"spectrogram", "--channel", "beam.tip.y.acelleration"},
+                 "did you mean 'beam.tip.y.acceleration'?"},
+        BadUsage{{"spectrogram", "--channel", "contact.force", "--channel", "contact.force"},
+                 "a spectrogram shows one channel"},
+        BadUsage{{"spectrogram", "--window", "han"}, "--window: there is no window 'han', did you"},
+        BadUsage{{"spectrogram", "--length", "1 s"}, "a piece of 1 s is longer than the 0.4 s of"},
+        BadUsage{{"spectrogram", "--length", "1 s"}, "give at most --length 0.4"},
+        BadUsage{{"spectrogram", "--length", "30 ms", "--to", "20 ms"},
+                 "give at most --length 0.0201, or choose a longer stretch"},
+        BadUsage{{"spectrogram", "--length", "10 us"}, "less than two samples"},
+        BadUsage{{"spectrogram", "--length", "5 Hz"}, "--length: '5 Hz' has unit Hz"},
+        BadUsage{{"spectrogram", "--length=-1"}, "--length: must be > 0 s"},
+        BadUsage{{"spectrogram", "--overlap", "1"}, "--overlap: must be in [0, 1)"},
+        BadUsage{{"spectrogram", "--overlap", "0.999", "--length", "10 ms"},
+                 "moves a piece of 100 samples on by less than one; allowed: up to 0.99"},
+        BadUsage{{"spectrogram", "--from", "1"}, "holds no sample there, only from 0 to 0.3999 s"},
+        BadUsage{{"spectrogram", "--from", "0.3", "--to", "0.1"},
+                 "--from: 0.3 s is after --to = 0.1 s"},
+        BadUsage{{"spectrogram", "--from", "0.1", "--to", "0.1"}, "needs a longer stretch"},
+        BadUsage{{"spectrogram", "--max-frequency", "6 kHz"},
+                 "6000 Hz is above 5000 Hz, the highest frequency"},
+        BadUsage{{"spectrogram", "--reference", "0"}, "--reference: must be > 0 m/s^2"},
+        BadUsage{{"spectrogram", "--reference", "1 N"}, "--reference: '1 N' has unit N"},
+        BadUsage{{"spectrogram", "--range", "-3"}, "--range: must be > 0"},
+        BadUsage{{"spectrogram", "-o", "figure.bmp"}, "must end with .png, .svg or .pdf"},
+        BadUsage{{"plot", "--kind", "spectrogram", "--length", "1 s"}, "is longer than the 0.4 s"},
+        BadUsage{{"plot", "--kind", "spectrogram", "-o", "figure.jpg"}, "must end with"},
+        BadUsage{{"plot", "--kind", "spectrum", "-o", "figure"}, "must end with"},
+        BadUsage{{"plot", "--kind", "phase", "-o", "figure.gif"}, "must end with"},
+        BadUsage{{"plot", "--kind", "waterfall"}, "--kind"},
+        BadUsage{{"plot", "--kind", "history", "--channel", "contact.forc"},
+                 "did you mean 'contact.force'?"},
+        BadUsage{{"plot", "--kind", "phase", "--channel", "contact.forc"},
+                 "did you mean 'contact.force'?"},
+        BadUsage{{"plot", "--kind", "spectrum", "--channel", "contact.forc"},
+                 "did you mean 'contact.force'?"},
+        BadUsage{{"plot", "--kind", "spectrum", "--length", "1 s"}, "give at most --length 0.4"},
+        BadUsage{{"plot", "--kind", "spectrum", "--scale", "log"},
+                 "'log' is neither db nor linear"},
+        BadUsage{{"plot", "--kind", "spectrum", "--reference", "1e-6"},
+                 "the channels have several units (m/s^2, m)"},
+        BadUsage{{"plot", "--kind", "history", "--overlap", "0.5"},
+                 "--overlap: means nothing for --kind history"},
+        BadUsage{{"plot", "--kind", "phase", "--scale", "db"},
+                 "--scale: means nothing for --kind phase"},
+        BadUsage{{"plot", "--kind", "spectrum", "--data", "x.h5"},
+                 "--data: means nothing for --kind spectrum"},
+        BadUsage{{"plot", "--kind", "history", "--from", "7 N"}, "--from: '7 N' has unit N"}));
+
+TEST_F(Pictures, RunWithoutAccelerationNamesItsChannels) {
+  RunContents contents;
+  contents.channels = {"/contact/contact/force"};
+  const ProgramResult result =
+      Program({"spectrogram", make_run(contents), "-o", path("a.svg")}).run();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err,
+              HasSubstr("has no acceleration; name one of its channels: contact.force"));
+}
+
+TEST_F(Pictures, WrongSettingsOfTheSceneAreToldByTheirKey) {
+  RunContents contents;
+  contents.scene += "spectrogram: {length: 3.0}\n";
+  const ProgramResult result =
+      Program({"spectrogram", make_run(contents), "-o", path("a.svg")}).run();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("spectrogram.length: a piece of 3 s is longer than the 0.4 s"));
+}
+
+// ---------------------------------------------------------------- files that are no good
+
+/// Every command that reads a run file.
+std::vector<std::vector<std::string>> reading_commands(const std::string& run,
+                                                       const std::string& figure) {
+  std::vector<std::vector<std::string>> commands{{"info", run}, {"spectrogram", run, "-o", figure}};
+  for (const char* kind : {"history", "spectrogram", "phase", "spectrum"})
+    commands.push_back({"plot", run, "--kind", kind, "-o", figure});
+  return commands;
+}
+
+TEST_F(Pictures, WhatIsNoRunFileIsFileTroubleForEveryCommand) {
+  const std::string whole = contents_of(make_run());
+  write_file(path("text.h5"), "not HDF5 at all");
+  write_file(path("empty.h5"), "");
+  write_file(path("cut.h5"), whole.substr(0, whole.size() / 2));
+  H5Fclose(H5Fcreate(path("foreign.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  std::filesystem::create_directory(folder_ / "folder.h5");
+  for (const char* name :
+       {"text.h5", "empty.h5", "cut.h5", "foreign.h5", "folder.h5", "missing.h5"}) {
+    for (const auto& arguments : reading_commands(path(name), path("a.svg"))) {
+      const ProgramResult result = Program(arguments).run();
+      EXPECT_EQ(result.exit_code, 4) << name << result.err;
+      EXPECT_THAT(result.err, HasSubstr(name));
+    }
+  }
+  EXPECT_FALSE(exists("a.svg"));
+}
+
+struct Damage {
+  const char* what;
+  std::function<void(hid_t)> action;
+  std::string message;  ///< names the dataset
+  bool is_seen_by_info = true;
+  bool is_seen_by_history = true;
+};
+
+TEST_F(Pictures, DamagedDatasetsAreNamed) {
+  const auto set_value = [](hid_t file, const char* dataset, hsize_t row, double value) {
+    const hid_t data = H5Dopen2(file, dataset, H5P_DEFAULT);
+    const hid_t space = H5Dget_space(data);
+    const hsize_t one = 1;
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, &row, nullptr, &one, nullptr);
+    const hid_t memory = H5Screate_simple(1, &one, nullptr);
+    H5Dwrite(data, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, &value);
+    H5Sclose(memory);
+    H5Sclose(space);
+    H5Dclose(data);
+  };
+  const auto resize = [](hid_t file, const char* dataset, hsize_t length) {
+    const hid_t data = H5Dopen2(file, dataset, H5P_DEFAULT);
+    H5Dset_extent(data, &length);
+    H5Dclose(data);
+  };
+  const char* acceleration = "/channels/beam.tip.y.acceleration";
+  const std::string named = std::string("dataset ") + acceleration;
+  const std::vector<Damage> damages{
+      {"no time", [](hid_t f) { H5Ldelete(f, "/time", H5P_DEFAULT); }, "dataset /time: is missing"},
+      {"no rows", [&](hid_t f) { resize(f, "/time", 0); }, "dataset /time: is empty", false},
+      {"times swapped", [&](hid_t f) { set_value(f, "/time", 7, 0.3); },
+       "dataset /time: is not equidistant: row 7", false},
+      {"time not a number", [&](hid_t f) { set_value(f, "/time", 3999, std::nan("")); },
+       "dataset /time: is not equidistant", false},
+      {"no scene", [](hid_t f) { H5Ldelete(f, "/scene/resolved", H5P_DEFAULT); },
+       "dataset /scene/resolved: is missing"},
+      {"channel too short", [&](hid_t f) { resize(f, acceleration, 100); },
+       named + ": has 100 rows, but /time has 4000", false},
+      {"no unit",
+       [&](hid_t f) {
+         const hid_t data = H5Dopen2(f, acceleration, H5P_DEFAULT);
+         H5Adelete(data, "units");
+         H5Dclose(data);
+       },
+       named + ": has no attribute 'units'"},
+      {"not finite", [&](hid_t f) { set_value(f, acceleration, 2000, HUGE_VAL); },
+       named + ": is not finite at 0.2 s", false, false},
+      {"bursts without an end", [](hid_t f) { H5Ldelete(f, "/bursts/end", H5P_DEFAULT); },
+       "dataset /bursts/end: is missing", true, false},
+      {"burst that ends first", [&](hid_t f) { set_value(f, "/bursts/end", 0, 0.1); },
+       "dataset /bursts/end: lies before the start in entry 0", true, false},
+      {"burst without frequency", [&](hid_t f) { set_value(f, "/bursts/frequency", 0, NAN); },
+       "dataset /bursts/frequency: is not finite in entry 0", true, false},
+      {"bursts of different number",
+       [](hid_t f) {
+         const double values[2] = {1.0, 2.0};
+         const hsize_t two = 2;
+         H5Ldelete(f, "/bursts/gain", H5P_DEFAULT);
+         H5LTmake_dataset_double(f, "/bursts/gain", 1, &two, values);
+       },
+       "dataset /bursts/gain: has 2 entries, but /bursts/start has 1", true, false},
+  };
+  for (const Damage& damage : damages) {
+    const std::string run = make_run();
+    edit(run, damage.action);
+    std::vector<std::vector<std::string>> commands{
+        {"spectrogram", run, "-o", path("a.svg")},
+        {"plot", run, "--kind", "spectrum", "-o", path("a.svg")}};
+    if (damage.is_seen_by_info) commands.push_back({"info", run});
+    if (damage.is_seen_by_history)
+      commands.push_back({"plot", run, "--kind", "history", "-o", path("a.svg")});
+    for (const auto& arguments : commands) {
+      const ProgramResult result = Program(arguments).run();
+      EXPECT_EQ(result.exit_code, 4) << damage.what << ", " << arguments[0] << result.err;
+      EXPECT_THAT(result.err, AllOf(HasSubstr("run.h5"), HasSubstr(damage.message)))
+          << damage.what << ", " << arguments[0];
+    }
+  }
+  EXPECT_FALSE(exists("a.svg"));
+}
+
+TEST_F(Pictures, UnreadableSceneIsNamedWhereItIsNeeded) {
+  for (const char* scene : {"spectrogram: [", "measure: 7\n", "spectrogram: {overlap: much}\n"}) {
+    RunContents contents;
+    contents.scene = scene;
+    const ProgramResult result =
+        Program({"spectrogram", make_run(contents), "-o", path("a.svg")}).run();
+    EXPECT_EQ(result.exit_code, 4) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("run.h5: dataset /scene/resolved: cannot be read"));
+  }
+  EXPECT_FALSE(exists("a.svg"));
+}
+
+TEST(DamageGuardDeathTest, CrashWhileAFileIsOpenIsFileTrouble) {
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT}) {
+    const auto crash = [&] {
+      const DamageGuard guard("bad.h5");
+      raise(signal);
+    };
+    EXPECT_EXIT(crash(), ::testing::ExitedWithCode(4), "file trouble\nbad.h5: is damaged");
+  }
+  const auto crash_later = [] {
+    { const DamageGuard guard("good.h5"); }
+    raise(SIGSEGV);
+  };
+  EXPECT_EXIT(crash_later(), ::testing::KilledBySignal(SIGSEGV), "");
+}
+
+TEST_F(Pictures, BytesChangedAnywhereNeverEndInAnInternalError) {
+  RunContents contents;
+  contents.rows = 200;
+  const std::string whole = contents_of(make_run(contents));
+  std::mt19937 generator(11);
+  for (int trial = 0; trial < 15; ++trial) {
+    std::string bytes = whole;
+    // What describes the data stands mostly in the first pages.
+    for (int i = 0; i < 20; ++i) bytes[generator() % 16384] = static_cast<char>(generator());
+    write_file(path("bad.h5"), bytes);
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"info", path("bad.h5")},
+          {"plot", path("bad.h5"), "--kind", "phase", "-o", path("a.svg"), "--force"}}) {
+      const ProgramResult result = Program(arguments).run();
+      EXPECT_THAT(result.exit_code, ::testing::AnyOf(0, 2, 4)) << trial << result.err;
+    }
+  }
+}
+
+// ---------------------------------------------------------------- from the scene to the picture
+
+TEST_F(Pictures, SettingsOfASceneReachThePictureOfItsRun) {
+  const std::string run = path("run.h5");
+  std::vector<std::string> arguments{"run", scene_path("beam_on_beam.yaml"), "-o", run};
+  for (const char* set :
+       {"time.end=2e-3", "measure.from=5e-4", "spectrogram.length=1 ms", "spectrogram.overlap=50 %",
+        "spectrogram.channel=contact.force", "spectrogram.window=rectangular"}) {
+    arguments.emplace_back("--set");
+    arguments.emplace_back(set);
+  }
+  const ProgramResult made = Program(arguments).run();
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const Json object = json_of({"spectrogram", run, "-o", path("a.svg")});
+  EXPECT_EQ(object["channel"], "contact.force");
+  EXPECT_EQ(object["length_samples"], 100);
+  EXPECT_EQ(object["overlap"], 0.5);
+  EXPECT_EQ(object["window"], "rectangular");
+  EXPECT_EQ(object["max_frequency"], 15000.0);
+}
+
+}  // namespace
+}  // namespace stridor

@@ -1,0 +1,119 @@
+#include "app/stability.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/support/message_of.hpp"
+#include "tests/support/paper_model.hpp"
+#include "tests/support/program.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+
+TEST(PrintedUnits, AreWrittenAsInRunFiles) {
+  const auto printed = [](const char* unit) { return printed_units({"key", unit, {}, false}); };
+  EXPECT_EQ(printed(""), "1");
+  EXPECT_EQ(printed("m"), "m");
+  EXPECT_EQ(printed("s-1"), "1/s");
+  EXPECT_EQ(printed("m s-1"), "m/s");
+  EXPECT_EQ(printed("kg m-3"), "kg/m^3");
+  EXPECT_EQ(value_text({"drive.load", "N", {}, false}, -0.2), "drive.load = -0.2 N");
+  EXPECT_EQ(value_text({"friction", "", {}, false}, 0.3), "friction = 0.3");
+}
+
+TEST(StabilityChanges, AreWhereTheFirstBeginsAndTheLastEnds) {
+  // Two windows that overlap, and one apart that begins with the range.
+  Locus locus;
+  locus.values = {0.0, 1.0};
+  locus.unstable = {{0.0, 0.1, 5.0, 1.0, 0.1, 0.0, 0},
+                    {0.3, 0.5, 10.0, 1.0, 0.1, 0.4, 0},
+                    {0.4, 0.6, 20.0, 1.0, 0.1, 0.5, 1}};
+  locus.crossings = {{0.1, 5.0, -1, 0},
+                     {0.3, 10.0, 1, 0},
+                     {0.4, 20.0, 1, 1},
+                     {0.5, 11.0, -1, 0},
+                     {0.6, 21.0, -1, 1}};
+  const auto changes = stability_changes(locus);
+  ASSERT_EQ(changes.size(), 3u);
+  EXPECT_EQ(changes[0].value, 0.1);
+  EXPECT_FALSE(changes[0].is_unstable_beyond);
+  EXPECT_EQ(changes[1].value, 0.3);
+  EXPECT_EQ(changes[1].frequency, 10.0);
+  EXPECT_TRUE(changes[1].is_unstable_beyond);
+  EXPECT_EQ(changes[2].value, 0.6);
+  EXPECT_FALSE(changes[2].is_unstable_beyond);
+  EXPECT_TRUE(stability_changes({{0.0, 1.0}, {}, {}, {}, {}, {}, 0, 0}).empty());
+}
+
+TEST(TrustedFrequency, IsHalfThatOfTheHighestFixedInterfaceModeKept) {
+  const Model model = make_paper_model(paper_model());
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const SystemBody& body : model.system.bodies) {
+    const Eigen::VectorXd squares =
+        body.reduced.stiffness.diagonal().tail(body.reduced.size() - body.reduced.num_interface);
+    lowest = std::min(lowest, std::sqrt(squares.maxCoeff()));
+  }
+  EXPECT_NEAR(trusted_frequency(model.system), 0.5 * lowest / (2.0 * std::numbers::pi),
+              1e-9 * lowest);
+  System rigid;
+  rigid.bodies.emplace_back();
+  EXPECT_EQ(trusted_frequency(rigid), std::numeric_limits<double>::infinity());
+}
+
+TEST(IsGrowing, LeavesRoomForRounding) {
+  EXPECT_FALSE(is_growing({{1e-9, 1e5}, 0.0}));
+  EXPECT_TRUE(is_growing({{1e-3, 1e5}, 0.0}));
+  EXPECT_FALSE(is_growing({{-1.0, 1e5}, 0.0}));
+}
+
+TEST(StabilityFamily, NamesTheValuesWhereThereIsNoEquilibrium) {
+  const LoadedScene loaded =
+      load_scene(scene_path("beam_on_beam.yaml"), {"contact.assumption=film"});
+  const NumericKey start = find_stability_key(loaded.scene, "contact.start", "--parameter");
+  // A load that lifts the oblique beam off the cantilever: nothing holds it any more.
+  StabilityFamily family(loaded,
+                         {start, find_stability_key(loaded.scene, "drive.load", "--parameter")},
+                         ContactGeometry::deformed);
+  EXPECT_THAT(
+      message_of<NumericalError>([&] {
+        family.at(std::array{0.0999, 0.2});
+      }),
+      HasSubstr("no sliding equilibrium at contact.start = 0.0999 m, drive.load = 0.2 N: "));
+}
+
+TEST(StabilityFamily, ContactStandsWhereItIsWantedInEitherGeometry) {
+  const LoadedScene loaded = load_scene(scene_path("beam_on_beam.yaml"), {});
+  const NumericKey start = find_stability_key(loaded.scene, "contact.start", "--parameter");
+  StabilityFamily undeformed(loaded, {start}, ContactGeometry::undeformed);
+  StabilityFamily deformed(loaded, {start}, ContactGeometry::deformed);
+  const SlidingState straight = undeformed.at(std::array{0.048});
+  const SlidingState bent = deformed.at(std::array{0.048});
+  EXPECT_NEAR(straight.equilibrium.contacts[0].position, 0.048, 1e-12);
+  EXPECT_NEAR(bent.equilibrium.contacts[0].position, 0.048, 1e-12);
+  // The tip is bent back by friction, so the drive has gone farther.
+  EXPECT_NEAR(straight.equilibrium.state.drive_displacement, 0.018, 1e-12);
+  EXPECT_GT(bent.equilibrium.state.drive_displacement, 0.018 + 1e-5);
+  EXPECT_LT(bent.equilibrium.state.drive_displacement, 0.018 + 2e-4);
+}
+
+TEST(StabilityFamily, KinksAreTheMasterNodes) {
+  const LoadedScene loaded = load_scene(scene_path("beam_on_beam.yaml"), {});
+  const NumericKey start = find_stability_key(loaded.scene, "contact.start", "--parameter");
+  StabilityFamily undeformed(loaded, {start}, ContactGeometry::undeformed);
+  const auto nodes = undeformed.along(0, {0.03}, 0.0305, 0.0335).kinks;
+  ASSERT_EQ(nodes.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(nodes[i], 0.031 + 0.001 * static_cast<double>(i), 1e-12);
+  StabilityFamily friction(
+      loaded, {find_stability_key(loaded.scene, "contact.friction.coefficient", "--parameter")},
+      ContactGeometry::undeformed);
+  EXPECT_TRUE(friction.along(0, {0.3}, 0.1, 0.4).kinks.empty());
+}
+
+}  // namespace
+}  // namespace stridor

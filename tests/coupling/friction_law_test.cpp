@@ -1,0 +1,79 @@
+#include "coupling/friction_law.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace stridor {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+constexpr FrictionLaw falling{FrictionLaw::Kind::stribeck, 0.5, 0.2, 0.01};
+constexpr FrictionLaw rising{FrictionLaw::Kind::stribeck, 0.2, 0.5, 0.01};
+
+TEST(FrictionLaw, ConstantHoldsAsMuchAtRestAsInSliding) {
+  const FrictionLaw law = constant_friction(0.3);
+  EXPECT_EQ(law.static_coefficient, 0.3);
+  for (const double velocity : {-10.0, -1e-9, 0.0, 1e-9, 10.0}) {
+    EXPECT_EQ(sliding_friction(law, velocity), 0.3);
+    EXPECT_EQ(sliding_friction_slope(law, velocity), 0.0);
+  }
+}
+
+TEST(FrictionLaw, StaticDynamicSlidesWithTheDynamicCoefficientAtAnySpeed) {
+  const FrictionLaw law{FrictionLaw::Kind::static_dynamic, 0.4, 0.3, 1.0};
+  for (const double velocity : {-10.0, -1e-9, 0.0, 1e-9, 10.0}) {
+    EXPECT_EQ(sliding_friction(law, velocity), 0.3);
+    EXPECT_EQ(sliding_friction_slope(law, velocity), 0.0);
+  }
+}
+
+TEST(FrictionLaw, StribeckFallsFromStaticToDynamicOverItsDecayVelocity) {
+  EXPECT_EQ(sliding_friction(falling, 0.0), 0.5);
+  EXPECT_EQ(sliding_friction(falling, 1.0), 0.2);  // e^-100 is nothing beside 0.2
+  EXPECT_NEAR(sliding_friction(falling, 0.01), 0.2 + 0.3 * std::exp(-1.0), eps);
+  EXPECT_NEAR(sliding_friction(falling, 0.01 * std::log(2.0)), 0.35, 2.0 * eps);
+  double last = 1.0;
+  for (double velocity = 0.0; velocity < 0.1; velocity += 1e-3) {
+    EXPECT_LT(sliding_friction(falling, velocity), last);
+    last = sliding_friction(falling, velocity);
+  }
+}
+
+TEST(FrictionLaw, DependsOnTheSpeedNotOnItsSign) {
+  for (const FrictionLaw& law : {falling, rising}) {
+    for (const double velocity : {1e-4, 0.01, 0.3}) {
+      EXPECT_EQ(sliding_friction(law, -velocity), sliding_friction(law, velocity));
+      EXPECT_EQ(sliding_friction_slope(law, -velocity), sliding_friction_slope(law, velocity));
+    }
+  }
+}
+
+TEST(FrictionLaw, SlopeIsTheDerivativeByTheSpeed) {
+  // Central difference: truncation v_d² μ'''/6 (1e-4)² is below 1e-8 of the slope, rounding
+  // eps μ/(1e-4 v_d) is 1e-10.
+  for (const FrictionLaw& law : {falling, rising}) {
+    for (const double speed : {0.001, 0.01, 0.03}) {
+      const double dv = 1e-4 * law.decay_velocity;
+      const double difference =
+          (sliding_friction(law, speed + dv) - sliding_friction(law, speed - dv)) / (2.0 * dv);
+      const double slope = sliding_friction_slope(law, speed);
+      EXPECT_NEAR(slope, difference, 1e-8 * std::abs(slope) + 2e-10) << speed;
+    }
+  }
+  EXPECT_NEAR(sliding_friction_slope(falling, 0.0), -30.0, 30.0 * eps);
+  EXPECT_NEAR(sliding_friction_slope(rising, 0.0), 30.0, 30.0 * eps);
+  EXPECT_EQ(sliding_friction_slope(falling, 10.0), -0.0);
+}
+
+TEST(FrictionLaw, EqualCoefficientsMakeStribeckConstant) {
+  const FrictionLaw law{FrictionLaw::Kind::stribeck, 0.3, 0.3, 0.01};
+  for (const double velocity : {0.0, 0.01, 1.0}) {
+    EXPECT_EQ(sliding_friction(law, velocity), 0.3);
+    EXPECT_EQ(sliding_friction_slope(law, velocity), 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace stridor

@@ -1,0 +1,121 @@
+#include "solvers/dense_eigenvalues.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/errors.hpp"
+#include "tests/support/full_model.hpp"
+#include "tests/support/message_of.hpp"
+#include "tests/support/pencils.hpp"
+
+namespace stridor {
+namespace {
+
+using test::eps;
+using test::message_of;
+using ::testing::HasSubstr;
+using Complex = std::complex<double>;
+
+TEST(DenseEigenvalues, TwoModesInContactAreOneOscillator) {
+  // b_C q = 0 leaves one coordinate: (w1 + w2)(s² + c s) + w1 ω2² + w2 ω1² = 0, w = b_C b_E.
+  const double c = 0.3;
+  const Eigen::RowVector2d compatibility(1.0, 2.0);
+  const Eigen::RowVector2d equilibrium(0.5, -0.1);
+  const Pencil pencil = test::constrained_modes(
+      Eigen::Vector2d(3.0, 7.0), Eigen::Vector2d::Constant(c), compatibility, equilibrium);
+  const double w1 = 0.5;
+  const double w2 = -0.2;
+  const double square = (w1 * 49.0 + w2 * 9.0) / (w1 + w2);
+  const Complex expected(-0.5 * c, std::sqrt(square - 0.25 * c * c));
+  const auto found = dense_eigenvalues(pencil);
+  ASSERT_EQ(found.size(), 1);
+  EXPECT_LT(std::abs(found[0].s - expected), 100 * eps * std::abs(expected));
+  EXPECT_LT(found[0].residual, 100 * eps);
+}
+
+TEST(DenseEigenvalues, CirculatoryAndGyroscopicPairsHaveTheirClosedForms) {
+  // q̈1 + q1 + p q2 = 0, q̈2 + 1.4 q2 − p q1 = 0: s² = −1.2 ± √(0.04 − p²).
+  Pencil pencil = test::two_masses({1.0, 1.4}, {0.0, 0.0});
+  pencil.slot_stiffness = test::circulatory(0.3);
+  auto found = dense_eigenvalues(pencil);
+  ASSERT_EQ(found.size(), 2);
+  const Complex root = std::sqrt(Complex(-1.2, std::sqrt(0.05)));
+  EXPECT_NEAR(found[0].growth(), -std::abs(root.real()), 100 * eps);
+  EXPECT_NEAR(found[1].growth(), 0.1016256896, 1e-10);
+  EXPECT_NEAR(found[1].s.imag(), std::abs(root.imag()), 100 * eps);
+
+  pencil.slot_stiffness = test::circulatory(0.05);
+  pencil.slot_damping = test::circulatory(0.1);
+  found = dense_eigenvalues(pencil);
+  ASSERT_EQ(found.size(), 2);
+  EXPECT_NEAR(std::abs(found[0].growth()), 0.0111662740, 1e-10);
+  EXPECT_NEAR(found[0].growth() + found[1].growth(), 0.0, 100 * eps);
+}
+
+TEST(DenseEigenvalues, EveryPairHasASmallResidual) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const Pencil pencil =
+        test::random_pencil(seed, 25, 2, test::ContactTerms::with_stiffness_and_damping);
+    const DenseSpectrum spectrum = dense_spectrum(pencil);
+    // Conjugates in pairs: what is not real counts twice.
+    int count = 0;
+    for (std::size_t i = 0; i < spectrum.eigenvalues.size(); ++i) {
+      const Eigenvalue& eigenvalue = spectrum.eigenvalues[i];
+      count += eigenvalue.s.imag() > 0.0 ? 2 : 1;
+      // The iteration is backward stable in the norm of the matrix, 1000 rad/s; the slowest modes
+      // have 1 rad/s.
+      EXPECT_LT(eigenvalue.residual, 1e-10);
+      EXPECT_EQ(eigenvalue.residual,
+                relative_residual(pencil, eigenvalue.s,
+                                  spectrum.right.col(static_cast<Eigen::Index>(i))));
+    }
+    EXPECT_EQ(count, pencil.num_eigenvalues());
+  }
+}
+
+TEST(DenseEigenvalues, WithoutResidualsTheSame) {
+  const Pencil pencil = test::random_pencil(5, 25, 1, test::ContactTerms::with_stiffness);
+  const auto with = dense_eigenvalues(pencil);
+  const DenseSpectrum without = dense_spectrum(pencil, DenseWork::eigenvalues);
+  ASSERT_EQ(with.size(), without.eigenvalues.size());
+  EXPECT_EQ(without.right.size(), 0);
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    EXPECT_LT(std::abs(with[i].s - without.eigenvalues[i].s), 1e-9);
+    EXPECT_EQ(without.eigenvalues[i].residual, 0.0);
+  }
+}
+
+TEST(DenseEigenvalues, SlowModesOfAStiffMeshKeepTheirDigits) {
+  // 1 and 6e6 rad/s under one constraint: unscaled, entries of 4e13 would leave the slow pair
+  // without a correct digit.
+  Eigen::Vector4d omega(1.0, 3.0, 2e6, 6e6);
+  const Eigen::RowVector4d row(1.0, 1.0, 0.5, 2.0);
+  const Pencil pencil = test::constrained_modes(omega, Eigen::Vector4d::Constant(0.01), row, row);
+  const auto found = dense_eigenvalues(pencil);
+  // To the slow pair the fast modes are rigid but for 1e-12:
+  // 1/(x + 1) + 1/(x + 9) = 0 with x = s² + 0.01 s, so x = −5 and |s|² = 5.
+  ASSERT_EQ(found.size(), 3);
+  // Absolute error of the order of 6e6 eps = 1.3e-9.
+  EXPECT_NEAR(std::abs(found[0].s), std::sqrt(5.0), 1e-8);
+  EXPECT_NEAR(found[0].growth(), -0.005, 1e-8);
+}
+
+TEST(DenseEigenvalues, SaysWhyItFails) {
+  Pencil pencil = test::random_pencil(5, 10, 2, test::ContactTerms::rows_only);
+  pencil.compatibility.row(1) = 2.0 * pencil.compatibility.row(0);
+  EXPECT_EQ(message_of<NumericalError>([&] { dense_eigenvalues(pencil); }),
+            "dense eigenvalues: the 2 rows of B_C have rank 1");
+  // b_C · b_E = 0: no contact force answers to an acceleration.
+  const Pencil jammed =
+      test::constrained_modes(Eigen::Vector3d(1, 2, 3), Eigen::Vector3d::Zero(),
+                              Eigen::RowVector3d(1, 1, 0), Eigen::RowVector3d(1, -1, 0));
+  EXPECT_THAT(message_of<NumericalError>([&] { dense_eigenvalues(jammed); }),
+              HasSubstr("the reduced mass matrix is singular"));
+  EXPECT_EQ(message_of<std::invalid_argument>([] { dense_eigenvalues(Pencil{}); }),
+            "pencil: 0 constraints leave nothing of 0 modes");
+}
+
+}  // namespace
+}  // namespace stridor
