@@ -31,6 +31,7 @@ struct PictureOptions {
   std::optional<std::string> reference;
   std::optional<std::string> range;
   std::optional<std::string> data;
+  std::optional<std::string> predict;  ///< locus file
 };
 
 /// --from, --to, --json, --force.

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "app/pictures.hpp"
+#include "app/prediction.hpp"
 #include "core/errors.hpp"
 #include "io/axes.hpp"
 #include "io/spectrogram_file.hpp"
@@ -117,6 +118,15 @@ ExitCode draw_spectrogram(const PictureOptions& options) {
                                    burst_channel(run.file));
   }
 
+  std::vector<PredictedBurst> predictions;
+  if (options.predict) {
+    predictions = match_bursts(read_locus_windows(*options.predict), bursts);
+    for (SpectrogramMark& mark : predicted_marks(predictions))
+      picture.marks.push_back(std::move(mark));
+    picture.caption += fmt::format(" Dotted: unstable windows of {}.",
+                                   fs::path(*options.predict).filename().string());
+  }
+
   const Spectrogram spectrogram =
       make_spectrogram(run.finite_values(series), run.interval, parameters, run.first_time());
   const double highest = highest_amplitude(spectrogram, picture.max_frequency, picture.mean_lines);
@@ -147,10 +157,12 @@ ExitCode draw_spectrogram(const PictureOptions& options) {
     object["highest_level"] =
         highest > 0.0 ? number(decibels(highest, picture.reference)) : Json(nullptr);
     object["bursts"] = bursts.size();
+    if (options.predict) object["prediction"] = prediction_json(predictions);
     fmt::print("{}\n", object.dump(2));
   } else {
     fmt::print("{}\n", options.output);
     if (options.data) fmt::print("{}\n", *options.data);
+    if (options.predict) print_prediction(predictions);
   }
   return ExitCode::done;
 }
@@ -166,6 +178,9 @@ void add_spectrogram_command(CLI::App& program, Action& action) {
                    "Channel to show; default: the acceleration in which bursts are sought")
       ->take_all()
       ->allow_extra_args(false);
+  verb->add_option("--predict", options->predict,
+                   "Locus file (`locus -o`) whose unstable windows are marked and set beside the "
+                   "bursts");
   add_spectrum_options(*verb, *options);
   add_data_option(*verb, *options);
   add_picture_options(*verb, *options);

@@ -88,6 +88,33 @@ void FigureScript::set_axis(char axis, const ValueRange& range, const AxisScale&
   add("set {}tics {:.12g} format '%.{}f'", axis, scale.step, scale.decimals);
 }
 
+AxisScale axis_scale(double lower, double upper, int num_ticks) {
+  AxisScale scale;
+  const double width = upper - lower;
+  const double rough = width / num_ticks;
+  double power = std::pow(10.0, std::floor(std::log10(rough)));
+  double step = 10.0 * power;
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= 0.999 * rough) {
+      step = factor * power;
+      break;
+    }
+  }
+  double largest = std::max(std::abs(lower), std::abs(upper));
+  if (step < 2e-5 * largest) {
+    // A round number near the middle, a multiple of the step.
+    const double coarse = std::pow(10.0, std::ceil(std::log10(width)));
+    scale.offset = std::round(0.5 * (lower + upper) / coarse) * coarse;
+    largest = std::max(std::abs(lower - scale.offset), std::abs(upper - scale.offset));
+  }
+  if (largest >= 1e5 || largest < 1e-2) {
+    scale.exponent = 3 * static_cast<int>(std::floor(std::log10(largest) / 3.0));
+  }
+  scale.step = step / std::pow(10.0, scale.exponent);
+  scale.decimals = std::max(0, -static_cast<int>(std::floor(std::log10(scale.step) + 1e-9)));
+  return scale;
+}
+
 AxisScale frequency_scale(double highest, int num_ticks) {
   AxisScale scale = axis_scale(0.0, highest, num_ticks);
   if (scale.exponent != 0 || highest < 2000.0) return scale;

@@ -13,9 +13,20 @@
 #include <vector>
 
 #include "io/gnuplot.hpp"
-#include "io/history_plot.hpp"
 
 namespace stridor {
+
+/// How the numbers along an axis are written: value = offset + 10^exponent · number.
+struct AxisScale {
+  double offset = 0.0;  ///< taken off where the values differ only from the fifth digit on
+  int exponent = 0;     ///< multiple of 3; 0 for values between 10⁻² and 10⁵
+  double step = 0.1;    ///< between two tick marks, as a number
+  int decimals = 1;     ///< that the step needs
+};
+
+/// Scale of an axis with about `num_ticks` marks from lower to upper.
+/// @param lower, upper finite, lower < upper
+AxisScale axis_scale(double lower, double upper, int num_ticks);
 
 /// The values along an axis; empty at first.
 struct ValueRange {

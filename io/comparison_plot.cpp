@@ -1,10 +1,13 @@
 #include "io/comparison_plot.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
+#include "io/axes.hpp"
 #include "io/history_plot.hpp"
 #include "io/run_summary.hpp"
+#include "io/spectrogram_plot.hpp"
 
 namespace stridor {
 namespace {
@@ -22,6 +25,32 @@ Curve from(double start, Curve curve) {
   curve.times.erase(curve.times.begin(), first);
   curve.values.erase(curve.values.begin(), curve.values.begin() + dropped);
   return curve;
+}
+
+/// Spectrograms of one series of all runs; a run that ended before a piece was full has none.
+void draw_spectrograms(const std::vector<ComparisonRun>& runs,
+                       const std::vector<RunFileReader>& files, const std::string& series,
+                       const Scene& scene, const std::filesystem::path& figure) {
+  const double interval = scene.record->interval;
+  SpectrogramPicture picture;
+  picture.units = files.back().units(series);
+  picture.reference = standard_reference(picture.units);
+  picture.max_frequency = scene.measure.band.size() == 2 ? scene.measure.band[1] : 0.4 / interval;
+  SpectrogramParameters parameters;
+  const double whole = files.back().times().back();
+  parameters.length = std::max<std::size_t>(
+      16,
+      static_cast<std::size_t>(std::lround(std::sqrt(whole / picture.max_frequency) / interval)));
+  picture.mean_lines = main_lobe_lines(parameters.window);
+  std::vector<Spectrogram> spectrograms;
+  spectrograms.reserve(runs.size());
+  std::vector<SpectrogramPanel> panels;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!files[i].has(series) || files[i].times().size() < parameters.length) continue;
+    spectrograms.push_back(make_spectrogram(files[i].series(series), interval, parameters));
+    panels.push_back({runs[i].title, &spectrograms.back(), {}});
+  }
+  if (!panels.empty()) plot_spectrograms(panels, picture, figure);
 }
 
 }  // namespace
@@ -67,6 +96,10 @@ std::vector<std::filesystem::path> plot_comparison(const std::vector<ComparisonR
     if (panels.empty()) continue;
     figures.push_back(folder / name);
     plot_histories(panels, figures.back(), pair);
+  }
+  if (const auto acceleration = acceleration_channel(files.back())) {
+    figures.push_back(folder / "spectrograms.png");
+    draw_spectrograms(runs, files, *acceleration, scene, figures.back());
   }
   return figures;
 }

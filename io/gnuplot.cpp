@@ -128,7 +128,7 @@ std::string terminal(const std::string& ending, FigureSize size) {
   }
   if (ending == ".pdf") {
     return fmt::format("set terminal pdfcairo size {:g}cm,{:g}cm noenhanced {} linewidth 0.5\n",
-                       size.width, size.height, font(1.0));
+                       size.width, size.height, font(72.0 / 96.0));
   }
   constexpr double dots_per_cm = 100.0;
   // The terminals for PNG take an inch to have 96 dots.

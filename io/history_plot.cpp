@@ -9,6 +9,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "io/axes.hpp"
+#include "io/gnuplot.hpp"
+
 namespace stridor {
 namespace {
 
@@ -17,70 +20,9 @@ constexpr std::size_t num_columns = 2000;
 // Blue, and for second curves an orange that stays apart from it in grey and for the colour-blind.
 constexpr std::array<const char*, 4> colours{"#0b5394", "#e07b00", "#38761d", "#741b47"};
 
-struct Range {
-  double lower = std::numeric_limits<double>::infinity();
-  double upper = -std::numeric_limits<double>::infinity();
-
-  void include(std::span<const double> values) {
-    for (const double x : values) {
-      if (!std::isfinite(x)) continue;
-      lower = std::min(lower, x);
-      upper = std::max(upper, x);
-    }
-  }
-  bool is_empty() const { return !(lower <= upper); }
-};
-
-// Never empty and never a point.
-Range widened(Range range, double share) {
-  if (range.is_empty()) return {0.0, 1.0};
-  double margin = share * (range.upper - range.lower);
-  // Below this the number of digits in a double gives no axis.
-  const double least = 1e-12 * std::max(std::abs(range.lower), std::abs(range.upper));
-  if (range.upper - range.lower <= least)
-    margin = range.upper == 0.0 ? 1.0 : 0.1 * std::abs(range.upper);
-  return {range.lower - margin, range.upper + margin};
-}
-
-std::string superscript(int number) {
-  static const std::array<const char*, 10> digits{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  std::string text = number < 0 ? "⁻" : "";
-  for (const char c : std::to_string(std::abs(number)))
-    text += digits[static_cast<std::size_t>(c - '0')];
-  return text;
-}
-
-std::string scaled_units(const std::string& units, const AxisScale& scale) {
-  if (scale.exponent == 0) return units;
-  if (units == "s" && scale.exponent == -3) return "ms";
-  if (units == "s" && scale.exponent == -6) return "µs";
-  return "10" + superscript(scale.exponent) + (units.empty() ? "" : " " + units);
-}
-
-// "contact force (10⁻⁶ N)"
-std::string axis_label(const std::string& label, const std::string& units, const AxisScale& scale) {
-  const std::string unit = scaled_units(units, scale);
-  return unit.empty() ? label : label + " (" + unit + ")";
-}
-
-// "minus 0.2 N", what has been taken off; empty if nothing. It has the plain units.
-std::string offset_text(const std::string& units, const AxisScale& scale) {
-  if (scale.offset == 0.0) return "";
-  return fmt::format("{} {:.10g} {}", scale.offset > 0.0 ? "minus" : "plus", std::abs(scale.offset),
-                     units);
-}
-
-// Width of a text in cm, about: a character is 0.52 of the font size wide.
-double text_width(const std::string& text, FigureSize size) {
-  // Bytes that begin a UTF-8 character.
-  const auto count =
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; });
-  return 0.52 * static_cast<double>(count) * size.font_size * 2.54 / 72.0;
-}
-
 // A text that is too long for a panel in two lines, broken near the middle.
 std::vector<std::string> broken(const std::string& text, FigureSize size, double length) {
-  if (text_width(text, size) <= length) return {text};
+  if (text_width(text, size.font_size) <= length) return {text};
   const auto middle = static_cast<std::ptrdiff_t>(text.size() / 2);
   const auto distance = [middle](std::size_t at) {
     return std::abs(static_cast<std::ptrdiff_t>(at) - middle);
@@ -92,18 +34,6 @@ std::vector<std::string> broken(const std::string& text, FigureSize size, double
   }
   if (best == 0) return {text};
   return {text.substr(0, best), text.substr(best)};
-}
-
-double as_number(double value, const AxisScale& scale) {
-  return (value - scale.offset) / std::pow(10.0, scale.exponent);
-}
-
-// The widest tick mark, in characters.
-std::size_t tick_width(const Range& range, const AxisScale& scale) {
-  const auto width = [&](double value) {
-    return fmt::format("{:.{}f}", as_number(value, scale), scale.decimals).size();
-  };
-  return std::max(width(range.lower), width(range.upper));
 }
 
 void add_data(std::string& script, const std::string& block, const Curve& curve,
@@ -176,38 +106,11 @@ Curve envelope(const Curve& curve, std::size_t columns) {
   return reduced;
 }
 
-AxisScale axis_scale(double lower, double upper, int num_ticks) {
-  AxisScale scale;
-  const double width = upper - lower;
-  const double rough = width / num_ticks;
-  double power = std::pow(10.0, std::floor(std::log10(rough)));
-  double step = 10.0 * power;
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= 0.999 * rough) {
-      step = factor * power;
-      break;
-    }
-  }
-  double largest = std::max(std::abs(lower), std::abs(upper));
-  if (step < 2e-5 * largest) {
-    // A round number near the middle, a multiple of the step.
-    const double coarse = std::pow(10.0, std::ceil(std::log10(width)));
-    scale.offset = std::round(0.5 * (lower + upper) / coarse) * coarse;
-    largest = std::max(std::abs(lower - scale.offset), std::abs(upper - scale.offset));
-  }
-  if (largest >= 1e5 || largest < 1e-2) {
-    scale.exponent = 3 * static_cast<int>(std::floor(std::log10(largest) / 3.0));
-  }
-  scale.step = step / std::pow(10.0, scale.exponent);
-  scale.decimals = std::max(0, -static_cast<int>(std::floor(std::log10(scale.step) + 1e-9)));
-  return scale;
-}
-
 void plot_histories(const std::vector<Panel>& panels, const std::filesystem::path& figure,
                     const std::string& title) {
   check_figure_name(figure);
   if (panels.empty()) throw std::invalid_argument("history plot: no panels");
-  Range time_range;
+  ValueRange time_range;
   for (const Panel& panel : panels) {
     if (panel.curves.empty()) throw std::invalid_argument("history plot: a panel without a curve");
     for (const Curve& curve : panel.curves) {
@@ -215,27 +118,27 @@ void plot_histories(const std::vector<Panel>& panels, const std::filesystem::pat
       time_range.include(curve.times);
     }
   }
-  time_range = widened(time_range, 0.0);
+  time_range = time_range.widened(0.0);
   const AxisScale time = axis_scale(time_range.lower, time_range.upper, 6);
 
   // All lengths in cm, from the top.
   FigureSize size;
-  const double line = 1.35 * size.font_size * 2.54 / 72.0;
+  const double line = line_height(size.font_size);
   constexpr double panel_height = 4.2;
   constexpr double label_length = panel_height + 0.5;  // may reach a little into the gaps
   double height = 0.3 + (title.empty() ? 0.0 : 1.3 * line);
   std::vector<AxisScale> scales;
-  std::vector<Range> ranges;
+  std::vector<ValueRange> ranges;
   std::vector<double> tops;
   std::size_t widest = 1;
   std::vector<std::vector<std::string>> labels;
   std::size_t num_lines = 1;
   for (const Panel& panel : panels) {
-    Range data;
+    ValueRange data;
     for (const Curve& curve : panel.curves) data.include(curve.values);
-    ranges.push_back(widened(data, 0.05));
+    ranges.push_back(data.widened(0.05));
     scales.push_back(axis_scale(ranges.back().lower, ranges.back().upper, 5));
-    widest = std::max(widest, tick_width(ranges.back(), scales.back()));
+    widest = std::max(widest, tick_characters(ranges.back(), scales.back()));
     labels.push_back(
         broken(axis_label(panel.label, panel.units, scales.back()), size, label_length));
     if (scales.back().offset != 0.0)
@@ -273,7 +176,8 @@ void plot_histories(const std::vector<Panel>& panels, const std::filesystem::pat
     for (std::size_t i = 0; i < num_lines; ++i) {
       const std::string text = i < labels[p].size() ? labels[p][i] : "";
       const double font =
-          size.font_size * std::min(1.0, label_length / std::max(text_width(text, size), 0.1));
+          size.font_size *
+          std::min(1.0, label_length / std::max(text_width(text, size.font_size), 0.1));
       plots += fmt::format(
           "set label {} {} at screen {:.6f}, graph 0.5 center rotate font ',{:.2f}'\n", i + 2,
           gnuplot_string(text), (0.7 + static_cast<double>(i)) * line / size.width, font);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/axes.hpp"
 #include "io/gnuplot.hpp"
 
 namespace stridor {
@@ -35,18 +36,6 @@ struct Panel {
 /// @throws std::invalid_argument if times and values differ in length, times do not ascend or
 ///         num_columns is 0
 Curve envelope(const Curve& curve, std::size_t num_columns);
-
-/// How the numbers along an axis are written: value = offset + 10^exponent · number.
-struct AxisScale {
-  double offset = 0.0;  ///< taken off where the values differ only from the fifth digit on
-  int exponent = 0;     ///< multiple of 3; 0 for values between 10⁻² and 10⁵
-  double step = 0.1;    ///< between two tick marks, as a number
-  int decimals = 1;     ///< that the step needs
-};
-
-/// Scale of an axis with about `num_ticks` marks from lower to upper.
-/// @param lower, upper finite, lower < upper
-AxisScale axis_scale(double lower, double upper, int num_ticks);
 
 /// Draws panels one below the other over one time axis, 16 cm wide.
 ///

@@ -19,7 +19,7 @@
 #include <stdexcept>
 
 #include "core/errors.hpp"
-#include "io/hdf5_handles.hpp"
+#include "io/hdf5_output.hpp"
 #include "io/run_file.hpp"
 
 namespace stridor {
@@ -35,30 +35,6 @@ Handle link_creation(const Checker& at) {
 }
 
 // ---------------------------------------------------------------- text and numbers as attributes
-
-Handle text_type(const Checker& at, std::size_t length, const std::string& dataset) {
-  Handle type = at.own(H5Tcopy(H5T_C_S1), H5Tclose, dataset, "cannot make a text type");
-  at.check(H5Tset_size(type.id(), length + 1), dataset, "cannot make a text type");
-  at.check(H5Tset_cset(type.id(), H5T_CSET_UTF8), dataset, "cannot make a text type");
-  return type;
-}
-
-void write_attribute(const Checker& at, hid_t object, const std::string& dataset,
-                     const std::string& name, const std::variant<std::string, double>& value) {
-  const Handle space = at.own(H5Screate(H5S_SCALAR), H5Sclose, dataset, "cannot make an attribute");
-  const std::string* text = std::get_if<std::string>(&value);
-  const Handle type =
-      text != nullptr ? text_type(at, text->size(), dataset)
-                      : at.own(H5Tcopy(H5T_IEEE_F64LE), H5Tclose, dataset, "cannot make a type");
-  const std::string what = fmt::format("cannot write attribute '{}'", name);
-  const Handle attribute =
-      at.own(H5Acreate2(object, name.c_str(), type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT),
-             H5Aclose, dataset, what.c_str());
-  const herr_t status =
-      text != nullptr ? H5Awrite(attribute.id(), type.id(), text->c_str())
-                      : H5Awrite(attribute.id(), H5T_NATIVE_DOUBLE, std::get_if<double>(&value));
-  at.check(status, dataset, what.c_str());
-}
 
 void write_text(const Checker& at, hid_t file, const Handle& links, const std::string& path,
                 const std::string& text) {
@@ -114,37 +90,6 @@ void check_target(const std::string& path, Overwrite overwrite) {
                     fmt::format("cannot write in the folder '{}': {}", folder, errno_text(errno)));
   }
 }
-
-// A name that is removed again unless the file is moved onto its final name.
-class PartFile {
- public:
-  explicit PartFile(const std::string& path) : path_(fmt::format("{}.part-{}", path, getpid())) {}
-  PartFile(const PartFile&) = delete;
-  PartFile& operator=(const PartFile&) = delete;
-  ~PartFile() {
-    if (made_) unlink(path_.c_str());
-  }
-  const std::string& path() const { return path_; }
-  void made() { made_ = true; }
-
-  void move_to(const std::string& final_path, Overwrite overwrite) {
-    int status = -1;
-    if (overwrite == Overwrite::no) {
-      // Another process may have made the file meanwhile; not every file system can tell.
-      status = renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, final_path.c_str(), RENAME_NOREPLACE);
-      if (status != 0 && errno == EEXIST)
-        throw FileError(final_path, "", "exists; use --force to overwrite it");
-    }
-    if (status != 0) status = std::rename(path_.c_str(), final_path.c_str());
-    if (status != 0)
-      throw FileError(final_path, "", "cannot be given its name: " + errno_text(errno));
-    made_ = false;
-  }
-
- private:
-  std::string path_;
-  bool made_ = false;
-};
 
 }  // namespace
 
@@ -279,7 +224,7 @@ void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& heade
                "cannot be tied to /time");
     }
     at.check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "", "cannot be written");
-    part.move_to(at.path(), overwrite);
+    part.move_to_final(overwrite);
   } catch (...) {
     abandon();
     close_file();

@@ -268,28 +268,33 @@ std::vector<MarkPlace> place_marks(const std::vector<SpectrogramMark>& marks, co
 
 void plot_spectrogram(const Spectrogram& spectrogram, const SpectrogramPicture& picture,
                       const std::filesystem::path& figure) {
+  plot_spectrograms({{picture.title, &spectrogram, picture.marks}}, picture, figure);
+}
+
+void plot_spectrograms(const std::vector<SpectrogramPanel>& panels,
+                       const SpectrogramPicture& picture, const std::filesystem::path& figure) {
   check_figure_name(figure);
+  if (panels.empty()) refuse("there is no spectrogram to draw");
+  if (!is_positive(picture.max_frequency)) refuse("the highest frequency must be positive");
   if (!is_positive(picture.reference)) refuse("the reference must be positive");
   if (!is_positive(picture.range)) refuse("the range must be positive");
-  const auto num_lines = static_cast<std::size_t>(
-      std::count_if(spectrogram.frequencies.begin(), spectrogram.frequencies.end(),
-                    [&](double frequency) { return frequency <= picture.max_frequency; }));
-  const AmplitudeRaster raster =
-      rasterise(spectrogram, picture.max_frequency, raster_cells(num_lines, 600),
-                raster_cells(spectrogram.times.size(), 1000));
-  double highest = highest_amplitude(spectrogram, picture.max_frequency, picture.mean_lines);
+  double highest = 0.0;
+  for (const SpectrogramPanel& panel : panels) {
+    highest = std::max(
+        highest, highest_amplitude(*panel.spectrogram, picture.max_frequency, picture.mean_lines));
+  }
   if (highest <= 0.0) highest = picture.reference;  // all zero: the lowest colour everywhere
   const double highest_level = decibels(highest, picture.reference);
   const double lowest_level = highest_level - picture.range;
-  const AxisScale time = axis_scale(raster.from, raster.to, 6);
-  const AxisScale frequency = frequency_scale(picture.max_frequency, 8);
+  const bool is_stack = panels.size() > 1;
+  const AxisScale frequency = frequency_scale(picture.max_frequency, is_stack ? 4 : 8);
   const AxisScale level = axis_scale(lowest_level, highest_level, 6);
 
   // All lengths in cm.
   FigureSize size;
   const double line = line_height(size.font_size);
   const double character = 0.64 * size.font_size * 2.54 / 72.0;
-  constexpr double map_height = 7.2;
+  const double map_height = is_stack ? 3.6 : 7.2;
   constexpr double caption_font = 10.5;
   constexpr double bar_width = 0.45;
   const double frequency_digits = static_cast<double>(
@@ -297,64 +302,92 @@ void plot_spectrogram(const Spectrogram& spectrogram, const SpectrogramPicture& 
           .size());
   const double left = 1.5 * line + (frequency_digits + 1.3) * character;
   const double right = size.width - (0.35 + bar_width + 5.2 * character + 1.3 * line);
-  const double above = picture.title.empty() ? 0.5 * line : 1.6 * line;
+  const bool has_titles = std::any_of(panels.begin(), panels.end(),
+                                      [](const auto& panel) { return !panel.title.empty(); });
+  const double above = has_titles ? 1.6 * line : 0.5 * line;
   const std::vector<std::string> caption =
       wrapped(picture.caption, caption_font, size.width - left - 0.3);
   const double below = 2.7 * line +
                        static_cast<double>(caption.size()) * line_height(caption_font) +
                        (caption.empty() ? 0.0 : 0.2);
-  size.height = above + map_height + below;
+  const double pitch = above + map_height;
+  size.height = static_cast<double>(panels.size()) * pitch + below;
 
   FigureScript script(size);
-  script.append("$map << END_OF_DATA\n" +
-                map_data(raster.amplitude, lowest_level, picture.range, picture.reference) +
-                "END_OF_DATA\n");
   script.append("set palette defined (");
   for (std::size_t i = 0; i < viridis.size(); ++i)
     script.append(fmt::format("{}{} '{}'", i == 0 ? "" : ", ", i, viridis[i]));
   script.append(")\n");
-  script.set_margins(left, right, below, below + map_height);
-  script.set_axis('x', {raster.from, raster.to}, time);
-  script.set_axis('y', {0.0, picture.max_frequency}, frequency);
   script.add("set cbrange [{:.12g}:{:.12g}]\nset cbtics {:.12g} format '%.{}f' scale 0.6",
              lowest_level, highest_level, level.step, level.decimals);
-  script.add(
-      "set colorbox vertical user origin screen {:.6f}, screen {:.6f} size screen {:.6f}, screen "
-      "{:.6f} noborder",
-      script.across(right + 0.35), script.up(below), script.across(bar_width),
-      script.up(map_height));
   script.add("set minussign\nset border 15 linecolor '#404040'\nset tics nomirror out scale 0.6");
-  // Texts instead of gnuplot's own labels, which move about with the tick marks.
-  const double middle = below + 0.5 * map_height;
-  script.add_text(picture.title, left, below + map_height + 0.65 * line, "left");
-  script.add_text(axis_label("time", "s", time), 0.5 * (left + right), below - 1.9 * line,
-                  "center");
-  script.add_text(axis_label("frequency", "Hz", frequency), 0.7 * line, middle, "center rotate");
-  script.add_text(level_label(picture.reference, picture.units), size.width - 0.7 * line, middle,
-                  "center rotate");
-  for (std::size_t i = 0; i < caption.size(); ++i) {
-    script.add_text(caption[i], left,
-                    below - 2.7 * line - (static_cast<double>(i) + 0.5) * line_height(caption_font),
-                    "left", caption_font);
+  if (is_stack) script.add("set multiplot");
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const SpectrogramPanel& panel = panels[i];
+    const Spectrogram& spectrogram = *panel.spectrogram;
+    const bool is_last = i + 1 == panels.size();
+    const double bottom = below + static_cast<double>(panels.size() - 1 - i) * pitch;
+    const auto num_lines = static_cast<std::size_t>(
+        std::count_if(spectrogram.frequencies.begin(), spectrogram.frequencies.end(),
+                      [&](double one) { return one <= picture.max_frequency; }));
+    const AmplitudeRaster raster =
+        rasterise(spectrogram, picture.max_frequency, raster_cells(num_lines, 600),
+                  raster_cells(spectrogram.times.size(), 1000));
+    const AxisScale time = axis_scale(raster.from, raster.to, 6);
+    if (i > 0) script.add("unset label\nunset object\nunset arrow");
+    script.append(fmt::format("$map{} << END_OF_DATA\n", i) +
+                  map_data(raster.amplitude, lowest_level, picture.range, picture.reference) +
+                  "END_OF_DATA\n");
+    script.set_margins(left, right, bottom, bottom + map_height);
+    script.set_axis('x', {raster.from, raster.to}, time);
+    if (!is_last) script.add("set xtics format ''");
+    script.set_axis('y', {0.0, picture.max_frequency}, frequency);
+    // Texts instead of gnuplot's own labels, which move about with the tick marks.
+    script.add_text(panel.title, left, bottom + map_height + 0.65 * line, "left");
+    if (i == 0) {
+      const double bar_bottom = is_stack ? bottom : below;
+      script.add(
+          "set colorbox vertical user origin screen {:.6f}, screen {:.6f} size screen {:.6f}, "
+          "screen {:.6f} noborder",
+          script.across(right + 0.35), script.up(bar_bottom), script.across(bar_width),
+          script.up(map_height));
+      const double middle = below + 0.5 * (size.height - above - below);
+      script.add_text(axis_label("frequency", "Hz", frequency), 0.7 * line, middle,
+                      "center rotate");
+      script.add_text(level_label(picture.reference, picture.units), size.width - 0.7 * line,
+                      middle, "center rotate");
+    } else {
+      script.add("unset colorbox");
+    }
+    if (is_last) {
+      script.add_text(axis_label("time", "s", time), 0.5 * (left + right), below - 1.9 * line,
+                      "center");
+      for (std::size_t row = 0; row < caption.size(); ++row) {
+        script.add_text(
+            caption[row], left,
+            below - 2.7 * line - (static_cast<double>(row) + 0.5) * line_height(caption_font),
+            "left", caption_font);
+      }
+    }
+    MapArea map;
+    map.width = right - left;
+    map.height = map_height;
+    map.from = raster.from;
+    map.to = raster.to;
+    map.max_frequency = picture.max_frequency;
+    add_marks(script, panel.marks, map, left, bottom);
+    const double cell_time = (raster.to - raster.from) /
+                             static_cast<double>(raster.amplitude.cols()) /
+                             std::pow(10.0, time.exponent);
+    const double cell_frequency = raster.max_frequency /
+                                  static_cast<double>(raster.amplitude.rows()) /
+                                  std::pow(10.0, frequency.exponent);
+    script.add(
+        "plot $map{} matrix using ({:.12g} + ($1 + 0.5) * {:.12g}):(($2 + 0.5) * {:.12g}):({:.12g} "
+        "+ 0.1 * $3) with image notitle",
+        i, as_number(raster.from, time), cell_time, cell_frequency, lowest_level);
   }
-  MapArea map;
-  map.width = right - left;
-  map.height = map_height;
-  map.from = raster.from;
-  map.to = raster.to;
-  map.max_frequency = picture.max_frequency;
-  add_marks(script, picture.marks, map, left, below);
-
-  const double cell_time = (raster.to - raster.from) /
-                           static_cast<double>(raster.amplitude.cols()) /
-                           std::pow(10.0, time.exponent);
-  const double cell_frequency = raster.max_frequency /
-                                static_cast<double>(raster.amplitude.rows()) /
-                                std::pow(10.0, frequency.exponent);
-  script.add(
-      "plot $map matrix using ({:.12g} + ($1 + 0.5) * {:.12g}):(($2 + 0.5) * {:.12g}):({:.12g} + "
-      "0.1 * $3) with image notitle",
-      as_number(raster.from, time), cell_time, cell_frequency, lowest_level);
+  if (is_stack) script.add("unset multiplot");
   draw_figure(figure, script.text(), size);
 }
 

@@ -122,4 +122,19 @@ std::vector<MarkPlace> place_marks(const std::vector<SpectrogramMark>& marks, co
 void plot_spectrogram(const Spectrogram& spectrogram, const SpectrogramPicture& picture,
                       const std::filesystem::path& figure);
 
+/// One of several spectrograms over a common time axis.
+struct SpectrogramPanel {
+  std::string title;  ///< above; may be empty
+  const Spectrogram* spectrogram = nullptr;
+  std::vector<SpectrogramMark> marks;
+};
+
+/// Draws spectrograms one below the other, on one scale of colours, as plot_spectrogram().
+///
+/// @param panels  at least one
+/// @param picture its title and marks are not used
+/// @throws as plot_spectrogram()
+void plot_spectrograms(const std::vector<SpectrogramPanel>& panels,
+                       const SpectrogramPicture& picture, const std::filesystem::path& figure);
+
 }  // namespace stridor

@@ -209,6 +209,33 @@ TEST(Locus, APairThatBecomesRealIsFollowedIntoDivergence) {
   EXPECT_THAT(back.eigenvalues.back(), SizeIs(2));
 }
 
+TEST(Locus, WhatComesDownFromAboveIsNotOverlooked) {
+  // Eleven uncoupled masses; the last one softens from k = 30 to 0.5, past all the others.
+  const PencilFamily family{[](double v, Pencil& pencil) {
+                              Eigen::VectorXd stiffness = Eigen::VectorXd::LinSpaced(11, 1.0, 11.0);
+                              stiffness(10) = 30.0;
+                              const Eigen::VectorXd damping = Eigen::VectorXd::Constant(11, 0.02);
+                              pencil = test::constrained_modes(stiffness.cwiseSqrt(), damping,
+                                                               Eigen::MatrixXd(0, 11),
+                                                               Eigen::MatrixXd(0, 11));
+                              pencil.damping(10) = 0.1;
+                              pencil.slot_stiffness.setZero(11, 11);
+                              pencil.slot_stiffness(10, 10) = -v;
+                            },
+                            {}};
+  LocusOptions options;
+  options.count = 3;
+  const Locus locus = trace_locus(family, range(0.0, 29.5, 30), options);
+  EXPECT_THAT(locus.unverified, IsEmpty());
+  for (std::size_t i = 0; i < locus.values.size(); ++i) {
+    std::vector<double> squares{1.0, 2.0, 3.0, 4.0, 30.0 - locus.values[i]};
+    std::sort(squares.begin(), squares.end());
+    ASSERT_THAT(locus.eigenvalues[i], SizeIs(3));
+    for (std::size_t j = 0; j < 3; ++j)
+      EXPECT_NEAR(std::norm(locus.eigenvalues[i][j]), squares[j], 1e-12);
+  }
+}
+
 TEST(Locus, OneValueIsEnough) {
   const Locus locus = trace_locus(flutter_family(0.0), {0.3});
   ASSERT_THAT(locus.eigenvalues, SizeIs(1));

@@ -292,6 +292,21 @@ TEST(SecularEigenvalues, TwinBodiesKeepTheirCommonFrequencies) {
   EXPECT_LT(largest_difference(close, expected), 1e-8);
 }
 
+TEST(SecularEigenvalues, TwinBodiesInTwoContactsMoveOnTheirOwn) {
+  // Equal frequencies, other rows: both contacts take part in every motion. With poles 1e-13 apart,
+  // multiplying out one of a pair only would leave no digits.
+  Pencil pencil = test::random_pencil(9, 12, 2, test::ContactTerms::rows_only);
+  for (const double detuning : {0.0, 1e-13, 1e-9, 1e-6}) {
+    pencil.omega.tail(6) = (1.0 + detuning) * pencil.omega.head(6);
+    pencil.damping.tail(6) = pencil.damping.head(6);
+    const auto found = secular_eigenvalues(pencil, SpectrumWindow::all());
+    const auto dense = dense_eigenvalues(pencil, DenseWork::eigenvalues);
+    ASSERT_EQ(found.size(), dense.size());
+    EXPECT_LT(largest_difference(found, dense, 1.0), 1e-10) << detuning;
+    for (const Eigenvalue& eigenvalue : found) EXPECT_LT(eigenvalue.residual, 1e-11);
+  }
+}
+
 TEST(SecularEigenvalues, WithoutContactTheModes) {
   Pencil pencil = test::two_masses({4.0, 9.0}, {0.1, 8.0});
   const auto found = secular_eigenvalues(pencil, SpectrumWindow::all());
