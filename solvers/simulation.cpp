@@ -235,8 +235,12 @@ struct Simulation::Implementation {
     // step passes through rest on the way.
     const bool may_rest =
         contact.state == ContactState::stick || problem.slip * problem.direction <= 0.0;
-    problem.sticking_friction =
-        may_rest ? rise * contact.point.friction.static_coefficient : problem.sliding_friction;
+    // Never below the friction of sliding, or that would turn the sliding round and drive it.
+    problem.sticking_friction = problem.sliding_friction;
+    if (may_rest) {
+      problem.sticking_friction =
+          std::max(problem.sticking_friction, rise * contact.point.friction.static_coefficient);
+    }
     return true;
   }
 
