@@ -127,12 +127,11 @@ std::vector<std::string> write_shapes(const EigOptions& options, const LoadedSce
     const MasterSurface& surface =
         member.model->system
             .surfaces[static_cast<std::size_t>(member.model->system.contacts[i].surface)];
-    const Segment segment = surface.undeformed_segment(contact.segment);
-    const Segment& seen = state.equilibrium.state.geometry == ContactGeometry::deformed
-                              ? contact.positions.segment
-                              : Segment{Eigen::Vector2d::Zero(), segment.second - segment.first};
-    picture.contacts.push_back(segment.first + (1.0 - contact.projection.xi) * seen.first +
-                               contact.projection.xi * seen.second);
+    const SurfacePiece& seen = state.equilibrium.state.geometry == ContactGeometry::deformed
+                                   ? contact.positions.master
+                                   : contact.positions.undeformed;
+    picture.contacts.push_back(surface.positions[static_cast<std::size_t>(contact.segment)] +
+                               seen.combine(contact.projection.weights.value));
   }
   picture.caption = fmt::format(
       "Mode {} at {:.2f} Hz, growth rate {:.4g} 1/s, about the {} geometry; displacements "

@@ -1,20 +1,24 @@
-// Contact between slave points and a master polyline: kinematics and the rows of B_C and B_E.
+// Contact between slave points and a master surface: kinematics and the rows of B_C and B_E.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
+
+#include "coupling/surface.hpp"
 
 namespace stridor {
 
 /// How segment, position on it and normal of a contact are found (docs/theory.md, table in 2.2).
 enum class ContactAssumption {
   subs_a,  ///< prescribed rigid sliding on the undeformed master
-  subs_b,  ///< predicted positions of both bodies, normal of the predicted segment
-  subs_c,  ///< predicted positions of both bodies, normal of the undeformed segment
+  subs_b,  ///< predicted positions of both bodies, normal of the predicted surface
+  subs_c,  ///< predicted positions of both bodies, normal of the undeformed surface
   film,    ///< kinematics of subs_b; sticks, slips and lifts off (FiLM)
 };
 
-/// Ends of a master segment, T1 to T2, with the body on the right-hand side of that direction.
+/// Ends of a straight master segment, T1 to T2, with the body on the right-hand side of that
+/// direction.
 struct Segment {
   Eigen::Vector2d first;
   Eigen::Vector2d second;
@@ -25,10 +29,21 @@ struct Projection {
   double xi = 0.0;  ///< 0 at T1, 1 at T2
   Eigen::Vector2d tangent = Eigen::Vector2d::UnitX();
   Eigen::Vector2d normal = Eigen::Vector2d::UnitY();  ///< tangent turned by +90°, out of the master
+  NodeWeights weights;                                ///< at ξ
 };
 
 inline Eigen::Vector2d turned_left(const Eigen::Vector2d& vector) {
   return {-vector.y(), vector.x()};
+}
+
+/// A place with the tangent given; `along` need not have unit length.
+inline Projection make_projection(const Stencil& stencil, double xi, const Eigen::Vector2d& along) {
+  Projection projection;
+  projection.xi = xi;
+  projection.tangent = along / along.norm();
+  projection.normal = turned_left(projection.tangent);
+  projection.weights = weights_at(stencil, xi);
+  return projection;
 }
 
 /// Orthogonal projection along the segment's own normal:
@@ -40,6 +55,7 @@ inline Projection project(const Segment& segment, const Eigen::Vector2d& slave) 
   projection.tangent = along * inverse_length;
   projection.normal = turned_left(projection.tangent);
   projection.xi = projection.tangent.dot(slave - segment.first) * inverse_length;
+  projection.weights = weights_at({}, projection.xi);
   return projection;
 }
 
@@ -51,13 +67,62 @@ inline Projection project_along(const Segment& segment, const Eigen::Vector2d& s
   projection.tangent = tangent;
   projection.normal = turned_left(tangent);
   projection.xi = tangent.dot(slave - segment.first) / tangent.dot(segment.second - segment.first);
+  projection.weights = weights_at({}, projection.xi);
   return projection;
 }
 
-/// One row of B_C or B_E: entries at the slave point (x, y) and at T1 and T2 (x, y each).
+/// Projection of a slave on a piece of surface, along the normal of another piece with the same
+/// stencil: T'(ξ)·(C − M(ξ)) = 0 with the points M = Σ w_k x_k of the one and the tangents
+/// T' = Σ w'_k x'_k of the other (docs/theory.md, 2.5).
+///
+/// Newton's method in ξ, kept within one segment length on either side of the segment. Beyond its
+/// ends the segment goes on as it is, so ξ < 0 and ξ > 1 say on which side the slave stands.
+/// @param directions the piece itself for the orthogonal projection, the undeformed one for Subs-c
+/// @param guess      of ξ
+inline Projection project_along(const SurfacePiece& piece, const Eigen::Vector2d& slave,
+                                const SurfacePiece& directions, double guess) {
+  if (piece.stencil.count == 2) {
+    const Eigen::Vector2d along = directions.nodes[1] - directions.nodes[0];
+    return project_along(Segment{piece.nodes[0], piece.nodes[1]}, slave, along / along.norm());
+  }
+  // A step of this size leaves an error of about its square, which is rounding.
+  constexpr double last_step = 1e-8;
+  constexpr int max_iterations = 60;
+  double low = -1.0;
+  double high = 2.0;
+  double xi = std::clamp(guess, 0.0, 1.0);
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
+    const NodeWeights w = weights_at(piece.stencil, xi);
+    const Eigen::Vector2d arm = slave - piece.combine(w.value);
+    const Eigen::Vector2d direction = directions.combine(w.slope);
+    const double ahead = direction.dot(arm);
+    const double square = direction.dot(piece.combine(w.slope));
+    const double slope = square - directions.combine(w.curvature).dot(arm);
+    (ahead > 0.0 ? low : high) = xi;
+    // Where the slave is further away than the centre of curvature, the distance has no minimum.
+    double next = xi + ahead / (slope > 0.0 ? slope : square);
+    const bool is_within = low <= next && next <= high;
+    if (!is_within) next = 0.5 * (low + high);
+    const double step = next - xi;
+    xi = next;
+    if (std::abs(step) <= last_step) break;
+  }
+  return make_projection(piece.stencil, xi,
+                         directions.combine(weights_at(piece.stencil, xi).slope));
+}
+
+/// Orthogonal projection on a piece of surface.
+/// @param guess of ξ
+inline Projection project(const SurfacePiece& piece, const Eigen::Vector2d& slave, double guess) {
+  if (piece.stencil.count == 2) return project(Segment{piece.nodes[0], piece.nodes[1]}, slave);
+  return project_along(piece, slave, piece, guess);
+}
+
+/// One row of B_C or B_E: entries at the slave point (x, y) and at the nodes of the stencil (x, y
+/// each; zero beyond it).
 struct ContactRow {
   std::array<double, 2> slave;
-  std::array<double, 4> master;
+  std::array<double, 2 * max_stencil> master;
 };
 
 struct ContactRows {
@@ -68,19 +133,24 @@ struct ContactRows {
 /// Rows of one sliding contact (docs/theory.md, 2.2; BDF (20), (21) with the sign of friction
 /// mended):
 ///
-///   B_C: −n on C, (1 − ξ) n on T1, ξ n on T2
-///   B_E: B_C + χ μ ( t on C, −(1 − ξ) t on T1, −ξ t on T2 )
+///   B_C: −n on C, w_k n on the nodes
+///   B_E: B_C + χ μ ( t on C, −w_k t on the nodes )
 ///
-/// @param projection ξ, t, n
+/// @param projection t, n and the weights w; of a straight segment 1 − ξ on T1 and ξ on T2
 /// @param friction   μ >= 0
 /// @param direction  χ = ±1, sign of the sliding velocity of C along t
 inline ContactRows make_rows(const Projection& projection, double friction, double direction) {
   const Eigen::Vector2d& n = projection.normal;
   const Eigen::Vector2d pull = n - (direction * friction) * projection.tangent;
-  const double w1 = 1.0 - projection.xi;
-  const double w2 = projection.xi;
-  return {{{-n.x(), -n.y()}, {w1 * n.x(), w1 * n.y(), w2 * n.x(), w2 * n.y()}},
-          {{-pull.x(), -pull.y()}, {w1 * pull.x(), w1 * pull.y(), w2 * pull.x(), w2 * pull.y()}}};
+  ContactRows rows{{{-n.x(), -n.y()}, {}}, {{-pull.x(), -pull.y()}, {}}};
+  for (std::size_t k = 0; k < max_stencil; ++k) {
+    const double weight = projection.weights.value[k];
+    rows.compatibility.master[2 * k] = weight * n.x();
+    rows.compatibility.master[2 * k + 1] = weight * n.y();
+    rows.equilibrium.master[2 * k] = weight * pull.x();
+    rows.equilibrium.master[2 * k + 1] = weight * pull.y();
+  }
+  return rows;
 }
 
 }  // namespace stridor

@@ -27,10 +27,6 @@ enum class SlidingMode {
   frozen,  ///< the position is held, friction acts as in sliding
 };
 
-enum class SurfaceKind {
-  polyline,  ///< straight segments between the master nodes
-};
-
 /// One pair: slave points on a master surface.
 struct ContactParameters {
   std::vector<std::string> slave;  ///< "<body>.<point>" or "<body>.<surface>" (every node of it)

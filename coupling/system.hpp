@@ -9,6 +9,7 @@
 #include "core/time_curve.hpp"
 #include "coupling/contact.hpp"
 #include "coupling/friction_law.hpp"
+#include "coupling/surface.hpp"
 #include "substructures/modal_body.hpp"
 
 namespace stridor {
@@ -39,11 +40,54 @@ struct MasterSurface {
   std::vector<Eigen::Vector2d> positions;  ///< undeformed, global, m
   std::vector<double> arc_length;          ///< along the undeformed surface from its first node, m
   bool is_endless = false;                 ///< the first and last segment go on for ever
+  SurfaceKind kind = SurfaceKind::polyline;
 
   int num_segments() const { return static_cast<int>(positions.size()) - 1; }
+  /// Ends of a segment, m.
   Segment undeformed_segment(int segment) const {
     const auto s = static_cast<std::size_t>(segment);
     return {positions[s], positions[s + 1]};
+  }
+  int stencil_size() const { return stridor::stencil_size(kind, num_segments() + 1); }
+  Stencil stencil(int segment) const { return make_stencil(kind, num_segments() + 1, segment); }
+  /// A segment with its nodes as seen from T1, m.
+  SurfacePiece undeformed_piece(int segment) const {
+    SurfacePiece piece{stencil(segment), {}};
+    const Eigen::Vector2d& origin = positions[static_cast<std::size_t>(segment)];
+    for (int k = 0; k < piece.stencil.count; ++k) {
+      piece.nodes[static_cast<std::size_t>(k)] =
+          positions[static_cast<std::size_t>(piece.stencil.first + k)] - origin;
+    }
+    return piece;
+  }
+  /// Projection of a point on the undeformed surface within one segment; ξ outside [0, 1] where the
+  /// point stands beside it.
+  /// @param point global, m
+  Projection project_undeformed(int segment, const Eigen::Vector2d& point) const {
+    if (stencil_size() == 2) return project(undeformed_segment(segment), point);
+    constexpr double guess = 0.5;
+    return project(undeformed_piece(segment), point - positions[static_cast<std::size_t>(segment)],
+                   guess);
+  }
+  /// Arc length of the undeformed surface that belongs to a place of a segment, Σ w_k s_k, m; and
+  /// its derivative by ξ.
+  double arc_at(int segment, const NodeWeights& weights) const {
+    const double origin = arc_length[static_cast<std::size_t>(segment)];
+    return origin + combine_arcs(segment, weights.value, origin);
+  }
+  double arc_slope(int segment, const NodeWeights& weights) const {
+    return combine_arcs(segment, weights.slope, arc_length[static_cast<std::size_t>(segment)]);
+  }
+  /// Σ of weights with the arc lengths of the stencil, counted from an origin.
+  double combine_arcs(int segment, const std::array<double, max_stencil>& weights,
+                      double origin) const {
+    const Stencil nodes = stencil(segment);
+    double sum = 0.0;
+    for (int k = 0; k < nodes.count; ++k) {
+      sum += weights[static_cast<std::size_t>(k)] *
+             (arc_length[static_cast<std::size_t>(nodes.first + k)] - origin);
+    }
+    return sum;
   }
 };
 
@@ -94,6 +138,15 @@ struct System {
   std::vector<MasterSurface> surfaces;
   std::vector<ContactPoint> contacts;
   Drive drive;
+
+  const MasterSurface& surface_of(const ContactPoint& contact) const {
+    return surfaces[static_cast<std::size_t>(contact.surface)];
+  }
+  /// Displacements that a contact sees of the bodies: x and y of the slave and of every node of the
+  /// stencil.
+  int num_contact_slots(const ContactPoint& contact) const {
+    return 2 + 2 * surface_of(contact).stencil_size();
+  }
 };
 
 }  // namespace stridor

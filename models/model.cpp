@@ -177,6 +177,7 @@ MasterSurface make_surface(const ResolvedPair& pair, Body& body) {
   MasterSurface surface;
   surface.name = pair.master_name;
   surface.body = pair.master_body;
+  surface.kind = pair.parameters->surface;
   if (pair.master_name == rigid_name) {
     surface.rows = {{0, 0}, {0, 0}};
     surface.positions = {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(1.0, 0.0)};
@@ -210,9 +211,9 @@ Eigen::Vector2d point_at(const MasterSurface& surface, double arc) {
 /// where the point is off the surface.
 std::pair<int, Projection> locate_on(const MasterSurface& surface, const Eigen::Vector2d& point) {
   int segment = 0;
-  Projection projection = project(surface.undeformed_segment(0), point);
+  Projection projection = surface.project_undeformed(0, point);
   while (projection.xi > 1.0 && segment + 1 < surface.num_segments()) {
-    projection = project(surface.undeformed_segment(++segment), point);
+    projection = surface.project_undeformed(++segment, point);
   }
   return {segment, projection};
 }

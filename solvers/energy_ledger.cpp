@@ -153,7 +153,7 @@ EnergyLedger::EnergyLedger(const System& system, const TimeParameters& time)
     const auto follows = [&](int body) {
       return system.bodies[static_cast<std::size_t>(body)].follows_drive ? 1.0 : 0.0;
     };
-    contacts_.push_back({point.slave_body, surface.body, point.slave_rows, surface.rows,
+    contacts_.push_back({point.slave_body, surface.body, point.slave_rows, surface.rows, surface.kind,
                          follows(point.slave_body) - follows(surface.body)});
   }
   initial_ = kinetic + strain;
@@ -207,11 +207,15 @@ Eigen::Vector2d EnergyLedger::mean_increment(const Contact& contact,
     const Body& carrier = bodies_[static_cast<std::size_t>(body)];
     return {mean_increment(carrier, rows.x), mean_increment(carrier, rows.y)};
   };
-  const auto node = static_cast<std::size_t>(action.segment);
-  const double xi = action.projection.xi;
-  return of(contact.slave_body, contact.slave_rows) -
-         (1.0 - xi) * of(contact.master_body, contact.master_rows[node]) -
-         xi * of(contact.master_body, contact.master_rows[node + 1]);
+  const Stencil stencil = make_stencil(
+      contact.surface_kind, static_cast<int>(contact.master_rows.size()), action.segment);
+  Eigen::Vector2d relative = of(contact.slave_body, contact.slave_rows);
+  for (int k = 0; k < stencil.count; ++k) {
+    relative -=
+        action.projection.weights.value[static_cast<std::size_t>(k)] *
+        of(contact.master_body, contact.master_rows[static_cast<std::size_t>(stencil.first + k)]);
+  }
+  return relative;
 }
 
 void EnergyLedger::add(double time, std::span<const ContactAction> contacts,

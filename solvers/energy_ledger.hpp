@@ -152,6 +152,7 @@ class EnergyLedger {
     int master_body;
     PointRows slave_rows;
     std::vector<PointRows> master_rows;
+    SurfaceKind surface_kind;
     double driven;  ///< +1, −1 or 0: how the drive moves the slave against the master
   };
 

@@ -15,16 +15,24 @@
 namespace stridor {
 namespace {
 
-constexpr int num_contact_slots = SlotVector::SizeAtCompileTime;
-
 std::size_t at(int index) {
   return static_cast<std::size_t>(index);
 }
 
+/// The combination of slots that sees `vector` at the nodes of the master, with weights.
+SlotVector on_nodes(const Stencil& stencil, const std::array<double, max_stencil>& weights,
+                    const Eigen::Vector2d& vector) {
+  SlotVector slots = SlotVector::Zero(2 + 2 * stencil.count);
+  for (int k = 0; k < stencil.count; ++k)
+    slots.segment<2>(2 + 2 * k) = weights[at(k)] * vector;
+  return slots;
+}
+
 /// The combination of slots that sees `vector` at the slave against the master below it.
-SlotVector relative(const Eigen::Vector2d& vector, double xi) {
-  SlotVector slots;
-  slots << vector, -(1.0 - xi) * vector, -xi * vector;
+SlotVector relative(const Stencil& stencil, const NodeWeights& weights,
+                    const Eigen::Vector2d& vector) {
+  SlotVector slots = on_nodes(stencil, weights.value, -vector);
+  slots.head<2>() = vector;
   return slots;
 }
 
@@ -80,18 +88,20 @@ class SegmentSearch {
 
 ContactLinearisation linearise_contact(const ContactPositions& positions, const FrictionLaw& law,
                                        double friction_factor, const LinearisationTerms& terms) {
-  const Eigen::Vector2d along = positions.segment.second - positions.segment.first;
-  const Eigen::Vector2d arm = positions.slave - positions.segment.first;
+  const SurfacePiece& master = positions.master;
   const bool is_prescribed = positions.assumption == ContactAssumption::subs_a;
   const bool has_fixed_normal = positions.assumption == ContactAssumption::subs_c;
 
   ContactLinearisation contact;
-  contact.projection = is_prescribed      ? positions.prescribed
-                       : has_fixed_normal ? project_along(positions.segment, positions.slave,
-                                                          positions.prescribed.tangent)
-                                          : project(positions.segment, positions.slave);
-  const auto& [xi, tangent, normal] = contact.projection;
-  contact.gap = normal.dot(arm) - xi * normal.dot(along);
+  const double guess = positions.prescribed.xi;
+  contact.projection =
+      is_prescribed      ? positions.prescribed
+      : has_fixed_normal ? project_along(master, positions.slave, positions.undeformed, guess)
+                         : project(master, positions.slave, guess);
+  const auto& [xi, tangent, normal, weights] = contact.projection;
+  const Eigen::Vector2d arm = positions.slave - master.combine(weights.value);
+  const Eigen::Vector2d along = master.combine(weights.slope);
+  contact.gap = normal.dot(arm);
   contact.slip_velocity = positions.driven_velocity * tangent.x();
   contact.direction = contact.slip_velocity < 0.0 ? -1.0 : 1.0;
   contact.friction = friction_factor * sliding_friction(law, contact.slip_velocity);
@@ -100,32 +110,37 @@ ContactLinearisation linearise_contact(const ContactPositions& positions, const 
 
   const double coefficient = contact.direction * contact.friction;
   const Eigen::Vector2d push = normal - coefficient * tangent;
-  const SlotVector along_normal = relative(normal, xi);
-  const SlotVector along_tangent = relative(tangent, xi);
+  const SlotVector along_normal = relative(master.stencil, weights, normal);
+  const SlotVector along_tangent = relative(master.stencil, weights, tangent);
   contact.gap_row = -along_normal;
-  contact.force_row = -relative(push, xi);
-  contact.force_by_position.setZero();
-  contact.force_by_velocity.setZero();
+  contact.force_row = -relative(master.stencil, weights, push);
+  const Eigen::Index size = along_normal.size();
+  contact.force_by_position.setZero(size, size);
+  contact.force_by_velocity.setZero(size, size);
 
   // How ξ, the angle of the normal and v_r change with the displacements.
-  SlotVector& shift = contact.shift_row.setZero();
-  SlotVector turn = SlotVector::Zero();
+  SlotVector& shift = contact.shift_row.setZero(size);
+  SlotVector turn = SlotVector::Zero(size);
   if (has_fixed_normal) {
-    const double projected_length = tangent.dot(along);
-    shift = along_tangent / projected_length;
+    // Curvature of the undeformed surface, by ξ.
+    const double turning = normal.dot(positions.undeformed.combine(weights.curvature)) /
+                           positions.undeformed.combine(weights.slope).norm();
+    shift = along_tangent / (tangent.dot(along) - contact.gap * turning);
+    turn = turning * shift;
     if (terms.slope) contact.gap_row += normal.dot(along) * shift;
   } else if (!is_prescribed) {
     const double length = along.norm();
-    turn << Eigen::Vector2d::Zero(), -normal / length, normal / length;
-    shift = along_tangent / length + (contact.gap / length) * turn;
+    const double turning = normal.dot(master.combine(weights.curvature)) / length;
+    turn = on_nodes(master.stencil, weights.slope, normal / length);
+    shift = (along_tangent + contact.gap * turn) / (length - contact.gap * turning);
+    turn += turning * shift;
   }
   if (terms.turning_normal) contact.force_by_position += along_tangent * turn.transpose();
   if (terms.turning_friction)
     contact.force_by_position += coefficient * along_normal * turn.transpose();
   if (terms.shift) {
-    SlotVector transfer;  // from T1 to T2
-    transfer << Eigen::Vector2d::Zero(), -push, push;
-    contact.force_by_position += transfer * shift.transpose();
+    contact.force_by_position +=
+        on_nodes(master.stencil, weights.slope, push) * shift.transpose();
   }
   if (terms.friction_slope) {
     const SlotVector friction_row = contact.direction * contact.friction_slope * along_tangent;
@@ -166,6 +181,8 @@ struct SoughtContact {
   const MasterSurface* surface = nullptr;
   double share_of_drive = 0.0;
   bool is_unilateral = false;
+  Eigen::Index first_slot = 0;  ///< among all
+  Eigen::Index num_slots = 0;
   SegmentSearch search;
   ContactEquilibrium result;
 };
@@ -202,9 +219,13 @@ class Search {
       num_rigid_ += slots.num_rigid;
       bodies_.push_back(std::move(slots));
     }
-    for (const ContactPoint& point : system.contacts) contacts_.push_back(make_contact(point));
+    for (const ContactPoint& point : system.contacts) {
+      contacts_.push_back(make_contact(point));
+      contacts_.back().first_slot = num_slots_;
+      contacts_.back().num_slots = system.num_contact_slots(point);
+      num_slots_ += contacts_.back().num_slots;
+    }
     num_contacts_ = static_cast<Eigen::Index>(contacts_.size());
-    num_slots_ = num_contact_slots * num_contacts_;
     unknowns_ = Eigen::VectorXd::Zero(num_slots_ + num_contacts_ + num_rigid_ + num_targets());
     if (target_) {
       contacts_[at(target_->contact)].result.segment = target_->segment;
@@ -288,9 +309,9 @@ class Search {
 
   void prescribe(SoughtContact& contact) const {
     const double displacement = contact.share_of_drive * answer_.state.drive_displacement;
-    contact.result.positions.prescribed =
-        project(contact.surface->undeformed_segment(contact.result.segment),
-                contact.point->slave_position + Eigen::Vector2d(displacement, 0.0));
+    contact.result.positions.prescribed = contact.surface->project_undeformed(
+        contact.result.segment,
+        contact.point->slave_position + Eigen::Vector2d(displacement, 0.0));
   }
 
   /// Rows and static flexibility at the slots of the present segments.
@@ -303,11 +324,12 @@ class Search {
     };
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       const SoughtContact& contact = contacts_[i];
-      const int slot = num_contact_slots * static_cast<int>(i);
+      const auto slot = static_cast<int>(contact.first_slot);
       watch(contact.point->slave_body, slot, contact.point->slave_rows);
-      for (int end = 0; end < 2; ++end) {
-        watch(contact.surface->body, slot + 2 * (end + 1),
-              contact.surface->rows[at(contact.result.segment + end)]);
+      const Stencil stencil = contact.surface->stencil(contact.result.segment);
+      for (int k = 0; k < stencil.count; ++k) {
+        watch(contact.surface->body, slot + 2 * (k + 1),
+              contact.surface->rows[at(stencil.first + k)]);
       }
     }
 
@@ -340,12 +362,14 @@ class Search {
   /// Positions of a contact for given displacements of its slots.
   void place(SoughtContact& contact, const SlotVector& slots) const {
     prescribe(contact);
-    const Segment undeformed = contact.surface->undeformed_segment(contact.result.segment);
+    const Eigen::Vector2d& origin = contact.surface->positions[at(contact.result.segment)];
     ContactPositions& positions = contact.result.positions;
-    positions.slave = contact.point->slave_position - undeformed.first + slots.head<2>();
+    positions.slave = contact.point->slave_position - origin + slots.head<2>();
     positions.slave.x() += contact.share_of_drive * answer_.state.drive_displacement;
-    positions.segment.first = slots.segment<2>(2);
-    positions.segment.second = undeformed.second - undeformed.first + slots.tail<2>();
+    positions.undeformed = contact.surface->undeformed_piece(contact.result.segment);
+    positions.master = positions.undeformed;
+    for (int k = 0; k < positions.master.stencil.count; ++k)
+      positions.master.nodes[at(k)] += slots.segment<2>(2 + 2 * k);
   }
 
   /// The equations
@@ -393,12 +417,12 @@ class Search {
 
   /// Adds what a contact contributes and notes its state. @returns the largest length in it, m
   double add_contact(Equations& equations, Eigen::Index index, const Eigen::VectorXd& unknowns) {
-    constexpr Eigen::Index width = num_contact_slots;
-    const Eigen::Index first = width * index;
     const Eigen::Index row = num_slots_ + index;
     const Eigen::Index last = unknowns.size() - 1;
     SoughtContact& contact = contacts_[static_cast<std::size_t>(index)];
-    place(contact, unknowns.segment<width>(first));
+    const Eigen::Index first = contact.first_slot;
+    const Eigen::Index width = contact.num_slots;
+    place(contact, unknowns.segment(first, width));
     const ContactPositions& positions = contact.result.positions;
     const ContactLinearisation local =
         linearise_contact(positions, contact.point->friction, answer_.state.friction_factor);
@@ -415,14 +439,14 @@ class Search {
     auto& [values, scale, derivative, residual] = equations;
     const SlotMatrix by_position = force * local.force_by_position;
     const SlotVector by_drive = contact.share_of_drive * by_position.col(0);
-    const auto flexibility = flexibility_.middleCols<width>(first);
+    const auto flexibility = flexibility_.middleCols(first, width);
     values.head(num_slots_) += flexibility * (force * local.force_row);
     derivative.block(0, first, num_slots_, width) += flexibility * by_position;
     derivative.col(row).head(num_slots_) = flexibility * local.force_row;
     if (target_) derivative.col(last).head(num_slots_) += flexibility * by_drive;
 
     const Eigen::Index first_rigid = num_slots_ + num_contacts_;
-    const auto rigid = rigid_rows_.middleRows<width>(first).transpose();
+    const auto rigid = rigid_rows_.middleRows(first, width).transpose();
     values.segment(first_rigid, num_rigid_) += rigid * (force * local.force_row);
     scale.segment(first_rigid, num_rigid_) +=
         rigid.cwiseAbs() * (force * local.force_row).cwiseAbs();
@@ -432,19 +456,20 @@ class Search {
 
     if (result.is_closed) {
       values(row) = local.gap;
-      derivative.block<1, width>(row, first) = -local.gap_row.transpose();
+      derivative.block(row, first, 1, width) = -local.gap_row.transpose();
       if (target_) derivative(row, last) = -local.gap_row[0] * contact.share_of_drive;
     } else {
       values(row) = force;
       derivative(row, row) = 1.0;
     }
-    const double segment_length = (positions.segment.second - positions.segment.first).norm();
+    const double segment_length = positions.master.chord().norm();
     if (is_target(contact)) {
       values(last) = segment_length * (local.projection.xi - target_->xi);
-      derivative.block<1, width>(last, first) = segment_length * local.shift_row.transpose();
+      derivative.block(last, first, 1, width) = segment_length * local.shift_row.transpose();
       derivative(last, last) = segment_length * local.shift_row[0] * contact.share_of_drive;
     }
-    return std::max(segment_length, (positions.slave - positions.segment.first).norm());
+    const Eigen::Vector2d& T1 = positions.master.nodes[at(positions.master.stencil.before)];
+    return std::max(segment_length, (positions.slave - T1).norm());
   }
 
   /// Newton's method for the present segments and open contacts. Goes one step further than the
@@ -545,7 +570,7 @@ class Search {
       const ContactPositions& positions = contact.result.positions;
       largest_force = std::max(largest_force, std::abs(contact.result.force));
       largest_length =
-          std::max(largest_length, (positions.segment.second - positions.segment.first).norm());
+          std::max(largest_length, positions.master.chord().norm());
     }
     SoughtContact* worst = nullptr;
     double worst_violation = 0.0;
@@ -577,14 +602,13 @@ class Search {
     Eigen::VectorXd forces = Eigen::VectorXd::Zero(num_slots_);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       ContactEquilibrium& result = contacts_[i].result;
-      const auto s = at(result.segment);
-      const std::vector<double>& arc = contacts_[i].surface->arc_length;
-      result.position = arc[s] + result.projection.xi * (arc[s + 1] - arc[s]);
+      const SoughtContact& contact = contacts_[i];
+      result.position = contact.surface->arc_at(result.segment, result.projection.weights);
       const ContactRows rows = make_rows(result.projection, result.friction, result.direction);
-      auto slots =
-          forces.segment<num_contact_slots>(num_contact_slots * static_cast<Eigen::Index>(i));
-      slots << rows.equilibrium.slave[0], rows.equilibrium.slave[1], rows.equilibrium.master[0],
-          rows.equilibrium.master[1], rows.equilibrium.master[2], rows.equilibrium.master[3];
+      const ContactRow& pushed = rows.equilibrium;
+      auto slots = forces.segment(contact.first_slot, contact.num_slots);
+      slots.head<2>() << pushed.slave[0], pushed.slave[1];
+      for (Eigen::Index k = 2; k < contact.num_slots; ++k) slots(k) = pushed.master[at(static_cast<int>(k) - 2)];
       slots *= -result.force;
       answer_.contacts.push_back(result);
     }

@@ -20,22 +20,25 @@ enum class ContactGeometry {
 struct ContactPositions {
   ContactAssumption assumption = ContactAssumption::subs_b;
   Eigen::Vector2d slave = Eigen::Vector2d::Zero();  ///< displaced by drive and deformation, m
-  /// Deformed, m.
-  Segment segment{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+  SurfacePiece master;                              ///< deformed, m
+  SurfacePiece undeformed;                          ///< m
   /// Of the slave displaced by the drive alone, on the undeformed segment.
   Projection prescribed;
   double driven_velocity = 0.0;  ///< of the slave against the master in +x, by the drive alone, m/s
 };
 
-using SlotVector = Eigen::Matrix<double, 6, 1>;  ///< slave x, y, T1 x, y, T2 x, y
-using SlotMatrix = Eigen::Matrix<double, 6, 6>;
+inline constexpr int max_contact_slots = 2 + 2 * max_stencil;
+/// Slave x, y and the nodes of the stencil x, y each.
+using SlotVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_contact_slots, 1>;
+using SlotMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, max_contact_slots,
+                                 max_contact_slots>;
 
 /// Parts of the derivative of a contact, each of which can be left out to see what it does.
 struct LinearisationTerms {
-  bool turning_normal = true;    ///< the normal force turns with the segment
-  bool turning_friction = true;  ///< the friction force turns with the segment
+  bool turning_normal = true;    ///< the normal force turns with the surface
+  bool turning_friction = true;  ///< the friction force turns with the surface
   bool shift = true;             ///< the force moves along the segment with ξ
-  bool slope = true;  ///< Subs-c: the gap changes as ξ moves along a segment that is not parallel
+  bool slope = true;  ///< Subs-c: the gap changes as ξ moves along a surface that is not parallel
                       ///< to the undeformed one
   bool friction_slope = true;  ///< μ changes with the sliding velocity
 };
@@ -147,7 +150,8 @@ struct EquilibriumParameters {
 /// @throws NumericalError if the system is singular, naming the body that is free to move or the
 ///         contact whose force is undetermined, or if its numbers are not finite
 /// @throws std::invalid_argument if the friction factor is negative
-/// Cost: a dense system of 7 unknowns per contact and one per rigid mode in each Newton step.
+/// Cost: a dense system of 7 unknowns per contact (11 on a smooth master) and one per rigid mode in
+/// each Newton step.
 Equilibrium find_equilibrium(const System& system, const EquilibriumState& state,
                              const EquilibriumParameters& parameters = {});
 

@@ -9,7 +9,10 @@ namespace stridor {
 namespace {
 
 ContactRow row_of(const SlotVector& slots) {
-  return {{slots[0], slots[1]}, {slots[2], slots[3], slots[4], slots[5]}};
+  ContactRow row{{slots[0], slots[1]}, {}};
+  for (Eigen::Index k = 2; k < slots.size(); ++k)
+    row.master[static_cast<std::size_t>(k - 2)] = slots[k];
+  return row;
 }
 
 /// Adds the reduced form of modal coordinates to a state that may be empty.
@@ -36,15 +39,16 @@ Pencil linearise(const System& system, const Equilibrium& equilibrium,
     const ContactLinearisation local = linearise_contact(
         contact.positions, system.contacts[i].friction, equilibrium.state.friction_factor, terms);
     const auto constraint = static_cast<Eigen::Index>(i);
-    const Eigen::Index first = slots_per_contact * constraint;
+    const Eigen::Index first = first_contact_slot(system, static_cast<int>(i));
+    const Eigen::Index size = local.gap_row.size();
     place_contact(pencil, system, static_cast<int>(i), contact.segment,
                   {row_of(local.gap_row), row_of(local.force_row)});
-    stiffness.block<slots_per_contact, slots_per_contact>(first, first) =
+    stiffness.block(first, first, size, size) =
         contact.force * local.force_by_position;
-    damping.block<slots_per_contact, slots_per_contact>(first, first) =
+    damping.block(first, first, size, size) =
         contact.force * local.force_by_velocity;
     kept_constraints.push_back(constraint);
-    for (Eigen::Index k = 0; k < slots_per_contact; ++k) kept_slots.push_back(first + k);
+    for (Eigen::Index k = 0; k < size; ++k) kept_slots.push_back(first + k);
   }
   pencil.slots = pencil.slots(kept_slots, Eigen::all).eval();
   pencil.compatibility = pencil.compatibility(kept_constraints, kept_slots).eval();

@@ -41,38 +41,26 @@ STRIDOR_INLINE auto& field(Double* block, ModalField which, std::size_t part) {
   return at<Vector>(block, static_cast<std::size_t>(which) * modal_block + part);
 }
 
-/// The fused pass for 0, 2 or 4 slots.
+/// The fused pass for a number of slots known to the compiler, which keeps one sum for each in a
+/// register.
 template <class Vector, int num_slots>
 STRIDOR_INLINE void fused_pass(double* blocks, std::size_t num_blocks, const double* const* rows,
                                const double* forces, double* predicted) {
-  constexpr bool has2 = num_slots >= 2;
-  constexpr bool has4 = num_slots >= 4;
-  const double* const row0 = has2 ? rows[0] : nullptr;
-  const double* const row1 = has2 ? rows[1] : nullptr;
-  const double* const row2 = has4 ? rows[2] : nullptr;
-  const double* const row3 = has4 ? rows[3] : nullptr;
-  const double force0 = has2 ? forces[0] : 0.0;
-  const double force1 = has2 ? forces[1] : 0.0;
-  const double force2 = has4 ? forces[2] : 0.0;
-  const double force3 = has4 ? forces[3] : 0.0;
-  Vector sum0{};
-  Vector sum1{};
-  Vector sum2{};
-  Vector sum3{};
+  Vector sums[num_slots + 1]{};  // one more, for no array is empty
   for (std::size_t b = 0; b < num_blocks; ++b) {
     double* const block = blocks + b * num_modal_fields * modal_block;
     for (std::size_t part = 0; part < modal_block; part += lanes<Vector>) {
       const std::size_t i = b * modal_block + part;
       // The rows are read once, before the stores below that they might overlap for all the
       // compiler knows.
-      const Vector r0 = has2 ? at<Vector>(row0, i) : Vector{};
-      const Vector r1 = has2 ? at<Vector>(row1, i) : Vector{};
-      const Vector r2 = has4 ? at<Vector>(row2, i) : Vector{};
-      const Vector r3 = has4 ? at<Vector>(row3, i) : Vector{};
+      Vector row[num_slots + 1];
+#pragma GCC unroll 8
+      for (int j = 0; j < num_slots; ++j) row[j] = at<Vector>(rows[j], i);
       Vector increment = field<Vector>(block, ModalField::increment, part);
-      if constexpr (has2) {
-        Vector modal_force = r0 * force0 + r1 * force1;
-        if constexpr (has4) modal_force += r2 * force2 + r3 * force3;
+      if constexpr (num_slots > 0) {
+        Vector modal_force = row[0] * forces[0];
+#pragma GCC unroll 8
+        for (int j = 1; j < num_slots; ++j) modal_force += row[j] * forces[j];
         increment += field<Vector>(block, ModalField::gain, part) * modal_force;
       }
       const Vector position = field<Vector>(block, ModalField::position, part) + increment;
@@ -82,24 +70,11 @@ STRIDOR_INLINE void fused_pass(double* blocks, std::size_t num_blocks, const dou
       field<Vector>(block, ModalField::position, part) = position;
       field<Vector>(block, ModalField::increment, part) = next;
       const Vector ahead = position + next;
-      if constexpr (has2) {
-        sum0 += r0 * ahead;
-        sum1 += r1 * ahead;
-      }
-      if constexpr (has4) {
-        sum2 += r2 * ahead;
-        sum3 += r3 * ahead;
-      }
+#pragma GCC unroll 8
+      for (int j = 0; j < num_slots; ++j) sums[j] += row[j] * ahead;
     }
   }
-  if constexpr (has2) {
-    predicted[0] = sum_of(sum0);
-    predicted[1] = sum_of(sum1);
-  }
-  if constexpr (has4) {
-    predicted[2] = sum_of(sum2);
-    predicted[3] = sum_of(sum3);
-  }
+  for (int j = 0; j < num_slots; ++j) predicted[j] = sum_of(sums[j]);
 }
 
 template <class Vector>
@@ -131,7 +106,7 @@ template <class Vector>
 STRIDOR_INLINE void advance(double* blocks, std::size_t num_blocks, const double* const* rows,
                             const double* forces, int num_slots, double* predicted) {
   // Slots beyond the fused ones stream the rows once more; a body rarely has any.
-  const int fused = num_slots >= 4 ? 4 : num_slots >= 2 ? 2 : 0;
+  const int fused = num_slots >= 8 ? 8 : num_slots >= 4 ? 4 : num_slots >= 2 ? 2 : 0;
   for (int j = fused; j < num_slots; ++j) {
     for (std::size_t b = 0; b < num_blocks; ++b) {
       double* const block = blocks + b * num_modal_fields * modal_block;
@@ -142,7 +117,9 @@ STRIDOR_INLINE void advance(double* blocks, std::size_t num_blocks, const double
       }
     }
   }
-  if (fused == 4) {
+  if (fused == 8) {
+    fused_pass<Vector, 8>(blocks, num_blocks, rows, forces, predicted);
+  } else if (fused == 4) {
     fused_pass<Vector, 4>(blocks, num_blocks, rows, forces, predicted);
   } else if (fused == 2) {
     fused_pass<Vector, 2>(blocks, num_blocks, rows, forces, predicted);

@@ -7,7 +7,6 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <numbers>
 #include <stdexcept>
 #include <vector>
@@ -95,12 +94,12 @@ std::pair<int, Projection> undeformed_place(const MasterSurface& surface,
                                             const Eigen::Vector2d& point, int first) {
   const int last = surface.num_segments() - 1;
   int segment = std::clamp(first, 0, last);
-  Projection projection = project(surface.undeformed_segment(segment), point);
+  Projection projection = surface.project_undeformed(segment, point);
   while (projection.xi > 1.0 && segment < last) {
-    projection = project(surface.undeformed_segment(++segment), point);
+    projection = surface.project_undeformed(++segment, point);
   }
   while (projection.xi < 0.0 && segment > 0) {
-    projection = project(surface.undeformed_segment(--segment), point);
+    projection = surface.project_undeformed(--segment, point);
     if (projection.xi > 1.0) break;  // between two segments that diverge
   }
   return {segment, projection};
@@ -155,42 +154,53 @@ Pencil make_modal_pencil(const System& system) {
     first += size;
   }
   const auto k = static_cast<Eigen::Index>(system.contacts.size());
-  pencil.slots.setZero(slots_per_contact * k, n);
-  pencil.compatibility.setZero(k, slots_per_contact * k);
-  pencil.equilibrium.setZero(k, slots_per_contact * k);
+  const Eigen::Index m = first_contact_slot(system, static_cast<int>(k));
+  pencil.slots.setZero(m, n);
+  pencil.compatibility.setZero(k, m);
+  pencil.equilibrium.setZero(k, m);
   return pencil;
+}
+
+Eigen::Index first_contact_slot(const System& system, int contact) {
+  Eigen::Index first = 0;
+  for (int i = 0; i < contact; ++i)
+    first += system.num_contact_slots(system.contacts[static_cast<std::size_t>(i)]);
+  return first;
 }
 
 void place_contact(Pencil& pencil, const System& system, int contact, int segment,
                    const ContactRows& rows) {
   const ContactPoint& point = system.contacts[static_cast<std::size_t>(contact)];
   const MasterSurface& surface = system.surfaces[static_cast<std::size_t>(point.surface)];
-  const auto s = static_cast<std::size_t>(segment);
-  const Eigen::Index slot = slots_per_contact * contact;
-  pencil.slots.middleRows(slot, slots_per_contact).setZero();
+  const Stencil stencil = surface.stencil(segment);
+  const Eigen::Index slot = first_contact_slot(system, contact);
+  pencil.slots.middleRows(slot, system.num_contact_slots(point)).setZero();
   Eigen::Index first = 0;
   for (std::size_t b = 0; b < system.bodies.size(); ++b) {
     const ModalBody& modal = system.bodies[b].modal;
     const auto body = static_cast<int>(b);
     // Mode by mode: the rows of neighbouring nodes lie side by side in a column.
-    const auto fill = [&](Eigen::Index at, std::initializer_list<int> watched) {
+    const auto fill = [&](Eigen::Index at, std::span<const PointRows> watched) {
       for (Eigen::Index i = 0; i < modal.size(); ++i) {
         Eigen::Index row = slot + at;
-        for (const int source : watched) pencil.slots(row++, first + i) = modal.rows(source, i);
+        for (const PointRows& source : watched) {
+          pencil.slots(row++, first + i) = modal.rows(source.x, i);
+          pencil.slots(row++, first + i) = modal.rows(source.y, i);
+        }
       }
     };
-    if (body == point.slave_body) fill(0, {point.slave_rows.x, point.slave_rows.y});
+    if (body == point.slave_body) fill(0, {&point.slave_rows, 1});
     if (body == surface.body) {
-      const PointRows& T1 = surface.rows[s];
-      const PointRows& T2 = surface.rows[s + 1];
-      fill(2, {T1.x, T1.y, T2.x, T2.y});
+      fill(2, std::span(surface.rows)
+                  .subspan(static_cast<std::size_t>(stencil.first),
+                           static_cast<std::size_t>(stencil.count)));
     }
     first += modal.size();
   }
   const auto set_row = [&](Eigen::MatrixXd& matrix, const ContactRow& row) {
     for (Eigen::Index i = 0; i < 2; ++i)
       matrix(contact, slot + i) = row.slave[static_cast<std::size_t>(i)];
-    for (Eigen::Index i = 0; i < 4; ++i)
+    for (Eigen::Index i = 0; i < 2 * stencil.count; ++i)
       matrix(contact, slot + 2 + i) = row.master[static_cast<std::size_t>(i)];
   };
   set_row(pencil.compatibility, rows.compatibility);

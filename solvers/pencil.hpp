@@ -18,8 +18,8 @@ namespace stridor {
 /// see of the bodies; k constraints with multipliers δλ. An eigenvalue s belongs to the motion
 /// q exp(st). There are 2(n − k), unless B_C S Sᵀ B_Eᵀ is singular.
 ///
-/// A sliding contact has six slots (see `slots_per_contact`) and one constraint. Constraints may be
-/// added: a sticking contact has two. G and H hold what the contact forces in equilibrium add where
+/// A sliding contact has the slots of its slave point and of the nodes of its stencil
+/// (System::num_contact_slots) and one constraint. Constraints may be added: a sticking contact has two. G and H hold what the contact forces in equilibrium add where
 /// they turn or shift with the motion or depend on the sliding velocity; about the undeformed
 /// geometry there is nothing to add.
 struct Pencil {
@@ -39,36 +39,37 @@ struct Pencil {
   Eigen::Index num_eigenvalues() const { return 2 * (num_modes() - num_constraints()); }
 };
 
-/// Slave x, y, first and second master node x, y each.
-inline constexpr int slots_per_contact = 6;
-
 /// @throws std::invalid_argument if sizes do not fit together, a number is not finite, an ω is
 ///         negative, or there are as many constraints as modes or more
 void check_pencil(const Pencil& pencil);
 
 /// Modes of all bodies in their order, with the damping that lasts (α at the end of its schedule),
-/// and six slots and one constraint per contact of the system. The rows are zero until
-/// place_contact() or place_undeformed() fills them; G and H are empty.
+/// and slots and one constraint per contact of the system. The rows are zero until place_contact()
+/// or place_undeformed() fills them; G and H are empty.
 Pencil make_modal_pencil(const System& system);
+
+/// First slot of a contact in the pencil of its system.
+Eigen::Index first_contact_slot(const System& system, int contact);
 
 /// Fills in slots and constraint of one contact.
 ///
 /// @param pencil  of make_modal_pencil()
-/// @param contact index into System::contacts: slots 6·contact + 0 … 5, constraint `contact`
+/// @param contact index into System::contacts: slots from first_contact_slot(), constraint `contact`
 /// @param segment of its master surface
 /// @param rows    of B_C and B_E
 void place_contact(Pencil& pencil, const System& system, int contact, int segment,
                    const ContactRows& rows);
 
 /// Fills in every contact as it slides on the undeformed master: B_C and B_E with the normal of the
-/// undeformed segment, no G and H.
+/// undeformed surface, no G and H.
 ///
 /// @param drive_displacement of the bodies that follow the drive, in +x, m
 /// @param friction           μ of every contact, >= 0
 /// @param direction          χ of every contact, ±1: sign of the sliding velocity of the slave
 ///                           along the master
 /// @throws std::invalid_argument if a slave point is beyond the end of its master
-/// Linear in `drive_displacement` between two master nodes.
+/// Linear in `drive_displacement` between two nodes of a polyline, cubic between those of a smooth
+/// master.
 void place_undeformed(Pencil& pencil, const System& system, double drive_displacement,
                       double friction, double direction);
 

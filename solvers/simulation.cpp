@@ -20,7 +20,6 @@ constexpr const char* persistent_sliding_remedy =
     "lift off (contact.assumption: film, or contact.on_violation: unilateral), lower the friction "
     "coefficient, or raise contact.armed_from if this is start-up";
 constexpr int slave_slots = 2;
-constexpr int master_slots = 4;
 
 }  // namespace
 
@@ -36,6 +35,7 @@ struct RunningContact {
 
   // State: the projection found with the positions predicted for t_{n+1}, and what follows from it.
   int segment = 0;
+  SurfacePiece undeformed;  ///< the segment
   Projection projection;
   double force = 0.0;           ///< λ_n
   double friction_force = 0.0;  ///< λ_t
@@ -50,7 +50,7 @@ struct RunningContact {
   // Scratch of one step.
   double friction = 0.0;  ///< μ, for messages
   double place = 0.0;     ///< as anchor, for the predicted positions
-  double stretch = 1.0;   ///< deformed length of the segment along the tangent by undeformed length
+  double stretch = 1.0;   ///< deformed length of the master along the tangent by undeformed length
 };
 
 struct Simulation::Implementation {
@@ -101,21 +101,28 @@ struct Simulation::Implementation {
   }
 
   void watch_segment(RunningContact& contact, int segment) {
-    contact.segment = segment;
     const MasterSurface& surface = surface_of(contact);
+    contact.segment = segment;
+    contact.undeformed = surface.undeformed_piece(segment);
+    const Stencil& stencil = contact.undeformed.stencil;
     Propagator& master = *bodies[static_cast<std::size_t>(surface.body)];
-    for (int end = 0; end < 2; ++end) {
-      const PointRows& rows = surface.rows[static_cast<std::size_t>(segment + end)];
-      master.watch(contact.master_slot + 2 * end, rows.x);
-      master.watch(contact.master_slot + 2 * end + 1, rows.y);
+    for (int k = 0; k < stencil.count; ++k) {
+      const PointRows& rows = surface.rows[static_cast<std::size_t>(stencil.first + k)];
+      master.watch(contact.master_slot + 2 * k, rows.x);
+      master.watch(contact.master_slot + 2 * k + 1, rows.y);
     }
   }
 
-  /// Slave and segment with the displacements given by the slots, as seen from the undeformed T1:
+  /// Slave and master with the displacements given by the slots, as seen from the undeformed T1:
   /// far from the origin the gap would drown in the rounding of the positions.
   struct Place {
     Eigen::Vector2d slave;
-    Segment segment;
+    SurfacePiece master;
+
+    /// From the point of the master under the slave to the slave.
+    Eigen::Vector2d arm(const Projection& projection) const {
+      return slave - master.combine(projection.weights.value);
+    }
   };
   template <class SlotDisplacement>
   Place place_of(const RunningContact& contact, double drive_at,
@@ -123,18 +130,25 @@ struct Simulation::Implementation {
     const MasterSurface& surface = surface_of(contact);
     const Propagator& slave = *bodies[static_cast<std::size_t>(contact.point.slave_body)];
     const Propagator& master = *bodies[static_cast<std::size_t>(surface.body)];
-    const Segment undeformed = surface.undeformed_segment(contact.segment);
+    const SurfacePiece& undeformed = contact.undeformed;
     const auto moved = [&](const Propagator& body, int slot) -> Eigen::Vector2d {
       return {displacement(body, slot), displacement(body, slot + 1)};
     };
     Place place;
-    place.slave =
-        contact.point.slave_position - undeformed.first + moved(slave, contact.slave_slot);
+    place.slave = contact.point.slave_position - origin_of(contact) +
+                  moved(slave, contact.slave_slot);
     place.slave.x() += relative_drive(contact, drive_at);
-    place.segment.first = moved(master, contact.master_slot);
-    place.segment.second =
-        undeformed.second - undeformed.first + moved(master, contact.master_slot + 2);
+    place.master.stencil = undeformed.stencil;
+    for (int k = 0; k < undeformed.stencil.count; ++k) {
+      const auto node = static_cast<std::size_t>(k);
+      place.master.nodes[node] =
+          undeformed.nodes[node] + moved(master, contact.master_slot + 2 * k);
+    }
     return place;
+  }
+  /// The undeformed T1.
+  const Eigen::Vector2d& origin_of(const RunningContact& contact) const {
+    return surface_of(contact).positions[static_cast<std::size_t>(contact.segment)];
   }
   /// How far the drive has moved the slave against the master in +x, m; or how fast, m/s.
   static double relative_drive(const RunningContact& contact, double drive_at) {
@@ -149,16 +163,16 @@ struct Simulation::Implementation {
   Projection projection_of(const RunningContact& contact, const Place& place,
                            double drive_at) const {
     const ContactAssumption assumption = contact.point.assumption;
+    const double guess = contact.projection.xi;
     if (assumption == ContactAssumption::subs_b || assumption == ContactAssumption::film) {
-      return project(place.segment, place.slave);
+      return project(place.master, place.slave, guess);
     }
-    const Segment undeformed = surface_of(contact).undeformed_segment(contact.segment);
     if (assumption == ContactAssumption::subs_c) {
-      const Eigen::Vector2d along = undeformed.second - undeformed.first;
-      return project_along(place.segment, place.slave, along / along.norm());
+      return project_along(place.master, place.slave, contact.undeformed, guess);
     }
-    return project(undeformed, contact.point.slave_position +
-                                   Eigen::Vector2d(relative_drive(contact, drive_at), 0.0));
+    const Eigen::Vector2d driven(relative_drive(contact, drive_at), 0.0);
+    return project(contact.undeformed, contact.point.slave_position - origin_of(contact) + driven,
+                   guess);
   }
 
   /// Finds the segment under the slave point and the projection on it. Starts from the segment of
@@ -176,6 +190,7 @@ struct Simulation::Implementation {
       const int next = contact.segment + wanted;
       if (next < 0 || next > last) return surface_of(contact).is_endless;
       watch_segment(contact, next);
+      contact.projection.xi -= wanted;
       heading = wanted;
     }
   }
@@ -194,15 +209,10 @@ struct Simulation::Implementation {
   /// projection itself; under Subs-a, whose projection is prescribed, that and the displacements
   /// along it.
   double place_along(const RunningContact& contact, const Place& place) const {
-    const MasterSurface& surface = surface_of(contact);
     const Projection& p = contact.projection;
-    const auto s = static_cast<std::size_t>(contact.segment);
-    double along =
-        surface.arc_length[s] + p.xi * (surface.arc_length[s + 1] - surface.arc_length[s]);
-    if (contact.point.assumption == ContactAssumption::subs_a) {
-      along += p.tangent.dot(place.slave - (1.0 - p.xi) * place.segment.first -
-                             p.xi * place.segment.second);
-    }
+    double along = surface_of(contact).arc_at(contact.segment, p.weights);
+    if (contact.point.assumption == ContactAssumption::subs_a)
+      along += p.tangent.dot(place.arm(p));
     return along;
   }
 
@@ -212,18 +222,15 @@ struct Simulation::Implementation {
     Place place;
     if (!find_projection(contact, drive_at, place)) return false;
     const Projection& p = contact.projection;
-    problem.penetration = p.xi * p.normal.dot(place.segment.second - place.segment.first) -
-                          p.normal.dot(place.slave - place.segment.first);
+    problem.penetration = -p.normal.dot(place.arm(p));
     problem.sliding_friction =
         rise * sliding_friction(contact.point.friction, contact.slip_velocity);
     problem.direction = contact.slip_velocity < 0.0 ? -1.0 : 1.0;
     problem.is_unilateral = time(index) >= contact.unilateral_from;
     if (!contact.tracks_slip) return true;
-    const MasterSurface& surface = surface_of(contact);
-    const auto s = static_cast<std::size_t>(contact.segment);
     contact.place = place_along(contact, place);
-    contact.stretch = p.tangent.dot(place.segment.second - place.segment.first) /
-                      (surface.arc_length[s + 1] - surface.arc_length[s]);
+    contact.stretch = p.tangent.dot(place.master.combine(p.weights.slope)) /
+                      surface_of(contact).arc_slope(contact.segment, p.weights);
     if (drive.is_frozen) {
       // Held in place, the material of the master slides away below.
       const double velocity =
@@ -326,10 +333,11 @@ struct Simulation::Implementation {
         forces[static_cast<std::size_t>(surface_of(contact).body)].data() + contact.master_slot;
     slave[0] = force.x();
     slave[1] = force.y();
-    master[0] = -(1.0 - p.xi) * force.x();
-    master[1] = -(1.0 - p.xi) * force.y();
-    master[2] = -p.xi * force.x();
-    master[3] = -p.xi * force.y();
+    for (int k = 0; k < contact.undeformed.stencil.count; ++k) {
+      const double weight = p.weights.value[static_cast<std::size_t>(k)];
+      master[2 * k] = -weight * force.x();
+      master[2 * k + 1] = -weight * force.y();
+    }
   }
 
   /// Displacement of the slave of contact i relative to its master per force (x, y) on the slave of
@@ -344,16 +352,18 @@ struct Simulation::Implementation {
       w << c[0], c[1], c[stride], c[stride + 1];
       return w;
     };
-    const double weights_i[] = {1.0 - i.projection.xi, i.projection.xi};
-    const double weights_j[] = {1.0 - j.projection.xi, j.projection.xi};
+    const double* const weights_i = i.projection.weights.value.data();
+    const double* const weights_j = j.projection.weights.value.data();
+    const int nodes_i = i.undeformed.stencil.count;
+    const int nodes_j = j.undeformed.stencil.count;
     Eigen::Matrix2d w = Eigen::Matrix2d::Zero();
     if (i.point.slave_body == j.point.slave_body) {
       w += block(*bodies[static_cast<std::size_t>(i.point.slave_body)], i.slave_slot, j.slave_slot);
     }
     if (master_i == master_j) {
       const Propagator& master = *bodies[static_cast<std::size_t>(master_i)];
-      for (int a = 0; a < 2; ++a) {
-        for (int b = 0; b < 2; ++b) {
+      for (int a = 0; a < nodes_i; ++a) {
+        for (int b = 0; b < nodes_j; ++b) {
           w += weights_i[a] * weights_j[b] *
                block(master, i.master_slot + 2 * a, j.master_slot + 2 * b);
         }
@@ -361,12 +371,12 @@ struct Simulation::Implementation {
     }
     if (i.point.slave_body == master_j) {
       const Propagator& body = *bodies[static_cast<std::size_t>(master_j)];
-      for (int b = 0; b < 2; ++b)
+      for (int b = 0; b < nodes_j; ++b)
         w -= weights_j[b] * block(body, i.slave_slot, j.master_slot + 2 * b);
     }
     if (master_i == j.point.slave_body) {
       const Propagator& body = *bodies[static_cast<std::size_t>(master_i)];
-      for (int a = 0; a < 2; ++a)
+      for (int a = 0; a < nodes_i; ++a)
         w -= weights_i[a] * block(body, i.master_slot + 2 * a, j.slave_slot);
     }
     return w;
@@ -441,8 +451,13 @@ struct Simulation::Implementation {
                       contact.slave_slot;
     const double* m = bodies[static_cast<std::size_t>(surface_of(contact).body)]->increments() +
                       contact.master_slot;
-    const double x = c[0] - (1.0 - p.xi) * m[0] - p.xi * m[2];
-    const double y = c[1] - (1.0 - p.xi) * m[1] - p.xi * m[3];
+    double x = c[0];
+    double y = c[1];
+    for (int k = 0; k < contact.undeformed.stencil.count; ++k) {
+      const double weight = p.weights.value[static_cast<std::size_t>(k)];
+      x -= weight * m[2 * k];
+      y -= weight * m[2 * k + 1];
+    }
     const double driven = relative_drive(contact, drive_velocity) * p.tangent.x();
     contact.slip_velocity = (p.tangent.x() * x + p.tangent.y() * y) / step + driven;
     return driven;
@@ -512,10 +527,7 @@ struct Simulation::Implementation {
   }
 
   double position_of(const RunningContact& contact) const {
-    const MasterSurface& surface = surface_of(contact);
-    const auto s = static_cast<std::size_t>(contact.segment);
-    return surface.arc_length[s] +
-           contact.projection.xi * (surface.arc_length[s + 1] - surface.arc_length[s]);
+    return surface_of(contact).arc_at(contact.segment, contact.projection.weights);
   }
 };
 
@@ -549,7 +561,8 @@ Simulation::Simulation(const System& system, const TimeParameters& time, Account
     contact.slave_slot = num_slots[slave];
     num_slots[slave] += slave_slots;
     contact.master_slot = num_slots[master];
-    num_slots[master] += master_slots;
+    num_slots[master] +=
+        2 * system.surfaces[static_cast<std::size_t>(point.surface)].stencil_size();
     contact.slave_follows_drive = system.bodies[slave].follows_drive;
     contact.master_follows_drive = system.bodies[master].follows_drive;
     contact.unilateral_from = point.unilateral_from();
@@ -654,11 +667,9 @@ ContactPlace Simulation::contact_place(int index) const {
   const Implementation::Place place =
       run.place_of(contact, drive_displacement(),
                    [](const Propagator& body, int slot) { return body.current(slot); });
-  const Projection here = project(place.segment, place.slave);
-  const MasterSurface& surface = run.surface_of(contact);
-  const auto s = static_cast<std::size_t>(contact.segment);
-  return {here.normal.dot(place.slave - place.segment.first),
-          surface.arc_length[s] + here.xi * (surface.arc_length[s + 1] - surface.arc_length[s])};
+  const Projection here = project(place.master, place.slave, contact.projection.xi);
+  return {here.normal.dot(place.arm(here)),
+          run.surface_of(contact).arc_at(contact.segment, here.weights)};
 }
 
 const ViolationCount& Simulation::violations(int contact) const {
@@ -740,7 +751,11 @@ void Simulation::load(const State& state) {
     state.get(fmt::format("contacts/{}", i), values);
     const auto count = [&](int k) { return static_cast<std::int64_t>(values[k]); };
     c.segment = static_cast<int>(values[0]);
-    c.projection = {values[1], {values[2], values[3]}, {values[4], values[5]}};
+    c.undeformed = run.surface_of(c).undeformed_piece(c.segment);
+    c.projection = {values[1],
+                    {values[2], values[3]},
+                    {values[4], values[5]},
+                    weights_at(c.undeformed.stencil, values[1])};
     c.force = values[6];
     c.friction_force = values[7];
     c.state = static_cast<ContactState>(count(8));

@@ -51,7 +51,7 @@ struct ContactStatistics {
 
 /// Where a slave point stands on its master.
 struct ContactPlace {
-  double gap;       ///< distance from the deformed polyline along the segment's normal, m
+  double gap;       ///< distance from the deformed surface along its own normal, m
   double position;  ///< along the undeformed master from its first node, m
 };
 

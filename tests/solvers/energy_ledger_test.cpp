@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "solvers/make_propagator.hpp"
 #include "tests/support/message_of.hpp"
@@ -335,8 +336,12 @@ Simulation marched(const System& system, std::int64_t steps, const TimeParameter
 TEST(EnergyLedger, BalancesUnderEveryContactAssumption) {
   for (const auto assumption : {ContactAssumption::subs_a, ContactAssumption::subs_b,
                                 ContactAssumption::subs_c, ContactAssumption::film}) {
-    for (const bool is_frozen : {false, true}) {
+    for (const auto& [kind, is_frozen] : {std::pair(SurfaceKind::polyline, false),
+                                          std::pair(SurfaceKind::polyline, true),
+                                          std::pair(SurfaceKind::smooth, false),
+                                          std::pair(SurfaceKind::smooth, true)}) {
       System system = lively_system(assumption);
+      system.surfaces[0].kind = kind;
       system.drive.is_frozen = is_frozen;
       const Simulation simulation = marched(system, 10'000, paper_time());
       const EnergyLedger& ledger = *simulation.energy();

@@ -9,6 +9,7 @@
 #include <complex>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "core/errors.hpp"
 #include "tests/support/message_of.hpp"
@@ -35,7 +36,7 @@ struct RandomContact {
   FrictionLaw law{FrictionLaw::Kind::stribeck, 0.6, 0.2, 0.08};
   double friction_factor = 0.7;
   Eigen::Vector2d undeformed_tangent;
-  SlotVector velocity = SlotVector::Zero();
+  SlotVector velocity = SlotVector::Zero(6);
 };
 
 RandomContact random_contact(std::mt19937& random, ContactAssumption assumption) {
@@ -47,11 +48,13 @@ RandomContact random_contact(std::mt19937& random, ContactAssumption assumption)
   const Eigen::Vector2d first(1e-4 * unit(random), 1e-4 * unit(random));
   const Eigen::Vector2d along =
       1e-3 * contact.undeformed_tangent + 3e-4 * Eigen::Vector2d(unit(random), unit(random));
-  contact.positions.segment = {first, first + along};
+  contact.positions.master = {{}, {first, first + along}};
+  contact.positions.undeformed = {{}, {first, first + 1e-3 * contact.undeformed_tangent}};
   contact.positions.slave = first + (0.5 + 0.7 * unit(random)) * along +
                             1e-4 * Eigen::Vector2d(unit(random), unit(random));
-  contact.positions.prescribed = project({first, first + 1e-3 * contact.undeformed_tangent},
-                                         first + (0.5 + 0.5 * unit(random)) * along);
+  contact.positions.prescribed =
+      project(Segment{first, first + 1e-3 * contact.undeformed_tangent},
+              first + (0.5 + 0.5 * unit(random)) * along);
   contact.positions.driven_velocity = unit(random);
   return contact;
 }
@@ -73,8 +76,8 @@ ContactMap<Number> contact_map(const RandomContact& contact, const std::array<Nu
     return std::array<Number, 2>{point.x() + shift[slot], point.y() + shift[slot + 1]};
   };
   const auto slave = moved(positions.slave, 0);
-  const auto first = moved(positions.segment.first, 2);
-  const auto second = moved(positions.segment.second, 4);
+  const auto first = moved(positions.master.nodes[0], 2);
+  const auto second = moved(positions.master.nodes[1], 4);
   const std::array<Number, 2> along{second[0] - first[0], second[1] - first[1]};
   const std::array<Number, 2> arm{slave[0] - first[0], slave[1] - first[1]};
 
@@ -114,8 +117,10 @@ ContactMap<Number> contact_map(const RandomContact& contact, const std::array<Nu
 
 /// All derivatives by complex steps: exact to rounding.
 struct ExactDerivatives {
-  SlotVector gap, xi;
-  SlotMatrix force_by_position, force_by_velocity;
+  SlotVector gap = SlotVector::Zero(6);
+  SlotVector xi = gap;
+  SlotMatrix force_by_position = SlotMatrix::Zero(6, 6);
+  SlotMatrix force_by_velocity = force_by_position;
 };
 
 ExactDerivatives exact_derivatives(const RandomContact& contact) {
@@ -165,6 +170,137 @@ TEST(ContactLinearisation, IsTheDerivativeOfTheKinematics) {
   }
 }
 
+/// A contact anywhere on a curved piece of smooth surface, within and at both ends of the surface.
+ContactPositions random_smooth_contact(std::mt19937& random, ContactAssumption assumption) {
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  ContactPositions positions;
+  positions.assumption = assumption;
+  const int before = static_cast<int>(random() % 3);
+  positions.undeformed.stencil = positions.master.stencil = {0, 4, before};
+  for (int k = 0; k < 4; ++k) {
+    const auto node = static_cast<std::size_t>(k);
+    positions.undeformed.nodes[node] =
+        Eigen::Vector2d(1e-3 * (k - before), 1e-4 * unit(random));
+    positions.master.nodes[node] = positions.undeformed.nodes[node] +
+                                   1e-4 * Eigen::Vector2d(unit(random), unit(random));
+  }
+  const double xi = 0.5 + 0.5 * unit(random);
+  positions.slave =
+      positions.master.combine(weights_at(positions.master.stencil, xi).value) +
+      2e-5 * Eigen::Vector2d(unit(random), unit(random));
+  positions.prescribed =
+      project(positions.undeformed, 5e-4 * Eigen::Vector2d(1.0 + unit(random), 0.0), 0.5);
+  positions.driven_velocity = unit(random);
+  return positions;
+}
+
+/// The kinematics of a smooth contact, written out once more for complex displacements of its
+/// slots: gap, ξ and the slot forces per unit of λ, one after the other.
+std::array<Complex, 12> smooth_contact_map(const ContactPositions& positions,
+                                           const FrictionLaw& law, double friction_factor,
+                                           const std::array<Complex, 10>& shift, double xi_guess) {
+  const Stencil& stencil = positions.master.stencil;
+  const auto combine = [&](const SurfacePiece& piece, const std::array<Complex, 4>& weights,
+                           bool is_displaced) {
+    std::array<Complex, 2> sum{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (std::size_t i = 0; i < 2; ++i) {
+        const Complex moved = is_displaced ? shift[2 + 2 * k + i] : 0.0;
+        sum[i] += weights[k] * (piece.nodes[k](static_cast<Eigen::Index>(i)) + moved);
+      }
+    }
+    return sum;
+  };
+  // Weights of a complex ξ from their Taylor polynomials about ξ = 0.
+  const NodeWeights zero = weights_at(stencil, 0.0);
+  const NodeWeights one = weights_at(stencil, 1.0);
+  const auto weights = [&](Complex xi, int derivative) {
+    std::array<Complex, 4> w{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double third = one.curvature[k] - zero.curvature[k];
+      w[k] = derivative == 0
+                 ? zero.value[k] + xi * (zero.slope[k] + xi * (zero.curvature[k] / 2.0 +
+                                                               xi * third / 6.0))
+                 : zero.slope[k] + xi * (zero.curvature[k] + xi * third / 2.0);
+    }
+    return w;
+  };
+  const bool is_prescribed = positions.assumption == ContactAssumption::subs_a;
+  const bool is_fixed = positions.assumption == ContactAssumption::subs_c || is_prescribed;
+  const SurfacePiece& directions = is_fixed ? positions.undeformed : positions.master;
+  const auto ahead = [&](Complex xi) {
+    const auto along = combine(directions, weights(xi, 1), !is_fixed);
+    const auto point = combine(positions.master, weights(xi, 0), true);
+    return along[0] * (positions.slave.x() + shift[0] - point[0]) +
+           along[1] * (positions.slave.y() + shift[1] - point[1]);
+  };
+  Complex xi = xi_guess;
+  if (!is_prescribed) {
+    // Newton with the derivative of the real problem: the error falls by the curvature each time.
+    const double step = 1e-7;
+    const double slope = ((ahead(xi_guess + step) - ahead(xi_guess - step)) / (2.0 * step)).real();
+    for (int k = 0; k < 30; ++k) xi -= ahead(xi) / slope;
+  }
+  auto along = combine(directions, weights(xi, 1), !is_fixed);
+  const Complex length = std::sqrt(along[0] * along[0] + along[1] * along[1]);
+  const Complex tx = along[0] / length;
+  const Complex ty = along[1] / length;
+  const auto point = combine(positions.master, weights(xi, 0), true);
+  std::array<Complex, 12> map{};
+  map[0] = -ty * (positions.slave.x() + shift[0] - point[0]) +
+           tx * (positions.slave.y() + shift[1] - point[1]);
+  map[1] = xi;
+  const Complex speed = tx * positions.driven_velocity;
+  const double direction = speed.real() < 0.0 ? -1.0 : 1.0;
+  const Complex friction =
+      friction_factor *
+      (law.dynamic_coefficient + (law.static_coefficient - law.dynamic_coefficient) *
+                                     std::exp(-direction * speed / law.decay_velocity));
+  const Complex push[] = {-ty - direction * friction * tx, tx - direction * friction * ty};
+  for (std::size_t i = 0; i < 2; ++i) {
+    map[2 + i] = push[i];
+    const auto w = weights(xi, 0);
+    for (std::size_t k = 0; k < 4; ++k) map[4 + 2 * k + i] = -w[k] * push[i];
+  }
+  return map;
+}
+
+TEST(ContactLinearisation, IsTheDerivativeOfTheKinematicsOnASmoothSurface) {
+  // Complex steps are exact to rounding, which the projection enlarges by 10 at most.
+  constexpr double step = 1e-30;
+  constexpr double tolerance = 1e-11;
+  const FrictionLaw law{FrictionLaw::Kind::stribeck, 0.6, 0.2, 0.08};
+  std::mt19937 random(20261121);
+  for (const ContactAssumption assumption : all_assumptions) {
+    for (int trial = 0; trial < 100; ++trial) {
+      const ContactPositions positions = random_smooth_contact(random, assumption);
+      const ContactLinearisation linear = linearise_contact(positions, law, 0.7);
+      const double xi = linear.projection.xi;
+      const auto here = smooth_contact_map(positions, law, 0.7, {}, xi);
+      EXPECT_NEAR(linear.gap, here[0].real(), 1e-17);
+      EXPECT_NEAR(xi, here[1].real(), tolerance);
+      ASSERT_EQ(linear.force_row.size(), 10);
+      SlotVector gap(10);
+      SlotVector shift(10);
+      SlotMatrix force(10, 10);
+      for (std::size_t k = 0; k < 10; ++k) {
+        std::array<Complex, 10> displaced{};
+        displaced[k] = Complex(0.0, step);
+        const auto map = smooth_contact_map(positions, law, 0.7, displaced, xi);
+        const auto column = static_cast<Eigen::Index>(k);
+        gap(column) = map[0].imag() / step;
+        shift(column) = map[1].imag() / step;
+        for (std::size_t j = 0; j < 10; ++j)
+          force(static_cast<Eigen::Index>(j), column) = map[2 + j].imag() / step;
+        EXPECT_NEAR(linear.force_row(column), -here[2 + k].real(), tolerance);
+      }
+      EXPECT_LT((linear.gap_row + gap).norm(), tolerance);
+      EXPECT_LE((linear.shift_row - shift).norm(), tolerance * shift.norm());
+      EXPECT_LE((linear.force_by_position + force).norm(), tolerance * force.norm());
+    }
+  }
+}
+
 TEST(ContactLinearisation, RowsAreThoseOfTheContactButForTheSlopeOfSubsC) {
   std::mt19937 random(7);
   for (const ContactAssumption assumption : all_assumptions) {
@@ -176,8 +312,8 @@ TEST(ContactLinearisation, RowsAreThoseOfTheContactButForTheSlopeOfSubsC) {
           linearise_contact(contact.positions, contact.law, contact.friction_factor, terms);
       const ContactRows rows = make_rows(linear.projection, linear.friction, linear.direction);
       const auto& [c, e] = rows;
-      SlotVector compatibility;
-      SlotVector equilibrium;
+      SlotVector compatibility(6);
+      SlotVector equilibrium(6);
       compatibility << c.slave[0], c.slave[1], c.master[0], c.master[1], c.master[2], c.master[3];
       equilibrium << e.slave[0], e.slave[1], e.master[0], e.master[1], e.master[2], e.master[3];
       EXPECT_LT((linear.force_row - equilibrium).norm(), 1e-15);
@@ -196,10 +332,10 @@ TEST(ContactLinearisation, TermsAddUpToTheWhole) {
     };
     const ContactLinearisation whole = linear({});
     const ContactLinearisation nothing = linear(no_terms);
-    EXPECT_EQ(nothing.force_by_position, SlotMatrix::Zero().eval());
-    EXPECT_EQ(nothing.force_by_velocity, SlotMatrix::Zero().eval());
-    SlotMatrix position = SlotMatrix::Zero();
-    SlotMatrix velocity = SlotMatrix::Zero();
+    EXPECT_EQ(nothing.force_by_position, SlotMatrix::Zero(6, 6).eval());
+    EXPECT_EQ(nothing.force_by_velocity, SlotMatrix::Zero(6, 6).eval());
+    SlotMatrix position = SlotMatrix::Zero(6, 6);
+    SlotMatrix velocity = SlotMatrix::Zero(6, 6);
     SlotVector gap = nothing.gap_row;
     int num_active = 0;
     for (bool LinearisationTerms::*term :
@@ -251,9 +387,12 @@ Eigen::VectorXd stacked(const Equilibrium& equilibrium) {
 
 TEST(Linearise, IsTheTangentOfTheEquilibrium) {
   // (K + Sᵀ G S) δq + Sᵀ B_Eᵀ δλ = δf, B_C S δq = 0 is how the equilibrium moves with the load.
-  for (const double angle : {trailing_angle, leading_angle}) {
+  for (const auto& [angle, kind] : {std::pair(trailing_angle, SurfaceKind::polyline),
+                                    std::pair(leading_angle, SurfaceKind::polyline),
+                                    std::pair(trailing_angle, SurfaceKind::smooth)}) {
     for (const ContactAssumption assumption : all_assumptions) {
-      const System system = paper_system(angle, assumption);
+      System system = paper_system(angle, assumption);
+      system.surfaces[0].kind = kind;
       EquilibriumState state = sliding_state(system, drive_displacement_at(system, 0, 0.0905));
       const Equilibrium equilibrium = find_equilibrium(system, state);
       ASSERT_EQ(equilibrium.status, EquilibriumStatus::converged) << equilibrium.failure;
@@ -425,8 +564,8 @@ TEST(Linearise, FrictionThatFallsWithTheVelocityFeedsTheTangentialMotion) {
     const Pencil pencil = linearise(system, equilibrium);
     ASSERT_EQ(pencil.slot_damping.rows(), 6);
     // H = λ χ (dμ/dv) τ τᵀ with τ the sliding velocity per velocity of the slots.
-    const auto& [xi, tangent, normal] = contact.projection;
-    SlotVector sliding;
+    const auto& [xi, tangent, normal, weights] = contact.projection;
+    SlotVector sliding(6);
     sliding << tangent, -(1.0 - xi) * tangent, -xi * tangent;
     const double slope = sliding_friction_slope(system.contacts[0].friction, contact.slip_velocity);
     EXPECT_LT(slope, 0.0);
@@ -557,18 +696,26 @@ TEST(Perturbation, GrowsAsItsEigenvalueSays) {
   // 66 1/s, the friction of a step is that of the velocity before: 0.5 1/s.
   const FrictionLaw constant = constant_friction(0.30);
   const FrictionLaw stribeck{FrictionLaw::Kind::stribeck, 0.45, 0.25, 0.03};
+  constexpr SurfaceKind polyline = SurfaceKind::polyline;
+  constexpr SurfaceKind smooth = SurfaceKind::smooth;
   const struct {
     double angle, start;
     ContactAssumption assumption;
+    SurfaceKind kind;
     FrictionLaw law;
     double growth, tolerance;
-  } cases[] = {{trailing_angle, 0.0752, ContactAssumption::subs_a, constant, -20.96, 0.2},
-               {trailing_angle, 0.0752, ContactAssumption::subs_b, constant, 90.50, 0.2},
-               {trailing_angle, 0.0752, ContactAssumption::subs_c, constant, 94.34, 0.2},
-               {leading_angle, 0.0743, ContactAssumption::film, constant, 40.27, 0.2},
-               {trailing_angle, 0.0752, ContactAssumption::subs_b, stribeck, 161.92, 1.0}};
-  for (const auto& [angle, start, assumption, law, growth, tolerance] : cases) {
+  } cases[] = {
+      {trailing_angle, 0.0752, ContactAssumption::subs_a, polyline, constant, -20.96, 0.2},
+      {trailing_angle, 0.0752, ContactAssumption::subs_b, polyline, constant, 90.50, 0.2},
+      {trailing_angle, 0.0752, ContactAssumption::subs_c, polyline, constant, 94.34, 0.2},
+      {leading_angle, 0.0743, ContactAssumption::film, polyline, constant, 40.27, 0.2},
+      {trailing_angle, 0.0752, ContactAssumption::subs_b, polyline, stribeck, 161.92, 1.0},
+      {trailing_angle, 0.0752, ContactAssumption::subs_b, smooth, constant, 0.0, 0.2},
+      {trailing_angle, 0.0752, ContactAssumption::subs_c, smooth, constant, 0.0, 0.2},
+      {leading_angle, 0.0743, ContactAssumption::film, smooth, constant, 0.0, 0.2}};
+  for (const auto& [angle, start, assumption, kind, law, growth, tolerance] : cases) {
     System system = paper_system(angle, assumption);
+    system.surfaces[0].kind = kind;
     // The bodies stand where the slave is wanted; from there the drive is held.
     const Eigen::Vector2d shift(drive_displacement_at(system, 0, start), 0.0);
     ContactPoint& point = system.contacts[0];
