@@ -109,12 +109,15 @@ const Schema& ContactParameters::schema() {
                   {.doc = "moving: the drive slides the slave; frozen: position held, friction as "
                           "in sliding.",
                    .optional = true})
-          .choice("surface", &ContactParameters::surface,
-                  {{"polyline", SurfaceKind::polyline}, {"smooth", SurfaceKind::smooth}},
-                  {.doc = "Shape of the master between its nodes. polyline: straight segments, with "
-                          "a kink at every node; smooth: a cubic through the nodes with continuous "
-                          "normal.",
-                   .optional = true})
+          .choice(
+              "surface", &ContactParameters::surface,
+              {{"polyline", SurfaceKind::polyline}, {"smooth", SurfaceKind::smooth}},
+              {.doc = "Shape of the master between its nodes. polyline: straight segments, with "
+                      "a kink at every node; smooth: a cubic through the nodes with continuous "
+                      "normal.",
+               .optional = true})
+          .section("roughness", &ContactParameters::roughness,
+                   {.doc = "Random roughness of the master, added to the gap.", .optional = true})
           .section("friction", &ContactParameters::friction, {.doc = "Friction law."})
           .check([](const ContactParameters& contact, std::vector<Problem>& problems) {
             if (contact.slave.empty())

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/schema.hpp"
+#include "coupling/roughness.hpp"
 #include "coupling/system.hpp"
 
 namespace stridor {
@@ -37,6 +38,7 @@ struct ContactParameters {
   double start = 0.0;  ///< of the first slave point, along the master from its first node, m
   SlidingMode sliding = SlidingMode::moving;
   SurfaceKind surface = SurfaceKind::polyline;
+  std::optional<RoughnessParameters> roughness;
   FrictionParameters friction;
   static const Schema& schema();
 };

@@ -66,7 +66,7 @@ inline NodeWeights weights_at(const Stencil& stencil, double xi) {
                           0.5 + xi * (4.0 - 4.5 * xi), xi * (1.5 * xi - 1.0)};
   const double curvature[] = {2.0 - 3.0 * xi, 9.0 * xi - 5.0, 4.0 - 9.0 * xi, 3.0 * xi - 1.0};
   const auto T1 = static_cast<std::size_t>(stencil.before);
-  const auto place = [&](const double (&of)[4], std::array<double, max_stencil>& on) {
+  const auto place = [&](const double(&of)[4], std::array<double, max_stencil>& on) {
     on = {};
     on[T1] = of[1];
     on[T1 + 1] = of[2];

@@ -9,6 +9,7 @@
 #include "core/time_curve.hpp"
 #include "coupling/contact.hpp"
 #include "coupling/friction_law.hpp"
+#include "coupling/roughness.hpp"
 #include "coupling/surface.hpp"
 #include "substructures/modal_body.hpp"
 
@@ -41,6 +42,7 @@ struct MasterSurface {
   std::vector<double> arc_length;          ///< along the undeformed surface from its first node, m
   bool is_endless = false;                 ///< the first and last segment go on for ever
   SurfaceKind kind = SurfaceKind::polyline;
+  Roughness roughness;  ///< over the arc length
 
   int num_segments() const { return static_cast<int>(positions.size()) - 1; }
   /// Ends of a segment, m.
@@ -69,12 +71,16 @@ struct MasterSurface {
     return project(undeformed_piece(segment), point - positions[static_cast<std::size_t>(segment)],
                    guess);
   }
-  /// Arc length of the undeformed surface that belongs to a place of a segment, Σ w_k s_k, m; and
-  /// its derivative by ξ.
+  /// Arc length of the undeformed surface that belongs to a place of a segment, Σ w_k s_k, m.
   double arc_at(int segment, const NodeWeights& weights) const {
     const double origin = arc_length[static_cast<std::size_t>(segment)];
     return origin + combine_arcs(segment, weights.value, origin);
   }
+  /// How far the rough surface stands out of the smooth one at a place, m.
+  double roughness_at(int segment, const NodeWeights& weights) const {
+    return roughness.is_smooth() ? 0.0 : roughness.at(arc_at(segment, weights)).value;
+  }
+  /// Its derivative by ξ, m.
   double arc_slope(int segment, const NodeWeights& weights) const {
     return combine_arcs(segment, weights.slope, arc_length[static_cast<std::size_t>(segment)]);
   }

@@ -173,12 +173,37 @@ ResolvedPair resolve_pair(const std::string& name, const std::string& key,
   return pair;
 }
 
+/// By how much two slave points of one body may stand apart in height, m.
+double height_of_roughness(const ContactParameters& parameters) {
+  constexpr double never_exceeded = 20.0;
+  return parameters.roughness ? never_exceeded * parameters.roughness->rms : 0.0;
+}
+
+/// @param length of the master, m
+Roughness make_roughness(const ResolvedPair& pair, double length) {
+  const std::optional<RoughnessParameters>& given = pair.parameters->roughness;
+  if (!given || given->rms == 0.0) return {};
+  const double least = length / Roughness::max_correlation_lengths;
+  if (!(given->correlation_length >= least)) {
+    throw ConfigError(
+        pair.key + ".roughness.correlation_length",
+        fmt::format("{:g} m is too small for a master of {:g} m, on which it takes {:g} m at least",
+                    given->correlation_length, length, least));
+  }
+  return Roughness(*given, length);
+}
+
 MasterSurface make_surface(const ResolvedPair& pair, Body& body) {
   MasterSurface surface;
   surface.name = pair.master_name;
   surface.body = pair.master_body;
   surface.kind = pair.parameters->surface;
   if (pair.master_name == rigid_name) {
+    if (pair.parameters->roughness) {
+      throw ConfigError(pair.key + ".roughness",
+                        "the rigid master has no end, a rough surface needs one; take the surface "
+                        "of a body");
+    }
     surface.rows = {{0, 0}, {0, 0}};
     surface.positions = {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(1.0, 0.0)};
     surface.arc_length = {0.0, 1.0};
@@ -192,6 +217,7 @@ MasterSurface make_surface(const ResolvedPair& pair, Body& body) {
     surface.positions.push_back(body.position(pair.master_nodes[k]));
     surface.arc_length.push_back(arc);
   }
+  surface.roughness = make_roughness(pair, arc);
   return surface;
 }
 
@@ -227,12 +253,16 @@ void place_slave(const ResolvedPair& pair, const MasterSurface& surface, Body& s
         fmt::format("{:g} m is off the master '{}', which is {:g} m long; allowed: 0 to {:g} m",
                     start, surface.name, length, length));
   }
-  const Eigen::Vector2d target = point_at(surface, start);
+  // On the rough surface, so that the contact begins closed.
+  const auto [segment, projection] = locate_on(surface, point_at(surface, start));
+  const Eigen::Vector2d target =
+      point_at(surface, start) +
+      surface.roughness_at(segment, projection.weights) * projection.normal;
   const Eigen::Vector2d shift = target - slave.position(pair.slave_nodes.front());
   if (!slave.is_placed) {
     slave.place += shift;
     slave.is_placed = true;
-  } else if (shift.norm() > 1e-9 * length) {
+  } else if (shift.norm() > 1e-9 * length + height_of_roughness(*pair.parameters)) {
     throw ConfigError(pair.key + ".start",
                       fmt::format("'{}' is placed already, and its point stands {:g} m away from "
                                   "the {:g} m asked for; a body can be "
@@ -478,7 +508,7 @@ Model make_model(const ModelParameters& parameters,
       }
       const double gap = projection.normal.dot(
           point.slave_position - surface.positions[static_cast<std::size_t>(segment)]);
-      if (std::abs(gap) > 1e-6 * length) {
+      if (std::abs(gap) > 1e-6 * length + height_of_roughness(*pair.parameters)) {
         throw ConfigError(pair.key + ".slave",
                           fmt::format("slave point {} starts {:g} m away from the master '{}'; "
                                       "every slave point must lie on it at the "

@@ -153,8 +153,8 @@ EnergyLedger::EnergyLedger(const System& system, const TimeParameters& time)
     const auto follows = [&](int body) {
       return system.bodies[static_cast<std::size_t>(body)].follows_drive ? 1.0 : 0.0;
     };
-    contacts_.push_back({point.slave_body, surface.body, point.slave_rows, surface.rows, surface.kind,
-                         follows(point.slave_body) - follows(surface.body)});
+    contacts_.push_back({point.slave_body, surface.body, point.slave_rows, surface.rows,
+                         surface.kind, follows(point.slave_body) - follows(surface.body)});
   }
   initial_ = kinetic + strain;
   enter_stored(kinetic, strain);

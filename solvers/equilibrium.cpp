@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -23,8 +24,7 @@ std::size_t at(int index) {
 SlotVector on_nodes(const Stencil& stencil, const std::array<double, max_stencil>& weights,
                     const Eigen::Vector2d& vector) {
   SlotVector slots = SlotVector::Zero(2 + 2 * stencil.count);
-  for (int k = 0; k < stencil.count; ++k)
-    slots.segment<2>(2 + 2 * k) = weights[at(k)] * vector;
+  for (int k = 0; k < stencil.count; ++k) slots.segment<2>(2 + 2 * k) = weights[at(k)] * vector;
   return slots;
 }
 
@@ -94,14 +94,15 @@ ContactLinearisation linearise_contact(const ContactPositions& positions, const 
 
   ContactLinearisation contact;
   const double guess = positions.prescribed.xi;
-  contact.projection =
-      is_prescribed      ? positions.prescribed
-      : has_fixed_normal ? project_along(master, positions.slave, positions.undeformed, guess)
-                         : project(master, positions.slave, guess);
+  contact.projection = is_prescribed ? positions.prescribed
+                       : has_fixed_normal
+                           ? project_along(master, positions.slave, positions.undeformed, guess)
+                           : project(master, positions.slave, guess);
   const auto& [xi, tangent, normal, weights] = contact.projection;
   const Eigen::Vector2d arm = positions.slave - master.combine(weights.value);
   const Eigen::Vector2d along = master.combine(weights.slope);
-  contact.gap = normal.dot(arm);
+  const double height = normal.dot(arm);
+  contact.gap = height;
   contact.slip_velocity = positions.driven_velocity * tangent.x();
   contact.direction = contact.slip_velocity < 0.0 ? -1.0 : 1.0;
   contact.friction = friction_factor * sliding_friction(law, contact.slip_velocity);
@@ -125,22 +126,29 @@ ContactLinearisation linearise_contact(const ContactPositions& positions, const 
     // Curvature of the undeformed surface, by ξ.
     const double turning = normal.dot(positions.undeformed.combine(weights.curvature)) /
                            positions.undeformed.combine(weights.slope).norm();
-    shift = along_tangent / (tangent.dot(along) - contact.gap * turning);
+    shift = along_tangent / (tangent.dot(along) - height * turning);
     turn = turning * shift;
     if (terms.slope) contact.gap_row += normal.dot(along) * shift;
   } else if (!is_prescribed) {
     const double length = along.norm();
     const double turning = normal.dot(master.combine(weights.curvature)) / length;
     turn = on_nodes(master.stencil, weights.slope, normal / length);
-    shift = (along_tangent + contact.gap * turn) / (length - contact.gap * turning);
+    shift = (along_tangent + height * turn) / (length - height * turning);
     turn += turning * shift;
+  }
+  if (positions.roughness != nullptr) {
+    const auto arc = [&](const std::array<double, max_stencil>& of) {
+      return std::inner_product(of.begin(), of.end(), positions.arc_length.begin(), 0.0);
+    };
+    const RoughnessHeight rough = positions.roughness->at(arc(weights.value));
+    contact.gap -= rough.value;
+    if (terms.roughness) contact.gap_row += rough.slope * arc(weights.slope) * shift;
   }
   if (terms.turning_normal) contact.force_by_position += along_tangent * turn.transpose();
   if (terms.turning_friction)
     contact.force_by_position += coefficient * along_normal * turn.transpose();
   if (terms.shift) {
-    contact.force_by_position +=
-        on_nodes(master.stencil, weights.slope, push) * shift.transpose();
+    contact.force_by_position += on_nodes(master.stencil, weights.slope, push) * shift.transpose();
   }
   if (terms.friction_slope) {
     const SlotVector friction_row = contact.direction * contact.friction_slope * along_tangent;
@@ -149,6 +157,13 @@ ContactLinearisation linearise_contact(const ContactPositions& positions, const 
     contact.force_by_velocity += friction_row * along_tangent.transpose();
   }
   return contact;
+}
+
+void set_roughness(ContactPositions& positions, const MasterSurface& surface, int segment) {
+  positions.roughness = surface.roughness.is_smooth() ? nullptr : &surface.roughness;
+  const Stencil stencil = surface.stencil(segment);
+  for (int k = 0; k < stencil.count; ++k)
+    positions.arc_length[at(k)] = surface.arc_length[at(stencil.first + k)];
 }
 
 EquilibriumState sliding_state(const System& system, double drive_displacement,
@@ -310,8 +325,7 @@ class Search {
   void prescribe(SoughtContact& contact) const {
     const double displacement = contact.share_of_drive * answer_.state.drive_displacement;
     contact.result.positions.prescribed = contact.surface->project_undeformed(
-        contact.result.segment,
-        contact.point->slave_position + Eigen::Vector2d(displacement, 0.0));
+        contact.result.segment, contact.point->slave_position + Eigen::Vector2d(displacement, 0.0));
   }
 
   /// Rows and static flexibility at the slots of the present segments.
@@ -368,6 +382,7 @@ class Search {
     positions.slave.x() += contact.share_of_drive * answer_.state.drive_displacement;
     positions.undeformed = contact.surface->undeformed_piece(contact.result.segment);
     positions.master = positions.undeformed;
+    set_roughness(positions, *contact.surface, contact.result.segment);
     for (int k = 0; k < positions.master.stencil.count; ++k)
       positions.master.nodes[at(k)] += slots.segment<2>(2 + 2 * k);
   }
@@ -569,8 +584,7 @@ class Search {
     for (const SoughtContact& contact : contacts_) {
       const ContactPositions& positions = contact.result.positions;
       largest_force = std::max(largest_force, std::abs(contact.result.force));
-      largest_length =
-          std::max(largest_length, positions.master.chord().norm());
+      largest_length = std::max(largest_length, positions.master.chord().norm());
     }
     SoughtContact* worst = nullptr;
     double worst_violation = 0.0;
@@ -608,8 +622,10 @@ class Search {
       const ContactRow& pushed = rows.equilibrium;
       auto slots = forces.segment(contact.first_slot, contact.num_slots);
       slots.head<2>() << pushed.slave[0], pushed.slave[1];
-      for (Eigen::Index k = 2; k < contact.num_slots; ++k) slots(k) = pushed.master[at(static_cast<int>(k) - 2)];
+      for (Eigen::Index k = 2; k < contact.num_slots; ++k)
+        slots(k) = pushed.master[at(static_cast<int>(k) - 2)];
       slots *= -result.force;
+      result.positions.roughness = nullptr;  // of a system that the answer may outlive
       answer_.contacts.push_back(result);
     }
     for (std::size_t b = 0; b < bodies_.size(); ++b) {

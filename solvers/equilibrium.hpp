@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -24,14 +25,16 @@ struct ContactPositions {
   SurfacePiece undeformed;                          ///< m
   /// Of the slave displaced by the drive alone, on the undeformed segment.
   Projection prescribed;
+  const Roughness* roughness = nullptr;          ///< not owned; null where there is none
+  std::array<double, max_stencil> arc_length{};  ///< of the nodes of the stencil, m
   double driven_velocity = 0.0;  ///< of the slave against the master in +x, by the drive alone, m/s
 };
 
 inline constexpr int max_contact_slots = 2 + 2 * max_stencil;
 /// Slave x, y and the nodes of the stencil x, y each.
 using SlotVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_contact_slots, 1>;
-using SlotMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, max_contact_slots,
-                                 max_contact_slots>;
+using SlotMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, max_contact_slots, max_contact_slots>;
 
 /// Parts of the derivative of a contact, each of which can be left out to see what it does.
 struct LinearisationTerms {
@@ -40,6 +43,7 @@ struct LinearisationTerms {
   bool shift = true;             ///< the force moves along the segment with ξ
   bool slope = true;  ///< Subs-c: the gap changes as ξ moves along a surface that is not parallel
                       ///< to the undeformed one
+  bool roughness = true;       ///< the gap changes as ξ moves along the slope of the roughness
   bool friction_slope = true;  ///< μ changes with the sliding velocity
 };
 
@@ -47,12 +51,13 @@ struct LinearisationTerms {
 /// (docs/theory.md, 6.2).
 struct ContactLinearisation {
   Projection projection;
-  double gap = 0.0;              ///< m
-  double slip_velocity = 0.0;    ///< v_r for ż = 0, m/s
-  double direction = 1.0;        ///< χ
-  double friction = 0.0;         ///< μ(v_r)
-  double friction_slope = 0.0;   ///< dμ/dv_r, s/m
-  SlotVector gap_row;            ///< −∂gap/∂z; the row of B_C but for the slope of Subs-c
+  double gap = 0.0;             ///< m
+  double slip_velocity = 0.0;   ///< v_r for ż = 0, m/s
+  double direction = 1.0;       ///< χ
+  double friction = 0.0;        ///< μ(v_r)
+  double friction_slope = 0.0;  ///< dμ/dv_r, s/m
+  /// −∂gap/∂z; the row of B_C but for the slopes of Subs-c and of the roughness.
+  SlotVector gap_row;
   SlotVector shift_row;          ///< ∂ξ/∂z, 1/m
   SlotVector force_row;          ///< row of B_E
   SlotMatrix force_by_position;  ///< ∂(row of B_E)ᵀ/∂z, 1/m
@@ -70,6 +75,10 @@ struct ContactLinearisation {
 ContactLinearisation linearise_contact(const ContactPositions& positions, const FrictionLaw& law,
                                        double friction_factor,
                                        const LinearisationTerms& terms = {});
+
+/// Lets a contact feel the roughness of its master.
+/// @param segment of the master that the positions belong to
+void set_roughness(ContactPositions& positions, const MasterSurface& surface, int segment);
 
 /// What holds the system in its equilibrium from outside.
 struct EquilibriumState {
@@ -99,7 +108,7 @@ double drive_displacement_at(const System& system, int contact, double position)
 struct ContactEquilibrium {
   bool is_closed = true;  ///< false: lifted off, without force
   int segment = 0;
-  ContactPositions positions;
+  ContactPositions positions;  ///< without roughness; see set_roughness()
   Projection projection;
   double gap = 0.0;             ///< m; 0 but for rounding where it is closed
   double position = 0.0;        ///< along the undeformed master from its first node, m

@@ -36,17 +36,17 @@ Pencil linearise(const System& system, const Equilibrium& equilibrium,
   for (std::size_t i = 0; i < equilibrium.contacts.size(); ++i) {
     const ContactEquilibrium& contact = equilibrium.contacts[i];
     if (!contact.is_closed) continue;
-    const ContactLinearisation local = linearise_contact(
-        contact.positions, system.contacts[i].friction, equilibrium.state.friction_factor, terms);
+    ContactPositions positions = contact.positions;
+    set_roughness(positions, system.surface_of(system.contacts[i]), contact.segment);
+    const ContactLinearisation local = linearise_contact(positions, system.contacts[i].friction,
+                                                         equilibrium.state.friction_factor, terms);
     const auto constraint = static_cast<Eigen::Index>(i);
     const Eigen::Index first = first_contact_slot(system, static_cast<int>(i));
     const Eigen::Index size = local.gap_row.size();
     place_contact(pencil, system, static_cast<int>(i), contact.segment,
                   {row_of(local.gap_row), row_of(local.force_row)});
-    stiffness.block(first, first, size, size) =
-        contact.force * local.force_by_position;
-    damping.block(first, first, size, size) =
-        contact.force * local.force_by_velocity;
+    stiffness.block(first, first, size, size) = contact.force * local.force_by_position;
+    damping.block(first, first, size, size) = contact.force * local.force_by_velocity;
     kept_constraints.push_back(constraint);
     for (Eigen::Index k = 0; k < size; ++k) kept_slots.push_back(first + k);
   }

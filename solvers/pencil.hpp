@@ -19,9 +19,9 @@ namespace stridor {
 /// q exp(st). There are 2(n − k), unless B_C S Sᵀ B_Eᵀ is singular.
 ///
 /// A sliding contact has the slots of its slave point and of the nodes of its stencil
-/// (System::num_contact_slots) and one constraint. Constraints may be added: a sticking contact has two. G and H hold what the contact forces in equilibrium add where
-/// they turn or shift with the motion or depend on the sliding velocity; about the undeformed
-/// geometry there is nothing to add.
+/// (System::num_contact_slots) and one constraint. Constraints may be added: a sticking contact has
+/// two. G and H hold what the contact forces in equilibrium add where they turn or shift with the
+/// motion or depend on the sliding velocity; about the undeformed geometry there is nothing to add.
 struct Pencil {
   Eigen::VectorXd omega;    ///< ω, n, rad/s, >= 0, in any order
   Eigen::VectorXd damping;  ///< c, n, 1/s; negative feeds energy in
@@ -54,7 +54,8 @@ Eigen::Index first_contact_slot(const System& system, int contact);
 /// Fills in slots and constraint of one contact.
 ///
 /// @param pencil  of make_modal_pencil()
-/// @param contact index into System::contacts: slots from first_contact_slot(), constraint `contact`
+/// @param contact index into System::contacts: slots from first_contact_slot(), constraint
+/// `contact`
 /// @param segment of its master surface
 /// @param rows    of B_C and B_E
 void place_contact(Pencil& pencil, const System& system, int contact, int segment,

@@ -135,8 +135,8 @@ struct Simulation::Implementation {
       return {displacement(body, slot), displacement(body, slot + 1)};
     };
     Place place;
-    place.slave = contact.point.slave_position - origin_of(contact) +
-                  moved(slave, contact.slave_slot);
+    place.slave =
+        contact.point.slave_position - origin_of(contact) + moved(slave, contact.slave_slot);
     place.slave.x() += relative_drive(contact, drive_at);
     place.master.stencil = undeformed.stencil;
     for (int k = 0; k < undeformed.stencil.count; ++k) {
@@ -211,8 +211,7 @@ struct Simulation::Implementation {
   double place_along(const RunningContact& contact, const Place& place) const {
     const Projection& p = contact.projection;
     double along = surface_of(contact).arc_at(contact.segment, p.weights);
-    if (contact.point.assumption == ContactAssumption::subs_a)
-      along += p.tangent.dot(place.arm(p));
+    if (contact.point.assumption == ContactAssumption::subs_a) along += p.tangent.dot(place.arm(p));
     return along;
   }
 
@@ -222,7 +221,8 @@ struct Simulation::Implementation {
     Place place;
     if (!find_projection(contact, drive_at, place)) return false;
     const Projection& p = contact.projection;
-    problem.penetration = -p.normal.dot(place.arm(p));
+    problem.penetration =
+        surface_of(contact).roughness_at(contact.segment, p.weights) - p.normal.dot(place.arm(p));
     problem.sliding_friction =
         rise * sliding_friction(contact.point.friction, contact.slip_velocity);
     problem.direction = contact.slip_velocity < 0.0 ? -1.0 : 1.0;
@@ -668,8 +668,9 @@ ContactPlace Simulation::contact_place(int index) const {
       run.place_of(contact, drive_displacement(),
                    [](const Propagator& body, int slot) { return body.current(slot); });
   const Projection here = project(place.master, place.slave, contact.projection.xi);
-  return {here.normal.dot(place.arm(here)),
-          run.surface_of(contact).arc_at(contact.segment, here.weights)};
+  const MasterSurface& surface = run.surface_of(contact);
+  return {here.normal.dot(place.arm(here)) - surface.roughness_at(contact.segment, here.weights),
+          surface.arc_at(contact.segment, here.weights)};
 }
 
 const ViolationCount& Simulation::violations(int contact) const {

@@ -49,7 +49,8 @@ Projection at(double xi, double angle) {
 
 void expect_rows_near(const ContactRow& a, const ContactRow& b, double tolerance) {
   for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(a.slave[i], b.slave[i], tolerance) << i;
-  for (std::size_t i = 0; i < a.master.size(); ++i) EXPECT_NEAR(a.master[i], b.master[i], tolerance) << i;
+  for (std::size_t i = 0; i < a.master.size(); ++i)
+    EXPECT_NEAR(a.master[i], b.master[i], tolerance) << i;
 }
 
 class Configurations {

@@ -22,7 +22,8 @@ MasterSurface wavy_surface(SurfaceKind kind, int num_nodes, std::mt19937& genera
   for (int k = 0; k < num_nodes; ++k) {
     surface.positions.emplace_back(k + 0.2 * unit(generator), 0.3 * unit(generator));
     surface.rows.push_back({2 * k, 2 * k + 1});
-    if (k > 0) arc += (surface.positions.back() - surface.positions[surface.rows.size() - 2]).norm();
+    if (k > 0)
+      arc += (surface.positions.back() - surface.positions[surface.rows.size() - 2]).norm();
     surface.arc_length.push_back(arc);
   }
   return surface;
@@ -100,8 +101,8 @@ TEST(NodeWeights, HaveTheirDerivatives) {
                     here.value[k] + step * (here.slope[k] +
                                             step * (here.curvature[k] / 2.0 + step * third / 6.0)),
                     1e-13);
-        EXPECT_NEAR(there.slope[k],
-                    here.slope[k] + step * (here.curvature[k] + step * third / 2.0), 1e-13);
+        EXPECT_NEAR(there.slope[k], here.slope[k] + step * (here.curvature[k] + step * third / 2.0),
+                    1e-13);
         EXPECT_NEAR(there.curvature[k], here.curvature[k] + step * third, 1e-13);
         sum += here.value[k];
         if (static_cast<int>(k) >= stencil.count) {

@@ -55,6 +55,33 @@ TEST(Model, SlavePointIsPlacedOnTheMasterAtItsStart) {
   }
 }
 
+TEST(Model, SlavePointIsPlacedOnTheRoughSurface) {
+  ModelParameters parameters = paper_model();
+  parameters.contact->surface = SurfaceKind::smooth;
+  parameters.contact->roughness = RoughnessParameters{1e-8, 1e-4, 5};
+  const System system = make_paper_model(parameters).system;
+  const MasterSurface& surface = system.surfaces[0];
+  EXPECT_EQ(surface.kind, SurfaceKind::smooth);
+  const double height = surface.roughness.at(0.030).value;
+  EXPECT_GT(std::abs(height), 1e-10);
+  EXPECT_NEAR(system.contacts[0].slave_position.y(), 0.001 + height, 1e-17);
+  EXPECT_NEAR(Simulation(system, paper_time()).contact_place(0).gap, 0.0, 1e-17);
+}
+
+TEST(Model, RoughnessNeedsAMasterWithEndsAndALengthThatItsTableCanHold) {
+  ModelParameters parameters = paper_model();
+  parameters.contact->roughness = RoughnessParameters{1e-8, 0.9e-7, 5};
+  expect_refusal(parameters, "contact.roughness.correlation_length",
+                 "9e-08 m is too small for a master of 0.1 m, on which it takes 1e-07 m at least");
+  parameters.contact->roughness->correlation_length = 1e-4;
+  parameters.contact->master = "rigid";
+  expect_refusal(parameters, "contact.roughness", "the rigid master has no end");
+  // No height, no table.
+  parameters = paper_model();
+  parameters.contact->roughness = RoughnessParameters{0.0, 1e-12, 5};
+  EXPECT_TRUE(make_paper_model(parameters).system.surfaces[0].roughness.is_smooth());
+}
+
 TEST(Model, InterfaceSpacingKeepsEveryKthNode) {
   ModelParameters parameters = paper_model();
   auto& cantilever = std::get<BeamParameters>(parameters.substructures["cantilever"]);

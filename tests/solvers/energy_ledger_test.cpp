@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <utility>
+#include <tuple>
 
 #include "solvers/make_propagator.hpp"
 #include "tests/support/message_of.hpp"
@@ -207,7 +207,7 @@ System driven_system(bool slave_is_driven) {
 
 ContactAction inclined_action(double force, double friction_force) {
   return {0,
-          {0.5, Eigen::Vector2d(0.8, 0.6), Eigen::Vector2d(-0.6, 0.8)},
+          {0.5, Eigen::Vector2d(0.8, 0.6), Eigen::Vector2d(-0.6, 0.8), weights_at({}, 0.5)},
           force,
           friction_force,
           ContactState::slip};
@@ -336,12 +336,14 @@ Simulation marched(const System& system, std::int64_t steps, const TimeParameter
 TEST(EnergyLedger, BalancesUnderEveryContactAssumption) {
   for (const auto assumption : {ContactAssumption::subs_a, ContactAssumption::subs_b,
                                 ContactAssumption::subs_c, ContactAssumption::film}) {
-    for (const auto& [kind, is_frozen] : {std::pair(SurfaceKind::polyline, false),
-                                          std::pair(SurfaceKind::polyline, true),
-                                          std::pair(SurfaceKind::smooth, false),
-                                          std::pair(SurfaceKind::smooth, true)}) {
+    const std::tuple<SurfaceKind, bool, double> surfaces[] = {
+        {SurfaceKind::polyline, false, 0.0},  {SurfaceKind::polyline, true, 0.0},
+        {SurfaceKind::polyline, false, 1e-8}, {SurfaceKind::smooth, false, 0.0},
+        {SurfaceKind::smooth, true, 0.0},     {SurfaceKind::smooth, false, 1e-8}};
+    for (const auto& [kind, is_frozen, rms] : surfaces) {
       System system = lively_system(assumption);
       system.surfaces[0].kind = kind;
+      if (rms > 0.0) system.surfaces[0].roughness = Roughness({rms, 2e-5, 1}, 0.1);
       system.drive.is_frozen = is_frozen;
       const Simulation simulation = marched(system, 10'000, paper_time());
       const EnergyLedger& ledger = *simulation.energy();

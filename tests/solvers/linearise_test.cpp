@@ -24,7 +24,7 @@ using ::testing::HasSubstr;
 
 using Complex = std::complex<double>;
 constexpr double load = 0.20;  ///< |F_y| of the paper, N
-constexpr LinearisationTerms no_terms{false, false, false, false, false};
+constexpr LinearisationTerms no_terms{false, false, false, false, false, false};
 
 constexpr std::array all_assumptions{ContactAssumption::subs_a, ContactAssumption::subs_b,
                                      ContactAssumption::subs_c, ContactAssumption::film};
@@ -52,9 +52,8 @@ RandomContact random_contact(std::mt19937& random, ContactAssumption assumption)
   contact.positions.undeformed = {{}, {first, first + 1e-3 * contact.undeformed_tangent}};
   contact.positions.slave = first + (0.5 + 0.7 * unit(random)) * along +
                             1e-4 * Eigen::Vector2d(unit(random), unit(random));
-  contact.positions.prescribed =
-      project(Segment{first, first + 1e-3 * contact.undeformed_tangent},
-              first + (0.5 + 0.5 * unit(random)) * along);
+  contact.positions.prescribed = project(Segment{first, first + 1e-3 * contact.undeformed_tangent},
+                                         first + (0.5 + 0.5 * unit(random)) * along);
   contact.positions.driven_velocity = unit(random);
   return contact;
 }
@@ -179,15 +178,13 @@ ContactPositions random_smooth_contact(std::mt19937& random, ContactAssumption a
   positions.undeformed.stencil = positions.master.stencil = {0, 4, before};
   for (int k = 0; k < 4; ++k) {
     const auto node = static_cast<std::size_t>(k);
-    positions.undeformed.nodes[node] =
-        Eigen::Vector2d(1e-3 * (k - before), 1e-4 * unit(random));
-    positions.master.nodes[node] = positions.undeformed.nodes[node] +
-                                   1e-4 * Eigen::Vector2d(unit(random), unit(random));
+    positions.undeformed.nodes[node] = Eigen::Vector2d(1e-3 * (k - before), 1e-4 * unit(random));
+    positions.master.nodes[node] =
+        positions.undeformed.nodes[node] + 1e-4 * Eigen::Vector2d(unit(random), unit(random));
   }
   const double xi = 0.5 + 0.5 * unit(random);
-  positions.slave =
-      positions.master.combine(weights_at(positions.master.stencil, xi).value) +
-      2e-5 * Eigen::Vector2d(unit(random), unit(random));
+  positions.slave = positions.master.combine(weights_at(positions.master.stencil, xi).value) +
+                    2e-5 * Eigen::Vector2d(unit(random), unit(random));
   positions.prescribed =
       project(positions.undeformed, 5e-4 * Eigen::Vector2d(1.0 + unit(random), 0.0), 0.5);
   positions.driven_velocity = unit(random);
@@ -219,8 +216,8 @@ std::array<Complex, 12> smooth_contact_map(const ContactPositions& positions,
     for (std::size_t k = 0; k < 4; ++k) {
       const double third = one.curvature[k] - zero.curvature[k];
       w[k] = derivative == 0
-                 ? zero.value[k] + xi * (zero.slope[k] + xi * (zero.curvature[k] / 2.0 +
-                                                               xi * third / 6.0))
+                 ? zero.value[k] +
+                       xi * (zero.slope[k] + xi * (zero.curvature[k] / 2.0 + xi * third / 6.0))
                  : zero.slope[k] + xi * (zero.curvature[k] + xi * third / 2.0);
     }
     return w;
@@ -297,6 +294,44 @@ TEST(ContactLinearisation, IsTheDerivativeOfTheKinematicsOnASmoothSurface) {
       EXPECT_LT((linear.gap_row + gap).norm(), tolerance);
       EXPECT_LE((linear.shift_row - shift).norm(), tolerance * shift.norm());
       EXPECT_LE((linear.force_by_position + force).norm(), tolerance * force.norm());
+    }
+  }
+}
+
+TEST(ContactLinearisation, RoughnessChangesTheGapAndItsDerivativeOnly) {
+  // The gap's row by central differences of the gap, 1e-6 of a correlation length apart: error
+  // (1e-6)² and the rounding of a gap of 1e-5 over steps of 1e-10.
+  constexpr double step = 1e-10;
+  constexpr double tolerance = 1e-10;
+  const FrictionLaw law = constant_friction(0.3);
+  const Roughness roughness({1e-6, 1e-4, 3}, 0.01);
+  std::mt19937 random(17);
+  for (const ContactAssumption assumption : all_assumptions) {
+    for (int trial = 0; trial < 20; ++trial) {
+      ContactPositions positions = random_smooth_contact(random, assumption);
+      const ContactLinearisation without = linearise_contact(positions, law, 1.0);
+      positions.roughness = &roughness;
+      positions.arc_length = {2e-3, 3e-3, 4e-3, 5e-3};
+      const ContactLinearisation linear = linearise_contact(positions, law, 1.0);
+      EXPECT_EQ(linear.force_row, without.force_row);
+      EXPECT_EQ(linear.force_by_position, without.force_by_position);
+      EXPECT_NE(linear.gap, without.gap);
+      EXPECT_EQ(linear.gap_row != without.gap_row, assumption != ContactAssumption::subs_a);
+      LinearisationTerms no_slope;
+      no_slope.roughness = false;
+      EXPECT_EQ(linearise_contact(positions, law, 1.0, no_slope).gap_row, without.gap_row);
+      for (Eigen::Index k = 0; k < 10; ++k) {
+        const auto gap_at = [&](double displacement) {
+          ContactPositions moved = positions;
+          double& coordinate = k < 2
+                                   ? moved.slave(k)
+                                   : moved.master.nodes[static_cast<std::size_t>(k / 2 - 1)](k % 2);
+          coordinate += displacement;
+          return linearise_contact(moved, law, 1.0).gap;
+        };
+        EXPECT_NEAR(linear.gap_row(k), -(gap_at(step) - gap_at(-step)) / (2.0 * step),
+                    tolerance + 1e-16 / step);
+      }
     }
   }
 }
@@ -704,18 +739,21 @@ TEST(Perturbation, GrowsAsItsEigenvalueSays) {
     SurfaceKind kind;
     FrictionLaw law;
     double growth, tolerance;
+    double roughness = 0.0;
   } cases[] = {
       {trailing_angle, 0.0752, ContactAssumption::subs_a, polyline, constant, -20.96, 0.2},
       {trailing_angle, 0.0752, ContactAssumption::subs_b, polyline, constant, 90.50, 0.2},
       {trailing_angle, 0.0752, ContactAssumption::subs_c, polyline, constant, 94.34, 0.2},
       {leading_angle, 0.0743, ContactAssumption::film, polyline, constant, 40.27, 0.2},
       {trailing_angle, 0.0752, ContactAssumption::subs_b, polyline, stribeck, 161.92, 1.0},
-      {trailing_angle, 0.0752, ContactAssumption::subs_b, smooth, constant, 0.0, 0.2},
-      {trailing_angle, 0.0752, ContactAssumption::subs_c, smooth, constant, 0.0, 0.2},
-      {leading_angle, 0.0743, ContactAssumption::film, smooth, constant, 0.0, 0.2}};
-  for (const auto& [angle, start, assumption, kind, law, growth, tolerance] : cases) {
+      {trailing_angle, 0.0752, ContactAssumption::subs_b, smooth, constant, 90.65, 0.2},
+      {trailing_angle, 0.0752, ContactAssumption::subs_c, smooth, constant, 94.40, 0.2},
+      {leading_angle, 0.0743, ContactAssumption::film, smooth, constant, 47.00, 0.2},
+      {trailing_angle, 0.0752, ContactAssumption::subs_b, smooth, constant, 0.0, 0.2, 2e-7}};
+  for (const auto& [angle, start, assumption, kind, law, growth, tolerance, rms] : cases) {
     System system = paper_system(angle, assumption);
     system.surfaces[0].kind = kind;
+    if (rms > 0.0) system.surfaces[0].roughness = Roughness({rms, 1e-4, 1}, 0.1);
     // The bodies stand where the slave is wanted; from there the drive is held.
     const Eigen::Vector2d shift(drive_displacement_at(system, 0, start), 0.0);
     ContactPoint& point = system.contacts[0];

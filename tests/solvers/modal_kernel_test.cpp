@@ -65,7 +65,8 @@ TEST_P(ModalKernelTest, DoesWhatItsEquationsSayForAnyNumberOfSlots) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Slots, ModalKernelTest, ::testing::Values(0, 1, 2, 3, 4, 5, 6, 8, 9, 10, 40));
+INSTANTIATE_TEST_SUITE_P(Slots, ModalKernelTest,
+                         ::testing::Values(0, 1, 2, 3, 4, 5, 6, 8, 9, 10, 40));
 
 TEST(ModalKernel, GatherIsTheProductOfARowWithOneField) {
   for (const std::size_t num_blocks : {1u, 2u, 5u, 28u}) {
