@@ -62,9 +62,16 @@ void print_summary(const Json& results, const std::string& output) {
                              : value.get<std::string>();
   };
   fmt::print("{:<24}{}\n", "status", text(results["status"]));
-  fmt::print("{:<24}{} of {:g} s (largest stable {:.4g} s)\n", "steps",
-             results["steps"].get<std::int64_t>(), results["step"].get<double>(),
-             results["step_limit"].get<double>());
+  const std::string limit =
+      results["step_limit"].is_null()
+          ? "no limit by the modes"
+          : fmt::format("largest stable {:.4g} s", results["step_limit"].get<double>());
+  fmt::print("{:<24}{} of {:g} s ({})\n", "steps", results["steps"].get<std::int64_t>(),
+             results["step"].get<double>(), limit);
+  for (const auto& [name, modes] : results["modes"].items()) {
+    fmt::print("{:<24}{} moving, {} left to their static residual\n", "modes of " + name,
+               modes["moving"].get<int>(), modes["residual"].get<int>());
+  }
   fmt::print("{:<24}{:.3g} s stepping ({:.0f} ns a step), {:.3g} s set-up, {:.3g} s output\n",
              "time taken", results["wall_s"].get<double>(), results["step_ns"].get<double>(),
              results["setup_s"].get<double>(), results["output_s"].get<double>());

@@ -117,6 +117,16 @@ Json contact_json(const Simulation& simulation, const System& system,
   return results;
 }
 
+/// How many modes of every body move and how many are left to their static residual.
+Json modes_json(const System& system, const TimeParameters& time) {
+  Json bodies = Json::object();
+  for (const SystemBody& body : system.bodies) {
+    const Eigen::Index moving = num_retained(body.modal, time);
+    bodies[body.name] = {{"moving", moving}, {"residual", body.modal.size() - moving}};
+  }
+  return bodies;
+}
+
 Json violations_json(const Simulation& simulation) {
   ViolationCount sum;
   for (int i = 0; i < simulation.num_contacts(); ++i) {
@@ -219,11 +229,7 @@ void Transient::store_final_motion() {
   for (std::size_t b = 0; b < model_.system.bodies.size(); ++b) {
     const SystemBody& body = model_.system.bodies[b];
     if (body.modal.size() == 0) continue;
-    Propagator::Motion motion = simulation_->motion(static_cast<int>(b));
-    if (loaded_->scene.time.coordinates == Coordinates::modal) {
-      motion.displacement = body.modal.shapes * motion.displacement;
-      motion.velocity = body.modal.shapes * motion.velocity;
-    }
+    const Propagator::Motion motion = simulation_->reduced_motion(static_cast<int>(b));
     const auto as_span = [](const Eigen::VectorXd& vector) {
       return std::span<const double>(vector.data(), static_cast<std::size_t>(vector.size()));
     };
@@ -243,12 +249,15 @@ Json Transient::finish() {
                                                          : "failed"},
                   {"steps", steps},
                   {"step", scene.time.step},
-                  {"step_limit", number(step_limit(model_.system).step)},
+                  {"step_limit", scene.time.integrator == Integrator::exact
+                                     ? Json(nullptr)
+                                     : number(step_limit(model_.system).step)},
                   {"wall_s", march_seconds_},
                   {"setup_s", setup_seconds_},
                   {"output_s", file_seconds_ + writer_->write_seconds()},
                   {"step_ns", steps > 0 ? number(march_seconds_ * 1e9 / static_cast<double>(steps))
                                         : Json(nullptr)}};
+  results["modes"] = modes_json(model_.system, scene.time);
   results.update(contact_json(*simulation_, model_.system, march_->statistics()));
   results["free_end_acceleration"] = nullptr;
   if (acceleration) {

@@ -98,6 +98,7 @@ struct Key {
   Range range;       ///< of numbers and of every entry of lists and tables
   Range storable;    ///< of an integer: what its member can hold
   bool is_optional = false;
+  std::string absent_word;           ///< of an optional section: may stand for "not given"
   std::vector<std::string> choices;  ///< of a choice
   std::string discriminator;         ///< of named_sections with several alternatives, e.g. "type"
   std::vector<Alternative> alternatives;
@@ -139,6 +140,7 @@ struct PlainKey {
   std::string doc;
   bool optional = false;
   Range range = Range::any();
+  std::string absent_word = "";  ///< of an optional section: may stand for "not given"
 };
 
 namespace detail {
@@ -280,6 +282,7 @@ class SchemaOf {
     key.name = std::move(name);
     key.doc = std::move(says.doc);
     key.is_optional = says.optional;
+    key.absent_word = std::move(says.absent_word);
     key.open = [member](void* object, const std::string&, std::size_t) -> void* {
       M& nested = static_cast<T*>(object)->*member;
       if constexpr (detail::is_optional<M>::value) {

@@ -124,6 +124,7 @@ void append_sections(Lines& lines, const Key& key, const void* object) {
       inner = std::move(entry);
     }
   });
+  if (!is_present && !key.absent_word.empty()) lines.push_back(key.name + ": " + key.absent_word);
   if (!is_present) return;
   if (key.kind == KeyKind::section_list && inner.empty()) {
     lines.push_back(key.name + ": []");

@@ -208,6 +208,8 @@ class Reader {
   void read_key(const SceneNode& node, const Key& key, void* object, const std::string& path) {
     switch (key.kind) {
       case KeyKind::section:
+        if (!key.absent_word.empty() && node.kind == Kind::scalar && node.text == key.absent_word)
+          return;
         if (is_kind(node, Kind::map, expected_of(key), path)) {
           read_map(node, key.alternatives.front().schema(), key.open(object, "", 0), path, "");
         }
@@ -519,7 +521,7 @@ std::string expected_of(const Key& key) {
     case KeyKind::curve:
       return in_unit("a number", key.unit) + " or {times: [...], values: [...]}";
     case KeyKind::section:
-      return "a map";
+      return key.absent_word.empty() ? "a map" : fmt::format("{} or a map", key.absent_word);
     case KeyKind::named_sections:
       return "a map of named maps";
     case KeyKind::section_list:

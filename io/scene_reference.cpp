@@ -194,6 +194,10 @@ class Page {
       case KeyKind::curve:
         return "curve" + unit;
       case KeyKind::section:
+        if (!key.absent_word.empty()) {
+          return "`" + key.absent_word + "` or " +
+                 link("map", sections_of(key, parent).front().heading());
+        }
         return link("map", sections_of(key, parent).front().heading());
       case KeyKind::section_list:
         return link("list of maps", sections_of(key, parent).front().heading());

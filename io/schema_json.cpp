@@ -219,7 +219,10 @@ class Writer {
         json["oneOf"] = Json::array({real_json(key.unit, key.range), table_json(key)});
         return json;
       case KeyKind::section:
-        return reference(key, key.alternatives.front());
+        if (key.absent_word.empty()) return reference(key, key.alternatives.front());
+        json["oneOf"] =
+            Json::array({{{"const", key.absent_word}}, reference(key, key.alternatives.front())});
+        return json;
       case KeyKind::named_sections:
         json = typed("object");
         json["patternProperties"]["^[A-Za-z_][A-Za-z0-9_-]*$"] = entry_json(key);

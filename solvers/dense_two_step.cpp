@@ -52,11 +52,11 @@ PublishedTwoStep::PublishedTwoStep(const ReducedBody& body, const Eigen::MatrixX
   start();
 }
 
-double PublishedTwoStep::displacement(int row) const {
+double PublishedTwoStep::body_displacement(int row) const {
   return row_table_.col(row).dot(current_);
 }
 
-Propagator::Motion PublishedTwoStep::motion() const {
+Propagator::Motion PublishedTwoStep::motion(const double* /*forces*/) const {
   return {current_, (current_ - previous_) / step_};
 }
 
@@ -80,7 +80,7 @@ double PublishedTwoStep::row_compliance(int row_a, int row_b) const {
   return step_ * step_ * row_table_.col(row_a).dot(inverse_mass_ * row_table_.col(row_b));
 }
 
-void PublishedTwoStep::set_loads(std::span<const double> amplitudes) {
+void PublishedTwoStep::set_body_loads(std::span<const double> amplitudes) {
   if (!amplitudes.empty()) load_ = patterns_ * as_vector(amplitudes);
 }
 
@@ -109,7 +109,7 @@ void PublishedTwoStep::predict() {
 }
 
 void PublishedTwoStep::set_body_motion(const Eigen::VectorXd& displacement,
-                                       const Eigen::VectorXd& velocity) {
+                                       const Eigen::VectorXd& velocity, const double* /*forces*/) {
   current_ = displacement;
   previous_ = displacement - step_ * velocity;
   predict();
@@ -151,11 +151,11 @@ FusedTwoStep::FusedTwoStep(const ReducedBody& body, const Eigen::MatrixXd& patte
   start();
 }
 
-double FusedTwoStep::displacement(int row) const {
+double FusedTwoStep::body_displacement(int row) const {
   return row_table_.col(row).dot(current_);
 }
 
-Propagator::Motion FusedTwoStep::motion() const {
+Propagator::Motion FusedTwoStep::motion(const double* /*forces*/) const {
   return {current_, increment_ / step_};
 }
 
@@ -175,7 +175,7 @@ double FusedTwoStep::row_compliance(int row_a, int row_b) const {
   return row_table_.col(row_a).dot(slot_gain_.col(row_b));
 }
 
-void FusedTwoStep::set_loads(std::span<const double> amplitudes) {
+void FusedTwoStep::set_body_loads(std::span<const double> amplitudes) {
   if (!amplitudes.empty()) load_ = load_gain_ * as_vector(amplitudes);
 }
 
@@ -196,7 +196,7 @@ void FusedTwoStep::predict() {
 }
 
 void FusedTwoStep::set_body_motion(const Eigen::VectorXd& displacement,
-                                   const Eigen::VectorXd& velocity) {
+                                   const Eigen::VectorXd& velocity, const double* /*forces*/) {
   current_ = displacement;
   increment_ = step_ * velocity;
   predict();

@@ -20,22 +20,22 @@ class PublishedTwoStep : public Propagator {
   PublishedTwoStep(const ReducedBody& body, const Eigen::MatrixXd& patterns, double step,
                    int num_slots, double alpha, std::span<const double> loads);
 
-  double displacement(int row) const override;
-  Motion motion() const override;
+  Motion motion(const double* forces) const override;
   void foresee(const double* forces, std::span<double> position,
                std::span<double> increment) const override;
-  void set_loads(std::span<const double> amplitudes) override;
   void set_mass_damping(double alpha) override;
 
  private:
   void advance_body(const double* forces, double* predicted) override;
   /// u*_{n+1} from the present state.
   void predict();
+  double body_displacement(int row) const override;
   double predicted_displacement(int row) const override;
   double row_compliance(int row_a, int row_b) const override;
   void slot_changed(int) override {}
-  void set_body_motion(const Eigen::VectorXd& displacement,
-                       const Eigen::VectorXd& velocity) override;
+  void set_body_loads(std::span<const double> amplitudes) override;
+  void set_body_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,
+                       const double* forces) override;
   double initial_increment(int row, const Eigen::VectorXd& velocity) const override;
   void save_body(State& state, const std::string& prefix) const override;
   void load_body(const State& state, const std::string& prefix) override;
@@ -63,22 +63,22 @@ class FusedTwoStep : public Propagator {
   FusedTwoStep(const ReducedBody& body, const Eigen::MatrixXd& patterns, double step, int num_slots,
                double alpha, std::span<const double> loads);
 
-  double displacement(int row) const override;
-  Motion motion() const override;
+  Motion motion(const double* forces) const override;
   void foresee(const double* forces, std::span<double> position,
                std::span<double> increment) const override;
-  void set_loads(std::span<const double> amplitudes) override;
   void set_mass_damping(double alpha) override { alpha_ = alpha; }
 
  private:
   void advance_body(const double* forces, double* predicted) override;
   /// u*_{n+1} from the present state.
   void predict();
+  double body_displacement(int row) const override;
   double predicted_displacement(int row) const override;
   double row_compliance(int row_a, int row_b) const override;
   void slot_changed(int) override {}
-  void set_body_motion(const Eigen::VectorXd& displacement,
-                       const Eigen::VectorXd& velocity) override;
+  void set_body_loads(std::span<const double> amplitudes) override;
+  void set_body_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,
+                       const double* forces) override;
   double initial_increment(int row, const Eigen::VectorXd& velocity) const override;
   void save_body(State& state, const std::string& prefix) const override;
   void load_body(const State& state, const std::string& prefix) override;

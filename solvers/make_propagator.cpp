@@ -1,7 +1,7 @@
 #include "solvers/make_propagator.hpp"
 
-#include <Eigen/LU>
 #include <limits>
+#include <numbers>
 
 #include "solvers/dense_two_step.hpp"
 #include "solvers/modal_recurrence.hpp"
@@ -19,7 +19,41 @@ Eigen::MatrixXd load_patterns(const SystemBody& body, const Eigen::MatrixXd& row
   return patterns;
 }
 
+/// Answer of the modes left out to the load patterns, in rows or in reduced coordinates.
+Eigen::MatrixXd residual_patterns(const SystemBody& body, const Eigen::MatrixXd& per_row_force,
+                                  const Eigen::VectorXd& per_acceleration) {
+  if (!body.follows_drive) return Eigen::MatrixXd(per_row_force.rows(), 0);
+  Eigen::MatrixXd patterns(per_row_force.rows(), 2);
+  patterns.col(0) = per_row_force.col(body.load_row);
+  patterns.col(1) = -per_acceleration;
+  return patterns;
+}
+
+Propagator::Residual residual_of(const SystemBody& body, double step) {
+  const ModalResidual& modes = body.modal.residual;
+  if (modes.num_modes == 0) return {};
+  return {modes, residual_patterns(body, modes.flexibility, modes.base_rows),
+          residual_patterns(body, modes.shapes, modes.base_shapes), step};
+}
+
+double cutoff_of(const RetainParameters& retain) {
+  return 2.0 * std::numbers::pi * retain.frequency;
+}
+
 }  // namespace
+
+System retained(const System& system, const TimeParameters& time) {
+  System kept = system;
+  if (!time.retain) return kept;
+  for (SystemBody& body : kept.bodies)
+    body.modal = with_static_residual(body.modal, cutoff_of(*time.retain));
+  return kept;
+}
+
+Eigen::Index num_retained(const ModalBody& body, const TimeParameters& time) {
+  if (!time.retain) return body.size();
+  return (body.omega.array() <= cutoff_of(*time.retain)).count();
+}
 
 std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimeParameters& time,
                                             int num_slots, std::span<const double> loads) {
@@ -33,8 +67,8 @@ std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimePa
   switch (body.reduced.size() == 0 ? Coordinates::modal : time.coordinates) {
     case Coordinates::modal:
       propagator = std::make_unique<ModalRecurrence>(
-          body.modal, patterns(body.modal.rows, body.modal.base_inertia), time.step, num_slots,
-          alpha, loads);
+          body.modal, patterns(body.modal.rows, body.modal.base_inertia), time.integrator,
+          time.step, num_slots, alpha, loads, residual_of(body, time.step));
       break;
     case Coordinates::craig_bampton:
       propagator = std::make_unique<PublishedTwoStep>(
@@ -50,7 +84,8 @@ std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimePa
   return propagator;
 }
 
-void start_motion(Propagator& propagator, const SystemBody& body, const TimeParameters& time) {
+void start_motion(Propagator& propagator, const SystemBody& body, const TimeParameters& time,
+                  const double* forces) {
   const auto n = body.reduced.size();
   const bool starts_at_rest =
       body.initial_displacement.size() == 0 && body.initial_velocity.size() == 0;
@@ -61,11 +96,12 @@ void start_motion(Propagator& propagator, const SystemBody& body, const TimePara
   Eigen::VectorXd displacement = or_zero(body.initial_displacement);
   Eigen::VectorXd velocity = or_zero(body.initial_velocity);
   if (time.coordinates == Coordinates::modal) {
-    const auto shapes = body.modal.shapes.partialPivLu();
-    displacement = shapes.solve(displacement).eval();
-    velocity = shapes.solve(velocity).eval();
+    // ΦᵀMΦ = I, so ΦᵀM takes reduced coordinates to modal ones.
+    const Eigen::MatrixXd to_modal = body.modal.shapes.transpose() * body.reduced.mass;
+    displacement = (to_modal * displacement).eval();
+    velocity = (to_modal * velocity).eval();
   }
-  propagator.set_motion(displacement, velocity);
+  propagator.set_motion(displacement, velocity, forces);
 }
 
 StepLimit step_limit(const System& system) {

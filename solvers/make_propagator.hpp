@@ -11,6 +11,11 @@
 
 namespace stridor {
 
+/// The system with the modes that `time.retain` keeps in its bodies; the others are their residual.
+System retained(const System& system, const TimeParameters& time);
+/// How many modes that leaves moving.
+Eigen::Index num_retained(const ModalBody& body, const TimeParameters& time);
+
 /// A body of the system, at rest at t = 0, ready to be marched.
 ///
 /// Load patterns of a body that follows the drive: the drive's load on its guided support (N), and
@@ -23,7 +28,9 @@ std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimePa
 
 /// Gives it the displacements and velocities that the body starts with. To be called when its slots
 /// watch the rows that they start with, whose increments follow from the velocities.
-void start_motion(Propagator& propagator, const SystemBody& body, const TimeParameters& time);
+/// @param forces that will act on the slots at t = 0, as far as they are known
+void start_motion(Propagator& propagator, const SystemBody& body, const TimeParameters& time,
+                  const double* forces);
 
 /// Largest stable step over all bodies of the central difference, s, and the body that sets it.
 struct StepLimit {

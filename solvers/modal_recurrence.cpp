@@ -1,5 +1,7 @@
 #include "solvers/modal_recurrence.hpp"
 
+#include <utility>
+
 #include "core/clones.hpp"
 
 namespace stridor {
@@ -39,47 +41,65 @@ void foresee_modes(const double* blocks, std::size_t num_modes, const double* co
 }  // namespace
 
 ModalRecurrence::ModalRecurrence(const ModalBody& body, const Eigen::MatrixXd& patterns,
-                                 double step, int num_slots, double alpha,
-                                 std::span<const double> loads)
-    : Propagator(num_slots),
+                                 Integrator scheme, double step, int num_slots, double alpha,
+                                 std::span<const double> loads, Residual residual)
+    : Propagator(num_slots, std::move(residual)),
       size_(static_cast<std::size_t>(body.size())),
       num_blocks_((size_ + modal_block - 1) / modal_block),
+      scheme_(scheme),
       step_(step),
+      alpha_(alpha),
       blocks_(num_blocks_ * modal_block * num_modal_fields),
       row_table_(num_blocks_ * modal_block * static_cast<std::size_t>(body.rows.rows())),
-      stiffness_damping_(step * body.damping.beta * body.omega.array().square()),
-      scaled_patterns_(step * step * patterns),
+      omega_(body.omega),
+      beta_(body.damping.beta),
+      patterns_(patterns),
+      amplitudes_(static_cast<std::size_t>(patterns.cols()), 0.0),
+      load_gain_(size_),
       slot_rows_(static_cast<std::size_t>(num_slots)) {
-  for (std::size_t i = 0; i < size_; ++i) {
-    const double omega = body.omega(static_cast<Eigen::Index>(i));
-    number(i, ModalField::pull) = step * step * omega * omega;
-    number(i, ModalField::gain) = step * step;
-  }
   for (Eigen::Index row = 0; row < body.rows.rows(); ++row) {
     double* const padded =
         row_table_.data() + static_cast<std::size_t>(row) * num_blocks_ * modal_block;
     for (Eigen::Index i = 0; i < body.rows.cols(); ++i) padded[i] = body.rows(row, i);
   }
   set_mass_damping(alpha);
+  renew_gains();
   set_loads(loads);
   start();
 }
 
-double ModalRecurrence::displacement(int row) const {
+double ModalRecurrence::body_displacement(int row) const {
   return gather_modes(blocks_.data(), num_blocks_, ModalField::position, row_data(row));
 }
 
-Propagator::Motion ModalRecurrence::motion() const {
+double ModalRecurrence::modal_force(std::size_t mode, const double* forces) const {
+  double sum = 0.0;
+  for (std::size_t slot = 0; slot < slot_rows_.size(); ++slot)
+    sum += slot_rows_[slot][mode] * forces[slot];
+  return sum;
+}
+
+StartCoefficients ModalRecurrence::start_coefficients(std::size_t mode) const {
+  const double omega = omega_(static_cast<Eigen::Index>(mode));
+  const double damping = alpha_ + beta_ * omega * omega;
+  return scheme_ == Integrator::exact ? exact_start(omega, damping, step_)
+                                      : central_difference_start(damping, step_);
+}
+
+Propagator::Motion ModalRecurrence::motion(const double* forces) const {
   Motion motion{Eigen::VectorXd(size_), Eigen::VectorXd(size_)};
   for (std::size_t i = 0; i < size_; ++i) {
     const auto mode = static_cast<Eigen::Index>(i);
     const auto field = [&](ModalField f) { return blocks_[modal_index(i, f)]; };
     const double q = field(ModalField::position);
     motion.displacement(mode) = q;
-    // d*_{n+1} = s d_n − k q_n + e p, solved for d_n.
-    motion.velocity(mode) =
-        (field(ModalField::increment) + field(ModalField::pull) * q - field(ModalField::load)) /
-        (field(ModalField::keep) * step_);
+    // The prediction of set_body_motion(), solved for the velocity. A mode that turns round within
+    // a step does not show its velocity; it gets the mean one of the step.
+    const auto [rate, share] = start_coefficients(i);
+    const double by_motion = field(ModalField::increment) +
+                             share * (field(ModalField::pull) * q - field(ModalField::load)) -
+                             (share - 1.0) * field(ModalField::gain) * modal_force(i, forces);
+    motion.velocity(mode) = by_motion / (rate > 0.25 * step_ ? rate : step_);
   }
   return motion;
 }
@@ -91,7 +111,7 @@ void ModalRecurrence::foresee(const double* forces, std::span<double> position,
 }
 
 double ModalRecurrence::predicted_displacement(int row) const {
-  return displacement(row) +
+  return body_displacement(row) +
          gather_modes(blocks_.data(), num_blocks_, ModalField::increment, row_data(row));
 }
 
@@ -103,26 +123,45 @@ double ModalRecurrence::row_compliance(int row_a, int row_b) const {
   return sum;
 }
 
-void ModalRecurrence::set_loads(std::span<const double> amplitudes) {
+void ModalRecurrence::set_body_loads(std::span<const double> amplitudes) {
+  amplitudes_.assign(amplitudes.begin(), amplitudes.end());
   for (std::size_t i = 0; i < size_; ++i) {
     double sum = 0.0;
-    for (std::size_t k = 0; k < amplitudes.size(); ++k) {
-      sum += scaled_patterns_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) *
-             amplitudes[k];
-    }
-    number(i, ModalField::load) = sum;
+    for (std::size_t k = 0; k < amplitudes.size(); ++k)
+      sum += patterns_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) * amplitudes[k];
+    number(i, ModalField::load) = load_gain_[i] * sum;
   }
 }
 
+StepCoefficients ModalRecurrence::coefficients(std::size_t mode) const {
+  const double omega = omega_(static_cast<Eigen::Index>(mode));
+  const double damping = alpha_ + beta_ * omega * omega;
+  return scheme_ == Integrator::exact ? exact_propagation(omega, damping, step_)
+                                      : central_difference(omega, damping, step_);
+}
+
 void ModalRecurrence::set_mass_damping(double alpha) {
+  alpha_ = alpha;
   for (std::size_t i = 0; i < size_; ++i) {
-    number(i, ModalField::keep) =
-        1.0 - step_ * alpha - stiffness_damping_(static_cast<Eigen::Index>(i));
+    const StepCoefficients c = coefficients(i);
+    number(i, ModalField::keep) = c.keep;
+    number(i, ModalField::pull) = c.pull;
+    load_gain_[i] = c.gain;
   }
+  set_body_loads(amplitudes_);
+  // The forces at t_n still act as the prediction from t_n supposes.
+  are_gains_due_ = scheme_ == Integrator::exact;
+}
+
+void ModalRecurrence::renew_gains() {
+  for (std::size_t i = 0; i < size_; ++i) number(i, ModalField::gain) = load_gain_[i];
+  renew_compliances();
+  are_gains_due_ = false;
 }
 
 void ModalRecurrence::advance_body(const double* forces, double* predicted) {
   advance_modes(blocks_.data(), num_blocks_, slot_rows_.data(), forces, num_slots(), predicted);
+  if (are_gains_due_) renew_gains();
 }
 
 void ModalRecurrence::slot_changed(int slot) {
@@ -130,14 +169,17 @@ void ModalRecurrence::slot_changed(int slot) {
 }
 
 void ModalRecurrence::set_body_motion(const Eigen::VectorXd& displacement,
-                                      const Eigen::VectorXd& velocity) {
+                                      const Eigen::VectorXd& velocity, const double* forces) {
+  if (are_gains_due_) renew_gains();
   for (std::size_t i = 0; i < size_; ++i) {
     const auto mode = static_cast<Eigen::Index>(i);
     const double q = displacement(mode);
+    const auto [rate, share] = start_coefficients(i);
     number(i, ModalField::position) = q;
-    number(i, ModalField::increment) = number(i, ModalField::keep) * step_ * velocity(mode) -
-                                       number(i, ModalField::pull) * q +
-                                       number(i, ModalField::load);
+    number(i, ModalField::increment) =
+        rate * velocity(mode) -
+        share * (number(i, ModalField::pull) * q - number(i, ModalField::load)) +
+        (share - 1.0) * number(i, ModalField::gain) * modal_force(i, forces);
   }
 }
 
@@ -170,6 +212,7 @@ void ModalRecurrence::load_body(const State& state, const std::string& prefix) {
   state.get(prefix + "predicted_increment", increment);
   set_numbers(ModalField::position, position);
   set_numbers(ModalField::increment, increment);
+  if (are_gains_due_) renew_gains();
 }
 
 }  // namespace stridor

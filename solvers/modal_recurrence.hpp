@@ -4,15 +4,17 @@
 #include "solvers/aligned_array.hpp"
 #include "solvers/modal_kernel.hpp"
 #include "solvers/propagator.hpp"
+#include "solvers/time_parameters.hpp"
+#include "solvers/two_step_scheme.hpp"
 #include "substructures/modal_body.hpp"
 
 namespace stridor {
 
-/// Central difference with backward-difference damping, mode by mode, in increment form
-/// (docs/theory.md, 3.2):
+/// A two-step scheme, mode by mode, in increment form (docs/theory.md, 3.2):
 ///
 ///   d_{n+1} = s d_n − k q_n + e (p_n + rowᵀ f_n),  q_{n+1} = q_n + d_{n+1}
-///   s = 1 − h c,  k = h² ω²,  e = h²,  c = α(t_n) + β ω²
+///
+/// with the coefficients of two_step_scheme.hpp for c = α(t_n) + β ω².
 ///
 /// The increment is carried beside the position: q_{n+1} − q_n taken from positions would lose
 /// ε/(ω h)² of relative accuracy.
@@ -20,31 +22,40 @@ class ModalRecurrence : public Propagator {
  public:
   /// @param body      modes; not referenced afterwards
   /// @param patterns  one column per load pattern, modal coordinates
+  /// @param scheme    a scheme of two steps
   /// @param step      h, s
   /// @param num_slots points watched, x and y counted apart
   /// @param alpha     α at t = 0, 1/s
   /// @param loads     amplitudes at t = 0
-  ModalRecurrence(const ModalBody& body, const Eigen::MatrixXd& patterns, double step,
-                  int num_slots, double alpha, std::span<const double> loads);
+  /// @param residual  of the modes that the body leaves out
+  ModalRecurrence(const ModalBody& body, const Eigen::MatrixXd& patterns, Integrator scheme,
+                  double step, int num_slots, double alpha, std::span<const double> loads,
+                  Residual residual = {});
 
-  double displacement(int row) const override;
-  Motion motion() const override;
+  Motion motion(const double* forces) const override;
   void foresee(const double* forces, std::span<double> position,
                std::span<double> increment) const override;
-  void set_loads(std::span<const double> amplitudes) override;
   void set_mass_damping(double alpha) override;
 
  private:
   void advance_body(const double* forces, double* predicted) override;
+  double body_displacement(int row) const override;
   double predicted_displacement(int row) const override;
   double row_compliance(int row_a, int row_b) const override;
   void slot_changed(int slot) override;
-  void set_body_motion(const Eigen::VectorXd& displacement,
-                       const Eigen::VectorXd& velocity) override;
+  void set_body_loads(std::span<const double> amplitudes) override;
+  void set_body_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,
+                       const double* forces) override;
   double initial_increment(int row, const Eigen::VectorXd& velocity) const override;
   void save_body(State& state, const std::string& prefix) const override;
   void load_body(const State& state, const std::string& prefix) override;
 
+  /// Takes the gains of the present damping.
+  void renew_gains();
+  StepCoefficients coefficients(std::size_t mode) const;
+  StartCoefficients start_coefficients(std::size_t mode) const;
+  /// Σ_j row_j f_j of a mode.
+  double modal_force(std::size_t mode, const double* forces) const;
   double& number(std::size_t mode, ModalField field) { return blocks_[modal_index(mode, field)]; }
   std::vector<double> numbers(ModalField field) const;
   void set_numbers(ModalField field, const std::vector<double>& values);
@@ -54,11 +65,17 @@ class ModalRecurrence : public Propagator {
 
   std::size_t size_;
   std::size_t num_blocks_;
+  Integrator scheme_;
   double step_;
-  AlignedArray blocks_;                ///< state and coefficients of every mode
-  AlignedArray row_table_;             ///< padded rows, one after the other
-  Eigen::VectorXd stiffness_damping_;  ///< h β ω²
-  Eigen::MatrixXd scaled_patterns_;    ///< e times the load patterns
+  double alpha_;
+  AlignedArray blocks_;     ///< state and coefficients of every mode
+  AlignedArray row_table_;  ///< padded rows, one after the other
+  Eigen::VectorXd omega_;
+  double beta_;
+  Eigen::MatrixXd patterns_;
+  std::vector<double> amplitudes_;  ///< of the loads
+  std::vector<double> load_gain_;   ///< e of the damping set last
+  bool are_gains_due_ = false;      ///< those of a changed damping hold from the next step on
   std::vector<const double*> slot_rows_;
 };
 

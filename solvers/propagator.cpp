@@ -1,13 +1,67 @@
 #include "solvers/propagator.hpp"
 
-namespace stridor {
+#include <algorithm>
+#include <utility>
 
-Propagator::Propagator(int num_slots)
+namespace stridor {
+namespace {
+
+/// Of f_{n−2} in f_n + Δf + ½ Δ²f.
+constexpr double last_but_one_share = 0.5;
+
+template <std::size_t n>
+void multiply_add_fixed(const double* matrix, const double* x, double* y) {
+  double sums[n];
+  for (std::size_t a = 0; a < n; ++a) {
+    sums[a] = y[a];
+    for (std::size_t b = 0; b < n; ++b) sums[a] += matrix[a * n + b] * x[b];
+  }
+  for (std::size_t a = 0; a < n; ++a) y[a] = sums[a];
+}
+
+/// y += M x of n x n, row after row; the sizes that bodies commonly have without loops.
+void multiply_add(const std::vector<double>& matrix, const double* x, std::vector<double>& y) {
+  const std::size_t n = y.size();
+  switch (n) {
+    case 0:
+      return;
+    case 2:
+      return multiply_add_fixed<2>(matrix.data(), x, y.data());
+    case 4:
+      return multiply_add_fixed<4>(matrix.data(), x, y.data());
+    case 8:
+      return multiply_add_fixed<8>(matrix.data(), x, y.data());
+    default:
+      for (std::size_t a = 0; a < n; ++a) {
+        double sum = y[a];
+        for (std::size_t b = 0; b < n; ++b) sum += matrix[a * n + b] * x[b];
+        y[a] = sum;
+      }
+  }
+}
+
+}  // namespace
+
+Propagator::Propagator(int num_slots, Residual residual)
     : rows_(at(num_slots), 0),
       predicted_(at(num_slots), 0.0),
       current_(at(num_slots), 0.0),
       increment_(at(num_slots), 0.0),
-      compliance_(at(num_slots) * at(num_slots), 0.0) {}
+      compliance_(at(num_slots) * at(num_slots), 0.0),
+      residual_(std::move(residual)) {
+  if (!has_residual()) return;
+  // u_{n+1} = R (f_{n+1} − β ḟ) with f_{n+1} = f_n + Δf + ½ Δ²f and ḟ = Δf/h.
+  const double lead = std::max(0.0, 1.0 - residual_.modes.beta / residual_.step);
+  present_share_ = 1.5 + lead;
+  last_share_ = -1.0 - lead;
+  amplitudes_.assign(static_cast<std::size_t>(residual_.load_patterns.cols()), 0.0);
+  last_ = {rows_, std::vector<double>(at(num_slots), 0.0)};
+  last_but_one_ = last_;
+  slot_flexibility_.assign(compliance_.size(), 0.0);
+  slot_load_.assign(at(num_slots), 0.0);
+  memory_.assign(at(num_slots), 0.0);
+  expected_.assign(at(num_slots), 0.0);
+}
 
 void Propagator::start() {
   for (int slot = 0; slot < num_slots(); ++slot) slot_changed(slot);
@@ -15,16 +69,86 @@ void Propagator::start() {
   advance_body(no_forces.data(), predicted_.data());
 }
 
-void Propagator::watch(int slot, int row) {
-  rows_[at(slot)] = row;
-  slot_changed(slot);
-  predicted_[at(slot)] = predicted_displacement(row);
-  current_[at(slot)] = displacement(row);
-  renew_compliance(slot);
+double Propagator::residual_flexibility(int row, const RowForces& forces) const {
+  double sum = 0.0;
+  for (std::size_t j = 0; j < forces.rows.size(); ++j)
+    sum += residual_.modes.flexibility(row, forces.rows[j]) * forces.forces[j];
+  return sum;
 }
 
-void Propagator::set_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity) {
-  set_body_motion(displacement, velocity);
+double Propagator::load_residual(int row) const {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < amplitudes_.size(); ++k)
+    sum += residual_.load_patterns(row, static_cast<Eigen::Index>(k)) * amplitudes_[k];
+  return sum;
+}
+
+double Propagator::displacement(int row) const {
+  const double u = body_displacement(row);
+  return has_residual() ? u + load_residual(row) + residual_flexibility(row, last_) : u;
+}
+
+Eigen::VectorXd Propagator::residual_displacement() const {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(residual_.modes.shapes.rows());
+  for (std::size_t j = 0; j < last_.rows.size(); ++j)
+    sum += residual_.modes.shapes.col(last_.rows[j]) * last_.forces[j];
+  for (std::size_t k = 0; k < amplitudes_.size(); ++k)
+    sum += residual_.load_shapes.col(static_cast<Eigen::Index>(k)) * amplitudes_[k];
+  return sum;
+}
+
+void Propagator::set_loads(std::span<const double> amplitudes) {
+  set_body_loads(amplitudes);
+  if (!has_residual()) return;
+  amplitudes_.assign(amplitudes.begin(), amplitudes.end());
+  for (int slot = 0; slot < num_slots(); ++slot) slot_load_[at(slot)] = load_residual(row(slot));
+}
+
+void Propagator::watch(int slot, int row) {
+  rows_[at(slot)] = row;
+  advances_on_rows_ = 0;
+  slot_changed(slot);
+  predicted_[at(slot)] = predicted_displacement(row);
+  current_[at(slot)] = body_displacement(row);
+  renew_compliance(slot);
+  if (!has_residual()) return;
+  add_residual(slot);
+  current_[at(slot)] = displacement(row);
+}
+
+/// Adds what the loads and the last contact forces make of the modes left out to a prediction of
+/// the moving ones.
+void Propagator::add_residual(int slot) {
+  const int row = rows_[at(slot)];
+  const double by_last = residual_flexibility(row, last_);
+  slot_load_[at(slot)] = load_residual(row);
+  expected_[at(slot)] = predicted_[at(slot)] + slot_load_[at(slot)] + by_last;
+  predicted_[at(slot)] += slot_load_[at(slot)] + last_share_ * by_last +
+                          last_but_one_share * residual_flexibility(row, last_but_one_);
+}
+
+void Propagator::add_residuals() {
+  if (advances_on_rows_ < 2) {
+    for (int slot = 0; slot < num_slots(); ++slot) add_residual(slot);
+    return;
+  }
+  const std::size_t n = rows_.size();
+  for (std::size_t a = 0; a < n; ++a) {
+    predicted_[a] += slot_load_[a];
+    expected_[a] = predicted_[a];
+    memory_[a] = last_share_ * last_.forces[a] + last_but_one_share * last_but_one_.forces[a];
+  }
+  multiply_add(slot_flexibility_, memory_.data(), predicted_);
+  multiply_add(slot_flexibility_, last_.forces.data(), expected_);
+}
+
+void Propagator::set_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,
+                            const double* forces) {
+  set_body_motion(displacement, velocity, forces);
+  if (has_residual()) {
+    last_ = {rows_, {forces, forces + rows_.size()}};
+    last_but_one_ = last_;
+  }
   for (int slot = 0; slot < num_slots(); ++slot) {
     watch(slot, row(slot));
     increment_[at(slot)] = initial_increment(row(slot), velocity);
@@ -32,21 +156,41 @@ void Propagator::set_motion(const Eigen::VectorXd& displacement, const Eigen::Ve
 }
 
 void Propagator::renew_compliance(int slot) {
+  const int row_a = row(slot);
   for (int other = 0; other < num_slots(); ++other) {
-    compliance_[at(slot) * rows_.size() + at(other)] = row_compliance(row(slot), row(other));
-    compliance_[at(other) * rows_.size() + at(slot)] = row_compliance(row(other), row(slot));
+    const int row_b = row(other);
+    double& there = compliance_[at(slot) * rows_.size() + at(other)];
+    double& back = compliance_[at(other) * rows_.size() + at(slot)];
+    there = row_compliance(row_a, row_b);
+    back = row_compliance(row_b, row_a);
+    if (!has_residual()) continue;
+    const double residual = residual_.modes.flexibility(row_a, row_b);
+    slot_flexibility_[at(slot) * rows_.size() + at(other)] = residual;
+    slot_flexibility_[at(other) * rows_.size() + at(slot)] = residual;
+    there += present_share_ * residual;
+    if (other != slot) back += present_share_ * residual;
   }
+}
+
+void Propagator::renew_compliances() {
+  for (int slot = 0; slot < num_slots(); ++slot) renew_compliance(slot);
 }
 
 void Propagator::advance(const double* forces) {
   const std::size_t n = rows_.size();
-  for (std::size_t a = 0; a < n; ++a) {
-    double corrected = predicted_[a];
-    for (std::size_t b = 0; b < n; ++b) corrected += compliance_[a * n + b] * forces[b];
-    increment_[a] = corrected - current_[a];
-    current_[a] = corrected;
-  }
+  multiply_add(compliance_, forces, predicted_);  // corrected
+  for (std::size_t a = 0; a < n; ++a) increment_[a] = predicted_[a] - current_[a];
+  std::swap(current_, predicted_);
   advance_body(forces, predicted_.data());
+  if (!has_residual()) return;
+  std::swap(last_.forces, last_but_one_.forces);
+  std::copy_n(forces, n, last_.forces.begin());
+  if (advances_on_rows_ < 2) {
+    std::swap(last_.rows, last_but_one_.rows);
+    last_.rows = rows_;
+    ++advances_on_rows_;
+  }
+  add_residuals();
 }
 
 void Propagator::save(State& state, const std::string& prefix) const {
@@ -54,17 +198,39 @@ void Propagator::save(State& state, const std::string& prefix) const {
   state.put(prefix + "predicted", predicted_);
   state.put(prefix + "current", current_);
   state.put(prefix + "increment", increment_);
+  if (has_residual()) {
+    const auto put = [&](const std::string& name, const RowForces& acted) {
+      state.put(prefix + name + "_rows", std::vector<double>(acted.rows.begin(), acted.rows.end()));
+      state.put(prefix + name + "_forces", acted.forces);
+    };
+    put("last", last_);
+    put("last_but_one", last_but_one_);
+    state.put(prefix + "expected", expected_);
+    state.put(prefix + "advances_on_rows", static_cast<double>(advances_on_rows_));
+  }
   save_body(state, prefix);
 }
 
 void Propagator::load(const State& state, const std::string& prefix) {
   std::vector<double> rows(rows_.size());
+  if (has_residual()) {
+    const auto get = [&](const std::string& name, RowForces& acted) {
+      state.get(prefix + name + "_rows", rows);
+      acted.rows.assign(rows.begin(), rows.end());
+      state.get(prefix + name + "_forces", acted.forces);
+    };
+    get("last", last_);
+    get("last_but_one", last_but_one_);
+  }
   state.get(prefix + "rows", rows);
   load_body(state, prefix);
   for (int slot = 0; slot < num_slots(); ++slot) watch(slot, static_cast<int>(rows[at(slot)]));
   state.get(prefix + "predicted", predicted_);
   state.get(prefix + "current", current_);
   state.get(prefix + "increment", increment_);
+  if (!has_residual()) return;
+  state.get(prefix + "expected", expected_);
+  advances_on_rows_ = static_cast<int>(state.get(prefix + "advances_on_rows"));
 }
 
 }  // namespace stridor

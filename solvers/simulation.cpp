@@ -37,6 +37,7 @@ struct RunningContact {
   int segment = 0;
   SurfacePiece undeformed;  ///< the segment
   Projection projection;
+  Projection acting;            ///< in which λ_n and λ_t act: at t_{n+1} as published, or at t_n
   double force = 0.0;           ///< λ_n
   double friction_force = 0.0;  ///< λ_t
   ContactState state = ContactState::open;
@@ -59,8 +60,11 @@ struct Simulation::Implementation {
   std::vector<RayleighDamping> damping;
   Drive drive;
   double step;
+  bool has_residual = false;  ///< a body leaves modes out
+  Integrator integrator = Integrator::central_difference;
   std::int64_t index = 0;
   std::vector<std::unique_ptr<Propagator>> bodies;
+  std::vector<Eigen::MatrixXd> shapes;  ///< of the modes; empty in reduced coordinates
   std::vector<RunningContact> contacts;
   std::vector<std::vector<double>> forces;  ///< per body, at its slots
   std::string failure;
@@ -159,6 +163,11 @@ struct Simulation::Implementation {
     return place_of(contact, drive_at,
                     [](const Propagator& body, int slot) { return body.predicted(slot); });
   }
+  /// The same with what the modes left out are expected to add.
+  Place expected_place(const RunningContact& contact, double drive_at) const {
+    return place_of(contact, drive_at,
+                    [](const Propagator& body, int slot) { return body.expected(slot); });
+  }
 
   Projection projection_of(const RunningContact& contact, const Place& place,
                            double drive_at) const {
@@ -182,7 +191,7 @@ struct Simulation::Implementation {
     const int last = surface_of(contact).num_segments() - 1;
     int heading = 0;
     while (true) {
-      place = predicted_place(contact, drive_at);
+      place = expected_place(contact, drive_at);
       contact.projection = projection_of(contact, place, drive_at);
       const double xi = contact.projection.xi;
       const int wanted = xi > 1.0 ? 1 : xi < 0.0 ? -1 : 0;
@@ -215,14 +224,44 @@ struct Simulation::Implementation {
     return along;
   }
 
+  /// Where and in which directions the force at t_n acts: there and then, or, as published, as if
+  /// at t_{n+1}. On a new segment the force stands a hair outside its end.
+  void find_action(RunningContact& contact, const Projection& here, int segment) {
+    if (integrator == Integrator::central_difference) {
+      contact.acting = contact.projection;
+      return;
+    }
+    contact.acting = here;
+    if (contact.segment == segment) return;
+    const auto& arc = surface_of(contact).arc_length;
+    const auto length = [&](int of) {
+      return arc[static_cast<std::size_t>(of) + 1] - arc[static_cast<std::size_t>(of)];
+    };
+    const double at = arc[static_cast<std::size_t>(segment)] + here.xi * length(segment);
+    contact.acting.xi =
+        (at - arc[static_cast<std::size_t>(contact.segment)]) / length(contact.segment);
+    contact.acting.weights = weights_at(contact.undeformed.stencil, contact.acting.xi);
+  }
+
   /// Poses the problem of one contact for the step to t_{n+1}. @returns false where it has left its
   /// master
   bool pose(RunningContact& contact, LocalProblem& problem, double drive_at, double rise) {
+    const int segment = contact.segment;
+    Projection here;
+    if (integrator != Integrator::central_difference) {
+      const double drive_now = drive_displacement(time(index));
+      const auto current = [](const Propagator& body, int slot) { return body.current(slot); };
+      here = projection_of(contact, place_of(contact, drive_now, current), drive_now);
+    }
     Place place;
     if (!find_projection(contact, drive_at, place)) return false;
+    find_action(contact, here, segment);
     const Projection& p = contact.projection;
-    problem.penetration =
-        surface_of(contact).roughness_at(contact.segment, p.weights) - p.normal.dot(place.arm(p));
+    // Gap and slip are those without the contact forces; what these do to the modes left out is
+    // part of the Delassus operator.
+    const Place unloaded = has_residual ? predicted_place(contact, drive_at) : place;
+    problem.penetration = surface_of(contact).roughness_at(contact.segment, p.weights) -
+                          p.normal.dot(unloaded.arm(p));
     problem.sliding_friction =
         rise * sliding_friction(contact.point.friction, contact.slip_velocity);
     problem.direction = contact.slip_velocity < 0.0 ? -1.0 : 1.0;
@@ -238,6 +277,7 @@ struct Simulation::Implementation {
       contact.anchor -= p.tangent.x() * relative_drive(contact, velocity * step);
     }
     problem.slip = (contact.place - contact.anchor) * contact.stretch;
+    if (has_residual) problem.slip -= p.tangent.dot(place.arm(p) - unloaded.arm(p));
     // A contact that stuck is held by the static limit; one whose sliding would turn round in this
     // step passes through rest on the way.
     const bool may_rest =
@@ -251,12 +291,33 @@ struct Simulation::Implementation {
     return true;
   }
 
+  /// Sets the bodies moving and finds the first contact forces. Where the first step depends on how
+  /// long these have acted, both are found in turn.
+  void start(const System& system, const TimeParameters& time_parameters) {
+    constexpr int most_turns = 100;
+    std::vector<std::vector<double>> last;
+    for (int turn = 0; turn < most_turns; ++turn) {
+      for (std::size_t b = 0; b < bodies.size(); ++b)
+        start_motion(*bodies[b], system.bodies[b], time_parameters, forces[b].data());
+      for (RunningContact& contact : contacts) {
+        contact.statistics = {};
+        contact.violations = {};
+        contact.state = ContactState::open;
+        stand(contact);
+      }
+      if (solve() != StepOutcome::done) throw NumericalError(failure);
+      if (time_parameters.integrator == Integrator::central_difference || forces == last) return;
+      last = forces;
+    }
+  }
+
   /// Contact forces at t_n: those that make gap and slip at t_{n+1} what the contacts allow.
   StepOutcome solve() {
     const double drive_at = drive_displacement(time(index + 1));
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       RunningContact& contact = contacts[i];
-      const double rise = contact.point.friction_rise.value(time(index + 1));
+      const double rise = contact.point.friction_rise.value(
+          time(integrator == Integrator::central_difference ? index + 1 : index));
       if (!pose(contact, local[i], drive_at, rise)) return fail(contact, StepOutcome::master_lost);
     }
     for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -325,7 +386,7 @@ struct Simulation::Implementation {
   }
 
   void apply_forces(const RunningContact& contact) {
-    const Projection& p = contact.projection;
+    const Projection& p = contact.acting;
     const Eigen::Vector2d force = contact.force * p.normal - contact.friction_force * p.tangent;
     double* slave =
         forces[static_cast<std::size_t>(contact.point.slave_body)].data() + contact.slave_slot;
@@ -353,7 +414,7 @@ struct Simulation::Implementation {
       return w;
     };
     const double* const weights_i = i.projection.weights.value.data();
-    const double* const weights_j = j.projection.weights.value.data();
+    const double* const weights_j = j.acting.weights.value.data();
     const int nodes_i = i.undeformed.stencil.count;
     const int nodes_j = j.undeformed.stencil.count;
     Eigen::Matrix2d w = Eigen::Matrix2d::Zero();
@@ -387,7 +448,7 @@ struct Simulation::Implementation {
   void fill_delassus(std::size_t i, std::size_t j) {
     const Eigen::Matrix2d w = relative_compliance(contacts[i], contacts[j]);
     const Projection& p = contacts[i].projection;
-    const Projection& q = contacts[j].projection;
+    const Projection& q = contacts[j].acting;
     const Eigen::Vector2d wn = w * q.normal;
     const Eigen::Vector2d wt = w * q.tangent;
     const auto row = static_cast<Eigen::Index>(2 * i);
@@ -440,8 +501,7 @@ struct Simulation::Implementation {
   }
 
   static ContactAction action_of(const RunningContact& contact) {
-    return {contact.segment, contact.projection, contact.force, contact.friction_force,
-            contact.state};
+    return {contact.segment, contact.acting, contact.force, contact.friction_force, contact.state};
   }
 
   /// t·(v_C − v_M) from the increments of the last step. @returns the drive's part of it
@@ -531,21 +591,32 @@ struct Simulation::Implementation {
   }
 };
 
-Simulation::Simulation(const System& system, const TimeParameters& time, Accounts accounts)
+Simulation::Simulation(const System& given, const TimeParameters& time, Accounts accounts)
     : implementation_(std::make_unique<Implementation>()) {
+  if (time.coordinates != Coordinates::modal &&
+      (time.integrator == Integrator::exact || time.retain)) {
+    throw ConfigError("time.coordinates", "integrator: exact and retain take coordinates: modal");
+  }
+  if (time.integrator == Integrator::exact && accounts == Accounts::energy) {
+    throw ConfigError("record.energy",
+                      "the energy ledger takes time.integrator: central_difference");
+  }
+  const System system = retained(given, time);
   const StepLimit limit = step_limit(system);
-  if (!(time.step <= limit.step)) {
+  if (time.integrator == Integrator::central_difference && !(time.step <= limit.step)) {
     throw ConfigError(
         "time.step",
         fmt::format(
             "{:.6g} s is above the largest stable step {:.6g} s of the central difference, set by "
-            "the highest mode of '{}'; take at most that",
+            "the highest mode of '{}'; take at most that, or integrator: exact, which has no such "
+            "limit",
             time.step, limit.step, limit.body));
   }
   Implementation& run = *implementation_;
   run.surfaces = system.surfaces;
   run.drive = system.drive;
   run.step = time.step;
+  run.integrator = time.integrator;
   run.drive_constant_from = system.drive.velocity.constant_from();
   run.loads_constant_from = system.drive.constant_from();
   run.end_velocity = system.drive.velocity.value(run.drive_constant_from);
@@ -575,8 +646,11 @@ Simulation::Simulation(const System& system, const TimeParameters& time, Account
     run.bodies.push_back(make_propagator(
         body, time, num_slots[b],
         body.follows_drive ? std::span<const double>(loads) : std::span<const double>()));
+    const bool is_modal = time.coordinates == Coordinates::modal;
+    run.shapes.push_back(is_modal ? body.modal.shapes : Eigen::MatrixXd());
     run.follows_drive.push_back(body.follows_drive);
     run.damping.push_back(body.modal.damping);
+    run.has_residual = run.has_residual || body.modal.residual.num_modes > 0;
     run.forces.emplace_back(static_cast<std::size_t>(num_slots[b]), 0.0);
   }
   run.solver = ContactSolver(static_cast<int>(run.contacts.size()),
@@ -593,10 +667,7 @@ Simulation::Simulation(const System& system, const TimeParameters& time, Account
     slave.watch(contact.slave_slot + 1, contact.point.slave_rows.y);
     run.watch_segment(contact, contact.point.first_segment);
   }
-  for (std::size_t b = 0; b < system.bodies.size(); ++b)
-    start_motion(*run.bodies[b], system.bodies[b], time);
-  for (RunningContact& contact : run.contacts) run.stand(contact);
-  if (run.solve() != StepOutcome::done) throw NumericalError(run.failure);
+  run.start(system, time);
 }
 
 Simulation::~Simulation() = default;
@@ -630,7 +701,20 @@ double Simulation::displacement(int body, int row) const {
 }
 
 Propagator::Motion Simulation::motion(int body) const {
-  return implementation_->bodies[static_cast<std::size_t>(body)]->motion();
+  const auto b = static_cast<std::size_t>(body);
+  return implementation_->bodies[b]->motion(implementation_->forces[b].data());
+}
+
+Propagator::Motion Simulation::reduced_motion(int body) const {
+  const auto b = static_cast<std::size_t>(body);
+  Propagator::Motion motion = this->motion(body);
+  const Eigen::MatrixXd& shapes = implementation_->shapes[b];
+  if (shapes.size() == 0) return motion;
+  motion.displacement = shapes * motion.displacement;
+  motion.velocity = shapes * motion.velocity;
+  if (implementation_->has_residual)
+    motion.displacement += implementation_->bodies[b]->residual_displacement();
+  return motion;
 }
 
 double Simulation::drive_displacement() const {

@@ -67,8 +67,10 @@ enum class Accounts {
 class Simulation {
  public:
   /// @param system copied in what it needs; not referenced afterwards
-  /// @param time   step h > 0 at most `step_limit(system)`; `end` is not used here
-  /// @throws ConfigError for `time.step` if h is above the limit, naming both
+  /// @param time   step h > 0, with the central difference at most `step_limit(system)`; `end` is
+  ///               not used here
+  /// @throws ConfigError for `time.step` if h is above the limit, naming both; for keys that do not
+  ///         go together
   /// @throws NumericalError if the start itself fails (outcome other than `done`)
   Simulation(const System& system, const TimeParameters& time, Accounts accounts = Accounts::none);
   ~Simulation();
@@ -88,6 +90,8 @@ class Simulation {
   double displacement(int body, int row) const;
   /// u_n and its rate by backward difference, of a body in the coordinates that it is marched in.
   Propagator::Motion motion(int body) const;
+  /// The same in the reduced coordinates of the body, with what the modes left out add.
+  Propagator::Motion reduced_motion(int body) const;
   /// Displacement of the bodies that follow the drive, m.
   double drive_displacement() const;
 

@@ -2,12 +2,23 @@
 
 namespace stridor {
 
+const Schema& RetainParameters::schema() {
+  static const Schema keys = SchemaOf<RetainParameters>("retain").real(
+      "frequency", &RetainParameters::frequency,
+      {.doc = "Modes up to this frequency are kept.", .unit = "Hz", .range = Range::positive()});
+  return keys;
+}
+
 const Schema& TimeParameters::schema() {
   static const Schema keys =
       SchemaOf<TimeParameters>("time")
-          .choice("integrator", &TimeParameters::integrator,
-                  {{"central_difference", Integrator::central_difference}},
-                  {.doc = "Scheme that marches the bodies.", .optional = true})
+          .choice(
+              "integrator", &TimeParameters::integrator,
+              {{"central_difference", Integrator::central_difference},
+               {"exact", Integrator::exact}},
+              {.doc = "central_difference: the published scheme; exact: the exact motion of every "
+                      "mode from step to step, of modal coordinates only.",
+               .optional = true})
           .choice("coordinates", &TimeParameters::coordinates,
                   {{"modal", Coordinates::modal},
                    {"craig_bampton", Coordinates::craig_bampton},
@@ -20,6 +31,11 @@ const Schema& TimeParameters::schema() {
                 {.doc = "Time step.", .unit = "s", .range = Range::positive()})
           .real("end", &TimeParameters::end,
                 {.doc = "End of the run.", .unit = "s", .range = Range::positive()})
+          .section("retain", &TimeParameters::retain,
+                   {.doc = "Modes that move on their own; the others follow the forces at once, as "
+                           "a static residual.",
+                    .optional = true,
+                    .absent_word = "all"})
           .real(
               "contact_tolerance", &TimeParameters::contact_tolerance,
               {.doc = "Several unilateral contacts: largest change of a contact force in the last "
@@ -32,6 +48,11 @@ const Schema& TimeParameters::schema() {
                     .optional = true,
                     .range = Range::between(1, 1e6)})
           .check([](const TimeParameters& time, std::vector<Problem>& problems) {
+            if (time.coordinates != Coordinates::modal) {
+              if (time.integrator == Integrator::exact)
+                problems.push_back({"integrator", "exact takes coordinates: modal", {}, 0, 0});
+              if (time.retain) problems.push_back({"retain", "takes coordinates: modal", {}, 0, 0});
+            }
             if (time.end < time.step)
               problems.push_back({"end", "is shorter than one step", {}, 0, 0});
             if (time.end / time.step > 1e15) {

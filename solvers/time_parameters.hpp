@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "core/schema.hpp"
 
@@ -9,6 +10,7 @@ namespace stridor {
 
 enum class Integrator {
   central_difference,  ///< predictor-corrector of BDF: first order in h with damping
+  exact,               ///< exact motion of every mode from step to step
 };
 
 enum class Coordinates {
@@ -17,11 +19,18 @@ enum class Coordinates {
   craig_bampton_fused,  ///< the same with constants folded in advance
 };
 
+/// Which modes move on their own; the others become their static residual.
+struct RetainParameters {
+  double frequency = 0.0;  ///< modes up to this one are kept, Hz, > 0
+  static const Schema& schema();
+};
+
 struct TimeParameters {
   Integrator integrator = Integrator::central_difference;
   Coordinates coordinates = Coordinates::modal;
-  double step = 0.0;  ///< h, s, > 0
-  double end = 0.0;   ///< s, > 0
+  double step = 0.0;                       ///< h, s, > 0
+  double end = 0.0;                        ///< s, > 0
+  std::optional<RetainParameters> retain;  ///< absent: all modes
   /// Largest change of a contact force in the last sweep over several contacts, relative to the
   /// largest force, > 0.
   double contact_tolerance = 1e-12;

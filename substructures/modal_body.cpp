@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <limits>
+#include <stdexcept>
 
 #include "core/errors.hpp"
 
@@ -38,6 +39,36 @@ ModalBody make_modal(const ReducedBody& body) {
   if (body.base_inertia.size() > 0)
     modal.base_inertia = modal.shapes.transpose() * body.base_inertia;
   return modal;
+}
+
+ModalBody with_static_residual(const ModalBody& body, double cutoff) {
+  if (body.residual.num_modes > 0)
+    throw std::invalid_argument("with_static_residual: the body has a residual already");
+  if (!(cutoff > 0.0)) throw std::invalid_argument("with_static_residual: cutoff must be positive");
+  const auto num_kept = (body.omega.array() <= cutoff).count();  // ω ascends
+  const Eigen::Index num_dropped = body.size() - num_kept;
+  if (num_dropped == 0) return body;
+
+  ModalBody kept;
+  kept.damping = body.damping;
+  kept.omega = body.omega.head(num_kept);
+  kept.rows = body.rows.leftCols(num_kept);
+  kept.shapes = body.shapes.leftCols(num_kept);
+
+  const Eigen::VectorXd flexibility = body.omega.tail(num_dropped).array().square().inverse();
+  const Eigen::MatrixXd rows = body.rows.rightCols(num_dropped);
+  const Eigen::MatrixXd shapes = body.shapes.rightCols(num_dropped) * flexibility.asDiagonal();
+  kept.residual.num_modes = num_dropped;
+  kept.residual.beta = body.damping.beta;
+  kept.residual.flexibility = rows * flexibility.asDiagonal() * rows.transpose();
+  kept.residual.shapes = shapes * rows.transpose();
+  if (body.base_inertia.size() > 0) {
+    kept.base_inertia = body.base_inertia.head(num_kept);
+    const Eigen::VectorXd base = body.base_inertia.tail(num_dropped);
+    kept.residual.base_rows = rows * flexibility.asDiagonal() * base;
+    kept.residual.base_shapes = shapes * base;
+  }
+  return kept;
 }
 
 double central_difference_limit(const ModalBody& body) {

@@ -5,6 +5,18 @@
 
 namespace stridor {
 
+/// Modes that a body leaves out: they follow the forces at once, u = R f (docs/theory.md, 3.5).
+///
+/// Of the sums below over the modes left out, φ is the entry of a mode at a row.
+struct ModalResidual {
+  Eigen::MatrixXd flexibility;  ///< R = Σ φ φᵀ/ω², rows x rows, m/N; empty where none is left out
+  Eigen::MatrixXd shapes;       ///< Σ Φ φᵀ/ω², reduced coordinates per force on a row
+  Eigen::VectorXd base_rows;    ///< Σ φ g/ω² with g of base_inertia, per m/s²; or empty
+  Eigen::VectorXd base_shapes;  ///< Σ Φ g/ω²; or empty
+  double beta = 0.0;            ///< β of their damping, s; their α is nothing beside it
+  Eigen::Index num_modes = 0;   ///< left out
+};
+
 /// One component as independent modes: q̈_i + c_i q̇_i + ω_i² q_i = p_i, c_i = α(t) + β ω_i²
 /// (docs/theory.md, 1.4).
 struct ModalBody {
@@ -13,6 +25,7 @@ struct ModalBody {
   Eigen::MatrixXd rows;          ///< as ReducedBody::rows, in modal coordinates
   Eigen::VectorXd base_inertia;  ///< as ReducedBody::base_inertia, in modal coordinates
   Eigen::MatrixXd shapes;        ///< Φ, reduced coordinates of every mode: q_reduced = Φ q_modal
+  ModalResidual residual;        ///< of modes that are not among the above
 
   Eigen::Index size() const { return omega.size(); }
 };
@@ -23,6 +36,13 @@ struct ModalBody {
 /// @throws NumericalError if the mass is not positive definite or a stiffness is negative beyond
 /// rounding
 ModalBody make_modal(const ReducedBody& body);
+
+/// The body with the modes up to a frequency; those above become its static residual.
+///
+/// @param body   without a residual
+/// @param cutoff ω, rad/s, > 0
+/// @throws std::invalid_argument if the body has a residual or `cutoff` is not positive
+ModalBody with_static_residual(const ModalBody& body, double cutoff);
 
 /// Largest step at which the central difference with backward-difference damping is stable for
 /// every mode at the largest damping of the schedule: min over modes of 4/(c + √(c² + 4 ω²))

@@ -52,7 +52,7 @@ class FreeBody {
       : ledger({{body}, {}, {}, {}}, time),
         step_(time.step),
         propagator_(make_propagator(body, time, 0, {})) {
-    start_motion(*propagator_, body, time);
+    start_motion(*propagator_, body, time, nullptr);
   }
   void march(int num_steps) {
     for (int n = 0; n < num_steps; ++n, ++index_) {

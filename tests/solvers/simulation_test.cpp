@@ -375,5 +375,121 @@ TEST(Simulation, StatisticsStartAnewFromThePresentForce) {
   EXPECT_EQ(simulation.statistics(0).sticking, 0);
 }
 
+// --- exact propagation and static residual
+// --------------------------------------------------------
+
+/// The leading scene, which slides on from the start, with a short ramp.
+Model short_ramp_model(ContactAssumption assumption = ContactAssumption::subs_b) {
+  ModelParameters parameters = paper_model(leading_angle, assumption);
+  parameters.drive.ramp = 1e-2;
+  parameters.contact->armed_from = 1.0;
+  return make_paper_model(parameters);
+}
+
+TimeParameters exact_time(double step, std::optional<double> frequency = {}) {
+  TimeParameters time = paper_time(step, Coordinates::modal);
+  time.integrator = Integrator::exact;
+  if (frequency) time.retain = RetainParameters{*frequency};
+  return time;
+}
+
+/// Displacements of the free end every 2e-5 s up to 4 ms.
+std::vector<double> free_end_motion(const Model& model, const TimeParameters& time) {
+  Simulation simulation(model.system, time);
+  const Model::Point tip = model.points.at(free_end);
+  const std::int64_t stride = std::llround(2e-5 / time.step);
+  std::vector<double> motion;
+  for (int n = 1; n <= 200; ++n) {
+    if (simulation.step_until(n * stride) != StepOutcome::done)
+      ADD_FAILURE() << simulation.failure();
+    motion.push_back(simulation.displacement(tip.body, tip.rows.y));
+  }
+  return motion;
+}
+
+double relative_difference(const std::vector<double>& a, const std::vector<double>& reference) {
+  double difference = 0.0;
+  double size = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference += (a[i] - reference[i]) * (a[i] - reference[i]);
+    size += reference[i] * reference[i];
+  }
+  return std::sqrt(difference / size);
+}
+
+TEST(ExactSimulation, AndTheCentralDifferenceConvergeToTheSame) {
+  // The central difference is of first order: halving its step halves the difference.
+  for (const auto assumption : {ContactAssumption::subs_a, ContactAssumption::subs_b,
+                                ContactAssumption::subs_c, ContactAssumption::film}) {
+    const Model model = short_ramp_model(assumption);
+    const std::vector<double> exact = free_end_motion(model, exact_time(1e-7));
+    const double coarse =
+        relative_difference(free_end_motion(model, paper_time(2e-7, Coordinates::modal)), exact);
+    const double fine =
+        relative_difference(free_end_motion(model, paper_time(1e-7, Coordinates::modal)), exact);
+    EXPECT_LT(coarse, 1e-3);
+    EXPECT_GT(coarse / fine, 1.7);
+    EXPECT_LT(coarse / fine, 2.3);
+  }
+}
+
+TEST(ExactSimulation, IsStableAtFiftyTimesTheLimitOfTheCentralDifference) {
+  const Model model = short_ramp_model();
+  const double step = 50.0 * step_limit(model.system).step;
+  for (const auto& time : {exact_time(step), exact_time(step, 50e3)}) {
+    Simulation simulation(model.system, time);
+    double largest = 0.0;
+    for (int n = 0; n < 5000; ++n) {
+      ASSERT_EQ(simulation.step(), StepOutcome::done);
+      if (simulation.time() > 0.02)
+        largest = std::max(largest, std::abs(simulation.contact_force(0) - 0.2));
+    }
+    // The beams swing after the short ramp; a force that the step let grow would be beyond any use.
+    EXPECT_LT(largest, 1.0);
+  }
+}
+
+TEST(ExactSimulation, TheResidualConvergesToAllModesAsTheCutoffRises) {
+  const Model model = short_ramp_model();
+  const std::vector<double> all = free_end_motion(model, exact_time(2e-7));
+  double last = 1.0;
+  for (const double cutoff : {20e3, 60e3, 200e3}) {
+    const double difference =
+        relative_difference(free_end_motion(model, exact_time(2e-7, cutoff)), all);
+    EXPECT_LT(difference, 0.5 * last) << cutoff;
+    last = difference;
+  }
+  EXPECT_LT(last, 1e-4);
+  const double nothing_dropped =
+      relative_difference(free_end_motion(model, exact_time(2e-7, 1e9)), all);
+  EXPECT_EQ(nothing_dropped, 0.0);
+}
+
+TEST(ExactSimulation, ResumesBitwiseAcrossNodesAndInTheMiddleOfTheDampingSchedule) {
+  for (const auto assumption : {ContactAssumption::subs_b, ContactAssumption::film}) {
+    ModelParameters parameters = paper_model(leading_angle, assumption);
+    parameters.drive.velocity = TimeCurve(10.0);  // a node every 40 steps
+    parameters.drive.ramp = 5e-4;
+    parameters.contact->armed_from = 1.0;
+    auto& oblique = std::get<BeamParameters>(parameters.substructures["oblique"]);
+    oblique.damping.hold = 1e-3;
+    oblique.damping.fade = 1e-3;
+    for (const int middle : {600, 601, 639, 640, 641})
+      expect_bitwise_resume(parameters, exact_time(2.5e-6, 50e3), middle, 900);
+  }
+}
+
+TEST(ExactSimulation, RefusesWhatItCannotDo) {
+  const Model model = short_ramp_model();
+  EXPECT_THROW(
+      {
+        TimeParameters time = exact_time(2e-7);
+        time.coordinates = Coordinates::craig_bampton;
+        Simulation(model.system, time);
+      },
+      ConfigError);
+  EXPECT_THROW(Simulation(model.system, exact_time(2e-7), Accounts::energy), ConfigError);
+}
+
 }  // namespace
 }  // namespace stridor

@@ -267,5 +267,65 @@ TEST(CentralDifferenceLimit, SeparatesStableFromUnstableSteps) {
   }
 }
 
+// --- static residual
+// ------------------------------------------------------------------------------
+
+/// A chain of six masses, each watched, on a base that moves.
+ReducedBody watched_chain() {
+  ReducedBody body;
+  body.mass = Eigen::VectorXd::LinSpaced(6, 1.0, 2.0).asDiagonal();
+  body.stiffness = Eigen::VectorXd::Constant(6, 300.0).asDiagonal();
+  body.stiffness.diagonal(1).setConstant(-100.0);
+  body.stiffness.diagonal(-1).setConstant(-100.0);
+  body.damping.alpha = 0.3;
+  body.damping.beta = 2e-4;
+  body.rows = Eigen::MatrixXd::Identity(6, 6);
+  body.base_inertia = body.mass.diagonal();
+  return body;
+}
+
+TEST(StaticResidual, AndTheKeptModesTogetherAnswerLoadsAsTheWholeBody) {
+  const ReducedBody body = watched_chain();
+  const ModalBody all = make_modal(body);
+  const ModalBody kept = with_static_residual(all, 0.5 * (all.omega(2) + all.omega(3)));
+  ASSERT_EQ(kept.size(), 3);
+  EXPECT_EQ(kept.residual.num_modes, 3);
+  EXPECT_EQ(kept.residual.beta, 2e-4);
+  const Eigen::MatrixXd flexibility = body.stiffness.inverse();
+  const Eigen::MatrixXd by_kept =
+      kept.rows * kept.omega.array().square().inverse().matrix().asDiagonal();
+  // Rounding of a flexibility of 1e-2.
+  EXPECT_LT((by_kept * kept.rows.transpose() + kept.residual.flexibility - flexibility).norm(),
+            1e-16);
+  EXPECT_LT((by_kept * kept.shapes.transpose() + kept.residual.shapes - flexibility).norm(), 1e-16);
+  const Eigen::VectorXd by_base = flexibility * body.base_inertia;
+  EXPECT_LT((by_kept * kept.base_inertia + kept.residual.base_rows - by_base).norm(), 1e-15);
+  EXPECT_LT((by_kept * kept.base_inertia + kept.residual.base_shapes - by_base).norm(), 1e-15);
+}
+
+TEST(StaticResidual, LeavesABodyAloneThatHasNoHigherModes) {
+  const ModalBody all = make_modal(watched_chain());
+  const ModalBody kept = with_static_residual(all, all.omega(5));
+  EXPECT_EQ(kept.size(), 6);
+  EXPECT_EQ(kept.residual.num_modes, 0);
+  EXPECT_EQ(kept.residual.flexibility.size(), 0);
+}
+
+TEST(StaticResidual, RefusesACutoffOfNothingAndASecondCut) {
+  const ModalBody all = make_modal(watched_chain());
+  const auto message = [](const ModalBody& body, double cutoff) -> std::string {
+    try {
+      with_static_residual(body, cutoff);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message(all, 0.0), "with_static_residual: cutoff must be positive");
+  EXPECT_EQ(message(all, std::nan("")), "with_static_residual: cutoff must be positive");
+  EXPECT_EQ(message(with_static_residual(all, all.omega(2)), 1.0),
+            "with_static_residual: the body has a residual already");
+}
+
 }  // namespace
 }  // namespace stridor
