@@ -26,7 +26,61 @@ struct NodeGrid {
   }
 };
 
-using Triplets = std::vector<Eigen::Triplet<double>>;
+/// DoFs of an element in the order of its matrices, or `held`.
+using ElementDofs = std::array<int, 16>;
+
+/// What displacements in direction `column` (x: 0, y: 1) give in direction `row`, node by node.
+Eigen::Map<Eigen::Matrix<double, 8, 8>, 0, Eigen::Stride<32, 2>> direction_part(
+    Q8Matrix& matrix, Eigen::Index row, Eigen::Index column) {
+  return Eigen::Map<Eigen::Matrix<double, 8, 8>, 0, Eigen::Stride<32, 2>>(&matrix(row, column));
+}
+
+/// Makes the forces of a rigid translation exactly zero, in one element and in their sum over any
+/// mesh, by changing entries within rounding.
+///
+/// Rounded one by one the entries of a row do not cancel. As all elements are alike the remainders
+/// add up to an elastic bedding, which is as stiff as a slender beam in bending once elements are a
+/// thousand times shorter than it. Entries on a grid a little coarser than the rounding unit are
+/// summed without error; what is left of a row then goes to its diagonal.
+void balance_translations(Q8Matrix& stiffness) {
+  int exponent = 0;
+  std::frexp(stiffness.cwiseAbs().maxCoeff(), &exponent);
+  const double grid = std::ldexp(1.0, exponent - 51);
+  stiffness = (0.5 / grid * (stiffness + stiffness.transpose())).array().round().eval();
+  for (const Eigen::Index direction : {0, 1}) {
+    auto part = direction_part(stiffness, direction, direction);
+    part.diagonal() -= part.rowwise().sum().eval();
+  }
+  // The columns must cancel as well: the last column takes what is left of the rows, then the last
+  // row what is left of the columns.
+  auto mixed = direction_part(stiffness, 0, 1);
+  mixed.col(7) -= mixed.rowwise().sum().eval();
+  mixed.row(7) -= mixed.colwise().sum().eval();
+  direction_part(stiffness, 1, 0) = mixed.transpose();
+  stiffness *= grid;
+}
+
+/// Sum of a matrix over congruent elements, without entries that are zero: plane masses do not
+/// couple x and y, and the stiffness between them cancels in regular meshes.
+SparseMatrix assemble(const std::vector<ElementDofs>& elements, const Q8Matrix& matrix,
+                      int num_dofs) {
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(elements.size() * 256);
+  for (const ElementDofs& dofs : elements) {
+    for (Eigen::Index a = 0; a < 16; ++a) {
+      const int row = dofs[static_cast<std::size_t>(a)];
+      if (row == BodyMatrices::held) continue;
+      for (Eigen::Index b = 0; b < 16; ++b) {
+        const int column = dofs[static_cast<std::size_t>(b)];
+        if (column != BodyMatrices::held) entries.emplace_back(row, column, matrix(a, b));
+      }
+    }
+  }
+  SparseMatrix result(num_dofs, num_dofs);
+  result.setFromTriplets(entries.begin(), entries.end());
+  result.prune(0.0);
+  return result;
+}
 
 }  // namespace
 
@@ -200,39 +254,35 @@ BodyMatrices make_beam(const BeamParameters& parameters) {
   for (int k = 0; k < 8; ++k)
     corners.row(k) = body.nodes.row(element_nodes(0, 0)[static_cast<std::size_t>(k)]);
   const auto& material = parameters.material;
-  const Q8Element element =
+  Q8Element element =
       make_q8_element(corners, {material.youngs_modulus, material.poissons_ratio, material.density},
                       parameters.width);
+  balance_translations(element.stiffness);
 
-  Triplets mass;
-  Triplets stiffness;
-  const std::size_t num_entries =
-      static_cast<std::size_t>(grid.along) * static_cast<std::size_t>(grid.through) * 256;
-  mass.reserve(num_entries);
-  stiffness.reserve(num_entries);
-  if (body.follows_drive()) body.base_inertia = Eigen::VectorXd::Zero(num_dofs);
+  std::vector<ElementDofs> elements;
+  elements.reserve(static_cast<std::size_t>(grid.along) * static_cast<std::size_t>(grid.through));
   for (int column = 0; column < grid.along; ++column) {
     for (int row = 0; row < grid.through; ++row) {
-      const std::array<int, 8> nodes = element_nodes(column, row);
-      for (int a = 0; a < 16; ++a) {
-        const int dof_a =
-            dofs_of(nodes[static_cast<std::size_t>(a / 2)])[static_cast<std::size_t>(a % 2)];
-        if (dof_a == BodyMatrices::held) continue;
-        for (int b = 0; b < 16; ++b) {
-          const int dof_b =
-              dofs_of(nodes[static_cast<std::size_t>(b / 2)])[static_cast<std::size_t>(b % 2)];
-          if (body.follows_drive() && b % 2 == 0) body.base_inertia(dof_a) += element.mass(a, b);
-          if (dof_b == BodyMatrices::held) continue;
-          mass.emplace_back(dof_a, dof_b, element.mass(a, b));
-          stiffness.emplace_back(dof_a, dof_b, element.stiffness(a, b));
-        }
+      ElementDofs& dofs = elements.emplace_back();
+      std::size_t k = 0;
+      for (const int node : element_nodes(column, row))
+        for (const int dof : dofs_of(node)) dofs[k++] = dof;
+    }
+  }
+  body.mass = assemble(elements, element.mass, num_dofs);
+  body.stiffness = assemble(elements, element.stiffness, num_dofs);
+  if (body.follows_drive()) {
+    body.base_inertia = Eigen::VectorXd::Zero(num_dofs);
+    // Held nodes move with the support: every x displacement of an element counts.
+    Eigen::Vector<double, 16> inertia = Eigen::Vector<double, 16>::Zero();
+    for (Eigen::Index b = 0; b < 16; b += 2) inertia += element.mass.col(b);
+    for (const ElementDofs& dofs : elements) {
+      for (Eigen::Index a = 0; a < 16; ++a) {
+        const int dof = dofs[static_cast<std::size_t>(a)];
+        if (dof != BodyMatrices::held) body.base_inertia(dof) += inertia(a);
       }
     }
   }
-  body.mass.resize(num_dofs, num_dofs);
-  body.mass.setFromTriplets(mass.begin(), mass.end());
-  body.stiffness.resize(num_dofs, num_dofs);
-  body.stiffness.setFromTriplets(stiffness.begin(), stiffness.end());
 
   body.points = {
       {"start_bottom", grid.node(0, 0)},         {"start_top", grid.node(0, last_row)},

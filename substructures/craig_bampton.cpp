@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <stdexcept>
 
 #include "substructures/lowest_modes.hpp"
@@ -36,36 +38,80 @@ Partition partition_dofs(Eigen::Index num_dofs, std::span<const int> interface) 
 }
 
 struct Blocks {
-  SparseMatrix ii, ib, bb;
+  SparseMatrix ii, ib;
+  Eigen::MatrixXd bb;
 };
 
-Blocks split(const SparseMatrix& matrix, const Partition& partition, Eigen::Index num_interface) {
-  using Triplets = std::vector<Eigen::Triplet<double>>;
-  Triplets ii;
-  Triplets ib;
-  Triplets bb;
-  ii.reserve(static_cast<std::size_t>(matrix.nonZeros()));
-  for (Eigen::Index column = 0; column < matrix.outerSize(); ++column) {
-    for (SparseMatrix::InnerIterator entry(matrix, column); entry; ++entry) {
+Blocks split(const SparseMatrix& matrix, const Partition& partition,
+             std::span<const int> interface) {
+  const auto num_interface = static_cast<Eigen::Index>(interface.size());
+  Blocks blocks{SparseMatrix(partition.num_interior, partition.num_interior),
+                SparseMatrix(partition.num_interior, num_interface),
+                Eigen::MatrixXd::Zero(num_interface, num_interface)};
+  // Interior DoFs keep their order, so that every column arrives sorted.
+  blocks.ii.reserve(matrix.nonZeros());
+  for (Eigen::Index dof = 0; dof < matrix.cols(); ++dof) {
+    if (partition.is_interface[static_cast<std::size_t>(dof)]) continue;
+    const int column = partition.position[static_cast<std::size_t>(dof)];
+    blocks.ii.startVec(column);
+    for (SparseMatrix::InnerIterator entry(matrix, dof); entry; ++entry) {
       const auto row = static_cast<std::size_t>(entry.row());
-      const auto col = static_cast<std::size_t>(entry.col());
-      if (partition.is_interface[row] && !partition.is_interface[col]) continue;
-      Triplets& target = !partition.is_interface[col] ? ii : partition.is_interface[row] ? bb : ib;
-      target.emplace_back(partition.position[row], partition.position[col], entry.value());
+      if (!partition.is_interface[row])
+        blocks.ii.insertBack(partition.position[row], column) = entry.value();
     }
   }
-  Blocks blocks;
-  blocks.ii.resize(partition.num_interior, partition.num_interior);
-  blocks.ib.resize(partition.num_interior, num_interface);
-  blocks.bb.resize(num_interface, num_interface);
-  blocks.ii.setFromTriplets(ii.begin(), ii.end());
-  blocks.ib.setFromTriplets(ib.begin(), ib.end());
-  blocks.bb.setFromTriplets(bb.begin(), bb.end());
+  blocks.ii.finalize();
+  for (Eigen::Index column = 0; column < num_interface; ++column) {
+    blocks.ib.startVec(column);
+    for (SparseMatrix::InnerIterator entry(matrix, interface[static_cast<std::size_t>(column)]);
+         entry; ++entry) {
+      const auto row = static_cast<std::size_t>(entry.row());
+      if (partition.is_interface[row]) {
+        blocks.bb(partition.position[row], column) = entry.value();
+      } else {
+        blocks.ib.insertBack(partition.position[row], column) = entry.value();
+      }
+    }
+  }
+  blocks.ib.finalize();
   return blocks;
 }
 
-void make_symmetric(Eigen::MatrixXd& matrix) {
-  matrix = (0.5 * (matrix + matrix.transpose())).eval();
+/// Calls act(first, count) for neighbouring groups of columns: wide enough to make the most of each
+/// pass over a sparse matrix, narrow enough that what is formed on the way needs little memory.
+constexpr Eigen::Index group_width = 40;
+template <typename Act>
+void for_column_groups(Eigen::Index num_columns, Act&& act) {
+  for (Eigen::Index first = 0; first < num_columns; first += group_width)
+    act(first, std::min(group_width, num_columns - first));
+}
+
+/// Takes the error of Ψ out of the softest part of the reduced stiffness.
+///
+/// TᵀKT with the Ψ at hand has an error of the second order in that of Ψ; K_bb + K_bi Ψ has one of
+/// the first, by Ψᵀ (K_ii Ψ + K_ib). Relative to the elements that is rounding, but a slender body
+/// is softer than its elements by many orders in its few softest motions, which are corrected here.
+void correct_softest(const Blocks& stiffness, const VectorBlock& psi, Eigen::MatrixXd& reduced) {
+  constexpr Eigen::Index most_motions = 20;
+  const Eigen::Index nb = psi.cols();
+  const Eigen::Index num_motions = std::min(nb, most_motions);
+  if (num_motions == 0) return;
+  auto interface = reduced.topLeftCorner(nb, nb);
+  const Eigen::MatrixXd symmetric = 0.5 * (interface + interface.transpose());
+  const Eigen::MatrixXd motions =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric).eigenvectors().leftCols(
+          num_motions);
+  const VectorBlock interior = psi * motions;
+  VectorBlock residual = stiffness.ii * interior;
+  residual += stiffness.ib * motions;
+  const Eigen::MatrixXd correction = interior.transpose() * residual;
+  interface =
+      symmetric + 0.5 * motions * (correction + correction.transpose()) * motions.transpose();
+}
+
+/// Copies the lower triangle to the upper one.
+void mirror(Eigen::MatrixXd& matrix) {
+  matrix.triangularView<Eigen::StrictlyUpper>() = matrix.transpose();
 }
 
 }  // namespace
@@ -79,11 +125,16 @@ ReducedBody make_craig_bampton(const BodyMatrices& body, std::span<const int> in
         fmt::format("make_craig_bampton: {} fixed-interface modes asked, {} interior DoFs",
                     num_modes, partition.num_interior));
   }
-  const Blocks stiffness = split(body.stiffness, partition, nb);
-  const Blocks mass = split(body.mass, partition, nb);
+  for (const int dof : watched) {
+    if (dof != BodyMatrices::held && (dof < 0 || dof >= body.num_dofs())) {
+      throw std::invalid_argument(
+          fmt::format("make_craig_bampton: watched DoF {} is out of range", dof));
+    }
+  }
 
+  const Blocks stiffness = split(body.stiffness, partition, interface);
+  const Blocks mass = split(body.mass, partition, interface);
   const SparseCholesky factor(stiffness.ii, "the stiffness of the interior");
-  const Eigen::MatrixXd psi = -factor.solve(Eigen::MatrixXd(stiffness.ib));
   const Modes modes = lowest_modes(factor, stiffness.ii, mass.ii, num_modes);
   const Eigen::MatrixXd& phi = modes.shapes;
 
@@ -91,32 +142,39 @@ ReducedBody make_craig_bampton(const BodyMatrices& body, std::span<const int> in
   reduced.damping = body.damping;
   reduced.num_interface = nb;
   const Eigen::Index n = nb + num_modes;
-
-  // K_bi Φ + Ψᵀ K_ii Φ vanishes by the definition of Ψ, and so does K_ii Ψ + K_ib.
   reduced.stiffness = Eigen::MatrixXd::Zero(n, n);
-  reduced.stiffness.topLeftCorner(nb, nb) =
-      Eigen::MatrixXd(stiffness.bb) + stiffness.ib.transpose() * psi;
+  reduced.stiffness.topLeftCorner(nb, nb) = stiffness.bb;
   reduced.stiffness.diagonal().tail(num_modes) = modes.omega_squared;
-  make_symmetric(reduced.stiffness);
+  reduced.mass = Eigen::MatrixXd::Identity(n, n);
+  reduced.mass.topLeftCorner(nb, nb) = mass.bb;
 
-  const Eigen::MatrixXd mass_psi = mass.ii * psi + Eigen::MatrixXd(mass.ib);
-  reduced.mass.resize(n, n);
-  reduced.mass.topLeftCorner(nb, nb) =
-      Eigen::MatrixXd(mass.bb) + mass.ib.transpose() * psi + psi.transpose() * mass_psi;
-  reduced.mass.bottomLeftCorner(num_modes, nb) = phi.transpose() * mass_psi;
-  reduced.mass.topRightCorner(nb, num_modes) =
-      reduced.mass.bottomLeftCorner(num_modes, nb).transpose();
-  reduced.mass.bottomRightCorner(num_modes, num_modes) =
-      Eigen::MatrixXd::Identity(num_modes, num_modes);
-  make_symmetric(reduced.mass);
+  VectorBlock psi = -stiffness.ib;
+  for_column_groups(nb, [&](Eigen::Index first, Eigen::Index count) {
+    factor.solve_lower_in_place(psi.middleCols(first, count));
+    factor.solve_upper_in_place(psi.middleCols(first, count));
+  });
+
+  reduced.stiffness.topLeftCorner(nb, nb) += stiffness.ib.transpose() * psi;
+  correct_softest(stiffness, psi, reduced.stiffness);
+
+  VectorBlock inertia_storage(partition.num_interior, std::min(group_width, nb));
+  for_column_groups(nb, [&](Eigen::Index first, Eigen::Index count) {
+    const auto psi_group = psi.middleCols(first, count);
+    const Eigen::Index num_rest = nb - first;  // from the diagonal on
+    auto inertia = inertia_storage.leftCols(count);
+    inertia.noalias() = mass.ii * psi_group;
+    inertia += mass.ib.middleCols(first, count);
+    reduced.mass.block(first, first, num_rest, count) +=
+        psi.rightCols(num_rest).transpose() * inertia +
+        mass.ib.rightCols(num_rest).transpose() * psi_group;
+    reduced.mass.block(nb, first, num_modes, count) = phi.transpose() * inertia;
+  });
+  mirror(reduced.stiffness);
+  mirror(reduced.mass);
 
   reduced.rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(watched.size()), n);
   for (std::size_t r = 0; r < watched.size(); ++r) {
     if (watched[r] == BodyMatrices::held) continue;
-    if (watched[r] < 0 || watched[r] >= body.num_dofs()) {
-      throw std::invalid_argument(
-          fmt::format("make_craig_bampton: watched DoF {} is out of range", watched[r]));
-    }
     const auto dof = static_cast<std::size_t>(watched[r]);
     auto row = reduced.rows.row(static_cast<Eigen::Index>(r));
     if (partition.is_interface[dof]) {

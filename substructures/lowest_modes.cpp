@@ -1,12 +1,12 @@
 #include "substructures/lowest_modes.hpp"
 
-#include <Spectra/MatOp/SparseSymMatProd.h>
-#include <Spectra/SymGEigsShiftSolver.h>
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <random>
 #include <stdexcept>
 
 #include "core/errors.hpp"
@@ -14,37 +14,11 @@
 namespace stridor {
 namespace {
 
-/// y = (K/s)⁻¹ x, in the form in which Spectra asks for (K/s − σ M)⁻¹; only σ = 0 is ever used.
-///
-/// The scale s brings the wanted eigenvalues near 1: Spectra compares norms with the rounding unit
-/// itself, and 1/ω² of stiff bodies (1e-13 s²) would pass for zero there.
-class ScaledInverse {
- public:
-  using Scalar = double;
+using SymmetricEigen = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 
-  ScaledInverse(const SparseCholesky& factor, double scale) : factor_(factor), scale_(scale) {}
-  Eigen::Index rows() const { return factor_.size(); }
-  Eigen::Index cols() const { return factor_.size(); }
-  void set_shift(const double&) {}
-  void perform_op(const double* in, double* out) const {
-    Eigen::Map<Eigen::VectorXd>(out, rows()) =
-        scale_ * factor_.solve(Eigen::Map<const Eigen::VectorXd>(in, rows()));
-  }
-
- private:
-  const SparseCholesky& factor_;
-  double scale_;
-};
-
-/// Size of ω² of the softest motions: the Rayleigh quotient xᵀ M x / xᵀ M K⁻¹ M x of a vector that
-/// has a part in all of them.
-double typical_omega_squared(const SparseCholesky& factor, const SparseMatrix& mass) {
-  Eigen::VectorXd x(factor.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i)
-    x(i) = 1.0 + 0.5 * std::sin(static_cast<double>(i + 1));
-  const Eigen::VectorXd mass_x = mass * x;
-  return x.dot(mass_x) / mass_x.dot(factor.solve(mass_x).col(0));
-}
+/// Vectors by which the Krylov space grows at a time. A pass over the factor or the mass serves all
+/// of them; with more of them the space would have to be larger.
+constexpr Eigen::Index block_width = 8;
 
 Modes dense_modes(const SparseMatrix& stiffness, const SparseMatrix& mass, Eigen::Index count) {
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver{Eigen::MatrixXd(stiffness),
@@ -54,22 +28,192 @@ Modes dense_modes(const SparseMatrix& stiffness, const SparseMatrix& mass, Eigen
   return {solver.eigenvalues().head(count), solver.eigenvectors().leftCols(count)};
 }
 
-Modes lanczos_modes(const SparseCholesky& factor, const SparseMatrix& mass, Eigen::Index count) {
-  const double scale = typical_omega_squared(factor, mass);
-  ScaledInverse inverse(factor, scale);
-  Spectra::SparseSymMatProd<double> mass_product(mass);
-  const Eigen::Index subspace = std::min(factor.size(), 2 * count + 20);
-  Spectra::SymGEigsShiftSolver<ScaledInverse, Spectra::SparseSymMatProd<double>,
-                               Spectra::GEigsMode::ShiftInvert>
-      solver(inverse, mass_product, count, subspace, 0.0);
-  solver.init();
-  const Eigen::Index converged =
-      solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-12, Spectra::SortRule::SmallestMagn);
-  if (solver.info() != Spectra::CompInfo::Successful || converged < count) {
-    throw NumericalError(
-        fmt::format("fixed-interface modes: Lanczos found {} of {} eigenpairs", converged, count));
+/// Replaces W by orthonormal columns Q with W = Q R, and returns R.
+///
+/// Directions in which W is no longer than `negligible` are left out, so Q may have fewer columns.
+/// The Gram matrix of W holds squares, in which lengths below 1e-8 of the longest drown in
+/// rounding; directions as short as that are stretched by 1e7 only, and seen better in the next
+/// round.
+///
+/// @param scratch memory kept from call to call
+Eigen::MatrixXd orthonormalise(VectorBlock& block, double negligible, VectorBlock& scratch) {
+  Eigen::MatrixXd factor = Eigen::MatrixXd::Identity(block.cols(), block.cols());
+  bool is_orthonormal = false;
+  while (!is_orthonormal && block.cols() > 0) {
+    const Eigen::MatrixXd products = block.transpose() * block;
+    const SymmetricEigen gram(products);
+    Eigen::VectorXd lengths = gram.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+    const double longest = lengths.maxCoeff();
+    is_orthonormal = lengths.minCoeff() > 1e-2 * longest;
+    lengths = lengths.cwiseMax(1e-7 * longest);
+    const Eigen::Index num_kept = (lengths.array() > negligible).count();
+    const auto kept = lengths.tail(num_kept);
+    const auto directions = gram.eigenvectors().rightCols(num_kept);
+    scratch.noalias() = block * (directions * kept.cwiseInverse().asDiagonal());
+    block.swap(scratch);
+    factor = (kept.asDiagonal() * directions.transpose() * factor).eval();
+    negligible = 1e-6;  // what was stretched and is still this short was rounding
   }
-  return {scale * solver.eigenvalues(), solver.eigenvectors()};
+  return factor;
+}
+
+/// Block Lanczos for the largest eigenvalues ν = 1/ω² of A = L⁻¹ M L⁻ᵀ, where K = L Lᵀ.
+///
+/// The Krylov space has an orthonormal basis V with A V = V T + Q R Eᵀ, where T = Vᵀ A V and Eᵀ
+/// takes the part of the newest block. Eigenpairs (ν, s) of T are approximate ones of A, with y = V
+/// s and |A y − ν y| = |R Eᵀ s|; the mode is φ = L⁻ᵀ y. A full space is replaced by its best
+/// approximations, for which the equation holds as well.
+class Lanczos {
+ public:
+  Lanczos(const SparseCholesky& stiffness, const SparseMatrix& mass, Eigen::Index count)
+      : stiffness_(stiffness),
+        mass_(mass),
+        count_(count),
+        // The constant part is for clustered eigenvalues, which ask for many steps.
+        basis_(mass.rows(), std::min(mass.rows(), 3 * count + 30 * block_width)),
+        projection_(basis_.cols(), basis_.cols()) {}
+
+  /// @throws NumericalError
+  Modes solve();
+
+ private:
+  /// W = V H + Q R with Q orthonormal and orthogonal to V.
+  struct Split {
+    Eigen::MatrixXd inside;   ///< H
+    Eigen::MatrixXd outside;  ///< R
+  };
+
+  VectorBlock random_block();
+  void append(const VectorBlock& block);
+  void apply(VectorBlock& block);
+  Split split(VectorBlock& block);
+  void restart(const Eigen::VectorXd& values, const Eigen::MatrixXd& vectors);
+
+  const SparseCholesky& stiffness_;
+  const SparseMatrix& mass_;
+  Eigen::Index count_;
+  Eigen::MatrixXd basis_;       ///< V in the first dim_ columns
+  Eigen::MatrixXd projection_;  ///< T in the first dim_ rows and columns; lower triangle
+  Eigen::Index dim_ = 0;
+  Eigen::Index newest_ = 0;     ///< first column of the newest block
+  Eigen::Index neighbour_ = 0;  ///< first column of the block before it
+  std::mt19937 generator_;
+  VectorBlock scratch_;  ///< the size of a block, kept from step to step
+  Eigen::MatrixXd scratch_by_columns_;
+};
+
+Modes Lanczos::solve() {
+  constexpr double tolerance = 1e-12;
+  constexpr int max_steps = 1000;
+  Eigen::Index num_converged = 0;
+  Eigen::Index next_look = count_;
+  VectorBlock block = random_block();
+  for (int step = 0; step < max_steps; ++step) {
+    append(block);
+    apply(block);
+    if (!block.allFinite()) break;
+    const Split parts = split(block);
+    const Eigen::Index newest_width = dim_ - newest_;
+    projection_.block(newest_, 0, newest_width, dim_) = parts.inside.transpose();
+
+    const bool is_exhausted = block.cols() == 0;
+    const bool is_full = dim_ + block.cols() > basis_.cols();
+    if (dim_ < next_look && !is_exhausted && !is_full) continue;
+    next_look = dim_ + std::max(block_width, dim_ / 16);
+    const SymmetricEigen ritz(projection_.topLeftCorner(dim_, dim_));
+    const Eigen::VectorXd values = ritz.eigenvalues().reverse();
+    const Eigen::MatrixXd vectors = ritz.eigenvectors().rowwise().reverse();
+    num_converged = 0;
+    for (Eigen::Index i = 0; i < std::min(count_, dim_); ++i) {
+      const double residual = (parts.outside * vectors.col(i).tail(newest_width)).norm();
+      if (residual <= tolerance * std::abs(values(i))) ++num_converged;
+    }
+    if (num_converged == count_) {
+      if (!(values(count_ - 1) > 0.0))
+        throw NumericalError("fixed-interface modes: the mass is not positive definite");
+      VectorBlock shapes = basis_.leftCols(dim_) * vectors.leftCols(count_);
+      stiffness_.solve_upper_in_place(shapes);
+      return {values.head(count_).cwiseInverse(), shapes};
+    }
+    if (is_full) restart(values, vectors);
+    if (is_exhausted) block = random_block();
+  }
+  throw NumericalError(fmt::format("fixed-interface modes: Lanczos found {} of {} eigenpairs",
+                                   num_converged, count_));
+}
+
+/// Orthonormal and outside the space; the same in every run.
+VectorBlock Lanczos::random_block() {
+  VectorBlock block(basis_.rows(), block_width);
+  for (double& entry : block.reshaped())
+    entry = static_cast<double>(generator_()) - 0.5 * static_cast<double>(std::mt19937::max());
+  split(block);
+  return block;
+}
+
+void Lanczos::append(const VectorBlock& block) {
+  basis_.middleCols(dim_, block.cols()) = block;
+  neighbour_ = newest_;
+  newest_ = dim_;
+  dim_ += block.cols();
+}
+
+/// W <- A W.
+void Lanczos::apply(VectorBlock& block) {
+  stiffness_.solve_upper_in_place(block);
+  scratch_.noalias() = mass_ * block;
+  block.swap(scratch_);
+  stiffness_.solve_lower_in_place(block);
+}
+
+/// Splits W, of which Q stays in `block`.
+Lanczos::Split Lanczos::split(VectorBlock& block) {
+  Split parts{Eigen::MatrixXd::Zero(dim_, block.cols()),
+              Eigen::MatrixXd::Identity(block.cols(), block.cols())};
+  const auto take_out = [&](Eigen::Index first) {
+    const auto basis = basis_.middleCols(first, dim_ - first);
+    const Eigen::MatrixXd inside = basis.transpose() * block;
+    scratch_by_columns_.noalias() = basis * inside;
+    block -= scratch_by_columns_;
+    parts.inside.bottomRows(dim_ - first) += inside * parts.outside;
+  };
+  // A couples neighbouring blocks only. What W has of the others is rounding, which would grow from
+  // step to step if left in. One round for all does not do: it would leave the large parts in,
+  // multiplied by what V lacks in orthogonality.
+  const double scale = block.norm();
+  take_out(neighbour_);
+  take_out(0);
+  parts.outside = orthonormalise(block, 1e-14 * scale, scratch_);
+  if (block.cols() == 0) return parts;
+  // In short directions of W that rounding weighs more; those that held nothing else are left out.
+  const Eigen::MatrixXd squares = parts.outside.transpose() * parts.outside;
+  if (std::sqrt(SymmetricEigen(squares).eigenvalues().minCoeff()) < 1e-3 * scale) {
+    take_out(0);
+    parts.outside = (orthonormalise(block, 0.1, scratch_) * parts.outside).eval();
+  }
+  return parts;
+}
+
+/// Keeps the better half of the approximations.
+void Lanczos::restart(const Eigen::VectorXd& values, const Eigen::MatrixXd& vectors) {
+  const Eigen::Index kept = count_ + (dim_ - count_) / 2;
+  constexpr Eigen::Index rows_at_once = 4096;
+  for (Eigen::Index row = 0; row < basis_.rows(); row += rows_at_once) {
+    const Eigen::Index num_rows = std::min(rows_at_once, basis_.rows() - row);
+    const Eigen::MatrixXd part = basis_.block(row, 0, num_rows, dim_) * vectors.leftCols(kept);
+    basis_.block(row, 0, num_rows, kept) = part;
+  }
+  projection_.topLeftCorner(kept, kept) = values.head(kept).asDiagonal();
+  dim_ = kept;
+  newest_ = 0;  // all of them couple to the next block
+}
+
+/// Rounding in the product of a matrix with each of some vectors x: ε √Σ (A_ij x_j)².
+Eigen::RowVectorXd product_rounding(const SparseMatrix& matrix, const VectorBlock& vectors) {
+  Eigen::RowVectorXd squares = Eigen::RowVectorXd::Zero(vectors.cols());
+  for (Eigen::Index column = 0; column < matrix.cols(); ++column)
+    squares += matrix.col(column).squaredNorm() * vectors.row(column).cwiseAbs2();
+  return std::numeric_limits<double>::epsilon() * squares.cwiseSqrt();
 }
 
 }  // namespace
@@ -84,24 +228,24 @@ Modes lowest_modes(const SparseCholesky& stiffness, const SparseMatrix& stiffnes
   if (count == 0) return {Eigen::VectorXd(0), Eigen::MatrixXd(size, 0)};
   // A Krylov space needs room beyond the wanted pairs; without it the dense solver is as cheap.
   const bool is_small = size <= 2 * count + 20 || size <= 60;
-  Modes modes =
-      is_small ? dense_modes(stiffness_matrix, mass, count) : lanczos_modes(stiffness, mass, count);
+  Modes modes = is_small ? dense_modes(stiffness_matrix, mass, count)
+                         : Lanczos(stiffness, mass, count).solve();
 
+  const VectorBlock shapes = modes.shapes;
+  const VectorBlock inertia = mass * shapes;
+  const VectorBlock force = stiffness_matrix * shapes;
+  const Eigen::RowVectorXd rounding = product_rounding(stiffness_matrix, shapes);
   for (Eigen::Index i = 0; i < count; ++i) {
+    const double residual = (force.col(i) - modes.omega_squared(i) * inertia.col(i)).norm();
+    if (!(residual < 1e-6 * force.col(i).norm() + 10.0 * rounding(i))) {
+      throw NumericalError(
+          fmt::format("fixed-interface modes: eigenpair {} has a residual of {:.1e}", i + 1,
+                      residual / force.col(i).norm()));
+    }
     auto shape = modes.shapes.col(i);
-    const Eigen::VectorXd mass_times_shape = mass * shape;
-    double scale = 1.0 / std::sqrt(shape.dot(mass_times_shape));
     Eigen::Index largest = 0;
     shape.cwiseAbs().maxCoeff(&largest);
-    if (shape(largest) < 0.0) scale = -scale;
-    shape *= scale;
-    const Eigen::VectorXd force = stiffness_matrix * shape;
-    const double residual =
-        (force - modes.omega_squared(i) * scale * mass_times_shape).norm() / force.norm();
-    if (!(residual < 1e-6)) {
-      throw NumericalError(fmt::format(
-          "fixed-interface modes: eigenpair {} has a residual of {:.1e}", i + 1, residual));
-    }
+    shape *= (shape(largest) < 0.0 ? -1.0 : 1.0) / std::sqrt(shape.dot(inertia.col(i)));
   }
   return modes;
 }

@@ -121,6 +121,40 @@ TEST(Beam, MatricesAreSymmetric) {
             64.0 * eps * stiffness.maxCoeff());
 }
 
+TEST(Beam, TranslationGivesExactlyNoForce) {
+  // Entries are multiples of 2^-53 of the largest; 64 bits add up a row of them without rounding.
+  BeamParameters flat = small_beam();
+  flat.mesh = {200, 1};  // elements of 0.4 x 1.5 mm
+  for (const BeamParameters& beam : {small_beam(), flat}) {
+    const BodyMatrices body = make_beam(beam);
+    for (const Eigen::Vector2d& direction :
+         {Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(0.0, 1.0)}) {
+      const Eigen::VectorXd motion = rigid_motion(body, direction);
+      std::vector<long double> force(static_cast<std::size_t>(body.num_dofs()), 0.0L);
+      for (Eigen::Index column = 0; column < body.num_dofs(); ++column) {
+        for (SparseMatrix::InnerIterator entry(body.stiffness, column); entry; ++entry)
+          force[static_cast<std::size_t>(entry.row())] +=
+              static_cast<long double>(entry.value()) * motion(column);
+      }
+      EXPECT_THAT(force, Each(0.0L));
+    }
+  }
+}
+
+TEST(Beam, MassHoldsNoEntryBetweenTheDirections) {
+  const BodyMatrices body = make_beam(small_beam());
+  std::vector<std::size_t> direction(static_cast<std::size_t>(body.num_dofs()));
+  for (const auto& dofs : body.node_dofs) {
+    for (std::size_t k = 0; k < 2; ++k) direction[static_cast<std::size_t>(dofs[k])] = k;
+  }
+  for (Eigen::Index column = 0; column < body.num_dofs(); ++column) {
+    for (SparseMatrix::InnerIterator entry(body.mass, column); entry; ++entry) {
+      EXPECT_EQ(direction[static_cast<std::size_t>(entry.row())],
+                direction[static_cast<std::size_t>(column)]);
+    }
+  }
+}
+
 TEST(Beam, RigidMotionsThatTheSupportsAllowGiveNoForce) {
   const auto force = [](const BodyMatrices& body, const Eigen::VectorXd& motion) {
     return (body.stiffness * motion).cwiseAbs().maxCoeff();

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -150,6 +151,50 @@ TEST(LowestModes, AllModesCanBeAsked) {
   }
 }
 
+TEST(LowestModes, ClusterThatOutgrowsTheKrylovSpaceIsResolved) {
+  // Ground springs of 10 move all eigenvalues of the chain up and leave their distances, of which
+  // the smallest is 3e-6 of the eigenvalue: the space is filled and restarted several times.
+  const int n = 1500;
+  SparseMatrix ground(n, n);
+  ground.setIdentity();
+  const SparseMatrix stiffness = test::chain_stiffness(n) + 10.0 * ground;
+  const Modes modes = modes_of(stiffness, test::chain_mass(n), 4);
+  for (int j = 1; j <= 4; ++j) {
+    EXPECT_NEAR(modes.omega_squared(j - 1), 10.0 + test::chain_omega_squared(n, j),
+                4.0 * 14.0 * n * eps)
+        << "mode " << j;
+  }
+}
+
+TEST(LowestModes, EigenvalueOfEveryMultiplicityIsCounted) {
+  // One eigenvalue for all: each Krylov space ends at its first block, and others must follow.
+  const int n = 200;
+  const SparseMatrix mass = test::chain_mass(n);
+  const Modes modes = modes_of(2.0 * mass, mass, 20);
+  EXPECT_LE((modes.omega_squared.array() - 2.0).abs().maxCoeff(), n * eps);
+  EXPECT_LE((modes.shapes.transpose() * modes.shapes - Eigen::MatrixXd::Identity(20, 20)).norm(),
+            n * eps);
+}
+
+TEST(LowestModes, FineMeshesAreNotRefusedForTheRoundingOfTheirForces) {
+  // Neighbouring displacements of 4,000 columns differ so little that K φ is known to 1e-6 of
+  // itself at best. The frequencies are those of a coarse mesh, which bends as exactly.
+  std::vector<Eigen::VectorXd> squares;
+  for (const int along : {50, 4000}) {
+    BeamParameters beam = test::paper_oblique();
+    beam.mesh = {along, 1};
+    const BodyMatrices body = make_beam(beam);
+    const std::vector<int> interior = test::interior_dofs(body, test::slave_interface(body));
+    squares.push_back(
+        modes_of(test::submatrix(body.stiffness, interior), test::submatrix(body.mass, interior), 4)
+            .omega_squared);
+  }
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    EXPECT_LT(squares[1](i), squares[0](i));
+    EXPECT_NEAR(squares[1](i), squares[0](i), 0.01 * squares[0](i));
+  }
+}
+
 TEST(LowestModes, CountOfZeroGivesNone) {
   const Modes modes = modes_of(test::chain_stiffness(5), test::chain_mass(5), 0);
   EXPECT_EQ(modes.omega_squared.size(), 0);
@@ -164,6 +209,19 @@ TEST(LowestModes, CountOutOfRangeThrows) {
   EXPECT_EQ(message_of<std::invalid_argument>(
                 [] { modes_of(test::chain_stiffness(5), test::chain_mass(5), -1); }),
             "lowest_modes: -1 modes asked of 5 DoFs");
+}
+
+TEST(LowestModes, NegativeMassThrows) {
+  const SparseMatrix mass = -test::chain_mass(200);
+  EXPECT_EQ(message_of<NumericalError>([&] { modes_of(test::chain_stiffness(200), mass, 5); }),
+            "fixed-interface modes: the mass is not positive definite");
+}
+
+TEST(LowestModes, MassThatIsNotANumberThrows) {
+  SparseMatrix mass = test::chain_mass(200);
+  mass.coeffRef(7, 7) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(message_of<NumericalError>([&] { modes_of(test::chain_stiffness(200), mass, 5); }),
+            "fixed-interface modes: Lanczos found 0 of 5 eigenpairs");
 }
 
 TEST(LowestModes, FactorOfAnotherMatrixThrows) {

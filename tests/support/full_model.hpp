@@ -54,8 +54,21 @@ inline std::vector<int> interior_dofs(const BodyMatrices& body, const std::vecto
 
 /// Rows and columns `dofs` of a sparse matrix.
 inline SparseMatrix submatrix(const SparseMatrix& matrix, const std::vector<int>& dofs) {
-  const Eigen::MatrixXd dense = Eigen::MatrixXd(matrix)(dofs, dofs);
-  return dense.sparseView(0.0, 0.0);
+  std::vector<int> position(static_cast<std::size_t>(matrix.cols()), -1);
+  for (std::size_t k = 0; k < dofs.size(); ++k)
+    position[static_cast<std::size_t>(dofs[k])] = static_cast<int>(k);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const int column : dofs) {
+    for (SparseMatrix::InnerIterator entry(matrix, column); entry; ++entry) {
+      const int row = position[static_cast<std::size_t>(entry.row())];
+      if (row >= 0)
+        entries.emplace_back(row, position[static_cast<std::size_t>(column)], entry.value());
+    }
+  }
+  const auto size = static_cast<Eigen::Index>(dofs.size());
+  SparseMatrix result(size, size);
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
 }
 
 }  // namespace stridor::test
