@@ -326,19 +326,51 @@ struct Rise {
   double slope;  // 1/s
 };
 
-Rise steepest_rise(std::span<const double> envelope, const Swell& swell, std::size_t half,
-                   double interval, double floor) {
-  Rise steepest{swell.high, -std::numeric_limits<double>::infinity()};
-  for (std::size_t i = swell.crossing; i <= swell.high; ++i) {
-    const std::size_t left = i < half ? 0 : i - half;
-    const std::size_t right = std::min(i + half, envelope.size() - 1);
-    if (left == right) continue;
-    const double slope =
-        std::log(std::max(envelope[right], floor) / std::max(envelope[left], floor)) /
-        (static_cast<double>(right - left) * interval);
+// Growth of the envelope, not counted below a floor, over i − half … i + half; 1/s.
+double growth_at(std::span<const double> envelope, std::size_t i, std::size_t half, double interval,
+                 double floor) {
+  const std::size_t left = i < half ? 0 : i - half;
+  const std::size_t right = std::min(i + half, envelope.size() - 1);
+  if (left == right) return -std::numeric_limits<double>::infinity();
+  return std::log(std::max(envelope[right], floor) / std::max(envelope[left], floor)) /
+         (static_cast<double>(right - left) * interval);
+}
+
+Rise steepest_rise(std::span<const double> envelope, std::size_t from, std::size_t to,
+                   std::size_t half, double interval, double floor) {
+  Rise steepest{to, -std::numeric_limits<double>::infinity()};
+  for (std::size_t i = from; i <= to; ++i) {
+    const double slope = growth_at(envelope, i, half, interval, floor);
     if (slope > steepest.slope) steepest = {i, slope};
   }
   return steepest;
+}
+
+// The band in which a vibration can grow and change its frequency within T/2.
+Band own_band(double frequency, double interval, double smoothing) {
+  const double width = 2.0 / smoothing;
+  const double nyquist = 0.5 / interval;
+  return {std::max(frequency - width, 0.5 * frequency),
+          std::min(frequency + width, 0.5 * (frequency + nyquist))};
+}
+
+struct Growth {
+  double steepest;  // 1/s
+  double gain;
+};
+
+// Growth of the envelope of a burst's own frequency. Its steepest rise is sought from `seen` to
+// `high`, where the burst is stronger than anything else in the band; it sets in where, going back
+// from there, half of that is left.
+Growth growth_of(std::span<const double> own, std::size_t seen, std::size_t high, std::size_t end,
+                 std::size_t half, double interval, double floor) {
+  const Rise rise = steepest_rise(own, seen, high, 2 * half, interval, floor);
+  std::size_t onset = rise.at;
+  while (onset > 0 && growth_at(own, onset, half, interval, floor) > 0.5 * rise.slope) --onset;
+  const auto begin = own.begin() + static_cast<std::ptrdiff_t>(onset);
+  const double largest =
+      *std::max_element(begin, own.begin() + static_cast<std::ptrdiff_t>(end) + 1);
+  return {rise.slope, std::log(largest / std::max(own[onset], floor))};
 }
 
 // Frequency of the strongest line in the band around a sample of the whole signal.
@@ -406,6 +438,7 @@ std::vector<Burst> find_bursts(std::span<const double> samples, double interval,
   if (!(level.rms > 0.0) || !std::isfinite(level.threshold)) return {};
 
   const auto envelope = measured.of(whole);
+  const std::size_t half = half_width(interval, parameters.smoothing);
   const auto time_at = [&](std::size_t i) {
     return first + static_cast<double>(measured.begin + i) * interval;
   };
@@ -430,11 +463,16 @@ std::vector<Burst> find_bursts(std::span<const double> samples, double interval,
         part.begin(), part.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
     burst.peak = std::abs(*largest);
     burst.peak_time = time_at(start + static_cast<std::size_t>(largest - part.begin()));
-    const Rise rise = steepest_rise(
-        envelope, swell, half_width(interval, 2.0 * parameters.smoothing), interval, level.rms);
-    burst.growth = rise.slope;
+    const Rise rise =
+        steepest_rise(envelope, swell.crossing, swell.high, 2 * half, interval, level.rms);
     burst.frequency = dominant_frequency(filtered, interval, parameters, measured.begin + rise.at);
-    burst.gain = std::log(envelope[swell.high] / before);
+    const Band own = own_band(burst.frequency, interval, parameters.smoothing);
+    const std::vector<double> own_envelope = smoothed_envelope(
+        band_pass(filtered, interval, own), interval, parameters.band, 0.5 * parameters.smoothing);
+    const Growth growth = growth_of(measured.of(own_envelope), swell.crossing, swell.high, end,
+                                    half, interval, rounding * peak(samples));
+    burst.growth = growth.steepest;
+    burst.gain = growth.gain;
     bursts.push_back(burst);
   }
   return bursts;

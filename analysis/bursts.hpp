@@ -26,10 +26,10 @@ struct Burst {
   double start;      ///< s, where the envelope leaves √2 times the level before for good
   double end;        ///< s, where it is back there, at latest before the next burst
   double frequency;  ///< Hz, at the steepest rise
-  double growth;     ///< 1/s, of ln envelope at the steepest rise
+  double growth;     ///< 1/s, of ln envelope of its own frequency at the steepest rise
   double peak;       ///< largest |band-passed value|
   double peak_time;  ///< s, of that value
-  double gain;       ///< ln(largest envelope/level before)
+  double gain;       ///< ln of the rise of the envelope of its own frequency
 };
 
 /// What the envelope of a signal without bursts may do.
@@ -95,12 +95,21 @@ QuietLevel find_quiet_level(std::span<const double> samples, double interval,
 /// itself has become as strong as the level; end is the first time after the maximum at which e ≤
 /// √2 L, at latest the minimum before the next burst or the end of the measured window. Steepest
 /// rise is the largest difference of ln e over 2 T, sought from where the envelope has risen by θ/σ
-/// to the maximum, so that the noise before does not count; the frequency is that of the highest
+/// to the maximum, so that the noise before does not count; the frequency f is that of the highest
 /// line in the band of the spectrum (Hann window of 2 T, at least 8 periods of band.lower, lines
 /// interpolated) around that time.
 ///
-/// Limits: T blurs the envelope; an apex between growth a and decay b loses about (a + b) T/8 of
-/// the gain. The growth, a maximum, reads some 1/s too high in noise. A blow that rings down is
+/// Growth and gain are those of the burst's own frequency, so that they do not depend on what else
+/// the band holds: of the envelope e_f over T/2 in the band f ± 2/T. The growth is the steepest
+/// rise of ln e_f over 2 T. The gain is ln of the largest e_f over that at the onset of the growth,
+/// which is where, going back from the steepest rise, the slope of ln e_f over T has fallen to half
+/// of it. That leaves out what seeded the burst, be it a blow or noise: for an unstable window in
+/// which the growth varies as √(1 − x²) it leaves out 3 % of its integral.
+///
+/// Limits: T blurs the envelope; an apex between growth a and decay b loses about (a + b) T/16 of
+/// the gain. The growth, a maximum, reads some 1/s too high in noise. A blow later than about T
+/// before the onset counts as growth. Where noise fills the band around f, growth is followed back
+/// to a few times that noise only, and the gain is uncertain by about 1. A blow that rings down is
 /// also a burst, with a growth of the order of 1/T. A vibration that already decays when the
 /// measured window begins has no rise, and is none. Bursts that fill a third of the window raise an
 /// estimated quiet level by up to a fifth where the quiet itself swings; give `quiet` where it is

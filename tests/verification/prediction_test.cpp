@@ -19,16 +19,17 @@ Json run_json(std::vector<std::string> arguments) {
   return result.exit_code == 0 ? Json::parse(result.out) : Json();
 }
 
-/// The gain found is that over the level before the burst. Where the vibration of the mode starts
-/// below the noise of the band, as in the second burst of the leading scene, it is too low.
 struct Case {
   const char* scene;
-  double gain_tolerance;
+  const char* friction;
 };
 
 void PrintTo(const Case& one, std::ostream* stream) {
-  *stream << one.scene;
+  *stream << one.scene << ", friction " << one.friction;
 }
+
+/// Of the gain: the mode changes its shape as it grows (docs/theory.md, 7.6).
+constexpr double gain_tolerance = 0.2;
 
 class PredictionTest : public ::testing::TestWithParam<Case> {};
 
@@ -37,9 +38,10 @@ TEST_P(PredictionTest, EveryBurstHasItsWindow) {
   const std::string scene = scene_path(GetParam().scene);
   const std::string run = (folder / "run.h5").string();
   const std::string locus = (folder / "locus.h5").string();
-  run_json({"run", scene, "-o", run});
+  const std::string friction = std::string("contact.friction.coefficient=") + GetParam().friction;
+  run_json({"run", scene, "-o", run, "--set", friction});
   run_json({"locus", scene, "--from", "30 mm", "--to", "97.5 mm", "--points", "271", "--about",
-            "deformed", "-o", locus});
+            "deformed", "-o", locus, "--set", friction});
   const Json picture =
       run_json({"spectrogram", run, "-o", (folder / "figure.png").string(), "--predict", locus});
   ASSERT_EQ(picture["bursts"], 3);
@@ -56,15 +58,17 @@ TEST_P(PredictionTest, EveryBurstHasItsWindow) {
     EXPECT_NEAR(row["burst_frequency"].get<double>(), row["frequency"].get<double>(),
                 0.02 * row["frequency"].get<double>());
     EXPECT_NEAR(row["burst_gain"].get<double>(), row["gain"].get<double>(),
-                GetParam().gain_tolerance * row["gain"].get<double>())
+                gain_tolerance * row["gain"].get<double>())
         << row;
   }
   EXPECT_EQ(is_predicted, std::vector<bool>(3, true));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PredictionTest,
-                         ::testing::Values(Case{"beam_on_beam.yaml", 0.2},
-                                           Case{"beam_on_beam_leading.yaml", 0.3}));
+                         ::testing::Values(Case{"beam_on_beam.yaml", "0.3"},
+                                           Case{"beam_on_beam_leading.yaml", "0.3"},
+                                           Case{"beam_on_beam.yaml", "0.26"},
+                                           Case{"beam_on_beam_leading.yaml", "0.34"}));
 
 }  // namespace
 }  // namespace stridor
