@@ -43,18 +43,29 @@ Extent extent_of(const std::vector<BodyShape>& bodies) {
   return extent;
 }
 
-std::string outline_data(const std::string& block, const BodyShape& body,
-                         const Eigen::MatrixX2d& nodes, const AxisScale& x, const AxisScale& y) {
+std::string line_data(const std::string& block, const std::vector<std::vector<int>>& lines,
+                      const Eigen::MatrixX2d& nodes, const AxisScale& x, const AxisScale& y) {
   std::string data = block + " << END_OF_DATA\n";
   auto out = std::back_inserter(data);
-  for (const auto& outline : body.outlines) {
-    for (const int node : outline) {
+  for (const auto& line : lines) {
+    for (const int node : line) {
       fmt::format_to(out, "{:.7g} {:.7g}\n", as_number(nodes(node, 0), x),
                      as_number(nodes(node, 1), y));
     }
     data += '\n';
   }
   return data + "END_OF_DATA\n";
+}
+
+/// The sides of the elements, each through its middle node; none where they would lie closer than
+/// can be drawn.
+std::vector<std::vector<int>> element_sides(const BodyShape& body) {
+  constexpr std::size_t most_drawn = 5000;
+  std::vector<std::vector<int>> sides;
+  if (body.elements.size() > most_drawn) return sides;
+  for (const auto& e : body.elements)
+    sides.push_back({e[0], e[4], e[1], e[5], e[2], e[6], e[3], e[7], e[0]});
+  return sides;
 }
 
 }  // namespace
@@ -110,10 +121,12 @@ void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure
   script.append(contacts + "END_OF_DATA\n");
   for (std::size_t b = 0; b < picture.bodies.size(); ++b) {
     const BodyShape& body = picture.bodies[b];
-    script.append(outline_data(fmt::format("$rest_{}", b), body, body.nodes, x, y));
+    const std::vector<std::vector<int>> sides = element_sides(body);
+    script.append(line_data(fmt::format("$rest_{}", b), body.outlines, body.nodes, x, y));
     for (std::size_t p = 0; p < phases.size(); ++p) {
-      script.append(outline_data(fmt::format("$moved_{}_{}", b, p), body,
-                                 displaced(body, scale, phases[p].first), x, y));
+      const Eigen::MatrixX2d moved = displaced(body, scale, phases[p].first);
+      script.append(line_data(fmt::format("$mesh_{}_{}", b, p), sides, moved, x, y));
+      script.append(line_data(fmt::format("$moved_{}_{}", b, p), body.outlines, moved, x, y));
     }
   }
   script.add(
@@ -143,8 +156,13 @@ void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure
     for (std::size_t b = 0; b < picture.bodies.size(); ++b)
       plot += fmt::format(", $rest_{} using 1:2 with lines linewidth 0.8 linecolor '#909090'", b);
     for (std::size_t b = 0; b < picture.bodies.size(); ++b) {
+      const char* colour = colours[b % colours.size()];
+      if (!element_sides(picture.bodies[b]).empty()) {
+        plot += fmt::format(", $mesh_{}_{} using 1:2 with lines linewidth 0.5 linecolor '{}'", b, p,
+                            colour);
+      }
       plot += fmt::format(", $moved_{}_{} using 1:2 with lines linewidth 1.6 linecolor '{}'", b, p,
-                          colours[b % colours.size()]);
+                          colour);
     }
     script.add(
         "{}, $contacts using 1:2 with points pointtype 6 pointsize 1.6 linewidth 2 linecolor "
@@ -158,16 +176,26 @@ void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure
 std::vector<std::filesystem::path> write_shape_frames(const ShapePicture& picture,
                                                       const std::filesystem::path& stem,
                                                       int num_frames) {
-  VtkLines data;
-  data.title = picture.caption;
+  VtkMesh mesh;
+  mesh.title = picture.caption;
   int num_points = 0;
-  for (const BodyShape& body : picture.bodies) {
-    for (std::vector<int> line : body.outlines) {
+  std::vector<int> parts_of_lines;
+  for (std::size_t b = 0; b < picture.bodies.size(); ++b) {
+    const BodyShape& body = picture.bodies[b];
+    for (std::array<int, 8> element : body.elements) {
+      for (int& node : element) node += num_points;
+      mesh.quads.push_back(element);
+      mesh.parts.push_back(static_cast<int>(b));
+    }
+    // A body of another kind shows its outline.
+    for (std::size_t i = 0; body.elements.empty() && i < body.outlines.size(); ++i) {
+      std::vector<int>& line = mesh.lines.emplace_back(body.outlines[i]);
       for (int& node : line) node += num_points;
-      data.lines.push_back(std::move(line));
+      parts_of_lines.push_back(static_cast<int>(b));
     }
     num_points += static_cast<int>(body.nodes.rows());
   }
+  mesh.parts.insert(mesh.parts.end(), parts_of_lines.begin(), parts_of_lines.end());
   // The points of all bodies, displaced.
   const auto stacked = [&](double scale, double phase) {
     Eigen::MatrixX2d points(num_points, 2);
@@ -183,17 +211,17 @@ std::vector<std::filesystem::path> write_shape_frames(const ShapePicture& pictur
   const auto write = [&](const std::string& ending) {
     files.push_back(stem);
     files.back() += ending;
-    write_vtk(files.back(), data);
+    write_vtk(files.back(), mesh);
   };
-  data.points = rest;
-  data.vectors = {{"real", stacked(1.0, 0.0) - rest},
+  mesh.points = rest;
+  mesh.vectors = {{"real", stacked(1.0, 0.0) - rest},
                   {"imaginary", stacked(1.0, -0.5 * std::numbers::pi) - rest}};
   write(".vtk");
   const double scale = shape_scale(picture.bodies);
   for (int frame = 0; frame < num_frames; ++frame) {
     const double phase = 2.0 * std::numbers::pi * frame / num_frames;
-    data.points = stacked(scale, phase);
-    data.vectors = {{"displacement", stacked(1.0, phase) - rest}};
+    mesh.points = stacked(scale, phase);
+    mesh.vectors = {{"displacement", stacked(1.0, phase) - rest}};
     write(fmt::format("_frame_{:03}.vtk", frame));
   }
   return files;

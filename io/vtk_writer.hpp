@@ -1,7 +1,8 @@
-// Lines in the plane for ParaView, in the legacy format of VTK.
+// Plane meshes for ParaView, in the legacy format of VTK.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -9,18 +10,23 @@
 
 namespace stridor {
 
-/// Polylines and vectors at their points. Everything has z = 0.
-struct VtkLines {
+/// Cells in the plane and vectors at their points. Everything has z = 0.
+struct VtkMesh {
   std::string title;  ///< one line
   Eigen::MatrixX2d points;
-  std::vector<std::vector<int>> lines;  ///< indices of points
+  /// VTK_QUADRATIC_QUAD: four corners, then the middle of each side from corner to corner.
+  std::vector<std::array<int, 8>> quads;
+  std::vector<std::vector<int>> lines;  ///< VTK_POLY_LINE: points in order
+  std::vector<int> parts;               ///< number of the body of each cell, quads first
   std::vector<std::pair<std::string, Eigen::MatrixX2d>>
       vectors;  ///< name without blanks, per point
 };
 
-/// Writes a file (DATASET POLYDATA, ASCII); one of that name is replaced.
-/// @throws std::invalid_argument if an index is out of range or vectors do not fit the points
+/// Writes a file (DATASET UNSTRUCTURED_GRID, ASCII, with the cell scalar `body`); one of that name
+/// is replaced.
+/// @throws std::invalid_argument if an index is out of range, or parts or vectors do not fit the
+///         cells or points
 /// @throws FileError if the file cannot be written
-void write_vtk(const std::filesystem::path& path, const VtkLines& data);
+void write_vtk(const std::filesystem::path& path, const VtkMesh& mesh);
 
 }  // namespace stridor

@@ -4,7 +4,18 @@
 
 #include <stdexcept>
 
+#include "substructures/beam_mesh.hpp"
+
 namespace stridor {
+namespace {
+
+struct ElementsOf {
+  std::vector<std::array<int, 8>> operator()(const BeamParameters& beam) const {
+    return beam_elements(beam.mesh);
+  }
+};
+
+}  // namespace
 
 std::vector<BodyShape> mode_shape(
     const Model& model, const std::map<std::string, SubstructureParameters>& substructures,
@@ -40,6 +51,7 @@ std::vector<BodyShape> mode_shape(
       shape.nodes += node_displacements(matrices, static_part.cast<std::complex<double>>()).real();
     }
     for (const auto& [name, nodes] : matrices.surfaces) shape.outlines.push_back(nodes);
+    shape.elements = std::visit(ElementsOf{}, parameters->second);
     shapes.push_back(std::move(shape));
   }
   return shapes;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "substructures/beam_mesh.hpp"
 #include "substructures/q8_element.hpp"
 
 namespace stridor {
@@ -23,6 +24,14 @@ struct NodeGrid {
   int node(int i, int j) const {
     const int before = ((i + 1) / 2) * full_column() + (i / 2) * thin_column();
     return before + (i % 2 == 0 ? j : j / 2);
+  }
+
+  /// Nodes of the element in column 0 .. along − 1 and row 0 .. through − 1, as of Q8Nodes.
+  std::array<int, 8> element(int column, int row) const {
+    const int i = 2 * column;
+    const int j = 2 * row;
+    return {node(i, j),     node(i + 2, j),     node(i + 2, j + 2), node(i, j + 2),
+            node(i + 1, j), node(i + 2, j + 1), node(i + 1, j + 2), node(i, j + 1)};
   }
 };
 
@@ -243,13 +252,7 @@ BodyMatrices make_beam(const BeamParameters& parameters) {
   }
 
   // All elements are congruent, so one pair of element matrices serves them all.
-  const auto element_nodes = [&](int column, int row) {
-    const int i = 2 * column;
-    const int j = 2 * row;
-    return std::array<int, 8>{grid.node(i, j),         grid.node(i + 2, j), grid.node(i + 2, j + 2),
-                              grid.node(i, j + 2),     grid.node(i + 1, j), grid.node(i + 2, j + 1),
-                              grid.node(i + 1, j + 2), grid.node(i, j + 1)};
-  };
+  const auto element_nodes = [&](int column, int row) { return grid.element(column, row); };
   Q8Nodes corners;
   for (int k = 0; k < 8; ++k)
     corners.row(k) = body.nodes.row(element_nodes(0, 0)[static_cast<std::size_t>(k)]);
@@ -306,6 +309,15 @@ BodyMatrices make_beam(const BeamParameters& parameters) {
     body.surfaces["end_face"].push_back(grid.node(last_column, last_row - j));
   }
   return body;
+}
+
+std::vector<std::array<int, 8>> beam_elements(const MeshParameters& mesh) {
+  const NodeGrid grid{mesh.along, mesh.through};
+  std::vector<std::array<int, 8>> elements;
+  elements.reserve(static_cast<std::size_t>(mesh.along) * static_cast<std::size_t>(mesh.through));
+  for (int column = 0; column < mesh.along; ++column)
+    for (int row = 0; row < mesh.through; ++row) elements.push_back(grid.element(column, row));
+  return elements;
 }
 
 }  // namespace stridor

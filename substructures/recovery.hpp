@@ -28,6 +28,8 @@ struct BodyShape {
   Eigen::MatrixX2d nodes;                  ///< global, m
   Eigen::MatrixX2cd displacement;          ///< of each node
   std::vector<std::vector<int>> outlines;  ///< nodes in order
+  /// Nodes of its Q8 elements in the order of beam_elements(); empty where it is made of none.
+  std::vector<std::array<int, 8>> elements;
 };
 
 }  // namespace stridor

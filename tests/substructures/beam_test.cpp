@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "substructures/beam_mesh.hpp"
 #include "substructures/lowest_modes.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/message_of.hpp"
@@ -573,6 +574,27 @@ TEST(Beam, SchemaRefusesMeshesBeyondTenMillionElements) {
   const std::vector<Problem> problems = problems_of({1'000'000, 11});
   ASSERT_THAT(problems, SizeIs(1));
   EXPECT_EQ(problems[0].text(), "along: along x through must not exceed 1e7 elements");
+}
+
+TEST(BeamElements, CoverTheBeamOnceEachWithItsMiddleNodesHalfway) {
+  BeamParameters parameters = paper_cantilever();
+  parameters.mesh = {5, 3};
+  const BodyMatrices body = make_beam(parameters);
+  const auto elements = beam_elements(parameters.mesh);
+  ASSERT_EQ(elements.size(), 15u);
+  double area = 0.0;
+  std::vector<int> uses(static_cast<std::size_t>(body.nodes.rows()), 0);
+  for (const auto& e : elements) {
+    for (std::size_t side = 0; side < 4; ++side) {
+      const auto from = body.nodes.row(e[side]);
+      const auto to = body.nodes.row(e[(side + 1) % 4]);
+      EXPECT_LT((body.nodes.row(e[4 + side]) - 0.5 * (from + to)).norm(), 1e-15);
+      area += 0.5 * (from(0) * to(1) - from(1) * to(0));
+    }
+    for (const int node : e) ++uses[static_cast<std::size_t>(node)];
+  }
+  EXPECT_NEAR(area, parameters.length * parameters.thickness, 1e-15);
+  for (const int count : uses) EXPECT_TRUE(count == 1 || count == 2 || count == 4) << count;
 }
 
 }  // namespace
