@@ -728,7 +728,8 @@ TEST(Perturbation, GrowsAsItsEigenvalueSays) {
   // Started about the equilibrium in the eigenvector near 3.5 kHz, the transient goes on in it. The
   // step is of first order in h: growth comes out off by up to 0.15 1/s, halved with h. That is
   // less than what the terms with λ contribute, 0.35 1/s. Under the Stribeck law, whose slope adds
-  // 66 1/s, the friction of a step is that of the velocity before: 0.5 1/s.
+  // 66 1/s, the friction of a step is that of the velocity before: 0.5 1/s. Roughness of a slope of
+  // 0.003 r.m.s. changes the growth by 12 1/s where the contact stands.
   const FrictionLaw constant = constant_friction(0.30);
   const FrictionLaw stribeck{FrictionLaw::Kind::stribeck, 0.45, 0.25, 0.03};
   constexpr SurfaceKind polyline = SurfaceKind::polyline;
@@ -749,7 +750,7 @@ TEST(Perturbation, GrowsAsItsEigenvalueSays) {
       {trailing_angle, 0.0752, ContactAssumption::subs_b, smooth, constant, 90.65, 0.2},
       {trailing_angle, 0.0752, ContactAssumption::subs_c, smooth, constant, 94.40, 0.2},
       {leading_angle, 0.0743, ContactAssumption::film, smooth, constant, 47.00, 0.2},
-      {trailing_angle, 0.0752, ContactAssumption::subs_b, smooth, constant, 0.0, 0.2, 2e-7}};
+      {trailing_angle, 0.0752, ContactAssumption::subs_b, smooth, constant, 102.26, 0.2, 2e-7}};
   for (const auto& [angle, start, assumption, kind, law, growth, tolerance, rms] : cases) {
     System system = paper_system(angle, assumption);
     system.surfaces[0].kind = kind;
