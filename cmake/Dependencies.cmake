@@ -17,7 +17,6 @@ if(HDF5_IS_PARALLEL)
                       "or point HDF5_ROOT at a serial build.")
 endif()
 
-find_path(SPECTRA_INCLUDE_DIR Spectra/SymGEigsShiftSolver.h REQUIRED)
 find_path(CLI11_INCLUDE_DIR CLI/CLI.hpp REQUIRED)
 find_path(NLOHMANN_JSON_INCLUDE_DIR nlohmann/json.hpp REQUIRED)
 

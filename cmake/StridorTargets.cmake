@@ -13,7 +13,7 @@ target_include_directories(stridor_options INTERFACE "${PROJECT_SOURCE_DIR}")
 target_compile_definitions(stridor_options INTERFACE EIGEN_USE_BLAS)
 target_link_libraries(stridor_options INTERFACE BLAS::BLAS)
 target_include_directories(stridor_options SYSTEM INTERFACE
-  "${SPECTRA_INCLUDE_DIR}" "${CLI11_INCLUDE_DIR}" "${NLOHMANN_JSON_INCLUDE_DIR}")
+  "${CLI11_INCLUDE_DIR}" "${NLOHMANN_JSON_INCLUDE_DIR}")
 
 # stridor_library(FOLDER SOURCES ... LINKS ...)
 function(stridor_library folder)

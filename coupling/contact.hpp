@@ -29,7 +29,7 @@ struct Projection {
   double xi = 0.0;  ///< 0 at T1, 1 at T2
   Eigen::Vector2d tangent = Eigen::Vector2d::UnitX();
   Eigen::Vector2d normal = Eigen::Vector2d::UnitY();  ///< tangent turned by +90°, out of the master
-  NodeWeights weights;                                ///< at ξ
+  std::array<double, max_stencil> weights{};          ///< of the nodes, at ξ
 };
 
 inline Eigen::Vector2d turned_left(const Eigen::Vector2d& vector) {
@@ -42,7 +42,7 @@ inline Projection make_projection(const Stencil& stencil, double xi, const Eigen
   projection.xi = xi;
   projection.tangent = along / along.norm();
   projection.normal = turned_left(projection.tangent);
-  projection.weights = weights_at(stencil, xi);
+  projection.weights = weights_at(stencil, xi).value;
   return projection;
 }
 
@@ -55,7 +55,7 @@ inline Projection project(const Segment& segment, const Eigen::Vector2d& slave) 
   projection.tangent = along * inverse_length;
   projection.normal = turned_left(projection.tangent);
   projection.xi = projection.tangent.dot(slave - segment.first) * inverse_length;
-  projection.weights = weights_at({}, projection.xi);
+  projection.weights = {1.0 - projection.xi, projection.xi, 0.0, 0.0};
   return projection;
 }
 
@@ -67,7 +67,7 @@ inline Projection project_along(const Segment& segment, const Eigen::Vector2d& s
   projection.tangent = tangent;
   projection.normal = turned_left(tangent);
   projection.xi = tangent.dot(slave - segment.first) / tangent.dot(segment.second - segment.first);
-  projection.weights = weights_at({}, projection.xi);
+  projection.weights = {1.0 - projection.xi, projection.xi, 0.0, 0.0};
   return projection;
 }
 
@@ -144,7 +144,7 @@ inline ContactRows make_rows(const Projection& projection, double friction, doub
   const Eigen::Vector2d pull = n - (direction * friction) * projection.tangent;
   ContactRows rows{{{-n.x(), -n.y()}, {}}, {{-pull.x(), -pull.y()}, {}}};
   for (std::size_t k = 0; k < max_stencil; ++k) {
-    const double weight = projection.weights.value[k];
+    const double weight = projection.weights[k];
     rows.compatibility.master[2 * k] = weight * n.x();
     rows.compatibility.master[2 * k + 1] = weight * n.y();
     rows.equilibrium.master[2 * k] = weight * pull.x();

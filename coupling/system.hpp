@@ -72,17 +72,18 @@ struct MasterSurface {
                    guess);
   }
   /// Arc length of the undeformed surface that belongs to a place of a segment, Σ w_k s_k, m.
-  double arc_at(int segment, const NodeWeights& weights) const {
+  double arc_at(int segment, const std::array<double, max_stencil>& weights) const {
     const double origin = arc_length[static_cast<std::size_t>(segment)];
-    return origin + combine_arcs(segment, weights.value, origin);
+    return origin + combine_arcs(segment, weights, origin);
   }
   /// How far the rough surface stands out of the smooth one at a place, m.
-  double roughness_at(int segment, const NodeWeights& weights) const {
+  double roughness_at(int segment, const std::array<double, max_stencil>& weights) const {
     return roughness.is_smooth() ? 0.0 : roughness.at(arc_at(segment, weights)).value;
   }
-  /// Its derivative by ξ, m.
-  double arc_slope(int segment, const NodeWeights& weights) const {
-    return combine_arcs(segment, weights.slope, arc_length[static_cast<std::size_t>(segment)]);
+  /// Derivative of arc_at() by ξ, m.
+  /// @param slopes of the weights
+  double arc_slope(int segment, const std::array<double, max_stencil>& slopes) const {
+    return combine_arcs(segment, slopes, arc_length[static_cast<std::size_t>(segment)]);
   }
   /// Σ of weights with the arc lengths of the stencil, counted from an origin.
   double combine_arcs(int segment, const std::array<double, max_stencil>& weights,

@@ -212,7 +212,7 @@ Eigen::Vector2d EnergyLedger::mean_increment(const Contact& contact,
   Eigen::Vector2d relative = of(contact.slave_body, contact.slave_rows);
   for (int k = 0; k < stencil.count; ++k) {
     relative -=
-        action.projection.weights.value[static_cast<std::size_t>(k)] *
+        action.projection.weights[static_cast<std::size_t>(k)] *
         of(contact.master_body, contact.master_rows[static_cast<std::size_t>(stencil.first + k)]);
   }
   return relative;

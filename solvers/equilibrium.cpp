@@ -98,7 +98,10 @@ ContactLinearisation linearise_contact(const ContactPositions& positions, const 
                        : has_fixed_normal
                            ? project_along(master, positions.slave, positions.undeformed, guess)
                            : project(master, positions.slave, guess);
-  const auto& [xi, tangent, normal, weights] = contact.projection;
+  const double xi = contact.projection.xi;
+  const Eigen::Vector2d& tangent = contact.projection.tangent;
+  const Eigen::Vector2d& normal = contact.projection.normal;
+  const NodeWeights weights = weights_at(master.stencil, xi);
   const Eigen::Vector2d arm = positions.slave - master.combine(weights.value);
   const Eigen::Vector2d along = master.combine(weights.slope);
   const double height = normal.dot(arm);

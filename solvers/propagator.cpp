@@ -59,7 +59,8 @@ Propagator::Propagator(int num_slots, Residual residual)
   last_but_one_ = last_;
   slot_flexibility_.assign(compliance_.size(), 0.0);
   slot_load_.assign(at(num_slots), 0.0);
-  memory_.assign(at(num_slots), 0.0);
+  by_last_.assign(at(num_slots), 0.0);
+  by_last_but_one_ = by_last_;
   expected_.assign(at(num_slots), 0.0);
 }
 
@@ -120,11 +121,17 @@ void Propagator::watch(int slot, int row) {
 /// the moving ones.
 void Propagator::add_residual(int slot) {
   const int row = rows_[at(slot)];
-  const double by_last = residual_flexibility(row, last_);
+  by_last_[at(slot)] = residual_flexibility(row, last_);
+  by_last_but_one_[at(slot)] = residual_flexibility(row, last_but_one_);
   slot_load_[at(slot)] = load_residual(row);
-  expected_[at(slot)] = predicted_[at(slot)] + slot_load_[at(slot)] + by_last;
-  predicted_[at(slot)] += slot_load_[at(slot)] + last_share_ * by_last +
-                          last_but_one_share * residual_flexibility(row, last_but_one_);
+  combine_residual(at(slot));
+}
+
+void Propagator::combine_residual(std::size_t slot) {
+  const double moving = predicted_[slot] + slot_load_[slot];
+  expected_[slot] = moving + by_last_[slot];
+  predicted_[slot] =
+      moving + last_share_ * by_last_[slot] + last_but_one_share * by_last_but_one_[slot];
 }
 
 void Propagator::add_residuals() {
@@ -132,14 +139,11 @@ void Propagator::add_residuals() {
     for (int slot = 0; slot < num_slots(); ++slot) add_residual(slot);
     return;
   }
-  const std::size_t n = rows_.size();
-  for (std::size_t a = 0; a < n; ++a) {
-    predicted_[a] += slot_load_[a];
-    expected_[a] = predicted_[a];
-    memory_[a] = last_share_ * last_.forces[a] + last_but_one_share * last_but_one_.forces[a];
-  }
-  multiply_add(slot_flexibility_, memory_.data(), predicted_);
-  multiply_add(slot_flexibility_, last_.forces.data(), expected_);
+  // What the last forces did is, a step later, what the last but one did.
+  std::swap(by_last_, by_last_but_one_);
+  std::fill(by_last_.begin(), by_last_.end(), 0.0);
+  multiply_add(slot_flexibility_, last_.forces.data(), by_last_);
+  for (std::size_t slot = 0; slot < rows_.size(); ++slot) combine_residual(slot);
 }
 
 void Propagator::set_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,
@@ -206,6 +210,7 @@ void Propagator::save(State& state, const std::string& prefix) const {
     put("last", last_);
     put("last_but_one", last_but_one_);
     state.put(prefix + "expected", expected_);
+    state.put(prefix + "by_last", by_last_);
     state.put(prefix + "advances_on_rows", static_cast<double>(advances_on_rows_));
   }
   save_body(state, prefix);
@@ -230,6 +235,7 @@ void Propagator::load(const State& state, const std::string& prefix) {
   state.get(prefix + "increment", increment_);
   if (!has_residual()) return;
   state.get(prefix + "expected", expected_);
+  state.get(prefix + "by_last", by_last_);
   advances_on_rows_ = static_cast<int>(state.get(prefix + "advances_on_rows"));
 }
 

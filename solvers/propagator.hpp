@@ -119,6 +119,7 @@ class Propagator {
   void renew_compliance(int slot);
   void add_residual(int slot);
   void add_residuals();
+  void combine_residual(std::size_t slot);
   double residual_flexibility(int row, const RowForces& forces) const;
   /// Of a row by the loads.
   double load_residual(int row) const;
@@ -153,7 +154,8 @@ class Propagator {
   int advances_on_rows_ = 0;  ///< since a slot got another row; 2: both are of the present rows
   std::vector<double> slot_flexibility_;  ///< R between slots
   std::vector<double> slot_load_;         ///< load_residual() of the slots
-  std::vector<double> memory_;            ///< scratch
+  std::vector<double> by_last_;           ///< R f_{n−1} at the slots
+  std::vector<double> by_last_but_one_;   ///< R f_{n−2} at the slots
   std::vector<double> expected_;          ///< as predicted_ where empty: without residual
 };
 

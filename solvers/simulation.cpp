@@ -125,7 +125,7 @@ struct Simulation::Implementation {
 
     /// From the point of the master under the slave to the slave.
     Eigen::Vector2d arm(const Projection& projection) const {
-      return slave - master.combine(projection.weights.value);
+      return slave - master.combine(projection.weights);
     }
   };
   template <class SlotDisplacement>
@@ -159,11 +159,24 @@ struct Simulation::Implementation {
     return (contact.slave_follows_drive ? drive_at : 0.0) -
            (contact.master_follows_drive ? drive_at : 0.0);
   }
-  Place predicted_place(const RunningContact& contact, double drive_at) const {
-    return place_of(contact, drive_at,
-                    [](const Propagator& body, int slot) { return body.predicted(slot); });
+  /// Place::arm() of the positions predicted without contact forces.
+  Eigen::Vector2d unloaded_arm(const RunningContact& contact, double drive_at) const {
+    const Propagator& slave = *bodies[static_cast<std::size_t>(contact.point.slave_body)];
+    const Propagator& master = *bodies[static_cast<std::size_t>(surface_of(contact).body)];
+    const auto moved = [](const Propagator& body, int slot) -> Eigen::Vector2d {
+      return {body.predicted(slot), body.predicted(slot + 1)};
+    };
+    Eigen::Vector2d arm =
+        contact.point.slave_position - origin_of(contact) + moved(slave, contact.slave_slot);
+    arm.x() += relative_drive(contact, drive_at);
+    for (int k = 0; k < contact.undeformed.stencil.count; ++k) {
+      const auto node = static_cast<std::size_t>(k);
+      arm -= contact.projection.weights[node] *
+             (contact.undeformed.nodes[node] + moved(master, contact.master_slot + 2 * k));
+    }
+    return arm;
   }
-  /// The same with what the modes left out are expected to add.
+  /// Predicted, with what the modes left out are expected to add.
   Place expected_place(const RunningContact& contact, double drive_at) const {
     return place_of(contact, drive_at,
                     [](const Propagator& body, int slot) { return body.expected(slot); });
@@ -240,7 +253,7 @@ struct Simulation::Implementation {
     const double at = arc[static_cast<std::size_t>(segment)] + here.xi * length(segment);
     contact.acting.xi =
         (at - arc[static_cast<std::size_t>(contact.segment)]) / length(contact.segment);
-    contact.acting.weights = weights_at(contact.undeformed.stencil, contact.acting.xi);
+    contact.acting.weights = weights_at(contact.undeformed.stencil, contact.acting.xi).value;
   }
 
   /// Poses the problem of one contact for the step to t_{n+1}. @returns false where it has left its
@@ -259,17 +272,18 @@ struct Simulation::Implementation {
     const Projection& p = contact.projection;
     // Gap and slip are those without the contact forces; what these do to the modes left out is
     // part of the Delassus operator.
-    const Place unloaded = has_residual ? predicted_place(contact, drive_at) : place;
-    problem.penetration = surface_of(contact).roughness_at(contact.segment, p.weights) -
-                          p.normal.dot(unloaded.arm(p));
+    const Eigen::Vector2d unloaded = unloaded_arm(contact, drive_at);
+    problem.penetration =
+        surface_of(contact).roughness_at(contact.segment, p.weights) - p.normal.dot(unloaded);
     problem.sliding_friction =
         rise * sliding_friction(contact.point.friction, contact.slip_velocity);
     problem.direction = contact.slip_velocity < 0.0 ? -1.0 : 1.0;
     problem.is_unilateral = time(index) >= contact.unilateral_from;
     if (!contact.tracks_slip) return true;
     contact.place = place_along(contact, place);
-    contact.stretch = p.tangent.dot(place.master.combine(p.weights.slope)) /
-                      surface_of(contact).arc_slope(contact.segment, p.weights);
+    const auto slopes = weights_at(contact.undeformed.stencil, p.xi).slope;
+    contact.stretch = p.tangent.dot(place.master.combine(slopes)) /
+                      surface_of(contact).arc_slope(contact.segment, slopes);
     if (drive.is_frozen) {
       // Held in place, the material of the master slides away below.
       const double velocity =
@@ -277,7 +291,7 @@ struct Simulation::Implementation {
       contact.anchor -= p.tangent.x() * relative_drive(contact, velocity * step);
     }
     problem.slip = (contact.place - contact.anchor) * contact.stretch;
-    if (has_residual) problem.slip -= p.tangent.dot(place.arm(p) - unloaded.arm(p));
+    if (has_residual) problem.slip -= p.tangent.dot(place.arm(p) - unloaded);
     // A contact that stuck is held by the static limit; one whose sliding would turn round in this
     // step passes through rest on the way.
     const bool may_rest =
@@ -395,7 +409,7 @@ struct Simulation::Implementation {
     slave[0] = force.x();
     slave[1] = force.y();
     for (int k = 0; k < contact.undeformed.stencil.count; ++k) {
-      const double weight = p.weights.value[static_cast<std::size_t>(k)];
+      const double weight = p.weights[static_cast<std::size_t>(k)];
       master[2 * k] = -weight * force.x();
       master[2 * k + 1] = -weight * force.y();
     }
@@ -413,8 +427,8 @@ struct Simulation::Implementation {
       w << c[0], c[1], c[stride], c[stride + 1];
       return w;
     };
-    const double* const weights_i = i.projection.weights.value.data();
-    const double* const weights_j = j.acting.weights.value.data();
+    const double* const weights_i = i.projection.weights.data();
+    const double* const weights_j = j.acting.weights.data();
     const int nodes_i = i.undeformed.stencil.count;
     const int nodes_j = j.undeformed.stencil.count;
     Eigen::Matrix2d w = Eigen::Matrix2d::Zero();
@@ -514,7 +528,7 @@ struct Simulation::Implementation {
     double x = c[0];
     double y = c[1];
     for (int k = 0; k < contact.undeformed.stencil.count; ++k) {
-      const double weight = p.weights.value[static_cast<std::size_t>(k)];
+      const double weight = p.weights[static_cast<std::size_t>(k)];
       x -= weight * m[2 * k];
       y -= weight * m[2 * k + 1];
     }
@@ -813,6 +827,9 @@ State Simulation::save() const {
                              static_cast<double>(c.violations.before_armed),
                              c.violations.last_time};
     state.put(fmt::format("contacts/{}", i), values);
+    const double acting[] = {c.acting.xi, c.acting.tangent.x(), c.acting.tangent.y(),
+                             c.acting.normal.x(), c.acting.normal.y()};
+    state.put(fmt::format("contacts/{}/acting", i), acting);
   }
   if (run.ledger) run.ledger->save(state, "energy/");
   return state;
@@ -840,7 +857,13 @@ void Simulation::load(const State& state) {
     c.projection = {values[1],
                     {values[2], values[3]},
                     {values[4], values[5]},
-                    weights_at(c.undeformed.stencil, values[1])};
+                    weights_at(c.undeformed.stencil, values[1]).value};
+    double acting[5];
+    state.get(fmt::format("contacts/{}/acting", i), acting);
+    c.acting = {acting[0],
+                {acting[1], acting[2]},
+                {acting[3], acting[4]},
+                weights_at(c.undeformed.stencil, acting[0]).value};
     c.force = values[6];
     c.friction_force = values[7];
     c.state = static_cast<ContactState>(count(8));

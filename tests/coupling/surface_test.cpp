@@ -179,7 +179,7 @@ TEST(SmoothSurface, ProjectionIsOrthogonalFromAnyGuess) {
       const Projection projection = project(piece, slave, guess);
       EXPECT_NEAR(projection.xi, xi, 1e-13);
       EXPECT_LT((projection.tangent - tangent).norm(), 1e-12);
-      EXPECT_NEAR(projection.normal.dot(slave - piece.combine(projection.weights.value)), gap,
+      EXPECT_NEAR(projection.normal.dot(slave - piece.combine(projection.weights)), gap,
                   1e-14);
     }
   }
