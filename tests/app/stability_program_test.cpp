@@ -174,6 +174,28 @@ TEST(EigProgram, DenseMethodGivesTheSameEigenvalues) {
   }
 }
 
+TEST(EigProgram, BothMethodsAgreeForSeveralContactsAndRigidMasters) {
+  // Two pairs; an edge of three points of which one is open, on a rigid master; a single point on a
+  // rigid master under a law with a jump.
+  for (const char* scene : {"two_pairs", "slave_edge", "stick_slip"}) {
+    for (const char* about : {"undeformed", "deformed"}) {
+      const auto modes = [&](const char* method) {
+        return modes_of(
+            run_json({"eig", scene_path(std::string("examples/") + scene + ".yaml"), "--about",
+                      about, "--method", method, "--count", "6"})["eigenvalues"]);
+      };
+      const std::vector<Mode> secular = modes("secular");
+      const std::vector<Mode> dense = modes("dense");
+      ASSERT_GE(secular.size(), 6u) << scene;
+      ASSERT_EQ(secular.size(), dense.size()) << scene;
+      for (std::size_t i = 0; i < dense.size(); ++i) {
+        EXPECT_NEAR(secular[i].growth, dense[i].growth, 1e-4) << scene << ' ' << i;
+        EXPECT_NEAR(secular[i].frequency, dense[i].frequency, 1e-4) << scene << ' ' << i;
+      }
+    }
+  }
+}
+
 TEST(EigProgram, DeformedEquilibriumBalancesTheLoad) {
   const Json object = run_json({"eig", leading, "--at", "0.091", "--about", "deformed"});
   const Json& state = object["equilibrium"];
