@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 
 #include "analysis/explanation.hpp"
@@ -131,7 +132,7 @@ std::vector<std::string> write_shapes(const EigOptions& options, const LoadedSce
                                    ? contact.positions.master
                                    : contact.positions.undeformed;
     picture.contacts.push_back(surface.positions[static_cast<std::size_t>(contact.segment)] +
-                               seen.combine(contact.projection.weights.value));
+                               seen.combine(contact.projection.weights));
   }
   picture.caption = fmt::format(
       "Mode {} at {:.2f} Hz, growth rate {:.4g} 1/s, about the {} geometry; displacements "
@@ -207,13 +208,17 @@ ExitCode eig(const EigOptions& options) {
   const SceneFamily::Member member = family.at(values);
   const System& system = member.model->system;
   const SlidingState state = sliding_state_of(member, options.stability.geometry(), "");
-  const std::vector<Eigenvalue> eigenvalues = lowest_eigenvalues(
-      state.pencil, options.stability.eigenvalue_method(), options.stability.count);
+  const std::vector<Eigenvalue> eigenvalues =
+      lowest_eigenvalues(retained(state.pencil, loaded.scene.time),
+                         options.stability.eigenvalue_method(), options.stability.count);
 
   const std::size_t num_real = static_cast<std::size_t>(
       std::count_if(eigenvalues.begin(), eigenvalues.end(),
                     [](const Eigenvalue& one) { return one.s.imag() == 0.0; }));
-  const double trusted = trusted_frequency(system);
+  const std::optional<RetainParameters>& retain = loaded.scene.time.retain;
+  const double trusted =
+      std::min(trusted_frequency(system),
+               retain ? retain->frequency : std::numeric_limits<double>::infinity());
   const double highest =
       std::min(trusted, eigenvalues.empty() ? 0.0 : eigenvalues.back().frequency());
   const bool is_stable = std::none_of(

@@ -139,6 +139,11 @@ SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry
   return state;
 }
 
+Pencil retained(const Pencil& pencil, const TimeParameters& time) {
+  if (!time.retain) return pencil;
+  return with_residual_modes(pencil, 2.0 * std::numbers::pi * time.retain->frequency);
+}
+
 std::string printed_units(const NumericKey& key) {
   std::string above;
   std::string below;
@@ -179,6 +184,7 @@ std::vector<Eigenvalue> lowest_eigenvalues(const Pencil& pencil, EigenvalueMetho
 StabilityFamily::StabilityFamily(const LoadedScene& loaded, std::vector<NumericKey> keys,
                                  ContactGeometry geometry)
     : family_(loaded, std::move(keys)),
+      time_(loaded.scene.time),
       geometry_(geometry),
       start_key_(start_key(loaded.scene.model)) {}
 
@@ -186,7 +192,9 @@ SlidingState StabilityFamily::at(std::span<const double> values) {
   std::string what;
   for (std::size_t i = 0; i < values.size(); ++i)
     what += (i > 0 ? ", " : "") + value_text(family_.keys()[i], values[i]);
-  return sliding_state_of(family_.at(values), geometry_, what);
+  SlidingState state = sliding_state_of(family_.at(values), geometry_, what);
+  state.pencil = retained(state.pencil, time_);
+  return state;
 }
 
 PencilFamily StabilityFamily::along(std::size_t key, std::vector<double> values, double from,

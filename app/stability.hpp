@@ -62,6 +62,10 @@ struct SlidingState {
 SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry geometry,
                               const std::string& what);
 
+/// The pencil with the modes above `time.retain` as residual modes (docs/theory.md, 7.1); all modes
+/// where the scene keeps all.
+Pencil retained(const Pencil& pencil, const TimeParameters& time);
+
 /// The unit of a key as it is printed and stored: "1/s" for "s-1", "kg/m^3" for "kg m-3", "1" where
 /// dimensionless.
 std::string printed_units(const NumericKey& key);
@@ -84,6 +88,7 @@ class StabilityFamily {
   StabilityFamily(const LoadedScene& loaded, std::vector<NumericKey> keys,
                   ContactGeometry geometry);
 
+  /// With the modes that `time.retain` keeps.
   /// @param values one per key
   /// @throws ConfigError, NumericalError naming the values
   SlidingState at(std::span<const double> values);
@@ -103,6 +108,7 @@ class StabilityFamily {
                             double to);
 
   SceneFamily family_;
+  TimeParameters time_;
   ContactGeometry geometry_;
   std::optional<std::string> start_key_;
   std::function<void(double)> report_;
