@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the figures of README.md and of docs/tutorial.md anew; takes about a minute.
+# Makes the figures of README.md, docs/tutorial.md and docs/seeds.md anew; takes about a minute.
 # Usage: docs/figures/make.sh [STRIDOR], by default build/release/stridor of this source tree.
 set -euo pipefail
 here=$(CDPATH='' cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
@@ -19,3 +19,13 @@ trap 'rm -rf "$work"' EXIT
   -o "$here/ruler_spectrum.png" --force
 "$stridor" compare "$source_folder/scenes/beam_on_beam.yaml" -o "$work/compare" >/dev/null
 cp "$work/compare/accelerations.png" "$here/compare_accelerations.png"
+
+fast=(--set time.integrator=exact --set time.step=2.5e-6 --set time.retain.frequency=50kHz)
+rough=(--set contact.roughness.rms=1nm --set contact.roughness.correlation_length=10um --set contact.roughness.seed=1)
+leading=$source_folder/scenes/beam_on_beam_leading.yaml
+"$stridor" run "$leading" -o "$work/polyline.h5" "${fast[@]}" >/dev/null
+"$stridor" run "$leading" -o "$work/smooth.h5" "${fast[@]}" --set contact.surface=smooth >/dev/null
+"$stridor" run "$leading" -o "$work/rough.h5" "${fast[@]}" --set contact.surface=smooth "${rough[@]}" >/dev/null
+for surface in polyline smooth rough; do
+  "$stridor" spectrogram "$work/$surface.h5" -o "$here/seeds_$surface.png" --force
+done

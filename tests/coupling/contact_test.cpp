@@ -44,7 +44,7 @@ Vector2d turned_left(const Vector2d& v) {
 }
 
 Projection at(double xi, double angle) {
-  return {xi, direction(angle), turned_left(direction(angle)), weights_at({}, xi)};
+  return {xi, direction(angle), turned_left(direction(angle)), weights_at({}, xi).value};
 }
 
 void expect_rows_near(const ContactRow& a, const ContactRow& b, double tolerance) {

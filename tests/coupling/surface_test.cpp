@@ -56,7 +56,8 @@ TEST(SmoothSurface, PositionAndNormalAreContinuousAtEveryNode) {
           << num_nodes << " nodes, at node " << s;
       const auto arc = [&](int segment, double xi) {
         const NodeWeights weights = weights_at(surface.stencil(segment), xi);
-        return Vector2d(surface.arc_at(segment, weights), surface.arc_slope(segment, weights));
+        return Vector2d(surface.arc_at(segment, weights.value),
+                        surface.arc_slope(segment, weights.slope));
       };
       EXPECT_LT((arc(s - 1, 1.0) - arc(s, 0.0)).norm(), rounding);
     }
@@ -179,8 +180,7 @@ TEST(SmoothSurface, ProjectionIsOrthogonalFromAnyGuess) {
       const Projection projection = project(piece, slave, guess);
       EXPECT_NEAR(projection.xi, xi, 1e-13);
       EXPECT_LT((projection.tangent - tangent).norm(), 1e-12);
-      EXPECT_NEAR(projection.normal.dot(slave - piece.combine(projection.weights)), gap,
-                  1e-14);
+      EXPECT_NEAR(projection.normal.dot(slave - piece.combine(projection.weights)), gap, 1e-14);
     }
   }
 }

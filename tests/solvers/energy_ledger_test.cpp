@@ -207,7 +207,7 @@ System driven_system(bool slave_is_driven) {
 
 ContactAction inclined_action(double force, double friction_force) {
   return {0,
-          {0.5, Eigen::Vector2d(0.8, 0.6), Eigen::Vector2d(-0.6, 0.8), weights_at({}, 0.5)},
+          {0.5, Eigen::Vector2d(0.8, 0.6), Eigen::Vector2d(-0.6, 0.8), weights_at({}, 0.5).value},
           force,
           friction_force,
           ContactState::slip};

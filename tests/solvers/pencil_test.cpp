@@ -155,7 +155,7 @@ TEST_F(PaperPencil, RowsAreThoseOfTheSlidingContact) {
   const Pencil pencil = at(0.0483);
   ASSERT_EQ(pencil.num_modes(), 243);
   ASSERT_EQ(pencil.num_constraints(), 1);
-  const ContactRows rows = make_rows({0.3, {1, 0}, {0, 1}, weights_at({}, 0.3)}, 0.3, 1.0);
+  const ContactRows rows = make_rows({0.3, {1, 0}, {0, 1}, weights_at({}, 0.3).value}, 0.3, 1.0);
   const double xi_rounding = 1e-10;
   for (int i = 0; i < 2; ++i) {
     const auto entry = static_cast<std::size_t>(i);
