@@ -3,40 +3,66 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/clones.hpp"
+
 namespace stridor {
 namespace {
 
 /// Of f_{n−2} in f_n + Δf + ½ Δ²f.
 constexpr double last_but_one_share = 0.5;
 
-template <std::size_t n>
-void multiply_add_fixed(const double* matrix, const double* x, double* y) {
-  double sums[n];
-  for (std::size_t a = 0; a < n; ++a) {
-    sums[a] = y[a];
-    for (std::size_t b = 0; b < n; ++b) sums[a] += matrix[a * n + b] * x[b];
-  }
-  for (std::size_t a = 0; a < n; ++a) y[a] = sums[a];
+#define STRIDOR_INLINE inline __attribute__((always_inline))
+
+// Two, four or eight slots in arrays that need not be aligned.
+using Slots2 = double __attribute__((vector_size(16), aligned(8), may_alias));
+using Slots4 = double __attribute__((vector_size(32), aligned(8), may_alias));
+using Slots8 = double __attribute__((vector_size(64), aligned(8), may_alias));
+
+/// y += M x for a symmetric M, column after column.
+template <class Slots>
+STRIDOR_INLINE void add_product(const double* matrix, const double* x, double* y) {
+  constexpr std::size_t n = sizeof(Slots) / sizeof(double);
+  Slots sum = *reinterpret_cast<const Slots*>(y);
+  for (std::size_t b = 0; b < n; ++b) sum += *reinterpret_cast<const Slots*>(matrix + b * n) * x[b];
+  *reinterpret_cast<Slots*>(y) = sum;
 }
 
-/// y += M x of n x n, row after row; the sizes that bodies commonly have without loops.
-void multiply_add(const std::vector<double>& matrix, const double* x, std::vector<double>& y) {
-  const std::size_t n = y.size();
+STRIDOR_INLINE void add_product(std::size_t n, const double* matrix, const double* x, double* y) {
+  // The sizes that bodies commonly have go without loops.
   switch (n) {
-    case 0:
-      return;
     case 2:
-      return multiply_add_fixed<2>(matrix.data(), x, y.data());
+      return add_product<Slots2>(matrix, x, y);
     case 4:
-      return multiply_add_fixed<4>(matrix.data(), x, y.data());
+      return add_product<Slots4>(matrix, x, y);
     case 8:
-      return multiply_add_fixed<8>(matrix.data(), x, y.data());
+      return add_product<Slots8>(matrix, x, y);
     default:
-      for (std::size_t a = 0; a < n; ++a) {
-        double sum = y[a];
-        for (std::size_t b = 0; b < n; ++b) sum += matrix[a * n + b] * x[b];
-        y[a] = sum;
+      for (std::size_t b = 0; b < n; ++b) {
+        for (std::size_t a = 0; a < n; ++a) y[a] += matrix[b * n + a] * x[b];
       }
+  }
+}
+
+/// From u*_{n+1} to u_{n+1} = u* + W f, in place, and its increment.
+STRIDOR_CLONES
+void correct(std::size_t n, const double* compliance, const double* forces, const double* current,
+             double* __restrict corrected, double* __restrict increment) {
+  add_product(n, compliance, forces, corrected);
+  for (std::size_t a = 0; a < n; ++a) increment[a] = corrected[a] - current[a];
+}
+
+/// Adds R f_{n−1}, R f_{n−2} and the answer to the loads to predictions of the moving modes.
+STRIDOR_CLONES
+void carry_on(std::size_t n, const double* flexibility, const double* last_forces,
+              const double* load, double last_share, const double* by_last_but_one,
+              double* __restrict by_last, double* __restrict predicted,
+              double* __restrict expected) {
+  for (std::size_t a = 0; a < n; ++a) by_last[a] = 0.0;
+  add_product(n, flexibility, last_forces, by_last);
+  for (std::size_t a = 0; a < n; ++a) {
+    const double moving = predicted[a] + load[a];
+    expected[a] = moving + by_last[a];
+    predicted[a] = moving + last_share * by_last[a] + last_but_one_share * by_last_but_one[a];
   }
 }
 
@@ -121,17 +147,13 @@ void Propagator::watch(int slot, int row) {
 /// the moving ones.
 void Propagator::add_residual(int slot) {
   const int row = rows_[at(slot)];
-  by_last_[at(slot)] = residual_flexibility(row, last_);
-  by_last_but_one_[at(slot)] = residual_flexibility(row, last_but_one_);
-  slot_load_[at(slot)] = load_residual(row);
-  combine_residual(at(slot));
-}
-
-void Propagator::combine_residual(std::size_t slot) {
-  const double moving = predicted_[slot] + slot_load_[slot];
-  expected_[slot] = moving + by_last_[slot];
-  predicted_[slot] =
-      moving + last_share_ * by_last_[slot] + last_but_one_share * by_last_but_one_[slot];
+  const auto a = at(slot);
+  by_last_[a] = residual_flexibility(row, last_);
+  by_last_but_one_[a] = residual_flexibility(row, last_but_one_);
+  slot_load_[a] = load_residual(row);
+  const double moving = predicted_[a] + slot_load_[a];
+  expected_[a] = moving + by_last_[a];
+  predicted_[a] = moving + last_share_ * by_last_[a] + last_but_one_share * by_last_but_one_[a];
 }
 
 void Propagator::add_residuals() {
@@ -141,9 +163,9 @@ void Propagator::add_residuals() {
   }
   // What the last forces did is, a step later, what the last but one did.
   std::swap(by_last_, by_last_but_one_);
-  std::fill(by_last_.begin(), by_last_.end(), 0.0);
-  multiply_add(slot_flexibility_, last_.forces.data(), by_last_);
-  for (std::size_t slot = 0; slot < rows_.size(); ++slot) combine_residual(slot);
+  carry_on(rows_.size(), slot_flexibility_.data(), last_.forces.data(), slot_load_.data(),
+           last_share_, by_last_but_one_.data(), by_last_.data(), predicted_.data(),
+           expected_.data());
 }
 
 void Propagator::set_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,
@@ -182,8 +204,7 @@ void Propagator::renew_compliances() {
 
 void Propagator::advance(const double* forces) {
   const std::size_t n = rows_.size();
-  multiply_add(compliance_, forces, predicted_);  // corrected
-  for (std::size_t a = 0; a < n; ++a) increment_[a] = predicted_[a] - current_[a];
+  correct(n, compliance_.data(), forces, current_.data(), predicted_.data(), increment_.data());
   std::swap(current_, predicted_);
   advance_body(forces, predicted_.data());
   if (!has_residual()) return;

@@ -119,7 +119,6 @@ class Propagator {
   void renew_compliance(int slot);
   void add_residual(int slot);
   void add_residuals();
-  void combine_residual(std::size_t slot);
   double residual_flexibility(int row, const RowForces& forces) const;
   /// Of a row by the loads.
   double load_residual(int row) const;
