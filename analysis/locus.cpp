@@ -70,6 +70,7 @@ class SecularSource : public SpectrumSource {
   std::optional<std::vector<Complex>> search() override {
     SecularSpectrum spectrum = secular_spectrum(function_, window_);
     if (!spectrum.is_complete) return std::nullopt;
+    if (spectrum.height == inf) drop_unwanted(spectrum);
     return std::move(spectrum.found);
   }
 
@@ -96,6 +97,18 @@ class SecularSource : public SpectrumSource {
   const Pencil& first_pencil(double value) {
     family_.place(value, pencil_);
     return pencil_;
+  }
+
+  /// Where no line was of use, the search had to find all eigenvalues. Those far above the window
+  /// would only be in the way: where two of them meet, every step would have to be small.
+  void drop_unwanted(SecularSpectrum& spectrum) {
+    double needed = 2.0 * std::numbers::pi * window_.frequency;
+    int num_pairs = 0;
+    for (const Eigenvalue& eigenvalue : spectrum.eigenvalues) {
+      if (is_pair(eigenvalue.s) && ++num_pairs == window_.count) needed = eigenvalue.s.imag();
+    }
+    if (!find_line(spectrum.found, needed)) return;
+    std::erase_if(spectrum.found, [&](Complex s) { return s.imag() > line_; });
   }
 
   double clearance(const std::vector<Complex>& set, double line) const {

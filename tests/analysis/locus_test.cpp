@@ -236,6 +236,34 @@ TEST(Locus, WhatComesDownFromAboveIsNotOverlooked) {
   }
 }
 
+TEST(Locus, WhatMeetsFarAboveIsNotFollowed) {
+  // One constraint couples the modes at 1, 2, 3 and 10 rad/s. Beside the last one lie five others,
+  // of which two flutter. There is no room for a line between these poles, so the search finds all
+  // eigenvalues and not only the three that it is to find for the one asked for.
+  int num_calls = 0;
+  const PencilFamily family{
+      [&](double v, Pencil& pencil) {
+        ++num_calls;
+        Eigen::VectorXd omega(9);
+        omega << 1.0, 2.0, 3.0, 10.0, 10.000001, 10.000002, 10.000003, 10.000004, 10.000005;
+        Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, 9);
+        row.leftCols(4) << 1.0, 1.0, 1.0, 10.0;
+        pencil = test::constrained_modes(omega, Eigen::VectorXd::Constant(9, 0.01), row, row);
+        pencil.slot_stiffness.setZero(9, 9);
+        pencil.slot_stiffness(7, 8) = v - 0.3141;
+        pencil.slot_stiffness(8, 7) = 0.3141 - v;
+      },
+      {}};
+  LocusOptions options;
+  options.count = 1;
+  const Locus locus = trace_locus(family, range(0.0, 1.0, 2), options);
+  EXPECT_THAT(locus.branches, SizeIs(3));
+  EXPECT_THAT(locus.unstable, IsEmpty());
+  EXPECT_THAT(locus.unverified, IsEmpty());
+  // Nothing moves: the 64 steps of the grid are enough.
+  EXPECT_LT(num_calls, 80);
+}
+
 TEST(Locus, OneValueIsEnough) {
   const Locus locus = trace_locus(flutter_family(0.0), {0.3});
   ASSERT_THAT(locus.eigenvalues, SizeIs(1));
