@@ -10,8 +10,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "analysis/fft_plan.hpp"
 #include "analysis/spectrogram.hpp"
+#include "core/fft_plan.hpp"
 
 namespace stridor {
 namespace {

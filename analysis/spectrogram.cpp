@@ -8,7 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "analysis/fft_plan.hpp"
+#include "core/fft_plan.hpp"
 
 namespace stridor {
 namespace {

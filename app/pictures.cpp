@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "analysis/fft_plan.hpp"
 #include "core/errors.hpp"
+#include "core/fft_plan.hpp"
 #include "core/suggestion.hpp"
 #include "core/units.hpp"
 #include "io/axes.hpp"

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "analysis/fft_plan.hpp"
+#include "core/fft_plan.hpp"
 
 namespace stridor {
 namespace {

@@ -1,4 +1,4 @@
-#include "analysis/fft_plan.hpp"
+#include "core/fft_plan.hpp"
 
 #include <fftw3.h>
 #include <fmt/format.h>
