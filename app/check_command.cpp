@@ -3,6 +3,7 @@
 
 #include "app/command.hpp"
 #include "core/errors.hpp"
+#include "io/contact_scene.hpp"
 #include "io/scene.hpp"
 #include "solvers/simulation.hpp"
 
@@ -14,8 +15,15 @@ struct CheckOptions {
   std::string scene;
 };
 
-/// Reads the scene, builds its model and checks the step, as `run` would.
+/// Reads the scene, builds its model and checks the step, as `run` would; a scene of a sliding
+/// contact is only read.
 void check_scene(const CheckOptions& options) {
+  SceneNode tree = read_scene_file(options.scene);
+  for (const std::string& assignment : options.common.sets) set_value(tree, assignment);
+  if (is_contact_scene(tree)) {
+    (void)load_contact_scene(options.scene, options.common.sets);
+    return;
+  }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   const Model model = build_model(loaded);
   try {

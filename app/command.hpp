@@ -39,6 +39,8 @@ Json number(double value);
 
 /// Each verb declares itself; `action` receives what to do when it was given.
 using Action = std::function<ExitCode()>;
+void add_contact_command(CLI::App& program, Action& action, const std::string& command_line);
+void add_fit_command(CLI::App& program, Action& action);
 void add_run_command(CLI::App& program, Action& action, const std::string& command_line);
 void add_check_command(CLI::App& program, Action& action);
 void add_info_command(CLI::App& program, Action& action);

@@ -50,6 +50,8 @@ int run_program(int argc, char** argv) {
   add_locus_command(program, action, command);
   add_threshold_command(program, action);
   add_map_command(program, action, command);
+  add_contact_command(program, action, command);
+  add_fit_command(program, action);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

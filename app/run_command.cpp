@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/command.hpp"
+#include "app/expectations.hpp"
 #include "app/progress.hpp"
 #include "app/transient.hpp"
 #include "core/errors.hpp"
@@ -20,40 +21,6 @@ struct RunOptions {
   bool verify = false;
   std::string command_line;
 };
-
-/// A number at "a.b.c" of a JSON object; nothing where there is none.
-std::optional<double> number_at(const Json& object, const std::string& path) {
-  const Json* node = &object;
-  std::size_t from = 0;
-  while (true) {
-    const std::size_t dot = path.find('.', from);
-    const std::string key = path.substr(from, dot == std::string::npos ? dot : dot - from);
-    if (!node->is_object() || !node->contains(key)) return std::nullopt;
-    node = &(*node)[key];
-    if (dot == std::string::npos) break;
-    from = dot + 1;
-  }
-  if (!node->is_number()) return std::nullopt;
-  return node->get<double>();
-}
-
-/// Compares the results with the scene's `expect` block. @returns the failures, one line each
-std::vector<std::string> unmet_expectations(const std::vector<Expectation>& expectations,
-                                            const Json& results) {
-  std::vector<std::string> failures;
-  for (const Expectation& expectation : expectations) {
-    const auto value = number_at(results, expectation.result);
-    if (!value) {
-      failures.push_back(fmt::format("{}: expected {:g}, but the run has no such number",
-                                     expectation.result, expectation.value));
-    } else if (!(std::abs(*value - expectation.value) <= expectation.tolerance)) {
-      failures.push_back(fmt::format("{}: expected {:g} within {:g}, got {:.9g}",
-                                     expectation.result, expectation.value, expectation.tolerance,
-                                     *value));
-    }
-  }
-  return failures;
-}
 
 void print_summary(const Json& results, const std::string& output) {
   const auto text = [](const Json& value) {
@@ -135,10 +102,7 @@ ExitCode run(const RunOptions& options) {
         fmt::format("{}\n{} holds everything up to then", simulation.failure(), options.output));
   }
   if (options.verify) {
-    const std::vector<std::string> failures = unmet_expectations(loaded.scene.expect, results);
-    if (!failures.empty())
-      throw NumericalError(fmt::format("expectations not met:\n{}", fmt::join(failures, "\n")));
-    fmt::print(stderr, "{} expectation(s) met\n", loaded.scene.expect.size());
+    check_expectations(loaded.scene.expect, results);
   }
   return ExitCode::done;
 }

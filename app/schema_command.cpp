@@ -3,9 +3,7 @@
 
 #include "app/command.hpp"
 #include "core/errors.hpp"
-#include "io/scene.hpp"
-#include "io/scene_reference.hpp"
-#include "io/schema_json.hpp"
+#include "io/contact_scene.hpp"
 
 namespace stridor {
 namespace {
@@ -16,8 +14,7 @@ struct SchemaOptions {
 };
 
 ExitCode print_schema(const SchemaOptions& options) {
-  const std::string text =
-      options.is_reference ? scene_reference(Scene::schema()) : json_schema_text(Scene::schema());
+  const std::string text = options.is_reference ? all_scenes_reference() : all_scenes_json_schema();
   // As a rule this goes into a file, where half a text would pass for the whole.
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
     throw FileError("stdout", "", "could not be written to the end");

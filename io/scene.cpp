@@ -8,6 +8,7 @@
 
 #include "core/suggestion.hpp"
 #include "io/channels.hpp"
+#include "io/contact_scene.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_reader.hpp"
 
@@ -190,13 +191,17 @@ std::string LoadedScene::resolved() const {
   return resolved_yaml(scene);
 }
 
-std::string LoadedScene::hash() const {
+std::string scene_hash(const std::string& resolved) {
   std::uint64_t hash = 14695981039346656037ULL;
-  for (const char character : resolved()) {
+  for (const char character : resolved) {
     hash ^= static_cast<unsigned char>(character);
     hash *= 1099511628211ULL;
   }
   return fmt::format("{:016x}", hash);
+}
+
+std::string LoadedScene::hash() const {
+  return scene_hash(resolved());
 }
 
 ConfigError LoadedScene::located(const ConfigError& error) const {
@@ -213,6 +218,11 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
   loaded.tree = read_scene_file(path);
   loaded.text = loaded.tree.document;
   for (const std::string& assignment : sets) set_value(loaded.tree, assignment);
+  if (is_contact_scene(loaded.tree)) {
+    throw loaded.located(
+        ConfigError(loaded.tree.entry("profile") != nullptr ? "profile" : "contact_solver",
+                    "belongs to a scene of a sliding contact, which the verb `contact` computes"));
+  }
   loaded.scene = read_as<Scene>(loaded.tree);
   return loaded;
 }

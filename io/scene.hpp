@@ -74,6 +74,9 @@ struct LoadedScene {
   ConfigError located(const ConfigError& error) const;
 };
 
+/// 16 hexadecimal digits that change with any character of a resolved scene (FNV-1a).
+std::string scene_hash(const std::string& resolved);
+
 /// Reads a scene file and applies `--set key.path=value` settings.
 /// @throws ConfigError with all problems of the file, each with its place
 /// @throws FileError if the file cannot be read

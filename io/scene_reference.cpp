@@ -221,8 +221,12 @@ class Page {
 }  // namespace
 
 std::string scene_reference(const Schema& schema) {
+  return scene_reference(std::vector<const Schema*>{&schema});
+}
+
+std::string scene_reference(const std::vector<const Schema*>& schemas) {
   Page page;
-  page.add({"", &schema, "", "", ""});
+  for (const Schema* schema : schemas) page.add({"", schema, "", "", ""});
   return page.text();
 }
 

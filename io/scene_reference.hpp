@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/schema.hpp"
 
@@ -14,5 +15,7 @@ namespace stridor {
 /// | meaning. A map that occurs at several paths is described at the first and linked from the
 /// others.
 std::string scene_reference(const Schema& schema);
+/// The same with several kinds of scenes, one after the other.
+std::string scene_reference(const std::vector<const Schema*>& schemas);
 
 }  // namespace stridor

@@ -178,6 +178,10 @@ class Writer {
     return json;
   }
 
+  /// {"$ref": ...} to the definition of a map of one kind.
+  Json definition(const Schema& schema) {
+    return reference({}, {"", [&schema]() -> const Schema& { return schema; }});
+  }
   const Json& definitions() const { return definitions_; }
 
  private:
@@ -271,12 +275,33 @@ class Writer {
   std::map<std::tuple<const Schema*, std::string, std::string>, std::string> names_;
 };
 
-}  // namespace
-
-Json json_schema(const Schema& schema) {
+Json preamble() {
   Json json = Json::object();
   json["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   json["$comment"] = "Made by `stridor schema` from the keys declared in the source; do not edit.";
+  return json;
+}
+
+}  // namespace
+
+Json json_schema(const Schema& usual, const Schema& special,
+                 const std::vector<std::string>& signs) {
+  Writer writer;
+  const Json usual_reference = writer.definition(usual);
+  const Json special_reference = writer.definition(special);
+  Json json = preamble();
+  json["type"] = "object";
+  Json any = Json::array();
+  for (const std::string& sign : signs) any.push_back({{"required", Json::array({sign})}});
+  json["if"]["anyOf"] = std::move(any);
+  json["then"] = special_reference;
+  json["else"] = usual_reference;
+  json["$defs"] = writer.definitions();
+  return json;
+}
+
+Json json_schema(const Schema& schema) {
+  Json json = preamble();
   Writer writer;
   json.update(writer.map_json(schema, "", ""));
   if (!writer.definitions().empty()) json["$defs"] = writer.definitions();

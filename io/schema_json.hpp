@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "core/schema.hpp"
 
@@ -21,7 +22,12 @@ namespace stridor {
 /// and increasing times of tables, and `Schema::checks` are left to the reader.
 nlohmann::ordered_json json_schema(const Schema& schema);
 
-/// The same as text: what `stridor schema` prints and docs/scene.schema.json holds.
+/// The same as text.
 std::string json_schema_text(const Schema& schema);
+
+/// The schema of scenes of two kinds: `special` where one of these keys stands at the top, else
+/// `usual`.
+nlohmann::ordered_json json_schema(const Schema& usual, const Schema& special,
+                                   const std::vector<std::string>& signs);
 
 }  // namespace stridor

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Makes the figures of README.md, docs/tutorial.md and docs/seeds.md anew; takes about a minute.
+# Makes the figures of README.md, docs/tutorial.md, docs/seeds.md and docs/viscoelastic_contact.md anew;
+# takes about a minute.
 # Usage: docs/figures/make.sh [STRIDOR], by default build/release/stridor of this source tree.
 set -euo pipefail
 here=$(CDPATH='' cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
@@ -29,3 +30,11 @@ leading=$source_folder/scenes/beam_on_beam_leading.yaml
 for surface in polyline smooth rough; do
   "$stridor" spectrogram "$work/$surface.h5" -o "$here/seeds_$surface.png" --force
 done
+
+contact_scene=$source_folder/scenes/viscoelastic_contact.yaml
+"$stridor" contact "$contact_scene" --speed 0.1 --indentation 0.01 --pressure "$here/contact_pressure.png" \
+  --force >/dev/null
+"$stridor" contact "$contact_scene" --speed 0,0.01,0.03,0.1,0.3,1,10 --indentation 0.01 \
+  --edges "$here/contact_edges.png" --force >/dev/null
+"$stridor" fit --figures "$work/fit" >/dev/null
+for name in modulus cuts scatter; do cp "$work/fit/$name.png" "$here/fit_$name.png"; done

@@ -1,0 +1,176 @@
+// The verbs contact and fit, as a user would run them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <hdf5.h>
+#include <hdf5_hl.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/program.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+const std::string scene = scene_path("viscoelastic_contact.yaml");
+const std::vector<std::string> small{"contact", scene, "--set", "contact_solver.grid=32"};
+
+ProgramResult run_with(std::vector<std::string> more) {
+  std::vector<std::string> arguments = small;
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return Program(arguments).run();
+}
+
+std::vector<double> dataset(const std::filesystem::path& path, const std::string& name) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  EXPECT_GE(file, 0);
+  hsize_t shape[2] = {1, 1};
+  EXPECT_GE(H5LTget_dataset_info(file, name.c_str(), shape, nullptr, nullptr), 0) << name;
+  std::vector<double> values(shape[0] * shape[1]);
+  H5LTread_dataset_double(file, name.c_str(), values.data());
+  H5Fclose(file);
+  return values;
+}
+
+TEST(ContactProgram, ReportsEveryPairOfSpeedAndIndentation) {
+  const ProgramResult result =
+      run_with({"--speed", "0.1,1", "--indentation", "0.01,0.04", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json rows = Json::parse(result.out)["rows"];
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[0]["speed"], 0.1);
+  EXPECT_EQ(rows[1]["speed"], 1.0);
+  EXPECT_EQ(rows[2]["indentation"], 0.04);
+  for (const Json& row : rows) EXPECT_EQ(row["converged"], true);
+  // β = 1; 32 cells are good to 1e-3.
+  EXPECT_NEAR(rows[0]["force"].get<double>(), 1.62614e-3, 2e-6);
+  EXPECT_NEAR(rows[0]["area"].get<double>(), 2.0174e-2, 1e-3);
+  EXPECT_NEAR(rows[0]["friction"].get<double>(), 4.1775e-2, 1e-4);
+}
+
+TEST(ContactProgram, LoadControlGivesTheSameContact) {
+  const ProgramResult result = run_with({"--speed", "0.1", "--load", "1.626e-3", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json row = Json::parse(result.out)["rows"][0];
+  EXPECT_NEAR(row["force"].get<double>(), 1.626e-3, 1e-8);
+  EXPECT_NEAR(row["indentation"].get<double>(), 0.01, 1e-4);
+}
+
+TEST(ContactProgram, WritesFieldsAndPictures) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "contact.h5";
+  const std::string pressure = folder / "pressure.png";
+  const std::string edges = folder / "edges.svg";
+  const ProgramResult result =
+      run_with({"--speed", "0.01,0.3", "-o", file, "--pressure", pressure, "--edges", edges});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("friction"));
+  EXPECT_GT(std::filesystem::file_size(pressure), 1000u);
+  EXPECT_GT(std::filesystem::file_size(edges), 1000u);
+  // The force is the sum of the pressures: F = F̃ E_0* R², both halves.
+  const std::vector<double> p = dataset(file, "/contacts/001/pressure");
+  const std::vector<double> x = dataset(file, "/contacts/001/x");
+  ASSERT_EQ(p.size(), 32u * 16u);
+  double force = 0.0;
+  for (const double value : p) force += 2.0 * value * std::pow(x[1] - x[0], 2);
+  const double expected = dataset(file, "/rows/force")[1] * 1e6 / 0.75 * 1e-4;
+  EXPECT_NEAR(force / expected, 1.0, 1e-12);
+  EXPECT_EQ(dataset(file, "/contacts/000/gap").size(), p.size());
+
+  const ProgramResult again = run_with({"-o", file});
+  EXPECT_EQ(again.exit_code, 4);
+  EXPECT_THAT(again.err, HasSubstr("use --force"));
+}
+
+TEST(ContactProgram, SaysWhatDidNotConverge) {
+  const ProgramResult result = run_with({"--set", "material.glassy_modulus=1 GPa", "--speed", "0.1",
+                                         "--indentation", "0.01", "--json"});
+  EXPECT_EQ(result.exit_code, 3);
+  const Json row = Json::parse(result.out)["rows"][0];
+  EXPECT_EQ(row["converged"], false);
+  EXPECT_TRUE(row["force"].is_null());
+  EXPECT_THAT(result.err, HasSubstr("1 of 1 contacts did not converge"));
+}
+
+TEST(ContactProgram, RefusesWrongInput) {
+  ProgramResult result = run_with({"--indentation", "-1"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("--indentation: -1 must be > 0"));
+  result = run_with({"--set", "sliding={}"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("--speed: is needed"));
+  result = run_with({"--set", "sliding.indentations=[]"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("--indentation: or --load is needed"));
+  result =
+      run_with({"--set", "profile={shape: table, radius: 1, radii: [0, 1, 2], heights: [0, 1, 4]}",
+                "--indentation", "100"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("in contact up to its end at an indentation of 100 R"));
+  result = run_with({"--set", "contact_solver.gird=64"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("did you mean 'grid'?"));
+  result = Program({"contact", scene_path("beam_on_beam.yaml")}).run();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("belongs to a scene of bodies"));
+  result = Program({"eig", scene}).run();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("which the verb `contact` computes"));
+}
+
+TEST(ContactProgram, CheckKnowsBothKindsOfScenes) {
+  EXPECT_EQ(Program({"check", scene}).run().exit_code, 0);
+  const ProgramResult result =
+      Program({"check", scene, "--json", "--set", "material.creep_times=[]"}).run();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(Json::parse(result.out)["errors"][0]["key"], "material.creep_times");
+}
+
+TEST(ContactProgram, MasterCurveNeedsAParaboloidAndOneTime) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "curve.inc";
+  ProgramResult result = run_with({"--set", "profile.shape=sphere", "--master-curve", file});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("profile.shape: must be paraboloid"));
+  result = run_with({"--set", "material.creep_times=[1, 2]", "--set",
+                     "material.creep_shares=[0.5, 0.5]", "--master-curve", file});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("material.creep_times: must be one"));
+  result = run_with({"--master-curve", file, "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(Json::parse(result.out)["points"].size(), 57u);
+  EXPECT_THAT(contents_of(file), HasSubstr("{1, 1.62"));
+}
+
+TEST(FitProgram, FindsTheShiftOfTheSpeedAxis) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      Program({"fit", "--json", "--figures", (folder / "figures").string()}).run();
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json found = Json::parse(result.out);
+  EXPECT_EQ(found["samples"], 735);
+  for (const char* quantity : {"force", "area", "friction"}) {
+    EXPECT_NEAR(found["shift"][quantity].get<double>(), 2.0, 0.1) << quantity;
+    EXPECT_GT(found["r2"]["refit"][quantity].get<double>(), 0.99) << quantity;
+    EXPECT_GE(found["r2"]["refit"][quantity].get<double>(),
+              found["r2"]["published_at_v_over_100"][quantity].get<double>());
+  }
+  for (const char* name : {"modulus.png", "cuts.png", "scatter.png"})
+    EXPECT_TRUE(std::filesystem::exists(folder / "figures" / name)) << name;
+  const ProgramResult again = Program({"fit", "--figures", (folder / "figures").string()}).run();
+  EXPECT_EQ(again.exit_code, 4);
+  EXPECT_THAT(Program({"fit", "--speeds", "1", "0.1", "9"}).run().err,
+              HasSubstr("--speeds: needs two positive numbers"));
+  EXPECT_THAT(Program({"fit", "--indentations", "1e-3", "0.1", "2.5"}).run().err,
+              HasSubstr("--indentations: 2.5 points are not a whole number"));
+}
+
+}  // namespace
+}  // namespace stridor

@@ -1,0 +1,73 @@
+#include "io/panel_plot.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/errors.hpp"
+#include "tests/support/message_of.hpp"
+#include "tests/support/program.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+
+Panel small_panel() {
+  constexpr double gap = std::numeric_limits<double>::quiet_NaN();
+  Panel panel{"speed", "force", AxisKind::logarithmic, AxisKind::linear, false, {}};
+  panel.curves.push_back({"a label's", {0.1, 1.0, 10.0}, {1.0, gap, 3.0}, Mark::line, 0});
+  panel.curves.push_back({"", {0.1, -1.0, 10.0}, {1.0, 2.0, 3.0}, Mark::points, 1});
+  return panel;
+}
+
+TEST(PanelPlot, DrawsOneToSixDiagrams) {
+  const TemporaryFolder folder;
+  for (const std::size_t count : {1, 2, 4}) {
+    const std::filesystem::path figure = folder / "panels.svg";
+    plot_panels(std::vector<Panel>(count, small_panel()), "A caption.", figure);
+    const std::string text = contents_of(figure);
+    EXPECT_THAT(text, HasSubstr("A caption."));
+    EXPECT_THAT(text, HasSubstr("label’s"));
+  }
+}
+
+TEST(PanelPlot, DrawsAFieldWithACurve) {
+  const TemporaryFolder folder;
+  FieldPicture picture;
+  picture.num_columns = 4;
+  picture.cell_side = 0.1;
+  picture.values = {0.0, 1.0, 2.0, std::nan(""), 3.0, 1.0, 0.5, 0.1};
+  picture.x_label = "x/R";
+  picture.y_label = "y/R";
+  picture.value_label = "pressure";
+  picture.curve_x = {0.1, 0.0, -0.1};
+  picture.curve_y = {0.0, 0.1, 0.0};
+  const std::filesystem::path figure = folder / "field.svg";
+  plot_field(picture, "Under it.", figure);
+  EXPECT_THAT(contents_of(figure), HasSubstr("Under it."));
+}
+
+TEST(PanelPlot, RefusesWhatItCannotDraw) {
+  const auto says = [](auto&& call) { return message_of<std::invalid_argument>(call); };
+  EXPECT_THAT(says([] { plot_panels({}, "", "a.png"); }), HasSubstr("no diagram"));
+  Panel panel = small_panel();
+  panel.curves[0].y.pop_back();
+  EXPECT_THAT(says([&] { plot_panels({panel}, "", "a.png"); }),
+              HasSubstr("2 values against 3 in 'a label's'"));
+  EXPECT_THAT(message_of<ConfigError>([] { plot_panels({small_panel()}, "", "a.gif"); }),
+              HasSubstr(".png"));
+  FieldPicture picture;
+  picture.num_columns = 3;
+  picture.values = {1.0, 2.0};
+  EXPECT_THAT(says([&] { plot_field(picture, "", "a.png"); }), HasSubstr("2 values in rows of 3"));
+  picture.values = {1.0, 2.0, 3.0};
+  picture.curve_x = {1.0};
+  EXPECT_THAT(says([&] { plot_field(picture, "", "a.png"); }), HasSubstr("as many x as y"));
+}
+
+}  // namespace
+}  // namespace stridor
