@@ -47,6 +47,7 @@ void add_info_command(CLI::App& program, Action& action);
 void add_plot_command(CLI::App& program, Action& action);
 void add_schema_command(CLI::App& program, Action& action);
 void add_compare_command(CLI::App& program, Action& action, const std::string& command_line);
+void add_precision_command(CLI::App& program, Action& action, const std::string& command_line);
 void add_eig_command(CLI::App& program, Action& action);
 void add_locus_command(CLI::App& program, Action& action, const std::string& command_line);
 void add_map_command(CLI::App& program, Action& action, const std::string& command_line);

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include "analysis/band_pass.hpp"
 #include "app/command.hpp"
-#include "app/progress.hpp"
+#include "app/output_folder.hpp"
 #include "app/transient.hpp"
+#include "app/turns.hpp"
 #include "core/errors.hpp"
 #include "io/comparison_plot.hpp"
 
@@ -107,21 +107,18 @@ Candidates run_interleaved(const LoadedScene& loaded, Coordinates coordinates, d
                         options.command_line});
   }
   constexpr int turns = 100;
-  Progress progress(coordinates == Coordinates::modal ? "modal" : "published form");
-  for (int turn = 1; turn <= turns; ++turn) {
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      Candidate& candidate = candidates[i];
-      if (candidate.end != MarchEnd::finished) continue;
-      candidate.end = turn < turns ? candidate.transient->run_until(end * turn / turns)
-                                   : candidate.transient->run_to_end();
-      progress.report((turn - 1 + static_cast<double>(i + 1) / 4.0) / turns, assumptions[i].title);
-      if (candidate.end == MarchEnd::stopped) {
-        throw Interrupted(fmt::format("at t = {:.4g} of {:.4g} s; nothing was compared",
-                                      candidate.transient->simulation().time(), end));
-      }
-    }
-  }
-  progress.finish();
+  run_in_turns(coordinates == Coordinates::modal ? "modal" : "published form",
+               std::vector<double>(candidates.size(), 1.0), turns, [&](std::size_t i, int turn) {
+                 Candidate& candidate = candidates[i];
+                 if (candidate.end != MarchEnd::finished) return assumptions[i].title;
+                 candidate.end = turn < turns ? candidate.transient->run_until(end * turn / turns)
+                                              : candidate.transient->run_to_end();
+                 if (candidate.end == MarchEnd::stopped) {
+                   throw Interrupted(fmt::format("at t = {:.4g} of {:.4g} s; nothing was compared",
+                                                 candidate.transient->simulation().time(), end));
+                 }
+                 return assumptions[i].title;
+               });
   for (Candidate& candidate : candidates) candidate.results = candidate.transient->finish();
   return candidates;
 }
@@ -209,13 +206,6 @@ void print_rows(const Json& rows) {
   }
 }
 
-void write_json(const fs::path& path, const Json& comparison) {
-  std::ofstream file(path);
-  file << comparison.dump(2) << '\n';
-  file.close();
-  if (!file) throw FileError(path.string(), "", "cannot be written");
-}
-
 ComparisonRun drawn(const Candidate& candidate, const char* title) {
   return {title, candidate.file};
 }
@@ -231,14 +221,10 @@ ExitCode compare(const CompareOptions& options) {
   std::optional<ScratchFolder> scratch;
   fs::path folder = options.folder;
   if (is_kept) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw FileError(options.folder, "", "cannot be made: " + error.message());
-    for (const char* name : {"comparison.json", "accelerations.png", "sliding_velocities.png",
-                             "contact_forces.png", "spectrograms.png"}) {
-      if (!options.common.force && fs::exists(folder / name))
-        throw FileError((folder / name).string(), "", "exists; use --force to overwrite it");
-    }
+    prepare_folder(folder,
+                   {"comparison.json", "accelerations.png", "sliding_velocities.png",
+                    "contact_forces.png", "spectrograms.png"},
+                   options.common.force ? Overwrite::yes : Overwrite::no);
   } else {
     scratch.emplace();
     folder = scratch->path();

@@ -231,7 +231,7 @@ void draw_pressure(const ContactOptions& options, const LoadedContactScene& load
 void draw_edges(const ContactOptions& options, const LoadedContactScene& loaded,
                 const std::vector<Row>& rows) {
   const double radius = loaded.scene.profile.radius;
-  Panel panel;
+  DiagramPanel panel;
   panel.x_label = "x/R, sliding towards +x";
   panel.y_label = "y/R";
   panel.is_to_scale = true;

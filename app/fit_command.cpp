@@ -86,10 +86,10 @@ void draw_modulus(const std::filesystem::path& figure) {
     loss.y.push_back(modulus.imag());
     tangent.y.push_back(modulus.imag() / modulus.real());
   }
-  Panel moduli{"ω τ", "modulus",      AxisKind::logarithmic, AxisKind::logarithmic,
-               false, {storage, loss}};
-  Panel tangents{"ω τ",    "loss tangent E₂/E₁", AxisKind::logarithmic, AxisKind::linear, false,
-                 {tangent}};
+  DiagramPanel moduli{"ω τ", "modulus",      AxisKind::logarithmic, AxisKind::logarithmic,
+                      false, {storage, loss}};
+  DiagramPanel tangents{
+      "ω τ", "loss tangent E₂/E₁", AxisKind::logarithmic, AxisKind::linear, false, {tangent}};
   plot_panels({moduli, tangents},
               "Complex modulus of a material with one creep time τ and E∞/E₀ = 10 (PPH, Fig. "
               "13).",
@@ -101,9 +101,9 @@ void draw_cuts(const Comparison& comparison, const std::filesystem::path& figure
   const BoundaryElementLaw law(shipped_master_curve());
   const FittedLaw refit(comparison.refit.coefficients);
   const FittedLaw published(published_coefficients());
-  std::vector<Panel> panels;
+  std::vector<DiagramPanel> panels;
   for (const QuantityText& quantity : quantities) {
-    Panel panel;
+    DiagramPanel panel;
     panel.x_label = "v τ/R";
     panel.y_label = quantity.label;
     panel.x_kind = AxisKind::logarithmic;
@@ -143,11 +143,11 @@ void draw_cuts(const Comparison& comparison, const std::filesystem::path& figure
 void draw_scatter(const Comparison& comparison, const std::filesystem::path& figure) {
   const FittedLaw refit(comparison.refit.coefficients);
   const FittedLaw moved(comparison.moved);
-  std::vector<Panel> panels;
+  std::vector<DiagramPanel> panels;
   const std::array<double LawSample::*, 3> members{&LawSample::friction, &LawSample::area,
                                                    &LawSample::force};
   for (std::size_t q = 0; q < quantities.size(); ++q) {
-    Panel panel;
+    DiagramPanel panel;
     panel.x_label = std::string("boundary elements: ") + quantities[q].label;
     panel.y_label = "functional form";
     PanelCurve fitted{"refitted", {}, {}, Mark::points, 0};

@@ -45,6 +45,7 @@ int run_program(int argc, char** argv) {
   add_plot_command(program, action);
   add_schema_command(program, action);
   add_compare_command(program, action, command);
+  add_precision_command(program, action, command);
   add_spectrogram_command(program, action);
   add_eig_command(program, action);
   add_locus_command(program, action, command);

@@ -4,8 +4,8 @@
 //       nanoseconds a step of every form, interleaved, minimum and median over the rounds, and the
 //       ratios to the modal form taken round by round
 //   valgrind --tool=callgrind --toggle-collect="stridor::Simulation::step_until*"
-//       build/release/bench/step_forms --instructions
-//       20,000 modal steps after the start-up, for counting instructions
+//       build/release/bench/step_forms --instructions [central_difference | exact_50_kHz]
+//       20,000 modal steps after the start-up, for counting instructions (see instructions.cmake)
 //   build/release/bench/step_forms --recording [ROUNDS]
 //       the modal step alone and with the recorder of the scene behind it
 #include <fmt/format.h>
@@ -16,6 +16,8 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "io/recorder.hpp"
@@ -88,10 +90,18 @@ void compare_forms(int rounds) {
   }
 }
 
-void count_instructions() {
+void count_instructions(const std::string& form) {
   const LoadedScene loaded = bench_scene();
   const Model model = build_model(loaded);
-  Simulation simulation(model.system, loaded.scene.time);
+  TimeParameters time = loaded.scene.time;
+  if (form == "exact_50_kHz") {
+    time.integrator = Integrator::exact;
+    time.retain = RetainParameters{50e3};
+    time.step = 2.5e-6;
+  } else if (form != "central_difference") {
+    throw std::runtime_error("no form " + form);
+  }
+  Simulation simulation(model.system, time);
   while (simulation.step_index() < 1000) simulation.step();
   seconds_for(simulation, 20'000);
 }
@@ -141,7 +151,7 @@ int main(int argc, char** argv) {
     return argc > index ? std::atoi(argv[index]) : otherwise;
   };
   if (argc > 1 && std::strcmp(argv[1], "--instructions") == 0) {
-    count_instructions();
+    count_instructions(argc > 2 ? argv[2] : "central_difference");
   } else if (argc > 1 && std::strcmp(argv[1], "--recording") == 0) {
     compare_recording(number(2, 201));
   } else {

@@ -88,6 +88,40 @@ void FigureScript::set_axis(char axis, const ValueRange& range, const AxisScale&
   add("set {}tics {:.12g} format '%.{}f'", axis, scale.step, scale.decimals);
 }
 
+void FigureScript::set_log_axis(char axis, const ValueRange& range) {
+  std::string ticks;
+  for (const LogTick& tick : log_ticks(range.lower, range.upper)) {
+    ticks += fmt::format("{}{} {:.9g} {}", ticks.empty() ? "" : ", ", gnuplot_string(tick.text),
+                         tick.value, tick.text.empty() ? 1 : 0);
+  }
+  add("set logscale {0}\nset {0}range [{1:.12g}:{2:.12g}]\nset {0}tics ({3})", axis, range.lower,
+      range.upper, ticks);
+}
+
+std::vector<LogTick> log_ticks(double lower, double upper) {
+  const auto first = static_cast<int>(std::floor(std::log10(lower)));
+  const auto last = static_cast<int>(std::ceil(std::log10(upper)));
+  const auto is_inside = [&](double value) {
+    return value >= lower * (1.0 - 1e-9) && value <= upper * (1.0 + 1e-9);
+  };
+  int num_powers = 0;
+  for (int power = first; power <= last; ++power)
+    num_powers += is_inside(std::pow(10.0, power)) ? 1 : 0;
+  std::vector<LogTick> ticks;
+  for (int power = first; power <= last; ++power) {
+    for (const int digit : {1, 2, 3, 4, 5, 6, 7, 8, 9}) {
+      const double value = digit * std::pow(10.0, power);
+      if (!is_inside(value)) continue;
+      const bool is_written = digit == 1 || (num_powers < 3 && (digit == 2 || digit == 5));
+      const bool is_plain = power >= -3 && power <= 4;
+      ticks.push_back({value, !is_written ? std::string()
+                              : is_plain  ? fmt::format("{:.{}f}", value, std::max(0, -power))
+                                          : fmt::format("{}e{}", digit, power)});
+    }
+  }
+  return ticks;
+}
+
 AxisScale axis_scale(double lower, double upper, int num_ticks) {
   AxisScale scale;
   const double width = upper - lower;

@@ -40,6 +40,17 @@ struct ValueRange {
   ValueRange widened(double share) const;
 };
 
+/// A tick mark of a logarithmic axis; small ones have no text.
+struct LogTick {
+  double value;
+  std::string text;
+};
+
+/// All that are 1 to 9 times a power of ten, those with 1 written, and with 2 and 5 where there
+/// would be less than three.
+/// @param lower, upper 0 < lower < upper
+std::vector<LogTick> log_ticks(double lower, double upper);
+
 /// Characters in the longer of the numbers at both ends of an axis.
 std::size_t tick_characters(const ValueRange& range, const AxisScale& scale);
 
@@ -93,6 +104,9 @@ class FigureScript {
   void set_margins(double left, double right, double bottom, double top);
   /// Sets range and tick marks of the axis 'x' or 'y'.
   void set_axis(char axis, const ValueRange& range, const AxisScale& scale);
+  /// Likewise with logarithmic spacing.
+  /// @param range positive
+  void set_log_axis(char axis, const ValueRange& range);
 
   const std::string& text() const { return text_; }
   FigureSize size() const { return size_; }

@@ -319,38 +319,6 @@ void plot_locus_histories(const LocusPicture& picture, const std::filesystem::pa
 
 namespace {
 
-/// A tick mark of a logarithmic axis; small ones have no text.
-struct LogTick {
-  double value = 0.0;
-  std::string text;
-};
-
-/// All that are 1 to 9 times a power of ten, those with 1 written, and with 2 and 5 where there
-/// would be less than three.
-std::vector<LogTick> log_ticks(double lower, double upper) {
-  const auto first = static_cast<int>(std::floor(std::log10(lower)));
-  const auto last = static_cast<int>(std::ceil(std::log10(upper)));
-  const auto is_inside = [&](double value) {
-    return value >= lower * (1.0 - 1e-9) && value <= upper * (1.0 + 1e-9);
-  };
-  int num_powers = 0;
-  for (int power = first; power <= last; ++power)
-    num_powers += is_inside(std::pow(10.0, power)) ? 1 : 0;
-  std::vector<LogTick> ticks;
-  for (int power = first; power <= last; ++power) {
-    for (const int digit : {1, 2, 3, 4, 5, 6, 7, 8, 9}) {
-      const double value = digit * std::pow(10.0, power);
-      if (!is_inside(value)) continue;
-      const bool is_written = digit == 1 || (num_powers < 3 && (digit == 2 || digit == 5));
-      const bool is_plain = power >= -3 && power <= 4;
-      ticks.push_back({value, !is_written ? std::string()
-                              : is_plain  ? fmt::format("{:.{}f}", value, std::max(0, -power))
-                                          : fmt::format("{}e{}", digit, power)});
-    }
-  }
-  return ticks;
-}
-
 /// Range and tick marks of an axis of a map.
 void set_map_axis(FigureScript& script, char name, const MapAxis& axis, const AxisScale& scale) {
   const ValueRange range{axis.values.front(), axis.values.back()};
@@ -358,13 +326,7 @@ void set_map_axis(FigureScript& script, char name, const MapAxis& axis, const Ax
     script.set_axis(name, range, scale);
     return;
   }
-  std::string ticks;
-  for (const LogTick& tick : log_ticks(range.lower, range.upper)) {
-    ticks += fmt::format("{}{} {:.9g} {}", ticks.empty() ? "" : ", ", gnuplot_string(tick.text),
-                         tick.value, tick.text.empty() ? 1 : 0);
-  }
-  script.add("set logscale {0}\nset {0}range [{1:.12g}:{2:.12g}]\nset {0}tics ({3})", name,
-             range.lower, range.upper, ticks);
+  script.set_log_axis(name, range);
 }
 
 /// Characters in the longest number along an axis of a map.

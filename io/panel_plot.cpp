@@ -65,7 +65,8 @@ struct PanelAxis {
   }
 };
 
-PanelAxis make_axis(const Panel& panel, std::vector<double> PanelCurve::*values, AxisKind kind) {
+PanelAxis make_axis(const DiagramPanel& panel, std::vector<double> PanelCurve::*values,
+                    AxisKind kind) {
   PanelAxis axis;
   axis.kind = kind;
   for (const PanelCurve& curve : panel.curves) {
@@ -106,11 +107,11 @@ void add_axis(FigureScript& script, char name, const std::string& label, const P
 
 }  // namespace
 
-void plot_panels(const std::vector<Panel>& panels, const std::string& caption,
+void plot_panels(const std::vector<DiagramPanel>& panels, const std::string& caption,
                  const std::filesystem::path& figure) {
   check_figure_name(figure);
   if (panels.empty()) throw std::invalid_argument("plot_panels: no diagram");
-  for (const Panel& panel : panels) {
+  for (const DiagramPanel& panel : panels) {
     for (const PanelCurve& curve : panel.curves) {
       if (curve.x.size() != curve.y.size()) {
         throw std::invalid_argument(fmt::format("plot_panels: {} values against {} in '{}'",

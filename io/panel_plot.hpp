@@ -21,7 +21,7 @@ struct PanelCurve {
 };
 
 /// One diagram.
-struct Panel {
+struct DiagramPanel {
   std::string x_label;
   std::string y_label;
   AxisKind x_kind = AxisKind::linear;
@@ -34,7 +34,7 @@ struct Panel {
 /// @param panels at least one
 /// @throws std::invalid_argument if there is none, or x and y of a curve differ in length
 /// @throws ConfigError, FileError as draw_figure()
-void plot_panels(const std::vector<Panel>& panels, const std::string& caption,
+void plot_panels(const std::vector<DiagramPanel>& panels, const std::string& caption,
                  const std::filesystem::path& figure);
 
 /// A field on square cells, mirrored at y = 0, with a curve over it.

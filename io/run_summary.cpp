@@ -20,6 +20,15 @@ bool ends_with(const std::string& text, const std::string& ending) {
          text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
 }
 
+std::optional<std::string> acceleration_among(const std::vector<std::string>& names) {
+  std::optional<std::string> any;
+  for (const std::string& name : names) {
+    if (ends_with(name, ".free_end.y.acceleration")) return name;
+    if (!any && ends_with(name, ".acceleration")) any = name;
+  }
+  return any;
+}
+
 /// Fills `section` where the scene has it.
 template <class Section, class Member>
 void read_if_present(const SceneNode& scene, const char* name, Member& section) {
@@ -29,12 +38,14 @@ void read_if_present(const SceneNode& scene, const char* name, Member& section) 
 }  // namespace
 
 std::optional<std::string> acceleration_channel(const RunFileReader& file) {
-  std::optional<std::string> any;
-  for (const std::string& name : file.series_names()) {
-    if (ends_with(name, ".free_end.y.acceleration")) return name;
-    if (!any && ends_with(name, ".acceleration")) any = name;
-  }
-  return any;
+  return acceleration_among(file.series_names());
+}
+
+std::optional<std::string> acceleration_channel(const RecordParameters& record) {
+  // A run file lists its channels by name.
+  std::vector<std::string> names = record.channels;
+  std::sort(names.begin(), names.end());
+  return acceleration_among(names);
 }
 
 std::optional<AccelerationSummary> summarise_acceleration(const RunFileReader& file,

@@ -24,6 +24,9 @@ struct AccelerationSummary {
 /// "<body>.free_end.y.acceleration", else the first acceleration channel.
 std::optional<std::string> acceleration_channel(const RunFileReader& file);
 
+/// The same channel of the run that a scene will make, "<body>.<point>.<x|y>.acceleration".
+std::optional<std::string> acceleration_channel(const RecordParameters& record);
+
 /// Reads the acceleration_channel() of a run file.
 /// @return nothing where there is no such channel or the window holds no sample
 /// @throws FileError if the file cannot be read

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the figures of README.md, docs/tutorial.md, docs/seeds.md and docs/viscoelastic_contact.md anew;
-# takes about a minute.
+# Makes the figures of README.md, docs/tutorial.md, docs/seeds.md, docs/viscoelastic_contact.md and
+# docs/precision.md anew; takes some minutes.
 # Usage: docs/figures/make.sh [STRIDOR], by default build/release/stridor of this source tree.
 set -euo pipefail
 here=$(CDPATH='' cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
@@ -38,3 +38,8 @@ contact_scene=$source_folder/scenes/viscoelastic_contact.yaml
   --edges "$here/contact_edges.png" --force >/dev/null
 "$stridor" fit --figures "$work/fit" >/dev/null
 for name in modulus cuts scatter; do cp "$work/fit/$name.png" "$here/fit_$name.png"; done
+
+"$stridor" precision "$source_folder/scenes/beam_on_beam_leading.yaml" --until "8 ms" \
+  --set "measure.from=4 ms" --points 3 --retain 50kHz --assumptions subs_a --tune 0.2 --norm force \
+  -o "$work/precision" >/dev/null
+cp "$work/precision/precision.png" "$here/precision.png"

@@ -16,9 +16,9 @@ namespace {
 using namespace test;
 using ::testing::HasSubstr;
 
-Panel small_panel() {
+DiagramPanel small_panel() {
   constexpr double gap = std::numeric_limits<double>::quiet_NaN();
-  Panel panel{"speed", "force", AxisKind::logarithmic, AxisKind::linear, false, {}};
+  DiagramPanel panel{"speed", "force", AxisKind::logarithmic, AxisKind::linear, false, {}};
   panel.curves.push_back({"a label's", {0.1, 1.0, 10.0}, {1.0, gap, 3.0}, Mark::line, 0});
   panel.curves.push_back({"", {0.1, -1.0, 10.0}, {1.0, 2.0, 3.0}, Mark::points, 1});
   return panel;
@@ -28,7 +28,7 @@ TEST(PanelPlot, DrawsOneToSixDiagrams) {
   const TemporaryFolder folder;
   for (const std::size_t count : {1, 2, 4}) {
     const std::filesystem::path figure = folder / "panels.svg";
-    plot_panels(std::vector<Panel>(count, small_panel()), "A caption.", figure);
+    plot_panels(std::vector<DiagramPanel>(count, small_panel()), "A caption.", figure);
     const std::string text = contents_of(figure);
     EXPECT_THAT(text, HasSubstr("A caption."));
     EXPECT_THAT(text, HasSubstr("label’s"));
@@ -54,7 +54,7 @@ TEST(PanelPlot, DrawsAFieldWithACurve) {
 TEST(PanelPlot, RefusesWhatItCannotDraw) {
   const auto says = [](auto&& call) { return message_of<std::invalid_argument>(call); };
   EXPECT_THAT(says([] { plot_panels({}, "", "a.png"); }), HasSubstr("no diagram"));
-  Panel panel = small_panel();
+  DiagramPanel panel = small_panel();
   panel.curves[0].y.pop_back();
   EXPECT_THAT(says([&] { plot_panels({panel}, "", "a.png"); }),
               HasSubstr("2 values against 3 in 'a label's'"));

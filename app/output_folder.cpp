@@ -1,0 +1,29 @@
+#include "app/output_folder.hpp"
+
+#include <fstream>
+
+#include "core/errors.hpp"
+
+namespace stridor {
+
+namespace fs = std::filesystem;
+
+void prepare_folder(const fs::path& folder, const std::vector<std::string>& names,
+                    Overwrite overwrite) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw FileError(folder.string(), "", "cannot be made: " + error.message());
+  for (const std::string& name : names) {
+    if (overwrite == Overwrite::no && fs::exists(folder / name))
+      throw FileError((folder / name).string(), "", "exists; use --force to overwrite it");
+  }
+}
+
+void write_json(const fs::path& path, const Json& object) {
+  std::ofstream file(path);
+  file << object.dump(2) << '\n';
+  file.close();
+  if (!file) throw FileError(path.string(), "", "cannot be written");
+}
+
+}  // namespace stridor

@@ -1,0 +1,148 @@
+// The verb precision from outside.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "tests/support/program.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+const std::string scene = scene_path("beam_on_beam_leading.yaml");
+
+/// The main scene over its first 8 ms, most of it still in the ramp.
+std::vector<std::string> short_study(std::vector<std::string> more) {
+  std::vector<std::string> arguments{"precision",     scene,
+                                     "--until",       "8 ms",
+                                     "--set",         "measure.from=4 ms",
+                                     "--set",         "record.interval=1e-5",
+                                     "--points",      "3",
+                                     "--retain",      "50 kHz",
+                                     "--assumptions", "subs_a"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TEST(PrecisionProgram, MeasuresEveryMethodAndNamesTheCheapest) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      Program(short_study({"--json", "--tune", "5e-3", "--norm", "acceleration", "-o",
+                           (folder / "study").string(), "--published-window", "2e-4"}))
+          .run();
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json object = Json::parse(result.out);
+  EXPECT_EQ(object["reference"]["modes"], 243);
+  EXPECT_GT(object["reference"]["error"].get<double>(), 0.0);
+  std::set<std::string> methods;
+  int unstable = 0;
+  for (const Json& row : object["rows"]) {
+    methods.insert(row["method"].get<std::string>());
+    for (const char* key : {"integrator", "modes", "step", "wall_s", "error", "stable"})
+      EXPECT_TRUE(row.contains(key)) << key;
+    if (!row["stable"].get<bool>()) {
+      ++unstable;
+      EXPECT_TRUE(row["error"].is_null());
+      EXPECT_THAT(row["status"].get<std::string>(), HasSubstr("above the largest stable step"));
+    } else {
+      EXPECT_GT(row["least_wall_s"].get<double>(), 0.0);
+    }
+  }
+  EXPECT_EQ(methods, (std::set<std::string>{"central difference, all modes", "exact, all modes",
+                                            "exact, to 50 kHz", "central difference, to 50 kHz",
+                                            "exact, to 50 kHz, subs_a", "published form",
+                                            "published form, fused"}));
+  EXPECT_EQ(unstable, 1);
+
+  // The tuned setting is a row of its own, within what was asked even with the reference's error.
+  const Json& tune = object["tune"];
+  EXPECT_LE(tune["error"].get<double>() + object["reference"]["error"].get<double>(), 5e-3);
+  bool is_row = false;
+  for (const Json& row : object["rows"]) {
+    is_row = is_row || (row["method"] == tune["method"] && row["step"] == tune["step"] &&
+                        row["error"] == tune["error"]);
+    if (row["stable"].get<bool>() && row["assumption"] == "subs_b" &&
+        row["coordinates"] == "modal" &&
+        row["error"].get<double>() + object["reference"]["error"].get<double>() <= 5e-3) {
+      EXPECT_GE(row["least_wall_s"].get<double>(), tune["least_wall_s"].get<double>());
+    }
+  }
+  EXPECT_TRUE(is_row);
+  EXPECT_THAT(folder.files(), ::testing::ElementsAre("study"));
+  EXPECT_GT(std::filesystem::file_size(folder / "study" / "precision.png"), 1000u);
+  EXPECT_EQ(Json::parse(contents_of(folder / "study" / "precision.json")), object);
+
+  // What is said to be pasted can be pasted.
+  std::string text = contents_of(scene);
+  const std::size_t line = text.find("\ntime:");
+  text.replace(line + 1, text.find('\n', line + 1) - line, tune["scene"].get<std::string>());
+  write_file(folder / "tuned.yaml", text);
+  const ProgramResult check = Program({"check", (folder / "tuned.yaml").string()}).run();
+  EXPECT_EQ(check.exit_code, 0) << check.err << text;
+  EXPECT_THAT(tune["scene"].get<std::string>(), HasSubstr("integrator: "));
+}
+
+TEST(PrecisionProgram, PrintsATable) {
+  const ProgramResult result = Program(short_study({"--published-window", "0"})).run();
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  for (const char* text :
+       {"reference: exact, all 243 modes", "not stable", "slope of", "exact, to 50 kHz"})
+    EXPECT_THAT(result.out, HasSubstr(text));
+}
+
+TEST(PrecisionProgram, SaysThatNothingIsGoodEnough) {
+  const ProgramResult result =
+      Program(short_study({"--tune", "1e-12", "--published-window", "0"})).run();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("no setting measured is within 1e-12"));
+}
+
+TEST(PrecisionProgram, RejectsBadInput) {
+  const auto refusal = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "precision");
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.out, "");
+    return result.err;
+  };
+  EXPECT_THAT(refusal({scene, "--tune", "2"}), HasSubstr("--tune: must be"));
+  EXPECT_THAT(refusal({scene, "--tune", "close"}), HasSubstr("--tune"));
+  EXPECT_THAT(refusal({scene, "--until", "0.2"}), HasSubstr("errors are taken from 0.4 s on"));
+  EXPECT_THAT(refusal({scene, "--until", "9"}), HasSubstr("beyond the end of the scene, 2.25 s"));
+  EXPECT_THAT(refusal({scene, "--retain", "50 kg"}), HasSubstr("--retain"));
+  EXPECT_THAT(refusal({scene, "--norm", "phase"}), HasSubstr("--norm"));
+  EXPECT_THAT(refusal({scene, "--assumptions", "subs_d"}), HasSubstr("--assumptions"));
+  EXPECT_THAT(refusal({scene, "--points", "1"}), HasSubstr("--points"));
+  EXPECT_THAT(refusal({scene, "--set", "record.channels=[contact.force]"}),
+              HasSubstr("no acceleration among the channels"));
+}
+
+TEST(PrecisionProgram, DoesNotOverwriteUnasked) {
+  const TemporaryFolder folder;
+  write_file(folder / "precision.json", "mine");
+  const ProgramResult result = Program(short_study({"-o", folder.path().string()})).run();
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.err, HasSubstr("use --force"));
+  EXPECT_EQ(contents_of(folder / "precision.json"), "mine");
+}
+
+TEST(PrecisionProgram, StopsOnRequest) {
+  Program program({"precision", scene});
+  program.start();
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  program.send(SIGTERM);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_THAT(result.err, HasSubstr("nothing was measured"));
+}
+
+}  // namespace
+}  // namespace stridor
