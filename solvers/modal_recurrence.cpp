@@ -1,5 +1,6 @@
 #include "solvers/modal_recurrence.hpp"
 
+#include <limits>
 #include <utility>
 
 #include "core/clones.hpp"
@@ -48,7 +49,7 @@ ModalRecurrence::ModalRecurrence(const ModalBody& body, const Eigen::MatrixXd& p
       num_blocks_((size_ + modal_block - 1) / modal_block),
       scheme_(scheme),
       step_(step),
-      alpha_(alpha),
+      alpha_(std::numeric_limits<double>::quiet_NaN()),
       blocks_(num_blocks_ * modal_block * num_modal_fields),
       row_table_(num_blocks_ * modal_block * static_cast<std::size_t>(body.rows.rows())),
       omega_(body.omega),
@@ -141,6 +142,7 @@ StepCoefficients ModalRecurrence::coefficients(std::size_t mode) const {
 }
 
 void ModalRecurrence::set_mass_damping(double alpha) {
+  if (alpha == alpha_) return;
   alpha_ = alpha;
   for (std::size_t i = 0; i < size_; ++i) {
     const StepCoefficients c = coefficients(i);
