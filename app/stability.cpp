@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numbers>
 
 #include "core/errors.hpp"
@@ -14,6 +15,10 @@
 
 namespace stridor {
 namespace {
+
+/// Held while dense products may go to BLAS: a build of OpenBLAS without threads of its own hands
+/// the same work space to callers from two threads.
+std::mutex blas_in_use;
 
 /// Displacement of a point of a body, without that of the drive.
 Json displacement_json(const System& system, const Equilibrium& equilibrium, int body,
@@ -173,7 +178,10 @@ std::vector<Eigenvalue> lowest_eigenvalues(const Pencil& pencil, EigenvalueMetho
                                            int count) {
   if (method == EigenvalueMethod::secular)
     return secular_eigenvalues(pencil, SpectrumWindow::lowest(count));
-  std::vector<Eigenvalue> all = dense_eigenvalues(pencil);
+  std::vector<Eigenvalue> all = [&] {
+    const std::scoped_lock guard(blas_in_use);
+    return dense_eigenvalues(pencil);
+  }();
   const auto first = std::find_if(all.begin(), all.end(),
                                   [](const Eigenvalue& one) { return one.s.imag() > 0.0; });
   const std::ptrdiff_t kept = std::min<std::ptrdiff_t>(count, all.end() - first);
@@ -189,6 +197,7 @@ StabilityFamily::StabilityFamily(const LoadedScene& loaded, std::vector<NumericK
       start_key_(start_key(loaded.scene.model)) {}
 
 SlidingState StabilityFamily::at(std::span<const double> values) {
+  const std::scoped_lock guard(blas_in_use);
   std::string what;
   for (std::size_t i = 0; i < values.size(); ++i)
     what += (i > 0 ? ", " : "") + value_text(family_.keys()[i], values[i]);
