@@ -143,8 +143,11 @@ std::vector<LineResult> trace_lines(const LoadedScene& loaded, const std::array<
                       fmt::format("line {} of {}", num_done, num_lines));
     }
   };
+  // The dense method lives in LAPACK, which two threads must not enter at once (see stability.cpp).
+  const bool is_dense = stability.locus_options().method == LocusMethod::dense;
+  const int num_threads = is_dense ? 1 : stability.common.threads;
   std::vector<std::thread> threads;
-  for (int i = 1; i < stability.common.threads; ++i) threads.emplace_back(work);
+  for (int i = 1; i < num_threads; ++i) threads.emplace_back(work);
   work();
   for (std::thread& thread : threads) thread.join();
   progress.finish();

@@ -225,6 +225,7 @@ std::vector<double> StabilityFamily::kinks(std::size_t key, const std::vector<do
                                            double from, double to) {
   std::vector<double> found;
   if (!start_key_ || family_.keys()[key].path != *start_key_) return found;
+  const std::scoped_lock guard(blas_in_use);
   const System& system = family_.at(values).model->system;
   const MasterSurface& surface =
       system.surfaces[static_cast<std::size_t>(system.contacts.front().surface)];
