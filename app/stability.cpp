@@ -146,7 +146,7 @@ SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry
 
 Pencil retained(const Pencil& pencil, const TimeParameters& time) {
   if (!time.retain) return pencil;
-  return with_residual_modes(pencil, 2.0 * std::numbers::pi * time.retain->frequency);
+  return with_residual_modes(pencil, time.retain->cutoff());
 }
 
 std::string printed_units(const NumericKey& key) {

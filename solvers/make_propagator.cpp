@@ -1,7 +1,6 @@
 #include "solvers/make_propagator.hpp"
 
 #include <limits>
-#include <numbers>
 
 #include "solvers/dense_two_step.hpp"
 #include "solvers/modal_recurrence.hpp"
@@ -19,25 +18,11 @@ Eigen::MatrixXd load_patterns(const SystemBody& body, const Eigen::MatrixXd& row
   return patterns;
 }
 
-/// Answer of the modes left out to the load patterns, in rows or in reduced coordinates.
-Eigen::MatrixXd residual_patterns(const SystemBody& body, const Eigen::MatrixXd& per_row_force,
-                                  const Eigen::VectorXd& per_acceleration) {
-  if (!body.follows_drive) return Eigen::MatrixXd(per_row_force.rows(), 0);
-  Eigen::MatrixXd patterns(per_row_force.rows(), 2);
-  patterns.col(0) = per_row_force.col(body.load_row);
-  patterns.col(1) = -per_acceleration;
-  return patterns;
-}
-
 Propagator::Residual residual_of(const SystemBody& body, double step) {
   const ModalResidual& modes = body.modal.residual;
   if (modes.num_modes == 0) return {};
-  return {modes, residual_patterns(body, modes.flexibility, modes.base_rows),
-          residual_patterns(body, modes.shapes, modes.base_shapes), step};
-}
-
-double cutoff_of(const RetainParameters& retain) {
-  return 2.0 * std::numbers::pi * retain.frequency;
+  return {modes, load_patterns(body, modes.flexibility, modes.base_rows),
+          load_patterns(body, modes.shapes.transpose(), modes.base_shapes), step};
 }
 
 }  // namespace
@@ -46,13 +31,13 @@ System retained(const System& system, const TimeParameters& time) {
   System kept = system;
   if (!time.retain) return kept;
   for (SystemBody& body : kept.bodies)
-    body.modal = with_static_residual(body.modal, cutoff_of(*time.retain));
+    body.modal = with_static_residual(body.modal, time.retain->cutoff());
   return kept;
 }
 
 Eigen::Index num_retained(const ModalBody& body, const TimeParameters& time) {
   if (!time.retain) return body.size();
-  return (body.omega.array() <= cutoff_of(*time.retain)).count();
+  return (body.omega.array() <= time.retain->cutoff()).count();
 }
 
 std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimeParameters& time,

@@ -19,9 +19,10 @@ namespace stridor {
 /// t_n, corrects to u_{n+1} and predicts u*_{n+2}. Public functions keep the slots, the private
 /// hooks compute.
 ///
-/// Where a body leaves modes out, their static answer is part of it (docs/theory.md, 3.5): R f_n of
-/// u_{n+1} and of W, and the displacement that they are expected to have at t_{n+1}, carried on
-/// from the last two forces, of `expected`. Forces on loaded degrees of freedom act in u* at once.
+/// Where a body leaves modes out, their static answer is part of it (docs/theory.md, 3.6): of the
+/// residual displacement at t_{n+1}, R ((3/2 + θ) f_n − (1 + θ) f_{n−1} + ½ f_{n−2}), the first
+/// term belongs to W, the others and the answer to the loads to u*; `expected` has R f_{n−1}
+/// instead.
 class Propagator {
  public:
   /// The modes that a body leaves out.
@@ -75,7 +76,7 @@ class Propagator {
   };
   /// @param forces on the slots at t_n, N
   virtual Motion motion(const double* forces) const = 0;
-  /// What the modes left out add to u_n in reduced coordinates, m; zero where there are none.
+  /// What the modes left out add to u_n in reduced coordinates, m; empty where there are none.
   Eigen::VectorXd residual_displacement() const;
 
   /// The step that `advance` would make with these forces: u_n and u_{n+1} − u_n in the coordinates

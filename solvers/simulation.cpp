@@ -272,7 +272,8 @@ struct Simulation::Implementation {
     const Projection& p = contact.projection;
     // Gap and slip are those without the contact forces; what these do to the modes left out is
     // part of the Delassus operator.
-    const Eigen::Vector2d unloaded = unloaded_arm(contact, drive_at);
+    const Eigen::Vector2d arm = place.arm(p);
+    const Eigen::Vector2d unloaded = has_residual ? unloaded_arm(contact, drive_at) : arm;
     problem.penetration =
         surface_of(contact).roughness_at(contact.segment, p.weights) - p.normal.dot(unloaded);
     problem.sliding_friction =
@@ -291,7 +292,7 @@ struct Simulation::Implementation {
       contact.anchor -= p.tangent.x() * relative_drive(contact, velocity * step);
     }
     problem.slip = (contact.place - contact.anchor) * contact.stretch;
-    if (has_residual) problem.slip -= p.tangent.dot(place.arm(p) - unloaded);
+    if (has_residual) problem.slip -= p.tangent.dot(arm - unloaded);
     // A contact that stuck is held by the static limit; one whose sliding would turn round in this
     // step passes through rest on the way.
     const bool may_rest =
@@ -726,8 +727,8 @@ Propagator::Motion Simulation::reduced_motion(int body) const {
   if (shapes.size() == 0) return motion;
   motion.displacement = shapes * motion.displacement;
   motion.velocity = shapes * motion.velocity;
-  if (implementation_->has_residual)
-    motion.displacement += implementation_->bodies[b]->residual_displacement();
+  const Eigen::VectorXd residual = implementation_->bodies[b]->residual_displacement();
+  if (residual.size() > 0) motion.displacement += residual;
   return motion;
 }
 

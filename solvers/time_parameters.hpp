@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <optional>
 
 #include "core/schema.hpp"
@@ -22,6 +23,8 @@ enum class Coordinates {
 /// Which modes move on their own; the others become their static residual.
 struct RetainParameters {
   double frequency = 0.0;  ///< modes up to this one are kept, Hz, > 0
+  /// The same as a circular frequency, rad/s.
+  double cutoff() const { return 2.0 * std::numbers::pi * frequency; }
   static const Schema& schema();
 };
 

@@ -5,7 +5,7 @@
 
 namespace stridor {
 
-/// Modes that a body leaves out: they follow the forces at once, u = R f (docs/theory.md, 3.5).
+/// Modes that a body leaves out: they follow the forces at once, u = R f (docs/theory.md, 3.6).
 ///
 /// Of the sums below over the modes left out, φ is the entry of a mode at a row.
 struct ModalResidual {

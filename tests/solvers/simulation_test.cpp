@@ -479,6 +479,28 @@ TEST(ExactSimulation, ResumesBitwiseAcrossNodesAndInTheMiddleOfTheDampingSchedul
   }
 }
 
+TEST(ExactSimulation, GivesTheReducedMotionOfBodiesWithAndWithoutResidual) {
+  // Of the two beams only the cantilever has modes above 500 kHz.
+  const Model model = short_ramp_model();
+  const TimeParameters time = exact_time(2.5e-6, 500e3);
+  Simulation simulation(model.system, time);
+  ASSERT_EQ(simulation.step_until(2000), StepOutcome::done) << simulation.failure();
+  std::vector<Eigen::Index> left_out;
+  for (int b = 0; b < 2; ++b) {
+    const SystemBody& body = model.system.bodies[static_cast<std::size_t>(b)];
+    left_out.push_back(body.modal.size() - num_retained(body.modal, time));
+    const Eigen::VectorXd reduced = simulation.reduced_motion(b).displacement;
+    ASSERT_EQ(reduced.size(), body.reduced.size());
+    // Every row of the body, seen through either set of coordinates; rounding of a millimetre.
+    for (Eigen::Index row = 0; row < body.reduced.rows.rows(); ++row) {
+      EXPECT_NEAR(body.reduced.rows.row(row).dot(reduced),
+                  simulation.displacement(b, static_cast<int>(row)), 1e-14);
+    }
+  }
+  EXPECT_EQ(std::min(left_out[0], left_out[1]), 0);
+  EXPECT_GT(std::max(left_out[0], left_out[1]), 0);
+}
+
 TEST(ExactSimulation, RefusesWhatItCannotDo) {
   const Model model = short_ramp_model();
   EXPECT_THROW(
