@@ -56,4 +56,45 @@ void PartFile::move_to_final(Overwrite overwrite) {
   is_made_ = false;
 }
 
+void Hdf5Writer::make_group(const std::string& path) const {
+  at_.own(H5Gcreate2(file_, path.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, path,
+          "cannot make the group");
+}
+
+Handle Hdf5Writer::write(const std::string& path, const std::vector<hsize_t>& shape,
+                         const double* values, const std::string& units) const {
+  const Handle space =
+      at_.own(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose,
+              path, "cannot make the dataset");
+  Handle dataset = at_.own(H5Dcreate2(file_, path.c_str(), H5T_IEEE_F64LE, space.id(), H5P_DEFAULT,
+                                      H5P_DEFAULT, H5P_DEFAULT),
+                           H5Dclose, path, "cannot make the dataset");
+  at_.check(H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), path,
+            "cannot be written");
+  write_attribute(at_, dataset.id(), path, "units", units);
+  return dataset;
+}
+
+Handle Hdf5Writer::write(const std::string& path, const std::vector<double>& values,
+                         const std::string& units) const {
+  return write(path, {values.size()}, values.data(), units);
+}
+
+void write_hdf5_file(const std::string& path, Overwrite overwrite, const Attributes& attributes,
+                     const std::function<void(const Hdf5Writer&)>& fill) {
+  const QuietErrors quiet;
+  check_output(path, overwrite);
+  const Checker at(path);
+  PartFile part(path);
+  const Handle access = file_access(at);
+  Handle file = at.own(H5Fcreate(part.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()),
+                       H5Fclose, "", "cannot be made");
+  part.made();
+  for (const auto& [name, value] : attributes) write_attribute(at, file.id(), "", name, value);
+  fill(Hdf5Writer(at, file.id()));
+  at.check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "", "cannot be written");
+  at.check(file.close(), "", "cannot be closed");
+  part.move_to_final(overwrite);
+}
+
 }  // namespace stridor

@@ -35,36 +35,7 @@ const std::array<Column, 9> columns{{
     {"gain", "1", [](TimedWindow& w) -> double& { return w.gain; }},
 }};
 
-class Writer {
- public:
-  Writer(const Checker& at, hid_t file) : at_(at), file_(file) {}
-
-  void make_group(const std::string& path) const {
-    at_.own(H5Gcreate2(file_, path.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, path,
-            "cannot make the group");
-  }
-
-  void write(const std::string& path, const std::vector<hsize_t>& shape,
-             const std::vector<double>& values, const std::string& units) const {
-    at_.check(H5LTmake_dataset_double(file_, path.c_str(), static_cast<int>(shape.size()),
-                                      shape.data(), values.data()),
-              path, "cannot be written");
-    const Handle dataset =
-        at_.own(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose, path, "cannot be opened");
-    write_attribute(at_, dataset.id(), path, "units", units);
-  }
-
-  void write(const std::string& path, const std::vector<double>& values,
-             const std::string& units) const {
-    write(path, {values.size()}, values, units);
-  }
-
- private:
-  const Checker& at_;
-  hid_t file_;
-};
-
-void write_eigenvalues(const Writer& writer, const Locus& locus) {
+void write_eigenvalues(const Hdf5Writer& writer, const Locus& locus) {
   std::size_t most = 0;
   for (const auto& list : locus.eigenvalues) most = std::max(most, list.size());
   std::vector<double> growth;
@@ -77,11 +48,11 @@ void write_eigenvalues(const Writer& writer, const Locus& locus) {
     }
   }
   writer.make_group("/eigenvalues");
-  writer.write("/eigenvalues/growth", {locus.eigenvalues.size(), most}, growth, "1/s");
-  writer.write("/eigenvalues/frequency", {locus.eigenvalues.size(), most}, frequency, "Hz");
+  writer.write("/eigenvalues/growth", {locus.eigenvalues.size(), most}, growth.data(), "1/s");
+  writer.write("/eigenvalues/frequency", {locus.eigenvalues.size(), most}, frequency.data(), "Hz");
 }
 
-void write_branches(const Writer& writer, const Locus& locus, const std::string& units) {
+void write_branches(const Hdf5Writer& writer, const Locus& locus, const std::string& units) {
   writer.make_group("/branches");
   for (std::size_t k = 0; k < locus.branches.size(); ++k) {
     const Branch& branch = locus.branches[k];
@@ -99,24 +70,11 @@ void write_branches(const Writer& writer, const Locus& locus, const std::string&
   }
 }
 
-/// Makes a file, lets it be filled and gives it its name.
-template <class Fill>
-void write_file(const std::string& path, Overwrite overwrite, const char* kind,
-                const Attributes& attributes, const Fill& fill) {
-  const QuietErrors quiet;
-  check_output(path, overwrite);
-  const Checker at(path);
-  PartFile part(path);
-  const Handle access = file_access(at);
-  Handle file = at.own(H5Fcreate(part.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()),
-                       H5Fclose, "", "cannot be made");
-  part.made();
-  write_attribute(at, file.id(), "", "kind", std::string(kind));
-  for (const auto& [name, value] : attributes) write_attribute(at, file.id(), "", name, value);
-  fill(Writer(at, file.id()));
-  at.check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "", "cannot be written");
-  at.check(file.close(), "", "cannot be closed");
-  part.move_to_final(overwrite);
+/// The attributes of a file of a kind.
+Attributes of_kind(const char* kind, const Attributes& attributes) {
+  Attributes all{{"kind", std::string(kind)}};
+  all.insert(all.end(), attributes.begin(), attributes.end());
+  return all;
 }
 
 }  // namespace
@@ -124,7 +82,7 @@ void write_file(const std::string& path, Overwrite overwrite, const char* kind,
 void write_locus_file(const std::string& path, Overwrite overwrite, const Locus& locus,
                       const std::vector<TimedWindow>& windows, const std::string& units,
                       const Attributes& attributes) {
-  write_file(path, overwrite, "locus", attributes, [&](const Writer& writer) {
+  write_hdf5_file(path, overwrite, of_kind("locus", attributes), [&](const Hdf5Writer& writer) {
     writer.write("/values", locus.values, units);
     write_eigenvalues(writer, locus);
     write_branches(writer, locus, units);
@@ -141,21 +99,23 @@ void write_locus_file(const std::string& path, Overwrite overwrite, const Locus&
 void write_map_file(const std::string& path, Overwrite overwrite, const StabilityMap& map,
                     const std::string& x_units, const std::string& y_units,
                     const Attributes& attributes) {
-  write_file(path, overwrite, "stability map", attributes, [&](const Writer& writer) {
-    writer.write("/x", map.x, x_units);
-    writer.write("/y", map.y, y_units);
-    std::vector<double> growth;
-    for (const auto& row : map.growth) growth.insert(growth.end(), row.begin(), row.end());
-    writer.write("/growth", {map.y.size(), map.x.size()}, growth, "1/s");
-    writer.make_group("/boundary");
-    for (std::size_t k = 0; k < map.boundary.size(); ++k) {
-      std::vector<double> points;
-      for (const auto& point : map.boundary[k])
-        points.insert(points.end(), point.begin(), point.end());
-      writer.write(fmt::format("/boundary/{:03}", k), {map.boundary[k].size(), 2}, points,
-                   x_units + ", " + y_units);
-    }
-  });
+  write_hdf5_file(path, overwrite, of_kind("stability map", attributes),
+                  [&](const Hdf5Writer& writer) {
+                    writer.write("/x", map.x, x_units);
+                    writer.write("/y", map.y, y_units);
+                    std::vector<double> growth;
+                    for (const auto& row : map.growth)
+                      growth.insert(growth.end(), row.begin(), row.end());
+                    writer.write("/growth", {map.y.size(), map.x.size()}, growth.data(), "1/s");
+                    writer.make_group("/boundary");
+                    for (std::size_t k = 0; k < map.boundary.size(); ++k) {
+                      std::vector<double> points;
+                      for (const auto& point : map.boundary[k])
+                        points.insert(points.end(), point.begin(), point.end());
+                      writer.write(fmt::format("/boundary/{:03}", k), {map.boundary[k].size(), 2},
+                                   points.data(), x_units + ", " + y_units);
+                    }
+                  });
 }
 
 std::vector<TimedWindow> read_locus_windows(const std::string& path) {
