@@ -14,6 +14,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -67,18 +68,25 @@ struct SeriesSpec {
 struct RunFileOptions {
   /// Rows kept in memory before they are written and flushed, at least 1.
   std::size_t block_rows = 16384;
+  /// Rows to a piece of a series in the file, at least 1.
+  std::size_t chunk_rows = 16384;
   /// Space on the disk is asked for before each block, so that a full disk is noticed while nothing
   /// has been changed yet. Switch off on file systems where that is slow.
   enum class Reservation { on, off } reservation = Reservation::on;
+  /// Called after every single write to the file, with the file as a reader would find it if the
+  /// process died now; for tests.
+  std::function<void()> on_write = {};
 };
 
 /// Writes a run file in blocks.
 ///
 /// The file is made under the temporary name `<name>.part-<pid>` in the same folder and takes its
 /// name when header, datasets and a first flush have succeeded: an existing file is replaced only
-/// by a readable one, and a set-up that fails leaves nothing behind. Every block is written and
-/// flushed channels first, then /time. A process that is killed leaves the blocks flushed before; a
-/// crash of the machine may leave less, as nothing waits for the disk.
+/// by a readable one, and a set-up that fails leaves nothing behind. Every block is written
+/// channels first, then /time, in an order in which the file is readable after every single write;
+/// statics and results go into a copy that then takes the name of the file. So a process that is
+/// killed at any moment leaves a file that holds the blocks flushed before. A crash of the machine
+/// may leave less, as nothing waits for the disk.
 ///
 /// If a write fails, the rows up to the present len(/time) stay readable. With a failed reservation
 /// (disk full) nothing is lost: the rows stay in memory and a later flush() may succeed. After any

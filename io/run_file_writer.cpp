@@ -1,10 +1,8 @@
-#include <fcntl.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <hdf5.h>
 #include <hdf5_hl.h>
 #include <stdio.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -21,11 +19,10 @@
 #include "core/errors.hpp"
 #include "io/hdf5_output.hpp"
 #include "io/run_file.hpp"
+#include "io/staged_file.hpp"
 
 namespace stridor {
 namespace {
-
-constexpr hsize_t chunk_rows = 16384;
 
 Handle link_creation(const Checker& at) {
   Handle links = at.own(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "", "cannot set up HDF5");
@@ -109,11 +106,12 @@ struct RunFileWriter::Impl {
   };
 
   Impl(const std::string& path, std::vector<SeriesSpec> specs, RunFileOptions chosen)
-      : at(path), options(chosen), access(file_access(at)), links(link_creation(at)) {
+      : at(path), options(std::move(chosen)), access(staged.access(at)), links(link_creation(at)) {
     for (SeriesSpec& spec : specs) columns.push_back({std::move(spec), {}, {}});
   }
   ~Impl() {
     const QuietErrors quiet;
+    staged.freeze();
     if (file.is_open()) close_file();
   }
   Impl(const Impl&) = delete;
@@ -130,10 +128,12 @@ struct RunFileWriter::Impl {
   template <typename Action>
   void modify(const Action& action);
   void abandon() noexcept;
+  void commit(const std::string& dataset);
   std::string close_file();
 
   Checker at;
   RunFileOptions options;
+  StagedFile staged;
   Handle access;
   Handle links;
   Handle file;
@@ -143,6 +143,7 @@ struct RunFileWriter::Impl {
   std::vector<std::uint8_t> states;
   std::uint64_t num_written = 0;
   double write_seconds = 0.0;
+  bool restructured = false;  // changed otherwise than by rows
   bool closed = false;
   bool broken = false;
 };
@@ -150,6 +151,8 @@ struct RunFileWriter::Impl {
 void RunFileWriter::Impl::check_specs() const {
   if (options.block_rows == 0)
     throw std::invalid_argument("run file: block_rows must be at least 1");
+  if (options.chunk_rows == 0)
+    throw std::invalid_argument("run file: chunk_rows must be at least 1");
   std::set<std::string> paths;
   for (const Column& column : columns) {
     check_object_path(column.spec.path);
@@ -175,7 +178,8 @@ Handle RunFileWriter::Impl::create_series(const std::string& path, SeriesKind ki
       at.own(H5Screate_simple(1, &none, &unlimited), H5Sclose, path, "cannot make the dataset");
   const Handle creation =
       at.own(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, path, "cannot make the dataset");
-  at.check(H5Pset_chunk(creation.id(), 1, &chunk_rows), path, "cannot make the dataset");
+  const hsize_t chunk = options.chunk_rows;
+  at.check(H5Pset_chunk(creation.id(), 1, &chunk), path, "cannot make the dataset");
   const hid_t type = kind == SeriesKind::real ? H5T_IEEE_F64LE : H5T_STD_U8LE;
   Handle dataset = at.own(
       H5Dcreate2(file.id(), path.c_str(), type, space.id(), links.id(), creation.id(), H5P_DEFAULT),
@@ -188,13 +192,10 @@ void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& heade
   check_target(at.path(), overwrite);
   PartFile part(at.path());
 
-  const Handle creation = at.own(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "", "cannot set up HDF5");
-  // 256 chunks (4 million rows) to a node of the chunk index, so that nodes hardly ever split: a
-  // split rewrites old entries, which a kill in between could leave half done.
-  at.check(H5Pset_istore_k(creation.id(), 128), "", "cannot set up HDF5");
-  file = at.own(H5Fcreate(part.path().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose,
-                "", "cannot be made");
+  staged.create(part.path());
   part.made();
+  file = at.own(H5Fcreate(part.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose,
+                "", "cannot be made");
 
   try {
     const Handle space = at.own(H5Screate(H5S_SCALAR), H5Sclose, "", "cannot make an attribute");
@@ -223,8 +224,10 @@ void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& heade
       at.check(H5DSattach_scale(column.dataset.id(), time_dataset.id(), 0), spec.path,
                "cannot be tied to /time");
     }
-    at.check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "", "cannot be written");
+    commit("");
     part.move_to_final(overwrite);
+    staged.renamed(at.path());
+    if (options.on_write) staged.observe(options.on_write);
   } catch (...) {
     abandon();
     close_file();
@@ -239,19 +242,17 @@ void RunFileWriter::Impl::require_usable() const {
 }
 
 // HDF5 holds changes in memory and would write them, half done, when the file is closed. After a
-// failure they must not reach the file, in which all that was flushed is still sound: its
-// descriptor is pointed to a file in memory that nobody sees.
+// failure they must not reach the file, in which all that was committed is still sound.
 void RunFileWriter::Impl::abandon() noexcept {
   broken = true;
-  void* handle = nullptr;
-  if (!file.is_open() || H5Fget_vfd_handle(file.id(), H5P_DEFAULT, &handle) < 0 ||
-      handle == nullptr)
-    return;
-  int nowhere = memfd_create("stridor", MFD_CLOEXEC);
-  if (nowhere < 0) nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
-  if (nowhere < 0) return;
-  dup2(nowhere, *static_cast<int*>(handle));
-  ::close(nowhere);
+  staged.freeze();
+}
+
+void RunFileWriter::Impl::commit(const std::string& dataset) {
+  at.check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), dataset, "cannot be flushed");
+  const int error = restructured ? staged.commit_by_copy() : staged.commit();
+  if (error != 0) throw FileError(at.path(), dataset, "cannot be written: " + errno_text(error));
+  restructured = false;
 }
 
 template <typename Action>
@@ -268,12 +269,7 @@ void RunFileWriter::Impl::modify(const Action& action) {
 // Asks the file system for what the next block needs at most. Nothing has been changed if it
 // refuses.
 void RunFileWriter::Impl::reserve(std::uint64_t rows) const {
-  void* handle = nullptr;
-  hsize_t size = 0;
-  if (H5Fget_vfd_handle(file.id(), H5P_DEFAULT, &handle) < 0 ||
-      H5Fget_filesize(file.id(), &size) < 0) {
-    at.fail("", "cannot be measured");
-  }
+  const std::uint64_t chunk_rows = options.chunk_rows;
   const std::uint64_t chunks_before = (num_written + chunk_rows - 1) / chunk_rows;
   const std::uint64_t chunks_after = (num_written + rows + chunk_rows - 1) / chunk_rows;
   std::uint64_t needed = 0;
@@ -284,10 +280,8 @@ void RunFileWriter::Impl::reserve(std::uint64_t rows) const {
              num_series * 16384 + 65536;
   }
   if (needed == 0) return;
-  const int error = posix_fallocate(*static_cast<int*>(handle), static_cast<off_t>(size),
-                                    static_cast<off_t>(needed));
-  if (error == 0 || error == EOPNOTSUPP || error == EINVAL)
-    return;  // no such service here: just try
+  const int error = staged.reserve(needed);
+  if (error == 0) return;
   throw FileError(at.path(), "/time",
                   fmt::format("no room for rows {} to {} ({} bytes): {}", num_written,
                               num_written + rows - 1, needed, errno_text(error)));
@@ -316,24 +310,24 @@ void RunFileWriter::Impl::write_rows(const Handle& dataset, const std::string& p
                       states.data());
   }
   at.check(status, path, "cannot be written");
-  // One by one, because a flush of the whole file goes on after an error and would record a length
-  // of the file that it does not have.
-  at.check(H5Dflush(dataset.id()), path, "cannot be flushed");
 }
 
 void RunFileWriter::Impl::flush() {
   require_usable();
-  if (times.empty()) return;
   const QuietErrors quiet;
+  if (times.empty()) {
+    if (restructured) modify([this] { commit(""); });
+    return;
+  }
   const auto start = std::chrono::steady_clock::now();
   if (options.reservation == RunFileOptions::Reservation::on) reserve(times.size());
   modify([this] {
     for (const Column& column : columns) {
       write_rows(column.dataset, column.spec.path, column.spec.kind, column.rows);
     }
-    at.check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "", "cannot be flushed");
+    commit("/time");
     write_rows(time_dataset, "/time", SeriesKind::real, times);
-    at.check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "/time", "cannot be flushed");
+    commit("/time");
   });
   num_written += times.size();
   times.clear();
@@ -450,7 +444,7 @@ void RunFileWriter::write_static(const std::string& path, std::span<const double
         H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
         path, "cannot be written");
     write_attribute(at, dataset.id(), path, "units", units);
-    at.check(H5Fflush(impl.file.id(), H5F_SCOPE_GLOBAL), path, "cannot be flushed");
+    impl.restructured = true;
   });
 }
 
@@ -475,11 +469,13 @@ void write_result_attribute(const Checker& at, const Handle& file, const Handle&
 void RunFileWriter::write_result(const std::string& name, double value) {
   impl_->require_usable();
   impl_->modify([&] { write_result_attribute(impl_->at, impl_->file, impl_->links, name, value); });
+  impl_->restructured = true;
 }
 
 void RunFileWriter::write_result(const std::string& name, const std::string& value) {
   impl_->require_usable();
   impl_->modify([&] { write_result_attribute(impl_->at, impl_->file, impl_->links, name, value); });
+  impl_->restructured = true;
 }
 
 void RunFileWriter::close() {
@@ -490,15 +486,14 @@ void RunFileWriter::close() {
   if (!impl.broken) {
     try {
       impl.flush();
-      // Results and the like are written here, where a failure can still be kept from the file.
-      impl.modify([&] {
-        impl.at.check(H5Fflush(impl.file.id(), H5F_SCOPE_GLOBAL), "", "cannot be flushed");
-      });
+      impl.staged.trim();
     } catch (const FileError&) {
       first = std::current_exception();
     }
   }
   impl.closed = true;
+  // All is in the file; what closing would change is of no use to a reader.
+  impl.staged.freeze();
   const std::string cause = impl.close_file();
   if (first) std::rethrow_exception(first);
   if (impl.broken)

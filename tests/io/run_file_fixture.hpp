@@ -4,11 +4,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "core/errors.hpp"
@@ -74,6 +80,52 @@ inline std::uint64_t check_rows(const std::string& path) {
   }
   EXPECT_EQ(wrong, 0U) << path;
   return times.size();
+}
+
+// Fills a file with series of many small pieces, so that their index grows to several levels, and
+// checks it after every write to the disk, as a process killed there would leave it.
+inline void check_after_every_write(const std::string& path, std::uint64_t num_rows) {
+  std::uint64_t num_checks = 0;
+  std::uint64_t rows_before = 0;
+  RunFileOptions options{.block_rows = 20, .chunk_rows = 1};
+  options.on_write = [&] {
+    ++num_checks;
+    const std::uint64_t rows = check_rows(path);
+    EXPECT_GE(rows, rows_before);
+    rows_before = rows;
+  };
+  RunFileWriter writer(path, Overwrite::no, header, two_series(), options);
+  const std::vector<double> values{1.0, 2.0, 3.0};
+  writer.write_static("/modal/plate/frequency", values, "Hz");
+  for (std::uint64_t row = 0; row < num_rows; row += 20) {
+    append_rows(writer, row, 20);
+    ASSERT_FALSE(::testing::Test::HasFailure()) << "after " << num_checks << " writes";
+  }
+  writer.write_static("/final/plate/displacement", values, "m");
+  writer.write_result("status", "done");
+  writer.write_result("steps", 3.0);
+  writer.close();
+  EXPECT_EQ(check_rows(path), num_rows);
+  EXPECT_GE(num_checks, 3 * num_rows);
+}
+
+// Fills a file without end in a process of its own, kills that after a while and checks what it
+// leaves.
+inline void write_until_killed(const std::string& path, std::chrono::microseconds delay) {
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    RunFileWriter writer(path, Overwrite::yes, header, two_series(), {.block_rows = 500});
+    for (std::uint64_t row = 0;; row += 500) append_rows(writer, row, 500);
+  }
+  while (!std::filesystem::exists(path)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  std::this_thread::sleep_for(delay);
+  kill(child, SIGKILL);
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  check_rows(path);
+  std::filesystem::remove(path);
 }
 
 class RunFile : public ::testing::Test {

@@ -45,22 +45,12 @@ TEST_F(RunFile, IsReadableDuringTheRunByAnotherProcess) {
 }
 
 TEST_F(RunFile, KilledRunLeavesAReadableFile) {
-  for (int trial = 0; trial < 10; ++trial) {
-    const pid_t child = fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) {
-      RunFileWriter writer(path(), Overwrite::yes, header, two_series(), {.block_rows = 500});
-      for (std::uint64_t row = 0;; row += 500) append_rows(writer, row, 500);
-    }
-    while (!fs::exists(path())) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    std::this_thread::sleep_for(std::chrono::milliseconds(3 + 5 * trial));
-    kill(child, SIGKILL);
-    int status = 0;
-    waitpid(child, &status, 0);
-    ASSERT_TRUE(WIFSIGNALED(status));
-    check_rows(path());
-    fs::remove(path());
-  }
+  for (int trial = 0; trial < 10; ++trial)
+    write_until_killed(path(), std::chrono::milliseconds(3 + 5 * trial));
+}
+
+TEST_F(RunFile, IsReadableAfterEveryWrite) {
+  check_after_every_write(path(), 200);
 }
 
 // Runs `action` in a process of its own in which no file may grow beyond `limit` bytes, as on a
