@@ -5,6 +5,7 @@
 #include "core/errors.hpp"
 #include "io/contact_scene.hpp"
 #include "io/scene.hpp"
+#include "io/sphere_scene.hpp"
 #include "solvers/simulation.hpp"
 
 namespace stridor {
@@ -22,6 +23,10 @@ void check_scene(const CheckOptions& options) {
   for (const std::string& assignment : options.common.sets) set_value(tree, assignment);
   if (is_contact_scene(tree)) {
     (void)load_contact_scene(options.scene, options.common.sets);
+    return;
+  }
+  if (is_sphere_scene(tree)) {
+    (void)load_sphere_scene(options.scene, options.common.sets);
     return;
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);

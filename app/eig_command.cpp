@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "analysis/explanation.hpp"
+#include "app/sphere_stability.hpp"
 #include "app/stability.hpp"
 #include "core/errors.hpp"
 #include "io/shape_plot.hpp"
@@ -202,6 +203,15 @@ void print_explanation(const Json& explanation) {
 }
 
 ExitCode eig(const EigOptions& options) {
+  if (is_sphere_scene_file(options.stability.scene)) {
+    if (options.at || options.shapes || options.explain) {
+      throw ConfigError(options.at       ? "--at"
+                        : options.shapes ? "--shapes"
+                                         : "--explain",
+                        "is for scenes of bodies");
+    }
+    return eig_of_sphere(options.stability);
+  }
   const LoadedScene loaded = load_scene(options.stability.scene, options.stability.common.sets);
   std::vector<double> values;
   SceneFamily family = make_family(loaded, options, values);

@@ -35,7 +35,7 @@ constexpr double never = std::numeric_limits<double>::quiet_NaN();
 /// Time at which a run of the scene first comes to a sliding state; NaN where it never does.
 class PassingTimes {
  public:
-  PassingTimes(const Scene& scene, StabilityFamily& family)
+  PassingTimes(const Scene& scene, BodyStabilityFamily& family)
       : drive_(make_drive(scene.model.drive, scene.model.pairs().begin()->second.sliding)),
         end_(scene.time.end),
         family_(&family) {}
@@ -70,7 +70,7 @@ class PassingTimes {
 
   Drive drive_;
   double end_;
-  StabilityFamily* family_;
+  BodyStabilityFamily* family_;
 };
 
 std::vector<TimedWindow> timed_windows(const Locus& locus,
@@ -193,23 +193,25 @@ void check_outputs(const LocusCommandOptions& options) {
 ExitCode locus(const LocusCommandOptions& options) {
   check_outputs(options);
   const StabilityOptions& stability = options.stability;
-  const LoadedScene loaded = load_scene(stability.scene, stability.common.sets);
-  const KeyRange range = make_range(loaded.scene, options.range);
-  StabilityFamily family(loaded, {range.key}, stability.geometry());
+  const auto loaded = load_stability_scene(stability);
+  const KeyRange range = make_range(*loaded, options.range);
+  const auto family = loaded->family({range.key}, stability.geometry());
   Progress progress("locus");
   double reached = 0.0;
   const double first = range.values.front();
   const double width = std::max(range.values.back() - first, std::numeric_limits<double>::min());
-  family.on_value([&](double value) {
+  family->on_value([&](double value) {
     reached = std::max(reached, (value - first) / width);
     progress.report(reached, value_text(range.key, value));
   });
   const Locus found =
-      locus_along(family, range.key, 0, {first}, range.values, stability.locus_options());
+      locus_along(*family, range.key, 0, {first}, range.values, stability.locus_options());
   progress.finish();
 
   std::optional<PassingTimes> times;
-  if (start_key(loaded.scene.model) == range.key.path) times.emplace(loaded.scene, family);
+  if (loaded->bodies() != nullptr && loaded->default_key() == range.key.path) {
+    times.emplace(loaded->bodies()->scene, dynamic_cast<BodyStabilityFamily&>(*family));
+  }
   const std::vector<TimedWindow> windows = timed_windows(found, times);
   const std::string units = printed_units(range.key);
   if (options.output) {
@@ -219,8 +221,8 @@ ExitCode locus(const LocusCommandOptions& options) {
                       {"about", stability.about},
                       {"method", stability.method},
                       {"scene", stability.scene},
-                      {"scene_hash", loaded.hash()},
-                      {"scene_resolved", loaded.resolved()},
+                      {"scene_hash", loaded->hash()},
+                      {"scene_resolved", loaded->resolved()},
                       {"command", options.command_line},
                       {"version", std::string(version)},
                       {"commit", std::string(commit)},
@@ -236,7 +238,7 @@ ExitCode locus(const LocusCommandOptions& options) {
     picture.caption = fmt::format(
         "The {} lowest eigenvalues about the {} geometry, {} from {} to {}; {}, scene {}.",
         stability.count, stability.about, range.key.path, range.values.front(), range.values.back(),
-        std::filesystem::path(stability.scene).filename().string(), loaded.hash());
+        std::filesystem::path(stability.scene).filename().string(), loaded->hash());
     if (options.figure) plot_locus(picture, *options.figure);
     if (options.history) plot_locus_histories(picture, *options.history);
   }

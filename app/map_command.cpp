@@ -40,9 +40,9 @@ struct Axis {
   bool is_logarithmic = false;
 };
 
-Axis make_axis(const Scene& scene, const std::vector<std::string>& written, const char* option,
-               const std::string& scale) {
-  Axis axis{find_stability_key(scene, written[0], option), {}, scale == "log"};
+Axis make_axis(const StabilityScene& scene, const std::vector<std::string>& written,
+               const char* option, const std::string& scale) {
+  Axis axis{scene.find_key(written[0], option), {}, scale == "log"};
   const double from = parse_value(axis.key, written[1], option);
   const double to = parse_value(axis.key, written[2], option);
   if (!(from < to)) {
@@ -100,8 +100,7 @@ LineResult trace_line(StabilityFamily& family, const std::array<Axis, 2>& axes, 
                                           ? EigenvalueMethod::dense
                                           : EigenvalueMethod::secular;
       std::vector<std::complex<double>> found;
-      for (const Eigenvalue& one :
-           lowest_eigenvalues(family.at(values).pencil, method, options.count))
+      for (const Eigenvalue& one : lowest_eigenvalues(family.pencil(values), method, options.count))
         found.push_back(one.s);
       growth = largest_growth(found);
     } catch (const NumericalError&) {
@@ -113,7 +112,7 @@ LineResult trace_line(StabilityFamily& family, const std::array<Axis, 2>& axes, 
 
 /// Traces all rows, then all columns. Every line is a job of its own and begins from nothing, so
 /// that the results do not depend on which thread takes it.
-std::vector<LineResult> trace_lines(const LoadedScene& loaded, const std::array<Axis, 2>& axes,
+std::vector<LineResult> trace_lines(const StabilityScene& loaded, const std::array<Axis, 2>& axes,
                                     const StabilityOptions& stability) {
   const std::size_t num_rows = axes[1].values.size();
   const std::size_t num_lines = num_rows + axes[0].values.size();
@@ -124,13 +123,13 @@ std::vector<LineResult> trace_lines(const LoadedScene& loaded, const std::array<
   Progress progress("map");
   std::size_t num_done = 0;
   const auto work = [&] {
-    StabilityFamily family(loaded, {axes[0].key, axes[1].key}, stability.geometry());
+    const auto family = loaded.family({axes[0].key, axes[1].key}, stability.geometry());
     while (!has_failed) {
       const std::size_t line = next++;
       if (line >= num_lines) return;
       try {
         const bool is_row = line < num_rows;
-        results[line] = trace_line(family, axes, is_row ? 0 : 1,
+        results[line] = trace_line(*family, axes, is_row ? 0 : 1,
                                    is_row ? axes[1].values[line] : axes[0].values[line - num_rows],
                                    stability.locus_options());
       } catch (...) {
@@ -156,12 +155,19 @@ std::vector<LineResult> trace_lines(const LoadedScene& loaded, const std::array<
   return results;
 }
 
-StabilityMap make_map(const LoadedScene& loaded, const std::array<Axis, 2>& axes,
+StabilityMap make_map(const StabilityScene& loaded, const std::array<Axis, 2>& axes,
                       const StabilityOptions& stability) {
-  const std::vector<LineResult> lines = trace_lines(loaded, axes, stability);
   StabilityMap map;
   map.x = axes[0].values;
   map.y = axes[1].values;
+  const auto make_field = [&] { return loaded.growth_field({axes[0].key, axes[1].key}); };
+  if (make_field() != nullptr) {
+    GrowthMap found = make_growth_map(make_field, map.x, map.y, stability.common.threads);
+    map.growth = std::move(found.growth);
+    map.boundary = std::move(found.boundary);
+    return map;
+  }
+  const std::vector<LineResult> lines = trace_lines(loaded, axes, stability);
   GridCrossings crossings{map.x, map.y, {}, {}};
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const bool is_row = i < map.y.size();
@@ -173,7 +179,7 @@ StabilityMap make_map(const LoadedScene& loaded, const std::array<Axis, 2>& axes
 }
 
 void draw(const MapOptions& options, const std::array<Axis, 2>& axes, const StabilityMap& map,
-          const LoadedScene& loaded) {
+          const StabilityScene& loaded) {
   StabilityMapPicture picture;
   const auto axis_of = [](const Axis& axis) {
     return MapAxis{axis.key.path, printed_units(axis.key), axis.values, axis.is_logarithmic};
@@ -202,10 +208,11 @@ ExitCode map(const MapOptions& options) {
     if (overwrite == Overwrite::no && std::filesystem::exists(*options.figure))
       throw FileError(*options.figure, "", "exists; use --force to overwrite it");
   }
-  const LoadedScene loaded = load_scene(stability.scene, stability.common.sets);
+  const auto scene = load_stability_scene(stability);
+  const StabilityScene& loaded = *scene;
   const std::array<Axis, 2> axes{
-      make_axis(loaded.scene, options.x, "--x", options.x_scale.value_or(options.scale)),
-      make_axis(loaded.scene, options.y, "--y", options.y_scale.value_or(options.scale))};
+      make_axis(loaded, options.x, "--x", options.x_scale.value_or(options.scale)),
+      make_axis(loaded, options.y, "--y", options.y_scale.value_or(options.scale))};
   if (axes[0].key.path == axes[1].key.path)
     throw ConfigError("--y", fmt::format("'{}' is the key of --x already", axes[1].key.path));
   const StabilityMap found = make_map(loaded, axes, stability);

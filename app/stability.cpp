@@ -8,6 +8,7 @@
 #include <mutex>
 #include <numbers>
 
+#include "app/sphere_stability.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
 #include "solvers/dense_eigenvalues.hpp"
@@ -99,14 +100,14 @@ NumericKey find_stability_key(const Scene& scene, const std::string& path,
   return key;
 }
 
-KeyRange make_range(const Scene& scene, const RangeOptions& options) {
+KeyRange make_range(const StabilityScene& scene, const RangeOptions& options) {
   std::string path = options.parameter;
   if (path.empty()) {
-    const auto start = start_key(scene.model);
-    if (!start) throw ConfigError("--parameter", "the scene has several contact pairs; name a key");
-    path = *start;
+    const auto key = scene.default_key();
+    if (!key) throw ConfigError("--parameter", "the scene has no single contact pair; name a key");
+    path = *key;
   }
-  KeyRange range{find_stability_key(scene, path, "--parameter"), {}};
+  KeyRange range{scene.find_key(path, "--parameter"), {}};
   const double from = parse_value(range.key, options.from, "--from");
   const double to = parse_value(range.key, options.to, "--to");
   if (from > to) {
@@ -189,14 +190,46 @@ std::vector<Eigenvalue> lowest_eigenvalues(const Pencil& pencil, EigenvalueMetho
   return all;
 }
 
-StabilityFamily::StabilityFamily(const LoadedScene& loaded, std::vector<NumericKey> keys,
-                                 ContactGeometry geometry)
+namespace {
+
+/// A scene of bodies in contact.
+class BodyStabilityScene : public StabilityScene {
+ public:
+  explicit BodyStabilityScene(LoadedScene loaded) : loaded_(std::move(loaded)) {}
+
+  NumericKey find_key(const std::string& path, const std::string& option) const override {
+    return find_stability_key(loaded_.scene, path, option);
+  }
+  std::optional<std::string> default_key() const override { return start_key(loaded_.scene.model); }
+  std::unique_ptr<StabilityFamily> family(std::vector<NumericKey> keys,
+                                          ContactGeometry geometry) const override {
+    return std::make_unique<BodyStabilityFamily>(loaded_, std::move(keys), geometry);
+  }
+  std::string hash() const override { return loaded_.hash(); }
+  std::string resolved() const override { return loaded_.resolved(); }
+  const LoadedScene* bodies() const override { return &loaded_; }
+
+ private:
+  LoadedScene loaded_;
+};
+
+}  // namespace
+
+std::unique_ptr<StabilityScene> load_stability_scene(const StabilityOptions& options) {
+  if (is_sphere_scene_file(options.scene))
+    return std::make_unique<SphereStabilityScene>(
+        load_sphere_scene(options.scene, options.common.sets));
+  return std::make_unique<BodyStabilityScene>(load_scene(options.scene, options.common.sets));
+}
+
+BodyStabilityFamily::BodyStabilityFamily(const LoadedScene& loaded, std::vector<NumericKey> keys,
+                                         ContactGeometry geometry)
     : family_(loaded, std::move(keys)),
       time_(loaded.scene.time),
       geometry_(geometry),
       start_key_(start_key(loaded.scene.model)) {}
 
-SlidingState StabilityFamily::at(std::span<const double> values) {
+SlidingState BodyStabilityFamily::at(std::span<const double> values) {
   const std::scoped_lock guard(blas_in_use);
   std::string what;
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -211,18 +244,18 @@ PencilFamily StabilityFamily::along(std::size_t key, std::vector<double> values,
   PencilFamily along;
   values[key] = from;
   along.kinks = kinks(key, values, from, to);
-  along.place = [this, key, values](double value, Pencil& pencil) mutable {
+  along.place = [this, key, values](double value, Pencil& placed) mutable {
     if (stop_requested()) throw Interrupted("nothing has been written");
     values[key] = value;
-    pencil = at(values).pencil;
+    placed = pencil(values);
     if (report_) report_(value);
   };
   return along;
 }
 
 /// Positions at which the contact passes a master node, if the position is what varies.
-std::vector<double> StabilityFamily::kinks(std::size_t key, const std::vector<double>& values,
-                                           double from, double to) {
+std::vector<double> BodyStabilityFamily::kinks(std::size_t key, const std::vector<double>& values,
+                                               double from, double to) {
   std::vector<double> found;
   if (!start_key_ || family_.keys()[key].path != *start_key_) return found;
   const std::scoped_lock guard(blas_in_use);
@@ -283,7 +316,7 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
   std::vector<double> ends = values;
   for (const double end : {range.front(), range.back()}) {
     ends[key] = end;
-    family.at(ends);
+    family.pencil(ends);
   }
   const PencilFamily pencils = family.along(key, values, range.front(), range.back());
   return varied.is_integer ? locus_at(pencils, range, options)

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "analysis/growth_field.hpp"
 #include "analysis/locus.hpp"
 #include "app/command.hpp"
 #include "io/scene_family.hpp"
@@ -79,19 +81,14 @@ struct KeyRange {
   std::vector<double> values;  ///< strictly ascending
 };
 
-/// @throws ConfigError if the key, an end of the range or the number of points is wrong
-KeyRange make_range(const Scene& scene, const RangeOptions& options);
-
 /// Small motions of a scene as some of its keys vary.
 class StabilityFamily {
  public:
-  StabilityFamily(const LoadedScene& loaded, std::vector<NumericKey> keys,
-                  ContactGeometry geometry);
+  virtual ~StabilityFamily() = default;
 
-  /// With the modes that `time.retain` keeps.
   /// @param values one per key
   /// @throws ConfigError, NumericalError naming the values
-  SlidingState at(std::span<const double> values);
+  virtual Pencil pencil(std::span<const double> values) = 0;
 
   /// The pencils along one of the keys.
   /// @param key      its index
@@ -104,15 +101,59 @@ class StabilityFamily {
   void on_value(std::function<void(double)> report) { report_ = std::move(report); }
 
  private:
+  virtual std::vector<double> kinks(std::size_t, const std::vector<double>&, double, double) {
+    return {};
+  }
+
+  std::function<void(double)> report_;
+};
+
+/// That of bodies in contact.
+class BodyStabilityFamily : public StabilityFamily {
+ public:
+  BodyStabilityFamily(const LoadedScene& loaded, std::vector<NumericKey> keys,
+                      ContactGeometry geometry);
+
+  /// With the modes that `time.retain` keeps.
+  SlidingState at(std::span<const double> values);
+  Pencil pencil(std::span<const double> values) override { return at(values).pencil; }
+
+ private:
   std::vector<double> kinks(std::size_t key, const std::vector<double>& values, double from,
-                            double to);
+                            double to) override;
 
   SceneFamily family_;
   TimeParameters time_;
   ContactGeometry geometry_;
   std::optional<std::string> start_key_;
-  std::function<void(double)> report_;
 };
+
+/// A scene of any kind whose small motions can be followed along its keys.
+class StabilityScene {
+ public:
+  virtual ~StabilityScene() = default;
+  /// As find_stability_key().
+  virtual NumericKey find_key(const std::string& path, const std::string& option) const = 0;
+  /// The key that is varied where the user names none.
+  virtual std::optional<std::string> default_key() const { return std::nullopt; }
+  virtual std::unique_ptr<StabilityFamily> family(std::vector<NumericKey> keys,
+                                                  ContactGeometry geometry) const = 0;
+  /// The fast way to growth rates over two keys, one field per thread; null where there is none.
+  virtual std::unique_ptr<GrowthField> growth_field(std::vector<NumericKey>) const {
+    return nullptr;
+  }
+  virtual std::string hash() const = 0;
+  virtual std::string resolved() const = 0;
+  /// The scene of bodies, if it is one.
+  virtual const LoadedScene* bodies() const { return nullptr; }
+};
+
+/// Reads the scene, of whichever kind it is.
+/// @throws ConfigError, FileError as the reader of its kind
+std::unique_ptr<StabilityScene> load_stability_scene(const StabilityOptions& options);
+
+/// @throws ConfigError if the key, an end of the range or the number of points is wrong
+KeyRange make_range(const StabilityScene& scene, const RangeOptions& options);
 
 /// Follows eigenvalues along one key of a family. Along a key of whole numbers nothing is put
 /// between the values, there are no branches, and windows end at the first and last value at which

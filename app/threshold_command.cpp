@@ -1,7 +1,9 @@
 // stridor threshold: values of a key at which a scene becomes stable or unstable.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
+#include <numbers>
 
 #include "app/stability.hpp"
 
@@ -13,12 +15,61 @@ struct ThresholdOptions {
   RangeOptions range;
 };
 
+/// Where the scan for roots looks, besides the values asked for.
+constexpr int scanned = 4001;
+
+/// Values from one end of a range to the other, at equal distances and, where both ends are
+/// positive, at equal ratios as well.
+std::vector<double> scan_values(const KeyRange& range) {
+  const double from = range.values.front();
+  const double to = range.values.back();
+  std::vector<double> values = range.values;
+  for (const Spacing spacing : {Spacing::linear, Spacing::logarithmic}) {
+    if (spacing == Spacing::logarithmic && !(from > 0.0)) continue;
+    const std::vector<double> more = spaced_values(range.key, from, to, scanned, spacing);
+    values.insert(values.end(), more.begin(), more.end());
+  }
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+/// Every sign change of a margin that is cheap to compute.
+ExitCode threshold(const ThresholdOptions& options, const KeyRange& range, GrowthField& field) {
+  const auto margin = [&](double value) { return field.margin(value, 0.0); };
+  const std::vector<double> roots = sign_changes(margin, scan_values(range));
+  const bool starts_unstable = margin(range.values.front()) > 0.0;
+  Json object = {{"parameter", range.key.path},
+                 {"from", range.values.front()},
+                 {"to", range.values.back()},
+                 {"roots", Json::array()}};
+  bool is_unstable = starts_unstable;
+  for (const double root : roots) {
+    is_unstable = !is_unstable;
+    const char* beyond = is_unstable ? "unstable" : "stable";
+    const double frequency = field.leading(root, 0.0).imag() / (2.0 * std::numbers::pi);
+    object["roots"].push_back({{"value", root}, {"frequency", frequency}, {"beyond", beyond}});
+    if (!options.stability.common.json)
+      fmt::print("{:<40}  {:>12.6g} cycles per unit of time  {} beyond\n",
+                 value_text(range.key, root), frequency, beyond);
+  }
+  if (options.stability.common.json) {
+    fmt::print("{}\n", object.dump(2));
+  } else if (roots.empty()) {
+    fmt::print("{} everywhere between {} and {}\n", starts_unstable ? "unstable" : "stable",
+               value_text(range.key, range.values.front()),
+               value_text(range.key, range.values.back()));
+  }
+  return ExitCode::done;
+}
+
 ExitCode threshold(const ThresholdOptions& options) {
   const StabilityOptions& stability = options.stability;
-  const LoadedScene loaded = load_scene(stability.scene, stability.common.sets);
-  const KeyRange range = make_range(loaded.scene, options.range);
-  StabilityFamily family(loaded, {range.key}, stability.geometry());
-  const Locus locus = locus_along(family, range.key, 0, {range.values.front()}, range.values,
+  const auto scene = load_stability_scene(stability);
+  const KeyRange range = make_range(*scene, options.range);
+  if (const auto field = scene->growth_field({range.key})) return threshold(options, range, *field);
+  const auto family = scene->family({range.key}, stability.geometry());
+  const Locus locus = locus_along(*family, range.key, 0, {range.values.front()}, range.values,
                                   stability.locus_options());
   const std::vector<StabilityChange> changes = stability_changes(locus);
 

@@ -6,6 +6,7 @@
 #include "io/scene_reader.hpp"
 #include "io/scene_reference.hpp"
 #include "io/schema_json.hpp"
+#include "io/sphere_scene.hpp"
 
 namespace stridor {
 
@@ -56,13 +57,14 @@ bool is_contact_scene(const SceneNode& tree) {
 }
 
 std::string all_scenes_json_schema() {
-  return json_schema(Scene::schema(), ContactScene::schema(), {"profile", "contact_solver"})
+  return json_schema(Scene::schema(), {{&ContactScene::schema(), {"profile", "contact_solver"}},
+                                       {&SphereScene::schema(), {"sphere"}}})
              .dump(2) +
          "\n";
 }
 
 std::string all_scenes_reference() {
-  return scene_reference({&Scene::schema(), &ContactScene::schema()});
+  return scene_reference({&Scene::schema(), &ContactScene::schema(), &SphereScene::schema()});
 }
 
 std::string LoadedContactScene::resolved() const {

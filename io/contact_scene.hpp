@@ -35,7 +35,7 @@ struct ContactScene {
 /// Whether the sections of a scene make it a ContactScene.
 bool is_contact_scene(const SceneNode& tree);
 
-/// JSON Schema and reference page of scenes of both kinds: docs/scene.schema.json and
+/// JSON Schema and reference page of scenes of all kinds: docs/scene.schema.json and
 /// docs/scene_reference.md.
 std::string all_scenes_json_schema();
 std::string all_scenes_reference();

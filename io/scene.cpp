@@ -11,6 +11,7 @@
 #include "io/contact_scene.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_reader.hpp"
+#include "io/sphere_scene.hpp"
 
 namespace stridor {
 namespace {
@@ -222,6 +223,12 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
     throw loaded.located(
         ConfigError(loaded.tree.entry("profile") != nullptr ? "profile" : "contact_solver",
                     "belongs to a scene of a sliding contact, which the verb `contact` computes"));
+  }
+  if (is_sphere_scene(loaded.tree)) {
+    throw loaded.located(ConfigError(
+        "sphere",
+        "belongs to an oscillator on a viscoelastic substrate, for the verbs eig, locus, "
+        "threshold, map, cycle, sweep and run"));
   }
   loaded.scene = read_as<Scene>(loaded.tree);
   return loaded;

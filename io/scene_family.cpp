@@ -60,8 +60,12 @@ bool is_straight_along_drive(const MasterSurface& surface) {
 
 NumericKey find_numeric_key(const Scene& scene, const std::string& path,
                             const std::string& option) {
-  const Schema* schema = &Scene::schema();
-  const void* object = &scene;
+  return find_numeric_key(Scene::schema(), &scene, path, option);
+}
+
+NumericKey find_numeric_key(const Schema& keys, const void* object, const std::string& path,
+                            const std::string& option) {
+  const Schema* schema = &keys;
   std::string walked;
   for (std::size_t begin = 0; begin <= path.size();) {
     const std::size_t end = std::min(path.find('.', begin), path.size());

@@ -24,6 +24,11 @@ struct NumericKey {
 /// @param option where the path was written, for messages
 /// @throws ConfigError with a suggestion if the path leads nowhere, or if the key is not a number
 NumericKey find_numeric_key(const Scene& scene, const std::string& path, const std::string& option);
+/// The same in a scene of any kind.
+/// @param schema its keys
+/// @param object the struct that they describe
+NumericKey find_numeric_key(const Schema& schema, const void* object, const std::string& path,
+                            const std::string& option);
 
 /// A value of a key as the user wrote it, with or without a unit.
 /// @param option where it was written, for messages

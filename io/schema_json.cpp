@@ -284,18 +284,22 @@ Json preamble() {
 
 }  // namespace
 
-Json json_schema(const Schema& usual, const Schema& special,
-                 const std::vector<std::string>& signs) {
+Json json_schema(const Schema& usual, const std::vector<SpecialScene>& specials) {
   Writer writer;
-  const Json usual_reference = writer.definition(usual);
-  const Json special_reference = writer.definition(special);
+  Json choice = writer.definition(usual);
+  for (std::size_t i = specials.size(); i-- > 0;) {
+    Json any = Json::array();
+    for (const std::string& sign : specials[i].signs)
+      any.push_back({{"required", Json::array({sign})}});
+    Json outer = Json::object();
+    outer["if"]["anyOf"] = std::move(any);
+    outer["then"] = writer.definition(*specials[i].schema);
+    outer["else"] = std::move(choice);
+    choice = std::move(outer);
+  }
   Json json = preamble();
   json["type"] = "object";
-  Json any = Json::array();
-  for (const std::string& sign : signs) any.push_back({{"required", Json::array({sign})}});
-  json["if"]["anyOf"] = std::move(any);
-  json["then"] = special_reference;
-  json["else"] = usual_reference;
+  json.update(choice);
   json["$defs"] = writer.definitions();
   return json;
 }

@@ -25,9 +25,14 @@ nlohmann::ordered_json json_schema(const Schema& schema);
 /// The same as text.
 std::string json_schema_text(const Schema& schema);
 
-/// The schema of scenes of two kinds: `special` where one of these keys stands at the top, else
-/// `usual`.
-nlohmann::ordered_json json_schema(const Schema& usual, const Schema& special,
-                                   const std::vector<std::string>& signs);
+/// A kind of scene that is known by the keys at its top.
+struct SpecialScene {
+  const Schema* schema = nullptr;
+  std::vector<std::string> signs;  ///< any one of them says that it is of this kind
+};
+
+/// The schema of scenes of several kinds: the first of `specials` whose sign stands at the top,
+/// else `usual`.
+nlohmann::ordered_json json_schema(const Schema& usual, const std::vector<SpecialScene>& specials);
 
 }  // namespace stridor

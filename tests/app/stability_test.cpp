@@ -71,14 +71,14 @@ TEST(IsGrowing, LeavesRoomForRounding) {
   EXPECT_FALSE(is_growing({{-1.0, 1e5}, 0.0}));
 }
 
-TEST(StabilityFamily, NamesTheValuesWhereThereIsNoEquilibrium) {
+TEST(BodyStabilityFamily, NamesTheValuesWhereThereIsNoEquilibrium) {
   const LoadedScene loaded =
       load_scene(scene_path("beam_on_beam.yaml"), {"contact.assumption=film"});
   const NumericKey start = find_stability_key(loaded.scene, "contact.start", "--parameter");
   // A load that lifts the oblique beam off the cantilever: nothing holds it any more.
-  StabilityFamily family(loaded,
-                         {start, find_stability_key(loaded.scene, "drive.load", "--parameter")},
-                         ContactGeometry::deformed);
+  BodyStabilityFamily family(loaded,
+                             {start, find_stability_key(loaded.scene, "drive.load", "--parameter")},
+                             ContactGeometry::deformed);
   EXPECT_THAT(
       message_of<NumericalError>([&] {
         family.at(std::array{0.0999, 0.2});
@@ -86,11 +86,11 @@ TEST(StabilityFamily, NamesTheValuesWhereThereIsNoEquilibrium) {
       HasSubstr("no sliding equilibrium at contact.start = 0.0999 m, drive.load = 0.2 N: "));
 }
 
-TEST(StabilityFamily, ContactStandsWhereItIsWantedInEitherGeometry) {
+TEST(BodyStabilityFamily, ContactStandsWhereItIsWantedInEitherGeometry) {
   const LoadedScene loaded = load_scene(scene_path("beam_on_beam.yaml"), {});
   const NumericKey start = find_stability_key(loaded.scene, "contact.start", "--parameter");
-  StabilityFamily undeformed(loaded, {start}, ContactGeometry::undeformed);
-  StabilityFamily deformed(loaded, {start}, ContactGeometry::deformed);
+  BodyStabilityFamily undeformed(loaded, {start}, ContactGeometry::undeformed);
+  BodyStabilityFamily deformed(loaded, {start}, ContactGeometry::deformed);
   const SlidingState straight = undeformed.at(std::array{0.048});
   const SlidingState bent = deformed.at(std::array{0.048});
   EXPECT_NEAR(straight.equilibrium.contacts[0].position, 0.048, 1e-12);
@@ -101,15 +101,15 @@ TEST(StabilityFamily, ContactStandsWhereItIsWantedInEitherGeometry) {
   EXPECT_LT(bent.equilibrium.state.drive_displacement, 0.018 + 2e-4);
 }
 
-TEST(StabilityFamily, KinksAreTheMasterNodes) {
+TEST(BodyStabilityFamily, KinksAreTheMasterNodes) {
   const LoadedScene loaded = load_scene(scene_path("beam_on_beam.yaml"), {});
   const NumericKey start = find_stability_key(loaded.scene, "contact.start", "--parameter");
-  StabilityFamily undeformed(loaded, {start}, ContactGeometry::undeformed);
+  BodyStabilityFamily undeformed(loaded, {start}, ContactGeometry::undeformed);
   const auto nodes = undeformed.along(0, {0.03}, 0.0305, 0.0335).kinks;
   ASSERT_EQ(nodes.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_NEAR(nodes[i], 0.031 + 0.001 * static_cast<double>(i), 1e-12);
-  StabilityFamily friction(
+  BodyStabilityFamily friction(
       loaded, {find_stability_key(loaded.scene, "contact.friction.coefficient", "--parameter")},
       ContactGeometry::undeformed);
   EXPECT_TRUE(friction.along(0, {0.3}, 0.1, 0.4).kinks.empty());

@@ -61,7 +61,9 @@ TEST(ContactScene, EitherLoadsOrIndentations) {
 TEST(ContactScene, JsonSchemaChoosesByTheSections) {
   const auto schema = nlohmann::json::parse(all_scenes_json_schema());
   EXPECT_EQ(schema["then"]["$ref"], "#/$defs/viscoelastic_contact");
-  EXPECT_EQ(schema["else"]["$ref"], "#/$defs/scene");
+  EXPECT_EQ(schema["else"]["then"]["$ref"], "#/$defs/viscoelastic_sphere");
+  EXPECT_EQ(schema["else"]["if"]["anyOf"][0]["required"][0], "sphere");
+  EXPECT_EQ(schema["else"]["else"]["$ref"], "#/$defs/scene");
   EXPECT_EQ(schema["if"]["anyOf"][0]["required"][0], "profile");
   const auto& keys = schema["$defs"]["viscoelastic_contact"];
   EXPECT_EQ(keys["additionalProperties"], false);

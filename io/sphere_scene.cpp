@@ -1,0 +1,105 @@
+#include "io/sphere_scene.hpp"
+
+#include <fmt/format.h>
+
+#include "io/resolved_scene.hpp"
+#include "io/scene_reader.hpp"
+
+namespace stridor {
+namespace {
+
+/// Sets a number within nested sections.
+void set_number(const Schema& schema, void* object, const std::string& path, double value) {
+  const std::size_t dot = path.find('.');
+  const Key* key = schema.find(path.substr(0, dot));
+  if (key->kind != KeyKind::section) {
+    if (key->kind == KeyKind::integer) {
+      key->assign(object, static_cast<std::int64_t>(value));
+    } else {
+      key->assign(object, value);
+    }
+    return;
+  }
+  set_number(key->alternatives[0].schema(), key->open(object, "", 0), path.substr(dot + 1), value);
+}
+
+}  // namespace
+
+const Schema& SphereTimeParameters::schema() {
+  static const Schema keys =
+      SchemaOf<SphereTimeParameters>("sphere_time")
+          .real("end", &SphereTimeParameters::end,
+                {.doc = "End of a transient, in multiples of 1/ω_nx.", .range = Range::positive()})
+          .real("settle", &SphereTimeParameters::settle,
+                {.doc = "Time that passes before a limit cycle is sought, in multiples of 1/ω_nx.",
+                 .range = Range::non_negative(),
+                 .optional = true})
+          .real("tolerance", &SphereTimeParameters::tolerance,
+                {.doc = "Relative error of a step of the event-driven integrator.",
+                 .range = Range::between(1e-14, 1e-2),
+                 .optional = true})
+          .real("initial_indentation", &SphereTimeParameters::initial_indentation,
+                {.doc = "Indentation at the start over that in equilibrium; the rest is as in "
+                        "equilibrium.",
+                 .range = Range::any(),
+                 .optional = true});
+  return keys;
+}
+
+const Schema& SphereScene::schema() {
+  static const Schema keys =
+      SchemaOf<SphereScene>("viscoelastic_sphere")
+          .integer("format", &SphereScene::format,
+                   {.doc = "Version of the scene language: 1.", .range = Range::between(1, 1)})
+          .include(&SphereScene::model)
+          .section("time", &SphereScene::time, {.doc = "How motions in time are computed."})
+          .section_list(
+              "expect", &SphereScene::expect,
+              {.doc = "Results that `cycle --verify` checks, e.g. period.", .optional = true});
+  return keys;
+}
+
+bool is_sphere_scene(const SceneNode& tree) {
+  return tree.entry("substructures") == nullptr && tree.entry("sphere") != nullptr;
+}
+
+bool is_sphere_scene_file(const std::string& path) {
+  return is_sphere_scene(read_scene_file(path));
+}
+
+std::string LoadedSphereScene::resolved() const {
+  return resolved_yaml(scene);
+}
+
+std::string LoadedSphereScene::hash() const {
+  return scene_hash(resolved());
+}
+
+LoadedSphereScene load_sphere_scene(const std::string& path, const std::vector<std::string>& sets) {
+  LoadedSphereScene loaded;
+  loaded.path = path;
+  loaded.tree = read_scene_file(path);
+  for (const std::string& assignment : sets) set_value(loaded.tree, assignment);
+  if (!is_sphere_scene(loaded.tree)) {
+    throw ConfigError("sphere", fmt::format("is missing: {} is no scene of an oscillator on a "
+                                            "viscoelastic substrate",
+                                            path));
+  }
+  loaded.scene = read_as<SphereScene>(loaded.tree);
+  return loaded;
+}
+
+SphereScene with_values(const SphereScene& scene, const std::vector<NumericKey>& keys,
+                        std::span<const double> values) {
+  SphereScene changed = scene;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    set_number(SphereScene::schema(), &changed, keys[i].path, values[i]);
+  std::vector<Problem> problems;
+  for (const auto& check : SphereParameters::schema().checks)
+    check(&changed.model.sphere, problems);
+  for (Problem& problem : problems) problem.key = join_path("sphere", problem.key);
+  if (!problems.empty()) throw ConfigError(std::move(problems));
+  return changed;
+}
+
+}  // namespace stridor

@@ -1,0 +1,166 @@
+// The verbs on a sphere on a viscoelastic substrate, as a user would run them. Numbers are of an
+// independent program for the same equations.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/program.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+using Settings = std::vector<std::string>;
+
+Json run_verb(const std::string& verb, const Settings& settings, const Settings& more = {}) {
+  std::vector<std::string> arguments{verb, scene_path("viscoelastic_sphere.yaml"), "--json"};
+  for (const std::string& setting : settings) {
+    arguments.push_back("--set");
+    arguments.push_back(setting);
+  }
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const ProgramResult result = Program(arguments).run();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return Json::parse(result.out);
+}
+
+std::vector<double> thresholds(const std::string& parameter, const std::string& from,
+                               const std::string& to, const Settings& settings) {
+  const Json object =
+      run_verb("threshold", settings, {"--parameter", parameter, "--from", from, "--to", to});
+  std::vector<double> values;
+  for (const Json& root : object["roots"]) values.push_back(root["value"]);
+  return values;
+}
+
+void expect_relative(const std::vector<double>& found, const std::vector<double>& expected,
+                     double tolerance) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i)
+    EXPECT_NEAR(found[i], expected[i], tolerance * expected[i]);
+}
+
+TEST(SphereProgram, FlutterThresholdsOfTheUndampedSystem) {
+  const auto shear = [](const char* load) {
+    return thresholds(
+        "sphere.shear_strength", "1e-5", "0.5",
+        {"small_motion=undamped", "sphere.speed=1e-4", std::string("sphere.normal_load=") + load});
+  };
+  expect_relative(shear("7.5e-6"), {0.0365980094}, 2e-9);
+  // PPH, Fig. 7.
+  expect_relative(shear("1e-8"), {3.87771e-3}, 2e-6);
+  expect_relative(shear("1e-6"), {1.59687e-2}, 2e-6);
+  expect_relative(shear("1e-4"), {0.122590}, 4e-6);
+  const auto load = [](const char* strength, const char* speed) {
+    return thresholds("sphere.normal_load", "1e-9", "1e-2",
+                      {"small_motion=undamped", std::string("sphere.speed=") + speed,
+                       std::string("sphere.shear_strength=") + strength});
+  };
+  expect_relative(load("0.01", "1.58e-4"), {7.04748915e-8}, 2e-9);
+  // PPH, Fig. 8.
+  expect_relative(load("0.01", "1e-4"), {2.49478e-7}, 2e-6);
+  expect_relative(load("0.1", "1e-4"), {6.53730e-5}, 2e-6);
+}
+
+TEST(SphereProgram, ThresholdsOfTheWholeSystemWithEitherNormalForce) {
+  // PPH, Fig. 11.
+  const auto with = [](const char* force) {
+    return thresholds("sphere.shear_strength", "1e-5", "0.1",
+                      {"sphere.speed=4e-4", std::string("friction_normal_force=") + force});
+  };
+  expect_relative(with("applied"), {3.841820e-4, 2.10002393e-3}, 2e-7);
+  expect_relative(with("contact"), {1.98313455e-3}, 3e-9);
+}
+
+TEST(SphereProgram, ThresholdIsWhereTheLocusCrosses) {
+  const Json locus = run_verb(
+      "locus", {"sphere.speed=4e-4"},
+      {"--parameter", "sphere.shear_strength", "--from", "1e-4", "--to", "5e-3", "--points", "20"});
+  ASSERT_GE(locus["unstable"].size(), 2u);
+  EXPECT_NEAR(locus["unstable"][0]["to"].get<double>(), 3.841820e-4, 1e-10);
+  EXPECT_NEAR(locus["unstable"][1]["from"].get<double>(), 2.10002393e-3, 1e-11);
+}
+
+TEST(SphereProgram, NoFlutterWherePositiveCouplingIsMissing) {
+  for (const char* angle : {"sphere.angle=0", "sphere.angle=-45 deg"}) {
+    EXPECT_TRUE(thresholds("sphere.shear_strength", "1e-5", "1",
+                           {"small_motion=undamped", "sphere.speed=1e-4", angle})
+                    .empty());
+  }
+}
+
+TEST(SphereProgram, EigenvaluesInBothUnitsAndByBothMethods) {
+  const Json secular = run_verb("eig", {});
+  const Json dense = run_verb("eig", {}, {"--method", "dense"});
+  ASSERT_EQ(secular["eigenvalues"].size(), 2u);
+  for (int i = 0; i < 2; ++i) {
+    for (int part = 0; part < 2; ++part) {
+      EXPECT_NEAR(secular["eigenvalues"][i][part].get<double>(),
+                  dense["eigenvalues"][i][part].get<double>(), 1e-11);
+    }
+  }
+  EXPECT_EQ(secular["stable"], false);
+  const Json& state = secular["equilibrium"];
+  EXPECT_NEAR(state["dimensional"]["x"].get<double>(), 0.002 * state["x"].get<double>(), 1e-17);
+  // The balance of forces, in units of the load.
+  const double x = state["x"];
+  const double y = state["y"];
+  EXPECT_NEAR(1.5 * x + 0.5 * y, state["friction_force"].get<double>(), 1e-14);
+  EXPECT_NEAR(1.5 * y + 0.5 * x, 1.0 - state["normal_force"].get<double>(), 1e-14);
+}
+
+TEST(SphereProgram, MapAgreesWithThresholdAndEigenvalues) {
+  const Json map = run_verb("map", {"sphere.speed=4e-4"},
+                            {"--x", "sphere.normal_load", "1e-4", "1e-3", "4", "--y",
+                             "sphere.shear_strength", "1e-4", "1e-2", "30", "--y-scale", "log"});
+  ASSERT_EQ(map["growth"].size(), 30u);
+  for (const std::size_t row : {0u, 12u, 29u}) {
+    const Json eig = run_verb("eig", {"sphere.speed=4e-4", "sphere.normal_load=4e-4",
+                                      "sphere.shear_strength=" + map["y"][row].dump()});
+    double largest = -1e300;
+    for (const Json& s : eig["eigenvalues"]) largest = std::max(largest, s[0].get<double>());
+    EXPECT_NEAR(map["growth"][row][1].get<double>(), largest, 1e-11 * (1.0 + std::abs(largest)));
+  }
+  // The boundary passes through the thresholds at every load of the grid.
+  const std::vector<double> at = thresholds("sphere.shear_strength", "1e-4", "1e-2",
+                                            {"sphere.speed=4e-4", "sphere.normal_load=4e-4"});
+  for (const double value : at) {
+    double nearest = 1e300;
+    for (const Json& line : map["boundary"]) {
+      for (const Json& point : line) {
+        if (std::abs(point[0].get<double>() - 4e-4) < 1e-15)
+          nearest = std::min(nearest, std::abs(point[1].get<double>() - value));
+      }
+    }
+    EXPECT_LT(nearest, 1e-13);
+  }
+}
+
+TEST(SphereProgram, RefusesWhatDoesNotFit) {
+  const std::string scene = scene_path("viscoelastic_sphere.yaml");
+  const auto error = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin() + 1, scene);
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 2);
+    return result.err;
+  };
+  EXPECT_THAT(error({"eig", "--set", "sphere.normal_force=0.1"}),
+              HasSubstr("says the same as `normal_load`"));
+  EXPECT_THAT(
+      error({"locus", "--parameter", "sphere.normal_force", "--from", "0.1", "--to", "0.2"}),
+      HasSubstr("says the same as `normal_load`"));
+  EXPECT_THAT(error({"locus", "--parameter", "time.end", "--from", "1", "--to", "2"}),
+              HasSubstr("no influence"));
+  EXPECT_THAT(error({"locus", "--from", "1", "--to", "2"}), HasSubstr("name a key"));
+  EXPECT_THAT(error({"eig", "--explain"}), HasSubstr("is for scenes of bodies"));
+  EXPECT_THAT(error({"compare"}), HasSubstr("belongs to an oscillator"));
+}
+
+}  // namespace
+}  // namespace stridor
