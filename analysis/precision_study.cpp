@@ -101,7 +101,7 @@ PrecisionPlan make_plan(const System& system, const TimeParameters& time, double
   std::vector<double> retained;
   for (const double frequency : parameters.retained) {
     PrecisionMethod method{Integrator::exact, frequency, own, ladder(1, plan.stable_steps / 2)};
-    const int modes = num_moving_modes(system, method.at(1, time, interval));
+    const int modes = num_moving_modes(system, method.at(half, time, interval));
     if (modes == 0 || modes == all_modes) continue;
     retained.push_back(frequency);
     plan.methods.push_back(method);

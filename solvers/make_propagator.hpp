@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -11,7 +12,10 @@
 
 namespace stridor {
 
-/// The system with the modes that `time.retain` keeps in its bodies; the others are their residual.
+/// Circular frequency up to which modes move, rad/s; infinite where all do. The lower of that of
+/// `time.retain` and, with exact propagation, of what the step resolves, ω h = 2.
+double retained_frequency(const TimeParameters& time);
+/// The system with those modes in its bodies; the others are their residual.
 System retained(const System& system, const TimeParameters& time);
 /// How many modes that leaves moving.
 Eigen::Index num_retained(const ModalBody& body, const TimeParameters& time);
@@ -21,10 +25,26 @@ Eigen::Index num_retained(const ModalBody& body, const TimeParameters& time);
 /// Load patterns of a body that follows the drive: the drive's load on its guided support (N), and
 /// the acceleration of the drive (m/s²), which acts as −base_inertia. Other bodies have none.
 ///
+/// @param surplus   prompt_surplus()
 /// @param num_slots slots for contacts, two per point
 /// @param loads     amplitudes of the patterns at t = 0
 std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimeParameters& time,
-                                            int num_slots, std::span<const double> loads);
+                                            std::optional<double> surplus, int num_slots,
+                                            std::span<const double> loads);
+
+/// How much more than the scheme says the bodies answer at once: the least δ with which the
+/// contacts of a system are stable (docs/theory.md, 3.5), 4 P − W positive definite at every node
+/// of the master, with a margin, where P is the flexibility with which the bodies answer at once
+/// and W that of the next step.
+/// @param system with the modes that time.retain keeps
+/// @return nothing where bodies do not answer at once: the central difference with all modes
+std::optional<double> prompt_surplus(const System& system, const TimeParameters& time);
+
+/// Whether no body of the system starts with a displacement or a velocity.
+bool starts_at_rest(const System& system);
+
+/// Propagator::foresee_start() with what the body starts with.
+void foresee_start(Propagator& propagator, const SystemBody& body, const TimeParameters& time);
 
 /// Gives it the displacements and velocities that the body starts with. To be called when its slots
 /// watch the rows that they start with, whose increments follow from the velocities.

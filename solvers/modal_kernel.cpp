@@ -1,6 +1,6 @@
 #include "solvers/modal_kernel.hpp"
 
-#define STRIDOR_INLINE inline __attribute__((always_inline))
+#include "solvers/slots.hpp"
 
 namespace stridor {
 namespace {
@@ -45,7 +45,7 @@ STRIDOR_INLINE auto& field(Double* block, ModalField which, std::size_t part) {
 /// register.
 template <class Vector, int num_slots>
 STRIDOR_INLINE void fused_pass(double* blocks, std::size_t num_blocks, const double* const* rows,
-                               const double* forces, double* predicted) {
+                               const double* forces, double lookahead, double* seen) {
   Vector sums[num_slots + 1]{};  // one more, for no array is empty
   for (std::size_t b = 0; b < num_blocks; ++b) {
     double* const block = blocks + b * num_modal_fields * modal_block;
@@ -69,12 +69,12 @@ STRIDOR_INLINE void fused_pass(double* blocks, std::size_t num_blocks, const dou
                            field<Vector>(block, ModalField::load, part));
       field<Vector>(block, ModalField::position, part) = position;
       field<Vector>(block, ModalField::increment, part) = next;
-      const Vector ahead = position + next;
+      const Vector ahead = position + lookahead * next;
 #pragma GCC unroll 8
       for (int j = 0; j < num_slots; ++j) sums[j] += row[j] * ahead;
     }
   }
-  for (int j = 0; j < num_slots; ++j) predicted[j] = sum_of(sums[j]);
+  for (int j = 0; j < num_slots; ++j) seen[j] = sum_of(sums[j]);
 }
 
 template <class Vector>
@@ -104,7 +104,7 @@ STRIDOR_INLINE double gather(const double* blocks, std::size_t num_blocks, Modal
 
 template <class Vector>
 STRIDOR_INLINE void advance(double* blocks, std::size_t num_blocks, const double* const* rows,
-                            const double* forces, int num_slots, double* predicted) {
+                            const double* forces, int num_slots, double lookahead, double* seen) {
   // Slots beyond the fused ones stream the rows once more; a body rarely has any.
   const int fused = num_slots >= 8 ? 8 : num_slots >= 4 ? 4 : num_slots >= 2 ? 2 : 0;
   for (int j = fused; j < num_slots; ++j) {
@@ -118,21 +118,22 @@ STRIDOR_INLINE void advance(double* blocks, std::size_t num_blocks, const double
     }
   }
   if (fused == 8) {
-    fused_pass<Vector, 8>(blocks, num_blocks, rows, forces, predicted);
+    fused_pass<Vector, 8>(blocks, num_blocks, rows, forces, lookahead, seen);
   } else if (fused == 4) {
-    fused_pass<Vector, 4>(blocks, num_blocks, rows, forces, predicted);
+    fused_pass<Vector, 4>(blocks, num_blocks, rows, forces, lookahead, seen);
   } else if (fused == 2) {
-    fused_pass<Vector, 2>(blocks, num_blocks, rows, forces, predicted);
+    fused_pass<Vector, 2>(blocks, num_blocks, rows, forces, lookahead, seen);
   } else {
-    fused_pass<Vector, 0>(blocks, num_blocks, rows, forces, predicted);
+    fused_pass<Vector, 0>(blocks, num_blocks, rows, forces, lookahead, seen);
   }
   for (int j = fused; j < num_slots; ++j) {
-    predicted[j] = gather<Vector>(blocks, num_blocks, ModalField::position, rows[j]) +
-                   gather<Vector>(blocks, num_blocks, ModalField::increment, rows[j]);
+    seen[j] = gather<Vector>(blocks, num_blocks, ModalField::position, rows[j]) +
+              lookahead * gather<Vector>(blocks, num_blocks, ModalField::increment, rows[j]);
   }
 }
 
-using Advance = void (*)(double*, std::size_t, const double* const*, const double*, int, double*);
+using Advance = void (*)(double*, std::size_t, const double* const*, const double*, int, double,
+                         double*);
 using Gather = double (*)(const double*, std::size_t, ModalField, const double*);
 
 struct Kernel {
@@ -141,8 +142,8 @@ struct Kernel {
 };
 
 void advance_portable(double* blocks, std::size_t num_blocks, const double* const* rows,
-                      const double* forces, int num_slots, double* predicted) {
-  advance<Vector4>(blocks, num_blocks, rows, forces, num_slots, predicted);
+                      const double* forces, int num_slots, double lookahead, double* seen) {
+  advance<Vector4>(blocks, num_blocks, rows, forces, num_slots, lookahead, seen);
 }
 double gather_portable(const double* blocks, std::size_t num_blocks, ModalField which,
                        const double* row) {
@@ -154,8 +155,8 @@ double gather_portable(const double* blocks, std::size_t num_blocks, ModalField 
 #define STRIDOR_V4 __attribute__((target("arch=x86-64-v4,prefer-vector-width=512")))
 STRIDOR_V3
 void advance_v3(double* blocks, std::size_t num_blocks, const double* const* rows,
-                const double* forces, int num_slots, double* predicted) {
-  advance<Vector4>(blocks, num_blocks, rows, forces, num_slots, predicted);
+                const double* forces, int num_slots, double lookahead, double* seen) {
+  advance<Vector4>(blocks, num_blocks, rows, forces, num_slots, lookahead, seen);
 }
 STRIDOR_V3
 double gather_v3(const double* blocks, std::size_t num_blocks, ModalField which,
@@ -164,8 +165,8 @@ double gather_v3(const double* blocks, std::size_t num_blocks, ModalField which,
 }
 STRIDOR_V4
 void advance_v4(double* blocks, std::size_t num_blocks, const double* const* rows,
-                const double* forces, int num_slots, double* predicted) {
-  advance<Vector8>(blocks, num_blocks, rows, forces, num_slots, predicted);
+                const double* forces, int num_slots, double lookahead, double* seen) {
+  advance<Vector8>(blocks, num_blocks, rows, forces, num_slots, lookahead, seen);
 }
 STRIDOR_V4
 double gather_v4(const double* blocks, std::size_t num_blocks, ModalField which,
@@ -193,8 +194,8 @@ const Kernel kernel = kernel_of_this_processor();
 }  // namespace
 
 void advance_modes(double* blocks, std::size_t num_blocks, const double* const* rows,
-                   const double* forces, int num_slots, double* predicted) {
-  kernel.advance(blocks, num_blocks, rows, forces, num_slots, predicted);
+                   const double* forces, int num_slots, double lookahead, double* seen) {
+  kernel.advance(blocks, num_blocks, rows, forces, num_slots, lookahead, seen);
 }
 
 double gather_modes(const double* blocks, std::size_t num_blocks, ModalField field,

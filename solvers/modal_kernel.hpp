@@ -31,15 +31,17 @@ constexpr std::size_t modal_index(std::size_t mode, ModalField field) {
 ///   d_{n+1} = d*_{n+1} + e Σ_j row_j f_j        correct by the forces at the slots
 ///   q_{n+1} = q_n + d_{n+1}
 ///   d*_{n+2} = s d_{n+1} − k q_{n+1} + e p      predict
-///   predicted_j = row_j · (q_{n+1} + d*_{n+2})  gather
+///   seen_j = row_j · (q_{n+1} + a d*_{n+2})     gather, a = 1 for the prediction, 0 for the
+///   present
 ///
 /// @param blocks     num_blocks blocks, 64-byte aligned, unused entries zero
 /// @param rows       num_slots pointers to 64-byte aligned rows of num_blocks·modal_block entries
 /// @param forces     num_slots forces at t_n
-/// @param predicted  num_slots displacements predicted for t_{n+2}
+/// @param lookahead  a
+/// @param seen       num_slots displacements
 /// Vectorised for the processor at hand; results differ between processors by rounding only.
 void advance_modes(double* blocks, std::size_t num_blocks, const double* const* rows,
-                   const double* forces, int num_slots, double* predicted);
+                   const double* forces, int num_slots, double lookahead, double* seen);
 
 /// row · field over all blocks.
 double gather_modes(const double* blocks, std::size_t num_blocks, ModalField field,

@@ -41,14 +41,22 @@ void foresee_modes(const double* blocks, std::size_t num_modes, const double* co
 
 }  // namespace
 
+StepCoefficients step_coefficients(Integrator scheme, double omega, double damping, double step,
+                                   double surplus) {
+  return scheme == Integrator::exact ? exact_propagation(omega, damping, step, surplus)
+                                     : central_difference(omega, damping, step, surplus);
+}
+
 ModalRecurrence::ModalRecurrence(const ModalBody& body, const Eigen::MatrixXd& patterns,
-                                 Integrator scheme, double step, int num_slots, double alpha,
-                                 std::span<const double> loads, Residual residual)
-    : Propagator(num_slots, std::move(residual)),
+                                 Integrator scheme, double step, std::optional<double> surplus,
+                                 int num_slots, double alpha, std::span<const double> loads,
+                                 Residual residual)
+    : Propagator(num_slots, surplus.has_value(), std::move(residual)),
       size_(static_cast<std::size_t>(body.size())),
       num_blocks_((size_ + modal_block - 1) / modal_block),
       scheme_(scheme),
       step_(step),
+      surplus_(surplus.value_or(0.0)),
       alpha_(std::numeric_limits<double>::quiet_NaN()),
       blocks_(num_blocks_ * modal_block * num_modal_fields),
       row_table_(num_blocks_ * modal_block * static_cast<std::size_t>(body.rows.rows())),
@@ -56,7 +64,8 @@ ModalRecurrence::ModalRecurrence(const ModalBody& body, const Eigen::MatrixXd& p
       beta_(body.damping.beta),
       patterns_(patterns),
       amplitudes_(static_cast<std::size_t>(patterns.cols()), 0.0),
-      load_gain_(size_),
+      coefficients_(size_),
+      prompt_(size_, 0.0),
       slot_rows_(static_cast<std::size_t>(num_slots)) {
   for (Eigen::Index row = 0; row < body.rows.rows(); ++row) {
     double* const padded =
@@ -92,14 +101,15 @@ Propagator::Motion ModalRecurrence::motion(const double* forces) const {
   for (std::size_t i = 0; i < size_; ++i) {
     const auto mode = static_cast<Eigen::Index>(i);
     const auto field = [&](ModalField f) { return blocks_[modal_index(i, f)]; };
-    const double q = field(ModalField::position);
-    motion.displacement(mode) = q;
+    const double r = field(ModalField::position);
+    const double force = modal_force(i, forces);
+    motion.displacement(mode) = r + prompt_[i] * force;
     // The prediction of set_body_motion(), solved for the velocity. A mode that turns round within
     // a step does not show its velocity; it gets the mean one of the step.
     const auto [rate, share] = start_coefficients(i);
     const double by_motion = field(ModalField::increment) +
-                             share * (field(ModalField::pull) * q - field(ModalField::load)) -
-                             (share - 1.0) * field(ModalField::gain) * modal_force(i, forces);
+                             share * (field(ModalField::pull) * r - field(ModalField::load)) -
+                             (share - 1.0) * field(ModalField::gain) * force;
     motion.velocity(mode) = by_motion / (rate > 0.25 * step_ ? rate : step_);
   }
   return motion;
@@ -112,16 +122,21 @@ void ModalRecurrence::foresee(const double* forces, std::span<double> position,
 }
 
 double ModalRecurrence::predicted_displacement(int row) const {
-  return body_displacement(row) +
-         gather_modes(blocks_.data(), num_blocks_, ModalField::increment, row_data(row));
+  const double present = body_displacement(row);
+  if (is_prompt() && !is_starting()) return present;
+  return present + gather_modes(blocks_.data(), num_blocks_, ModalField::increment, row_data(row));
 }
 
 double ModalRecurrence::row_compliance(int row_a, int row_b) const {
   double sum = 0.0;
-  for (std::size_t i = 0; i < size_; ++i) {
-    sum += row_data(row_a)[i] * blocks_[modal_index(i, ModalField::gain)] * row_data(row_b)[i];
-  }
+  for (std::size_t i = 0; i < size_; ++i)
+    sum += row_data(row_a)[i] * modal_compliance(i) * row_data(row_b)[i];
   return sum;
+}
+
+double ModalRecurrence::modal_compliance(std::size_t mode) const {
+  if (is_starting()) return start_coefficients(mode).share * coefficients_[mode].answer();
+  return is_prompt() ? prompt_[mode] : blocks_[modal_index(mode, ModalField::gain)];
 }
 
 void ModalRecurrence::set_body_loads(std::span<const double> amplitudes) {
@@ -130,39 +145,43 @@ void ModalRecurrence::set_body_loads(std::span<const double> amplitudes) {
     double sum = 0.0;
     for (std::size_t k = 0; k < amplitudes.size(); ++k)
       sum += patterns_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) * amplitudes[k];
-    number(i, ModalField::load) = load_gain_[i] * sum;
+    number(i, ModalField::load) = coefficients_[i].answer() * sum;
   }
 }
 
 StepCoefficients ModalRecurrence::coefficients(std::size_t mode) const {
   const double omega = omega_(static_cast<Eigen::Index>(mode));
   const double damping = alpha_ + beta_ * omega * omega;
-  return scheme_ == Integrator::exact ? exact_propagation(omega, damping, step_)
-                                      : central_difference(omega, damping, step_);
+  return step_coefficients(scheme_, omega, damping, step_, surplus_);
 }
 
 void ModalRecurrence::set_mass_damping(double alpha) {
   if (alpha == alpha_) return;
   alpha_ = alpha;
   for (std::size_t i = 0; i < size_; ++i) {
-    const StepCoefficients c = coefficients(i);
-    number(i, ModalField::keep) = c.keep;
-    number(i, ModalField::pull) = c.pull;
-    load_gain_[i] = c.gain;
+    coefficients_[i] = coefficients(i);
+    number(i, ModalField::keep) = coefficients_[i].keep;
+    number(i, ModalField::pull) = coefficients_[i].pull;
   }
   set_body_loads(amplitudes_);
   // The forces at t_n still act as the prediction from t_n supposes.
-  are_gains_due_ = scheme_ == Integrator::exact;
+  are_gains_due_ = scheme_ == Integrator::exact || is_prompt();
 }
 
 void ModalRecurrence::renew_gains() {
-  for (std::size_t i = 0; i < size_; ++i) number(i, ModalField::gain) = load_gain_[i];
+  for (std::size_t i = 0; i < size_; ++i) {
+    number(i, ModalField::gain) = coefficients_[i].gain;
+    prompt_[i] = coefficients_[i].prompt;
+  }
   renew_compliances();
   are_gains_due_ = false;
 }
 
 void ModalRecurrence::advance_body(const double* forces, double* predicted) {
-  advance_modes(blocks_.data(), num_blocks_, slot_rows_.data(), forces, num_slots(), predicted);
+  // What answers at once is seen at t_n, the rest at t_{n+1}.
+  const double lookahead = is_prompt() ? 0.0 : 1.0;
+  advance_modes(blocks_.data(), num_blocks_, slot_rows_.data(), forces, num_slots(), lookahead,
+                predicted);
   if (are_gains_due_) renew_gains();
 }
 
@@ -175,13 +194,27 @@ void ModalRecurrence::set_body_motion(const Eigen::VectorXd& displacement,
   if (are_gains_due_) renew_gains();
   for (std::size_t i = 0; i < size_; ++i) {
     const auto mode = static_cast<Eigen::Index>(i);
-    const double q = displacement(mode);
+    const double force = modal_force(i, forces);
+    const double r = displacement(mode) - prompt_[i] * force;
     const auto [rate, share] = start_coefficients(i);
-    number(i, ModalField::position) = q;
+    number(i, ModalField::position) = r;
     number(i, ModalField::increment) =
         rate * velocity(mode) -
-        share * (number(i, ModalField::pull) * q - number(i, ModalField::load)) +
-        (share - 1.0) * number(i, ModalField::gain) * modal_force(i, forces);
+        share * (number(i, ModalField::pull) * r - number(i, ModalField::load)) +
+        (share - 1.0) * number(i, ModalField::gain) * force;
+  }
+}
+
+void ModalRecurrence::foresee_body_start(const Eigen::VectorXd& displacement,
+                                         const Eigen::VectorXd& velocity) {
+  if (are_gains_due_) renew_gains();
+  for (std::size_t i = 0; i < size_; ++i) {
+    const auto mode = static_cast<Eigen::Index>(i);
+    const auto [rate, share] = start_coefficients(i);
+    number(i, ModalField::position) = displacement(mode);
+    number(i, ModalField::increment) =
+        rate * velocity(mode) -
+        share * (number(i, ModalField::pull) * displacement(mode) - number(i, ModalField::load));
   }
 }
 

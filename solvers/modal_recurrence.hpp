@@ -1,6 +1,8 @@
 // Two-step schemes in modal coordinates: one recurrence per mode.
 #pragma once
 
+#include <optional>
+
 #include "solvers/aligned_array.hpp"
 #include "solvers/modal_kernel.hpp"
 #include "solvers/propagator.hpp"
@@ -10,13 +12,19 @@
 
 namespace stridor {
 
+/// Coefficients of a mode by a scheme; parameters as exact_propagation().
+StepCoefficients step_coefficients(Integrator scheme, double omega, double damping, double step,
+                                   double surplus);
+
 /// A two-step scheme, mode by mode, in increment form (docs/theory.md, 3.2):
 ///
-///   d_{n+1} = s d_n − k q_n + e (p_n + rowᵀ f_n),  q_{n+1} = q_n + d_{n+1}
+///   d_{n+1} = s d_n − k r_n + e rowᵀ f_n + (e + k g) p_n,  r_{n+1} = r_n + d_{n+1},
+///   q_n = r_n + g rowᵀ f_n
 ///
-/// with the coefficients of two_step_scheme.hpp for c = α(t_n) + β ω².
+/// with the coefficients of two_step_scheme.hpp for c = α(t_n) + β ω²; g = 0 and r = q where the
+/// body does not answer at once.
 ///
-/// The increment is carried beside the position: q_{n+1} − q_n taken from positions would lose
+/// The increment is carried beside the position: r_{n+1} − r_n taken from positions would lose
 /// ε/(ω h)² of relative accuracy.
 class ModalRecurrence : public Propagator {
  public:
@@ -24,13 +32,14 @@ class ModalRecurrence : public Propagator {
   /// @param patterns  one column per load pattern, modal coordinates
   /// @param scheme    a scheme of two steps
   /// @param step      h, s
+  /// @param surplus   δ of the scheme; absent: the body does not answer at once
   /// @param num_slots points watched, x and y counted apart
   /// @param alpha     α at t = 0, 1/s
   /// @param loads     amplitudes at t = 0
   /// @param residual  of the modes that the body leaves out
   ModalRecurrence(const ModalBody& body, const Eigen::MatrixXd& patterns, Integrator scheme,
-                  double step, int num_slots, double alpha, std::span<const double> loads,
-                  Residual residual = {});
+                  double step, std::optional<double> surplus, int num_slots, double alpha,
+                  std::span<const double> loads, Residual residual = {});
 
   Motion motion(const double* forces) const override;
   void foresee(const double* forces, std::span<double> position,
@@ -46,6 +55,8 @@ class ModalRecurrence : public Propagator {
   void set_body_loads(std::span<const double> amplitudes) override;
   void set_body_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,
                        const double* forces) override;
+  void foresee_body_start(const Eigen::VectorXd& displacement,
+                          const Eigen::VectorXd& velocity) override;
   double initial_increment(int row, const Eigen::VectorXd& velocity) const override;
   void save_body(State& state, const std::string& prefix) const override;
   void load_body(const State& state, const std::string& prefix) override;
@@ -54,6 +65,8 @@ class ModalRecurrence : public Propagator {
   void renew_gains();
   StepCoefficients coefficients(std::size_t mode) const;
   StartCoefficients start_coefficients(std::size_t mode) const;
+  /// W of a mode.
+  double modal_compliance(std::size_t mode) const;
   /// Σ_j row_j f_j of a mode.
   double modal_force(std::size_t mode, const double* forces) const;
   double& number(std::size_t mode, ModalField field) { return blocks_[modal_index(mode, field)]; }
@@ -67,15 +80,17 @@ class ModalRecurrence : public Propagator {
   std::size_t num_blocks_;
   Integrator scheme_;
   double step_;
+  double surplus_;  ///< 0 where it does not answer at once
   double alpha_;
   AlignedArray blocks_;     ///< state and coefficients of every mode
   AlignedArray row_table_;  ///< padded rows, one after the other
   Eigen::VectorXd omega_;
   double beta_;
   Eigen::MatrixXd patterns_;
-  std::vector<double> amplitudes_;  ///< of the loads
-  std::vector<double> load_gain_;   ///< e of the damping set last
-  bool are_gains_due_ = false;      ///< those of a changed damping hold from the next step on
+  std::vector<double> amplitudes_;              ///< of the loads
+  std::vector<StepCoefficients> coefficients_;  ///< of the damping set last
+  std::vector<double> prompt_;                  ///< g
+  bool are_gains_due_ = false;  ///< those of a changed damping hold from the next step on
   std::vector<const double*> slot_rows_;
 };
 

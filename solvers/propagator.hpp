@@ -11,21 +11,27 @@
 
 namespace stridor {
 
-/// Marches one body with a two-step scheme: u_{n+1} = u*_{n+1} + W f_n.
+/// Marches one body with a two-step scheme under forces at its slots.
 ///
 /// The contacts see a body through its slots: each slot watches one row of ReducedBody::rows (the
-/// displacement of a point in one direction). After construction and after every `advance` the body
-/// stands at t_n with u*_{n+1} predicted from the loads at t_n; `advance` takes the slot forces at
-/// t_n, corrects to u_{n+1} and predicts u*_{n+2}. Public functions keep the slots, the private
-/// hooks compute.
+/// displacement of a point in one direction). They seek the forces f_n that make the displacements
+/// at one instant what they allow; there u = u* + W f_n with u* the prediction without them. After
+/// construction and after every `advance` the body stands at t_n with u* predicted. `settle` takes
+/// the forces found, after which everything at t_n is known, and `advance` goes on under them.
 ///
-/// Where a body leaves modes out, their static answer is part of it (docs/theory.md, 3.6): of the
-/// residual displacement at t_{n+1}, R ((3/2 + θ) f_n − (1 + θ) f_{n−1} + ½ f_{n−2}), the first
-/// term belongs to W, the others and the answer to the loads to u*; `expected` has R f_{n−1}
-/// instead.
+/// That instant is t_{n+1} where the body answers in the next step (W = e of the scheme), and t_n
+/// where part of the body answers at once: the prompt parts g of its modes, and the modes that it
+/// leaves out with their flexibility R,
+///
+///   W = Σ φ g φᵀ + w R,   u* = Σ φ r_n + R_loads + (1 − w) R f~_{n−1},
+///   f~_n = w f_n + (1 − w) f~_{n−1},   w = h/(h + β)
+///
+/// where f~ lags behind f by β, the damping of the modes left out (docs/theory.md, 3.5 and 3.6).
+///
+/// Public functions keep the slots, the private hooks compute.
 class Propagator {
  public:
-  /// The modes that a body leaves out.
+  /// The modes that a body which answers at once leaves out.
   struct Residual {
     ModalResidual modes;            ///< empty where there are none
     Eigen::MatrixXd load_patterns;  ///< displacement of every row per amplitude of a load
@@ -43,29 +49,43 @@ class Propagator {
   /// Cost: a few products of the length of the body.
   void watch(int slot, int row);
 
-  /// u*_{n+1} at a slot, m.
+  /// Whether W is what the forces do at once, at t_n.
+  bool is_prompt() const { return is_prompt_; }
+
+  /// u* at a slot, m.
   double predicted(int slot) const { return predicted_[at(slot)]; }
-  /// The same with what the modes left out are expected to add under the contact forces, m.
-  double expected(int slot) const { return (expected_.empty() ? predicted_ : expected_)[at(slot)]; }
-  /// u_n at a slot, m.
+  /// The same with the prompt answer to the last forces, where the slots are expected, m.
+  double expected(int slot) const { return expected()[at(slot)]; }
+  /// u_n at a slot, m, after `settle`.
   double current(int slot) const { return current_[at(slot)]; }
-  /// u_n − u_{n−1} at a slot, m, for the row it watched when `advance` was called.
+  /// u_n − u_{n−1} at a slot, m, after `settle`; that of the step before where a slot was given
+  /// another row since.
   double increment(int slot) const { return increment_[at(slot)]; }
-  /// W between slots: displacement of `a` at t_{n+1} per force on `b` at t_n, m/N.
-  double compliance(int a, int b) const { return compliance_[at(a) * rows_.size() + at(b)]; }
+  /// W between slots: displacement of `a` per force on `b` at t_n, m/N.
+  double compliance(int a, int b) const { return compliance_[at(b) * rows_.size() + at(a)]; }
+  /// The same for all slots, in their order.
+  const double* predicted() const { return predicted_.data(); }
+  const double* expected() const { return (is_prompt_ ? expected_ : predicted_).data(); }
+  const double* current() const { return current_.data(); }
   const double* increments() const { return increment_.data(); }
+  /// W, column after column.
   const double* compliances() const { return compliance_.data(); }
 
   /// Makes u_n = u and its rate v, in the coordinates of the body, and predicts anew from the loads
   /// and the damping set last.
-  /// @param forces that will act on the slots at t_n, as far as they are known
+  /// @param forces on the slots at t_n; they matter to a body that answers at once
   void set_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,
                   const double* forces);
+  /// The first part of a start of which the forces are not known, for a body that answers at once:
+  /// until the next `set_motion`, u* and W are those of t_{n+1} under forces constant in the step.
+  void foresee_start(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity);
 
-  /// @param forces on the slots at t_n, N
+  /// Everything at t_n is known with the forces on the slots at t_n, N.
+  void settle(const double* forces);
+  /// @param forces those of `settle`
   void advance(const double* forces);
 
-  /// u_n of any row, m. Cost: one product of the length of the body.
+  /// u_n of any row, m, after `settle`. Cost: a few products of the length of the body.
   double displacement(int row) const;
 
   /// u_n and its rate in the coordinates of the body: by the scheme itself where it knows the
@@ -98,13 +118,15 @@ class Propagator {
   void load(const State& state, const std::string& prefix);
 
  protected:
-  explicit Propagator(int num_slots) : Propagator(num_slots, Residual{}) {}
-  Propagator(int num_slots, Residual residual);
+  explicit Propagator(int num_slots) : Propagator(num_slots, false, Residual{}) {}
+  Propagator(int num_slots, bool is_prompt, Residual residual);
 
   /// Sets u_n = u_{n−1} = 0 and predicts u*_1; the constructor of a derived class calls it last.
   void start();
 
   const std::vector<int>& rows() const { return rows_; }
+  /// Whether u* and W are those of foresee_start().
+  bool is_starting() const { return is_starting_; }
   /// W is another from here on.
   void renew_compliances();
 
@@ -117,23 +139,27 @@ class Propagator {
 
   static std::size_t at(int slot) { return static_cast<std::size_t>(slot); }
   bool has_residual() const { return residual_.modes.flexibility.size() > 0; }
+  void place_slots();
   void renew_compliance(int slot);
-  void add_residual(int slot);
-  void add_residuals();
-  double residual_flexibility(int row, const RowForces& forces) const;
-  /// Of a row by the loads.
+  double prompt_compliance(int row_a, int row_b) const;
+  /// By the loads and the forces before t_n, of the modes left out at a row.
+  double lagging_residual(int row) const;
+  /// Of the modes left out at a row.
   double load_residual(int row) const;
 
   virtual void advance_body(const double* forces, double* predicted) = 0;
-  /// u_n of a row.
+  /// u_n of a row, without what answers at once.
   virtual double body_displacement(int row) const = 0;
-  /// u*_{n+1} of a row.
+  /// u* of a row.
   virtual double predicted_displacement(int row) const = 0;
   virtual double row_compliance(int row_a, int row_b) const = 0;
   virtual void slot_changed(int slot) = 0;
   virtual void set_body_loads(std::span<const double> amplitudes) = 0;
   virtual void set_body_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,
                                const double* forces) = 0;
+  /// u* and W by is_starting() for the motion at t_n; for a body that answers at once.
+  virtual void foresee_body_start(const Eigen::VectorXd& /*displacement*/,
+                                  const Eigen::VectorXd& /*velocity*/) {}
   /// u_n − u_{n−1} of a row as set_body_motion() has left it.
   virtual double initial_increment(int row, const Eigen::VectorXd& velocity) const = 0;
   virtual void save_body(State& state, const std::string& prefix) const = 0;
@@ -145,18 +171,18 @@ class Propagator {
   std::vector<double> increment_;
   std::vector<double> compliance_;
 
+  bool is_prompt_;
+  bool is_starting_ = false;
+  bool has_new_rows_ = false;  ///< since the last `settle`
+  std::vector<double> expected_;
+  RowForces acting_;  ///< f of the last `settle`
+
   Residual residual_;
-  double present_share_ = 0.0;      ///< of f_n in the force that the modes left out answer to
-  double last_share_ = 0.0;         ///< of f_{n−1} in it
+  double share_ = 1.0;              ///< w
   std::vector<double> amplitudes_;  ///< of the loads
-  RowForces last_;                  ///< of the last `advance`
-  RowForces last_but_one_;
-  int advances_on_rows_ = 0;  ///< since a slot got another row; 2: both are of the present rows
-  std::vector<double> slot_flexibility_;  ///< R between slots
-  std::vector<double> slot_load_;         ///< load_residual() of the slots
-  std::vector<double> by_last_;           ///< R f_{n−1} at the slots
-  std::vector<double> by_last_but_one_;   ///< R f_{n−2} at the slots
-  std::vector<double> expected_;          ///< as predicted_ where empty: without residual
+  std::vector<double> slot_load_;   ///< load_residual() of the slots
+  RowForces lagging_;               ///< f~
+  std::vector<double> slot_lag_;    ///< (1 − w) R between slots
 };
 
 }  // namespace stridor

@@ -4,11 +4,10 @@
 
 namespace stridor {
 
-StepCoefficients central_difference(double omega, double damping, double step) {
-  return {1.0 - step * damping, step * step * omega * omega, step * step};
-}
+namespace {
 
-StepCoefficients exact_propagation(double omega, double damping, double step) {
+/// s, k and, as gain, the whole static answer k/ω² of a step.
+StepCoefficients exact_free_motion(double omega, double damping, double step) {
   const double half = 0.5 * damping;
   if (omega == 0.0) {
     const double lost = -std::expm1(-damping * step);
@@ -31,6 +30,38 @@ StepCoefficients exact_propagation(double omega, double damping, double step) {
   return {decay * decay, pull, pull / (omega * omega)};
 }
 
+/// g without surplus, over h².
+double prompt_share(double pull, double x, double lag) {
+  // What the subtraction below would cancel is left out: ε/x² against x².
+  constexpr double smallest = 1e-4;
+  if (x > smallest) {
+    const double loss = lag == 0.0 ? 1.0 : -lag / std::expm1(-lag);
+    return (1.0 - pull / (x * x) * loss) / (x * x);
+  }
+  // The limit without stiffness, 1/(z (e^z − 1)) − 1/z² + 1/(2z).
+  const double square = lag * lag;
+  if (std::abs(lag) < 0.1) return 1.0 / 12.0 - square * (1.0 / 720.0 - square / 30240.0);
+  return (1.0 / std::expm1(lag) - 1.0 / lag + 0.5) / lag;
+}
+
+/// Takes an answer at once out of that of the step.
+StepCoefficients with_prompt(StepCoefficients c, double prompt) {
+  return {c.keep, c.pull, c.gain - c.pull * prompt, prompt};
+}
+
+}  // namespace
+
+StepCoefficients central_difference(double omega, double damping, double step, double surplus) {
+  const double square = step * step;
+  return with_prompt({1.0 - step * damping, square * omega * omega, square}, surplus * square);
+}
+
+StepCoefficients exact_propagation(double omega, double damping, double step, double surplus) {
+  const StepCoefficients c = exact_free_motion(omega, damping, step);
+  const double share = prompt_share(c.pull, omega * step, damping * step);
+  return with_prompt(c, step * step * share + surplus * c.gain);
+}
+
 StartCoefficients central_difference_start(double damping, double step) {
   return {step * (1.0 - step * damping), 1.0};
 }
@@ -38,7 +69,7 @@ StartCoefficients central_difference_start(double damping, double step) {
 StartCoefficients exact_start(double omega, double damping, double step) {
   const double half = 0.5 * damping;
   const double square_frequency = (omega - half) * (omega + half);
-  const double gain = exact_propagation(omega, damping, step).gain;
+  const double gain = exact_free_motion(omega, damping, step).gain;
   if (omega == 0.0) {
     // Velocity v exp(−c t) under no force; h²/2 − c h³/6 + … per unit force.
     const double x = damping * step;

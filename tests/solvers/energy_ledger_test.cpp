@@ -51,7 +51,7 @@ class FreeBody {
   FreeBody(const SystemBody& body, const TimeParameters& time)
       : ledger({{body}, {}, {}, {}}, time),
         step_(time.step),
-        propagator_(make_propagator(body, time, 0, {})) {
+        propagator_(make_propagator(body, time, std::nullopt, 0, {})) {
     start_motion(*propagator_, body, time, nullptr);
   }
   void march(int num_steps) {

@@ -1,0 +1,117 @@
+// One slave point on its master while the bodies move.
+#pragma once
+
+#include <array>
+
+#include "coupling/system.hpp"
+#include "solvers/propagator.hpp"
+
+namespace stridor {
+
+/// What a direction of a contact sees of its bodies: entries at the slots of the slave (x, y) and
+/// of the nodes of the master's stencil (x, y each), e·(u_C − Σ w_k u_k) for the direction e.
+/// Forces along e act through the same entries.
+struct SlotRow {
+  std::array<double, 2> slave{};
+  std::array<double, 2 * max_stencil> master{};
+};
+
+/// Displacement per force between two contacts: rows of the normal and the tangent of one, W, and
+/// those of another.
+struct ContactCompliance {
+  double nn = 0.0;  ///< n_i W n_j
+  double nt = 0.0;  ///< n_i W t_j
+  double tn = 0.0;
+  double tt = 0.0;
+};
+
+/// Kinematics of a contact (docs/theory.md, 2.2): where the slave point is over its master, with
+/// which normal and tangent, and what gap, slip and forces are at the slots of the bodies.
+class SlidingPoint {
+ public:
+  /// Watches the rows of the slave and of the first segment.
+  /// @param surface, slave, master referenced from here on
+  /// @param slave_slot, master_slot first of its slots on either body
+  /// @param drive_share how far slave against master follow the drive: 1, 0 or −1
+  SlidingPoint(const ContactPoint& point, const MasterSurface& surface, Propagator& slave,
+               Propagator& master, int slave_slot, int master_slot, double drive_share);
+
+  /// Finds segment and projection with the displacements expected. Starts from the segment of the
+  /// last step and never turns back: on a sagging polyline the projections on two neighbours can
+  /// both point at each other.
+  /// @return false where the slave has left the end of the surface
+  bool find(double drive_at);
+  /// The projection of the present motion on the present segment.
+  void stand(double drive_at);
+
+  /// Distance of the slave from its projection along the normal, with the displacements predicted,
+  /// m.
+  double predicted_gap(double drive_at) const;
+  /// How far the displacements predicted are ahead of those expected along the tangent, m.
+  double predicted_slip() const;
+  /// Relative velocity along the tangent times the step, from the increments, m.
+  double increment() const;
+  /// The drive's part in the motion of the slave against the master along the tangent.
+  double driven(double drive) const { return drive_share_ * drive * projection_.tangent.x(); }
+
+  /// Place along the undeformed master, as far as slip is concerned, m: the projection itself;
+  /// under Subs-a, whose projection is prescribed, that and the displacements along it.
+  double place() const;
+  /// Deformed length of the master along the tangent by undeformed length.
+  double stretch() const;
+  /// How far the rough surface stands out, m.
+  double roughness() const { return surface_->roughness_at(segment_, projection_.weights); }
+  /// Of the present motion: distance from the deformed surface along its own normal, m.
+  double present_gap(double drive_at) const;
+  /// Of the present motion along the undeformed master, m.
+  double present_position(double drive_at) const;
+  /// Of the last projection along the undeformed master, m.
+  double position() const { return surface_->arc_at(segment_, projection_.weights); }
+
+  /// W of this contact per force of another.
+  ContactCompliance compliance(const SlidingPoint& other) const;
+  /// Writes λ_n and λ_t as forces on the slots of either body.
+  void apply(double normal, double tangential, double* slave_forces, double* master_forces) const;
+
+  const ContactPoint& point() const { return point_; }
+  const MasterSurface& surface() const { return *surface_; }
+  int segment() const { return segment_; }
+  const Projection& projection() const { return projection_; }
+  /// Takes up a saved place.
+  void restore(int segment, double xi, const Eigen::Vector2d& tangent);
+
+ private:
+  /// Slave and master as seen from the undeformed T1: far from the origin the gap would drown in
+  /// the rounding of the positions.
+  struct Place {
+    Eigen::Vector2d slave;
+    SurfacePiece master;
+  };
+
+  void watch(int segment);
+  Place place_of(const double* slave, const double* master, double drive_at) const;
+  Projection project_place(const Place& place, double drive_at) const;
+  void set_rows();
+  /// From the projection to the slave without displacements, along a direction.
+  double undeformed_arm(const Eigen::Vector2d& direction, double drive_at) const;
+  double relative(const SlotRow& row, const double* slave, const double* master) const;
+
+  ContactPoint point_;
+  const MasterSurface* surface_;
+  Propagator* slave_;
+  Propagator* master_;
+  int slave_slot_;
+  int master_slot_;
+  double drive_share_;
+  int last_segment_;
+
+  int segment_ = -1;
+  SurfacePiece undeformed_;
+  Eigen::Vector2d slave_origin_ = Eigen::Vector2d::Zero();  ///< undeformed slave from T1, m
+  Place place_;                                             ///< of the last find() or stand()
+  Projection projection_;
+  SlotRow normal_;
+  SlotRow tangent_;
+};
+
+}  // namespace stridor
