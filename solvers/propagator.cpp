@@ -13,22 +13,56 @@ namespace {
 STRIDOR_CLONES
 void correct(std::size_t n, const double* compliance, const double* forces, const double* current,
              double* __restrict corrected, double* __restrict increment) {
-  add_product(n, compliance, forces, corrected);
-  for (std::size_t a = 0; a < n; ++a) increment[a] = corrected[a] - current[a];
+  for_size(n, [&](auto size) STRIDOR_INLINE_LAMBDA {
+    add_product(size, compliance, forces, corrected);
+    for (std::size_t a = 0; a < size; ++a) increment[a] = corrected[a] - current[a];
+  });
 }
 
-/// Adds what acts at once to the displacements of the body: (1 − w) R f~ and the answer of the
-/// modes left out to the loads; and to these W f for what is expected.
+/// What Propagator::settle() does with slots that have kept their rows, and the answer W f at once.
+template <class Size>
+STRIDOR_INLINE void settle_slots(Size n, const double* compliance, const double* forces,
+                                 const double* predicted, double share, double* lagging,
+                                 double* __restrict acting, double* __restrict answer,
+                                 double* __restrict current, double* __restrict increment) {
+  product(n, compliance, forces, answer);
+  for (std::size_t a = 0; a < n; ++a) {
+    const double settled = predicted[a] + answer[a];
+    increment[a] = settled - current[a];
+    current[a] = settled;
+    acting[a] = forces[a];
+  }
+  if (lagging == nullptr) return;
+  for (std::size_t a = 0; a < n; ++a) lagging[a] += share * (forces[a] - lagging[a]);
+}
 STRIDOR_CLONES
-void expect(std::size_t n, const double* lag, const double* lagging_forces, const double* load,
-            const double* compliance, const double* forces, double* __restrict predicted,
-            double* __restrict expected) {
+void settle_all(std::size_t n, const double* compliance, const double* forces,
+                const double* predicted, double share, double* lagging, double* acting,
+                double* answer, double* current, double* increment) {
+  for_size(n, [&](auto size) STRIDOR_INLINE_LAMBDA {
+    settle_slots(size, compliance, forces, predicted, share, lagging, acting, answer, current,
+                 increment);
+  });
+}
+
+/// Adds what acts at once to the displacements of the body, (1 − w) R f~ and the answer of the
+/// modes left out to the loads; with the last answer to the forces, what is expected.
+template <class Size>
+STRIDOR_INLINE void expect(Size n, const double* lag, const double* lagging, const double* load,
+                           const double* answer, double* __restrict predicted,
+                           double* __restrict expected) {
   if (lag != nullptr) {
     for (std::size_t a = 0; a < n; ++a) predicted[a] += load[a];
-    add_product(n, lag, lagging_forces, predicted);
+    add_product(n, lag, lagging, predicted);
   }
-  for (std::size_t a = 0; a < n; ++a) expected[a] = predicted[a];
-  add_product(n, compliance, forces, expected);
+  for (std::size_t a = 0; a < n; ++a) expected[a] = predicted[a] + answer[a];
+}
+STRIDOR_CLONES
+void expect_all(std::size_t n, const double* lag, const double* lagging, const double* load,
+                const double* answer, double* predicted, double* expected) {
+  for_size(n, [&](auto size) STRIDOR_INLINE_LAMBDA {
+    expect(size, lag, lagging, load, answer, predicted, expected);
+  });
 }
 
 }  // namespace
@@ -44,6 +78,7 @@ Propagator::Propagator(int num_slots, bool is_prompt, Residual residual)
   if (!is_prompt_) return;
   expected_ = predicted_;
   acting_ = {rows_, std::vector<double>(at(num_slots), 0.0)};
+  answer_ = predicted_;
   if (!has_residual()) return;
   share_ = residual_.step / (residual_.step + residual_.modes.beta);
   amplitudes_.assign(static_cast<std::size_t>(residual_.load_patterns.cols()), 0.0);
@@ -176,28 +211,27 @@ void Propagator::renew_compliances() {
 void Propagator::settle(const double* forces) {
   if (!is_prompt_) return;
   const std::size_t n = rows_.size();
-  if (has_new_rows_) {
-    // The increments stay: where the new rows were before is not known.
-    std::copy(predicted_.begin(), predicted_.end(), current_.begin());
-    add_product(n, compliance_.data(), forces, current_.data());
-    acting_.rows = rows_;
-    if (has_residual()) lagging_ = {rows_, {forces, forces + n}};
-  } else {
-    correct(n, compliance_.data(), forces, current_.data(), predicted_.data(), increment_.data());
-    std::swap(current_, predicted_);
-    for (std::size_t j = 0; j < lagging_.forces.size(); ++j)
-      lagging_.forces[j] += share_ * (forces[j] - lagging_.forces[j]);
-  }
-  std::copy_n(forces, n, acting_.forces.begin());
+  if (has_new_rows_) take_new_rows(forces);
+  settle_all(n, compliance_.data(), forces, predicted_.data(), share_,
+             lagging_.forces.empty() ? nullptr : lagging_.forces.data(), acting_.forces.data(),
+             answer_.data(), current_.data(), increment_.data());
+  if (has_new_rows_) std::copy(last_increment_.begin(), last_increment_.end(), increment_.begin());
   has_new_rows_ = false;
+}
+
+/// Where the new rows were before is not known, so the increments stay; and what lags has settled.
+void Propagator::take_new_rows(const double* forces) {
+  last_increment_ = increment_;
+  acting_.rows = rows_;
+  if (has_residual()) lagging_ = {rows_, {forces, forces + rows_.size()}};
 }
 
 void Propagator::advance(const double* forces) {
   const std::size_t n = rows_.size();
   if (is_prompt_) {
     advance_body(forces, predicted_.data());
-    expect(n, slot_lag_.empty() ? nullptr : slot_lag_.data(), lagging_.forces.data(),
-           slot_load_.data(), compliance_.data(), forces, predicted_.data(), expected_.data());
+    expect_all(n, slot_lag_.empty() ? nullptr : slot_lag_.data(), lagging_.forces.data(),
+               slot_load_.data(), answer_.data(), predicted_.data(), expected_.data());
     return;
   }
   correct(n, compliance_.data(), forces, current_.data(), predicted_.data(), increment_.data());
@@ -214,6 +248,7 @@ void Propagator::save(State& state, const std::string& prefix) const {
     // After `settle` all forces are on the present rows.
     state.put(prefix + "expected", expected_);
     state.put(prefix + "acting", acting_.forces);
+    state.put(prefix + "answer", answer_);
     if (has_residual()) state.put(prefix + "lagging", lagging_.forces);
   }
   save_body(state, prefix);
@@ -232,6 +267,7 @@ void Propagator::load(const State& state, const std::string& prefix) {
   state.get(prefix + "expected", expected_);
   acting_.rows = rows_;
   state.get(prefix + "acting", acting_.forces);
+  state.get(prefix + "answer", answer_);
   if (!has_residual()) return;
   lagging_.rows = rows_;
   state.get(prefix + "lagging", lagging_.forces);

@@ -140,6 +140,7 @@ class Propagator {
   static std::size_t at(int slot) { return static_cast<std::size_t>(slot); }
   bool has_residual() const { return residual_.modes.flexibility.size() > 0; }
   void place_slots();
+  void take_new_rows(const double* forces);
   void renew_compliance(int slot);
   double prompt_compliance(int row_a, int row_b) const;
   /// By the loads and the forces before t_n, of the modes left out at a row.
@@ -175,7 +176,9 @@ class Propagator {
   bool is_starting_ = false;
   bool has_new_rows_ = false;  ///< since the last `settle`
   std::vector<double> expected_;
-  RowForces acting_;  ///< f of the last `settle`
+  RowForces acting_;            ///< f of the last `settle`
+  std::vector<double> answer_;  ///< W f at the slots
+  std::vector<double> last_increment_;
 
   Residual residual_;
   double share_ = 1.0;              ///< w

@@ -64,6 +64,7 @@ struct Simulation::Implementation {
   double step;
   bool is_prompt = false;  ///< bodies answer at once (Propagator::is_prompt)
   bool is_foreseeing_start = false;
+  bool slides_only = true;  ///< no contact tracks its slip
   std::int64_t index = 0;
   std::vector<std::unique_ptr<Propagator>> bodies;
   std::vector<Eigen::MatrixXd> shapes;  ///< of the modes; empty in reduced coordinates
@@ -124,6 +125,7 @@ struct Simulation::Implementation {
       contact.tracks_slip = contact.unilateral_from < std::numeric_limits<double>::infinity();
       contact.constant_from = point.friction_rise.constant_from();
       contact.rise = point.friction_rise.value(contact.constant_from);
+      slides_only = slides_only && !contact.tracks_slip;
       contacts.push_back(std::move(contact));
     }
   }
@@ -279,12 +281,18 @@ struct Simulation::Implementation {
   }
 
   /// Rows n and t of contact i against columns n and t of contact j. Forces are λ_n along the
-  /// normal and λ_t against the tangent of the slave.
+  /// normal and λ_t against the tangent of the slave. Where no contact ever sticks or lifts off,
+  /// the column of λ_n holds what its friction does as well.
   void fill_delassus(std::size_t i, std::size_t j) {
-    const ContactCompliance w = contacts[i].sliding.compliance(contacts[j].sliding);
     const auto row = static_cast<Eigen::Index>(2 * i);
     const auto column = static_cast<Eigen::Index>(2 * j);
     Eigen::MatrixXd& delassus = solver.delassus();
+    if (slides_only) {
+      delassus(row, column) = contacts[i].sliding.sliding_compliance(
+          contacts[j].sliding, local[j].direction * local[j].sliding_friction);
+      return;
+    }
+    const ContactCompliance w = contacts[i].sliding.compliance(contacts[j].sliding);
     delassus(row, column) = w.nn;
     delassus(row, column + 1) = -w.nt;
     delassus(row + 1, column) = -w.tn;

@@ -6,46 +6,65 @@
 namespace stridor {
 namespace {
 
-/// Part of a compliance that goes through one body: rows of one contact at `a` entries of it, of
-/// another at `b`.
-/// @param compliance W at the first of both, columns `stride` apart
-template <int a, int b>
-STRIDOR_INLINE void add_through(const double* compliance, std::size_t stride,
-                                const double* normal_a, const double* tangent_a,
-                                const double* normal_b, const double* tangent_b,
-                                ContactCompliance& sum) {
-  double by_normal[a] = {};
-  double by_tangent[a] = {};
-  for (int j = 0; j < b; ++j) {
-    const double* const column = compliance + static_cast<std::size_t>(j) * stride;
-    for (int i = 0; i < a; ++i) {
-      by_normal[i] += column[i] * normal_b[j];
-      by_tangent[i] += column[i] * tangent_b[j];
-    }
+/// Entries of a contact at the slots of one body.
+struct Entries {
+  int slot;
+  std::size_t count;
+  const double* normal;
+  const double* tangent;
+};
+
+/// Calls work(size of a, size of b), as constants where both are common.
+template <class Work>
+STRIDOR_INLINE void for_sizes(std::size_t a, std::size_t b, const Work& work) {
+  if (a == 2 && b == 2) {
+    work(FixedSize<2>(), FixedSize<2>());
+  } else if (a == 4 && b == 4) {
+    work(FixedSize<4>(), FixedSize<4>());
+  } else {
+    work(a, b);
   }
-  sum.nn += dot<a>(normal_a, by_normal);
-  sum.nt += dot<a>(normal_a, by_tangent);
-  sum.tn += dot<a>(tangent_a, by_normal);
-  sum.tt += dot<a>(tangent_a, by_tangent);
 }
 
-/// The same for any even numbers of entries.
-STRIDOR_CLONES
-void add_through(int a, int b, const double* compliance, std::size_t stride, const double* normal_a,
-                 const double* tangent_a, const double* normal_b, const double* tangent_b,
-                 ContactCompliance& sum) {
-  if (a == 2 && b == 2) {
-    add_through<2, 2>(compliance, stride, normal_a, tangent_a, normal_b, tangent_b, sum);
-  } else if (a == 4 && b == 4) {
-    add_through<4, 4>(compliance, stride, normal_a, tangent_a, normal_b, tangent_b, sum);
-  } else {
-    for (int j = 0; j < b; j += 2) {
-      for (int i = 0; i < a; i += 2) {
-        add_through<2, 2>(compliance + static_cast<std::size_t>(j) * stride + i, stride,
-                          normal_a + i, tangent_a + i, normal_b + j, tangent_b + j, sum);
-      }
-    }
+/// e_a W e_b through one body.
+/// @param block W at the first of both, columns `stride` apart
+template <class SizeA, class SizeB>
+STRIDOR_INLINE double through(SizeA a, SizeB b, const double* block, std::size_t stride,
+                              const double* entries_a, const double* entries_b) {
+  double moved[2 * max_stencil] = {};
+  for (std::size_t j = 0; j < b; ++j) {
+    for (std::size_t i = 0; i < a; ++i) moved[i] += block[j * stride + i] * entries_b[j];
   }
+  return dot(a, entries_a, moved);
+}
+
+STRIDOR_CLONES
+void add_through(const double* block, std::size_t stride, const Entries& a, const Entries& b,
+                 ContactCompliance& sum) {
+  for_sizes(a.count, b.count, [&](auto size_a, auto size_b) STRIDOR_INLINE_LAMBDA {
+    sum.nn += through(size_a, size_b, block, stride, a.normal, b.normal);
+    sum.nt += through(size_a, size_b, block, stride, a.normal, b.tangent);
+    sum.tn += through(size_a, size_b, block, stride, a.tangent, b.normal);
+    sum.tt += through(size_a, size_b, block, stride, a.tangent, b.tangent);
+  });
+}
+
+STRIDOR_CLONES
+double sliding_through(const double* block, std::size_t stride, const Entries& a, const Entries& b,
+                       double friction) {
+  double sum = 0.0;
+  for_sizes(a.count, b.count, [&](auto size_a, auto size_b) STRIDOR_INLINE_LAMBDA {
+    double pull[2 * max_stencil];
+    for (std::size_t j = 0; j < size_b; ++j) pull[j] = b.normal[j] - friction * b.tangent[j];
+    sum = through(size_a, size_b, block, stride, a.normal, pull);
+  });
+  return sum;
+}
+
+/// W at slots of a body, columns num_slots apart.
+const double* block_of(const Propagator& body, int slot_a, int slot_b) {
+  return body.compliances() +
+         static_cast<std::size_t>(slot_b) * static_cast<std::size_t>(body.num_slots()) + slot_a;
 }
 
 }  // namespace
@@ -78,11 +97,10 @@ void SlidingPoint::watch(int segment) {
   }
 }
 
-SlidingPoint::Place SlidingPoint::place_of(const double* slave, const double* master,
-                                           double drive_at) const {
+void SlidingPoint::set_place(const double* slave, const double* master, double drive_at,
+                             Place& place) const {
   const double* const s = slave + slave_slot_;
   const double* const m = master + master_slot_;
-  Place place;
   place.slave = {slave_origin_.x() + drive_share_ * drive_at + s[0], slave_origin_.y() + s[1]};
   place.master.stencil = undeformed_.stencil;
   for (int k = 0; k < undeformed_.stencil.count; ++k) {
@@ -90,7 +108,6 @@ SlidingPoint::Place SlidingPoint::place_of(const double* slave, const double* ma
     place.master.nodes[static_cast<std::size_t>(k)] = {node.x() + m[2 * k],
                                                        node.y() + m[2 * k + 1]};
   }
-  return place;
 }
 
 Projection SlidingPoint::project_place(const Place& place, double drive_at) const {
@@ -110,7 +127,7 @@ Projection SlidingPoint::project_place(const Place& place, double drive_at) cons
 bool SlidingPoint::find(double drive_at) {
   int heading = 0;
   while (true) {
-    place_ = place_of(slave_->expected(), master_->expected(), drive_at);
+    set_place(slave_->expected(), master_->expected(), drive_at, place_);
     projection_ = project_place(place_, drive_at);
     const double xi = projection_.xi;
     const int wanted = xi > 1.0 ? 1 : xi < 0.0 ? -1 : 0;
@@ -129,7 +146,7 @@ bool SlidingPoint::find(double drive_at) {
 }
 
 void SlidingPoint::stand(double drive_at) {
-  place_ = place_of(slave_->current(), master_->current(), drive_at);
+  set_place(slave_->current(), master_->current(), drive_at, place_);
   projection_ = project_place(place_, drive_at);
   set_rows();
 }
@@ -155,8 +172,11 @@ double SlidingPoint::undeformed_arm(const Eigen::Vector2d& direction, double dri
 }
 
 double SlidingPoint::relative(const SlotRow& row, const double* slave, const double* master) const {
-  return dot<2>(row.slave.data(), slave + slave_slot_) +
-         dot(2 * undeformed_.stencil.count, row.master.data(), master + master_slot_);
+  const double* const m = master + master_slot_;
+  const double of_slave = dot(FixedSize<2>(), row.slave.data(), slave + slave_slot_);
+  if (undeformed_.stencil.count == 2) return of_slave + dot(FixedSize<4>(), row.master.data(), m);
+  return of_slave +
+         dot(2 * static_cast<std::size_t>(undeformed_.stencil.count), row.master.data(), m);
 }
 
 double SlidingPoint::predicted_gap(double drive_at) const {
@@ -188,45 +208,49 @@ double SlidingPoint::stretch() const {
 }
 
 double SlidingPoint::present_gap(double drive_at) const {
-  const Place now = place_of(slave_->current(), master_->current(), drive_at);
+  Place now;
+  set_place(slave_->current(), master_->current(), drive_at, now);
   const Projection here = project(now.master, now.slave, projection_.xi);
   return here.normal.dot(now.slave - now.master.combine(here.weights)) -
          surface_->roughness_at(segment_, here.weights);
 }
 
 double SlidingPoint::present_position(double drive_at) const {
-  const Place now = place_of(slave_->current(), master_->current(), drive_at);
+  Place now;
+  set_place(slave_->current(), master_->current(), drive_at, now);
   return surface_->arc_at(segment_, project(now.master, now.slave, projection_.xi).weights);
+}
+
+template <class Visit>
+void SlidingPoint::for_shared_bodies(const SlidingPoint& other, const Visit& visit) const {
+  const auto on_slave = [](const SlidingPoint& of) {
+    return Entries{of.slave_slot_, 2, of.normal_.slave.data(), of.tangent_.slave.data()};
+  };
+  const auto on_master = [](const SlidingPoint& of) {
+    return Entries{of.master_slot_, 2 * static_cast<std::size_t>(of.undeformed_.stencil.count),
+                   of.normal_.master.data(), of.tangent_.master.data()};
+  };
+  if (slave_ == other.slave_) visit(*slave_, on_slave(*this), on_slave(other));
+  if (master_ == other.master_) visit(*master_, on_master(*this), on_master(other));
+  if (slave_ == other.master_) visit(*slave_, on_slave(*this), on_master(other));
+  if (master_ == other.slave_) visit(*master_, on_master(*this), on_slave(other));
 }
 
 ContactCompliance SlidingPoint::compliance(const SlidingPoint& other) const {
   ContactCompliance sum;
-  const auto add = [&](const Propagator& body, int slot_i, int count_i, const double* normal_i,
-                       const double* tangent_i, int slot_j, int count_j, const double* normal_j,
-                       const double* tangent_j) {
-    const auto stride = static_cast<std::size_t>(body.num_slots());
-    add_through(count_i, count_j,
-                body.compliances() + static_cast<std::size_t>(slot_j) * stride + slot_i, stride,
-                normal_i, tangent_i, normal_j, tangent_j, sum);
-  };
-  const int count = 2 * undeformed_.stencil.count;
-  const int other_count = 2 * other.undeformed_.stencil.count;
-  if (slave_ == other.slave_) {
-    add(*slave_, slave_slot_, 2, normal_.slave.data(), tangent_.slave.data(), other.slave_slot_, 2,
-        other.normal_.slave.data(), other.tangent_.slave.data());
-  }
-  if (master_ == other.master_) {
-    add(*master_, master_slot_, count, normal_.master.data(), tangent_.master.data(),
-        other.master_slot_, other_count, other.normal_.master.data(), other.tangent_.master.data());
-  }
-  if (slave_ == other.master_) {
-    add(*slave_, slave_slot_, 2, normal_.slave.data(), tangent_.slave.data(), other.master_slot_,
-        other_count, other.normal_.master.data(), other.tangent_.master.data());
-  }
-  if (master_ == other.slave_) {
-    add(*master_, master_slot_, count, normal_.master.data(), tangent_.master.data(),
-        other.slave_slot_, 2, other.normal_.slave.data(), other.tangent_.slave.data());
-  }
+  for_shared_bodies(other, [&](const Propagator& body, const Entries& a, const Entries& b) {
+    add_through(block_of(body, a.slot, b.slot), static_cast<std::size_t>(body.num_slots()), a, b,
+                sum);
+  });
+  return sum;
+}
+
+double SlidingPoint::sliding_compliance(const SlidingPoint& other, double friction) const {
+  double sum = 0.0;
+  for_shared_bodies(other, [&](const Propagator& body, const Entries& a, const Entries& b) {
+    sum += sliding_through(block_of(body, a.slot, b.slot),
+                           static_cast<std::size_t>(body.num_slots()), a, b, friction);
+  });
   return sum;
 }
 

@@ -70,6 +70,9 @@ class SlidingPoint {
 
   /// W of this contact per force of another.
   ContactCompliance compliance(const SlidingPoint& other) const;
+  /// n_i W (n_j − κ t_j): displacement along this normal per normal force of another contact that
+  /// slides with κ = χ μ. Cost: less than half of compliance().
+  double sliding_compliance(const SlidingPoint& other, double friction) const;
   /// Writes λ_n and λ_t as forces on the slots of either body.
   void apply(double normal, double tangential, double* slave_forces, double* master_forces) const;
 
@@ -88,8 +91,11 @@ class SlidingPoint {
     SurfacePiece master;
   };
 
+  /// Calls visit(body, entries of this, entries of the other) for every body that both share.
+  template <class Visit>
+  void for_shared_bodies(const SlidingPoint& other, const Visit& visit) const;
   void watch(int segment);
-  Place place_of(const double* slave, const double* master, double drive_at) const;
+  void set_place(const double* slave, const double* master, double drive_at, Place& place) const;
   Projection project_place(const Place& place, double drive_at) const;
   void set_rows();
   /// From the projection to the slave without displacements, along a direction.
