@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "app/command.hpp"
+#include "app/sphere_commands.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
 #include "core/version.hpp"
@@ -53,6 +54,8 @@ int run_program(int argc, char** argv) {
   add_map_command(program, action, command);
   add_contact_command(program, action, command);
   add_fit_command(program, action);
+  add_cycle_command(program, action, command);
+  add_sweep_command(program, action, command);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -8,8 +8,10 @@
 #include "app/command.hpp"
 #include "app/expectations.hpp"
 #include "app/progress.hpp"
+#include "app/sphere_run.hpp"
 #include "app/transient.hpp"
 #include "core/errors.hpp"
+#include "io/sphere_scene.hpp"
 
 namespace stridor {
 namespace {
@@ -73,6 +75,10 @@ void print_summary(const Json& results, const std::string& output) {
 }
 
 ExitCode run(const RunOptions& options) {
+  if (is_sphere_scene_file(options.scene)) {
+    return run_sphere(
+        {options.common, options.scene, options.output, options.verify, options.command_line});
+  }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   Transient transient(loaded,
                       {options.output, options.common.force ? Overwrite::yes : Overwrite::no,

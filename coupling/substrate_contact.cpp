@@ -33,8 +33,9 @@ SubstrateForces SubstrateContact::at(double indentation, double slip, double dir
   return forces;
 }
 
-double SubstrateContact::static_strength(double indentation) const {
-  return shear * law->at(indentation / indentation_unit, 0.0).area.value;
+SubstrateForces::Force SubstrateContact::static_strength(double indentation) const {
+  const LawValue area = law->at(indentation / indentation_unit, 0.0).area;
+  return {shear * area.value, shear * area.by_indentation / indentation_unit, 0.0};
 }
 
 }  // namespace stridor

@@ -47,9 +47,9 @@ struct SubstrateContact {
   ///                    the other side by rounding
   SubstrateForces at(double indentation, double slip, double direction) const;
 
-  /// Largest tangential force that keeps the contact sticking: a Ã(ŷ, 0). Only the adhesive part
-  /// has static strength.
-  double static_strength(double indentation) const;
+  /// Largest tangential force that keeps the contact sticking, a Ã(ŷ, 0), by the indentation. Only
+  /// the adhesive part has static strength.
+  SubstrateForces::Force static_strength(double indentation) const;
 };
 
 }  // namespace stridor

@@ -28,8 +28,24 @@ void set_number(const Schema& schema, void* object, const std::string& path, dou
 const Schema& SphereTimeParameters::schema() {
   static const Schema keys =
       SchemaOf<SphereTimeParameters>("sphere_time")
+          .choice(
+              "integrator", &SphereTimeParameters::integrator,
+              {{"event_driven", SphereIntegrator::event_driven},
+               {"central_difference", SphereIntegrator::central_difference},
+               {"exact", SphereIntegrator::exact}},
+              {.doc = "Of `run`: adaptive steps that end at every change between stick, slip and "
+                      "flight, or the fixed steps of the bodies.",
+               .optional = true})
+          .real("step", &SphereTimeParameters::step,
+                {.doc = "Of the fixed-step integrators, in multiples of 1/ω_nx.",
+                 .range = Range::positive(),
+                 .optional = true})
           .real("end", &SphereTimeParameters::end,
                 {.doc = "End of a transient, in multiples of 1/ω_nx.", .range = Range::positive()})
+          .real("record_interval", &SphereTimeParameters::record_interval,
+                {.doc = "Time between the samples of a run, in multiples of 1/ω_nx.",
+                 .range = Range::positive(),
+                 .optional = true})
           .real("settle", &SphereTimeParameters::settle,
                 {.doc = "Time that passes before a limit cycle is sought, in multiples of 1/ω_nx.",
                  .range = Range::non_negative(),
@@ -42,7 +58,14 @@ const Schema& SphereTimeParameters::schema() {
                 {.doc = "Indentation at the start over that in equilibrium; the rest is as in "
                         "equilibrium.",
                  .range = Range::any(),
-                 .optional = true});
+                 .optional = true})
+          .check([](const SphereTimeParameters& time, std::vector<Problem>& problems) {
+            const bool is_fixed = time.integrator != SphereIntegrator::event_driven;
+            if (is_fixed && !time.step)
+              problems.push_back({"", "`step` is missing, which this integrator needs", {}, 0, 0});
+            if (time.step && time.end / *time.step > 1e10)
+              problems.push_back({"step", "takes more than 1e10 steps to `end`", {}, 0, 0});
+          });
   return keys;
 }
 

@@ -1,6 +1,7 @@
 // A kind of scene: a sphere on springs, on a sliding viscoelastic substrate.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,11 +13,20 @@
 
 namespace stridor {
 
+enum class SphereIntegrator {
+  event_driven,  ///< adaptive, order 8, steps end at every change between stick, slip and flight
+  central_difference,  ///< the fixed steps of the beams
+  exact,               ///< likewise, with exact free motion
+};
+
 /// How the oscillator moves in time; times are multiples of 1/ω_nx.
 struct SphereTimeParameters {
-  double end = 0.0;          ///< of a transient
-  double settle = 2000.0;    ///< before a limit cycle is sought
-  double tolerance = 1e-12;  ///< of the event-driven integrator, relative
+  SphereIntegrator integrator = SphereIntegrator::event_driven;
+  std::optional<double> step;     ///< of the fixed-step integrators
+  double end = 0.0;               ///< of a transient
+  double record_interval = 0.05;  ///< between samples of a transient
+  double settle = 2000.0;         ///< before a limit cycle is sought
+  double tolerance = 1e-12;       ///< of the event-driven integrator, relative
   /// Indentation at the start in multiples of that in equilibrium, everything else as there.
   double initial_indentation = 1.01;
   static const Schema& schema();

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -142,6 +143,58 @@ TEST(SphereProgram, MapAgreesWithThresholdAndEigenvalues) {
   }
 }
 
+TEST(SphereProgram, CycleHasWhatItPromises) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "cycle.h5";
+  const Json cycle = run_verb("cycle", {"time.settle=200"}, {"-o", file});
+  EXPECT_EQ(cycle["status"], "periodic");
+  EXPECT_NEAR(cycle["period"].get<double>(), 6.1544510, 1e-7);
+  EXPECT_NEAR(cycle["x"]["rms"].get<double>(), 0.0660501053, 1e-9);
+  EXPECT_NEAR(cycle["stick_fraction"].get<double>(), 0.40341, 1e-5);
+  EXPECT_EQ(cycle["multipliers"].size(), 3u);
+  EXPECT_NEAR(cycle["dimensional"]["period"].get<double>(), 6.1544510 / 40.0, 1e-8);
+  EXPECT_TRUE(std::filesystem::exists(file));
+}
+
+TEST(SphereProgram, RunByStepsComesToTheCycleOfTheEvents) {
+  const TemporaryFolder folder;
+  const auto run = [&](const char* name, Settings settings) {
+    settings.push_back("time.end=400");
+    return run_verb("run", settings, {"-o", folder / name});
+  };
+  const Json events = run("events.h5", {"time.tolerance=1e-10"});
+  EXPECT_NEAR(events["period"].get<double>(), 6.1544510, 1e-6);
+  EXPECT_NEAR(events["x"]["rms"].get<double>(), 0.0660501053, 1e-7);
+  EXPECT_NEAR(events["stick_fraction"].get<double>(), 0.40341, 1e-5);
+  const auto error = [&](const char* name, const char* integrator, const char* step) {
+    const Json found =
+        run(name, {std::string("time.integrator=") + integrator, std::string("time.step=") + step});
+    EXPECT_NEAR(found["stick_fraction"].get<double>(), 0.40341, 2e-3);
+    EXPECT_NEAR(found["x"]["rms"].get<double>(), 0.0660501053, 1e-5);
+    return std::abs(found["period"].get<double>() - 6.1544510);
+  };
+  const double order = std::log2(error("a.h5", "exact", "4e-3") / error("b.h5", "exact", "2e-3"));
+  EXPECT_GT(order, 1.6);
+  EXPECT_LT(order, 2.4);
+  EXPECT_LT(error("c.h5", "central_difference", "2e-3"), 2e-4);
+}
+
+TEST(SphereProgram, SweepUpAndDownFindsBothMotions) {
+  const Json sweep = run_verb("sweep", {"sphere.speed=0.0316227766", "time.settle=1200"},
+                              {"--parameter", "sphere.shear_strength", "--from", "0.01", "--to",
+                               "0.13", "--points", "3", "--up-down"});
+  const Json& up = sweep["up"];
+  const Json& down = sweep["down"];
+  ASSERT_EQ(up.size(), 3u);
+  ASSERT_EQ(down.size(), 3u);
+  EXPECT_EQ(up[0]["status"], "at_rest");
+  EXPECT_EQ(up[0]["equilibrium_stable"], true);
+  EXPECT_EQ(up[2]["equilibrium_stable"], false);
+  EXPECT_EQ(down[2]["value"], 0.01);
+  EXPECT_EQ(down[2]["status"], "periodic");
+  EXPECT_NEAR(down[2]["x"]["rms"].get<double>(), 0.2457, 1e-4);
+}
+
 TEST(SphereProgram, RefusesWhatDoesNotFit) {
   const std::string scene = scene_path("viscoelastic_sphere.yaml");
   const auto error = [&](std::vector<std::string> arguments) {
@@ -160,6 +213,8 @@ TEST(SphereProgram, RefusesWhatDoesNotFit) {
   EXPECT_THAT(error({"locus", "--from", "1", "--to", "2"}), HasSubstr("name a key"));
   EXPECT_THAT(error({"eig", "--explain"}), HasSubstr("is for scenes of bodies"));
   EXPECT_THAT(error({"compare"}), HasSubstr("belongs to an oscillator"));
+  EXPECT_THAT(error({"run", "-o", "never.h5", "--set", "time.integrator=exact"}),
+              HasSubstr("`step` is missing"));
 }
 
 }  // namespace

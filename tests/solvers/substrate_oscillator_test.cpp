@@ -9,31 +9,13 @@
 #include <span>
 #include <vector>
 
-#include "models/sphere.hpp"
 #include "solvers/dense_eigenvalues.hpp"
+#include "tests/support/paper_sphere.hpp"
 
 namespace stridor {
 namespace {
 
-/// Numbers of PPH (14); speed and load of their chapter 5.
-SphereModelParameters paper_sphere() {
-  SphereModelParameters model;
-  SphereParameters& sphere = model.sphere;
-  sphere.stiffness_x = 50.0;
-  sphere.natural_frequency = 40.0;
-  sphere.radius = 0.01;
-  sphere.modulus = 4.0e6 / 3.0;
-  sphere.creep_time = 0.01;
-  sphere.normal_load = 7.5e-4;
-  sphere.shear_strength = 1e-2;
-  sphere.speed = 5e-3;
-  sphere.frequency_ratio = 1.0;
-  sphere.coupling_ratio = 1.0;
-  sphere.angle = std::numbers::pi / 4.0;
-  sphere.damping_x = 0.01;
-  sphere.damping_y = 0.01;
-  return model;
-}
+using test::paper_sphere;
 
 /// Parameters over the whole range that a scene may ask for.
 class RandomSpheres {

@@ -1,0 +1,181 @@
+#include "analysis/limit_cycle.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace stridor {
+namespace {
+
+/// The motion has died down where its x moves less than this part of the indentation.
+constexpr double at_rest = 1e-9;
+/// No turn within this time: it sticks, or stands still.
+constexpr double longest_loop = 200.0;
+
+using Point = Eigen::Vector3d;
+
+Point point_of(const SubstrateMotion& motion) {
+  return {motion.state()[0], motion.state()[1], motion.state()[3]};
+}
+
+void start_at(SubstrateMotion& motion, const Point& z) {
+  motion.start({z[0], z[1]}, {0.0, z[2]});
+}
+
+/// P(z) after some turns, and the time that takes; nothing where the motion never gets there.
+struct Return {
+  Point point;
+  double period = 0.0;
+};
+std::optional<Return> return_map(SubstrateMotion& motion, const Point& z, int loops) {
+  start_at(motion, z);
+  for (int i = 0; i < loops; ++i) {
+    if (motion.advance(motion.time() + longest_loop, true) != SubstrateMotion::Stop::turn)
+      return std::nullopt;
+  }
+  return Return{point_of(motion), motion.time()};
+}
+
+/// Reads the statistics off the motion.
+void measure(const SubstrateMotion& motion, LimitCycle& cycle) {
+  const SubstrateMotion::Statistics& seen = motion.statistics();
+  const double duration = motion.time() - seen.from;
+  cycle.x_min = seen.smallest_x;
+  cycle.x_max = seen.largest_x;
+  cycle.y_max = seen.largest_y;
+  if (duration > 0.0) {
+    cycle.x_mean = motion.state()[4] / duration;
+    const double square = motion.state()[5] / duration - cycle.x_mean * cycle.x_mean;
+    cycle.x_rms = std::sqrt(std::max(0.0, square));
+    cycle.stick_fraction = seen.stick_time / duration;
+    cycle.free_fraction = seen.free_time / duration;
+  }
+  cycle.last_displacement = {motion.state()[0], motion.state()[1]};
+  cycle.last_velocity = {motion.state()[2], motion.state()[3]};
+}
+
+/// Newton's method for P(z) = z. @return whether it came to a fixed point
+bool solve(SubstrateMotion& motion, const Point& scale, LimitCycle& cycle, Point z) {
+  Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
+  constexpr int most_steps = 12;
+  double last_residual = 1e300;
+  for (int step = 0; step < most_steps; ++step) {
+    const auto found = return_map(motion, z, cycle.loops);
+    if (!found) return false;
+    const Point miss = (found->point - z).cwiseQuotient(scale);
+    const double residual = miss.norm();
+    const bool is_done = residual < 1e-11 || (residual < 1e-8 && residual > 0.3 * last_residual);
+    if (step == 0 || (!is_done && residual > 1e-6)) {
+      constexpr double change = 3e-5;
+      for (int k = 0; k < 3; ++k) {
+        Point ahead = z;
+        Point behind = z;
+        ahead[k] += change * scale[k];
+        behind[k] -= change * scale[k];
+        const auto after = return_map(motion, ahead, cycle.loops);
+        const auto before = return_map(motion, behind, cycle.loops);
+        if (!after || !before) return false;
+        jacobian.col(k) = (after->point - before->point).cwiseQuotient(scale) / (2.0 * change);
+      }
+    }
+    cycle.residual = residual;
+    cycle.newton_steps = step;
+    if (is_done) {
+      cycle.point = {z[0], z[1], z[2]};
+      cycle.period = found->period;
+      const Eigen::Vector3cd all = jacobian.eigenvalues();
+      cycle.multipliers.assign(all.data(), all.data() + 3);
+      std::sort(cycle.multipliers.begin(), cycle.multipliers.end(),
+                [](auto a, auto b) { return std::abs(a) > std::abs(b); });
+      return true;
+    }
+    last_residual = residual;
+    const Point correction =
+        (jacobian - Eigen::Matrix3d::Identity()).fullPivLu().solve(miss).cwiseProduct(scale);
+    z -= correction;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string cycle_status_text(CycleStatus status) {
+  switch (status) {
+    case CycleStatus::periodic:
+      return "periodic";
+    case CycleStatus::at_rest:
+      return "at_rest";
+    case CycleStatus::irregular:
+      return "irregular";
+    case CycleStatus::diverged:
+      return "diverged";
+  }
+  return "";
+}
+
+LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
+                            const Eigen::Vector2d& displacement, const Eigen::Vector2d& velocity,
+                            const CycleOptions& options) {
+  LimitCycle cycle;
+  SubstrateMotion motion(oscillator, options.tolerance);
+  motion.start(displacement, velocity);
+  if (motion.advance(options.settle, false) != SubstrateMotion::Stop::end) return cycle;
+
+  // The last turns of the settled motion.
+  std::vector<Point> turns;
+  std::vector<double> times;
+  motion.restart_statistics();
+  const double from = motion.time();
+  const auto num_turns = static_cast<std::size_t>(2 * options.most_loops + 1);
+  while (turns.size() < num_turns) {
+    const SubstrateMotion::Stop stop = motion.advance(motion.time() + longest_loop, true);
+    if (stop == SubstrateMotion::Stop::failed) return cycle;
+    if (stop == SubstrateMotion::Stop::end) break;
+    turns.push_back(point_of(motion));
+    times.push_back(motion.time());
+  }
+  measure(motion, cycle);
+  const double width = cycle.x_max - cycle.x_min;
+  const double indentation = 1e-2 * oscillator.contact.indentation_unit;
+  const SubstrateEquilibrium rest = find_equilibrium(oscillator, indentation);
+  const double size = std::abs(rest.displacement.x()) + rest.displacement.y();
+  if (turns.size() < num_turns || width < at_rest * size) {
+    cycle.status = CycleStatus::at_rest;
+    return cycle;
+  }
+  const Point scale{width, std::max(cycle.y_max, 1e-6 * width), width};
+  const Point& last = turns.back();
+  double nearest = 1e300;
+  for (int loops = 1; loops <= options.most_loops; ++loops) {
+    const auto back = turns.size() - 1 - static_cast<std::size_t>(loops);
+    const double apart = (turns[back] - last).cwiseQuotient(scale).norm();
+    if (apart < 1e-3 && apart < 0.1 * nearest) {
+      cycle.loops = loops;
+      nearest = apart;
+    }
+  }
+  if (cycle.loops > 0 && options.solves && solve(motion, scale, cycle, last)) {
+    start_at(motion, {cycle.point.x, cycle.point.y, cycle.point.vertical_velocity});
+    for (int i = 0; i < cycle.loops; ++i) (void)motion.advance(motion.time() + longest_loop, true);
+    measure(motion, cycle);
+    cycle.status = CycleStatus::periodic;
+    return cycle;
+  }
+  if (cycle.loops > 0 && !options.solves) {
+    const auto back = turns.size() - 1 - static_cast<std::size_t>(cycle.loops);
+    cycle.period = times.back() - times[back];
+    cycle.residual = nearest;
+    cycle.status = CycleStatus::periodic;
+    return cycle;
+  }
+  cycle.loops = 0;
+  // Statistics of irregular motion need more time than a few turns.
+  motion.start(cycle.last_displacement, cycle.last_velocity);
+  const double enough = std::max(0.1 * options.settle, from > 0.0 ? 100.0 : 200.0);
+  if (motion.advance(enough, false) != SubstrateMotion::Stop::end) return cycle;
+  measure(motion, cycle);
+  cycle.status = CycleStatus::irregular;
+  return cycle;
+}
+
+}  // namespace stridor

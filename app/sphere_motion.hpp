@@ -1,0 +1,37 @@
+// What the verbs share that follow a sphere on a viscoelastic substrate in time.
+#pragma once
+
+#include "analysis/limit_cycle.hpp"
+#include "app/command.hpp"
+#include "io/column_file.hpp"
+#include "io/sphere_scene.hpp"
+
+namespace stridor {
+
+/// Where a motion of the scene starts: its equilibrium, pressed in or lifted a little.
+/// @throws NumericalError if there is no equilibrium
+Eigen::Vector2d initial_displacement(const SphereScene& scene,
+                                     const SubstrateOscillator& oscillator);
+
+CycleOptions cycle_options(const SphereScene& scene);
+
+/// The results of a limit cycle, in units of the motion; `dimensional` in SI.
+Json cycle_json(const LimitCycle& cycle, const SphereNumbers& numbers);
+
+/// A motion sampled at equal distances.
+struct SphereHistory {
+  std::vector<double> time, x, y, vx, vy, slip, normal_force, friction_force, area, mode;
+  void add(const SubstrateOscillator& oscillator, const SubstrateMotion& motion);
+  void add(const SubstrateOscillator& oscillator, double at, const Eigen::Vector2d& displacement,
+           const Eigen::Vector2d& velocity, SubstrateMode how, double normal, double friction);
+  std::vector<Column> columns() const;
+};
+
+/// Draws displacement, slip velocity and contact area over time (PPH, Fig. 12).
+void plot_history(const SphereHistory& history, const std::string& caption,
+                  const std::string& figure);
+
+/// What every file of such a verb says of itself.
+Attributes sphere_attributes(const LoadedSphereScene& loaded, const std::string& command_line);
+
+}  // namespace stridor

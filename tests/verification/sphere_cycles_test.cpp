@@ -1,0 +1,55 @@
+// Limit cycles of the sphere on a viscoelastic substrate against an independent program.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analysis/limit_cycle.hpp"
+#include "tests/support/paper_sphere.hpp"
+
+namespace stridor {
+namespace {
+
+LimitCycle cycle_of(const SphereModelParameters& model) {
+  const SubstrateOscillator oscillator = make_sphere(model);
+  const SubstrateEquilibrium rest = find_equilibrium(oscillator);
+  return find_limit_cycle(oscillator, {rest.displacement.x(), 1.01 * rest.displacement.y()},
+                          {0.0, 0.0});
+}
+
+TEST(SphereCycles, FourMotionsWithSlipStickAndLiftOff) {
+  struct Row {
+    double speed, shear, period, x_rms, stick, free;
+  };
+  for (const Row& row : {Row{5e-3, 1e-2, 6.1544510, 0.0660501053, 0.40341, 0.0},
+                         Row{5e-3, 3e-2, 7.0645996, 0.0855223332, 0.53895, 0.0},
+                         Row{5e-3, 1e-3, 5.2660246, 0.0420055009, 0.08213, 0.06955},
+                         Row{4e-4, 2.5e-3, 6.0709185, 0.003802136, 0.07121, 0.0}}) {
+    const LimitCycle cycle = cycle_of(test::paper_sphere(row.speed, row.shear));
+    ASSERT_EQ(cycle.status, CycleStatus::periodic) << row.shear;
+    EXPECT_NEAR(cycle.period, row.period, 1e-7) << row.shear;
+    EXPECT_NEAR(cycle.x_rms, row.x_rms, 1e-9) << row.shear;
+    EXPECT_NEAR(cycle.stick_fraction, row.stick, 6e-6) << row.shear;
+    EXPECT_NEAR(cycle.free_fraction, row.free, 6e-6) << row.shear;
+    EXPECT_LT(std::abs(cycle.multipliers.front()), 1.0);
+  }
+}
+
+TEST(SphereCycles, ExtremesOfTheLargestCycle) {
+  const LimitCycle cycle = cycle_of(test::paper_sphere(5e-3, 3e-2));
+  EXPECT_NEAR(cycle.x_min, -0.01183604, 1e-8);
+  EXPECT_NEAR(cycle.x_max, 0.24999874, 1e-8);
+}
+
+TEST(SphereCycles, StickSlipBesideAStableEquilibrium) {
+  // F̃_n = 7.5e-4, v̂ = 10^-1.5: the equilibrium is stable up to τ̃_0 = 9.16e-2.
+  const LimitCycle upper = cycle_of(test::paper_sphere(std::pow(10.0, -1.5), 0.12));
+  ASSERT_NE(upper.status, CycleStatus::at_rest);
+  const SubstrateOscillator low = make_sphere(test::paper_sphere(std::pow(10.0, -1.5), 0.01));
+  const LimitCycle kept = find_limit_cycle(low, upper.last_displacement, upper.last_velocity);
+  EXPECT_EQ(kept.status, CycleStatus::periodic);
+  EXPECT_NEAR(kept.x_rms, 0.2457, 5e-5);
+  EXPECT_EQ(cycle_of(test::paper_sphere(std::pow(10.0, -1.5), 0.01)).status, CycleStatus::at_rest);
+}
+
+}  // namespace
+}  // namespace stridor
