@@ -36,12 +36,12 @@ struct MembraneStress {
   double circumferential = 0.0;
 };
 
-/// Stress of a disc that is held at its inner edge and spins (docs/theory.md, 11.1).
+/// Stress of a disc that is held at its inner edge and spins (docs/theory.md, 10.1).
 /// @param speed  Ω, rad/s
 /// @param radius m, between the edges
 MembraneStress centrifugal_stress(const AnnularPlateParameters& plate, double speed, double radius);
 
-/// Modes of an annular plate as seen from a frame that does not turn with it (docs/theory.md, 11.1;
+/// Modes of an annular plate as seen from a frame that does not turn with it (docs/theory.md, 10.1;
 /// HS (6), (7), (14)).
 ///
 ///   w(r, φ, t) = Σ R_nj(r) (q_c cos nφ + q_s sin nφ)
