@@ -4,6 +4,7 @@
 #include "app/command.hpp"
 #include "core/errors.hpp"
 #include "io/contact_scene.hpp"
+#include "io/linear_scene.hpp"
 #include "io/scene.hpp"
 #include "io/sphere_scene.hpp"
 #include "solvers/simulation.hpp"
@@ -23,6 +24,10 @@ void check_scene(const CheckOptions& options) {
   for (const std::string& assignment : options.common.sets) set_value(tree, assignment);
   if (is_contact_scene(tree)) {
     (void)load_contact_scene(options.scene, options.common.sets);
+    return;
+  }
+  if (is_linear_scene(tree)) {
+    (void)load_linear_scene(options.scene, options.common.sets).model();
     return;
   }
   if (is_sphere_scene(tree)) {

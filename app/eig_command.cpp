@@ -8,6 +8,8 @@
 #include <memory>
 
 #include "analysis/explanation.hpp"
+#include "app/eigenvalue_report.hpp"
+#include "app/linear_stability.hpp"
 #include "app/sphere_stability.hpp"
 #include "app/stability.hpp"
 #include "core/errors.hpp"
@@ -43,26 +45,6 @@ SceneFamily make_family(const LoadedScene& loaded, const EigOptions& options,
   return SceneFamily(loaded, {key});
 }
 
-/// Index of the eigenvalue to look at: --mode counts those with positive imaginary part, lowest
-/// first; the one that grows fastest where it is not given.
-std::size_t chosen_mode(const std::vector<Eigenvalue>& eigenvalues, std::size_t num_real,
-                        const std::optional<int>& mode) {
-  const std::size_t num_modes = eigenvalues.size() - num_real;
-  if (num_modes == 0) throw ConfigError("--mode", "there is no eigenvalue with a frequency");
-  if (mode) {
-    const auto number = static_cast<std::size_t>(*mode);
-    if (number > num_modes) {
-      throw ConfigError(
-          "--mode", fmt::format("there are {} modes, got {}; raise --count", num_modes, number));
-    }
-    return num_real + number - 1;
-  }
-  const auto fastest = std::max_element(
-      eigenvalues.begin() + static_cast<std::ptrdiff_t>(num_real), eigenvalues.end(),
-      [](const Eigenvalue& a, const Eigenvalue& b) { return a.growth() < b.growth(); });
-  return static_cast<std::size_t>(fastest - eigenvalues.begin());
-}
-
 Json explanation_json(const Pencil& pencil, const Eigenvalue& eigenvalue, std::size_t number) {
   const Eigenvector vector = eigenvector(pencil, eigenvalue.s);
   const ModeQuotients seen = mode_quotients(pencil, eigenvalue.s, vector.right);
@@ -81,13 +63,7 @@ Json explanation_json(const Pencil& pencil, const Eigenvalue& eigenvalue, std::s
   return {{"mode", number},
           {"frequency", frequency},
           {"growth", eigenvalue.growth()},
-          {"quotients",
-           {{"damping", seen.damping},
-            {"gyroscopic", seen.gyroscopic},
-            {"stiffness", seen.stiffness},
-            {"circulatory", seen.circulatory},
-            {"margin", seen.margin()},
-            {"residual", seen.residual}}},
+          {"quotients", quotients_json(seen)},
           {"energy",
            {{"growth_from_contact", energy.from_contact},
             {"growth_by_damping", energy.by_damping},
@@ -164,33 +140,12 @@ void print_equilibrium(const System& system, const Equilibrium& equilibrium) {
   }
 }
 
-void print_eigenvalues(const std::vector<Eigenvalue>& eigenvalues, double trusted) {
-  fmt::print("{:>4}  {:>14}  {:>12}  {:>13}\n", "mode", "frequency (Hz)", "growth (1/s)",
-             "damping ratio");
-  int mode = 0;
-  for (const Eigenvalue& one : eigenvalues) {
-    const bool is_real = one.s.imag() == 0.0;
-    const double ratio = std::abs(one.s) > 0.0 ? -one.growth() / std::abs(one.s) : 0.0;
-    fmt::print("{:>4}  {:>14.3f}  {:>12.4f}  {:>13.6f}{}{}\n",
-               is_real ? std::string("-") : std::to_string(++mode), one.frequency(), one.growth(),
-               ratio, is_growing(one) ? "  unstable" : "",
-               one.frequency() > trusted ? "  (above what the reduction resolves)" : "");
-  }
-}
-
 void print_explanation(const Json& explanation) {
   const auto value = [](const Json& object, const char* key) { return object[key].get<double>(); };
-  const Json& seen = explanation["quotients"];
   const Json& energy = explanation["energy"];
   fmt::print("\nmode {} at {:.2f} Hz, growth {:.4f} 1/s\n", explanation["mode"].get<int>(),
              value(explanation, "frequency"), value(explanation, "growth"));
-  fmt::print(
-      "  sees damping d = {:.4g} 1/s, gyroscopic g = {:.4g} 1/s, stiffness k = {:.6g} 1/s^2, "
-      "circulatory n = {:.4g} 1/s^2\n",
-      value(seen, "damping"), value(seen, "gyroscopic"), value(seen, "stiffness"),
-      value(seen, "circulatory"));
-  fmt::print("  d > 0 and k d^2 + n d g - n^2 > 0 would suffice for decay; the latter is {:.4g}\n",
-             value(seen, "margin"));
+  print_quotients(explanation["quotients"]);
   fmt::print("  growth: {:+.4f} 1/s from the contact, {:+.4f} 1/s by damping\n",
              value(energy, "growth_from_contact"), value(energy, "growth_by_damping"));
   fmt::print(
@@ -203,6 +158,11 @@ void print_explanation(const Json& explanation) {
 }
 
 ExitCode eig(const EigOptions& options) {
+  if (is_linear_scene_file(options.stability.scene)) {
+    if (options.at) throw ConfigError("--at", "needs a contact that moves along a master");
+    if (options.shapes) throw ConfigError("--shapes", "needs bodies with meshes");
+    return eig_of_linear_scene(options.stability, options.explain, options.mode);
+  }
   if (is_sphere_scene_file(options.stability.scene)) {
     if (options.at || options.shapes || options.explain) {
       throw ConfigError(options.at       ? "--at"
@@ -222,9 +182,7 @@ ExitCode eig(const EigOptions& options) {
       lowest_eigenvalues(retained(state.pencil, loaded.scene.time),
                          options.stability.eigenvalue_method(), options.stability.count);
 
-  const std::size_t num_real = static_cast<std::size_t>(
-      std::count_if(eigenvalues.begin(), eigenvalues.end(),
-                    [](const Eigenvalue& one) { return one.s.imag() == 0.0; }));
+  const std::size_t num_real = num_real_of(eigenvalues);
   const std::optional<RetainParameters>& retain = loaded.scene.time.retain;
   const double trusted =
       std::min(trusted_frequency(system),

@@ -144,7 +144,7 @@ std::vector<LineResult> trace_lines(const StabilityScene& loaded, const std::arr
   };
   // The dense method lives in LAPACK, which two threads must not enter at once (see stability.cpp).
   const bool is_dense = stability.locus_options().method == LocusMethod::dense;
-  const int num_threads = is_dense ? 1 : stability.common.threads;
+  const int num_threads = is_dense || loaded.needs_one_thread() ? 1 : stability.common.threads;
   std::vector<std::thread> threads;
   for (int i = 1; i < num_threads; ++i) threads.emplace_back(work);
   work();

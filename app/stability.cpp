@@ -8,6 +8,8 @@
 #include <mutex>
 #include <numbers>
 
+#include "analysis/sampled_locus.hpp"
+#include "app/linear_stability.hpp"
 #include "app/sphere_stability.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
@@ -216,6 +218,10 @@ class BodyStabilityScene : public StabilityScene {
 }  // namespace
 
 std::unique_ptr<StabilityScene> load_stability_scene(const StabilityOptions& options) {
+  if (is_linear_scene_file(options.scene)) {
+    return std::make_unique<LinearStabilityScene>(
+        load_linear_scene(options.scene, options.common.sets));
+  }
   if (is_sphere_scene_file(options.scene))
     return std::make_unique<SphereStabilityScene>(
         load_sphere_scene(options.scene, options.common.sets));
@@ -319,8 +325,9 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
     family.pencil(ends);
   }
   const PencilFamily pencils = family.along(key, values, range.front(), range.back());
-  return varied.is_integer ? locus_at(pencils, range, options)
-                           : trace_locus(pencils, range, options);
+  if (varied.is_integer) return locus_at(pencils, range, options);
+  return family.is_sampled() ? sample_locus(pencils, range, options)
+                             : trace_locus(pencils, range, options);
 }
 
 std::vector<StabilityChange> stability_changes(const Locus& locus) {

@@ -89,6 +89,8 @@ class StabilityFamily {
   /// @param values one per key
   /// @throws ConfigError, NumericalError naming the values
   virtual Pencil pencil(std::span<const double> values) = 0;
+  /// Whether eigenvalues are sampled rather than followed (analysis/sampled_locus.hpp).
+  virtual bool is_sampled() const { return false; }
 
   /// The pencils along one of the keys.
   /// @param key      its index
@@ -142,6 +144,8 @@ class StabilityScene {
   virtual std::unique_ptr<GrowthField> growth_field(std::vector<NumericKey>) const {
     return nullptr;
   }
+  /// Whether its lines must be traced by one thread: dense products go to BLAS.
+  virtual bool needs_one_thread() const { return false; }
   virtual std::string hash() const = 0;
   virtual std::string resolved() const = 0;
   /// The scene of bodies, if it is one.

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "io/linear_scene.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_reader.hpp"
 #include "io/scene_reference.hpp"
@@ -58,13 +59,16 @@ bool is_contact_scene(const SceneNode& tree) {
 
 std::string all_scenes_json_schema() {
   return json_schema(Scene::schema(), {{&ContactScene::schema(), {"profile", "contact_solver"}},
-                                       {&SphereScene::schema(), {"sphere"}}})
+                                       {&SphereScene::schema(), {"sphere"}},
+                                       {&DiscScene::schema(), {"disc"}},
+                                       {&MatrixScene::schema(), {}, "matrices"}})
              .dump(2) +
          "\n";
 }
 
 std::string all_scenes_reference() {
-  return scene_reference({&Scene::schema(), &ContactScene::schema(), &SphereScene::schema()});
+  return scene_reference({&Scene::schema(), &ContactScene::schema(), &SphereScene::schema(),
+                          &DiscScene::schema(), &MatrixScene::schema()});
 }
 
 std::string LoadedContactScene::resolved() const {

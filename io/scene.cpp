@@ -9,6 +9,7 @@
 #include "core/suggestion.hpp"
 #include "io/channels.hpp"
 #include "io/contact_scene.hpp"
+#include "io/linear_scene.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_reader.hpp"
 #include "io/sphere_scene.hpp"
@@ -229,6 +230,12 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
         "sphere",
         "belongs to an oscillator on a viscoelastic substrate, for the verbs eig, locus, "
         "threshold, map, cycle, sweep and run"));
+  }
+  if (is_linear_scene(loaded.tree)) {
+    throw loaded.located(
+        ConfigError(is_disc_scene(loaded.tree) ? "disc" : "substructures",
+                    "belongs to a scene of small motion, for the verbs eig, locus, threshold and "
+                    "map"));
   }
   loaded.scene = read_as<Scene>(loaded.tree);
   return loaded;

@@ -25,10 +25,11 @@ nlohmann::ordered_json json_schema(const Schema& schema);
 /// The same as text.
 std::string json_schema_text(const Schema& schema);
 
-/// A kind of scene that is known by the keys at its top.
+/// A kind of scene that is known by the keys at its top, or by the type of its substructures.
 struct SpecialScene {
   const Schema* schema = nullptr;
-  std::vector<std::string> signs;  ///< any one of them says that it is of this kind
+  std::vector<std::string> signs;      ///< any one of them says that it is of this kind
+  std::string substructure_type = {};  ///< or that every substructure is of this type; may be empty
 };
 
 /// The schema of scenes of several kinds: the first of `specials` whose sign stands at the top,

@@ -50,9 +50,12 @@ Eigen::VectorXd displacement_scale(const Pencil& pencil) {
 struct LapackResult {
   Eigen::VectorXd re, im;
   Eigen::MatrixXd vectors;  ///< in LAPACK's packing: a pair holds real and imaginary part
+  Eigen::VectorXd reciprocal_condition;
 };
 
-LapackResult eigenvalues_of(Eigen::MatrixXd matrix, bool with_vectors) {
+LapackResult eigenvalues_of(Eigen::MatrixXd matrix, DenseWork wanted_work) {
+  const bool with_vectors = wanted_work != DenseWork::eigenvalues;
+  const bool with_conditions = wanted_work == DenseWork::conditions;
   const auto n = static_cast<int>(matrix.rows());
   LapackResult result;
   result.re.resize(n);
@@ -60,7 +63,9 @@ LapackResult eigenvalues_of(Eigen::MatrixXd matrix, bool with_vectors) {
   result.vectors.resize(with_vectors ? n : 1, with_vectors ? n : 1);
   Eigen::VectorXd scale(n);
   const int ldvr = with_vectors ? n : 1;
-  const int one = 1;
+  const int ldvl = with_conditions ? n : 1;
+  Eigen::MatrixXd left(ldvl, ldvl);
+  result.reciprocal_condition.resize(with_conditions ? n : 1);
   int ilo = 0;
   int ihi = 0;
   double norm = 0.0;
@@ -68,9 +73,10 @@ LapackResult eigenvalues_of(Eigen::MatrixXd matrix, bool with_vectors) {
   int unused_integer = 0;
   int info = 0;
   const auto call = [&](double* work, int size) {
-    dgeevx_("B", "N", with_vectors ? "V" : "N", "N", &n, matrix.data(), &n, result.re.data(),
-            result.im.data(), &unused, &one, result.vectors.data(), &ldvr, &ilo, &ihi, scale.data(),
-            &norm, &unused, &unused, work, &size, &unused_integer, &info);
+    dgeevx_("B", with_conditions ? "V" : "N", with_vectors ? "V" : "N", with_conditions ? "E" : "N",
+            &n, matrix.data(), &n, result.re.data(), result.im.data(), left.data(), &ldvl,
+            result.vectors.data(), &ldvr, &ilo, &ihi, scale.data(), &norm,
+            result.reciprocal_condition.data(), &unused, work, &size, &unused_integer, &info);
   };
   double wanted = 0.0;
   call(&wanted, -1);
@@ -117,8 +123,8 @@ DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work) {
       -mass.solve(L_E.transpose() * (K * (inverse_W.asDiagonal() * L_p)));
   matrix.bottomRightCorner(size, size) = -mass.solve(L_E.transpose() * (C * L_C));
 
-  const bool with_vectors = work == DenseWork::residuals;
-  const LapackResult found = eigenvalues_of(std::move(matrix), with_vectors);
+  const bool with_vectors = work != DenseWork::eigenvalues;
+  const LapackResult found = eigenvalues_of(std::move(matrix), work);
   std::vector<Eigen::Index> order;
   for (Eigen::Index i = 0; i < 2 * size; ++i) {
     if (found.im(i) >= 0.0) order.push_back(i);
@@ -141,6 +147,8 @@ DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work) {
       eigenvalue.residual = relative_residual(pencil, eigenvalue.s, q);
       spectrum.right.col(static_cast<Eigen::Index>(spectrum.eigenvalues.size())) = q;
     }
+    if (work == DenseWork::conditions)
+      spectrum.conditions.push_back(1.0 / found.reciprocal_condition(i));
     spectrum.eigenvalues.push_back(eigenvalue);
   }
   return spectrum;

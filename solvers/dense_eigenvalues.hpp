@@ -10,12 +10,17 @@ namespace stridor {
 enum class DenseWork {
   eigenvalues,  ///< no residuals, at less than half the cost
   residuals,    ///< with eigenvectors and residuals
+  conditions,   ///< as `residuals`, with condition numbers
 };
 
 /// All eigenvalues of a pencil and the motions that belong to them.
 struct DenseSpectrum {
   std::vector<Eigenvalue> eigenvalues;  ///< Im s >= 0, ascending Im s, then ascending Re s
   Eigen::MatrixXcd right;               ///< q of each, one per column; empty without residuals
+  /// By how much rounding in the linearised matrix is magnified in each: 1/|yᴴx| for its unit left
+  /// and right eigenvectors, large where two eigenvalues and their motions are about to coincide.
+  /// Empty unless asked for.
+  std::vector<double> conditions;
 };
 
 /// Primal assembly, linearised and handed to LAPACK (docs/theory.md, 7.2; BDF section 2.4).
@@ -39,7 +44,7 @@ struct DenseSpectrum {
 /// working
 ///         precision (the contact forces then have no unique answer to an acceleration), or if the
 ///         iteration fails
-/// Cost: of order 10 (2n)³ operations, 25 (2n)³ with residuals.
+/// Cost: of order 10 (2n)³ operations, 25 (2n)³ with residuals, 35 (2n)³ with condition numbers.
 DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work = DenseWork::residuals);
 
 /// Eigenvalues of dense_spectrum().

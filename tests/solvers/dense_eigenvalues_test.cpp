@@ -102,6 +102,25 @@ TEST(DenseEigenvalues, SlowModesOfAStiffMeshKeepTheirDigits) {
   EXPECT_NEAR(found[0].growth(), -0.005, 1e-8);
 }
 
+TEST(DenseEigenvalues, ConditionsTellEigenvaluesThatAreAboutToMeet) {
+  // 1 and 1.4 N/m with ±p between: two eigenvalues meet at p = 0.2.
+  const auto conditions = [](double p) {
+    Pencil pencil;
+    pencil.omega = Eigen::Vector2d(1.0, std::sqrt(1.4));
+    pencil.damping = Eigen::Vector2d::Zero();
+    pencil.slots = Eigen::Matrix2d::Identity();
+    pencil.compatibility = pencil.equilibrium = Eigen::MatrixXd(0, 2);
+    pencil.slot_stiffness = Eigen::Matrix2d{{0.0, p}, {-p, 0.0}};
+    return dense_spectrum(pencil, DenseWork::conditions).conditions;
+  };
+  for (const double one : conditions(0.0)) EXPECT_NEAR(one, 1.0, 1e-12);
+  // With s² = −1.2 ± (0.04 − p²)^½ the motions differ in proportion to the root.
+  const double far = conditions(0.2 - 1e-4).front();
+  const double near = conditions(0.2 - 1e-6).front();
+  EXPECT_GT(far, 10.0);
+  EXPECT_NEAR(near / far, 10.0, 0.1);
+}
+
 TEST(DenseEigenvalues, SaysWhyItFails) {
   Pencil pencil = test::random_pencil(5, 10, 2, test::ContactTerms::rows_only);
   pencil.compatibility.row(1) = 2.0 * pencil.compatibility.row(0);

@@ -1,0 +1,29 @@
+// What every kind of `eig` prints of eigenvalues.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "analysis/explanation.hpp"
+#include "app/command.hpp"
+#include "solvers/pencil.hpp"
+
+namespace stridor {
+
+/// Index of the eigenvalue to look at: --mode counts those with positive imaginary part, lowest
+/// first; the one that grows fastest where it is not given.
+/// @throws ConfigError if there is no such mode
+std::size_t chosen_mode(const std::vector<Eigenvalue>& eigenvalues, std::size_t num_real,
+                        const std::optional<int>& mode);
+
+/// How many of the eigenvalues are real.
+std::size_t num_real_of(const std::vector<Eigenvalue>& eigenvalues);
+
+/// @param trusted frequency above which the model does not answer for them, Hz
+void print_eigenvalues(const std::vector<Eigenvalue>& eigenvalues, double trusted);
+
+Json quotients_json(const ModeQuotients& seen);
+/// @param seen of quotients_json()
+void print_quotients(const Json& seen);
+
+}  // namespace stridor

@@ -1,0 +1,223 @@
+#include "io/linear_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <filesystem>
+#include <limits>
+#include <stdexcept>
+
+#include "io/matrix_market.hpp"
+#include "io/resolved_scene.hpp"
+#include "io/scene_reader.hpp"
+
+namespace stridor {
+namespace {
+
+PlainKey format_key() {
+  return {.doc = "Version of the scene language: 1.", .range = Range::between(1, 1)};
+}
+
+/// The matrices of one body, with checks that name their keys.
+class MatrixLoader {
+ public:
+  MatrixLoader(std::string key, const std::string& scene_path)
+      : key_(std::move(key)), folder_(std::filesystem::path(scene_path).parent_path()) {}
+
+  SparseSystem load(const MatrixBodyParameters& body) const {
+    SparseSystem system;
+    system.mass = matrix("mass", body.mass, 0);
+    const Eigen::Index n = system.mass.rows();
+    expect_symmetry("mass", system.mass, 1.0);
+    const SparseMatrix gyroscopic = matrix("gyroscopic", body.gyroscopic, n);
+    const SparseMatrix circulatory = matrix("circulatory", body.circulatory, n);
+    expect_symmetry("gyroscopic", gyroscopic, -1.0);
+    expect_symmetry("circulatory", circulatory, -1.0);
+    system.velocity = matrix("damping", body.damping, n) + gyroscopic +
+                      body.load * matrix("load_damping", body.load_damping, n);
+    system.position = matrix("stiffness", body.stiffness, n) + circulatory +
+                      body.load * matrix("load_stiffness", body.load_stiffness, n);
+    return system;
+  }
+
+ private:
+  [[noreturn]] void fail(const char* name, const std::string& message) const {
+    throw ConfigError(key_ + "." + name, message);
+  }
+
+  /// @param size expected; 0: any
+  SparseMatrix matrix(const char* name, const MatrixText& text, Eigen::Index size) const {
+    if (text.empty()) return SparseMatrix(size, size);
+    SparseMatrix read;
+    const bool is_number =
+        text.front().find_first_not_of("+-.eE0123456789 \t") == std::string::npos;
+    if (text.size() == 1 && !is_number) {
+      read = read_matrix_file((folder_ / text.front()).string());
+    } else {
+      try {
+        read = parse_matrix_rows(text);
+      } catch (const std::invalid_argument& error) {
+        fail(name, error.what());
+      }
+    }
+    const bool is_square = read.rows() == read.cols();
+    if (!is_square || (size > 0 && read.rows() != size)) {
+      fail(name, fmt::format("is {} x {}, expected {}", read.rows(), read.cols(),
+                             size > 0 ? fmt::format("{} x {} as `mass` is", size, size)
+                                      : std::string("as many rows as columns")));
+    }
+    return read;
+  }
+
+  /// @param sign 1 symmetric, −1 skew-symmetric
+  void expect_symmetry(const char* name, const SparseMatrix& matrix, double sign) const {
+    const SparseMatrix transposed = matrix.transpose();
+    const SparseMatrix difference = matrix - sign * transposed;
+    if (difference.norm() > 1e-12 * matrix.norm())
+      fail(name, sign > 0.0 ? "must be symmetric" : "must be skew-symmetric");
+  }
+
+  std::string key_;
+  std::filesystem::path folder_;
+};
+
+LinearSystem dense_system(const SparseSystem& sparse) {
+  LinearSystem dense;
+  dense.mass = sparse.mass;
+  dense.velocity = sparse.velocity;
+  dense.position = sparse.position;
+  dense.gaps = dense.forces = Eigen::MatrixXd(0, sparse.size());
+  return dense;
+}
+
+LinearModel model_of(const DiscScene& scene, const std::string&) {
+  LinearModel model;
+  model.disc = make_disc_model(scene.model);
+  model.dense = model.disc->system;
+  model.highest_frequency = model.disc->highest_frequency;
+  return model;
+}
+
+LinearModel model_of(const MatrixScene& scene, const std::string& path) {
+  const auto& [name, body] = *scene.substructures.begin();
+  const std::string key = "substructures." + name + ".mass";
+  const SparseSystem sparse =
+      MatrixLoader("substructures." + name, path).load(std::get<MatrixBodyParameters>(body));
+  if (sparse.size() > largest_matrix_size) {
+    throw ConfigError(key, fmt::format("has {} unknowns; at most {} are handled", sparse.size(),
+                                       largest_matrix_size));
+  }
+  LinearModel model;
+  model.dense = dense_system(sparse);
+  model.highest_frequency = std::numeric_limits<double>::infinity();
+  if (Eigen::LLT<Eigen::MatrixXd>(model.dense.mass).info() != Eigen::Success)
+    throw ConfigError(key, "must be positive definite");
+  return model;
+}
+
+}  // namespace
+
+const Schema& DiscScene::schema() {
+  static const Schema keys = SchemaOf<DiscScene>("disc_and_pads")
+                                 .integer("format", &DiscScene::format, format_key())
+                                 .include(&DiscScene::model);
+  return keys;
+}
+
+const Schema& MatrixScene::schema() {
+  static const Schema keys =
+      SchemaOf<MatrixScene>("matrix_scene")
+          .integer("format", &MatrixScene::format, format_key())
+          .named_variants("substructures", &MatrixScene::substructures, "type", {"matrices"},
+                          {.doc = "One body, given by its matrices."})
+          .check([](const MatrixScene& scene, std::vector<Problem>& problems) {
+            if (scene.substructures.size() != 1) {
+              problems.push_back({"substructures",
+                                  "a body given by matrices stands alone; put several into the "
+                                  "blocks of one",
+                                  {},
+                                  0,
+                                  0});
+            }
+          });
+  return keys;
+}
+
+bool is_disc_scene(const SceneNode& tree) {
+  return tree.entry("disc") != nullptr && tree.entry("substructures") == nullptr;
+}
+
+bool is_matrix_scene(const SceneNode& tree) {
+  const SceneEntry* bodies = tree.entry("substructures");
+  if (bodies == nullptr) return false;
+  for (const SceneEntry& body : bodies->value.entries) {
+    const SceneEntry* type = body.value.entry("type");
+    if (type != nullptr && type->value.text == "matrices") return true;
+  }
+  return false;
+}
+
+bool is_linear_scene(const SceneNode& tree) {
+  return is_disc_scene(tree) || is_matrix_scene(tree);
+}
+
+LinearScene read_linear_scene(const SceneNode& tree) {
+  if (is_disc_scene(tree)) return read_as<DiscScene>(tree);
+  return read_as<MatrixScene>(tree);
+}
+
+const Schema& schema_of(const LinearScene& scene) {
+  return std::visit(
+      [](const auto& one) -> const Schema& { return std::decay_t<decltype(one)>::schema(); },
+      scene);
+}
+
+const void* object_of(const LinearScene& scene) {
+  return std::visit([](const auto& one) -> const void* { return &one; }, scene);
+}
+
+LinearModel make_linear_model(const LinearScene& scene, const std::string& path) {
+  return std::visit([&](const auto& one) { return model_of(one, path); }, scene);
+}
+
+std::string LoadedLinearScene::resolved() const {
+  return resolved_yaml(schema_of(scene), object_of(scene));
+}
+
+std::string LoadedLinearScene::hash() const {
+  return scene_hash(resolved());
+}
+
+LinearModel LoadedLinearScene::model() const {
+  try {
+    return make_linear_model(scene, path);
+  } catch (const ConfigError& error) {
+    std::vector<Problem> problems = error.problems();
+    locate(problems, tree);
+    throw ConfigError(std::move(problems));
+  }
+}
+
+LinearModel LoadedLinearScene::model(const std::vector<NumericKey>& keys,
+                                     std::span<const double> values) const {
+  LoadedLinearScene changed = *this;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    set_value(changed.tree, fmt::format("{}={}", keys[i].path, values[i]));
+  changed.scene = read_linear_scene(changed.tree);
+  return changed.model();
+}
+
+bool is_linear_scene_file(const std::string& path) {
+  return is_linear_scene(read_scene_file(path));
+}
+
+LoadedLinearScene load_linear_scene(const std::string& path, const std::vector<std::string>& sets) {
+  LoadedLinearScene loaded;
+  loaded.path = path;
+  loaded.tree = read_scene_file(path);
+  for (const std::string& assignment : sets) set_value(loaded.tree, assignment);
+  loaded.scene = read_linear_scene(loaded.tree);
+  return loaded;
+}
+
+}  // namespace stridor

@@ -1,0 +1,81 @@
+// Scenes of small motion: a disc between pads, and bodies given by matrices.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "io/scene_family.hpp"
+#include "io/scene_tree.hpp"
+#include "models/disc_model.hpp"
+#include "substructures/matrix_body.hpp"
+
+namespace stridor {
+
+/// A scene of this kind is known by its section `disc`.
+struct DiscScene {
+  int format = 0;
+  DiscModelParameters model;
+  static const Schema& schema();
+};
+
+/// A scene of this kind is known by a substructure of the type `matrices`; it has no other.
+struct MatrixScene {
+  int format = 0;
+  std::map<std::string, std::variant<MatrixBodyParameters>> substructures;
+  static const Schema& schema();
+};
+
+using LinearScene = std::variant<DiscScene, MatrixScene>;
+
+bool is_disc_scene(const SceneNode& tree);
+bool is_matrix_scene(const SceneNode& tree);
+/// Whether a scene is of either kind.
+bool is_linear_scene(const SceneNode& tree);
+
+/// @throws ConfigError with all problems
+LinearScene read_linear_scene(const SceneNode& tree);
+
+const Schema& schema_of(const LinearScene& scene);
+/// The struct that schema_of() describes.
+const void* object_of(const LinearScene& scene);
+
+/// Matrices of a scene and where they come from.
+struct LinearModel {
+  LinearSystem dense;
+  std::optional<DiscModel> disc;   ///< of a disc
+  double highest_frequency = 0.0;  ///< up to which the model answers, Hz; may be infinite
+};
+
+/// Largest number of unknowns: all eigenvalues are computed, at a cost of its third power.
+constexpr Eigen::Index largest_matrix_size = 1000;
+
+/// @param path of the scene: files of matrices are looked for in its folder
+/// @throws ConfigError with the key path, or with the place in a matrix file; FileError
+LinearModel make_linear_model(const LinearScene& scene, const std::string& path);
+
+/// As LoadedScene.
+struct LoadedLinearScene {
+  std::string path;
+  SceneNode tree;
+  LinearScene scene;
+
+  std::string resolved() const;
+  std::string hash() const;
+  /// As make_linear_model(), with the places of keys.
+  LinearModel model() const;
+  /// The same with some numbers set. @throws ConfigError also if they do not fit the others
+  LinearModel model(const std::vector<NumericKey>& keys, std::span<const double> values) const;
+};
+
+/// Whether a file holds a scene of either kind. @throws ConfigError, FileError if it cannot be read
+bool is_linear_scene_file(const std::string& path);
+
+/// Reads such a scene and applies `--set key.path=value` settings.
+/// @throws ConfigError with all problems of the file; FileError if it cannot be read
+LoadedLinearScene load_linear_scene(const std::string& path, const std::vector<std::string>& sets);
+
+}  // namespace stridor

@@ -1,0 +1,184 @@
+#include "analysis/sampled_locus.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "solvers/dense_eigenvalues.hpp"
+#include "tests/support/message_of.hpp"
+#include "tests/support/reference_brake.hpp"
+
+namespace stridor {
+namespace {
+
+using test::message_of;
+using test::pencil_of;
+using test::reference_brake;
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
+
+PencilFamily brake_family(const DiscModelParameters& brake) {
+  PencilFamily family;
+  family.place = [brake](double friction, Pencil& pencil) {
+    DiscModelParameters at = brake;
+    at.contact.friction.coefficient = friction;
+    pencil = pencil_of(at);
+  };
+  return family;
+}
+
+std::vector<double> hundred_values(double from, double to) {
+  std::vector<double> values;
+  for (int i = 0; i <= 100; ++i) values.push_back(from + (to - from) * i / 100.0);
+  return values;
+}
+
+/// The friction from which on the brake is unstable.
+Crossing limit_of(const DiscModelParameters& brake) {
+  const Locus locus = sample_locus(brake_family(brake), {0.2, 0.45});
+  EXPECT_EQ(locus.crossings.size(), 1U);
+  if (locus.crossings.empty()) return {};
+  EXPECT_EQ(locus.crossings.front().direction, 1);
+  return locus.crossings.front();
+}
+
+TEST(SampledLocus, CirculatoryBrakeFluttersFromItsCriticalFriction) {
+  const Crossing found = limit_of(reference_brake({"friction"}));
+  EXPECT_NEAR(found.value, 0.3596654112, 1e-10);
+  EXPECT_NEAR(found.frequency, 1895.537, 1e-3);
+}
+
+TEST(SampledLocus, PenaltyConvergesToMultipliersWithFirstOrder) {
+  DiscModelParameters brake = reference_brake({"friction"});
+  brake.contact.formulation = ContactFormulation::penalty;
+  const double limit = 0.3596654112;
+  std::vector<double> errors;
+  for (const auto& [penalty, expected] :
+       {std::pair(1e9, 0.3544503), std::pair(1e10, 0.3591312), std::pair(1e11, 0.3596119)}) {
+    brake.contact.penalty = penalty;
+    const double found = limit_of(brake).value;
+    EXPECT_NEAR(found, expected, 6e-8) << penalty;
+    errors.push_back(limit - found);
+  }
+  for (std::size_t i = 1; i < errors.size(); ++i)
+    EXPECT_NEAR(std::log10(errors[i - 1] / errors[i]), 1.0, 0.02);
+}
+
+TEST(SampledLocus, DampingMovesTheLimitOfTheBrake) {
+  DiscModelParameters brake = reference_brake({"friction", "structural_damping"});
+  brake.disc.damping.alpha = brake.pads.damping.alpha = 50.0;
+  EXPECT_NEAR(limit_of(brake).value, 0.3601300, 6e-8);
+  brake.disc.damping = {0.0, 1e-8};
+  brake.pads.damping = {0.0, 0.0};
+  // The growth passes zero so slowly, by 3 1/s per unit of friction, that the last digit depends on
+  // what is taken for zero.
+  EXPECT_NEAR(limit_of(brake).value, 0.3027757, 1e-7);
+  std::swap(brake.disc.damping, brake.pads.damping);
+  EXPECT_NEAR(limit_of(brake).value, 0.3227976, 6e-8);
+  brake.disc.damping = {0.0, 1e-8};
+  EXPECT_NEAR(limit_of(brake).value, 0.3596658, 6e-8);
+}
+
+/// k1 = 1, k2 = 1.4 with M = 1, and p [[0, 1], [−1, 0]].
+PencilFamily flutter_family(const Eigen::Matrix2d& velocity) {
+  PencilFamily family;
+  family.place = [velocity](double load, Pencil& pencil) {
+    LinearSystem system;
+    system.mass = Eigen::Matrix2d::Identity();
+    system.velocity = velocity;
+    system.position = Eigen::Matrix2d{{1.0, load}, {-load, 1.4}};
+    system.gaps = system.forces = Eigen::MatrixXd(0, 2);
+    pencil = make_pencil(system);
+  };
+  return family;
+}
+
+double flutter_limit(const Eigen::Matrix2d& velocity) {
+  const Locus locus = sample_locus(flutter_family(velocity), hundred_values(0.0, 0.4));
+  EXPECT_EQ(locus.crossings.size(), 1U);
+  return locus.crossings.empty() ? 0.0 : locus.crossings.front().value;
+}
+
+TEST(SampledLocus, TwoDegreesOfFreedomFlutterAsTheirClosedForms) {
+  const auto diagonal = [](double a, double b) {
+    return Eigen::Matrix2d(Eigen::Vector2d(a, b).asDiagonal());
+  };
+  EXPECT_NEAR(flutter_limit(Eigen::Matrix2d::Zero()), 0.2, 1e-12);
+  EXPECT_NEAR(flutter_limit(diagonal(0.1, 0.1)), 0.2280350850, 1e-10);
+  EXPECT_NEAR(flutter_limit(diagonal(0.001, 0.003)), 0.1732146068, 1e-10);
+  EXPECT_NEAR(flutter_limit(diagonal(0.1, 0.3)), 0.2509980080, 1e-10);
+}
+
+TEST(SampledLocus, EigenvaluesOfTwoDegreesOfFreedom) {
+  const auto growth = [](const Eigen::Matrix2d& velocity, double load) {
+    Pencil pencil;
+    flutter_family(velocity).place(load, pencil);
+    const auto found = dense_eigenvalues(pencil);
+    return std::pair(std::min(found[0].growth(), found[1].growth()),
+                     std::max(found[0].growth(), found[1].growth()));
+  };
+  const auto [down, up] = growth(Eigen::Matrix2d::Zero(), 0.3);
+  EXPECT_NEAR(up, 0.1016256896, 1e-10);
+  EXPECT_NEAR(down, -0.1016256896, 1e-10);
+  const auto [falling, rising] = growth(Eigen::Matrix2d{{0.0, 0.1}, {-0.1, 0.0}}, 0.05);
+  EXPECT_NEAR(rising, 0.0111662740, 1e-10);
+  EXPECT_NEAR(falling, -0.0111662740, 1e-10);
+}
+
+TEST(SampledLocus, WindowsHoldTheIntegralOfTheGrowth) {
+  // s² + s (x² − 1) + 1 = 0 grows with (1 − x²)/2 between −1 and 1.
+  PencilFamily family;
+  family.place = [](double x, Pencil& pencil) {
+    LinearSystem system;
+    system.mass = system.position = Eigen::MatrixXd::Identity(1, 1);
+    system.velocity = Eigen::MatrixXd::Constant(1, 1, x * x - 1.0);
+    system.gaps = system.forces = Eigen::MatrixXd(0, 1);
+    pencil = make_pencil(system);
+  };
+  const Locus locus = sample_locus(family, {-3.0, 2.0});
+  ASSERT_EQ(locus.unstable.size(), 1U);
+  EXPECT_NEAR(locus.unstable[0].from, -1.0, 1e-12);
+  EXPECT_NEAR(locus.unstable[0].to, 1.0, 1e-12);
+  EXPECT_NEAR(locus.unstable[0].growth_max, 0.5, 1e-9);
+  EXPECT_NEAR(locus.unstable[0].value_max, 0.0, 1e-4);
+  EXPECT_NEAR(locus.unstable[0].growth_integral, 2.0 / 3.0, 1e-9);
+  EXPECT_NEAR(locus.unstable[0].frequency, std::sqrt(0.75) / two_pi, 1e-9);
+  EXPECT_EQ(locus.eigenvalues.size(), 2U);
+}
+
+TEST(SampledLocus, ANarrowWindowBetweenTwoValuesIsFound) {
+  // Growth 1e-4 − x² around 0, with 0 far from every value looked at.
+  PencilFamily family;
+  family.place = [](double x, Pencil& pencil) {
+    LinearSystem system;
+    system.mass = system.position = Eigen::MatrixXd::Identity(1, 1);
+    system.velocity = Eigen::MatrixXd::Constant(1, 1, 2.0 * (x * x - 1e-4));
+    system.gaps = system.forces = Eigen::MatrixXd(0, 1);
+    pencil = make_pencil(system);
+  };
+  const Locus locus = sample_locus(family, {-3.05, 3.0});
+  ASSERT_EQ(locus.unstable.size(), 1U);
+  EXPECT_NEAR(locus.unstable[0].from, -0.01, 1e-12);
+  EXPECT_NEAR(locus.unstable[0].to, 0.01, 1e-12);
+}
+
+TEST(SampledLocus, RejectsWhatIsNoRange) {
+  EXPECT_EQ(message_of<std::invalid_argument>([] { sample_locus({}, {1.0}); }),
+            "locus: there is no family");
+  const PencilFamily family = flutter_family(Eigen::Matrix2d::Zero());
+  EXPECT_EQ(message_of<std::invalid_argument>([&] { sample_locus(family, {}); }),
+            "locus: there are no values");
+  EXPECT_EQ(message_of<std::invalid_argument>([&] {
+              sample_locus(family, {1.0, 1.0});
+            }),
+            "locus: the values must ascend");
+  LocusOptions none;
+  none.count = 0;
+  EXPECT_EQ(message_of<std::invalid_argument>([&] { sample_locus(family, {1.0}, none); }),
+            "locus: 0 eigenvalues are none");
+}
+
+}  // namespace
+}  // namespace stridor

@@ -1,0 +1,175 @@
+// Discs with pads and bodies given by matrices, as a user would run them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/program.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+const std::string brake = scene_path("disc_and_pads.yaml");
+const std::string friction = "contact.friction.coefficient";
+
+Json json_of(std::vector<std::string> arguments) {
+  arguments.emplace_back("--json");
+  const ProgramResult result = Program(arguments).run();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return Json::parse(result.out);
+}
+
+struct Growth {
+  int num_unstable = 0;
+  double largest = -1e300;
+};
+
+Growth growth_of(const Json& eig) {
+  Growth growth;
+  for (const Json& s : eig["eigenvalues"]) {
+    const double re = s[0].get<double>();
+    growth.num_unstable += re > 1e-6 ? 1 : 0;
+    growth.largest = std::max(growth.largest, re);
+  }
+  return growth;
+}
+
+TEST(DiscProgram, EveryModellingStepIsARunOfOneScene) {
+  const std::string all = "gyroscopic, friction, friction_damping, geometric";
+  const auto run = [](const std::string& terms) {
+    return json_of({"eig", brake, "--set", "terms=[" + terms + "]"});
+  };
+  for (const std::string terms : {"", "gyroscopic"}) {
+    const Json eig = run(terms);
+    EXPECT_EQ(growth_of(eig).num_unstable, 0) << terms;
+    EXPECT_TRUE(eig["stable"]) << terms;
+    EXPECT_EQ(eig["eigenvalues"].size(), 17U);
+  }
+  const Json circulatory = run("gyroscopic, friction");
+  EXPECT_EQ(growth_of(circulatory).num_unstable, 8);
+  EXPECT_NEAR(growth_of(circulatory).largest, 4.649547, 1e-6);
+  EXPECT_FALSE(circulatory["stable"]);
+  EXPECT_EQ(growth_of(run(all)).num_unstable, 4);
+  EXPECT_NEAR(growth_of(run(all)).largest, 2.165453, 1e-6);
+  const Json damped = json_of({"eig", brake});
+  EXPECT_NEAR(growth_of(damped).largest, -4.590691, 1e-6);
+  EXPECT_TRUE(damped["stable"]);
+  EXPECT_NEAR(damped["window"][1].get<double>(), 7494.83, 0.01);
+  EXPECT_EQ(damped["equilibrium"]["contacts"][0]["force"], 3000.0);
+  EXPECT_NEAR(growth_of(json_of({"eig", brake, "--set", "disc.damping.beta=1e-6", "--set",
+                                 "pads.damping.beta=1e-6"}))
+                  .largest,
+              -46.177, 5e-4);
+}
+
+TEST(DiscProgram, ThresholdsOfMultipliersAndPenalty) {
+  const auto limit = [](std::vector<std::string> more) {
+    std::vector<std::string> arguments{"threshold", brake,  "--parameter", friction,
+                                       "--from",    "0.25", "--to",        "0.45",
+                                       "--points",  "2",    "--set",       "terms=[friction]"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Json roots = json_of(arguments)["roots"];
+    EXPECT_EQ(roots.size(), 1U);
+    return roots.empty() ? 0.0 : roots[0]["value"].get<double>();
+  };
+  EXPECT_NEAR(limit({}), 0.3596654112, 1e-10);
+  EXPECT_NEAR(limit({"--set", "disc.speed=0"}), 0.3596654112, 1e-10);
+  EXPECT_NEAR(limit({"--set", "contact.formulation=penalty", "--set", "contact.penalty=1e9"}),
+              0.3544503, 6e-8);
+}
+
+TEST(DiscProgram, ExplainsAModeByWhatItSees) {
+  // Rotation alone is neither damped nor circulatory.
+  const Json turning =
+      json_of({"eig", brake, "--set", "terms=[gyroscopic]", "--explain", "--mode", "2"});
+  const Json& gyroscopic = turning["explanation"]["quotients"];
+  EXPECT_NEAR(gyroscopic["damping"].get<double>(), 0.0, 1e-9);
+  EXPECT_NEAR(gyroscopic["circulatory"].get<double>(), 0.0,
+              1e-12 * gyroscopic["stiffness"].get<double>());
+  EXPECT_GT(std::abs(gyroscopic["gyroscopic"].get<double>()), 1.0);
+
+  const Json eig =
+      json_of({"eig", brake, "--set", "terms=[gyroscopic, friction]", "--explain", "--mode", "1"});
+  const Json& seen = eig["explanation"]["quotients"];
+  // It grows, so the sufficient criterion cannot hold.
+  EXPECT_GT(eig["explanation"]["growth"].get<double>(), 0.0);
+  EXPECT_EQ(seen["suffices"], false);
+  EXPECT_LT(seen["residual"].get<double>(), 1e-12);
+  const double d = seen["damping"].get<double>();
+  const double g = seen["gyroscopic"].get<double>();
+  const double k = seen["stiffness"].get<double>();
+  const double n = seen["circulatory"].get<double>();
+  EXPECT_NEAR(seen["margin"].get<double>(), k * d * d + n * d * g - n * n,
+              1e-9 * std::max(n * n, k * d * d));
+  EXPECT_GT(eig["explanation"]["frictionless_modes"][0]["share"].get<double>(), 0.5);
+  const ProgramResult text = Program({"eig", brake, "--explain"}).run();
+  EXPECT_THAT(text.out, HasSubstr("stable between 0 and 7494.83 Hz"));
+  EXPECT_THAT(text.out, HasSubstr("would suffice for decay"));
+}
+
+TEST(DiscProgram, MapAgreesWithTheThreshold) {
+  const Json map = json_of({"map", brake, "--set", "terms=[friction]", "--x", friction, "0.3",
+                            "0.4", "3", "--y", "disc.speed", "1", "20", "2"});
+  ASSERT_EQ(map["boundary"].size(), 1U);
+  for (const Json& point : map["boundary"][0])
+    EXPECT_NEAR(point[0].get<double>(), 0.3596654112, 1e-9);
+}
+
+TEST(DiscProgram, LocusListsEigenvaluesAndWindows) {
+  const Json locus = json_of({"locus", brake, "--set", "terms=[friction]", "--parameter", friction,
+                              "--from", "0.3", "--to", "0.4", "--points", "2"});
+  ASSERT_EQ(locus["eigenvalues"].size(), 2U);
+  EXPECT_EQ(locus["eigenvalues"][0].size(), 17U);
+  ASSERT_EQ(locus["unstable"].size(), 1U);
+  EXPECT_NEAR(locus["unstable"][0]["from"].get<double>(), 0.3596654112, 1e-10);
+}
+
+TEST(DiscProgram, RefusesWhatItHasNot) {
+  EXPECT_THAT(Program({"run", brake, "-o", "x.h5"}).run().err, HasSubstr("small motion"));
+  EXPECT_THAT(Program({"eig", brake, "--at", "1"}).run().err, HasSubstr("--at"));
+  EXPECT_THAT(Program({"eig", brake, "--shapes", "x"}).run().err, HasSubstr("--shapes"));
+  const ProgramResult unnamed = Program({"threshold", brake, "--from", "0", "--to", "1"}).run();
+  EXPECT_EQ(unnamed.exit_code, 2);
+  EXPECT_THAT(unnamed.err, HasSubstr("name a key"));
+  EXPECT_EQ(Program({"check", brake}).run().exit_code, 0);
+  EXPECT_EQ(Program({"check", brake, "--set", "terms=[x]"}).run().exit_code, 2);
+}
+
+double example_limit(const std::string& name, const std::string& key, const std::string& to,
+                     std::vector<std::string> more) {
+  std::vector<std::string> arguments{"threshold",   scene_path("examples/" + name + ".yaml"),
+                                     "--parameter", "substructures." + key + ".load",
+                                     "--from",      "0.05",
+                                     "--to",        to};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const Json roots = json_of(arguments)["roots"];
+  EXPECT_EQ(roots.size(), 1U) << name;
+  return roots.empty() ? 0.0 : roots[0]["value"].get<double>();
+}
+
+TEST(MatrixProgram, ExamplesHaveTheirClosedForms) {
+  EXPECT_NEAR(example_limit("flutter", "oscillator", "0.4", {}), 0.2, 1e-12);
+  EXPECT_NEAR(example_limit("flutter_equal_damping", "oscillator", "0.4", {}), 0.2280350850, 1e-10);
+  EXPECT_NEAR(example_limit("flutter_ziegler", "oscillator", "0.4", {}), 0.1732146068, 1e-10);
+  EXPECT_NEAR(example_limit("flutter_ziegler", "oscillator", "0.4",
+                            {"--set", "substructures.oscillator.damping=[0.1 0, 0 0.3]"}),
+              0.2509980080, 1e-10);
+  EXPECT_NEAR(example_limit("two_springs_on_a_belt", "mass", "1.2", {}), 0.75, 1e-12);
+  const auto largest = [](const std::string& name) {
+    return growth_of(json_of({"eig", scene_path("examples/" + name + ".yaml")})).largest;
+  };
+  EXPECT_NEAR(largest("flutter"), 0.1016256896, 1e-10);
+  EXPECT_NEAR(largest("flutter_gyroscopic"), 0.0111662740, 1e-10);
+  EXPECT_NEAR(largest("gyroscopic"), 0.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace stridor
