@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
@@ -49,7 +50,7 @@ void check_object_path(const std::string& path) {
     throw std::invalid_argument(
         fmt::format("run file: '{}' is not a path of the form /group/name", path));
   }
-  for (const char* reserved : {"/time", "/results", "/scene"}) {
+  for (const char* reserved : {"/time", "/results", "/scene", "/checkpoint"}) {
     if (path == reserved || path.starts_with(std::string(reserved) + "/")) {
       throw std::invalid_argument(fmt::format("run file: the path '{}' is reserved", path));
     }
@@ -119,8 +120,13 @@ struct RunFileWriter::Impl {
 
   void check_specs() const;
   void create(Overwrite overwrite, const RunFileHeader& header);
+  void reopen(const Checkpoint& checkpoint);
+  void create_checkpoints();
+  void write_checkpoint(const State& state);
   Handle create_series(const std::string& path, SeriesKind kind, const std::string& units);
   void reserve(std::uint64_t rows) const;
+  void write_block(const Handle& dataset, const std::string& path, hsize_t offset, hid_t type,
+                   const void* entries, hsize_t count);
   void write_rows(const Handle& dataset, const std::string& path, SeriesKind kind,
                   std::span<const double> rows);
   void flush();
@@ -139,6 +145,8 @@ struct RunFileWriter::Impl {
   Handle file;
   Handle time_dataset;
   std::vector<Column> columns;
+  std::array<Handle, checkpoint_paths.size()> checkpoints;
+  std::uint64_t num_checkpoints = 0;
   std::vector<double> times;  // not yet written
   std::vector<std::uint8_t> states;
   std::uint64_t num_written = 0;
@@ -224,6 +232,7 @@ void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& heade
       at.check(H5DSattach_scale(column.dataset.id(), time_dataset.id(), 0), spec.path,
                "cannot be tied to /time");
     }
+    create_checkpoints();
     commit("");
     part.move_to_final(overwrite);
     staged.renamed(at.path());
@@ -233,6 +242,76 @@ void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& heade
     close_file();
     throw;
   }
+}
+
+void RunFileWriter::Impl::create_checkpoints() {
+  constexpr hsize_t none = 0;
+  constexpr hsize_t piece = 65536;
+  const hsize_t unlimited = H5S_UNLIMITED;
+  for (std::size_t i = 0; i < checkpoints.size(); ++i) {
+    const char* path = checkpoint_paths[i];
+    const Handle space =
+        at.own(H5Screate_simple(1, &none, &unlimited), H5Sclose, path, "cannot make the dataset");
+    const Handle creation =
+        at.own(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, path, "cannot make the dataset");
+    at.check(H5Pset_chunk(creation.id(), 1, &piece), path, "cannot make the dataset");
+    checkpoints[i] = at.own(H5Dcreate2(file.id(), path, H5T_STD_U8LE, space.id(), links.id(),
+                                       creation.id(), H5P_DEFAULT),
+                            H5Dclose, path, "cannot make the dataset");
+    write_attribute(at, checkpoints[i].id(), path, "units", "1");
+  }
+}
+
+// Takes what a run leaves at its end out of its file. In a file of its own, because HDF5 would use
+// the room that becomes free again while the file stays open, and StagedFile rules that out.
+void remove_results(const Checker& at) {
+  StagedFile staged;
+  staged.open(at.path());
+  const Handle access = staged.access(at);
+  Handle file = at.own(H5Fopen(at.path().c_str(), H5F_ACC_RDWR, access.id()), H5Fclose, "",
+                       "is damaged or truncated");
+  staged.opened();
+  for (const char* path : {"/final", "/results", "/bursts"}) {
+    if (H5Lexists(file.id(), path, H5P_DEFAULT) > 0)
+      at.check(H5Ldelete(file.id(), path, H5P_DEFAULT), path, "cannot be removed");
+  }
+  at.check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "", "cannot be flushed");
+  const int error = staged.commit_by_copy();
+  staged.freeze();
+  if (error != 0) throw FileError(at.path(), "", "cannot be written: " + errno_text(error));
+}
+
+void RunFileWriter::Impl::reopen(const Checkpoint& checkpoint) {
+  remove_results(at);
+  staged.open(at.path());
+  file = at.own(H5Fopen(at.path().c_str(), H5F_ACC_RDWR, access.id()), H5Fclose, "",
+                "is damaged or truncated");
+  staged.opened();
+  const auto open_dataset = [this](const std::string& path) {
+    return at.own(H5Dopen2(file.id(), path.c_str(), H5P_DEFAULT), H5Dclose, path,
+                  "is not in the file");
+  };
+  time_dataset = open_dataset("/time");
+  for (Column& column : columns) column.dataset = open_dataset(column.spec.path);
+  for (std::size_t i = 0; i < checkpoints.size(); ++i)
+    checkpoints[i] = open_dataset(checkpoint_paths[i]);
+  num_checkpoints = checkpoint.number;
+  num_written = checkpoint.rows;
+  if (options.on_write) staged.observe(options.on_write);
+}
+
+void RunFileWriter::Impl::write_checkpoint(const State& state) {
+  const auto start = std::chrono::steady_clock::now();
+  const QuietErrors quiet;
+  const std::vector<unsigned char> bytes = encode({num_checkpoints + 1, num_written, state});
+  const std::size_t slot = num_checkpoints % checkpoints.size();
+  modify([&] {
+    write_block(checkpoints[slot], checkpoint_paths[slot], 0, H5T_NATIVE_UCHAR, bytes.data(),
+                bytes.size());
+    commit(checkpoint_paths[slot]);
+  });
+  ++num_checkpoints;
+  write_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void RunFileWriter::Impl::require_usable() const {
@@ -287,29 +366,38 @@ void RunFileWriter::Impl::reserve(std::uint64_t rows) const {
                               num_written + rows - 1, needed, errno_text(error)));
 }
 
-void RunFileWriter::Impl::write_rows(const Handle& dataset, const std::string& path,
-                                     SeriesKind kind, std::span<const double> rows) {
-  const hsize_t offset = num_written;
-  const hsize_t count = rows.size();
-  const hsize_t extent = offset + count;
-  at.check(H5Dset_extent(dataset.id(), &extent), path, "cannot be extended");
+// Writes entries of a one-dimensional dataset, which is made longer where it must be.
+void RunFileWriter::Impl::write_block(const Handle& dataset, const std::string& path,
+                                      hsize_t offset, hid_t type, const void* entries,
+                                      hsize_t count) {
+  hsize_t extent = 0;
+  {
+    const Handle space = at.own(H5Dget_space(dataset.id()), H5Sclose, path, "cannot be written");
+    at.check(H5Sget_simple_extent_dims(space.id(), &extent, nullptr), path, "cannot be written");
+  }
+  if (extent < offset + count) {
+    extent = offset + count;
+    at.check(H5Dset_extent(dataset.id(), &extent), path, "cannot be extended");
+  }
   const Handle target = at.own(H5Dget_space(dataset.id()), H5Sclose, path, "cannot be written");
   at.check(H5Sselect_hyperslab(target.id(), H5S_SELECT_SET, &offset, nullptr, &count, nullptr),
            path, "cannot be written");
   const Handle source =
       at.own(H5Screate_simple(1, &count, nullptr), H5Sclose, path, "cannot be written");
-  herr_t status = -1;
+  at.check(H5Dwrite(dataset.id(), type, source.id(), target.id(), H5P_DEFAULT, entries), path,
+           "cannot be written");
+}
+
+void RunFileWriter::Impl::write_rows(const Handle& dataset, const std::string& path,
+                                     SeriesKind kind, std::span<const double> rows) {
   if (kind == SeriesKind::real) {
-    status = H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, source.id(), target.id(), H5P_DEFAULT,
-                      rows.data());
-  } else {
-    states.resize(rows.size());
-    std::transform(rows.begin(), rows.end(), states.begin(),
-                   [](double x) { return static_cast<std::uint8_t>(x); });
-    status = H5Dwrite(dataset.id(), H5T_NATIVE_UINT8, source.id(), target.id(), H5P_DEFAULT,
-                      states.data());
+    write_block(dataset, path, num_written, H5T_NATIVE_DOUBLE, rows.data(), rows.size());
+    return;
   }
-  at.check(status, path, "cannot be written");
+  states.resize(rows.size());
+  std::transform(rows.begin(), rows.end(), states.begin(),
+                 [](double x) { return static_cast<std::uint8_t>(x); });
+  write_block(dataset, path, num_written, H5T_NATIVE_UINT8, states.data(), states.size());
 }
 
 void RunFileWriter::Impl::flush() {
@@ -346,6 +434,7 @@ std::string RunFileWriter::Impl::close_file() {
   };
   for (Column& column : columns) note(column.dataset.close());
   note(time_dataset.close());
+  for (Handle& checkpoint : checkpoints) note(checkpoint.close());
   note(file.close());
   return cause;
 }
@@ -357,6 +446,16 @@ RunFileWriter::RunFileWriter(const std::string& path, Overwrite overwrite,
   impl_ = std::make_unique<Impl>(path, std::move(series), options);
   impl_->check_specs();
   impl_->create(overwrite, header);
+}
+
+RunFileWriter RunFileWriter::resume(const std::string& path, std::vector<SeriesSpec> series,
+                                    const Checkpoint& checkpoint, RunFileOptions options) {
+  const QuietErrors quiet;
+  RunFileWriter writer;
+  writer.impl_ = std::make_unique<Impl>(path, std::move(series), std::move(options));
+  writer.impl_->check_specs();
+  writer.impl_->reopen(checkpoint);
+  return writer;
 }
 
 RunFileWriter::~RunFileWriter() {
@@ -421,6 +520,11 @@ void RunFileWriter::append(double time, std::span<const double> row) {
 
 void RunFileWriter::flush() {
   impl_->flush();
+}
+
+void RunFileWriter::write_checkpoint(const State& state) {
+  impl_->flush();
+  impl_->write_checkpoint(state);
 }
 
 void RunFileWriter::write_static(const std::string& path, std::span<const double> values,
