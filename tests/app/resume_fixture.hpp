@@ -40,10 +40,11 @@ inline std::string difference(const std::string& one, const std::string& other) 
   return said;
 }
 
-inline std::vector<std::string> long_run(const std::string& output) {
+inline std::vector<std::string> long_run(const std::string& output,
+                                         const std::string& end = "0.3") {
   return {"run",   scene_path("beam_on_beam.yaml"),
           "-o",    output,
-          "--set", "time.end=0.3",
+          "--set", "time.end=" + end,
           "--set", "time.integrator=exact",
           "--set", "time.step=1e-6",
           "--set", "measure.from=0.05",

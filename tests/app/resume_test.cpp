@@ -110,8 +110,8 @@ TEST(ResumeProgram, ARequestToStopAndATimeLimitLeaveARunThatGoesOn) {
   const TemporaryFolder folder;
   const std::string whole = (folder / "whole.h5").string();
   const std::string broken = (folder / "broken.h5").string();
-  ASSERT_EQ(Program(long_run(whole)).run().exit_code, 0);
-  Program program(long_run(broken));
+  ASSERT_EQ(Program(long_run(whole, "1.5")).run().exit_code, 0);
+  Program program(long_run(broken, "1.5"));
   program.start();
   wait_for(broken);
   program.send(SIGTERM);
