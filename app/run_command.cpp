@@ -3,9 +3,12 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
+#include <optional>
 
 #include "app/command.hpp"
+#include "app/damage_guard.hpp"
 #include "app/expectations.hpp"
 #include "app/progress.hpp"
 #include "app/sphere_run.hpp"
@@ -20,6 +23,8 @@ struct RunOptions {
   CommonOptions common;
   std::string scene;
   std::string output;
+  std::string resumed;
+  double max_wall = std::numeric_limits<double>::infinity();  ///< s
   bool verify = false;
   std::string command_line;
 };
@@ -41,9 +46,13 @@ void print_summary(const Json& results, const std::string& output) {
     fmt::print("{:<24}{} moving, {} left to their static residual\n", "modes of " + name,
                modes["moving"].get<int>(), modes["residual"].get<int>());
   }
-  fmt::print("{:<24}{:.3g} s stepping ({:.0f} ns a step), {:.3g} s set-up, {:.3g} s output\n",
-             "time taken", results["wall_s"].get<double>(), results["step_ns"].get<double>(),
-             results["setup_s"].get<double>(), results["output_s"].get<double>());
+  const std::string step_time =
+      results["step_ns"].is_null()
+          ? ""
+          : fmt::format(" ({:.0f} ns a step)", results["step_ns"].get<double>());
+  fmt::print("{:<24}{:.3g} s stepping{}, {:.3g} s set-up, {:.3g} s output\n", "time taken",
+             results["wall_s"].get<double>(), step_time, results["setup_s"].get<double>(),
+             results["output_s"].get<double>());
   const auto print_force = [&](const std::string& name, const Json& force) {
     fmt::print("{:<24}{} to {} N\n", name, text(force["min"]), text(force["max"]));
   };
@@ -74,7 +83,43 @@ void print_summary(const Json& results, const std::string& output) {
   fmt::print("{:<24}{}\n", "run file", output);
 }
 
-ExitCode run(const RunOptions& options) {
+/// Runs to the end, or as far as it gets, and says how it ended.
+ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::string& file,
+                    const RunOptions& options) {
+  Progress progress("run");
+  transient.on_progress(
+      [&](double fraction, const std::string& detail) { progress.report(fraction, detail); });
+  transient.limit_wall_time(options.max_wall);
+  const MarchEnd end = transient.run_to_end();
+  progress.finish();
+  if (end == MarchEnd::stopped) transient.write_checkpoint();
+  const Json results = transient.finish();
+
+  if (options.common.json) {
+    fmt::print("{}\n", results.dump(2));
+  } else {
+    print_summary(results, file);
+  }
+  std::fflush(stdout);
+
+  const Simulation& simulation = transient.simulation();
+  if (end == MarchEnd::stopped) {
+    throw Interrupted(fmt::format(
+        "at t = {:.6g} of {:.6g} s; {} holds everything up to then. It can be resumed:\n"
+        "stridor run --resume '{}'",
+        simulation.time(), loaded.scene.time.end, file, file));
+  }
+  if (end == MarchEnd::failed) {
+    throw NumericalError(
+        fmt::format("{}\n{} holds everything up to then", simulation.failure(), file));
+  }
+  if (options.verify) {
+    check_expectations(loaded.scene.expect, results);
+  }
+  return ExitCode::done;
+}
+
+ExitCode begin(const RunOptions& options) {
   if (is_sphere_scene_file(options.scene)) {
     return run_sphere(
         {options.common, options.scene, options.output, options.verify, options.command_line});
@@ -83,34 +128,34 @@ ExitCode run(const RunOptions& options) {
   Transient transient(loaded,
                       {options.output, options.common.force ? Overwrite::yes : Overwrite::no,
                        options.command_line});
-  Progress progress("run");
-  transient.on_progress(
-      [&](double fraction, const std::string& detail) { progress.report(fraction, detail); });
-  const MarchEnd end = transient.run_to_end();
-  progress.finish();
-  const Json results = transient.finish();
+  return run_to_end(transient, loaded, options.output, options);
+}
 
-  if (options.common.json) {
-    fmt::print("{}\n", results.dump(2));
-  } else {
-    print_summary(results, options.output);
-  }
-  std::fflush(stdout);
+ExitCode resume(const RunOptions& options) {
+  std::optional<DamageGuard> guard(options.resumed);
+  const InterruptedRun interrupted = find_interrupted_run(options.resumed);
+  guard.reset();
+  const LoadedScene loaded =
+      load_resolved_scene(interrupted.scene_text, options.resumed + ":/scene/resolved");
+  Transient transient(loaded, interrupted);
+  return run_to_end(transient, loaded, options.resumed, options);
+}
 
-  const Simulation& simulation = transient.simulation();
-  if (end == MarchEnd::stopped) {
-    throw Interrupted(fmt::format(
-        "at t = {:.6g} of {:.6g} s; {} holds everything up to then, but cannot be resumed yet",
-        simulation.time(), loaded.scene.time.end, options.output));
+/// @throws ConfigError where the options do not say what to run, or twice
+ExitCode run(const RunOptions& options) {
+  const bool has_scene = !options.scene.empty();
+  if (options.resumed.empty()) {
+    if (!has_scene) throw ConfigError("", "run: give a scene, or --resume FILE.h5");
+    if (options.output.empty()) throw ConfigError("", "run: --output is required");
+    return begin(options);
   }
-  if (end == MarchEnd::failed) {
-    throw NumericalError(
-        fmt::format("{}\n{} holds everything up to then", simulation.failure(), options.output));
+  if (has_scene || !options.output.empty() || !options.common.sets.empty() ||
+      options.common.force) {
+    throw ConfigError("",
+                      "run: --resume goes on with the scene in the file and writes into it; leave "
+                      "scene, --output, --set and --force away");
   }
-  if (options.verify) {
-    check_expectations(loaded.scene.expect, results);
-  }
-  return ExitCode::done;
+  return resume(options);
 }
 
 }  // namespace
@@ -119,8 +164,13 @@ void add_run_command(CLI::App& program, Action& action, const std::string& comma
   auto options = std::make_shared<RunOptions>();
   options->command_line = command_line;
   CLI::App* verb = program.add_subcommand("run", "Transient simulation of a scene");
-  verb->add_option("scene", options->scene, "Scene file (YAML)")->required();
-  verb->add_option("-o,--output", options->output, "Run file to write (HDF5)")->required();
+  verb->add_option("scene", options->scene, "Scene file (YAML)");
+  verb->add_option("-o,--output", options->output, "Run file to write (HDF5)");
+  verb->add_option("--resume", options->resumed,
+                   "Go on with an interrupted run, from the latest checkpoint in its file");
+  verb->add_option("--max-wall", options->max_wall,
+                   "Stop after this much wall time (s), resumable; exit 5")
+      ->check(CLI::PositiveNumber);
   verb->add_flag("--verify", options->verify,
                  "Compare the results with the scene's `expect` block; exit 3 where they differ");
   add_scene_options(*verb, options->common);

@@ -9,12 +9,15 @@
 
 #include "app/burst_text.hpp"
 #include "core/errors.hpp"
+#include "core/stop_token.hpp"
 #include "core/version.hpp"
 #include "io/initial_state.hpp"
 #include "solvers/make_propagator.hpp"
 
 namespace stridor {
 namespace {
+
+constexpr const char* checkpoint_group = "/checkpoint";
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -146,6 +149,33 @@ Json violations_json(const Simulation& simulation) {
 
 }  // namespace
 
+InterruptedRun find_interrupted_run(const std::string& file) {
+  const RunFileReader reader(file);
+  const RunFileHeader& header = reader.header();
+  if (header.version != version || header.commit != commit) {
+    throw FileError(file, "",
+                    fmt::format("was written by stridor {} ({}), this is {} ({}); only the program "
+                                "that began a run goes on with it bitwise",
+                                header.version, header.commit, version, commit));
+  }
+  const auto results = reader.results();
+  const auto status = results.find("status");
+  const std::string* text =
+      status == results.end() ? nullptr : std::get_if<std::string>(&status->second);
+  if (text != nullptr && *text == "done")
+    throw FileError(file, "", "holds a whole run, there is nothing to go on with");
+  if (text != nullptr && *text == "failed") {
+    throw FileError(file, "",
+                    "holds a run that failed, and would again; change the scene and run it anew");
+  }
+  std::optional<Checkpoint> checkpoint = reader.checkpoint();
+  if (!checkpoint) {
+    throw FileError(file, checkpoint_group,
+                    "there is no whole checkpoint to go on from; run the scene anew");
+  }
+  return {file, header.scene_resolved, *std::move(checkpoint)};
+}
+
 Transient::Transient(const LoadedScene& loaded, const TransientOutput& output)
     : loaded_(&loaded), file_(output.file) {
   const Scene& scene = loaded.scene;
@@ -153,23 +183,52 @@ Transient::Transient(const LoadedScene& loaded, const TransientOutput& output)
   model_ = build_model(loaded);
   try {
     set_initial_state(model_.system, scene);
-    const bool has_ledger = scene.record && scene.record->energy;
-    simulation_.emplace(model_.system, scene.time, has_ledger ? Accounts::energy : Accounts::none);
+    make_simulation();
   } catch (const ConfigError& error) {
     throw loaded.located(error);
   }
-
-  const double step = scene.time.step;
-  const std::vector<Channel> channels =
-      scene.record ? parse_channels(*scene.record, scene.model) : std::vector<Channel>{};
-  const double interval = scene.record ? scene.record->interval : step;
   const auto file_start = Clock::now();
-  writer_.emplace(file_, output.overwrite, make_header(loaded, output.command_line),
-                  Recorder::series(model_, channels, step, interval));
+  writer_.emplace(file_, output.overwrite, make_header(loaded, output.command_line), series());
   for (const SystemBody& body : model_.system.bodies) write_modes(*writer_, body);
+  make_march();
+  write_checkpoint();
   file_seconds_ = seconds_since(file_start);
-  recorder_.emplace(model_, channels, step, interval, *writer_);
+  setup_seconds_ = seconds_since(setup_start_) - file_seconds_;
+}
 
+Transient::Transient(const LoadedScene& loaded, const InterruptedRun& interrupted)
+    : loaded_(&loaded), file_(interrupted.file) {
+  model_ = build_model(loaded);
+  make_simulation();
+  try {
+    const auto file_start = Clock::now();
+    writer_.emplace(RunFileWriter::resume(file_, series(), interrupted.checkpoint));
+    file_seconds_ = seconds_since(file_start);
+    make_march();
+    load(interrupted.checkpoint.state);
+  } catch (const std::invalid_argument& error) {
+    throw FileError(file_, checkpoint_group,
+                    fmt::format("does not fit the scene in the file: {}", error.what()));
+  }
+  setup_seconds_ = seconds_since(setup_start_) - file_seconds_;
+}
+
+void Transient::make_simulation() {
+  const Scene& scene = loaded_->scene;
+  const bool has_ledger = scene.record && scene.record->energy;
+  simulation_.emplace(model_.system, scene.time, has_ledger ? Accounts::energy : Accounts::none);
+  if (scene.record) channels_ = parse_channels(*scene.record, scene.model);
+  interval_ = scene.record ? scene.record->interval : scene.time.step;
+}
+
+std::vector<SeriesSpec> Transient::series() const {
+  return Recorder::series(model_, channels_, loaded_->scene.time.step, interval_);
+}
+
+void Transient::make_march() {
+  const Scene& scene = loaded_->scene;
+  const double step = scene.time.step;
+  recorder_.emplace(model_, channels_, step, interval_, *writer_);
   end_step_ = static_cast<std::int64_t>(std::llround(scene.time.end / step));
   const auto to_step = [&](double time) {
     return static_cast<std::int64_t>(std::ceil(time / step - 1e-6));
@@ -178,27 +237,57 @@ Transient::Transient(const LoadedScene& loaded, const TransientOutput& output)
   // The last sample needs the filter's look-ahead beyond the end.
   last_step_ = end_step_ + recorder_->latency();
   plan.last_step = last_step_;
-  recorder_->limit_samples(static_cast<std::int64_t>(std::floor(scene.time.end / interval + 1e-6)) +
-                           1);
+  recorder_->limit_samples(
+      static_cast<std::int64_t>(std::floor(scene.time.end / interval_ + 1e-6)) + 1);
   plan.measure_from = to_step(scene.measure.from);
   plan.measure_to = std::min(end_step_, scene.measure.to ? to_step(*scene.measure.to) : end_step_);
-  plan.on_progress = [this](const Simulation& running) {
-    const double end = loaded_->scene.time.end;
-    if (report_) {
-      report_(running.time() / end, fmt::format("t = {:.4g} of {:.4g} s", running.time(), end));
-    }
-    if (seconds_since(last_flush_) > 2.0) {
-      writer_->flush();
-      last_flush_ = Clock::now();
-    }
-  };
+  plan.on_progress = [this](const Simulation& running) { look_after(running); };
   march_.emplace(*simulation_, &*recorder_, std::move(plan));
-  setup_seconds_ = seconds_since(setup_start_) - file_seconds_;
+}
+
+/// Between steps, about four times a second.
+void Transient::look_after(const Simulation& running) {
+  const double end = loaded_->scene.time.end;
+  if (report_)
+    report_(running.time() / end, fmt::format("t = {:.4g} of {:.4g} s", running.time(), end));
+  if (seconds_since(last_checkpoint_) > loaded_->scene.checkpoint.every) {
+    write_checkpoint();
+  } else if (seconds_since(last_flush_) > 2.0) {
+    writer_->flush();
+    last_flush_ = Clock::now();
+  }
+  if (seconds_since(setup_start_) > wall_limit_) request_stop();
+}
+
+State Transient::save() const {
+  State state = simulation_->save();
+  recorder_->save(state, "recorder/");
+  march_->save(state, "march/");
+  state.put("march_seconds", march_seconds_);
+  for (const auto& [path, values] : final_motion_.arrays()) state.put("final/" + path, values);
+  return state;
+}
+
+void Transient::load(const State& state) {
+  simulation_->load(state);
+  recorder_->load(state, "recorder/");
+  march_->load(state, "march/");
+  march_seconds_ = state.get("march_seconds");
+  const std::string prefix = "final/";
+  for (const auto& [name, values] : state.arrays()) {
+    if (name.starts_with(prefix)) final_motion_.put(name.substr(prefix.size()), values);
+  }
+}
+
+void Transient::write_checkpoint() {
+  writer_->write_checkpoint(save());
+  last_checkpoint_ = last_flush_ = Clock::now();
 }
 
 MarchEnd Transient::run_to_step(std::int64_t step) {
   // The final motion is that at the end asked for, not where the filters have seen enough.
-  if (step > end_step_ && !has_final_motion_ && run_to_step(end_step_) != MarchEnd::finished)
+  if (step > end_step_ && final_motion_.arrays().empty() &&
+      run_to_step(end_step_) != MarchEnd::finished)
     return end_;
   const auto start = Clock::now();
   const double writing_before = writer_->write_seconds();
@@ -206,7 +295,7 @@ MarchEnd Transient::run_to_step(std::int64_t step) {
   march_seconds_ += seconds_since(start) - (writer_->write_seconds() - writing_before);
   // Losing the contact within the filter's look-ahead is no failure of the run that was asked for.
   if (end_ == MarchEnd::failed && simulation_->step_index() >= end_step_) end_ = MarchEnd::finished;
-  if (simulation_->step_index() == end_step_ || end_ != MarchEnd::finished) store_final_motion();
+  if (simulation_->step_index() == end_step_) keep_final_motion();
   return end_;
 }
 
@@ -219,23 +308,27 @@ MarchEnd Transient::run_to_end() {
 }
 
 /// The motion of every body where the run has ended, for scenes that start from it.
-void Transient::store_final_motion() {
-  if (has_final_motion_) return;
-  has_final_motion_ = true;
-  const double time[] = {simulation_->time()};
-  const double drive[] = {simulation_->drive_displacement()};
-  writer_->write_static("/final/time", time, "s");
-  writer_->write_static("/final/drive_displacement", drive, "m");
+void Transient::keep_final_motion() {
+  if (!final_motion_.arrays().empty()) return;
+  final_motion_.put("time", simulation_->time());
+  final_motion_.put("drive_displacement", simulation_->drive_displacement());
   for (std::size_t b = 0; b < model_.system.bodies.size(); ++b) {
     const SystemBody& body = model_.system.bodies[b];
     if (body.modal.size() == 0) continue;
     const Propagator::Motion motion = simulation_->reduced_motion(static_cast<int>(b));
-    const auto as_span = [](const Eigen::VectorXd& vector) {
-      return std::span<const double>(vector.data(), static_cast<std::size_t>(vector.size()));
+    const auto keep = [&](const char* name, const Eigen::VectorXd& vector) {
+      final_motion_.put(body.name + name, {vector.data(), static_cast<std::size_t>(vector.size())});
     };
-    writer_->write_static("/final/" + body.name + "/displacement", as_span(motion.displacement),
-                          "m");
-    writer_->write_static("/final/" + body.name + "/velocity", as_span(motion.velocity), "m/s");
+    keep("/displacement", motion.displacement);
+    keep("/velocity", motion.velocity);
+  }
+}
+
+void Transient::write_final_motion() {
+  for (const auto& [path, values] : final_motion_.arrays()) {
+    const bool is_velocity = path.ends_with("/velocity");
+    writer_->write_static("/final/" + path, values,
+                          path == "time" ? "s" : (is_velocity ? "m/s" : "m"));
   }
 }
 
@@ -271,6 +364,8 @@ Json Transient::finish() {
   const EnergyLedger* energy = simulation_->energy();
   results["energy_error"] = energy != nullptr ? number(energy->relative_error()) : Json(nullptr);
   results["file"] = file_;
+  keep_final_motion();
+  write_final_motion();
   store_results(*writer_, "", results);
   if (acceleration && acceleration->bursts && !acceleration->bursts->empty()) {
     store_bursts(*writer_, *acceleration->bursts);

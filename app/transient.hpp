@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,12 +23,29 @@ struct TransientOutput {
   std::string command_line;
 };
 
+/// A run that can go on.
+struct InterruptedRun {
+  std::string file;
+  std::string scene_text;  ///< resolved
+  Checkpoint checkpoint;
+};
+
+/// Finds out whether and from where a run can go on.
+/// @throws FileError if the file is no run file, was written by another program, holds a whole run
+///         or no checkpoint
+InterruptedRun find_interrupted_run(const std::string& file);
+
 class Transient {
  public:
   /// Builds the model, the simulation and the run file.
   /// @param loaded must live longer
   /// @throws ConfigError with places in the scene, FileError, NumericalError
   Transient(const LoadedScene& loaded, const TransientOutput& output);
+  /// Goes on with a run from the latest checkpoint of its file, bitwise as if it had not stopped.
+  /// @param loaded the scene of `interrupted`
+  /// @throws FileError if the file has no checkpoint, or not one of this program and scene, or
+  ///         cannot be changed; as the other constructor
+  Transient(const LoadedScene& loaded, const InterruptedRun& interrupted);
   Transient(const Transient&) = delete;
   Transient& operator=(const Transient&) = delete;
 
@@ -41,6 +59,13 @@ class Transient {
     report_ = std::move(report);
   }
 
+  /// Stores the state of the run in its file.
+  /// @throws FileError if it cannot be written
+  void write_checkpoint();
+  /// A request to stop is made by itself when this much wall time has passed since the
+  /// construction, s.
+  void limit_wall_time(double seconds) { wall_limit_ = seconds; }
+
   /// Flushes, reads the statistics off the file, stores them in it and closes it.
   /// @return the JSON object of `run`
   Json finish();
@@ -53,13 +78,22 @@ class Transient {
  private:
   using Clock = std::chrono::steady_clock;
 
+  void make_march();
+  void make_simulation();
+  std::vector<SeriesSpec> series() const;
+  State save() const;
+  void load(const State& state);
+  void look_after(const Simulation& running);
   MarchEnd run_to_step(std::int64_t step);
-  void store_final_motion();
+  void keep_final_motion();
+  void write_final_motion();
 
   const LoadedScene* loaded_;
   std::string file_;
   Clock::time_point setup_start_ = Clock::now();
   Model model_;
+  std::vector<Channel> channels_;
+  double interval_ = 0.0;  ///< of the samples, s
   std::optional<Simulation> simulation_;
   std::optional<RunFileWriter> writer_;
   std::optional<Recorder> recorder_;
@@ -67,12 +101,14 @@ class Transient {
   std::int64_t end_step_ = 0;
   std::int64_t last_step_ = 0;
   MarchEnd end_ = MarchEnd::finished;
-  bool has_final_motion_ = false;
+  State final_motion_;  ///< by path under /final; empty before the end
+  double wall_limit_ = std::numeric_limits<double>::infinity();
   double setup_seconds_ = 0.0;
   double file_seconds_ = 0.0;
   double march_seconds_ = 0.0;
   std::function<void(double, const std::string&)> report_;
   Clock::time_point last_flush_ = Clock::now();
+  Clock::time_point last_checkpoint_ = Clock::now();
 };
 
 /// Writes the bursts of the JSON object of `run` in one line each, or that there are none.

@@ -4,10 +4,14 @@
 
 #include <hdf5.h>
 
+#include <array>
 #include <string>
 #include <utility>
 
 namespace stridor {
+
+/// Where a run file keeps its two latest checkpoints.
+inline constexpr std::array checkpoint_paths{"/checkpoint/a", "/checkpoint/b"};
 
 /// Owns one HDF5 identifier of any kind.
 class Handle {

@@ -8,6 +8,7 @@
 //     /energy/…              energy ledger
 //     /modal/<body>/…        static arrays
 //     /results               numbers read off the run, as attributes
+//     /checkpoint/a, b       the two latest states from which the run can go on, as bytes
 //
 // A series may be longer than /time while the run goes on, or after it was killed: len(/time) rows
 // of every series are complete, what comes after is not to be trusted.
@@ -17,11 +18,14 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "io/checkpoint.hpp"
 
 namespace stridor {
 
@@ -105,6 +109,13 @@ class RunFileWriter {
   ///         state series has no "meaning", or block_rows is 0
   RunFileWriter(const std::string& path, Overwrite overwrite, const RunFileHeader& header,
                 std::vector<SeriesSpec> series, RunFileOptions options = {});
+  /// Goes on with the file of a run from one of its checkpoints. The next row to append is row
+  /// `checkpoint.rows`; rows that the file holds from there on are written over and must come again
+  /// as they were. What the run had left when it stopped (/final, /results, /bursts) is removed.
+  ///
+  /// @throws FileError if the file cannot be changed, or does not hold these series
+  static RunFileWriter resume(const std::string& path, std::vector<SeriesSpec> series,
+                              const Checkpoint& checkpoint, RunFileOptions options = {});
   /// Closes without reporting errors; call close() to learn of them.
   ~RunFileWriter();
   RunFileWriter(RunFileWriter&&) noexcept;
@@ -123,6 +134,10 @@ class RunFileWriter {
   void append(double time, std::span<const double> row);
   /// Writes and flushes what is in memory. @throws FileError as append()
   void flush();
+
+  /// Writes and flushes what is in memory and then the state of the run, in place of the last but
+  /// one checkpoint: there is a whole one at any moment. @throws FileError as append()
+  void write_checkpoint(const State& state);
 
   /// Writes an array that does not depend on time, e.g. "/modal/plate/frequency", units "Hz".
   /// @throws FileError, std::invalid_argument as the constructor
@@ -144,6 +159,7 @@ class RunFileWriter {
 
  private:
   struct Impl;
+  RunFileWriter() = default;
   std::unique_ptr<Impl> impl_;
 };
 
@@ -162,7 +178,8 @@ class RunFileReader {
   /// Times in s as they were when the file was opened; their number is the length of every series.
   const std::vector<double>& times() const;
 
-  /// Paths of all series and of all other one-dimensional arrays, in alphabetical order.
+  /// Paths of all series and of all other one-dimensional arrays but checkpoints, in alphabetical
+  /// order.
   std::vector<std::string> series_names() const;
   std::vector<std::string> static_names() const;
   bool has(const std::string& path) const;
@@ -180,6 +197,8 @@ class RunFileReader {
   /// @throws FileError if there is no such object
   std::map<std::string, std::variant<std::string, double>> attributes(
       const std::string& path) const;
+  /// The latest whole checkpoint; empty where there is none.
+  std::optional<Checkpoint> checkpoint() const;
   /// Attributes of /results; empty if the run has not got that far.
   std::map<std::string, std::variant<std::string, double>> results() const;
 

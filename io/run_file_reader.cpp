@@ -88,6 +88,7 @@ struct RunFileReader::Impl {
   void open_file();
   void read_header();
   std::string text(const std::string& path) const;
+  void check_plausible(std::uint64_t length, const std::string& path) const;
   Handle open_array(const std::string& path, hsize_t& length) const;
   std::vector<double> read_array(const std::string& path, const std::uint64_t* wanted) const;
   std::vector<std::string> arrays(bool series) const;
@@ -159,6 +160,17 @@ std::string RunFileReader::Impl::text(const std::string& path) const {
   });
 }
 
+// Before memory is taken. No file holds more numbers than this, not even a compressed one.
+void RunFileReader::Impl::check_plausible(std::uint64_t length, const std::string& path) const {
+  constexpr std::uint64_t most_per_byte = 1100;
+  hsize_t size = 0;
+  at.check(H5Fget_filesize(file.id(), &size), path, "cannot be read");
+  if (length / most_per_byte > size) {
+    throw FileError(at.path(), path,
+                    fmt::format("is damaged: {} entries in a file of {} bytes", length, size));
+  }
+}
+
 Handle RunFileReader::Impl::open_array(const std::string& path, hsize_t& length) const {
   if (!is_object_path(path) || H5LTpath_valid(file.id(), path.c_str(), true) <= 0) {
     throw FileError(at.path(), path, "is missing");
@@ -174,6 +186,7 @@ Handle RunFileReader::Impl::open_array(const std::string& path, hsize_t& length)
     throw FileError(at.path(), path, fmt::format("has {} dimensions, expected 1", rank));
   }
   at.check(H5Sget_simple_extent_dims(space.id(), &length, nullptr), path, "cannot be read");
+  check_plausible(length, path);
   return dataset;
 }
 
@@ -209,7 +222,9 @@ std::vector<std::string> RunFileReader::Impl::arrays(bool series) const {
     const Handle dataset =
         at.own(H5Dopen2(file.id(), path.c_str(), H5P_DEFAULT), H5Dclose, path, "cannot be opened");
     const Handle space = at.own(H5Dget_space(dataset.id()), H5Sclose, path, "cannot be read");
-    if (path == "/time" || H5Sget_simple_extent_ndims(space.id()) != 1) continue;
+    if (path == "/time" || path.starts_with("/checkpoint/") ||
+        H5Sget_simple_extent_ndims(space.id()) != 1)
+      continue;
     if ((H5Aexists(dataset.id(), "DIMENSION_LIST") > 0) == series) found.push_back(path);
   }
   std::sort(found.begin(), found.end());
@@ -274,6 +289,20 @@ std::map<std::string, std::variant<std::string, double>> RunFileReader::attribut
   const Handle object = impl_->at.own(H5Oopen(impl_->file.id(), path.c_str(), H5P_DEFAULT),
                                       H5Oclose, path, "cannot be opened");
   return read_attributes(impl_->at, object.id(), path);
+}
+
+std::optional<Checkpoint> RunFileReader::checkpoint() const {
+  std::optional<Checkpoint> latest;
+  for (const char* path : checkpoint_paths) {
+    if (!has(path)) continue;
+    const QuietErrors quiet;
+    const std::vector<double> stored = impl_->read_array(path, nullptr);
+    const std::vector<unsigned char> bytes(stored.begin(), stored.end());
+    std::optional<Checkpoint> found = decode(bytes);
+    if (found && found->rows <= impl_->times.size() && (!latest || found->number > latest->number))
+      latest = std::move(found);
+  }
+  return latest;
 }
 
 std::map<std::string, std::variant<std::string, double>> RunFileReader::results() const {

@@ -1,238 +1,30 @@
-#include <fmt/chrono.h>
+// The part of RunFileWriter that fills files.
 #include <fmt/format.h>
 #include <hdf5.h>
 #include <hdf5_hl.h>
-#include <stdio.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <ctime>
 #include <exception>
-#include <set>
 #include <stdexcept>
 
-#include "core/errors.hpp"
-#include "io/hdf5_output.hpp"
-#include "io/run_file.hpp"
-#include "io/staged_file.hpp"
+#include "io/run_file_writer_impl.hpp"
 
 namespace stridor {
-namespace {
 
-Handle link_creation(const Checker& at) {
-  Handle links = at.own(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "", "cannot set up HDF5");
-  at.check(H5Pset_create_intermediate_group(links.id(), 1), "", "cannot set up HDF5");
-  at.check(H5Pset_char_encoding(links.id(), H5T_CSET_UTF8), "", "cannot set up HDF5");
-  return links;
-}
-
-// ---------------------------------------------------------------- text and numbers as attributes
-
-void write_text(const Checker& at, hid_t file, const Handle& links, const std::string& path,
-                const std::string& text) {
-  const Handle space = at.own(H5Screate(H5S_SCALAR), H5Sclose, path, "cannot make the dataset");
-  const Handle type = text_type(at, text.size(), path);
-  const Handle dataset = at.own(
-      H5Dcreate2(file, path.c_str(), type.id(), space.id(), links.id(), H5P_DEFAULT, H5P_DEFAULT),
-      H5Dclose, path, "cannot make the dataset");
-  at.check(H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()), path,
-           "cannot write");
-}
-
-void check_object_path(const std::string& path) {
-  if (!is_object_path(path)) {
-    throw std::invalid_argument(
-        fmt::format("run file: '{}' is not a path of the form /group/name", path));
-  }
-  for (const char* reserved : {"/time", "/results", "/scene"}) {
-    if (path == reserved || path.starts_with(std::string(reserved) + "/")) {
-      throw std::invalid_argument(fmt::format("run file: the path '{}' is reserved", path));
-    }
-  }
-}
-
-// ---------------------------------------------------------------- the temporary file
-
-std::string folder_of(const std::string& path) {
-  const auto slash = path.rfind('/');
-  if (slash == std::string::npos) return ".";
-  return slash == 0 ? "/" : path.substr(0, slash);
-}
-
-// @throws FileError unless a file of this name may be made
-void check_target(const std::string& path, Overwrite overwrite) {
-  struct stat status = {};
-  const std::string folder = folder_of(path);
-  if (path.empty() || path.back() == '/') throw FileError(path, "", "is not the name of a file");
-  if (stat(folder.c_str(), &status) != 0) {
-    throw FileError(path, "",
-                    fmt::format("the folder '{}' cannot be used: {}", folder, errno_text(errno)));
-  }
-  if (!S_ISDIR(status.st_mode))
-    throw FileError(path, "", fmt::format("'{}' is not a folder", folder));
-  if (stat(path.c_str(), &status) == 0) {
-    if (S_ISDIR(status.st_mode)) throw FileError(path, "", "is a folder");
-    if (!S_ISREG(status.st_mode))
-      throw FileError(path, "", "is not a regular file and is not replaced");
-    if (overwrite == Overwrite::no)
-      throw FileError(path, "", "exists; use --force to overwrite it");
-  }
-  if (access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw FileError(path, "",
-                    fmt::format("cannot write in the folder '{}': {}", folder, errno_text(errno)));
-  }
-}
-
-}  // namespace
-
-void check_output(const std::string& path, Overwrite overwrite) {
-  check_target(path, overwrite);
-}
-
-std::string utc_now() {
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
-}
-
-struct RunFileWriter::Impl {
-  struct Column {
-    SeriesSpec spec;
-    Handle dataset;
-    std::vector<double> rows;  // not yet written
-  };
-
-  Impl(const std::string& path, std::vector<SeriesSpec> specs, RunFileOptions chosen)
-      : at(path), options(std::move(chosen)), access(staged.access(at)), links(link_creation(at)) {
-    for (SeriesSpec& spec : specs) columns.push_back({std::move(spec), {}, {}});
-  }
-  ~Impl() {
-    const QuietErrors quiet;
-    staged.freeze();
-    if (file.is_open()) close_file();
-  }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
-
-  void check_specs() const;
-  void create(Overwrite overwrite, const RunFileHeader& header);
-  Handle create_series(const std::string& path, SeriesKind kind, const std::string& units);
-  void reserve(std::uint64_t rows) const;
-  void write_rows(const Handle& dataset, const std::string& path, SeriesKind kind,
-                  std::span<const double> rows);
-  void flush();
-  void require_usable() const;
-  template <typename Action>
-  void modify(const Action& action);
-  void abandon() noexcept;
-  void commit(const std::string& dataset);
-  std::string close_file();
-
-  Checker at;
-  RunFileOptions options;
-  StagedFile staged;
-  Handle access;
-  Handle links;
-  Handle file;
-  Handle time_dataset;
-  std::vector<Column> columns;
-  std::vector<double> times;  // not yet written
-  std::vector<std::uint8_t> states;
-  std::uint64_t num_written = 0;
-  double write_seconds = 0.0;
-  bool restructured = false;  // changed otherwise than by rows
-  bool closed = false;
-  bool broken = false;
-};
-
-void RunFileWriter::Impl::check_specs() const {
-  if (options.block_rows == 0)
-    throw std::invalid_argument("run file: block_rows must be at least 1");
-  if (options.chunk_rows == 0)
-    throw std::invalid_argument("run file: chunk_rows must be at least 1");
-  std::set<std::string> paths;
-  for (const Column& column : columns) {
-    check_object_path(column.spec.path);
-    if (!paths.insert(column.spec.path).second) {
-      throw std::invalid_argument(
-          fmt::format("run file: the series '{}' appears twice", column.spec.path));
-    }
-    const auto is_meaning = [](const auto& attribute) { return attribute.first == "meaning"; };
-    const auto& attributes = column.spec.attributes;
-    if (column.spec.kind == SeriesKind::state &&
-        std::none_of(attributes.begin(), attributes.end(), is_meaning)) {
-      throw std::invalid_argument(fmt::format(
-          "run file: the state series '{}' needs the attribute 'meaning'", column.spec.path));
-    }
-  }
-}
-
-Handle RunFileWriter::Impl::create_series(const std::string& path, SeriesKind kind,
-                                          const std::string& units) {
-  constexpr hsize_t none = 0;
-  const hsize_t unlimited = H5S_UNLIMITED;
-  const Handle space =
-      at.own(H5Screate_simple(1, &none, &unlimited), H5Sclose, path, "cannot make the dataset");
-  const Handle creation =
-      at.own(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, path, "cannot make the dataset");
-  const hsize_t chunk = options.chunk_rows;
-  at.check(H5Pset_chunk(creation.id(), 1, &chunk), path, "cannot make the dataset");
-  const hid_t type = kind == SeriesKind::real ? H5T_IEEE_F64LE : H5T_STD_U8LE;
-  Handle dataset = at.own(
-      H5Dcreate2(file.id(), path.c_str(), type, space.id(), links.id(), creation.id(), H5P_DEFAULT),
-      H5Dclose, path, "cannot make the dataset");
-  write_attribute(at, dataset.id(), path, "units", units);
-  return dataset;
-}
-
-void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& header) {
-  check_target(at.path(), overwrite);
-  PartFile part(at.path());
-
-  staged.create(part.path());
-  part.made();
-  file = at.own(H5Fcreate(part.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose,
-                "", "cannot be made");
-
-  try {
-    const Handle space = at.own(H5Screate(H5S_SCALAR), H5Sclose, "", "cannot make an attribute");
-    const Handle format =
-        at.own(H5Acreate2(file.id(), "format", H5T_STD_I32LE, space.id(), H5P_DEFAULT, H5P_DEFAULT),
-               H5Aclose, "", "cannot write attribute 'format'");
-    at.check(H5Awrite(format.id(), H5T_NATIVE_INT, &run_file_format), "",
-             "cannot write attribute 'format'");
-    for (const auto& [name, text] :
-         {std::pair{"version", &header.version}, std::pair{"commit", &header.commit},
-          std::pair{"command", &header.command}, std::pair{"scene_hash", &header.scene_hash},
-          std::pair{"date", &header.date}}) {
-      write_attribute(at, file.id(), "", name, *text);
-    }
-    write_text(at, file.id(), links, "/scene/text", header.scene_text);
-    write_text(at, file.id(), links, "/scene/resolved", header.scene_resolved);
-
-    time_dataset = create_series("/time", SeriesKind::real, "s");
-    at.check(H5DSset_scale(time_dataset.id(), "time"), "/time", "cannot be made a dimension scale");
-    for (Column& column : columns) {
-      const SeriesSpec& spec = column.spec;
-      column.dataset = create_series(spec.path, spec.kind, spec.units);
-      for (const auto& [name, value] : spec.attributes) {
-        write_attribute(at, column.dataset.id(), spec.path, name, value);
-      }
-      at.check(H5DSattach_scale(column.dataset.id(), time_dataset.id(), 0), spec.path,
-               "cannot be tied to /time");
-    }
-    commit("");
-    part.move_to_final(overwrite);
-    staged.renamed(at.path());
-    if (options.on_write) staged.observe(options.on_write);
-  } catch (...) {
-    abandon();
-    close_file();
-    throw;
-  }
+void RunFileWriter::Impl::write_checkpoint(const State& state) {
+  const auto start = std::chrono::steady_clock::now();
+  const QuietErrors quiet;
+  const std::vector<unsigned char> bytes = encode({num_checkpoints + 1, num_written, state});
+  const std::size_t slot = num_checkpoints % checkpoints.size();
+  modify([&] {
+    write_block(checkpoints[slot], checkpoint_paths[slot], 0, H5T_NATIVE_UCHAR, bytes.data(),
+                bytes.size());
+    commit(checkpoint_paths[slot]);
+  });
+  ++num_checkpoints;
+  write_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void RunFileWriter::Impl::require_usable() const {
@@ -253,17 +45,6 @@ void RunFileWriter::Impl::commit(const std::string& dataset) {
   const int error = restructured ? staged.commit_by_copy() : staged.commit();
   if (error != 0) throw FileError(at.path(), dataset, "cannot be written: " + errno_text(error));
   restructured = false;
-}
-
-template <typename Action>
-void RunFileWriter::Impl::modify(const Action& action) {
-  const QuietErrors quiet;
-  try {
-    action();
-  } catch (const FileError&) {
-    abandon();
-    throw;
-  }
 }
 
 // Asks the file system for what the next block needs at most. Nothing has been changed if it
@@ -287,29 +68,38 @@ void RunFileWriter::Impl::reserve(std::uint64_t rows) const {
                               num_written + rows - 1, needed, errno_text(error)));
 }
 
-void RunFileWriter::Impl::write_rows(const Handle& dataset, const std::string& path,
-                                     SeriesKind kind, std::span<const double> rows) {
-  const hsize_t offset = num_written;
-  const hsize_t count = rows.size();
-  const hsize_t extent = offset + count;
-  at.check(H5Dset_extent(dataset.id(), &extent), path, "cannot be extended");
+// Writes entries of a one-dimensional dataset, which is made longer where it must be.
+void RunFileWriter::Impl::write_block(const Handle& dataset, const std::string& path,
+                                      hsize_t offset, hid_t type, const void* entries,
+                                      hsize_t count) {
+  hsize_t extent = 0;
+  {
+    const Handle space = at.own(H5Dget_space(dataset.id()), H5Sclose, path, "cannot be written");
+    at.check(H5Sget_simple_extent_dims(space.id(), &extent, nullptr), path, "cannot be written");
+  }
+  if (extent < offset + count) {
+    extent = offset + count;
+    at.check(H5Dset_extent(dataset.id(), &extent), path, "cannot be extended");
+  }
   const Handle target = at.own(H5Dget_space(dataset.id()), H5Sclose, path, "cannot be written");
   at.check(H5Sselect_hyperslab(target.id(), H5S_SELECT_SET, &offset, nullptr, &count, nullptr),
            path, "cannot be written");
   const Handle source =
       at.own(H5Screate_simple(1, &count, nullptr), H5Sclose, path, "cannot be written");
-  herr_t status = -1;
+  at.check(H5Dwrite(dataset.id(), type, source.id(), target.id(), H5P_DEFAULT, entries), path,
+           "cannot be written");
+}
+
+void RunFileWriter::Impl::write_rows(const Handle& dataset, const std::string& path,
+                                     SeriesKind kind, std::span<const double> rows) {
   if (kind == SeriesKind::real) {
-    status = H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, source.id(), target.id(), H5P_DEFAULT,
-                      rows.data());
-  } else {
-    states.resize(rows.size());
-    std::transform(rows.begin(), rows.end(), states.begin(),
-                   [](double x) { return static_cast<std::uint8_t>(x); });
-    status = H5Dwrite(dataset.id(), H5T_NATIVE_UINT8, source.id(), target.id(), H5P_DEFAULT,
-                      states.data());
+    write_block(dataset, path, num_written, H5T_NATIVE_DOUBLE, rows.data(), rows.size());
+    return;
   }
-  at.check(status, path, "cannot be written");
+  states.resize(rows.size());
+  std::transform(rows.begin(), rows.end(), states.begin(),
+                 [](double x) { return static_cast<std::uint8_t>(x); });
+  write_block(dataset, path, num_written, H5T_NATIVE_UINT8, states.data(), states.size());
 }
 
 void RunFileWriter::Impl::flush() {
@@ -346,6 +136,7 @@ std::string RunFileWriter::Impl::close_file() {
   };
   for (Column& column : columns) note(column.dataset.close());
   note(time_dataset.close());
+  for (Handle& checkpoint : checkpoints) note(checkpoint.close());
   note(file.close());
   return cause;
 }
@@ -357,6 +148,16 @@ RunFileWriter::RunFileWriter(const std::string& path, Overwrite overwrite,
   impl_ = std::make_unique<Impl>(path, std::move(series), options);
   impl_->check_specs();
   impl_->create(overwrite, header);
+}
+
+RunFileWriter RunFileWriter::resume(const std::string& path, std::vector<SeriesSpec> series,
+                                    const Checkpoint& checkpoint, RunFileOptions options) {
+  const QuietErrors quiet;
+  RunFileWriter writer;
+  writer.impl_ = std::make_unique<Impl>(path, std::move(series), std::move(options));
+  writer.impl_->check_specs();
+  writer.impl_->reopen(checkpoint);
+  return writer;
 }
 
 RunFileWriter::~RunFileWriter() {
@@ -421,6 +222,11 @@ void RunFileWriter::append(double time, std::span<const double> row) {
 
 void RunFileWriter::flush() {
   impl_->flush();
+}
+
+void RunFileWriter::write_checkpoint(const State& state) {
+  impl_->flush();
+  impl_->write_checkpoint(state);
 }
 
 void RunFileWriter::write_static(const std::string& path, std::span<const double> values,

@@ -132,6 +132,18 @@ const Schema& SpectrogramSection::schema() {
   return keys;
 }
 
+const Schema& CheckpointParameters::schema() {
+  static const Schema keys =
+      SchemaOf<CheckpointParameters>("checkpoint")
+          .real("every", &CheckpointParameters::every,
+                {.doc = "Wall time between two checkpoints in the run file; `run --resume` goes on "
+                        "from the latest.",
+                 .unit = "s",
+                 .range = Range::positive(),
+                 .optional = true});
+  return keys;
+}
+
 const Schema& Expectation::schema() {
   static const Schema keys =
       SchemaOf<Expectation>("expect")
@@ -158,6 +170,8 @@ const Schema& Scene::schema() {
                    {.doc = "How the spectrogram of the run is made; options of the verb "
                            "`spectrogram` win over it.",
                     .optional = true})
+          .section("checkpoint", &Scene::checkpoint,
+                   {.doc = "When the state of a run is stored.", .optional = true})
           .section_list("expect", &Scene::expect,
                         {.doc = "Results that `run --verify` checks.", .optional = true})
           .check(check_spectrogram)
@@ -237,6 +251,15 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
                     "belongs to a scene of small motion, for the verbs eig, locus, threshold and "
                     "map"));
   }
+  loaded.scene = read_as<Scene>(loaded.tree);
+  return loaded;
+}
+
+LoadedScene load_resolved_scene(const std::string& text, const std::string& source) {
+  LoadedScene loaded;
+  loaded.path = source;
+  loaded.text = text;
+  loaded.tree = read_scene_text(text, source);
   loaded.scene = read_as<Scene>(loaded.tree);
   return loaded;
 }

@@ -29,6 +29,12 @@ struct MeasureParameters {
   static const Schema& schema();
 };
 
+/// When the state of a run is stored, so that it can go on after a kill.
+struct CheckpointParameters {
+  double every = 60.0;  ///< s of wall time
+  static const Schema& schema();
+};
+
 /// How the spectrogram of a run is made, where its command line does not say otherwise.
 struct SpectrogramSection {
   std::optional<std::string> channel;  ///< one of record.channels
@@ -54,6 +60,7 @@ struct Scene {
   std::optional<RecordParameters> record;
   MeasureParameters measure;
   std::optional<SpectrogramSection> spectrogram;
+  CheckpointParameters checkpoint;
   std::vector<Expectation> expect;
   static const Schema& schema();
 };
@@ -81,6 +88,11 @@ std::string scene_hash(const std::string& resolved);
 /// @throws ConfigError with all problems of the file, each with its place
 /// @throws FileError if the file cannot be read
 LoadedScene load_scene(const std::string& path, const std::vector<std::string>& sets);
+
+/// Reads a scene from its resolved text, as run files hold it.
+/// @param source what messages call it
+/// @throws ConfigError as load_scene
+LoadedScene load_resolved_scene(const std::string& text, const std::string& source);
 
 /// The model of a scene with the points that its channels ask for.
 /// @throws ConfigError with the place of the key in the scene

@@ -1,5 +1,7 @@
 #include "solvers/march.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <limits>
@@ -39,6 +41,33 @@ MeasuredContacts March::statistics() const {
   for (int i = 0; i < simulation_->num_contacts(); ++i)
     measured[static_cast<std::size_t>(i)] = simulation_->statistics(i);
   return measured;
+}
+
+void March::save(State& state, const std::string& prefix) const {
+  state.put(prefix + "window", static_cast<double>(window_));
+  for (std::size_t i = 0; i < closed_statistics_.size(); ++i) {
+    const ContactStatistics one = closed_statistics_[i].value_or(ContactStatistics{});
+    const double values[] = {closed_statistics_[i] ? 1.0 : 0.0,
+                             one.force_min,
+                             one.force_max,
+                             static_cast<double>(one.steps),
+                             static_cast<double>(one.sticking),
+                             static_cast<double>(one.open)};
+    state.put(fmt::format("{}closed/{}", prefix, i), values);
+  }
+}
+
+void March::load(const State& state, const std::string& prefix) {
+  window_ = static_cast<Window>(static_cast<int>(state.get(prefix + "window")));
+  for (std::size_t i = 0; i < closed_statistics_.size(); ++i) {
+    double values[6];
+    state.get(fmt::format("{}closed/{}", prefix, i), values);
+    const auto count = [&](int k) { return static_cast<std::int64_t>(values[k]); };
+    closed_statistics_[i].reset();
+    if (values[0] != 0.0)
+      closed_statistics_[i] = ContactStatistics{values[1], values[2], count(3), count(4), count(5)};
+  }
+  if (sink_ != nullptr) sink_next_ = sink_->next_step();
 }
 
 MarchEnd March::run_until(std::int64_t step) {

@@ -51,6 +51,11 @@ class March {
   /// Statistics of the window as far as it was run.
   MeasuredContacts statistics() const;
 
+  void save(State& state, const std::string& prefix) const;
+  /// Goes on as the march that was saved, with the simulation and the sink loaded before.
+  /// @throws std::invalid_argument if the state is of another system
+  void load(const State& state, const std::string& prefix);
+
  private:
   enum class Window { ahead, open, closed };
 

@@ -17,6 +17,10 @@ namespace {
 
 /// No contact of a computable scene carries this; beyond it the numbers have run away.
 constexpr double absurd_force = 1e30;
+/// Likewise the sum of the squares of what moves, in SI units.
+constexpr double absurd_motion = 1e30;
+/// Steps between looks at the motion of the bodies: a thousandth of the cost of a step.
+constexpr std::int64_t health_interval = 1024;
 constexpr const char* persistent_sliding_remedy =
     "the assumption of persistent sliding no longer holds from here on; let the contact stick and "
     "lift off (contact.assumption: film, or contact.on_violation: unilateral), lower the friction "
@@ -58,10 +62,12 @@ struct RunningContact {
 
 struct Simulation::Implementation {
   std::vector<MasterSurface> surfaces;
+  std::vector<std::string> names;  ///< of the bodies
   std::vector<bool> follows_drive;
   std::vector<RayleighDamping> damping;
   Drive drive;
   double step;
+  std::int64_t next_health_check = 0;
   bool is_prompt = false;  ///< bodies answer at once (Propagator::is_prompt)
   bool is_foreseeing_start = false;
   bool slides_only = true;  ///< no contact tracks its slip
@@ -372,6 +378,23 @@ struct Simulation::Implementation {
     return true;
   }
 
+  /// Contacts watch their forces; a body that none of them touches may run away unnoticed.
+  StepOutcome check_health() {
+    next_health_check = index + health_interval;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const Propagator::Motion motion = bodies[b]->motion(forces[b].data());
+      const double size = motion.displacement.squaredNorm() + motion.velocity.squaredNorm();
+      if (size < absurd_motion) continue;
+      failure = fmt::format(
+          "{} at t = {:.9g} s (step {}): the sum of the squares of its displacements and "
+          "velocities is {:.3g}: the computation has diverged. Remedy: take a smaller time.step, "
+          "or check material, damping and initial state of this body.",
+          names[b], time(index), index, size);
+      return StepOutcome::diverged;
+    }
+    return StepOutcome::done;
+  }
+
   StepOutcome fail(const RunningContact& contact, StepOutcome outcome) {
     const MasterSurface& surface = contact.sliding.surface();
     const double position = contact.sliding.position();
@@ -469,6 +492,7 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
         body.follows_drive ? std::span<const double>(loads) : std::span<const double>()));
     const bool is_modal = time.coordinates == Coordinates::modal;
     run.shapes.push_back(is_modal ? body.modal.shapes : Eigen::MatrixXd());
+    run.names.push_back(body.name);
     run.follows_drive.push_back(body.follows_drive);
     run.damping.push_back(body.modal.damping);
     run.forces.emplace_back(static_cast<std::size_t>(num_slots[b]), 0.0);
@@ -496,8 +520,11 @@ StepOutcome Simulation::step() {
 }
 
 StepOutcome Simulation::step_until(std::int64_t target) {
+  Implementation& run = *implementation_;
   StepOutcome outcome = StepOutcome::done;
-  while (outcome == StepOutcome::done && implementation_->index < target) outcome = step();
+  while (outcome == StepOutcome::done && run.index < target) outcome = step();
+  if (outcome == StepOutcome::done && run.index >= run.next_health_check)
+    outcome = run.check_health();
   return outcome;
 }
 
@@ -632,6 +659,7 @@ void Simulation::load(const State& state) {
   if (state.get("step") != run.step)
     throw std::invalid_argument("Simulation::load: the state has another time step");
   run.index = static_cast<std::int64_t>(state.get("index"));
+  run.next_health_check = 0;
   run.set_loads(run.time(run.index));
   for (std::size_t b = 0; b < run.bodies.size(); ++b) {
     const std::string prefix = fmt::format("bodies/{}/", b);

@@ -245,7 +245,7 @@ TEST(Program, InterruptClosesTheFileAndExits5) {
     const ProgramResult result = program.wait();
     EXPECT_EQ(result.exit_code, 5) << result.err;
     EXPECT_THAT(result.err, HasSubstr("stopped on request"));
-    EXPECT_THAT(result.err, HasSubstr("cannot be resumed yet"));
+    EXPECT_THAT(result.err, HasSubstr("It can be resumed:\nstridor run --resume"));
     const RunFileReader file((folder / "a.h5").string());
     EXPECT_GT(file.times().size(), 1u);
     EXPECT_EQ(std::get<std::string>(file.results().at("status")), "stopped");

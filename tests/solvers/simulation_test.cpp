@@ -122,6 +122,21 @@ TEST(Simulation, ResumesBitwiseAcrossTheNodesOfTheMaster) {
   }
 }
 
+TEST(Simulation, ABodyThatRunsAwayOutsideAnyContactIsAnOutcomeWithItsName) {
+  // With FiLM a position that is no number closes no contact, so that no contact force tells of it.
+  const Model model = make_paper_model(paper_model(leading_angle, ContactAssumption::film));
+  Simulation simulation(model.system, paper_time());
+  ASSERT_EQ(simulation.step_until(10), StepOutcome::done);
+  State state = simulation.save();
+  std::vector<double> position = state.array("bodies/1/position");
+  position.back() = std::nan("");
+  state.put("bodies/1/position", position);
+  simulation.load(state);
+  EXPECT_EQ(simulation.step_until(3000), StepOutcome::diverged);
+  EXPECT_THAT(simulation.failure(), HasSubstr("at t = "));
+  EXPECT_THAT(simulation.failure(), HasSubstr("the computation has diverged. Remedy"));
+}
+
 TEST(Simulation, RefusesAStateOfAnotherStep) {
   const Model model = make_paper_model(paper_model());
   Simulation simulation(model.system, paper_time(2e-7));

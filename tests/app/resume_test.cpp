@@ -1,0 +1,225 @@
+// Interrupted runs that go on: bitwise the same data as without the interruption.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "app/transient.hpp"
+#include "core/stop_token.hpp"
+#include "tests/app/resume_fixture.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+
+struct Interruption {
+  const char* name;
+  const char* scene;
+  std::vector<std::string> sets;
+  double end;  ///< of the run, s
+};
+
+void PrintTo(const Interruption& one, std::ostream* stream) {
+  *stream << one.name;
+}
+
+class Resume : public ::testing::TestWithParam<Interruption> {};
+
+TEST_P(Resume, GoesOnBitwiseAsIfTheRunHadNotStopped) {
+  const TemporaryFolder folder;
+  const std::string whole = (folder / "whole.h5").string();
+  const std::string broken = (folder / "broken.h5").string();
+  std::vector<std::string> sets = GetParam().sets;
+  const double end = GetParam().end;
+  sets.push_back("time.end=" + std::to_string(end));
+  const LoadedScene loaded = load_scene(scene_path(GetParam().scene), sets);
+  {
+    Transient transient(loaded, {whole, Overwrite::no, "test"});
+    ASSERT_EQ(transient.run_to_end(), MarchEnd::finished) << transient.simulation().failure();
+    transient.finish();
+  }
+  {
+    Transient transient(loaded, {broken, Overwrite::no, "test"});
+    transient.run_until(0.21 * end);
+    transient.write_checkpoint();
+    transient.run_until(0.35 * end);  // more rows than the checkpoint knows
+  }
+  for (const double stop : {0.47, 0.66, 0.83}) {
+    const InterruptedRun interrupted = find_interrupted_run(broken);
+    const LoadedScene again = load_resolved_scene(interrupted.scene_text, broken);
+    Transient transient(again, interrupted);
+    transient.run_until(stop * end);
+    transient.write_checkpoint();
+    if (stop == 0.66) {
+      request_stop();
+      EXPECT_EQ(transient.run_to_end(), MarchEnd::stopped);
+      request_stop(false);
+      transient.write_checkpoint();
+      transient.finish();
+    }
+  }
+  const InterruptedRun interrupted = find_interrupted_run(broken);
+  const LoadedScene again = load_resolved_scene(interrupted.scene_text, broken);
+  Transient transient(again, interrupted);
+  ASSERT_EQ(transient.run_to_end(), MarchEnd::finished);
+  transient.finish();
+  EXPECT_EQ(difference(whole, broken), "");
+}
+
+// Windows of the statistics begin before the first interruption and end after the second.
+INSTANTIATE_TEST_SUITE_P(
+    Of, Resume,
+    ::testing::Values(
+        Interruption{"LandingWithStickSlipAndLiftOff",
+                     "examples/landing.yaml",
+                     {"measure.from=0.0005", "measure.to=0.003", "record.interval=1e-6"},
+                     0.004},
+        Interruption{"StickSlip", "examples/stick_slip.yaml", {"measure.from=0"}, 0.1},
+        Interruption{
+            "DampingScheduleAndEnergy",
+            "beam_on_beam.yaml",
+            {"substructures.oblique.damping.hold=1e-3", "substructures.oblique.damping.fade=1.5e-3",
+             "record.energy=true", "contact.assumption=film", "drive.ramp=1e-3",
+             "measure.from=5e-4", "measure.band=[]", "record.interval=2e-6"},
+            0.003},
+        Interruption{"ExactWithResidual",
+                     "beam_on_beam.yaml",
+                     {"time.integrator=exact", "time.step=2.5e-6", "time.retain.frequency=50kHz",
+                      "measure.from=0.05"},
+                     0.12},
+        Interruption{"PublishedForm",
+                     "beam_on_beam.yaml",
+                     {"time.coordinates=craig_bampton", "measure.from=0", "measure.band=[]",
+                      "record.interval=2e-6"},
+                     0.0002}),
+    [](const auto& tested) { return std::string(tested.param.name); });
+
+// ---------------------------------------------------------------- the program
+
+TEST(ResumeProgram, KilledRunsGoOnBitwise) {
+  kill_and_resume(5, 400);
+}
+
+TEST(ResumeProgram, ARequestToStopAndATimeLimitLeaveARunThatGoesOn) {
+  const TemporaryFolder folder;
+  const std::string whole = (folder / "whole.h5").string();
+  const std::string broken = (folder / "broken.h5").string();
+  ASSERT_EQ(Program(long_run(whole, "1.5")).run().exit_code, 0);
+  Program program(long_run(broken, "1.5"));
+  program.start();
+  wait_for(broken);
+  program.send(SIGTERM);
+  ProgramResult result = program.wait();
+  ASSERT_EQ(result.exit_code, 5) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("--resume '" + broken + "'"));
+  result = Program({"run", "--resume", broken, "--max-wall", "0.001"}).run();
+  ASSERT_EQ(result.exit_code, 5) << result.err;
+  result = Program({"run", "--resume", broken, "--json"}).run();
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(result.out)["status"], "done");
+  EXPECT_EQ(difference(whole, broken), "");
+
+  // A whole run is left alone.
+  result = Program({"run", "--resume", broken}).run();
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.err, HasSubstr("holds a whole run, there is nothing to go on with"));
+}
+
+class ResumeRefusal : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const LoadedScene loaded =
+        load_scene(scene_path("beam_on_beam.yaml"), {"time.end=1e-4", "measure.band=[]"});
+    Transient transient(loaded, {file_, Overwrite::no, "test"});
+    transient.run_until(5e-5);
+    transient.write_checkpoint();
+  }
+  template <class Change>
+  void change(const Change& change) const {
+    const hid_t id = H5Fopen(file_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    ASSERT_GE(id, 0);
+    change(id);
+    ASSERT_GE(H5Fclose(id), 0);
+  }
+  /// Overwrites the middle of a checkpoint.
+  static void spoil(hid_t file, const char* path) {
+    const hid_t set = H5Dopen2(file, path, H5P_DEFAULT);
+    const hid_t space = H5Dget_space(set);
+    hsize_t length = 0;
+    H5Sget_simple_extent_dims(space, &length, nullptr);
+    std::vector<unsigned char> bytes(length);
+    if (length > 0) {
+      H5Dread(set, H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data());
+      bytes[length / 2] ^= 1;
+      H5Dwrite(set, H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data());
+    }
+    H5Sclose(space);
+    H5Dclose(set);
+  }
+  ProgramResult resume() const { return Program({"run", "--resume", file_}).run(); }
+
+  TemporaryFolder folder_;
+  const std::string file_ = (folder_ / "run.h5").string();
+};
+
+TEST_F(ResumeRefusal, NamesAMissingCheckpoint) {
+  change([](hid_t file) { H5Ldelete(file, "/checkpoint", H5P_DEFAULT); });
+  const ProgramResult result = resume();
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.err, HasSubstr("there is no whole checkpoint to go on from"));
+}
+
+TEST_F(ResumeRefusal, TakesTheOtherCheckpointWhereOneIsDamaged) {
+  EXPECT_EQ(find_interrupted_run(file_).checkpoint.number, 2u);
+  change([](hid_t file) { spoil(file, "/checkpoint/b"); });
+  EXPECT_EQ(find_interrupted_run(file_).checkpoint.number, 1u);
+  change([](hid_t file) { spoil(file, "/checkpoint/a"); });
+  const ProgramResult result = resume();
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.err, HasSubstr("no whole checkpoint"));
+}
+
+TEST_F(ResumeRefusal, NamesAnotherVersion) {
+  change([](hid_t file) {
+    const hid_t attribute = H5Aopen(file, "version", H5P_DEFAULT);
+    const hid_t type = H5Aget_type(attribute);
+    const std::string other(H5Tget_size(type) - 1, '9');
+    H5Awrite(attribute, type, other.c_str());
+    H5Tclose(type);
+    H5Aclose(attribute);
+  });
+  const ProgramResult result = resume();
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.err, HasSubstr("was written by stridor 9"));
+}
+
+TEST_F(ResumeRefusal, NamesAForeignFileAndAMissingOne) {
+  std::filesystem::resize_file(file_, 700);
+  EXPECT_EQ(resume().exit_code, 4);
+  std::filesystem::remove(file_);
+  EXPECT_EQ(resume().exit_code, 4);
+}
+
+TEST(ResumeProgram, RefusesOptionsThatDoNotGoWithIt) {
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"-o", "b.h5"},
+                                               {"--set", "time.end=1"},
+                                               {"--force"},
+                                               {scene_path("beam_on_beam.yaml")}}) {
+    std::vector<std::string> command{"run", "--resume", "a.h5"};
+    command.insert(command.end(), more.begin(), more.end());
+    const ProgramResult result = Program(command).run();
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr("leave scene, --output, --set and --force away"));
+  }
+  EXPECT_EQ(Program({"run"}).run().exit_code, 2);
+  EXPECT_EQ(Program({"run", scene_path("beam_on_beam.yaml")}).run().exit_code, 2);
+}
+
+}  // namespace
+}  // namespace stridor
