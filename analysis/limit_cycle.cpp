@@ -145,29 +145,27 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
   }
   const Point scale{width, std::max(cycle.y_max, 1e-6 * width), width};
   const Point& last = turns.back();
-  double nearest = 1e300;
   for (int loops = 1; loops <= options.most_loops; ++loops) {
     const auto back = turns.size() - 1 - static_cast<std::size_t>(loops);
     const double apart = (turns[back] - last).cwiseQuotient(scale).norm();
-    if (apart < 1e-3 && apart < 0.1 * nearest) {
-      cycle.loops = loops;
-      nearest = apart;
+    if (apart > 1e-3) continue;
+    cycle.loops = loops;
+    if (!options.solves) {
+      cycle.period = times.back() - times[back];
+      cycle.residual = apart;
+      cycle.status = CycleStatus::periodic;
+      return cycle;
     }
-  }
-  if (cycle.loops > 0 && options.solves && solve(motion, scale, cycle, last)) {
+    if (!solve(motion, scale, cycle, last)) continue;
+    // A motion settles to a stable cycle: an unstable one beside it has fewer loops.
+    if (std::abs(cycle.multipliers.front()) > 1.0) continue;
     start_at(motion, {cycle.point.x, cycle.point.y, cycle.point.vertical_velocity});
-    for (int i = 0; i < cycle.loops; ++i) (void)motion.advance(motion.time() + longest_loop, true);
+    for (int i = 0; i < loops; ++i) (void)motion.advance(motion.time() + longest_loop, true);
     measure(motion, cycle);
     cycle.status = CycleStatus::periodic;
     return cycle;
   }
-  if (cycle.loops > 0 && !options.solves) {
-    const auto back = turns.size() - 1 - static_cast<std::size_t>(cycle.loops);
-    cycle.period = times.back() - times[back];
-    cycle.residual = nearest;
-    cycle.status = CycleStatus::periodic;
-    return cycle;
-  }
+  cycle.multipliers.clear();
   cycle.loops = 0;
   // Statistics of irregular motion need more time than a few turns.
   motion.start(cycle.last_displacement, cycle.last_velocity);

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <numbers>
 #include <stdexcept>
 #include <vector>
@@ -18,10 +18,15 @@
 namespace stridor {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+/// Of the processor, so that what else runs on the machine does not count.
+struct Clock {
+  static double now() {
+    return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
+  }
+};
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
+double seconds_since(double start) {
+  return Clock::now() - start;
 }
 
 SphereModelParameters paper_sphere() {
