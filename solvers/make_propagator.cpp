@@ -76,9 +76,9 @@ PointAnswer answer_of(const ModalBody& body, const PointRows& rows, const TimePa
     const StepCoefficients c = step_coefficients(time.integrator, omega, damping, time.step, 0.0);
     const Eigen::Vector2d entry(body.rows(rows.x, i), body.rows(rows.y, i));
     const Eigen::Matrix2d square = entry * entry.transpose();
-    // Of an oscillation that changes sign with every step, 4 e/(4 − k) per force; 4 e of a free
-    // mass.
-    const double alternating = 4.0 / (4.0 - c.pull);
+    // Of an oscillation that changes sign with every step, e/((1 + r₁)(1 + r₂)) per force; a quarter
+    // of e for a free mass without damping.
+    const double alternating = 4.0 / (2.0 + 2.0 * c.keep - c.pull);
     sum.prompt += c.prompt * square;
     sum.next += alternating * c.gain * square;
     sum.surplus += c.answer() * square;
