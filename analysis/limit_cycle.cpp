@@ -7,8 +7,9 @@
 namespace stridor {
 namespace {
 
-/// The motion has died down where its x moves less than this part of the indentation.
-constexpr double at_rest = 1e-9;
+/// The motion has died down, or does so, where it moves less than this part of the equilibrium and
+/// that is stable: this close to it the motion is linear.
+constexpr double at_rest = 1e-6;
 /// No turn within this time: it sticks, or stands still.
 constexpr double longest_loop = 200.0;
 
@@ -34,6 +35,10 @@ std::optional<Return> return_map(SubstrateMotion& motion, const Point& z, int lo
       return std::nullopt;
   }
   return Return{point_of(motion), motion.time()};
+}
+
+bool is_stable(const SubstrateOscillator& oscillator, const SubstrateEquilibrium& rest) {
+  return leading_eigenvalue(small_motion(oscillator, rest)).real() < 0.0;
 }
 
 /// Reads the statistics off the motion.
@@ -139,7 +144,7 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
   const double indentation = 1e-2 * oscillator.contact.indentation_unit;
   const SubstrateEquilibrium rest = find_equilibrium(oscillator, indentation);
   const double size = std::abs(rest.displacement.x()) + rest.displacement.y();
-  if (turns.size() < num_turns || width < at_rest * size) {
+  if (turns.size() < num_turns || (width < at_rest * size && is_stable(oscillator, rest))) {
     cycle.status = CycleStatus::at_rest;
     return cycle;
   }

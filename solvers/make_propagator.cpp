@@ -76,8 +76,8 @@ PointAnswer answer_of(const ModalBody& body, const PointRows& rows, const TimePa
     const StepCoefficients c = step_coefficients(time.integrator, omega, damping, time.step, 0.0);
     const Eigen::Vector2d entry(body.rows(rows.x, i), body.rows(rows.y, i));
     const Eigen::Matrix2d square = entry * entry.transpose();
-    // Of an oscillation that changes sign with every step, e/((1 + r₁)(1 + r₂)) per force; a quarter
-    // of e for a free mass without damping.
+    // Of an oscillation that changes sign with every step, e/((1 + r₁)(1 + r₂)) per force; a
+    // quarter of e for a free mass without damping.
     const double alternating = 4.0 / (2.0 + 2.0 * c.keep - c.pull);
     sum.prompt += c.prompt * square;
     sum.next += alternating * c.gain * square;
@@ -183,10 +183,15 @@ void start_motion(Propagator& propagator, const SystemBody& body, const TimePara
 
 std::optional<double> prompt_surplus(const System& system, const TimeParameters& time) {
   if (time.integrator == Integrator::central_difference && !time.retain) return std::nullopt;
-  // Stable are ratios up to 4. Friction, damping and what changes along the path want some room.
-  constexpr double limit = 3.6;
-  // With it every mode by itself has 4 g ≥ e.
-  constexpr double enough = 1.0 / limit - 1.0 / 12.0;
+  // Stable are ratios up to 4. Friction, damping and what changes along the path want some room,
+  // and contacts that open more: near the limit the force changes its sign from step to step.
+  const bool may_open =
+      std::any_of(system.contacts.begin(), system.contacts.end(), [](const ContactPoint& contact) {
+        return contact.unilateral_from() < std::numeric_limits<double>::infinity();
+      });
+  const double limit = may_open ? 2.0 : 3.6;
+  // With it every mode by itself has limit · g ≥ e.
+  const double enough = 1.0 / limit - 1.0 / 12.0;
   if (system.contacts.size() != 1) return system.contacts.empty() ? 0.0 : enough;
   const ContactPoint& contact = system.contacts.front();
   const MasterSurface& surface = system.surface_of(contact);
