@@ -23,6 +23,9 @@ function(stridor_library folder)
     PUBLIC stridor_options ${arg_LINKS} PRIVATE ${arg_PRIVATE_LINKS})
 endfunction()
 
+# All programs of tests labelled unit: what the sanitizers run.
+add_custom_target(unit_tests)
+
 # stridor_test(NAME LABEL unit|verification|scene SOURCES ... LINKS ...)
 # One program per call; every TEST in it becomes a ctest with that label.
 function(stridor_test name)
@@ -33,6 +36,9 @@ function(stridor_test name)
   target_compile_options(${name} PRIVATE -O1)
   target_compile_definitions(${name} PRIVATE
     STRIDOR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" STRIDOR_PROGRAM="$<TARGET_FILE:stridor>")
+  if(arg_LABEL STREQUAL unit)
+    add_dependencies(unit_tests ${name})
+  endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
     PROPERTIES LABELS ${arg_LABEL} TIMEOUT 600)
 endfunction()
