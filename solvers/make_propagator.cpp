@@ -68,14 +68,39 @@ struct PointAnswer {
   }
 };
 
-PointAnswer answer_of(const ModalBody& body, const PointRows& rows, const TimeParameters& time) {
+/// A point of a body: the rows that its displacement is made of, with their weights.
+struct WeightedRows {
+  std::vector<PointRows> rows;
+  std::vector<double> weights;
+};
+
+/// Weighted sum of the rows of a matrix, x and y.
+Eigen::MatrixXd rows_of(const Eigen::MatrixXd& matrix, const WeightedRows& point) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(2, matrix.cols());
+  for (std::size_t k = 0; k < point.rows.size(); ++k) {
+    sum.row(0) += point.weights[k] * matrix.row(point.rows[k].x);
+    sum.row(1) += point.weights[k] * matrix.row(point.rows[k].y);
+  }
+  return sum;
+}
+
+/// Coefficients of all modes of a body as it is marched without surplus.
+std::vector<StepCoefficients> coefficients_of(const ModalBody& body, const TimeParameters& time) {
+  std::vector<StepCoefficients> coefficients;
+  for (const double omega : body.omega) {
+    const double damping = body.damping.alpha + body.damping.beta * omega * omega;
+    coefficients.push_back(step_coefficients(time.integrator, omega, damping, time.step, 0.0));
+  }
+  return coefficients;
+}
+
+PointAnswer answer_of(const ModalBody& body, const std::vector<StepCoefficients>& coefficients,
+                      const WeightedRows& point, double step) {
+  const Eigen::MatrixXd entries = rows_of(body.rows, point);
   PointAnswer sum;
   for (Eigen::Index i = 0; i < body.size(); ++i) {
-    const double omega = body.omega(i);
-    const double damping = body.damping.alpha + body.damping.beta * omega * omega;
-    const StepCoefficients c = step_coefficients(time.integrator, omega, damping, time.step, 0.0);
-    const Eigen::Vector2d entry(body.rows(rows.x, i), body.rows(rows.y, i));
-    const Eigen::Matrix2d square = entry * entry.transpose();
+    const StepCoefficients& c = coefficients[static_cast<std::size_t>(i)];
+    const Eigen::Matrix2d square = entries.col(i) * entries.col(i).transpose();
     // Of an oscillation that changes sign with every step, e/((1 + r₁)(1 + r₂)) per force; a
     // quarter of e for a free mass without damping.
     const double alternating = 4.0 / (2.0 + 2.0 * c.keep - c.pull);
@@ -86,13 +111,49 @@ PointAnswer answer_of(const ModalBody& body, const PointRows& rows, const TimePa
   }
   const Eigen::MatrixXd& residual = body.residual.flexibility;
   if (residual.size() > 0) {
-    const double share = time.step / (time.step + body.residual.beta);
-    const Eigen::Index at[] = {rows.x, rows.y};
-    for (int a = 0; a < 2; ++a) {
-      for (int b = 0; b < 2; ++b) sum.prompt(a, b) += share * residual(at[a], at[b]);
-    }
+    const double share = step / (step + body.residual.beta);
+    sum.prompt += share * rows_of(rows_of(residual, point).transpose(), point);
   }
   return sum;
+}
+
+/// Places on the master that the slave passes until the end of the run, with some to spare for its
+/// deformation: a hundredth of the path and the length of a segment. The ends of every segment and
+/// its middle, where what the modes left out add to the flexibility is least.
+std::vector<WeightedRows> path_of(const System& system, const ContactPoint& contact, double end) {
+  const MasterSurface& surface = system.surface_of(contact);
+  const auto driven = [&](int body) {
+    return system.bodies[static_cast<std::size_t>(body)].follows_drive ? 1.0 : 0.0;
+  };
+  const double share = driven(contact.slave_body) - driven(surface.body);
+  double least = 0.0;
+  double most = 0.0;
+  constexpr int num_instants = 1000;
+  for (int i = 0; i <= num_instants; ++i) {
+    const double moved = share * system.drive.displacement(end * i / num_instants);
+    least = std::min(least, moved);
+    most = std::max(most, moved);
+  }
+  double longest = 0.0;
+  for (std::size_t k = 1; k < surface.arc_length.size(); ++k)
+    longest = std::max(longest, surface.arc_length[k] - surface.arc_length[k - 1]);
+  const double spare = 0.01 * (most - least) + longest;
+
+  std::vector<WeightedRows> path;
+  for (int segment = 0; segment < surface.num_segments(); ++segment) {
+    const Segment ends = surface.undeformed_segment(segment);
+    const double first = ends.first.x() - contact.slave_position.x();
+    const double last = ends.second.x() - contact.slave_position.x();
+    if (std::max(first, last) < least - spare || std::min(first, last) > most + spare) continue;
+    const Stencil stencil = surface.stencil(segment);
+    const auto node = surface.rows.begin() + stencil.first;
+    for (const double xi : {0.0, 0.5, 1.0}) {
+      const auto& weights = weights_at(stencil, xi).value;
+      path.push_back(
+          {{node, node + stencil.count}, {weights.begin(), weights.begin() + stencil.count}});
+    }
+  }
+  return path;
 }
 
 /// Least δ with which q (P + δ S) − (W − δ V) is positive semidefinite.
@@ -194,15 +255,18 @@ std::optional<double> prompt_surplus(const System& system, const TimeParameters&
   const double enough = 1.0 / limit - 1.0 / 12.0;
   if (system.contacts.size() != 1) return system.contacts.empty() ? 0.0 : enough;
   const ContactPoint& contact = system.contacts.front();
-  const MasterSurface& surface = system.surface_of(contact);
   const auto body = [&](int index) -> const ModalBody& {
     return system.bodies[static_cast<std::size_t>(index)].modal;
   };
-  const PointAnswer slave = answer_of(body(contact.slave_body), contact.slave_rows, time);
+  const ModalBody& slave = body(contact.slave_body);
+  const ModalBody& master = body(system.surface_of(contact).body);
+  const PointAnswer of_slave =
+      answer_of(slave, coefficients_of(slave, time), {{contact.slave_rows}, {1.0}}, time.step);
+  const std::vector<StepCoefficients> coefficients = coefficients_of(master, time);
   double surplus = 0.0;
-  for (const PointRows& node : surface.rows) {
-    PointAnswer both = slave;
-    both += answer_of(body(surface.body), node, time);
+  for (const WeightedRows& place : path_of(system, contact, time.end)) {
+    PointAnswer both = of_slave;
+    both += answer_of(master, coefficients, place, time.step);
     surplus = std::max(surplus, least_surplus(both, limit));
   }
   return std::min(surplus, enough);
