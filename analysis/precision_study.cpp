@@ -6,6 +6,7 @@
 
 #include "core/errors.hpp"
 #include "solvers/make_propagator.hpp"
+#include "solvers/retained_modes.hpp"
 
 namespace stridor {
 namespace {
@@ -70,7 +71,7 @@ TimeParameters PrecisionMethod::at(int steps, const TimeParameters& time, double
   changed.coordinates = Coordinates::modal;
   changed.step = interval / steps;
   changed.retain.reset();
-  if (retained) changed.retain = RetainParameters{*retained};
+  if (retained) changed.retain = RetainParameters{*retained, {}};
   return changed;
 }
 

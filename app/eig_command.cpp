@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <memory>
+#include <numbers>
 
 #include "analysis/explanation.hpp"
 #include "app/eigenvalue_report.hpp"
@@ -15,6 +15,7 @@
 #include "core/errors.hpp"
 #include "io/shape_plot.hpp"
 #include "models/mode_shape.hpp"
+#include "solvers/retained_modes.hpp"
 #include "solvers/secular_eigenvalues.hpp"
 
 namespace stridor {
@@ -179,14 +180,13 @@ ExitCode eig(const EigOptions& options) {
   const System& system = member.model->system;
   const SlidingState state = sliding_state_of(member, options.stability.geometry(), "");
   const std::vector<Eigenvalue> eigenvalues =
-      lowest_eigenvalues(retained(state.pencil, loaded.scene.time),
+      lowest_eigenvalues(retained(state.pencil, system, loaded.scene.time),
                          options.stability.eigenvalue_method(), options.stability.count);
 
   const std::size_t num_real = num_real_of(eigenvalues);
-  const std::optional<RetainParameters>& retain = loaded.scene.time.retain;
   const double trusted =
       std::min(trusted_frequency(system),
-               retain ? retain->frequency : std::numeric_limits<double>::infinity());
+               asked_frequency(system, loaded.scene.time) / (2.0 * std::numbers::pi));
   const double highest =
       std::min(trusted, eigenvalues.empty() ? 0.0 : eigenvalues.back().frequency());
   const bool is_stable = std::none_of(

@@ -14,6 +14,7 @@
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
 #include "solvers/dense_eigenvalues.hpp"
+#include "solvers/retained_modes.hpp"
 #include "solvers/secular_eigenvalues.hpp"
 
 namespace stridor {
@@ -147,9 +148,9 @@ SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry
   return state;
 }
 
-Pencil retained(const Pencil& pencil, const TimeParameters& time) {
+Pencil retained(const Pencil& pencil, const System& system, const TimeParameters& time) {
   if (!time.retain) return pencil;
-  return with_residual_modes(pencil, time.retain->cutoff());
+  return with_residual_modes(pencil, asked_frequency(system, time));
 }
 
 std::string printed_units(const NumericKey& key) {
@@ -240,8 +241,9 @@ SlidingState BodyStabilityFamily::at(std::span<const double> values) {
   std::string what;
   for (std::size_t i = 0; i < values.size(); ++i)
     what += (i > 0 ? ", " : "") + value_text(family_.keys()[i], values[i]);
-  SlidingState state = sliding_state_of(family_.at(values), geometry_, what);
-  state.pencil = retained(state.pencil, time_);
+  const SceneFamily::Member member = family_.at(values);
+  SlidingState state = sliding_state_of(member, geometry_, what);
+  state.pencil = retained(state.pencil, member.model->system, time_);
   return state;
 }
 

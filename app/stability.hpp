@@ -66,7 +66,7 @@ SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry
 
 /// The pencil with the modes above `time.retain` as residual modes (docs/theory.md, 7.1); all modes
 /// where the scene keeps all.
-Pencil retained(const Pencil& pencil, const TimeParameters& time);
+Pencil retained(const Pencil& pencil, const System& system, const TimeParameters& time);
 
 /// The unit of a key as it is printed and stored: "1/s" for "s-1", "kg/m^3" for "kg m-3", "1" where
 /// dimensionless.

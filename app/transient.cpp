@@ -13,6 +13,7 @@
 #include "core/version.hpp"
 #include "io/initial_state.hpp"
 #include "solvers/make_propagator.hpp"
+#include "solvers/retained_modes.hpp"
 
 namespace stridor {
 namespace {
@@ -123,8 +124,9 @@ Json contact_json(const Simulation& simulation, const System& system,
 /// How many modes of every body move and how many are left to their static residual.
 Json modes_json(const System& system, const TimeParameters& time) {
   Json bodies = Json::object();
+  const double highest = retained_frequency(system, time);
   for (const SystemBody& body : system.bodies) {
-    const Eigen::Index moving = num_retained(body.modal, time);
+    const Eigen::Index moving = (body.modal.omega.array() <= highest).count();
     bodies[body.name] = {{"moving", moving}, {"residual", body.modal.size() - moving}};
   }
   return bodies;

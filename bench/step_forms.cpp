@@ -96,7 +96,7 @@ void count_instructions(const std::string& form) {
   TimeParameters time = loaded.scene.time;
   if (form == "exact_50_kHz") {
     time.integrator = Integrator::exact;
-    time.retain = RetainParameters{50e3};
+    time.retain = RetainParameters{50e3, {}};
     time.step = 2.5e-6;
   } else if (form != "central_difference") {
     throw std::runtime_error("no form " + form);

@@ -1,12 +1,10 @@
 #include "solvers/make_propagator.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 
 #include "solvers/dense_two_step.hpp"
 #include "solvers/modal_recurrence.hpp"
-#include "solvers/two_step_scheme.hpp"
 
 namespace stridor {
 namespace {
@@ -52,147 +50,7 @@ StartingMotion starting_motion(const SystemBody& body, const TimeParameters& tim
   return motion;
 }
 
-/// What a point of a body does per force on it: at once, in the next step, and at once by surplus.
-struct PointAnswer {
-  Eigen::Matrix2d prompt = Eigen::Matrix2d::Zero();
-  Eigen::Matrix2d next = Eigen::Matrix2d::Zero();
-  Eigen::Matrix2d surplus = Eigen::Matrix2d::Zero();       ///< per δ, to `prompt`
-  Eigen::Matrix2d surplus_next = Eigen::Matrix2d::Zero();  ///< likewise, taken from `next`
-
-  PointAnswer& operator+=(const PointAnswer& other) {
-    prompt += other.prompt;
-    next += other.next;
-    surplus += other.surplus;
-    surplus_next += other.surplus_next;
-    return *this;
-  }
-};
-
-/// A point of a body: the rows that its displacement is made of, with their weights.
-struct WeightedRows {
-  std::vector<PointRows> rows;
-  std::vector<double> weights;
-};
-
-/// Weighted sum of the rows of a matrix, x and y.
-Eigen::MatrixXd rows_of(const Eigen::MatrixXd& matrix, const WeightedRows& point) {
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(2, matrix.cols());
-  for (std::size_t k = 0; k < point.rows.size(); ++k) {
-    sum.row(0) += point.weights[k] * matrix.row(point.rows[k].x);
-    sum.row(1) += point.weights[k] * matrix.row(point.rows[k].y);
-  }
-  return sum;
-}
-
-/// Coefficients of all modes of a body as it is marched without surplus.
-std::vector<StepCoefficients> coefficients_of(const ModalBody& body, const TimeParameters& time) {
-  std::vector<StepCoefficients> coefficients;
-  for (const double omega : body.omega) {
-    const double damping = body.damping.alpha + body.damping.beta * omega * omega;
-    coefficients.push_back(step_coefficients(time.integrator, omega, damping, time.step, 0.0));
-  }
-  return coefficients;
-}
-
-PointAnswer answer_of(const ModalBody& body, const std::vector<StepCoefficients>& coefficients,
-                      const WeightedRows& point, double step) {
-  const Eigen::MatrixXd entries = rows_of(body.rows, point);
-  PointAnswer sum;
-  for (Eigen::Index i = 0; i < body.size(); ++i) {
-    const StepCoefficients& c = coefficients[static_cast<std::size_t>(i)];
-    const Eigen::Matrix2d square = entries.col(i) * entries.col(i).transpose();
-    // Of an oscillation that changes sign with every step, e/((1 + r₁)(1 + r₂)) per force; a
-    // quarter of e for a free mass without damping.
-    const double alternating = 4.0 / (2.0 + 2.0 * c.keep - c.pull);
-    sum.prompt += c.prompt * square;
-    sum.next += alternating * c.gain * square;
-    sum.surplus += c.answer() * square;
-    sum.surplus_next += alternating * c.pull * c.answer() * square;
-  }
-  const Eigen::MatrixXd& residual = body.residual.flexibility;
-  if (residual.size() > 0) {
-    const double share = step / (step + body.residual.beta);
-    sum.prompt += share * rows_of(rows_of(residual, point).transpose(), point);
-  }
-  return sum;
-}
-
-/// Places on the master that the slave passes until the end of the run, with some to spare for its
-/// deformation: a hundredth of the path and the length of a segment. The ends of every segment and
-/// its middle, where what the modes left out add to the flexibility is least.
-std::vector<WeightedRows> path_of(const System& system, const ContactPoint& contact, double end) {
-  const MasterSurface& surface = system.surface_of(contact);
-  const auto driven = [&](int body) {
-    return system.bodies[static_cast<std::size_t>(body)].follows_drive ? 1.0 : 0.0;
-  };
-  const double share = driven(contact.slave_body) - driven(surface.body);
-  double least = 0.0;
-  double most = 0.0;
-  constexpr int num_instants = 1000;
-  for (int i = 0; i <= num_instants; ++i) {
-    const double moved = share * system.drive.displacement(end * i / num_instants);
-    least = std::min(least, moved);
-    most = std::max(most, moved);
-  }
-  double longest = 0.0;
-  for (std::size_t k = 1; k < surface.arc_length.size(); ++k)
-    longest = std::max(longest, surface.arc_length[k] - surface.arc_length[k - 1]);
-  const double spare = 0.01 * (most - least) + longest;
-
-  std::vector<WeightedRows> path;
-  for (int segment = 0; segment < surface.num_segments(); ++segment) {
-    const Segment ends = surface.undeformed_segment(segment);
-    const double first = ends.first.x() - contact.slave_position.x();
-    const double last = ends.second.x() - contact.slave_position.x();
-    if (std::max(first, last) < least - spare || std::min(first, last) > most + spare) continue;
-    const Stencil stencil = surface.stencil(segment);
-    const auto node = surface.rows.begin() + stencil.first;
-    for (const double xi : {0.0, 0.5, 1.0}) {
-      const auto& weights = weights_at(stencil, xi).value;
-      path.push_back(
-          {{node, node + stencil.count}, {weights.begin(), weights.begin() + stencil.count}});
-    }
-  }
-  return path;
-}
-
-/// Least δ with which q (P + δ S) − (W − δ V) is positive semidefinite.
-double least_surplus(const PointAnswer& at, double limit) {
-  const Eigen::Matrix2d lacking = at.next - limit * at.prompt;
-  Eigen::Matrix2d gained = limit * at.surplus + at.surplus_next;
-  // A point that cannot move in one direction gains nothing there, and lacks nothing.
-  gained += 1e-12 * gained.trace() * Eigen::Matrix2d::Identity();
-  if (!(gained.trace() > 0.0)) return 0.0;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> pair(
-      0.5 * (lacking + lacking.transpose()), 0.5 * (gained + gained.transpose()),
-      Eigen::EigenvaluesOnly);
-  return std::max(0.0, pair.eigenvalues().maxCoeff());
-}
-
 }  // namespace
-
-double retained_frequency(const TimeParameters& time) {
-  const double asked =
-      time.retain ? time.retain->cutoff() : std::numeric_limits<double>::infinity();
-  // Beyond a step of 2 rad a mode nears the one at which it would seem to stand still or to run
-  // backwards.
-  constexpr double resolved = 2.0;
-  return time.integrator == Integrator::exact ? std::min(asked, resolved / time.step) : asked;
-}
-
-System retained(const System& system, const TimeParameters& time) {
-  System kept = system;
-  const double cutoff = retained_frequency(time);
-  for (SystemBody& body : kept.bodies) {
-    if (body.modal.size() > 0 && body.modal.omega.maxCoeff() > cutoff)
-      body.modal = with_static_residual(body.modal, cutoff);
-  }
-  return kept;
-}
-
-Eigen::Index num_retained(const ModalBody& body, const TimeParameters& time) {
-  return (body.omega.array() <= retained_frequency(time)).count();
-}
 
 std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimeParameters& time,
                                             std::optional<double> surplus, int num_slots,
@@ -240,36 +98,6 @@ void start_motion(Propagator& propagator, const SystemBody& body, const TimePara
   if (is_at_rest(body) && !has_forces) return;
   const StartingMotion motion = starting_motion(body, time);
   propagator.set_motion(motion.displacement, motion.velocity, forces);
-}
-
-std::optional<double> prompt_surplus(const System& system, const TimeParameters& time) {
-  if (time.integrator == Integrator::central_difference && !time.retain) return std::nullopt;
-  // Stable are ratios up to 4. Friction, damping and what changes along the path want some room,
-  // and contacts that open more: near the limit the force changes its sign from step to step.
-  const bool may_open =
-      std::any_of(system.contacts.begin(), system.contacts.end(), [](const ContactPoint& contact) {
-        return contact.unilateral_from() < std::numeric_limits<double>::infinity();
-      });
-  const double limit = may_open ? 2.0 : 3.6;
-  // With it every mode by itself has limit · g ≥ e.
-  const double enough = 1.0 / limit - 1.0 / 12.0;
-  if (system.contacts.size() != 1) return system.contacts.empty() ? 0.0 : enough;
-  const ContactPoint& contact = system.contacts.front();
-  const auto body = [&](int index) -> const ModalBody& {
-    return system.bodies[static_cast<std::size_t>(index)].modal;
-  };
-  const ModalBody& slave = body(contact.slave_body);
-  const ModalBody& master = body(system.surface_of(contact).body);
-  const PointAnswer of_slave =
-      answer_of(slave, coefficients_of(slave, time), {{contact.slave_rows}, {1.0}}, time.step);
-  const std::vector<StepCoefficients> coefficients = coefficients_of(master, time);
-  double surplus = 0.0;
-  for (const WeightedRows& place : path_of(system, contact, time.end)) {
-    PointAnswer both = of_slave;
-    both += answer_of(master, coefficients, place, time.step);
-    surplus = std::max(surplus, least_surplus(both, limit));
-  }
-  return std::min(surplus, enough);
 }
 
 StepLimit step_limit(const System& system) {

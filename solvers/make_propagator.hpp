@@ -12,14 +12,6 @@
 
 namespace stridor {
 
-/// Circular frequency up to which modes move, rad/s; infinite where all do. The lower of that of
-/// `time.retain` and, with exact propagation, of what the step resolves, ω h = 2.
-double retained_frequency(const TimeParameters& time);
-/// The system with those modes in its bodies; the others are their residual.
-System retained(const System& system, const TimeParameters& time);
-/// How many modes that leaves moving.
-Eigen::Index num_retained(const ModalBody& body, const TimeParameters& time);
-
 /// A body of the system, at rest at t = 0, ready to be marched.
 ///
 /// Load patterns of a body that follows the drive: the drive's load on its guided support (N), and
@@ -31,14 +23,6 @@ Eigen::Index num_retained(const ModalBody& body, const TimeParameters& time);
 std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimeParameters& time,
                                             std::optional<double> surplus, int num_slots,
                                             std::span<const double> loads);
-
-/// How much more than the scheme says the bodies answer at once: the least δ with which the
-/// contacts of a system are stable (docs/theory.md, 3.5), 4 P − W positive definite, with a margin,
-/// at every node of the master that the slave passes until time.end, where P is the flexibility
-/// with which the bodies answer at once and W that of the next step.
-/// @param system with the modes that time.retain keeps
-/// @return nothing where bodies do not answer at once: the central difference with all modes
-std::optional<double> prompt_surplus(const System& system, const TimeParameters& time);
 
 /// Whether no body of the system starts with a displacement or a velocity.
 bool starts_at_rest(const System& system);

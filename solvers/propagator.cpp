@@ -118,14 +118,28 @@ double Propagator::prompt_compliance(int row_a, int row_b) const {
 double Propagator::displacement(int row) const {
   double sum = body_displacement(row);
   if (!is_prompt_) return sum;
-  for (std::size_t j = 0; j < acting_.rows.size(); ++j)
-    sum += row_compliance(row, acting_.rows[j]) * acting_.forces[j];
+  const Influence& influence = influence_on(row);
+  for (std::size_t j = 0; j < acting_.forces.size(); ++j)
+    sum += influence.modes[j] * acting_.forces[j];
   if (!has_residual()) return sum;
   // f~ is that at t_n by now.
   sum += load_residual(row);
-  for (std::size_t j = 0; j < lagging_.rows.size(); ++j)
-    sum += residual_.modes.flexibility(row, lagging_.rows[j]) * lagging_.forces[j];
+  for (std::size_t j = 0; j < lagging_.forces.size(); ++j)
+    sum += influence.residual[j] * lagging_.forces[j];
   return sum;
+}
+
+const Propagator::Influence& Propagator::influence_on(int row) const {
+  for (const Influence& influence : influences_) {
+    if (influence.row == row) return influence;
+  }
+  Influence influence{row, {}, {}};
+  for (const int acting : acting_.rows) influence.modes.push_back(row_compliance(row, acting));
+  if (has_residual()) {
+    for (const int acting : lagging_.rows)
+      influence.residual.push_back(residual_.modes.flexibility(row, acting));
+  }
+  return influences_.emplace_back(std::move(influence));
 }
 
 Eigen::VectorXd Propagator::residual_displacement() const {
@@ -168,6 +182,7 @@ void Propagator::watch(int slot, int row) {
 void Propagator::set_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,
                             const double* forces) {
   is_starting_ = false;
+  influences_.clear();
   set_body_motion(displacement, velocity, forces);
   if (is_prompt_) acting_ = {rows_, {forces, forces + rows_.size()}};
   if (has_residual()) lagging_ = acting_;
@@ -179,6 +194,7 @@ void Propagator::set_motion(const Eigen::VectorXd& displacement, const Eigen::Ve
 void Propagator::foresee_start(const Eigen::VectorXd& displacement,
                                const Eigen::VectorXd& velocity) {
   is_starting_ = true;
+  influences_.clear();
   foresee_body_start(displacement, velocity);
   const std::vector<double> no_forces(rows_.size(), 0.0);
   acting_ = {rows_, no_forces};
@@ -205,6 +221,7 @@ void Propagator::renew_compliance(int slot) {
 }
 
 void Propagator::renew_compliances() {
+  influences_.clear();
   for (int slot = 0; slot < num_slots(); ++slot) renew_compliance(slot);
 }
 
@@ -222,6 +239,7 @@ void Propagator::settle(const double* forces) {
 /// Where the new rows were before is not known, so the increments stay; and what lags has settled.
 void Propagator::take_new_rows(const double* forces) {
   last_increment_ = increment_;
+  influences_.clear();
   acting_.rows = rows_;
   if (has_residual()) lagging_ = {rows_, {forces, forces + rows_.size()}};
 }
@@ -265,6 +283,7 @@ void Propagator::load(const State& state, const std::string& prefix) {
   has_new_rows_ = false;
   if (!is_prompt_) return;
   state.get(prefix + "expected", expected_);
+  influences_.clear();
   acting_.rows = rows_;
   state.get(prefix + "acting", acting_.forces);
   state.get(prefix + "answer", answer_);

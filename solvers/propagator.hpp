@@ -85,7 +85,8 @@ class Propagator {
   /// @param forces those of `settle`
   void advance(const double* forces);
 
-  /// u_n of any row, m, after `settle`. Cost: a few products of the length of the body.
+  /// u_n of any row, m, after `settle`. Cost: a product of the length of the body; what the forces
+  /// do to a row at once is computed when it is asked for the first time from these slots.
   double displacement(int row) const;
 
   /// u_n and its rate in the coordinates of the body: by the scheme itself where it knows the
@@ -137,11 +138,19 @@ class Propagator {
     std::vector<double> forces;
   };
 
+  /// What forces on the slots do at once to another row.
+  struct Influence {
+    int row;
+    std::vector<double> modes;     ///< of the modes that move, per slot
+    std::vector<double> residual;  ///< of those left out
+  };
+
   static std::size_t at(int slot) { return static_cast<std::size_t>(slot); }
   bool has_residual() const { return residual_.modes.flexibility.size() > 0; }
   void place_slots();
   void take_new_rows(const double* forces);
   void renew_compliance(int slot);
+  const Influence& influence_on(int row) const;
   double prompt_compliance(int row_a, int row_b) const;
   /// By the loads and the forces before t_n, of the modes left out at a row.
   double lagging_residual(int row) const;
@@ -179,6 +188,8 @@ class Propagator {
   RowForces acting_;            ///< f of the last `settle`
   std::vector<double> answer_;  ///< W f at the slots
   std::vector<double> last_increment_;
+  /// Of the rows of acting_ on the rows asked for; emptied when either changes.
+  mutable std::vector<Influence> influences_;
 
   Residual residual_;
   double share_ = 1.0;              ///< w

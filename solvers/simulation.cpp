@@ -10,7 +10,8 @@
 
 #include "core/errors.hpp"
 #include "solvers/make_propagator.hpp"
-#include "solvers/sliding_point.hpp"
+#include "solvers/prompt_surplus.hpp"
+#include "solvers/retained_modes.hpp"
 
 namespace stridor {
 namespace {
@@ -588,10 +589,8 @@ double Simulation::slip_velocity(int contact) const {
 }
 
 ContactPlace Simulation::contact_place(int contact) const {
-  const SlidingPoint& sliding =
-      implementation_->contacts[static_cast<std::size_t>(contact)].sliding;
-  return {sliding.present_gap(drive_displacement()),
-          sliding.present_position(drive_displacement())};
+  return implementation_->contacts[static_cast<std::size_t>(contact)].sliding.present_place(
+      drive_displacement());
 }
 
 const ViolationCount& Simulation::violations(int contact) const {

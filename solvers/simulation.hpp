@@ -12,6 +12,7 @@
 #include "solvers/contact_solver.hpp"
 #include "solvers/energy_ledger.hpp"
 #include "solvers/propagator.hpp"
+#include "solvers/sliding_point.hpp"
 #include "solvers/time_parameters.hpp"
 
 namespace stridor {
@@ -47,12 +48,6 @@ struct ContactStatistics {
   std::int64_t steps = 0;
   std::int64_t sticking = 0;  ///< steps that ended in stick
   std::int64_t open = 0;      ///< steps without contact
-};
-
-/// Where a slave point stands on its master.
-struct ContactPlace {
-  double gap;       ///< distance from the deformed surface along its own normal, m
-  double position;  ///< along the undeformed master from its first node, m
 };
 
 /// What a simulation keeps account of from its start.

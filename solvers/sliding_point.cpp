@@ -207,18 +207,13 @@ double SlidingPoint::stretch() const {
          surface_->arc_slope(segment_, slopes);
 }
 
-double SlidingPoint::present_gap(double drive_at) const {
+ContactPlace SlidingPoint::present_place(double drive_at) const {
   Place now;
   set_place(slave_->current(), master_->current(), drive_at, now);
   const Projection here = project(now.master, now.slave, projection_.xi);
-  return here.normal.dot(now.slave - now.master.combine(here.weights)) -
-         surface_->roughness_at(segment_, here.weights);
-}
-
-double SlidingPoint::present_position(double drive_at) const {
-  Place now;
-  set_place(slave_->current(), master_->current(), drive_at, now);
-  return surface_->arc_at(segment_, project(now.master, now.slave, projection_.xi).weights);
+  return {here.normal.dot(now.slave - now.master.combine(here.weights)) -
+              surface_->roughness_at(segment_, here.weights),
+          surface_->arc_at(segment_, here.weights)};
 }
 
 template <class Visit>

@@ -25,6 +25,12 @@ struct ContactCompliance {
   double tt = 0.0;
 };
 
+/// Where a slave point stands on its master.
+struct ContactPlace {
+  double gap;       ///< distance from the deformed surface along its own normal, m
+  double position;  ///< along the undeformed master from its first node, m
+};
+
 /// Kinematics of a contact (docs/theory.md, 2.2): where the slave point is over its master, with
 /// which normal and tangent, and what gap, slip and forces are at the slots of the bodies.
 class SlidingPoint {
@@ -61,10 +67,8 @@ class SlidingPoint {
   double stretch() const;
   /// How far the rough surface stands out, m.
   double roughness() const { return surface_->roughness_at(segment_, projection_.weights); }
-  /// Of the present motion: distance from the deformed surface along its own normal, m.
-  double present_gap(double drive_at) const;
-  /// Of the present motion along the undeformed master, m.
-  double present_position(double drive_at) const;
+  /// Of the present motion.
+  ContactPlace present_place(double drive_at) const;
   /// Of the last projection along the undeformed master, m.
   double position() const { return surface_->arc_at(segment_, projection_.weights); }
 

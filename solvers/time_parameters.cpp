@@ -3,9 +3,27 @@
 namespace stridor {
 
 const Schema& RetainParameters::schema() {
-  static const Schema keys = SchemaOf<RetainParameters>("retain").real(
-      "frequency", &RetainParameters::frequency,
-      {.doc = "Modes up to this frequency are kept.", .unit = "Hz", .range = Range::positive()});
+  static const Schema keys =
+      SchemaOf<RetainParameters>("retain")
+          .real("frequency", &RetainParameters::frequency,
+                {.doc = "Modes up to this frequency are kept.",
+                 .unit = "Hz",
+                 .range = Range::positive(),
+                 .optional = true})
+          .real("error", &RetainParameters::error,
+                {.doc = "As many modes are kept as it takes for the frequencies of the bodies in "
+                        "contact to have at most this relative error.",
+                 .range = Range::inside(0.0, 1.0),
+                 .optional = true})
+          .real("upper", &RetainParameters::upper,
+                {.doc = "Of the frequencies that `error` is asked of, the highest.",
+                 .unit = "Hz",
+                 .range = Range::positive(),
+                 .optional = true})
+          .check([](const RetainParameters& retain, std::vector<Problem>& problems) {
+            if (retain.frequency.has_value() == retain.error.has_value())
+              problems.push_back({"", "takes either frequency or error", {}, 0, 0});
+          });
   return keys;
 }
 

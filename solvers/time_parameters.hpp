@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <numbers>
 #include <optional>
 
 #include "core/schema.hpp"
@@ -20,11 +19,13 @@ enum class Coordinates {
   craig_bampton_fused,  ///< the same with constants folded in advance
 };
 
-/// Which modes move on their own; the others become their static residual.
+/// Which modes move on their own; the others become their static residual. By a frequency or by an
+/// error, never both (see retained_frequency()).
 struct RetainParameters {
-  double frequency = 0.0;  ///< modes up to this one are kept, Hz, > 0
-  /// The same as a circular frequency, rad/s.
-  double cutoff() const { return 2.0 * std::numbers::pi * frequency; }
+  std::optional<double> frequency;  ///< modes up to this one are kept, Hz, > 0
+  /// Largest relative error of the frequencies of the bodies in contact up to `upper`, > 0.
+  std::optional<double> error;
+  double upper = 15e3;  ///< Hz, > 0
   static const Schema& schema();
 };
 

@@ -166,7 +166,7 @@ TEST(PrecisionMethod, KeepsWhatItDoesNotChange) {
   EXPECT_EQ(changed.integrator, Integrator::exact);
   EXPECT_EQ(changed.coordinates, Coordinates::modal);
   EXPECT_DOUBLE_EQ(changed.step, 0.0025);
-  EXPECT_DOUBLE_EQ(changed.retain->frequency, 50.0);
+  EXPECT_DOUBLE_EQ(changed.retain->frequency.value(), 50.0);
   EXPECT_EQ(changed.contact_sweeps, 77);
   EXPECT_EQ(changed.end, 1.0);
 }

@@ -1,0 +1,108 @@
+#include "solvers/prompt_surplus.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "solvers/contact_path.hpp"
+#include "solvers/modal_recurrence.hpp"
+
+namespace stridor {
+namespace {
+
+/// What a point of a body does per force on it: at once, in the next step, and at once by surplus.
+struct PointAnswer {
+  Eigen::Matrix2d prompt = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d next = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d surplus = Eigen::Matrix2d::Zero();       ///< per δ, to `prompt`
+  Eigen::Matrix2d surplus_next = Eigen::Matrix2d::Zero();  ///< likewise, taken from `next`
+
+  PointAnswer& operator+=(const PointAnswer& other) {
+    prompt += other.prompt;
+    next += other.next;
+    surplus += other.surplus;
+    surplus_next += other.surplus_next;
+    return *this;
+  }
+};
+
+/// Coefficients of all modes of a body as it is marched without surplus.
+std::vector<StepCoefficients> coefficients_of(const ModalBody& body, const TimeParameters& time) {
+  std::vector<StepCoefficients> coefficients;
+  for (const double omega : body.omega) {
+    const double damping = body.damping.alpha + body.damping.beta * omega * omega;
+    coefficients.push_back(step_coefficients(time.integrator, omega, damping, time.step, 0.0));
+  }
+  return coefficients;
+}
+
+PointAnswer answer_of(const ModalBody& body, const std::vector<StepCoefficients>& coefficients,
+                      const WeightedRows& point, double step) {
+  const Eigen::MatrixXd entries = rows_of(body.rows, point);
+  PointAnswer sum;
+  for (Eigen::Index i = 0; i < body.size(); ++i) {
+    const StepCoefficients& c = coefficients[static_cast<std::size_t>(i)];
+    const Eigen::Matrix2d square = entries.col(i) * entries.col(i).transpose();
+    // Of an oscillation that changes sign with every step, e/((1 + r₁)(1 + r₂)) per force; a
+    // quarter of e for a free mass without damping.
+    const double alternating = 4.0 / (2.0 + 2.0 * c.keep - c.pull);
+    sum.prompt += c.prompt * square;
+    sum.next += alternating * c.gain * square;
+    sum.surplus += c.answer() * square;
+    sum.surplus_next += alternating * c.pull * c.answer() * square;
+  }
+  const Eigen::MatrixXd& residual = body.residual.flexibility;
+  if (residual.size() > 0) {
+    const double share = step / (step + body.residual.beta);
+    sum.prompt += share * rows_of(rows_of(residual, point).transpose(), point);
+  }
+  return sum;
+}
+
+/// Least δ with which q (P + δ S) − (W − δ V) is positive semidefinite.
+double least_surplus(const PointAnswer& at, double limit) {
+  const Eigen::Matrix2d lacking = at.next - limit * at.prompt;
+  Eigen::Matrix2d gained = limit * at.surplus + at.surplus_next;
+  // A point that cannot move in one direction gains nothing there, and lacks nothing.
+  gained += 1e-12 * gained.trace() * Eigen::Matrix2d::Identity();
+  if (!(gained.trace() > 0.0)) return 0.0;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> pair(
+      0.5 * (lacking + lacking.transpose()), 0.5 * (gained + gained.transpose()),
+      Eigen::EigenvaluesOnly);
+  return std::max(0.0, pair.eigenvalues().maxCoeff());
+}
+
+}  // namespace
+
+std::optional<double> prompt_surplus(const System& system, const TimeParameters& time) {
+  if (time.integrator == Integrator::central_difference && !time.retain) return std::nullopt;
+  // Stable are ratios up to 4. Friction, damping and what changes along the path want some room,
+  // and contacts that open more: near the limit the force changes its sign from step to step.
+  const bool may_open =
+      std::any_of(system.contacts.begin(), system.contacts.end(), [](const ContactPoint& contact) {
+        return contact.unilateral_from() < std::numeric_limits<double>::infinity();
+      });
+  const double limit = may_open ? 2.0 : 3.6;
+  // With it every mode by itself has limit · g ≥ e.
+  const double enough = 1.0 / limit - 1.0 / 12.0;
+  if (system.contacts.size() != 1) return system.contacts.empty() ? 0.0 : enough;
+  const ContactPoint& contact = system.contacts.front();
+  const auto body = [&](int index) -> const ModalBody& {
+    return system.bodies[static_cast<std::size_t>(index)].modal;
+  };
+  const ModalBody& slave = body(contact.slave_body);
+  const ModalBody& master = body(system.surface_of(contact).body);
+  const PointAnswer of_slave =
+      answer_of(slave, coefficients_of(slave, time), {{contact.slave_rows}, {1.0}}, time.step);
+  const std::vector<StepCoefficients> coefficients = coefficients_of(master, time);
+  double surplus = 0.0;
+  for (const WeightedRows& place : path_of(system, contact, time.end)) {
+    PointAnswer both = of_slave;
+    both += answer_of(master, coefficients, place, time.step);
+    surplus = std::max(surplus, least_surplus(both, limit));
+  }
+  return std::min(surplus, enough);
+}
+
+}  // namespace stridor
