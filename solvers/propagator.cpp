@@ -10,59 +10,67 @@ namespace stridor {
 namespace {
 
 /// From u*_{n+1} to u_{n+1} = u* + W f, in place, and its increment.
+struct Correct {
+  const double* compliance;
+  const double* forces;
+  const double* current;
+  double* corrected;
+  double* increment;
+
+  template <class Lanes>
+  STRIDOR_INLINE void operator()(Lanes lanes) const {
+    const auto settled = lanes.load(corrected) + lanes.product(compliance, forces);
+    lanes.store(corrected, settled);
+    lanes.store(increment, settled - lanes.load(current));
+  }
+};
 STRIDOR_CLONES
-void correct(std::size_t n, const double* compliance, const double* forces, const double* current,
-             double* __restrict corrected, double* __restrict increment) {
-  for_size(n, [&](auto size) STRIDOR_INLINE_LAMBDA {
-    add_product(size, compliance, forces, corrected);
-    for (std::size_t a = 0; a < size; ++a) increment[a] = corrected[a] - current[a];
-  });
+void correct_all(std::size_t n, const Correct& work) {
+  for_lanes(n, work);
 }
 
-/// What Propagator::settle() does with slots that have kept their rows, and the answer W f at once.
-template <class Size>
-STRIDOR_INLINE void settle_slots(Size n, const double* compliance, const double* forces,
-                                 const double* predicted, double share, double* lagging,
-                                 double* __restrict acting, double* __restrict answer,
-                                 double* __restrict current, double* __restrict increment) {
-  product(n, compliance, forces, answer);
-  for (std::size_t a = 0; a < n; ++a) {
-    const double settled = predicted[a] + answer[a];
-    increment[a] = settled - current[a];
-    current[a] = settled;
-    acting[a] = forces[a];
+/// What Propagator::settle() does with slots that have kept their rows.
+struct Settle {
+  const PromptSlots& slots;
+  const double* forces;
+
+  template <class Lanes>
+  STRIDOR_INLINE void operator()(Lanes lanes) const {
+    const auto f = lanes.load(forces);
+    const auto answer = lanes.product(slots.compliance, forces);
+    const auto settled = lanes.load(slots.predicted) + answer;
+    lanes.store(slots.increment, settled - lanes.load(slots.current));
+    lanes.store(slots.current, settled);
+    lanes.store(slots.acting, f);
+    lanes.store(slots.answer, answer);
+    if (slots.lag == nullptr) return;
+    const auto lagging = lanes.load(slots.lagging);
+    lanes.store(slots.lagging, lagging + slots.share * (f - lagging));
   }
-  if (lagging == nullptr) return;
-  for (std::size_t a = 0; a < n; ++a) lagging[a] += share * (forces[a] - lagging[a]);
-}
+};
 STRIDOR_CLONES
-void settle_all(std::size_t n, const double* compliance, const double* forces,
-                const double* predicted, double share, double* lagging, double* acting,
-                double* answer, double* current, double* increment) {
-  for_size(n, [&](auto size) STRIDOR_INLINE_LAMBDA {
-    settle_slots(size, compliance, forces, predicted, share, lagging, acting, answer, current,
-                 increment);
-  });
+void settle_all(const PromptSlots& slots, const double* forces) {
+  for_lanes(slots.n, Settle{slots, forces});
 }
 
 /// Adds what acts at once to the displacements of the body, (1 − w) R f~ and the answer of the
 /// modes left out to the loads; with the last answer to the forces, what is expected.
-template <class Size>
-STRIDOR_INLINE void expect(Size n, const double* lag, const double* lagging, const double* load,
-                           const double* answer, double* __restrict predicted,
-                           double* __restrict expected) {
-  if (lag != nullptr) {
-    for (std::size_t a = 0; a < n; ++a) predicted[a] += load[a];
-    add_product(n, lag, lagging, predicted);
+struct Expect {
+  const PromptSlots& slots;
+
+  template <class Lanes>
+  STRIDOR_INLINE void operator()(Lanes lanes) const {
+    auto predicted = lanes.load(slots.predicted);
+    if (slots.lag != nullptr) {
+      predicted += lanes.load(slots.load) + lanes.product(slots.lag, slots.lagging);
+      lanes.store(slots.predicted, predicted);
+    }
+    lanes.store(slots.expected, predicted + lanes.load(slots.answer));
   }
-  for (std::size_t a = 0; a < n; ++a) expected[a] = predicted[a] + answer[a];
-}
+};
 STRIDOR_CLONES
-void expect_all(std::size_t n, const double* lag, const double* lagging, const double* load,
-                const double* answer, double* predicted, double* expected) {
-  for_size(n, [&](auto size) STRIDOR_INLINE_LAMBDA {
-    expect(size, lag, lagging, load, answer, predicted, expected);
-  });
+void expect_all(const PromptSlots& slots) {
+  for_lanes(slots.n, Expect{slots});
 }
 
 }  // namespace
@@ -79,12 +87,27 @@ Propagator::Propagator(int num_slots, bool is_prompt, Residual residual)
   expected_ = predicted_;
   acting_ = {rows_, std::vector<double>(at(num_slots), 0.0)};
   answer_ = predicted_;
-  if (!has_residual()) return;
+  if (!has_residual()) {
+    find_prompt_slots();
+    return;
+  }
   share_ = residual_.step / (residual_.step + residual_.modes.beta);
   amplitudes_.assign(static_cast<std::size_t>(residual_.load_patterns.cols()), 0.0);
   slot_load_.assign(at(num_slots), 0.0);
   lagging_ = acting_;
   slot_lag_.assign(compliance_.size(), 0.0);
+  find_prompt_slots();
+}
+
+void Propagator::find_prompt_slots() {
+  if (!is_prompt_) return;
+  const bool lags = has_residual();
+  prompt_slots_ = {rows_.size(),       share_,
+                   compliance_.data(), lags ? slot_lag_.data() : nullptr,
+                   slot_load_.data(),  predicted_.data(),
+                   expected_.data(),   current_.data(),
+                   increment_.data(),  acting_.forces.data(),
+                   answer_.data(),     lagging_.forces.data()};
 }
 
 void Propagator::start() {
@@ -186,6 +209,7 @@ void Propagator::set_motion(const Eigen::VectorXd& displacement, const Eigen::Ve
   set_body_motion(displacement, velocity, forces);
   if (is_prompt_) acting_ = {rows_, {forces, forces + rows_.size()}};
   if (has_residual()) lagging_ = acting_;
+  find_prompt_slots();
   place_slots();
   for (int slot = 0; slot < num_slots(); ++slot)
     increment_[at(slot)] = initial_increment(row(slot), velocity);
@@ -199,6 +223,7 @@ void Propagator::foresee_start(const Eigen::VectorXd& displacement,
   const std::vector<double> no_forces(rows_.size(), 0.0);
   acting_ = {rows_, no_forces};
   if (has_residual()) lagging_ = acting_;
+  find_prompt_slots();
   place_slots();
 }
 
@@ -227,11 +252,8 @@ void Propagator::renew_compliances() {
 
 void Propagator::settle(const double* forces) {
   if (!is_prompt_) return;
-  const std::size_t n = rows_.size();
   if (has_new_rows_) take_new_rows(forces);
-  settle_all(n, compliance_.data(), forces, predicted_.data(), share_,
-             lagging_.forces.empty() ? nullptr : lagging_.forces.data(), acting_.forces.data(),
-             answer_.data(), current_.data(), increment_.data());
+  settle_all(prompt_slots_, forces);
   if (has_new_rows_) std::copy(last_increment_.begin(), last_increment_.end(), increment_.begin());
   has_new_rows_ = false;
 }
@@ -242,17 +264,17 @@ void Propagator::take_new_rows(const double* forces) {
   influences_.clear();
   acting_.rows = rows_;
   if (has_residual()) lagging_ = {rows_, {forces, forces + rows_.size()}};
+  find_prompt_slots();
 }
 
 void Propagator::advance(const double* forces) {
-  const std::size_t n = rows_.size();
   if (is_prompt_) {
     advance_body(forces, predicted_.data());
-    expect_all(n, slot_lag_.empty() ? nullptr : slot_lag_.data(), lagging_.forces.data(),
-               slot_load_.data(), answer_.data(), predicted_.data(), expected_.data());
+    expect_all(prompt_slots_);
     return;
   }
-  correct(n, compliance_.data(), forces, current_.data(), predicted_.data(), increment_.data());
+  correct_all(rows_.size(),
+              {compliance_.data(), forces, current_.data(), predicted_.data(), increment_.data()});
   std::swap(current_, predicted_);
   advance_body(forces, predicted_.data());
 }

@@ -11,6 +11,22 @@
 
 namespace stridor {
 
+/// Where a body that answers at once keeps what its slots do, for the functions of every step.
+struct PromptSlots {
+  std::size_t n = 0;                   ///< number of slots
+  double share = 1.0;                  ///< w
+  const double* compliance = nullptr;  ///< W, column after column
+  const double* lag = nullptr;         ///< (1 − w) R, likewise; null where no modes are left out
+  const double* load = nullptr;        ///< what the loads do to the modes left out
+  double* predicted = nullptr;         ///< u*
+  double* expected = nullptr;          ///< u* + W f_{n−1}
+  double* current = nullptr;           ///< u_n
+  double* increment = nullptr;         ///< u_n − u_{n−1}
+  double* acting = nullptr;            ///< f of the last `settle`
+  double* answer = nullptr;            ///< W f
+  double* lagging = nullptr;           ///< f~
+};
+
 /// Marches one body with a two-step scheme under forces at its slots.
 ///
 /// The contacts see a body through its slots: each slot watches one row of ReducedBody::rows (the
@@ -148,6 +164,7 @@ class Propagator {
   static std::size_t at(int slot) { return static_cast<std::size_t>(slot); }
   bool has_residual() const { return residual_.modes.flexibility.size() > 0; }
   void place_slots();
+  void find_prompt_slots();
   void take_new_rows(const double* forces);
   void renew_compliance(int slot);
   const Influence& influence_on(int row) const;
@@ -197,6 +214,7 @@ class Propagator {
   std::vector<double> slot_load_;   ///< load_residual() of the slots
   RowForces lagging_;               ///< f~
   std::vector<double> slot_lag_;    ///< (1 − w) R between slots
+  PromptSlots prompt_slots_;
 };
 
 }  // namespace stridor

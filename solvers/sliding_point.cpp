@@ -61,6 +61,29 @@ double sliding_through(const double* block, std::size_t stride, const Entries& a
   return sum;
 }
 
+/// e_a W e_b of a slave's two slots.
+STRIDOR_INLINE double through_slave(const double* block, std::size_t stride, const double* a,
+                                    const double* b) {
+  return a[0] * (block[0] * b[0] + block[stride] * b[1]) +
+         a[1] * (block[1] * b[0] + block[stride + 1] * b[1]);
+}
+
+/// n W (n − κ t) of a contact with itself, on a straight segment between two bodies.
+/// @param slave, master blocks of W at the first slots of the contact
+STRIDOR_CLONES
+double sliding_through_both(const double* slave, std::size_t slave_stride, const double* master,
+                            std::size_t master_stride, const SlotRow& normal,
+                            const SlotRow& tangent, double friction) {
+  double slave_pull[2];
+  for (std::size_t j = 0; j < 2; ++j) slave_pull[j] = normal.slave[j] - friction * tangent.slave[j];
+  double master_pull[4];
+  for (std::size_t j = 0; j < 4; ++j)
+    master_pull[j] = normal.master[j] - friction * tangent.master[j];
+  return through_slave(slave, slave_stride, normal.slave.data(), slave_pull) +
+         through(FixedSize<4>(), FixedSize<4>(), master, master_stride, normal.master.data(),
+                 master_pull);
+}
+
 /// W at slots of a body, columns num_slots apart.
 const double* block_of(const Propagator& body, int slot_a, int slot_b) {
   return body.compliances() +
@@ -241,6 +264,12 @@ ContactCompliance SlidingPoint::compliance(const SlidingPoint& other) const {
 }
 
 double SlidingPoint::sliding_compliance(const SlidingPoint& other, double friction) const {
+  if (this == &other && slave_ != master_ && undeformed_.stencil.count == 2) {
+    return sliding_through_both(
+        block_of(*slave_, slave_slot_, slave_slot_), static_cast<std::size_t>(slave_->num_slots()),
+        block_of(*master_, master_slot_, master_slot_),
+        static_cast<std::size_t>(master_->num_slots()), normal_, tangent_, friction);
+  }
   double sum = 0.0;
   for_shared_bodies(other, [&](const Propagator& body, const Entries& a, const Entries& b) {
     sum += sliding_through(block_of(body, a.slot, b.slot),

@@ -12,59 +12,50 @@ namespace stridor {
 template <std::size_t n>
 using FixedSize = std::integral_constant<std::size_t, n>;
 
-/// Calls `work` with the number of slots, as a constant where it is a common one.
+using Slots1 = double __attribute__((vector_size(8)));
+using Slots2 = double __attribute__((vector_size(16)));
+using Slots4 = double __attribute__((vector_size(32)));
+using Slots8 = double __attribute__((vector_size(64)));
+
+/// Some of the n slots of a body, from `first` on, as one vector: left to itself the compiler
+/// stores every partial sum.
+template <class Slots>
+struct SlotLanes {
+  std::size_t n;
+  std::size_t first;
+
+  STRIDOR_INLINE Slots load(const double* values) const {
+    Slots slots;
+    __builtin_memcpy(&slots, values + first, sizeof(Slots));
+    return slots;
+  }
+  STRIDOR_INLINE void store(double* values, const Slots& slots) const {
+    __builtin_memcpy(values + first, &slots, sizeof(Slots));
+  }
+  /// M x, M n x n, column after column.
+  STRIDOR_INLINE Slots product(const double* matrix, const double* x) const {
+    Slots sum = load(matrix) * x[0];
+    for (std::size_t b = 1; b < n; ++b) sum += load(matrix + b * n) * x[b];
+    return sum;
+  }
+};
+
+/// Calls work(lanes) for all n slots: at once where n is a common number. What `work`
+/// writes must not be read through other lanes.
 template <class Work>
-STRIDOR_INLINE void for_size(std::size_t n, const Work& work) {
+STRIDOR_INLINE void for_lanes(std::size_t n, const Work& work) {
   switch (n) {
     case 2:
-      return work(FixedSize<2>());
+      return work(SlotLanes<Slots2>{2, 0});
     case 4:
-      return work(FixedSize<4>());
+      return work(SlotLanes<Slots4>{4, 0});
     case 8:
-      return work(FixedSize<8>());
+      return work(SlotLanes<Slots8>{8, 0});
     default:
-      return work(n);
+      std::size_t first = 0;
+      for (; first + 2 <= n; first += 2) work(SlotLanes<Slots2>{n, first});
+      if (first < n) work(SlotLanes<Slots1>{n, first});
   }
-}
-
-/// y += M x, M n x n, column after column.
-template <class Size>
-STRIDOR_INLINE void add_product(Size n, const double* matrix, const double* x, double* y) {
-  for (std::size_t b = 0; b < n; ++b) {
-    for (std::size_t a = 0; a < n; ++a) y[a] += matrix[b * n + a] * x[b];
-  }
-}
-
-#if defined(__GNUC__)
-// In registers: left to itself the compiler stores every partial sum. The types are spelled out
-// because their attributes are lost in templates.
-using Slots2 = double __attribute__((vector_size(16), aligned(8), may_alias));
-using Slots4 = double __attribute__((vector_size(32), aligned(8), may_alias));
-using Slots8 = double __attribute__((vector_size(64), aligned(8), may_alias));
-
-template <class Slots>
-STRIDOR_INLINE void add_vector_product(const double* matrix, const double* x, double* y) {
-  constexpr std::size_t n = sizeof(Slots) / sizeof(double);
-  Slots sum = *reinterpret_cast<const Slots*>(y);
-  for (std::size_t b = 0; b < n; ++b) sum += *reinterpret_cast<const Slots*>(matrix + b * n) * x[b];
-  *reinterpret_cast<Slots*>(y) = sum;
-}
-STRIDOR_INLINE void add_product(FixedSize<2>, const double* matrix, const double* x, double* y) {
-  add_vector_product<Slots2>(matrix, x, y);
-}
-STRIDOR_INLINE void add_product(FixedSize<4>, const double* matrix, const double* x, double* y) {
-  add_vector_product<Slots4>(matrix, x, y);
-}
-STRIDOR_INLINE void add_product(FixedSize<8>, const double* matrix, const double* x, double* y) {
-  add_vector_product<Slots8>(matrix, x, y);
-}
-#endif
-
-/// y = M x.
-template <class Size>
-STRIDOR_INLINE void product(Size n, const double* matrix, const double* x, double* y) {
-  for (std::size_t a = 0; a < n; ++a) y[a] = 0.0;
-  add_product(n, matrix, x, y);
 }
 
 /// Σ a_k b_k for an even n.
