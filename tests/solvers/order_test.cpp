@@ -1,0 +1,106 @@
+// Order of accuracy in the step: every integrator under every contact assumption, in one suite.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <tuple>
+
+#include "tests/support/paper_model.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+
+constexpr double interval = 2e-5;
+constexpr double end = 8e-3;
+
+/// Displacements of the free end at every multiple of the interval.
+std::vector<double> free_end_motion(const Model& model, const TimeParameters& time) {
+  Simulation simulation(model.system, time);
+  const Model::Point tip = model.points.at(free_end);
+  std::vector<double> motion;
+  for (std::int64_t n = 1; n <= std::llround(end / interval); ++n) {
+    if (simulation.step_until(n * std::llround(interval / time.step)) != StepOutcome::done) {
+      ADD_FAILURE() << simulation.failure();
+      break;
+    }
+    motion.push_back(simulation.displacement(tip.body, tip.rows.y));
+  }
+  return motion;
+}
+
+double relative_difference(const std::vector<double>& a, const std::vector<double>& reference) {
+  double difference = 0.0;
+  double size = 0.0;
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    difference += std::pow(a.at(i) - reference[i], 2);
+    size += reference[i] * reference[i];
+  }
+  return std::sqrt(difference / size);
+}
+
+/// The leading scene with a short ramp: it slides one way from the start, so that no event spoils
+/// the order.
+Model sliding_model(ContactAssumption assumption, SurfaceKind surface, bool is_damped) {
+  ModelParameters parameters = paper_model(leading_angle, assumption);
+  parameters.drive.ramp = 1e-2;
+  parameters.contact->armed_from = 1.0;
+  parameters.contact->surface = surface;
+  if (!is_damped) {
+    for (auto& [name, body] : parameters.substructures) std::get<BeamParameters>(body).damping = {};
+  }
+  return make_paper_model(parameters);
+}
+
+TimeParameters exact(double step, double frequency) {
+  TimeParameters time = paper_time(step);
+  time.integrator = Integrator::exact;
+  time.retain = RetainParameters{frequency, {}};
+  return time;
+}
+
+class OrderTest : public ::testing::TestWithParam<std::tuple<ContactAssumption, SurfaceKind>> {
+ protected:
+  Model model(bool is_damped) const {
+    return sliding_model(std::get<0>(GetParam()), std::get<1>(GetParam()), is_damped);
+  }
+};
+
+double order(double coarse, double fine) {
+  return std::log2(coarse / fine);
+}
+
+TEST_P(OrderTest, OfExactPropagationIsTwo) {
+  const Model damped = model(true);
+  const std::vector<double> reference = free_end_motion(damped, exact(2.5e-7, 50e3));
+  const auto error = [&](double step) {
+    return relative_difference(free_end_motion(damped, exact(step, 50e3)), reference);
+  };
+  const double coarse = error(4e-6);
+  const double fine = error(1e-6);
+  EXPECT_LT(coarse, 1e-6);
+  EXPECT_GT(0.5 * order(coarse, fine), 1.8);
+  EXPECT_LT(0.5 * order(coarse, fine), 2.3);
+}
+
+/// By the velocity of its damping, and without damping by the friction of t_{n+1} on forces of t_n.
+TEST_P(OrderTest, OfTheCentralDifferenceIsOne) {
+  for (const bool is_damped : {true, false}) {
+    const Model beams = model(is_damped);
+    const std::vector<double> reference = free_end_motion(beams, paper_time(1.5625e-8));
+    const auto error = [&](double step) {
+      return relative_difference(free_end_motion(beams, paper_time(step)), reference);
+    };
+    const double found = order(error(2.5e-7), error(1.25e-7));
+    EXPECT_NEAR(found, 1.05, 0.1) << is_damped;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Assumptions, OrderTest,
+    ::testing::Combine(::testing::Values(ContactAssumption::subs_a, ContactAssumption::subs_b,
+                                         ContactAssumption::subs_c, ContactAssumption::film),
+                       ::testing::Values(SurfaceKind::polyline, SurfaceKind::smooth)));
+
+}  // namespace
+}  // namespace stridor
