@@ -1,6 +1,6 @@
 #include "coupling/substrate_contact.hpp"
 
-#include <cmath>
+#include <algorithm>
 
 namespace stridor {
 
@@ -29,11 +29,18 @@ SubstrateForces SubstrateContact::at(double indentation, double slip, double dir
     value_by_y += forces.normal.by_indentation * friction.value;
     value_by_v += forces.normal.by_slip * friction.value;
   }
+  if (!sign.is_set_valued()) {
+    const RegularisedSign::Value s = sign.at(std::max(0.0, direction * slip));
+    value_by_y *= s.value;
+    value_by_v = s.value * value_by_v + s.slope * direction * value;
+    value *= s.value;
+  }
   forces.tangential = {-direction * value, -direction * value_by_y, -direction * value_by_v};
   return forces;
 }
 
 SubstrateForces::Force SubstrateContact::static_strength(double indentation) const {
+  if (!sign.is_set_valued()) return {};
   const LawValue area = law->at(indentation / indentation_unit, 0.0).area;
   return {shear * area.value, shear * area.by_indentation / indentation_unit, 0.0};
 }

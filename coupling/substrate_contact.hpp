@@ -1,6 +1,7 @@
 // Contact of a body with a sliding viscoelastic substrate, as a force law in the body's own units.
 #pragma once
 
+#include "coupling/regularised_sign.hpp"
 #include "coupling/viscoelastic_law.hpp"
 
 namespace stridor {
@@ -31,7 +32,7 @@ struct SubstrateForces {
 ///   ŷ = y/y_1,  v̂ = v/v_1
 ///
 /// with N the applied load or the normal force of the contact. Out of contact (y <= 0) everything
-/// vanishes.
+/// vanishes. Regularised friction has s(v/v_ε) in the place of σ.
 struct SubstrateContact {
   const ViscoelasticContactLaw* law = nullptr;  ///< must live longer
   double indentation_unit = 1.0;                ///< y_1: displacement that is ŷ = 1
@@ -40,6 +41,7 @@ struct SubstrateContact {
   double shear = 0.0;                           ///< a: friction per Ã by the interfacial shear
   double load = 0.0;                            ///< the applied normal force
   FrictionLoad friction_load = FrictionLoad::applied;
+  RegularisedSign sign;
 
   /// @param indentation y; <= 0 out of contact
   /// @param slip        v, velocity of the body relative to the substrate
@@ -48,7 +50,7 @@ struct SubstrateContact {
   SubstrateForces at(double indentation, double slip, double direction) const;
 
   /// Largest tangential force that keeps the contact sticking, a Ã(ŷ, 0), by the indentation. Only
-  /// the adhesive part has static strength.
+  /// the adhesive part has static strength, and none if friction is regularised.
   SubstrateForces::Force static_strength(double indentation) const;
 };
 
