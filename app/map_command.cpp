@@ -178,6 +178,17 @@ StabilityMap make_map(const StabilityScene& loaded, const std::array<Axis, 2>& a
   return map;
 }
 
+/// The same in 1/s.
+StabilityMap in_seconds(StabilityMap map, const StabilityScene& scene,
+                        const std::array<Axis, 2>& axes) {
+  for (std::size_t j = 0; j < map.y.size(); ++j) {
+    for (std::size_t i = 0; i < map.x.size(); ++i)
+      map.growth[j][i] *=
+          scene.rate_unit({axes[0].key, axes[1].key}, std::array{map.x[i], map.y[j]});
+  }
+  return map;
+}
+
 void draw(const MapOptions& options, const std::array<Axis, 2>& axes, const StabilityMap& map,
           const StabilityScene& loaded) {
   StabilityMapPicture picture;
@@ -192,9 +203,12 @@ void draw(const MapOptions& options, const std::array<Axis, 2>& axes, const Stab
     for (const auto& point : line) picture.boundary.back().push_back({point[0], point[1]});
   }
   picture.caption = fmt::format(
-      "Largest growth rate of the {} lowest eigenvalues about the {} geometry, {} by {} values; "
-      "line: boundary of stability. {}, scene {}.",
-      options.stability.count, options.stability.about, map.x.size(), map.y.size(),
+      "Largest growth rate{}, {} by {} values; line: boundary of stability. {}, scene {}.",
+      loaded.bodies() == nullptr
+          ? ""
+          : fmt::format(" of the {} lowest eigenvalues{}", options.stability.count,
+                        loaded.about_text(options.stability)),
+      map.x.size(), map.y.size(),
       std::filesystem::path(options.stability.scene).filename().string(), loaded.hash());
   plot_stability_map(picture, *options.figure);
 }
@@ -217,8 +231,9 @@ ExitCode map(const MapOptions& options) {
     throw ConfigError("--y", fmt::format("'{}' is the key of --x already", axes[1].key.path));
   const StabilityMap found = make_map(loaded, axes, stability);
 
+  const StabilityMap shown = in_seconds(found, loaded, axes);
   if (options.output) {
-    write_map_file(*options.output, overwrite, found, printed_units(axes[0].key),
+    write_map_file(*options.output, overwrite, shown, printed_units(axes[0].key),
                    printed_units(axes[1].key),
                    {{"x", axes[0].key.path},
                     {"y", axes[1].key.path},
@@ -232,7 +247,7 @@ ExitCode map(const MapOptions& options) {
                     {"commit", std::string(commit)},
                     {"date", utc_now()}});
   }
-  if (options.figure) draw(options, axes, found, loaded);
+  if (options.figure) draw(options, axes, shown, loaded);
 
   if (stability.common.json) {
     Json object = {{"x_parameter", axes[0].key.path},
