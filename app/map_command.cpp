@@ -10,6 +10,7 @@
 #include <mutex>
 #include <thread>
 
+#include "analysis/boundary_continuation.hpp"
 #include "app/progress.hpp"
 #include "app/stability.hpp"
 #include "core/errors.hpp"
@@ -164,7 +165,14 @@ StabilityMap make_map(const StabilityScene& loaded, const std::array<Axis, 2>& a
   if (make_field() != nullptr) {
     GrowthMap found = make_growth_map(make_field, map.x, map.y, stability.common.threads);
     map.growth = std::move(found.growth);
-    map.boundary = std::move(found.boundary);
+    // Between the lines of the grid, on which it is known, the boundary is followed.
+    const auto field = make_field();
+    const auto spacing = [](const Axis& axis) {
+      return axis.is_logarithmic ? GridSpacing::logarithmic : GridSpacing::linear;
+    };
+    map.boundary =
+        trace_boundary([&](double x, double y) { return field->margin(x, y); },
+                       {map.x, map.y, {spacing(axes[0]), spacing(axes[1])}}, found.boundary);
     return map;
   }
   const std::vector<LineResult> lines = trace_lines(loaded, axes, stability);
