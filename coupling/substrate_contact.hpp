@@ -23,6 +23,7 @@ struct SubstrateForces {
   Force normal;      ///< pushes the body out
   Force tangential;  ///< along x; against the slip
   LawRange range = LawRange::inside;
+  double indentation = 0.0;
 };
 
 /// F_k and F_µ of PPH (4), (5) in the units of the equations of motion (docs/theory.md, 9.1):
@@ -48,6 +49,11 @@ struct SubstrateContact {
   /// @param direction   σ = ±1, on which side of v = 0 the contact slips; `slip` itself may be on
   ///                    the other side by rounding
   SubstrateForces at(double indentation, double slip, double direction) const;
+
+  /// The forces at the indentation where the normal force is a given one: Newton's method on
+  /// F_k^(2/3), which is nearly proportional to the indentation, within a bracket.
+  /// @param normal > 0
+  SubstrateForces under(double normal, double slip, double direction) const;
 
   /// Largest tangential force that keeps the contact sticking, a Ã(ŷ, 0), by the indentation. Only
   /// the adhesive part has static strength, and none if friction is regularised.

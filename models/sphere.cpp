@@ -46,13 +46,6 @@ void check_twins(const SphereParameters& parameters, std::vector<Problem>& probl
   }
 }
 
-const ViscoelasticContactLaw& law_of(SphereContactLaw law) {
-  static const FittedLaw published(published_coefficients());
-  static const BoundaryElementLaw boundary_element(shipped_master_curve());
-  if (law == SphereContactLaw::boundary_element) return boundary_element;
-  return published;
-}
-
 }  // namespace
 
 const Schema& SphereParameters::schema() {
@@ -236,7 +229,7 @@ SubstrateOscillator make_sphere(const SphereModelParameters& parameters) {
       numbers.frequency_ratio * numbers.frequency_ratio + spring * sine * sine;
   oscillator.load = {0.0, 1.0};
   SubstrateContact& contact = oscillator.contact;
-  contact.law = &law_of(parameters.contact_law);
+  contact.law = &contact_law(parameters.contact_law);
   contact.indentation_unit = numbers.radius_ratio;
   contact.speed_unit = numbers.radius_ratio / numbers.time_ratio;
   contact.force_unit = 1.0 / numbers.normal_load;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/schema.hpp"
+#include "coupling/substrate_parameters.hpp"
 #include "solvers/substrate_oscillator.hpp"
 
 namespace stridor {
@@ -35,9 +36,6 @@ struct SphereParameters {
   std::optional<double> damper_y;            ///< c_y, N s/m
   static const Schema& schema();
 };
-
-/// The law of the contact between sphere and substrate.
-enum class SphereContactLaw { published_fit, boundary_element };
 
 /// Friction that only resembles the set-valued one, to see what that does.
 struct RegularisationParameters {
