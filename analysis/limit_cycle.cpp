@@ -10,7 +10,8 @@ namespace {
 /// The motion has died down, or does so, where it moves less than this part of the equilibrium and
 /// that is stable: this close to it the motion is linear.
 constexpr double at_rest = 1e-6;
-/// No turn within this time: it sticks, or stands still.
+/// No turn within this time: it sticks, or stands still. A slow substrate takes as long as it
+/// likes to wind up the spring.
 constexpr double longest_loop = 200.0;
 
 using Point = Eigen::Vector3d;
@@ -114,6 +115,8 @@ std::string cycle_status_text(CycleStatus status) {
       return "irregular";
     case CycleStatus::diverged:
       return "diverged";
+    case CycleStatus::sticking:
+      return "sticking";
   }
   return "";
 }
@@ -144,13 +147,18 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
   const double indentation = 1e-2 * oscillator.contact.indentation_unit;
   const SubstrateEquilibrium rest = find_equilibrium(oscillator, indentation);
   const double size = std::abs(rest.displacement.x()) + rest.displacement.y();
-  if (turns.size() < num_turns || (width < at_rest * size && is_stable(oscillator, rest))) {
+  const bool is_still = turns.size() < num_turns || width < at_rest * size;
+  if (is_still && motion.mode() == SubstrateMode::stick) {
+    cycle.status = CycleStatus::sticking;
+    return cycle;
+  }
+  if (is_still && is_stable(oscillator, rest)) {
     cycle.status = CycleStatus::at_rest;
     return cycle;
   }
   const Point scale{width, std::max(cycle.y_max, 1e-6 * width), width};
   const Point& last = turns.back();
-  for (int loops = 1; loops <= options.most_loops; ++loops) {
+  for (int loops = 1; loops <= options.most_loops && !is_still; ++loops) {
     const auto back = turns.size() - 1 - static_cast<std::size_t>(loops);
     const double apart = (turns[back] - last).cwiseQuotient(scale).norm();
     if (apart > 1e-3) continue;

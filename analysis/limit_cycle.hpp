@@ -24,6 +24,7 @@ enum class CycleStatus {
   at_rest,    ///< the motion has died down to the equilibrium
   irregular,  ///< it does not repeat itself; the statistics are over the last tenth of the time
   diverged,   ///< grew without bound, or the integrator failed
+  sticking,   ///< it moves with the substrate for longer than is looked for a turn
 };
 std::string cycle_status_text(CycleStatus status);
 

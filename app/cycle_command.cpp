@@ -93,7 +93,7 @@ ExitCode cycle(const CycleCommandOptions& options) {
           fmt::format("Motion of the sphere, {}, x r.m.s. {:.6g}. {}, scene {}.",
                       found.status == CycleStatus::periodic
                           ? fmt::format("one period of {:.6g}", found.period)
-                          : "irregular or at rest",
+                          : cycle_status_text(found.status),
                       found.x_rms, std::filesystem::path(options.scene).filename().string(),
                       loaded.hash()),
           *options.figure);

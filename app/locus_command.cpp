@@ -157,6 +157,31 @@ double highest_frequency(const Locus& locus) {
   return highest;
 }
 
+/// How many there are where there are most.
+std::size_t most_eigenvalues(const Locus& locus) {
+  std::size_t most = 0;
+  for (const auto& list : locus.eigenvalues) most = std::max(most, list.size());
+  return most;
+}
+
+/// The same in 1/s and Hz.
+Locus in_seconds(Locus locus, const StabilityScene& scene, const NumericKey& key) {
+  const auto unit = [&](double value) {
+    return scene.rate_unit({key}, std::span<const double>(&value, 1));
+  };
+  for (std::size_t i = 0; i < locus.values.size(); ++i)
+    for (std::complex<double>& s : locus.eigenvalues[i]) s *= unit(locus.values[i]);
+  for (Branch& branch : locus.branches)
+    for (std::size_t i = 0; i < branch.s.size(); ++i) branch.s[i] *= unit(branch.values[i]);
+  for (UnstableWindow& window : locus.unstable) {
+    window.frequency *= unit(window.value_max);
+    window.growth_max *= unit(window.value_max);
+    window.growth_integral *= unit(window.value_max);
+  }
+  for (Crossing& crossing : locus.crossings) crossing.frequency *= unit(crossing.value);
+  return locus;
+}
+
 void print_windows(const std::vector<TimedWindow>& windows, const NumericKey& key) {
   if (windows.empty()) {
     fmt::print("no eigenvalue grows\n");
@@ -212,10 +237,11 @@ ExitCode locus(const LocusCommandOptions& options) {
   if (loaded->bodies() != nullptr && loaded->default_key() == range.key.path) {
     times.emplace(loaded->bodies()->scene, dynamic_cast<BodyStabilityFamily&>(*family));
   }
-  const std::vector<TimedWindow> windows = timed_windows(found, times);
+  const Locus shown = in_seconds(found, *loaded, range.key);
+  const std::vector<TimedWindow> windows = timed_windows(shown, times);
   const std::string units = printed_units(range.key);
   if (options.output) {
-    write_locus_file(*options.output, overwrite_of(stability.common), found, windows, units,
+    write_locus_file(*options.output, overwrite_of(stability.common), shown, windows, units,
                      {{"parameter", range.key.path},
                       {"units", units},
                       {"about", stability.about},
@@ -232,12 +258,12 @@ ExitCode locus(const LocusCommandOptions& options) {
     LocusPicture picture;
     picture.parameter = range.key.path;
     picture.units = units;
-    picture.curves = curves_of(found, highest_frequency(found));
-    for (const UnstableWindow& window : found.unstable)
+    picture.curves = curves_of(shown, highest_frequency(shown));
+    for (const UnstableWindow& window : shown.unstable)
       picture.windows.push_back({window.from, window.to, window.frequency, window.growth_max});
     picture.caption = fmt::format(
-        "The {} lowest eigenvalues about the {} geometry, {} from {} to {}; {}, scene {}.",
-        stability.count, stability.about, range.key.path, range.values.front(), range.values.back(),
+        "The lowest {} eigenvalues{}, {} from {} to {}; {}, scene {}.", most_eigenvalues(found),
+        loaded->about_text(stability), range.key.path, range.values.front(), range.values.back(),
         std::filesystem::path(stability.scene).filename().string(), loaded->hash());
     if (options.figure) plot_locus(picture, *options.figure);
     if (options.history) plot_locus_histories(picture, *options.history);
@@ -250,7 +276,7 @@ ExitCode locus(const LocusCommandOptions& options) {
                    {"method", stability.method},
                    {"values", range.values},
                    {"eigenvalues", Json::array()},
-                   {"unstable", windows_json(windows)},
+                   {"unstable", windows_json(timed_windows(found, times))},
                    {"unverified", found.unverified},
                    {"file", options.output ? Json(*options.output) : Json(nullptr)}};
     for (const auto& list : found.eigenvalues) object["eigenvalues"].push_back(complex_list(list));

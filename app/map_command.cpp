@@ -10,6 +10,7 @@
 #include <mutex>
 #include <thread>
 
+#include "analysis/boundary_continuation.hpp"
 #include "app/progress.hpp"
 #include "app/stability.hpp"
 #include "core/errors.hpp"
@@ -164,7 +165,14 @@ StabilityMap make_map(const StabilityScene& loaded, const std::array<Axis, 2>& a
   if (make_field() != nullptr) {
     GrowthMap found = make_growth_map(make_field, map.x, map.y, stability.common.threads);
     map.growth = std::move(found.growth);
-    map.boundary = std::move(found.boundary);
+    // Between the lines of the grid, on which it is known, the boundary is followed.
+    const auto field = make_field();
+    const auto spacing = [](const Axis& axis) {
+      return axis.is_logarithmic ? GridSpacing::logarithmic : GridSpacing::linear;
+    };
+    map.boundary =
+        trace_boundary([&](double x, double y) { return field->margin(x, y); },
+                       {map.x, map.y, {spacing(axes[0]), spacing(axes[1])}}, found.boundary);
     return map;
   }
   const std::vector<LineResult> lines = trace_lines(loaded, axes, stability);
@@ -175,6 +183,17 @@ StabilityMap make_map(const StabilityScene& loaded, const std::array<Axis, 2>& a
     (is_row ? crossings.along_x : crossings.along_y).push_back(lines[i].changes);
   }
   map.boundary = boundary_lines(crossings);
+  return map;
+}
+
+/// The same in 1/s.
+StabilityMap in_seconds(StabilityMap map, const StabilityScene& scene,
+                        const std::array<Axis, 2>& axes) {
+  for (std::size_t j = 0; j < map.y.size(); ++j) {
+    for (std::size_t i = 0; i < map.x.size(); ++i)
+      map.growth[j][i] *=
+          scene.rate_unit({axes[0].key, axes[1].key}, std::array{map.x[i], map.y[j]});
+  }
   return map;
 }
 
@@ -192,9 +211,12 @@ void draw(const MapOptions& options, const std::array<Axis, 2>& axes, const Stab
     for (const auto& point : line) picture.boundary.back().push_back({point[0], point[1]});
   }
   picture.caption = fmt::format(
-      "Largest growth rate of the {} lowest eigenvalues about the {} geometry, {} by {} values; "
-      "line: boundary of stability. {}, scene {}.",
-      options.stability.count, options.stability.about, map.x.size(), map.y.size(),
+      "Largest growth rate{}, {} by {} values; line: boundary of stability. {}, scene {}.",
+      loaded.bodies() == nullptr
+          ? ""
+          : fmt::format(" of the {} lowest eigenvalues{}", options.stability.count,
+                        loaded.about_text(options.stability)),
+      map.x.size(), map.y.size(),
       std::filesystem::path(options.stability.scene).filename().string(), loaded.hash());
   plot_stability_map(picture, *options.figure);
 }
@@ -217,8 +239,9 @@ ExitCode map(const MapOptions& options) {
     throw ConfigError("--y", fmt::format("'{}' is the key of --x already", axes[1].key.path));
   const StabilityMap found = make_map(loaded, axes, stability);
 
+  const StabilityMap shown = in_seconds(found, loaded, axes);
   if (options.output) {
-    write_map_file(*options.output, overwrite, found, printed_units(axes[0].key),
+    write_map_file(*options.output, overwrite, shown, printed_units(axes[0].key),
                    printed_units(axes[1].key),
                    {{"x", axes[0].key.path},
                     {"y", axes[1].key.path},
@@ -232,7 +255,7 @@ ExitCode map(const MapOptions& options) {
                     {"commit", std::string(commit)},
                     {"date", utc_now()}});
   }
-  if (options.figure) draw(options, axes, found, loaded);
+  if (options.figure) draw(options, axes, shown, loaded);
 
   if (stability.common.json) {
     Json object = {{"x_parameter", axes[0].key.path},

@@ -8,6 +8,8 @@
 #include "app/output_folder.hpp"
 #include "app/pictures.hpp"
 #include "app/precision.hpp"
+#include "app/sphere_precision.hpp"
+#include "io/sphere_scene.hpp"
 
 namespace stridor {
 namespace {
@@ -18,6 +20,7 @@ constexpr const char* figure_name = "precision.png";
 constexpr const char* json_name = "precision.json";
 
 ExitCode precision(const PrecisionOptions& options) {
+  if (is_sphere_scene_file(options.scene)) return precision_of_sphere(options);
   std::optional<double> wanted;
   if (options.tune) wanted = option_value("--tune", *options.tune, "", Range::inside(0.0, 1.0));
   const PrecisionStudy study = make_precision_study(options);

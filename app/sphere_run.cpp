@@ -11,6 +11,8 @@
 #include "app/sphere_motion.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
+#include "core/version.hpp"
+#include "io/run_file.hpp"
 #include "solvers/substrate_stepper.hpp"
 
 namespace stridor {
@@ -171,6 +173,51 @@ MarchResult march_steps(const SphereScene& scene, const SubstrateOscillator& osc
   return result;
 }
 
+/// The run in SI units, as the run files of bodies.
+void write_run(const SphereRunOptions& options, const LoadedSphereScene& loaded,
+               const SphereNumbers& numbers, const SphereHistory& history, const Json& results) {
+  const double length = numbers.length_unit;
+  const double velocity = length / numbers.time_unit;
+  const double force = numbers.force_unit;
+  const double radius = loaded.scene.model.sphere.radius;
+  struct Series {
+    SeriesSpec spec;
+    const std::vector<double>* values;
+    double unit;
+  };
+  const Attributes meaning{{"meaning", std::string("0 slower than the substrate, 1 faster, "
+                                                   "2 stick, 3 off it")}};
+  const std::vector<Series> series{
+      {{"/channels/sphere.x.displacement", "m"}, &history.x, length},
+      {{"/channels/sphere.y.displacement", "m"}, &history.y, length},
+      {{"/channels/sphere.x.velocity", "m/s"}, &history.vx, velocity},
+      {{"/channels/sphere.y.velocity", "m/s"}, &history.vy, velocity},
+      {{"/contact/contact/force", "N"}, &history.normal_force, force},
+      {{"/contact/contact/friction_force", "N"}, &history.friction_force, force},
+      {{"/contact/contact/slip_velocity", "m/s"}, &history.slip, velocity},
+      {{"/contact/contact/area", "m^2"}, &history.area, radius * radius},
+      {{"/contact/contact/state", "1", SeriesKind::state, meaning}, &history.mode, 1.0}};
+  std::vector<SeriesSpec> specs;
+  std::vector<std::vector<double>> columns;
+  for (const Series& one : series) {
+    specs.push_back(one.spec);
+    columns.push_back(*one.values);
+    for (double& value : columns.back()) value *= one.unit;
+  }
+  std::vector<double> time = history.time;
+  for (double& at : time) at *= numbers.time_unit;
+  RunFileWriter writer(options.output, options.common.force ? Overwrite::yes : Overwrite::no,
+                       {std::string(version), std::string(commit), options.command_line,
+                        loaded.hash(), utc_now(), loaded.tree.document, loaded.resolved()},
+                       specs);
+  writer.append(time, {columns.begin(), columns.end()});
+  for (const auto& [name, value] : results.items()) {
+    if (value.is_number()) writer.write_result(name, value.get<double>());
+    if (value.is_string()) writer.write_result(name, value.get<std::string>());
+  }
+  writer.close();
+}
+
 void print_results(const Json& results, const SphereNumbers& numbers, const std::string& file) {
   const auto print = [&](const char* name, const Json& value, double unit, const char* units) {
     if (value.is_null()) {
@@ -243,8 +290,7 @@ ExitCode run_sphere(const SphereRunOptions& options) {
   results["length_unit"] = numbers.length_unit;
   results["time_unit"] = numbers.time_unit;
   const auto output_start = Clock::now();
-  write_column_file(options.output, overwrite, "run", march.history.columns(),
-                    sphere_attributes(loaded, options.command_line));
+  write_run(options, loaded, numbers, march.history, results);
   results["output_s"] = seconds(output_start);
   results["file"] = options.output;
   if (options.common.json) {

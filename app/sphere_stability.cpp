@@ -36,8 +36,15 @@ class SphereField : public GrowthField {
     // Refuses a number whose twin is given.
     std::vector<double> as_they_are(keys.size(), 1.0);
     (void)with_values(scene, keys, as_they_are);
-    for (const NumericKey& key : keys)
-      keys_.push_back(SphereParameters::schema().find(key.path.substr(key.path.find('.') + 1)));
+    for (const NumericKey& key : keys) {
+      const std::string name = key.path.substr(key.path.find('.') + 1);
+      if (key.path.starts_with("sphere.")) {
+        keys_.push_back({SphereParameters::schema().find(name), &parameters_.sphere});
+      } else {
+        keys_.push_back(
+            {RegularisationParameters::schema().find(name), &parameters_.regularisation});
+      }
+    }
   }
 
   std::complex<double> leading(double x, double y) override {
@@ -51,8 +58,8 @@ class SphereField : public GrowthField {
   static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
   bool solve(double x, double y) {
-    keys_[0]->assign(&parameters_.sphere, x);
-    if (keys_.size() > 1) keys_[1]->assign(&parameters_.sphere, y);
+    keys_[0].key->assign(keys_[0].object, x);
+    if (keys_.size() > 1) keys_[1].key->assign(keys_[1].object, y);
     const SubstrateOscillator oscillator = make_sphere(parameters_);
     // The indentation over R changes less from point to point than that over F_n/k_x.
     const double unit = oscillator.contact.indentation_unit;
@@ -64,7 +71,11 @@ class SphereField : public GrowthField {
   }
 
   SphereModelParameters parameters_;
-  std::vector<const Key*> keys_;
+  struct Place {
+    const Key* key;
+    void* object;
+  };
+  std::vector<Place> keys_;
   SmallMotion motion_;
   double last_ = 1e-2;  ///< ŷ
 };
@@ -88,7 +99,7 @@ const char* range_text(LawRange range) {
 NumericKey find_sphere_key(const SphereScene& scene, const std::string& path,
                            const std::string& option) {
   const NumericKey key = find_numeric_key(SphereScene::schema(), &scene, path, option);
-  if (!path.starts_with("sphere."))
+  if (!path.starts_with("sphere.") && !path.starts_with("regularisation."))
     throw ConfigError(option, fmt::format("'{}' has no influence on the eigenvalues", path));
   return key;
 }

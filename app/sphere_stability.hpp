@@ -21,6 +21,11 @@ class SphereStabilityScene : public StabilityScene {
   std::unique_ptr<StabilityFamily> family(std::vector<NumericKey> keys,
                                           ContactGeometry geometry) const override;
   std::unique_ptr<GrowthField> growth_field(std::vector<NumericKey> keys) const override;
+  /// ω_nx.
+  double rate_unit(const std::vector<NumericKey>& keys,
+                   std::span<const double> values) const override {
+    return with_values(loaded_.scene, keys, values).model.sphere.natural_frequency;
+  }
   std::string hash() const override { return loaded_.hash(); }
   std::string resolved() const override { return loaded_.resolved(); }
 

@@ -218,6 +218,10 @@ class BodyStabilityScene : public StabilityScene {
 
 }  // namespace
 
+std::string StabilityScene::about_text(const StabilityOptions& options) const {
+  return bodies() == nullptr ? "" : fmt::format(" about the {} geometry", options.about);
+}
+
 std::unique_ptr<StabilityScene> load_stability_scene(const StabilityOptions& options) {
   if (is_linear_scene_file(options.scene)) {
     return std::make_unique<LinearStabilityScene>(

@@ -146,10 +146,17 @@ class StabilityScene {
   }
   /// Whether its lines must be traced by one thread: dense products go to BLAS.
   virtual bool needs_one_thread() const { return false; }
+  /// What a rate of one is in 1/s, where some keys have other values than in the scene; files and
+  /// pictures are in 1/s and Hz.
+  virtual double rate_unit(const std::vector<NumericKey>&, std::span<const double>) const {
+    return 1.0;
+  }
   virtual std::string hash() const = 0;
   virtual std::string resolved() const = 0;
   /// The scene of bodies, if it is one.
   virtual const LoadedScene* bodies() const { return nullptr; }
+  /// For captions: about which geometry its eigenvalues are, where there is a choice.
+  std::string about_text(const StabilityOptions& options) const;
 };
 
 /// Reads the scene, of whichever kind it is.

@@ -52,8 +52,8 @@ SweepPoint point_at(const SphereScene& scene, const NumericKey& key, double valu
       leading_eigenvalue(small_motion(oscillator, rest, here.model.small_motion)).real() < 0.0;
   Eigen::Vector2d displacement = initial_displacement(here, oscillator);
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();
-  const bool moves = last != nullptr && (last->cycle.status == CycleStatus::periodic ||
-                                         last->cycle.status == CycleStatus::irregular);
+  const bool moves = last != nullptr && last->cycle.status != CycleStatus::at_rest &&
+                     last->cycle.status != CycleStatus::diverged;
   if (moves) {
     // The unit of length may have changed.
     const double unit = last->numbers.length_unit / point.numbers.length_unit;

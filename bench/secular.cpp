@@ -54,8 +54,8 @@ int main(int argc, char** argv) {
   const LoadedScene loaded = load_scene(STRIDOR_SOURCE_DIR "/scenes/beam_on_beam.yaml", {});
   const Model model = build_model(loaded);
   const ContactParameters contact = loaded.scene.model.contact.value();
-  const PencilFamily family =
-      undeformed_family(model.system, contact.friction.coefficient.value(), 1.0, contact.start);
+  const PencilFamily family = undeformed_family(
+      model.system, contact.friction.value().coefficient.value(), 1.0, contact.start);
   std::vector<double> positions;
   for (int i = 0; i < num_positions; ++i) {
     positions.push_back(0.030 + 0.068 * i / (num_positions - 1));

@@ -8,15 +8,16 @@
 #include <array>
 #include <cmath>
 #include <ctime>
-#include <numbers>
 #include <stdexcept>
 #include <vector>
 
-#include "models/sphere.hpp"
 #include "solvers/substrate_motion.hpp"
+#include "tests/support/paper_sphere.hpp"
 
 namespace stridor {
 namespace {
+
+using test::paper_sphere;
 
 /// Of the processor, so that what else runs on the machine does not count.
 struct Clock {
@@ -27,25 +28,6 @@ struct Clock {
 
 double seconds_since(double start) {
   return Clock::now() - start;
-}
-
-SphereModelParameters paper_sphere() {
-  SphereModelParameters model;
-  SphereParameters& sphere = model.sphere;
-  sphere.stiffness_x = 50.0;
-  sphere.natural_frequency = 40.0;
-  sphere.radius = 0.01;
-  sphere.modulus = 4.0e6 / 3.0;
-  sphere.creep_time = 0.01;
-  sphere.normal_load = 7.5e-4;
-  sphere.shear_strength = 1e-2;
-  sphere.speed = 5e-3;
-  sphere.frequency_ratio = 1.0;
-  sphere.coupling_ratio = 1.0;
-  sphere.angle = std::numbers::pi / 4.0;
-  sphere.damping_x = 0.01;
-  sphere.damping_y = 0.01;
-  return model;
 }
 
 /// Equilibrium, linearisation and leading eigenvalue over speeds and shear strengths, seconds per

@@ -118,10 +118,28 @@ const Schema& ContactParameters::schema() {
                .optional = true})
           .section("roughness", &ContactParameters::roughness,
                    {.doc = "Random roughness of the master, added to the gap.", .optional = true})
-          .section("friction", &ContactParameters::friction, {.doc = "Friction law."})
+          .section("friction", &ContactParameters::friction,
+                   {.doc = "Friction law. This, or `substrate`.", .optional = true})
+          .section("substrate", &ContactParameters::substrate,
+                   {.doc = "The slave point carries a sphere that slides on a viscoelastic "
+                           "half-space in the place of the rigid master; its law gives force and "
+                           "friction. Takes master: rigid and assumption: film.",
+                    .optional = true})
           .check([](const ContactParameters& contact, std::vector<Problem>& problems) {
             if (contact.slave.empty())
               problems.push_back({"slave", "is an empty list; name at least one point", {}, 0, 0});
+            const auto refuse = [&](const char* key, const char* text) {
+              problems.push_back({key, text, {}, 0, 0});
+            };
+            if (!contact.friction && !contact.substrate)
+              refuse("friction", "is missing: give `friction`, or a `substrate`");
+            if (!contact.substrate) return;
+            if (contact.friction) refuse("friction", "not used with a substrate, whose law has it");
+            if (contact.master != "rigid")
+              refuse("master", "must be `rigid` with a substrate, which takes its place");
+            if (contact.assumption != ContactAssumption::film)
+              refuse("assumption",
+                     "must be `film` with a substrate: it sticks, slips and lifts off");
           });
   return keys;
 }

@@ -7,6 +7,7 @@
 
 #include "core/schema.hpp"
 #include "coupling/roughness.hpp"
+#include "coupling/substrate_parameters.hpp"
 #include "coupling/system.hpp"
 
 namespace stridor {
@@ -39,7 +40,8 @@ struct ContactParameters {
   SlidingMode sliding = SlidingMode::moving;
   SurfaceKind surface = SurfaceKind::polyline;
   std::optional<RoughnessParameters> roughness;
-  FrictionParameters friction;
+  std::optional<FrictionParameters> friction;    ///< there is none with a substrate
+  std::optional<SubstrateParameters> substrate;  ///< on the rigid master
   static const Schema& schema();
 };
 

@@ -1,6 +1,7 @@
 // Contact of a body with a sliding viscoelastic substrate, as a force law in the body's own units.
 #pragma once
 
+#include "coupling/regularised_sign.hpp"
 #include "coupling/viscoelastic_law.hpp"
 
 namespace stridor {
@@ -22,6 +23,7 @@ struct SubstrateForces {
   Force normal;      ///< pushes the body out
   Force tangential;  ///< along x; against the slip
   LawRange range = LawRange::inside;
+  double indentation = 0.0;
 };
 
 /// F_k and F_µ of PPH (4), (5) in the units of the equations of motion (docs/theory.md, 9.1):
@@ -31,7 +33,7 @@ struct SubstrateForces {
 ///   ŷ = y/y_1,  v̂ = v/v_1
 ///
 /// with N the applied load or the normal force of the contact. Out of contact (y <= 0) everything
-/// vanishes.
+/// vanishes. Regularised friction has s(v/v_ε) in the place of σ.
 struct SubstrateContact {
   const ViscoelasticContactLaw* law = nullptr;  ///< must live longer
   double indentation_unit = 1.0;                ///< y_1: displacement that is ŷ = 1
@@ -40,6 +42,7 @@ struct SubstrateContact {
   double shear = 0.0;                           ///< a: friction per Ã by the interfacial shear
   double load = 0.0;                            ///< the applied normal force
   FrictionLoad friction_load = FrictionLoad::applied;
+  RegularisedSign sign;
 
   /// @param indentation y; <= 0 out of contact
   /// @param slip        v, velocity of the body relative to the substrate
@@ -47,8 +50,13 @@ struct SubstrateContact {
   ///                    the other side by rounding
   SubstrateForces at(double indentation, double slip, double direction) const;
 
+  /// The forces at the indentation where the normal force is a given one: Newton's method on
+  /// F_k^(2/3), which is nearly proportional to the indentation, within a bracket.
+  /// @param normal > 0
+  SubstrateForces under(double normal, double slip, double direction) const;
+
   /// Largest tangential force that keeps the contact sticking, a Ã(ŷ, 0), by the indentation. Only
-  /// the adhesive part has static strength.
+  /// the adhesive part has static strength, and none if friction is regularised.
   SubstrateForces::Force static_strength(double indentation) const;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "coupling/contact.hpp"
 #include "coupling/friction_law.hpp"
 #include "coupling/roughness.hpp"
+#include "coupling/substrate_contact.hpp"
 #include "coupling/surface.hpp"
 #include "substructures/modal_body.hpp"
 
@@ -115,6 +117,9 @@ struct ContactPoint {
   ContactAssumption assumption = ContactAssumption::subs_b;
   FrictionLaw friction;
   TimeCurve friction_rise{1.0};  ///< factor on the law over time
+  /// A force law in the place of gap = 0 and of the friction law, which then are not used. It acts
+  /// with all of its friction from the start.
+  std::optional<SubstrateContact> substrate;
   OnViolation on_violation = OnViolation::stop;
   /// Violations of persistent sliding before this time are only counted, s.
   double armed_from = 0.0;

@@ -105,15 +105,22 @@ std::vector<LogTick> log_ticks(double lower, double upper) {
     return value >= lower * (1.0 - 1e-9) && value <= upper * (1.0 + 1e-9);
   };
   int num_powers = 0;
-  for (int power = first; power <= last; ++power)
-    num_powers += is_inside(std::pow(10.0, power)) ? 1 : 0;
+  bool is_plain = true;
+  for (int power = first; power <= last; ++power) {
+    if (!is_inside(std::pow(10.0, power))) continue;
+    ++num_powers;
+    is_plain = is_plain && power >= -3 && power <= 4;
+  }
+  // More powers than there is room for are written every second, third or so.
+  constexpr int most_powers = 10;
+  const int stride = 1 + (num_powers - 1) / most_powers;
   std::vector<LogTick> ticks;
   for (int power = first; power <= last; ++power) {
     for (const int digit : {1, 2, 3, 4, 5, 6, 7, 8, 9}) {
       const double value = digit * std::pow(10.0, power);
       if (!is_inside(value)) continue;
-      const bool is_written = digit == 1 || (num_powers < 3 && (digit == 2 || digit == 5));
-      const bool is_plain = power >= -3 && power <= 4;
+      const bool is_written =
+          (digit == 1 && power % stride == 0) || (num_powers < 3 && (digit == 2 || digit == 5));
       ticks.push_back({value, !is_written ? std::string()
                               : is_plain  ? fmt::format("{:.{}f}", value, std::max(0, -power))
                                           : fmt::format("{}e{}", digit, power)});

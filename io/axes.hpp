@@ -47,7 +47,8 @@ struct LogTick {
 };
 
 /// All that are 1 to 9 times a power of ten, those with 1 written, and with 2 and 5 where there
-/// would be less than three.
+/// would be less than three; of more than ten powers some. All are written alike: 0.01 where all
+/// powers lie from 0.001 to 10000, else 1e-2.
 /// @param lower, upper 0 < lower < upper
 std::vector<LogTick> log_ticks(double lower, double upper);
 

@@ -61,9 +61,12 @@ std::string curve_data(const LocusPicture& picture, const AxisScale& parameter,
         data += '\n';
         continue;
       }
+      // Undamped motions neither grow nor decay but by rounding.
+      const bool is_rounding =
+          curve.growth[i] != 0.0 && std::abs(curve.growth[i]) < 1e-9 * std::abs(curve.frequency[i]);
       fmt::format_to(out, "{:.9g} {:.7g} {:.7g} {:.7g}\n", as_number(curve.parameter[i], parameter),
                      as_number(curve.growth[i], growth), as_number(curve.frequency[i], frequency),
-                     curve.growth[i]);
+                     is_rounding ? -1.0 : curve.growth[i]);
     }
     data += '\n';
   }

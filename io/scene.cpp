@@ -243,7 +243,7 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
     throw loaded.located(ConfigError(
         "sphere",
         "belongs to an oscillator on a viscoelastic substrate, for the verbs eig, locus, "
-        "threshold, map, cycle, sweep and run"));
+        "threshold, map, cycle, sweep, precision and run"));
   }
   if (is_linear_scene(loaded.tree)) {
     throw loaded.located(

@@ -517,7 +517,9 @@ Model make_model(const ModelParameters& parameters,
       }
       point.first_segment = segment;
       point.assumption = pair.parameters->assumption;
-      point.friction = make_friction_law(pair.parameters->friction);
+      if (pair.parameters->friction) point.friction = make_friction_law(*pair.parameters->friction);
+      if (pair.parameters->substrate)
+        point.substrate = make_substrate_contact(*pair.parameters->substrate);
       point.friction_rise = TimeCurve::ramp(1.0, parameters.drive.ramp);
       point.on_violation = pair.parameters->on_violation;
       point.armed_from = pair.parameters->armed_from.value_or(parameters.drive.ramp);

@@ -46,13 +46,6 @@ void check_twins(const SphereParameters& parameters, std::vector<Problem>& probl
   }
 }
 
-const ViscoelasticContactLaw& law_of(SphereContactLaw law) {
-  static const FittedLaw published(published_coefficients());
-  static const BoundaryElementLaw boundary_element(shipped_master_curve());
-  if (law == SphereContactLaw::boundary_element) return boundary_element;
-  return published;
-}
-
 }  // namespace
 
 const Schema& SphereParameters::schema() {
@@ -132,6 +125,38 @@ const Schema& SphereParameters::schema() {
   return keys;
 }
 
+const Schema& RegularisationParameters::schema() {
+  using Kind = RegularisedSign::Kind;
+  static const Schema keys =
+      SchemaOf<RegularisationParameters>("regularisation")
+          .choice("law", &RegularisationParameters::law,
+                  {{"none", Kind::none},
+                   {"tanh", Kind::tanh},
+                   {"linear", Kind::linear},
+                   {"square_root", Kind::square_root},
+                   {"atan", Kind::atan}},
+                  {.doc = "What stands in the place of the sign of the slip, with u the slip over "
+                          "`speed`: tanh u, u up to 1, u/(1 + u²)^1/2 or (2/π) arctan u; none: the "
+                          "sign itself, and sticking.",
+                   .optional = true})
+          .real("speed", &RegularisationParameters::speed,
+                {.doc = "In multiples of the speed of the substrate.",
+                 .range = Range::positive(),
+                 .optional = true})
+          .check(
+              [](const RegularisationParameters& regularisation, std::vector<Problem>& problems) {
+                const bool is_wanted = regularisation.law != Kind::none;
+                if (is_wanted == regularisation.speed.has_value()) return;
+                problems.push_back({"speed",
+                                    is_wanted ? "missing: needed by a `law` other than none"
+                                              : "not used by the law `none`",
+                                    {},
+                                    0,
+                                    0});
+              });
+  return keys;
+}
+
 const Schema& SphereModelParameters::schema() {
   static const Schema keys =
       SchemaOf<SphereModelParameters>("sphere_model")
@@ -149,6 +174,10 @@ const Schema& SphereModelParameters::schema() {
                   {.doc = "What the viscoelastic friction coefficient is multiplied with: the "
                           "applied load, as published, or the force of the contact.",
                    .optional = true})
+          .section("regularisation", &SphereModelParameters::regularisation,
+                   {.doc = "Friction without sticking, only for comparison: it moves thresholds "
+                           "and amplitudes.",
+                    .optional = true})
           .choice(
               "small_motion", &SphereModelParameters::small_motion,
               {{"damped", SmallMotionTerms::all}, {"undamped", SmallMotionTerms::without_damping}},
@@ -200,7 +229,7 @@ SubstrateOscillator make_sphere(const SphereModelParameters& parameters) {
       numbers.frequency_ratio * numbers.frequency_ratio + spring * sine * sine;
   oscillator.load = {0.0, 1.0};
   SubstrateContact& contact = oscillator.contact;
-  contact.law = &law_of(parameters.contact_law);
+  contact.law = &contact_law(parameters.contact_law);
   contact.indentation_unit = numbers.radius_ratio;
   contact.speed_unit = numbers.radius_ratio / numbers.time_ratio;
   contact.force_unit = 1.0 / numbers.normal_load;
@@ -208,6 +237,8 @@ SubstrateOscillator make_sphere(const SphereModelParameters& parameters) {
   contact.load = 1.0;
   contact.friction_load = parameters.friction_normal_force;
   oscillator.substrate_speed = numbers.speed * contact.speed_unit;
+  contact.sign = {parameters.regularisation.law,
+                  parameters.regularisation.speed.value_or(1.0) * oscillator.substrate_speed};
   return oscillator;
 }
 

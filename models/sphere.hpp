@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/schema.hpp"
+#include "coupling/substrate_parameters.hpp"
 #include "solvers/substrate_oscillator.hpp"
 
 namespace stridor {
@@ -36,14 +37,19 @@ struct SphereParameters {
   static const Schema& schema();
 };
 
-/// The law of the contact between sphere and substrate.
-enum class SphereContactLaw { published_fit, boundary_element };
+/// Friction that only resembles the set-valued one, to see what that does.
+struct RegularisationParameters {
+  RegularisedSign::Kind law = RegularisedSign::Kind::none;
+  std::optional<double> speed;  ///< v_ε/v_d
+  static const Schema& schema();
+};
 
 /// The part of a scene that describes the mechanics of the oscillator.
 struct SphereModelParameters {
   SphereParameters sphere;
   SphereContactLaw contact_law = SphereContactLaw::published_fit;
   FrictionLoad friction_normal_force = FrictionLoad::applied;
+  RegularisationParameters regularisation;
   SmallMotionTerms small_motion = SmallMotionTerms::all;
   static const Schema& schema();
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/substrate_step.hpp"
+
 namespace stridor {
 namespace {
 
@@ -10,6 +12,17 @@ namespace {
 struct LocalCompliance {
   double nn, nt, tn, tt;
 };
+
+/// The same where the contact is a force law; λ_t is positive against the slip.
+bool solve_substrate(LocalProblem& contact, const LocalCompliance& w, double slip) {
+  const SlipAnswer answer{slip / contact.step, w.tt / contact.step, -w.tn / contact.step};
+  const SubstrateStep step =
+      solve_substrate_step(*contact.substrate, contact.indentation, contact.last_slip, answer, 0.0);
+  contact.normal = step.normal;
+  contact.tangential = -step.tangential;
+  contact.state = step.state;
+  return !std::isnan(contact.indentation) && !std::isnan(slip);
+}
 
 /// The answer of one contact under the forces of all others.
 /// @returns false where no force closes the gap
@@ -21,6 +34,7 @@ bool solve_local(LocalProblem& contact, const LocalCompliance& w, double penetra
     contact.state = ContactState::slip;
     return compliance > 0.0;
   };
+  if (contact.substrate != nullptr) return solve_substrate(contact, w, slip);
   if (!contact.is_unilateral) return slide(contact.direction);
 
   contact.normal = 0.0;

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "coupling/substrate_contact.hpp"
+
 namespace stridor {
 
 enum class ContactState {
@@ -25,6 +27,13 @@ struct LocalProblem {
   double sticking_friction = 0.0;  ///< μ up to which it sticks in this step
   double direction = 1.0;          ///< χ of persistent sliding, ±1
   bool is_unilateral = false;      ///< false: persistent sliding, λ_n of either sign
+
+  /// A force law instead of a constraint, not owned; null where there is none. Of what is above it
+  /// takes the slip.
+  const SubstrateContact* substrate = nullptr;
+  double indentation = 0.0;  ///< at the beginning of the step, m
+  double last_slip = 0.0;    ///< velocity in the last step, m/s
+  double step = 0.0;         ///< s
 
   // Answer; on entry the guess from which the iteration starts.
   double normal = 0.0;      ///< λ_n, N
@@ -60,7 +69,8 @@ struct ContactSolverParameters {
 /// system. Otherwise the contacts are visited in turn, each solved exactly under the forces of the
 /// others (Gauss-Seidel over 2 x 2 blocks), until no force changes any more; for a single contact
 /// the first visit is the answer. Sticking is tried first, with the sign of its friction force the
-/// direction of sliding where that exceeds the limit (FiLM: Carpenter, Taylor, Katona 1991).
+/// direction of sliding where that exceeds the limit (FiLM: Carpenter, Taylor, Katona 1991). A
+/// contact with a force law is solved by solve_substrate_step().
 class ContactSolver {
  public:
   explicit ContactSolver(int num_contacts, ContactSolverParameters parameters = {});

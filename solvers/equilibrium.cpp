@@ -117,6 +117,7 @@ ContactLinearisation linearise_contact(const ContactPositions& positions, const 
   const SlotVector along_normal = relative(master.stencil, weights, normal);
   const SlotVector along_tangent = relative(master.stencil, weights, tangent);
   contact.gap_row = -along_normal;
+  contact.tangent_row = along_tangent;
   contact.force_row = -relative(master.stencil, weights, push);
   const Eigen::Index size = along_normal.size();
   contact.force_by_position.setZero(size, size);
@@ -433,6 +434,27 @@ class Search {
     return equations;
   }
 
+  /// A force law at a normal force; all zero where that is not positive, as if it were rigid.
+  struct LawState {
+    double indentation = 0.0;     ///< y(λ)
+    double compliance = 0.0;      ///< dy/dλ
+    double friction = 0.0;        ///< T/λ with the friction T
+    double friction_slope = 0.0;  ///< dT/dλ − T/λ
+  };
+
+  LawState law_state(const SoughtContact& contact, double force) const {
+    if (!(force > 0.0)) return {};
+    const ContactPositions& positions = contact.result.positions;
+    const double slip = positions.driven_velocity * positions.prescribed.tangent.x();
+    const double direction = slip < 0.0 ? -1.0 : 1.0;
+    const SubstrateForces found = contact.point->substrate->under(force, slip, direction);
+    const double stiffness = found.normal.by_indentation;
+    const double against = -direction * answer_.state.friction_factor;
+    const double friction = against * found.tangential.value / force;
+    return {found.indentation, 1.0 / stiffness, friction,
+            against * found.tangential.by_indentation / stiffness - friction};
+  }
+
   /// Adds what a contact contributes and notes its state. @returns the largest length in it, m
   double add_contact(Equations& equations, Eigen::Index index, const Eigen::VectorXd& unknowns) {
     const Eigen::Index row = num_slots_ + index;
@@ -442,9 +464,13 @@ class Search {
     const Eigen::Index width = contact.num_slots;
     place(contact, unknowns.segment(first, width));
     const ContactPositions& positions = contact.result.positions;
-    const ContactLinearisation local =
-        linearise_contact(positions, contact.point->friction, answer_.state.friction_factor);
     const double force = unknowns(row);
+    const bool has_law = contact.point->substrate.has_value();
+    const LawState law = has_law ? law_state(contact, force) : LawState();
+    const ContactLinearisation local =
+        has_law
+            ? linearise_contact(positions, constant_friction(law.friction), 1.0)
+            : linearise_contact(positions, contact.point->friction, answer_.state.friction_factor);
     ContactEquilibrium& result = contact.result;
     result.projection = local.projection;
     result.gap = local.gap;
@@ -460,7 +486,10 @@ class Search {
     const auto flexibility = flexibility_.middleCols(first, width);
     values.head(num_slots_) += flexibility * (force * local.force_row);
     derivative.block(0, first, num_slots_, width) += flexibility * by_position;
-    derivative.col(row).head(num_slots_) = flexibility * local.force_row;
+    // ∂(λ b_E)/∂λ: the friction of a force law is not proportional to λ.
+    const SlotVector by_force =
+        local.force_row + local.direction * law.friction_slope * local.tangent_row;
+    derivative.col(row).head(num_slots_) = flexibility * by_force;
     if (target_) derivative.col(last).head(num_slots_) += flexibility * by_drive;
 
     const Eigen::Index first_rigid = num_slots_ + num_contacts_;
@@ -469,12 +498,13 @@ class Search {
     scale.segment(first_rigid, num_rigid_) +=
         rigid.cwiseAbs() * (force * local.force_row).cwiseAbs();
     derivative.block(first_rigid, first, num_rigid_, width) = rigid * by_position;
-    derivative.col(row).segment(first_rigid, num_rigid_) = rigid * local.force_row;
+    derivative.col(row).segment(first_rigid, num_rigid_) = rigid * by_force;
     if (target_) derivative.col(last).segment(first_rigid, num_rigid_) += rigid * by_drive;
 
     if (result.is_closed) {
-      values(row) = local.gap;
+      values(row) = local.gap + law.indentation;
       derivative.block(row, first, 1, width) = -local.gap_row.transpose();
+      derivative(row, row) = law.compliance;
       if (target_) derivative(row, last) = -local.gap_row[0] * contact.share_of_drive;
     } else {
       values(row) = force;

@@ -59,6 +59,7 @@ struct ContactLinearisation {
   /// −∂gap/∂z; the row of B_C but for the slopes of Subs-c and of the roughness.
   SlotVector gap_row;
   SlotVector shift_row;          ///< ∂ξ/∂z, 1/m
+  SlotVector tangent_row;        ///< ∂v_r/∂ż
   SlotVector force_row;          ///< row of B_E
   SlotMatrix force_by_position;  ///< ∂(row of B_E)ᵀ/∂z, 1/m
   SlotMatrix force_by_velocity;  ///< ∂(row of B_E)ᵀ/∂ż, s/m
@@ -110,7 +111,7 @@ struct ContactEquilibrium {
   int segment = 0;
   ContactPositions positions;  ///< without roughness; see set_roughness()
   Projection projection;
-  double gap = 0.0;             ///< m; 0 but for rounding where it is closed
+  double gap = 0.0;             ///< m; 0 but for rounding where it is closed; −y of a force law
   double position = 0.0;        ///< along the undeformed master from its first node, m
   double force = 0.0;           ///< λ_n, N
   double friction_force = 0.0;  ///< λ_t = χ μ λ_n, N
@@ -143,7 +144,7 @@ struct EquilibriumParameters {
 
 /// Static equilibrium of the sliding system (docs/theory.md, 6.1).
 ///
-///   K q = f − B_E(q)ᵀ λ,   gap(q) = 0
+///   K q = f − B_E(q)ᵀ λ,   gap(q) = 0, or gap(q) = −y(λ) for a force law
 ///
 /// for the contacts that slide bilaterally; 0 ≤ λ ⟂ gap ≥ 0 for those that may lift off, at
 /// whatever time (ContactPoint::unilateral_from). χ and μ(v) are those of the drive's velocity.

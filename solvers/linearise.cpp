@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -38,8 +39,11 @@ Pencil linearise(const System& system, const Equilibrium& equilibrium,
     if (!contact.is_closed) continue;
     ContactPositions positions = contact.positions;
     set_roughness(positions, system.surface_of(system.contacts[i]), contact.segment);
-    const ContactLinearisation local = linearise_contact(positions, system.contacts[i].friction,
-                                                         equilibrium.state.friction_factor, terms);
+    const std::optional<SubstrateContact>& substrate = system.contacts[i].substrate;
+    const ContactLinearisation local =
+        substrate ? linearise_contact(positions, constant_friction(contact.friction), 1.0, terms)
+                  : linearise_contact(positions, system.contacts[i].friction,
+                                      equilibrium.state.friction_factor, terms);
     const auto constraint = static_cast<Eigen::Index>(i);
     const Eigen::Index first = first_contact_slot(system, static_cast<int>(i));
     const Eigen::Index size = local.gap_row.size();
@@ -47,7 +51,23 @@ Pencil linearise(const System& system, const Equilibrium& equilibrium,
                   {row_of(local.gap_row), row_of(local.force_row)});
     stiffness.block(first, first, size, size) = contact.force * local.force_by_position;
     damping.block(first, first, size, size) = contact.force * local.force_by_velocity;
-    kept_constraints.push_back(constraint);
+    if (substrate) {
+      // Its force varies with indentation and slip instead of closing the gap: on the left-hand
+      // side b_nᵀ δF_k + b_tᵀ δT with b_n = ∂y/∂z and the friction T against the slip.
+      const SubstrateForces forces =
+          substrate->at(-contact.gap, contact.slip_velocity, contact.direction);
+      const double factor = equilibrium.state.friction_factor;
+      const auto pushed = [&](double normal, double tangential) -> SlotVector {
+        return normal * local.gap_row - factor * tangential * local.tangent_row;
+      };
+      stiffness.block(first, first, size, size) +=
+          pushed(forces.normal.by_indentation, forces.tangential.by_indentation) *
+          local.gap_row.transpose();
+      damping.block(first, first, size, size) +=
+          pushed(forces.normal.by_slip, forces.tangential.by_slip) * local.tangent_row.transpose();
+    } else {
+      kept_constraints.push_back(constraint);
+    }
     for (Eigen::Index k = 0; k < size; ++k) kept_slots.push_back(first + k);
   }
   pencil.slots = pencil.slots(kept_slots, Eigen::all).eval();

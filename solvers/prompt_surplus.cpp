@@ -77,6 +77,11 @@ double least_surplus(const PointAnswer& at, double limit) {
 
 std::optional<double> prompt_surplus(const System& system, const TimeParameters& time) {
   if (time.integrator == Integrator::central_difference && !time.retain) return std::nullopt;
+  // A force law acts by where the body is at the beginning of a step.
+  if (std::any_of(system.contacts.begin(), system.contacts.end(),
+                  [](const ContactPoint& contact) { return contact.substrate.has_value(); })) {
+    return std::nullopt;
+  }
   // Stable are ratios up to 4. Friction, damping and what changes along the path want some room,
   // and contacts that open more: near the limit the force changes its sign from step to step.
   const bool may_open =

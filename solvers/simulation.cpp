@@ -158,6 +158,12 @@ struct Simulation::Implementation {
     problem.is_unilateral = time(index) >= contact.unilateral_from;
     if (!contact.tracks_slip) return true;
     contact.stretch = sliding.stretch();
+    if (const auto& substrate = contact.point().substrate) {
+      problem.substrate = &*substrate;
+      problem.indentation = -sliding.present_gap(drive_displacement(time(index)));
+      problem.last_slip = contact.slip_velocity;
+      problem.step = step;
+    }
     if (drive.is_frozen && sought_index() > 0) {
       // Held in place, the material of the master slides away below.
       const double velocity = 0.5 * (sliding_velocity(time(sought_index() - 1)) +
@@ -198,9 +204,32 @@ struct Simulation::Implementation {
       stand_and_solve();
       is_foreseeing_start = false;
     }
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-      start_motion(*bodies[b], system.bodies[b], time_parameters, forces[b].data());
+    const auto set_moving = [&] {
+      for (std::size_t b = 0; b < bodies.size(); ++b)
+        start_motion(*bodies[b], system.bodies[b], time_parameters, forces[b].data());
+    };
+    set_moving();
+    if (apply_substrates()) set_moving();
     stand_and_solve();
+  }
+
+  /// Forces of the contacts with a force law as the motion stands. @returns whether there are any
+  bool apply_substrates() {
+    bool has_any = false;
+    for (RunningContact& contact : contacts) {
+      const auto& substrate = contact.point().substrate;
+      if (!substrate) continue;
+      has_any = true;
+      stand(contact);
+      const double indentation = -contact.sliding.present_gap(drive_displacement(time(index)));
+      const double direction = contact.slip_velocity > 0.0 ? 1.0 : -1.0;
+      const SubstrateForces acting = substrate->at(indentation, contact.slip_velocity, direction);
+      contact.force = acting.normal.value;
+      // At rest it sticks; what that takes is not known before the first step.
+      contact.friction_force = contact.slip_velocity == 0.0 ? 0.0 : -acting.tangential.value;
+      apply_forces(contact);
+    }
+    return has_any;
   }
 
   /// Contact forces at t_n: those that make gap and slip what the contacts allow.
@@ -456,6 +485,19 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
   if ((time.integrator == Integrator::exact || time.retain) && accounts == Accounts::energy) {
     throw ConfigError("record.energy",
                       "the energy ledger takes time.integrator: central_difference with all modes");
+  }
+  const bool has_substrate =
+      std::any_of(given.contacts.begin(), given.contacts.end(),
+                  [](const ContactPoint& point) { return point.substrate.has_value(); });
+  if (has_substrate && time.retain) {
+    throw ConfigError("time.retain",
+                      "a contact with a substrate takes all modes; leave out the key, or reduce "
+                      "the bodies to fewer modes (reduction.fixed_interface_modes)");
+  }
+  if (has_substrate && accounts == Accounts::energy) {
+    throw ConfigError("record.energy",
+                      "the energy ledger does not know what a substrate stores and dissipates; "
+                      "leave it out");
   }
   const System system = retained(given, time);
   const StepLimit limit = step_limit(system);

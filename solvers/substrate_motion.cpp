@@ -359,8 +359,8 @@ SubstrateMotion::Stop SubstrateMotion::advance(double end, bool stops_at_turns) 
     bool has_event = false;
     if (!take_step(end, stops_at_turns, event, has_event)) return Stop::failed;
     constexpr double largest = 1e12;
-    for (const double value : state_)
-      if (!(std::abs(value) < largest * (1.0 + std::abs(size_[0])))) return Stop::failed;
+    for (std::size_t k = 0; k <= VY; ++k)
+      if (!(std::abs(state_[k]) < largest * (1.0 + size_[0]))) return Stop::failed;
     if (!has_event) continue;
     apply(event);
     if (event == Event::turn) return Stop::turn;

@@ -1,10 +1,11 @@
 #include "solvers/substrate_stepper.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <stdexcept>
+
+#include "solvers/substrate_step.hpp"
 
 namespace stridor {
 
@@ -45,53 +46,17 @@ void SubstrateStepper::start(const Eigen::Vector2d& displacement, const Eigen::V
   velocity_ = velocity;
 }
 
-double SubstrateStepper::slip(double tangential, double normal) const {
-  return free_slip_ +
-         (propagator_->compliance(0, 0) * tangential - propagator_->compliance(0, 1) * normal) /
-             step_;
-}
-
 void SubstrateStepper::find_forces() {
-  const double y = propagator_->current(1);
-  const SubstrateContact& contact = oscillator_->contact;
-  normal_ = 0.0;
-  tangential_ = 0.0;
-  if (!(y > 0.0)) {
-    mode_ = SubstrateMode::free;
-    return;
-  }
-  const double gain = propagator_->compliance(0, 0) / step_;
-  const double sticking_normal = contact.at(y, 0.0, 1.0).normal.value;
-  const double required = -slip(0.0, sticking_normal) / gain;
-  const double strength = contact.static_strength(y).value;
-  if (std::abs(required) <= strength) {
-    mode_ = SubstrateMode::stick;
-    normal_ = sticking_normal;
-    tangential_ = required;
-    return;
-  }
-  // Friction of magnitude above zero leaves less slip than none at all does.
-  const double direction = required > 0.0 ? -1.0 : 1.0;
-  mode_ = direction > 0.0 ? SubstrateMode::slip_forward : SubstrateMode::slip_back;
-  double low = 0.0;
-  double high = std::numeric_limits<double>::infinity();
-  double w = std::abs(slip(-direction * strength, sticking_normal));
-  for (int i = 0; i < 100; ++i) {
-    const double mean = std::max(0.0, 0.5 * (w + direction * last_slip_));
-    const double by_w = mean > 0.0 ? 0.5 : 0.0;
-    const SubstrateForces forces = contact.at(y, direction * mean, direction);
-    normal_ = forces.normal.value;
-    tangential_ = forces.tangential.value;
-    const double miss = w - direction * slip(tangential_, normal_);
-    const double slope =
-        1.0 - by_w * (gain * forces.tangential.by_slip -
-                      propagator_->compliance(0, 1) / step_ * forces.normal.by_slip);
-    (miss > 0.0 ? high : low) = w;
-    double next = w - miss / slope;
-    if (!(next > low && next < high)) next = std::isinf(high) ? 2.0 * w : 0.5 * (low + high);
-    if (std::abs(next - w) <= 1e-14 * (w + oscillator_->substrate_speed) || next == w) return;
-    w = next;
-  }
+  const SlipAnswer slip{free_slip_, propagator_->compliance(0, 0) / step_,
+                        -propagator_->compliance(0, 1) / step_};
+  const SubstrateStep found = solve_substrate_step(oscillator_->contact, propagator_->current(1),
+                                                   last_slip_, slip, oscillator_->substrate_speed);
+  normal_ = found.normal;
+  tangential_ = found.tangential;
+  mode_ = found.state == ContactState::open    ? SubstrateMode::free
+          : found.state == ContactState::stick ? SubstrateMode::stick
+          : found.direction > 0.0              ? SubstrateMode::slip_forward
+                                               : SubstrateMode::slip_back;
 }
 
 bool SubstrateStepper::advance() {

@@ -47,7 +47,6 @@ class SubstrateStepper {
 
  private:
   /// w_{n+1} under forces of the contact.
-  double slip(double tangential, double normal) const;
   void find_forces();
 
   const SubstrateOscillator* oscillator_;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the figures of README.md, docs/tutorial.md, docs/seeds.md, docs/viscoelastic_contact.md and
-# docs/precision.md anew; takes some minutes.
+# Makes the figures of README.md, docs/tutorial.md, docs/seeds.md, docs/viscoelastic_contact.md,
+# docs/viscoelastic_sphere.md and docs/precision.md anew; takes some minutes.
 # Usage: docs/figures/make.sh [STRIDOR], by default build/release/stridor of this source tree.
 set -euo pipefail
 here=$(CDPATH='' cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
@@ -43,3 +43,5 @@ for name in modulus cuts scatter; do cp "$work/fit/$name.png" "$here/fit_$name.p
   --set "measure.from=4 ms" --points 3 --retain 50kHz --assumptions subs_a --tune 0.2 --norm force \
   -o "$work/precision" >/dev/null
 cp "$work/precision/precision.png" "$here/precision.png"
+
+"$here/regularisation.sh" "$stridor" "$here/regularisation.png" >/dev/null

@@ -3,12 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "io/run_file.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {
@@ -195,6 +197,56 @@ TEST(SphereProgram, SweepUpAndDownFindsBothMotions) {
   EXPECT_NEAR(down[2]["x"]["rms"].get<double>(), 0.2457, 1e-4);
 }
 
+TEST(SphereProgram, RunFilesAreInSiUnitsAndCanBeDrawn) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "run.h5";
+  const Json found = run_verb("run", {"time.end=60"}, {"-o", file});
+  const RunFileReader reader(file);
+  ASSERT_EQ(reader.times().size(), 1201u);
+  EXPECT_NEAR(reader.times().back(), 60.0 / 40.0, 1e-12);
+  // x_0 = F_n/k_x = 2 mm.
+  const std::vector<double> x = reader.series("/channels/sphere.x.displacement");
+  const double largest = *std::max_element(x.begin() + 600, x.end());
+  EXPECT_NEAR(largest, 0.002 * found["x"]["max"].get<double>(), 0.02 * largest);
+  const std::vector<double> force = reader.series("/contact/contact/force");
+  // It begins about the applied load, 7.5e-4 E_0* R² = 0.1 N, less what the springs take.
+  EXPECT_GT(force.front(), 0.05);
+  EXPECT_LT(force.front(), 0.15);
+  for (const std::vector<std::string>& verb :
+       {std::vector<std::string>{"spectrogram", file, "--channel", "sphere.x.displacement"},
+        std::vector<std::string>{"plot", file, "--kind", "history"}}) {
+    std::vector<std::string> arguments = verb;
+    const std::string figure = folder / (verb[0] + ".png");
+    arguments.insert(arguments.end(), {"-o", figure});
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(std::filesystem::exists(figure));
+  }
+  const ProgramResult resumed = Program({"run", "--resume", file}).run();
+  EXPECT_EQ(resumed.exit_code, 4);
+  EXPECT_THAT(resumed.err, HasSubstr("no whole checkpoint to go on from"));
+}
+
+TEST(SphereProgram, PrecisionSetsErrorAgainstRunTime) {
+  const Json found = run_verb("precision", {"time.end=20"}, {"--points", "4", "--tune", "1e-4"});
+  ASSERT_EQ(found["rows"].size(), 12u);
+  EXPECT_LT(found["reference"]["error"].get<double>(), 1e-9);
+  double last = 1e300;
+  for (int k = 0; k < 12; ++k) {
+    const Json& row = found["rows"][k];
+    EXPECT_EQ(row["stable"], true) << k;
+    EXPECT_GT(row["wall_s"].get<double>(), 0.0);
+    // Within an integrator the error falls with tolerance or step.
+    if (k % 4 == 0) last = 1e300;
+    EXPECT_LT(row["error"].get<double>(), last) << k;
+    last = row["error"];
+  }
+  EXPECT_EQ(found["rows"][0]["integrator"], "event_driven");
+  EXPECT_EQ(found["rows"][4]["integrator"], "exact");
+  EXPECT_EQ(found["rows"][8]["integrator"], "central_difference");
+  EXPECT_LT(found["tuned"]["error"].get<double>(), 1e-4);
+}
+
 TEST(SphereProgram, RefusesWhatDoesNotFit) {
   const std::string scene = scene_path("viscoelastic_sphere.yaml");
   const auto error = [&](std::vector<std::string> arguments) {
@@ -213,6 +265,9 @@ TEST(SphereProgram, RefusesWhatDoesNotFit) {
   EXPECT_THAT(error({"locus", "--from", "1", "--to", "2"}), HasSubstr("name a key"));
   EXPECT_THAT(error({"eig", "--explain"}), HasSubstr("is for scenes of bodies"));
   EXPECT_THAT(error({"compare"}), HasSubstr("belongs to an oscillator"));
+  EXPECT_THAT(error({"precision", "--retain", "1kHz"}), HasSubstr("is for scenes of bodies"));
+  EXPECT_THAT(error({"eig", "--set", "regularisation.law=tanh"}),
+              HasSubstr("regularisation.speed: missing"));
   EXPECT_THAT(error({"run", "-o", "never.h5", "--set", "time.integrator=exact"}),
               HasSubstr("`step` is missing"));
 }

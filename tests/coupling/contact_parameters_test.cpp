@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
@@ -126,23 +127,55 @@ TEST(ContactParameters, ChoicesMeanWhatTheySay) {
 }
 
 TEST(ContactParameters, PhysicalQuantitiesHaveNoDefault) {
-  for (const char* key : {"slave", "master", "assumption", "start", "friction"})
+  for (const char* key : {"slave", "master", "assumption", "start"})
     EXPECT_FALSE(ContactParameters::schema().find(key)->is_optional) << key;
   for (const char* key : {"velocity", "load", "ramp"})
     EXPECT_FALSE(DriveParameters::schema().find(key)->is_optional) << key;
-  // Which coefficients of friction are needed depends on the law: see FrictionParameters.
+  for (const char* key : {"radius", "modulus", "creep_time", "shear_strength"})
+    EXPECT_FALSE(SubstrateParameters::schema().find(key)->is_optional) << key;
+  // Friction is that of a law or of a substrate, see ContactOnSubstrate; which coefficients are
+  // needed depends on the law, see FrictionParameters.
   EXPECT_EQ(FrictionParameters{}.coefficient, std::nullopt);
 }
 
 using Kind = FrictionLaw::Kind;
 
-/// Complaints about friction keys, one line each.
-std::vector<std::string> complaints(const FrictionParameters& friction) {
+/// Complaints about the keys of a section, one line each.
+template <class Parameters>
+std::vector<std::string> complaints(const Parameters& parameters) {
   std::vector<Problem> problems;
-  for (const auto& check : FrictionParameters::schema().checks) check(&friction, problems);
+  for (const auto& check : Parameters::schema().checks) check(&parameters, problems);
   std::vector<std::string> lines;
   for (const Problem& problem : problems) lines.push_back(problem.text());
   return lines;
+}
+
+TEST(ContactOnSubstrate, TakesThePlaceOfFrictionAndRigidMaster) {
+  ContactParameters contact;
+  contact.slave = {"reed.tip"};
+  contact.master = "cantilever.top";
+  EXPECT_THAT(complaints(contact),
+              ElementsAre("friction: is missing: give `friction`, or a `substrate`"));
+  contact.friction.emplace();
+  contact.substrate.emplace();
+  EXPECT_THAT(
+      complaints(contact),
+      ElementsAre("friction: not used with a substrate, whose law has it",
+                  "master: must be `rigid` with a substrate, which takes its place",
+                  "assumption: must be `film` with a substrate: it sticks, slips and lifts off"));
+  contact.friction.reset();
+  contact.master = "rigid";
+  contact.assumption = ContactAssumption::film;
+  EXPECT_THAT(complaints(contact), IsEmpty());
+}
+
+TEST(ContactOnSubstrate, LawIsInSiUnits) {
+  // F = E_0* R² F̃(y/R, v τ/R); at rest F̃ = 4/3 ŷ^{3/2}, Ã = π ŷ by the boundary elements.
+  const SubstrateContact contact =
+      make_substrate_contact({2e-3, 1e6, 0.01, 0.02, SphereContactLaw::boundary_element});
+  const double y = 2e-5;
+  EXPECT_NEAR(contact.at(y, 0.0, 1.0).normal.value, 1e6 * 4e-6 * 4.0 / 3.0 * 1e-3, 1e-12);
+  EXPECT_NEAR(contact.static_strength(y).value, 0.02 * 1e6 * 4e-6 * M_PI * 0.01, 1e-12);
 }
 
 TEST(FrictionParameters, EveryLawNeedsItsOwnKeys) {
@@ -177,18 +210,18 @@ TEST(FrictionParameters, KeysOfOtherLawsAreRefused) {
 }
 
 TEST(FrictionParameters, CompleteLawsAreTaken) {
-  EXPECT_THAT(complaints({Kind::constant, 0.3, {}, {}, {}}), IsEmpty());
-  EXPECT_THAT(complaints({Kind::constant, 0.0, {}, {}, {}}), IsEmpty());
-  EXPECT_THAT(complaints({Kind::static_dynamic, {}, 0.4, 0.3, {}}), IsEmpty());
-  EXPECT_THAT(complaints({Kind::stribeck, {}, 0.4, 0.3, 0.01}), IsEmpty());
+  EXPECT_THAT(complaints<FrictionParameters>({Kind::constant, 0.3, {}, {}, {}}), IsEmpty());
+  EXPECT_THAT(complaints<FrictionParameters>({Kind::constant, 0.0, {}, {}, {}}), IsEmpty());
+  EXPECT_THAT(complaints<FrictionParameters>({Kind::static_dynamic, {}, 0.4, 0.3, {}}), IsEmpty());
+  EXPECT_THAT(complaints<FrictionParameters>({Kind::stribeck, {}, 0.4, 0.3, 0.01}), IsEmpty());
   // A law may rise with the speed.
-  EXPECT_THAT(complaints({Kind::stribeck, {}, 0.3, 0.4, 0.01}), IsEmpty());
+  EXPECT_THAT(complaints<FrictionParameters>({Kind::stribeck, {}, 0.3, 0.4, 0.01}), IsEmpty());
 }
 
 TEST(FrictionParameters, AtRestNoLessThanInSlidingUnlessTheLawIsContinuous) {
-  EXPECT_THAT(complaints({Kind::static_dynamic, {}, 0.3, 0.4, {}}),
+  EXPECT_THAT(complaints<FrictionParameters>({Kind::static_dynamic, {}, 0.3, 0.4, {}}),
               ElementsAre("static: must not be below `dynamic`"));
-  EXPECT_THAT(complaints({Kind::static_dynamic, {}, 0.3, 0.3, {}}), IsEmpty());
+  EXPECT_THAT(complaints<FrictionParameters>({Kind::static_dynamic, {}, 0.3, 0.3, {}}), IsEmpty());
 }
 
 TEST(FrictionParameters, CoefficientsMayBeZeroButNotNegativeAndTheDecayVelocityIsPositive) {

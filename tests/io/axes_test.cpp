@@ -50,6 +50,24 @@ TEST(FrequencyScale, IsInKilohertzFrom2000HertzOn) {
   EXPECT_EQ(tick_characters({0.0, 15000.0}, scale), 2u);
 }
 
+std::vector<std::string> written(const std::vector<LogTick>& ticks) {
+  std::vector<std::string> texts;
+  for (const LogTick& tick : ticks)
+    if (!tick.text.empty()) texts.push_back(tick.text);
+  return texts;
+}
+
+TEST(LogTicks, AreWrittenAlikeAlongAnAxis) {
+  EXPECT_THAT(written(log_ticks(1e-3, 10.0)), ElementsAre("0.001", "0.01", "0.1", "1", "10"));
+  EXPECT_THAT(written(log_ticks(1e-4, 0.1)), ElementsAre("1e-4", "1e-3", "1e-2", "1e-1"));
+  EXPECT_THAT(written(log_ticks(0.2, 3.0)), ElementsAre("0.2", "0.5", "1", "2"));
+}
+
+TEST(LogTicks, LeaveOutPowersWhereThereIsNoRoom) {
+  EXPECT_THAT(written(log_ticks(1e-8, 1e3)),
+              ElementsAre("1e-8", "1e-6", "1e-4", "1e-2", "1e0", "1e2"));
+}
+
 TEST(QuantityText, HasThreeDigitsAndAPrefix) {
   EXPECT_EQ(quantity_text(1e-6, "m/s^2"), "1 µm/s²");
   EXPECT_EQ(quantity_text(1e-9, "m/s"), "1 nm/s");

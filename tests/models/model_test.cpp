@@ -268,7 +268,7 @@ TEST(Model, TheRigidMasterIsAnEndlessLineUnderTheSlave) {
 TEST(Model, OnRigidGroundTheContactCarriesTheLoadInEveryForm) {
   ModelParameters parameters = on_rigid_ground();
   parameters.contact->assumption = ContactAssumption::film;
-  parameters.contact->friction.coefficient = 0.0;
+  parameters.contact->friction->coefficient = 0.0;
   auto& oblique = std::get<BeamParameters>(parameters.substructures["oblique"]);
   oblique.damping.alpha = 2000.0;
   oblique.damping.alpha_start.reset();
@@ -362,7 +362,8 @@ TEST(Model, ASubstructureMayNotTakeTheNameOfTheRigidMaster) {
 
 TEST(Model, FrictionLawsRiseWithTheRamp) {
   ModelParameters parameters = paper_model();
-  parameters.contact->friction = {FrictionLaw::Kind::stribeck, {}, 0.4, 0.3, 0.01};
+  parameters.contact->friction =
+      FrictionParameters{FrictionLaw::Kind::stribeck, {}, 0.4, 0.3, 0.01};
   const Model model = make_paper_model(parameters);
   const ContactPoint& contact = model.system.contacts.at(0);
   EXPECT_EQ(contact.friction.kind, FrictionLaw::Kind::stribeck);

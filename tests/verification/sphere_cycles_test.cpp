@@ -40,6 +40,32 @@ TEST(SphereCycles, ExtremesOfTheLargestCycle) {
   EXPECT_NEAR(cycle.x_max, 0.24999874, 1e-8);
 }
 
+TEST(SphereCycles, RegularisedFrictionMovesThresholdAndAmplitude) {
+  // (2/π) arctan(v/(0.1 v_d)) has the threshold at 3.05e-3 instead of 2.10e-3.
+  SphereModelParameters model = test::paper_sphere(4e-4);
+  model.regularisation = {RegularisedSign::Kind::atan, 0.1};
+  const auto margin = [&](double shear) {
+    model.sphere.shear_strength = shear;
+    const SubstrateOscillator oscillator = make_sphere(model);
+    return stability_margin(small_motion(oscillator, find_equilibrium(oscillator)));
+  };
+  EXPECT_LT(margin(3.045e-3), 0.0);
+  EXPECT_GT(margin(3.055e-3), 0.0);
+  // The amplitude is too low, in proportion to v_ε, and nothing sticks.
+  const auto shortfall = [](double speed) {
+    SphereModelParameters smooth = test::paper_sphere();
+    smooth.regularisation = {RegularisedSign::Kind::tanh, speed};
+    const LimitCycle cycle = cycle_of(smooth);
+    EXPECT_EQ(cycle.status, CycleStatus::periodic);
+    EXPECT_EQ(cycle.stick_fraction, 0.0);
+    return 0.0660501053 - cycle.x_rms;
+  };
+  const double coarse = shortfall(3e-3);
+  const double fine = shortfall(1e-3);
+  EXPECT_GT(fine, 0.0);
+  EXPECT_NEAR(std::log(coarse / fine) / std::log(3.0), 1.0, 0.15);
+}
+
 TEST(SphereCycles, StickSlipBesideAStableEquilibrium) {
   // F̃_n = 7.5e-4, v̂ = 10^-1.5: the equilibrium is stable up to τ̃_0 = 9.16e-2.
   const LimitCycle upper = cycle_of(test::paper_sphere(std::pow(10.0, -1.5), 0.12));

@@ -1,0 +1,39 @@
+// The boundary of stability over two parameters, followed by continuation.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "analysis/stability_map.hpp"
+
+namespace stridor {
+
+/// How the values of an axis of a map are spaced; its boundary is followed in the same measure.
+enum class GridSpacing { linear, logarithmic };
+
+struct MapGrid {
+  std::vector<double> x;  ///< strictly ascending, at least two
+  std::vector<double> y;  ///< likewise
+  std::array<GridSpacing, 2> spacing{GridSpacing::linear, GridSpacing::linear};
+};
+
+/// Follows the lines margin(x, y) = 0 through the rectangle of a grid.
+///
+/// Pseudo-arclength continuation: from a point on the line the next one is sought on a circle about
+/// it, where the margin changes its sign next to the direction of the last step, by regula falsi
+/// with bisection to rounding. The line so may turn back in either parameter and have corners,
+/// where another eigenvalue takes over. The radius, at most a cell, is halved where the line turns
+/// by more than 15°, down to a 1000th of a cell. Lines keep the unstable side on their left; they
+/// end at the edge of the rectangle, or where the margin is NaN, or close.
+///
+/// @param margin positive where unstable
+/// @param seeds  lines near which the boundary is known to run: those of boundary_lines(); what
+///               has none is not found. Their points become points of the lines, as they are
+/// @return longest first; closed ones repeat their first point
+/// @throws std::invalid_argument if the grid is not as it says
+std::vector<BoundaryLine> trace_boundary(const std::function<double(double, double)>& margin,
+                                         const MapGrid& grid,
+                                         const std::vector<BoundaryLine>& seeds);
+
+}  // namespace stridor
