@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <numbers>
 
 namespace stridor {
 namespace {
@@ -47,6 +48,13 @@ ModeQuotients mode_quotients(const Pencil& pencil, Complex s, const Eigen::Vecto
   return quotients;
 }
 
+ModeQuotients mode_quotients(const SparseSystem& system, Complex s, const Eigen::VectorXcd& right) {
+  const Complex velocity = right.dot(system.velocity * right);
+  const Complex position = right.dot(system.position * right);
+  return {velocity.real(), velocity.imag(), position.real(), position.imag(),
+          std::abs(s * s + velocity * s + position) / std::norm(s)};
+}
+
 ModeEnergy mode_energy(const Pencil& pencil, Complex s, const Eigenvector& vector) {
   const double length = vector.right.norm();
   const Eigen::VectorXcd q = vector.right / length;
@@ -82,6 +90,19 @@ std::vector<Participation> participations(const Pencil& pencil,
     const Eigenvector mode = eigenvector(without, one.s);
     shares.push_back({one.frequency(), modal_assurance(mode.right, right)});
   }
+  std::sort(shares.begin(), shares.end(),
+            [](const Participation& a, const Participation& b) { return a.share > b.share; });
+  return shares;
+}
+
+std::vector<Participation> participations(const SparseSystem& system, const Eigen::VectorXd& omega,
+                                          const Eigen::MatrixXd& modes,
+                                          const Eigen::VectorXcd& right) {
+  const Eigen::VectorXcd momentum = system.mass * right;
+  const Eigen::VectorXd squares = (modes.transpose() * momentum).cwiseAbs2();
+  std::vector<Participation> shares;
+  for (Eigen::Index i = 0; i < omega.size(); ++i)
+    shares.push_back({omega(i) / (2.0 * std::numbers::pi), squares(i)});
   std::sort(shares.begin(), shares.end(),
             [](const Participation& a, const Participation& b) { return a.share > b.share; });
   return shares;

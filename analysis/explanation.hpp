@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "solvers/pencil.hpp"
+#include "substructures/matrix_body.hpp"
 
 namespace stridor {
 
@@ -36,6 +37,11 @@ struct ModeQuotients {
 };
 
 ModeQuotients mode_quotients(const Pencil& pencil, std::complex<double> s,
+                             const Eigen::VectorXcd& right);
+/// The same without constraints, for matrices and q with qᴴ M q = 1:
+///
+///   qᴴ P q = d + j g,   qᴴ Q q = k + j n
+ModeQuotients mode_quotients(const SparseSystem& system, std::complex<double> s,
                              const Eigen::VectorXcd& right);
 
 /// Where the energy of a mode comes from and goes to, averaged over a period.
@@ -70,6 +76,14 @@ struct Participation {
 /// @param eigenvalues of frictionless(pencil), with positive imaginary part
 std::vector<Participation> participations(const Pencil& pencil,
                                           const std::vector<Eigenvalue>& eigenvalues,
+                                          const Eigen::VectorXcd& right);
+
+/// The same for the modes φ of the symmetric part of a sparse system, |φᵀ M q|².
+/// @param omega  of the modes, rad/s
+/// @param modes  mass-normalised, one per column
+/// @param right  q with qᴴ M q = 1
+std::vector<Participation> participations(const SparseSystem& system, const Eigen::VectorXd& omega,
+                                          const Eigen::MatrixXd& modes,
                                           const Eigen::VectorXcd& right);
 
 }  // namespace stridor

@@ -181,14 +181,15 @@ ExitCode eig(const EigOptions& options) {
   const SlidingState state = sliding_state_of(member, options.stability.geometry(), "");
   const std::vector<Eigenvalue> eigenvalues =
       lowest_eigenvalues(retained(state.pencil, system, loaded.scene.time),
-                         options.stability.eigenvalue_method(), options.stability.count);
+                         options.stability.eigenvalue_method(), options.stability.window());
 
   const std::size_t num_real = num_real_of(eigenvalues);
   const double trusted =
       std::min(trusted_frequency(system),
                asked_frequency(system, loaded.scene.time) / (2.0 * std::numbers::pi));
-  const double highest =
-      std::min(trusted, eigenvalues.empty() ? 0.0 : eigenvalues.back().frequency());
+  std::vector<std::complex<double>> roots;
+  for (const Eigenvalue& one : eigenvalues) roots.push_back(one.s);
+  const double highest = verdict_limit(roots, options.stability.window(), trusted);
   const bool is_stable = std::none_of(
       eigenvalues.begin(), eigenvalues.end(),
       [&](const Eigenvalue& one) { return one.frequency() <= highest && is_growing(one); });

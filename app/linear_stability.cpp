@@ -4,14 +4,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
+#include <numbers>
 
 #include "app/eigenvalue_report.hpp"
 #include "core/errors.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/linear_pencil.hpp"
+#include "solvers/sparse_spectrum.hpp"
 
 namespace stridor {
 namespace {
+
+/// @throws ConfigError if the system is too large for all its eigenvalues
+const LinearSystem& dense_of(const LinearModel& model) {
+  if (model.sparse) {
+    throw ConfigError(
+        "substructures",
+        fmt::format("{} unknowns are for eig; the other verbs take up to {}, for which "
+                    "all eigenvalues are computed",
+                    model.sparse->size(), largest_dense_size));
+  }
+  return model.dense;
+}
 
 class LinearFamily : public StabilityFamily {
  public:
@@ -19,7 +35,10 @@ class LinearFamily : public StabilityFamily {
       : loaded_(std::move(loaded)), keys_(std::move(keys)) {}
 
   Pencil pencil(std::span<const double> values) override {
-    return make_pencil(loaded_.model(keys_, values).dense);
+    return make_pencil(dense_of(loaded_.model(keys_, values)));
+  }
+  double trusted_frequency(std::span<const double> values) override {
+    return loaded_.model(keys_, values).highest_frequency;
   }
   bool is_sampled() const override { return true; }
 
@@ -42,11 +61,14 @@ Json equilibrium_json(const LinearModel& model, const DiscScene& scene) {
   return {{"contacts", contacts}};
 }
 
-/// Up to where a verdict holds: what was computed, and what the model answers for.
-double window_of(const std::vector<Eigenvalue>& shown, bool is_all, double trusted) {
-  if (is_all) return trusted;
-  return std::min(trusted, shown.empty() ? 0.0 : shown.back().frequency());
-}
+/// What eig found, by whichever method.
+struct FoundSpectrum {
+  std::string method;
+  std::vector<Eigenvalue> eigenvalues;
+  double highest = 0.0;                      ///< up to where the verdict holds, Hz
+  std::function<Json(std::size_t)> explain;  ///< quotients and modes of one of them
+  Json more = Json::object();                ///< what else is reported
+};
 
 /// The modes without friction, damping and rotation that a motion is made of.
 Json frictionless_modes_json(const Pencil& pencil, const Eigen::VectorXcd& right) {
@@ -57,6 +79,63 @@ Json frictionless_modes_json(const Pencil& pencil, const Eigen::VectorXcd& right
   for (std::size_t i = 0; i < std::min<std::size_t>(2, shares.size()); ++i)
     list.push_back({{"frequency", shares[i].frequency}, {"share", shares[i].share}});
   return list;
+}
+
+FoundSpectrum find_dense(const LinearModel& model, const SpectrumWindow& window) {
+  const auto pencil = std::make_shared<const Pencil>(make_pencil(model.dense));
+  const auto spectrum = std::make_shared<const DenseSpectrum>(dense_spectrum(*pencil));
+  FoundSpectrum found{"dense", spectrum->eigenvalues, 0.0, {}, Json::object()};
+  keep_window(found.eigenvalues, window);
+  std::vector<std::complex<double>> roots;
+  for (const Eigenvalue& one : found.eigenvalues) roots.push_back(one.s);
+  const bool is_all = roots.size() == spectrum->eigenvalues.size();
+  found.highest = is_all ? std::min(window.frequency, model.highest_frequency)
+                         : verdict_limit(roots, window, model.highest_frequency);
+  found.explain = [=](std::size_t chosen) -> Json {
+    const Eigen::VectorXcd right = spectrum->right.col(static_cast<Eigen::Index>(chosen));
+    const std::complex<double> s = spectrum->eigenvalues[chosen].s;
+    return {{"quotients", quotients_json(mode_quotients(*pencil, s, right))},
+            {"frictionless_modes", frictionless_modes_json(*pencil, right)}};
+  };
+  return found;
+}
+
+/// @throws NumericalError unless every eigenvalue in the window was found
+FoundSpectrum find_sparse(const SparseSystem& system, const SpectrumWindow& asked) {
+  // A count within a frequency is taken from all below it.
+  SpectrumWindow window = asked;
+  if (std::isfinite(window.frequency)) window.count.reset();
+  const auto spectrum = std::make_shared<const SparseSpectrum>(sparse_spectrum(system, window));
+  const double height = spectrum->rectangle.height / (2.0 * std::numbers::pi);
+  if (!spectrum->is_complete) {
+    throw NumericalError(
+        fmt::format("below {:.6g} Hz the argument principle counts {} eigenvalues, and {} were "
+                    "found with their "
+                    "conjugates; try another frequency with --below",
+                    height, spectrum->num_counted, spectrum->num_found));
+  }
+  FoundSpectrum found{"sparse", spectrum->eigenvalues, 0.0, {}, Json::object()};
+  keep_window(found.eigenvalues, asked);
+  std::vector<std::complex<double>> roots;
+  for (const Eigenvalue& one : found.eigenvalues) roots.push_back(one.s);
+  found.highest = verdict_limit(roots, asked, height);
+  found.more["backward_errors"] = Json::array();
+  for (std::size_t i = 0; i < roots.size(); ++i)
+    found.more["backward_errors"].push_back(number(spectrum->backward_errors[i]));
+  found.more["window_growth"] = {number(spectrum->rectangle.left()),
+                                 number(spectrum->rectangle.right())};
+  found.more["counted"] = spectrum->num_counted;
+  found.explain = [=](std::size_t chosen) -> Json {
+    const Eigen::VectorXcd right = spectrum->right.col(static_cast<Eigen::Index>(chosen));
+    const ModeQuotients seen = mode_quotients(system, spectrum->eigenvalues[chosen].s, right);
+    Json modes = Json::array();
+    for (const Participation& one :
+         participations(system, spectrum->omega, spectrum->modes, right)) {
+      if (modes.size() < 2) modes.push_back({{"frequency", one.frequency}, {"share", one.share}});
+    }
+    return {{"quotients", quotients_json(seen)}, {"frictionless_modes", modes}};
+  };
+  return found;
 }
 
 void print_explanation(const Json& explanation) {
@@ -80,45 +159,44 @@ ExitCode eig_of_linear_scene(const StabilityOptions& options, bool explain,
                              const std::optional<int>& mode) {
   const LoadedLinearScene loaded = load_linear_scene(options.scene, options.common.sets);
   const LinearModel model = loaded.model();
-  const Pencil pencil = make_pencil(model.dense);
-  const DenseSpectrum spectrum = dense_spectrum(pencil);
-  std::vector<Eigenvalue> eigenvalues = spectrum.eigenvalues;
-  const std::size_t num_real = num_real_of(eigenvalues);
-  const std::size_t num_shown =
-      std::min(eigenvalues.size(), num_real + static_cast<std::size_t>(options.count));
-  const bool is_all = num_shown == eigenvalues.size();
-  eigenvalues.resize(num_shown);
-  const double highest = window_of(eigenvalues, is_all, model.highest_frequency);
+  const SpectrumWindow window = options.window();
+  const FoundSpectrum found =
+      model.sparse ? find_sparse(*model.sparse, window) : find_dense(model, window);
+  const std::vector<Eigenvalue>& eigenvalues = found.eigenvalues;
+  const double highest = found.highest;
   const bool is_stable = std::none_of(
       eigenvalues.begin(), eigenvalues.end(),
       [&](const Eigenvalue& one) { return one.frequency() <= highest && is_growing(one); });
 
-  Json object = {{"about", options.about},          {"method", options.method},
+  Json object = {{"about", options.about},          {"method", found.method},
                  {"equilibrium", Json::object()},   {"eigenvalues", eigenvalues_json(eigenvalues)},
                  {"residuals", Json::array()},      {"stable", is_stable},
                  {"window", {0.0, number(highest)}}};
+  object.update(found.more);
   if (const DiscScene* disc = std::get_if<DiscScene>(&loaded.scene))
     object["equilibrium"] = equilibrium_json(model, *disc);
   for (const Eigenvalue& one : eigenvalues) object["residuals"].push_back(number(one.residual));
   if (explain) {
+    const std::size_t num_real = num_real_of(eigenvalues);
     const std::size_t chosen = chosen_mode(eigenvalues, num_real, mode);
-    const Eigen::VectorXcd right = spectrum.right.col(static_cast<Eigen::Index>(chosen));
     const Eigenvalue& one = eigenvalues[chosen];
-    object["explanation"] = {{"mode", chosen - num_real + 1},
-                             {"frequency", one.frequency()},
-                             {"growth", one.growth()},
-                             {"quotients", quotients_json(mode_quotients(pencil, one.s, right))},
-                             {"frictionless_modes", frictionless_modes_json(pencil, right)}};
+    object["explanation"] = {
+        {"mode", chosen - num_real + 1}, {"frequency", one.frequency()}, {"growth", one.growth()}};
+    object["explanation"].update(found.explain(chosen));
   }
   if (options.common.json) {
     fmt::print("{}\n", object.dump(2));
     return ExitCode::done;
   }
   print_eigenvalues(eigenvalues, model.highest_frequency);
-  if (is_all && highest == model.highest_frequency && !std::isfinite(highest)) {
+  if (!std::isfinite(highest)) {
     fmt::print("{} at all frequencies\n", is_stable ? "stable" : "unstable");
   } else {
     fmt::print("{} between 0 and {:.6g} Hz\n", is_stable ? "stable" : "unstable", highest);
+  }
+  if (model.sparse) {
+    fmt::print("{} eigenvalues with their conjugates, as the argument principle counts\n",
+               found.more["counted"].get<int>());
   }
   if (explain) print_explanation(object["explanation"]);
   return ExitCode::done;

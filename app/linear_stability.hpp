@@ -26,8 +26,8 @@ class LinearStabilityScene : public StabilityScene {
   LoadedLinearScene loaded_;
 };
 
-/// The verb `eig` on such a scene: its eigenvalues, all by the dense method, and why one of them
-/// grows or decays.
+/// The verb `eig` on such a scene: its eigenvalues, all by the dense method or those in a window by
+/// the sparse one, and why one of them grows or decays.
 /// @param mode as chosen_mode()
 ExitCode eig_of_linear_scene(const StabilityOptions& options, bool explain,
                              const std::optional<int>& mode);

@@ -111,7 +111,47 @@ Json windows_json(const std::vector<TimedWindow>& windows) {
   return list;
 }
 
-/// The branches as curves; single values where there are no branches, or one value only.
+/// Eigenvalues that were sampled, as curves: each goes on where its last two points lead to.
+std::vector<std::vector<std::pair<double, std::complex<double>>>> connected(const Locus& locus) {
+  std::vector<std::vector<std::pair<double, std::complex<double>>>> curves;
+  std::vector<std::size_t> open;  // curves that have reached the last value
+  for (std::size_t i = 0; i < locus.values.size(); ++i) {
+    const double value = locus.values[i];
+    std::vector<std::complex<double>> left = locus.eigenvalues[i];
+    std::vector<std::size_t> continued;
+    while (!open.empty() && !left.empty()) {
+      // The closest of all that are left, first.
+      double least = std::numeric_limits<double>::infinity();
+      std::size_t from = 0, to = 0;
+      for (std::size_t k = 0; k < open.size(); ++k) {
+        const auto& curve = curves[open[k]];
+        std::complex<double> expected = curve.back().second;
+        if (curve.size() > 1) {
+          const auto& [last, s] = curve[curve.size() - 2];
+          expected += (expected - s) * ((value - curve.back().first) / (curve.back().first - last));
+        }
+        for (std::size_t j = 0; j < left.size(); ++j) {
+          if (std::abs(left[j] - expected) >= least) continue;
+          least = std::abs(left[j] - expected);
+          from = k;
+          to = j;
+        }
+      }
+      curves[open[from]].emplace_back(value, left[to]);
+      continued.push_back(open[from]);
+      open.erase(open.begin() + static_cast<std::ptrdiff_t>(from));
+      left.erase(left.begin() + static_cast<std::ptrdiff_t>(to));
+    }
+    for (const std::complex<double>& s : left) {
+      continued.push_back(curves.size());
+      curves.push_back({{value, s}});
+    }
+    open = std::move(continued);
+  }
+  return curves;
+}
+
+/// The branches as curves; samples connected where there are no branches.
 std::vector<LocusCurve> curves_of(const Locus& locus, double highest) {
   std::vector<LocusCurve> curves;
   const auto add = [&](LocusCurve& curve, double value, std::complex<double> s) {
@@ -140,10 +180,13 @@ std::vector<LocusCurve> curves_of(const Locus& locus, double highest) {
     for (const auto& [value, s] : points) add(curves.back(), value, s);
   }
   if (!locus.branches.empty()) return curves;
-  for (std::size_t i = 0; i < locus.values.size(); ++i) {
-    for (const std::complex<double>& s : locus.eigenvalues[i]) {
-      curves.emplace_back();
-      add(curves.back(), locus.values[i], s);
+  for (const auto& points : connected(locus)) {
+    curves.emplace_back();
+    for (const auto& [value, s] : points) {
+      // Rounding on the imaginary axis is no growth; pictures show zero as the edge of growth.
+      const bool is_on_axis = std::abs(s.real()) <= 1e-7 * std::abs(s);
+      add(curves.back(), value,
+          is_on_axis ? std::complex<double>(-std::numeric_limits<double>::min(), s.imag()) : s);
     }
   }
   return curves;
@@ -232,6 +275,9 @@ ExitCode locus(const LocusCommandOptions& options) {
   const Locus found =
       locus_along(*family, range.key, 0, {first}, range.values, stability.locus_options());
   progress.finish();
+  const double trusted = std::min(family->trusted_frequency(std::array{range.values.front()}),
+                                  family->trusted_frequency(std::array{range.values.back()}));
+  const double highest = verdict_limit(found, stability.locus_window(), trusted);
 
   std::optional<PassingTimes> times;
   if (loaded->bodies() != nullptr && loaded->default_key() == range.key.path) {
@@ -277,6 +323,7 @@ ExitCode locus(const LocusCommandOptions& options) {
                    {"values", range.values},
                    {"eigenvalues", Json::array()},
                    {"unstable", windows_json(timed_windows(found, times))},
+                   {"window", {0.0, number(highest)}},
                    {"unverified", found.unverified},
                    {"file", options.output ? Json(*options.output) : Json(nullptr)}};
     for (const auto& list : found.eigenvalues) object["eigenvalues"].push_back(complex_list(list));
@@ -284,6 +331,7 @@ ExitCode locus(const LocusCommandOptions& options) {
     return ExitCode::done;
   }
   print_windows(windows, range.key);
+  fmt::print("{}\n", window_text(verdict_limit(shown, stability.locus_window(), trusted)));
   if (!found.unverified.empty()) {
     fmt::print(
         "at {} value(s) it could not be verified that no eigenvalue is missing, the first "

@@ -58,8 +58,9 @@ Axis make_axis(const StabilityScene& scene, const std::vector<std::string>& writ
 
 /// What is found along one line of the grid.
 struct LineResult {
-  std::vector<double> growth;   ///< at every value, 1/s
-  std::vector<double> changes;  ///< of stability, ascending
+  std::vector<double> growth;                                ///< at every value, 1/s
+  std::vector<double> changes;                               ///< of stability, ascending
+  double highest = std::numeric_limits<double>::infinity();  ///< up to where all were looked at, Hz
   std::exception_ptr failure;
 };
 
@@ -78,6 +79,8 @@ LineResult trace_line(StabilityFamily& family, const std::array<Axis, 2>& axes, 
   LineResult result;
   try {
     const Locus locus = locus_along(family, axis.key, varied, values, axis.values, options);
+    result.highest =
+        verdict_limit(locus, {options.count, options.frequency}, family.trusted_frequency(values));
     for (const auto& eigenvalues : locus.eigenvalues)
       result.growth.push_back(largest_growth(eigenvalues));
     for (const StabilityChange& change : stability_changes(locus)) {
@@ -101,8 +104,12 @@ LineResult trace_line(StabilityFamily& family, const std::array<Axis, 2>& axes, 
                                           ? EigenvalueMethod::dense
                                           : EigenvalueMethod::secular;
       std::vector<std::complex<double>> found;
-      for (const Eigenvalue& one : lowest_eigenvalues(family.pencil(values), method, options.count))
+      for (const Eigenvalue& one :
+           lowest_eigenvalues(family.pencil(values), method, {options.count, options.frequency}))
         found.push_back(one.s);
+      result.highest =
+          std::min(result.highest, verdict_limit(found, {options.count, options.frequency},
+                                                 family.trusted_frequency(values)));
       growth = largest_growth(found);
     } catch (const NumericalError&) {
     }
@@ -180,6 +187,7 @@ StabilityMap make_map(const StabilityScene& loaded, const std::array<Axis, 2>& a
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const bool is_row = i < map.y.size();
     if (is_row) map.growth.push_back(lines[i].growth);
+    map.highest_frequency = std::min(map.highest_frequency, lines[i].highest);
     (is_row ? crossings.along_x : crossings.along_y).push_back(lines[i].changes);
   }
   map.boundary = boundary_lines(crossings);
@@ -264,6 +272,7 @@ ExitCode map(const MapOptions& options) {
                    {"method", stability.method},
                    {"x", found.x},
                    {"y", found.y},
+                   {"window", {0.0, number(found.highest_frequency)}},
                    {"growth", Json::array()},
                    {"boundary", found.boundary}};
     for (const auto& row : found.growth) {
@@ -280,6 +289,7 @@ ExitCode map(const MapOptions& options) {
         std::count_if(row.begin(), row.end(), [](double growth) { return growth > 0.0; }));
   fmt::print("{} of {} points are unstable; the boundary has {} line(s)\n", num_unstable,
              found.x.size() * found.y.size(), found.boundary.size());
+  fmt::print("{}\n", window_text(found.highest_frequency));
   for (const auto& file : {options.output, options.figure})
     if (file) fmt::print("{}\n", *file);
   return ExitCode::done;

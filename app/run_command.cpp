@@ -9,11 +9,13 @@
 
 #include "app/command.hpp"
 #include "app/damage_guard.hpp"
+#include "app/disc_run.hpp"
 #include "app/expectations.hpp"
 #include "app/progress.hpp"
 #include "app/sphere_run.hpp"
 #include "app/transient.hpp"
 #include "core/errors.hpp"
+#include "io/linear_scene.hpp"
 #include "io/sphere_scene.hpp"
 
 namespace stridor {
@@ -122,6 +124,10 @@ ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::
 ExitCode begin(const RunOptions& options) {
   if (is_sphere_scene_file(options.scene)) {
     return run_sphere(
+        {options.common, options.scene, options.output, options.verify, options.command_line});
+  }
+  if (is_linear_scene_file(options.scene)) {
+    return run_disc(
         {options.common, options.scene, options.output, options.verify, options.command_line});
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);

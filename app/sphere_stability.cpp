@@ -22,6 +22,9 @@ class SphereFamily : public StabilityFamily {
     return make_pencil(
         oscillator, small_motion(oscillator, sphere_equilibrium(oscillator), model.small_motion));
   }
+  double trusted_frequency(std::span<const double>) override {
+    return std::numeric_limits<double>::infinity();
+  }
 
  private:
   SphereScene scene_;
@@ -167,6 +170,7 @@ Json sphere_equilibrium_json(const SphereNumbers& numbers, const SubstrateOscill
 }
 
 ExitCode eig_of_sphere(const StabilityOptions& options) {
+  if (options.below) throw ConfigError("--below", "is for scenes whose frequencies are in Hz");
   const LoadedSphereScene loaded = load_sphere_scene(options.scene, options.common.sets);
   const SphereModelParameters& model = loaded.scene.model;
   const SphereNumbers numbers = sphere_numbers(model.sphere);
@@ -174,7 +178,7 @@ ExitCode eig_of_sphere(const StabilityOptions& options) {
   const SubstrateEquilibrium equilibrium = sphere_equilibrium(oscillator);
   const SmallMotion motion = small_motion(oscillator, equilibrium, model.small_motion);
   const std::vector<Eigenvalue> found = lowest_eigenvalues(
-      make_pencil(oscillator, motion), options.eigenvalue_method(), options.count);
+      make_pencil(oscillator, motion), options.eigenvalue_method(), options.window());
   bool is_stable = true;
   for (const Eigenvalue& one : found) is_stable = is_stable && !is_growing(one);
 

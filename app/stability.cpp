@@ -51,6 +51,10 @@ Json contact_json(const System& system, const Equilibrium& equilibrium, std::siz
 
 }  // namespace
 
+SpectrumWindow StabilityOptions::locus_window() const {
+  return {count, window().frequency};
+}
+
 ContactGeometry StabilityOptions::geometry() const {
   return about == "deformed" ? ContactGeometry::deformed : ContactGeometry::undeformed;
 }
@@ -63,7 +67,16 @@ LocusOptions StabilityOptions::locus_options() const {
   LocusOptions options;
   options.method = method == "dense" ? LocusMethod::dense : LocusMethod::secular;
   options.count = count;
+  options.frequency = window().frequency;
   return options;
+}
+
+SpectrumWindow StabilityOptions::window() const {
+  if (!below) return SpectrumWindow::lowest(count);
+  const NumericKey frequency{"--below", "Hz", Range::positive()};
+  SpectrumWindow window = SpectrumWindow::below(parse_value(frequency, *below, "--below"));
+  if (count_option != nullptr && count_option->count() > 0) window.count = count;
+  return window;
 }
 
 void add_range_options(CLI::App& verb, RangeOptions& options) {
@@ -85,9 +98,13 @@ void add_stability_options(CLI::App& verb, StabilityOptions& options) {
                   "secular (default): zeros of the secular function; dense: all eigenvalues of the "
                   "assembled matrices, as a check")
       ->check(CLI::IsMember({"secular", "dense"}));
-  verb.add_option("--count", options.count,
-                  "How many eigenvalues with positive frequency, lowest first")
-      ->check(CLI::Range(1, 100000));
+  options.count_option =
+      verb.add_option("--count", options.count,
+                      "How many eigenvalues with positive frequency, lowest first")
+          ->check(CLI::Range(1, 100000));
+  verb.add_option("--below", options.below,
+                  "Only those up to this frequency, Hz or with a unit; eig lists all of them where "
+                  "no --count is given");
   add_scene_options(verb, options.common);
   add_json_option(verb, options.common);
 }
@@ -179,18 +196,46 @@ std::string value_text(const NumericKey& key, double value) {
 }
 
 std::vector<Eigenvalue> lowest_eigenvalues(const Pencil& pencil, EigenvalueMethod method,
-                                           int count) {
-  if (method == EigenvalueMethod::secular)
-    return secular_eigenvalues(pencil, SpectrumWindow::lowest(count));
+                                           const SpectrumWindow& window) {
+  if (method == EigenvalueMethod::secular) return secular_eigenvalues(pencil, window);
   std::vector<Eigenvalue> all = [&] {
     const std::scoped_lock guard(blas_in_use);
     return dense_eigenvalues(pencil);
   }();
+  keep_window(all, window);
+  return all;
+}
+
+void keep_window(std::vector<Eigenvalue>& all, const SpectrumWindow& window) {
   const auto first = std::find_if(all.begin(), all.end(),
                                   [](const Eigenvalue& one) { return one.s.imag() > 0.0; });
-  const std::ptrdiff_t kept = std::min<std::ptrdiff_t>(count, all.end() - first);
-  all.erase(first + kept, all.end());
-  return all;
+  auto last = std::find_if(
+      first, all.end(), [&](const Eigenvalue& one) { return one.frequency() > window.frequency; });
+  if (window.count)
+    last = std::min(last, first + std::min<std::ptrdiff_t>(*window.count, last - first));
+  all.erase(last, all.end());
+}
+
+double verdict_limit(std::span<const std::complex<double>> eigenvalues,
+                     const SpectrumWindow& window, double trusted) {
+  const auto num_vibrating = std::count_if(eigenvalues.begin(), eigenvalues.end(),
+                                           [](const auto& s) { return s.imag() > 0.0; });
+  double highest = std::min(trusted, window.frequency);
+  if (window.count && num_vibrating >= *window.count)
+    highest = std::min(highest, eigenvalues.back().imag() / (2.0 * std::numbers::pi));
+  return highest;
+}
+
+std::string window_text(double highest) {
+  if (!std::isfinite(highest)) return "the verdict holds at all frequencies";
+  return fmt::format("the verdict holds between 0 and {:.6g} Hz", highest);
+}
+
+double verdict_limit(const Locus& locus, const SpectrumWindow& window, double trusted) {
+  double highest = trusted;
+  for (const auto& eigenvalues : locus.eigenvalues)
+    highest = std::min(highest, verdict_limit(eigenvalues, window, trusted));
+  return highest;
 }
 
 namespace {
@@ -251,6 +296,13 @@ SlidingState BodyStabilityFamily::at(std::span<const double> values) {
   return state;
 }
 
+double BodyStabilityFamily::trusted_frequency(std::span<const double> values) {
+  const std::scoped_lock guard(blas_in_use);
+  const double kept =
+      time_.retain ? time_.retain->frequency : std::numeric_limits<double>::infinity();
+  return std::min(kept, stridor::trusted_frequency(family_.at(values).model->system));
+}
+
 PencilFamily StabilityFamily::along(std::size_t key, std::vector<double> values, double from,
                                     double to) {
   PencilFamily along;
@@ -293,7 +345,8 @@ Locus locus_at(PencilFamily family, const std::vector<double>& range, const Locu
     family.place(value, pencil);
     locus.eigenvalues.emplace_back();
     const Eigenvalue* fastest = nullptr;
-    const std::vector<Eigenvalue> eigenvalues = lowest_eigenvalues(pencil, method, options.count);
+    const std::vector<Eigenvalue> eigenvalues =
+        lowest_eigenvalues(pencil, method, {options.count, options.frequency});
     for (const Eigenvalue& one : eigenvalues) {
       locus.eigenvalues.back().push_back(one.s);
       if (is_growing(one) && (fastest == nullptr || one.growth() > fastest->growth()))

@@ -12,6 +12,7 @@
 #include "app/command.hpp"
 #include "io/scene_family.hpp"
 #include "solvers/linearise.hpp"
+#include "solvers/secular_eigenvalues.hpp"
 
 namespace stridor {
 
@@ -24,7 +25,14 @@ struct StabilityOptions {
   std::string about = "undeformed";
   std::string method = "secular";
   int count = 20;
+  std::optional<std::string> below;           ///< frequency, as written
+  const CLI::Option* count_option = nullptr;  ///< tells whether a count was given
 
+  /// The eigenvalues wanted: the lowest ones, or all below a frequency.
+  /// @throws ConfigError if the frequency is none
+  SpectrumWindow window() const;
+  /// That of locus_options(): the lowest ones, and none above the frequency.
+  SpectrumWindow locus_window() const;
   ContactGeometry geometry() const;
   EigenvalueMethod eigenvalue_method() const;
   LocusOptions locus_options() const;
@@ -89,6 +97,8 @@ class StabilityFamily {
   /// @param values one per key
   /// @throws ConfigError, NumericalError naming the values
   virtual Pencil pencil(std::span<const double> values) = 0;
+  /// Frequency up to which the model answers as the bodies do, Hz; may be infinite.
+  virtual double trusted_frequency(std::span<const double> values) = 0;
   /// Whether eigenvalues are sampled rather than followed (analysis/sampled_locus.hpp).
   virtual bool is_sampled() const { return false; }
 
@@ -119,6 +129,7 @@ class BodyStabilityFamily : public StabilityFamily {
   /// With the modes that `time.retain` keeps.
   SlidingState at(std::span<const double> values);
   Pencil pencil(std::span<const double> values) override { return at(values).pencil; }
+  double trusted_frequency(std::span<const double> values) override;
 
  private:
   std::vector<double> kinks(std::size_t key, const std::vector<double>& values, double from,
@@ -187,11 +198,24 @@ struct StabilityChange {
 /// Of all crossings those at which the number of growing eigenvalues leaves or reaches zero.
 std::vector<StabilityChange> stability_changes(const Locus& locus);
 
-/// Real eigenvalues, then the lowest `count` with positive imaginary part; those there are where
-/// there are fewer.
+/// Real eigenvalues, then those of a window with positive imaginary part, lowest first; those there
+/// are where there are fewer.
 /// @throws NumericalError if they cannot be found
 std::vector<Eigenvalue> lowest_eigenvalues(const Pencil& pencil, EigenvalueMethod method,
-                                           int count);
+                                           const SpectrumWindow& window);
+
+/// Leaves real eigenvalues, and those of a window with positive imaginary part.
+/// @param all ascending Im s
+void keep_window(std::vector<Eigenvalue>& all, const SpectrumWindow& window);
+
+/// Up to where a verdict over some of the lowest eigenvalues holds, Hz: to the highest that was
+/// computed, to where the window ends, and no further than the model answers for.
+double verdict_limit(std::span<const std::complex<double>> eigenvalues,
+                     const SpectrumWindow& window, double trusted);
+/// The same for all values of a locus.
+double verdict_limit(const Locus& locus, const SpectrumWindow& window, double trusted);
+/// "the verdict holds between 0 and 7494.83 Hz"
+std::string window_text(double highest);
 
 /// Whether a motion grows: Re s > 0 by more than rounding, 1e-10 |s|.
 bool is_growing(const Eigenvalue& eigenvalue);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <numbers>
 
@@ -42,6 +43,7 @@ ExitCode threshold(const ThresholdOptions& options, const KeyRange& range, Growt
   Json object = {{"parameter", range.key.path},
                  {"from", range.values.front()},
                  {"to", range.values.back()},
+                 {"window", {0.0, nullptr}},
                  {"roots", Json::array()}};
   bool is_unstable = starts_unstable;
   for (const double root : roots) {
@@ -72,12 +74,16 @@ ExitCode threshold(const ThresholdOptions& options) {
   const Locus locus = locus_along(*family, range.key, 0, {range.values.front()}, range.values,
                                   stability.locus_options());
   const std::vector<StabilityChange> changes = stability_changes(locus);
+  const double trusted = std::min(family->trusted_frequency(std::array{range.values.front()}),
+                                  family->trusted_frequency(std::array{range.values.back()}));
+  const double highest = verdict_limit(locus, stability.locus_window(), trusted);
 
   if (stability.common.json) {
-    Json object = {{"parameter", range.key.path}, {"about", stability.about},
-                   {"method", stability.method},  {"from", range.values.front()},
-                   {"to", range.values.back()},   {"roots", Json::array()},
-                   {"crossings", Json::array()},  {"unverified", locus.unverified}};
+    Json object = {{"parameter", range.key.path},   {"about", stability.about},
+                   {"method", stability.method},    {"from", range.values.front()},
+                   {"to", range.values.back()},     {"roots", Json::array()},
+                   {"crossings", Json::array()},    {"window", {0.0, number(highest)}},
+                   {"unverified", locus.unverified}};
     for (const StabilityChange& change : changes) {
       object["roots"].push_back({{"value", change.value},
                                  {"frequency", change.frequency},
@@ -100,6 +106,7 @@ ExitCode threshold(const ThresholdOptions& options) {
                value_text(range.key, range.values.front()),
                value_text(range.key, range.values.back()));
   }
+  fmt::print("{}\n", window_text(highest));
   return ExitCode::done;
 }
 

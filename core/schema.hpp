@@ -100,6 +100,7 @@ struct Key {
   bool is_optional = false;
   std::string absent_word;           ///< of an optional section: may stand for "not given"
   std::vector<std::string> choices;  ///< of a choice
+  bool has_rows = false;             ///< of a text_list: a list of numbers stands for their text
   std::string discriminator;         ///< of named_sections with several alternatives, e.g. "type"
   std::vector<Alternative> alternatives;
 
@@ -247,6 +248,14 @@ class SchemaOf {
   SchemaOf& text_list(std::string name, M T::*member, PlainKey says) {
     return add(KeyKind::text_list, std::move(name), member,
                RealKey{std::move(says.doc), "", {}, says.optional});
+  }
+
+  /// A text_list of which an entry may also be a list of numbers, `[1, 0]` for "1 0".
+  template <class M>
+  SchemaOf& text_rows(std::string name, M T::*member, PlainKey says) {
+    text_list(std::move(name), member, std::move(says));
+    schema_.keys.back().has_rows = true;
+    return *this;
   }
 
   /// An enum; `names` pairs what the user writes with what it means.

@@ -2,20 +2,37 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <stdexcept>
 
+#include "core/errors.hpp"
 #include "io/matrix_market.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_reader.hpp"
+#include "substructures/sparse_cholesky.hpp"
 
 namespace stridor {
 namespace {
 
 PlainKey format_key() {
   return {.doc = "Version of the scene language: 1.", .range = Range::between(1, 1)};
+}
+
+void check_interval(const DiscScene& scene, std::vector<Problem>& problems) {
+  if (!scene.record || !scene.time) return;
+  const double ratio = scene.record->interval / scene.time->step;
+  if (ratio < 1.0 - 1e-9 || std::abs(ratio - std::round(ratio)) > 1e-6 || ratio > 1e5) {
+    problems.push_back(
+        {"record.interval",
+         fmt::format("must be a whole multiple of time.step = {:g} s, up to 100000 of "
+                     "them; got {:g} s",
+                     scene.time->step, scene.record->interval),
+         {},
+         0,
+         0});
+  }
 }
 
 /// The matrices of one body, with checks that name their keys.
@@ -101,26 +118,71 @@ LinearModel model_of(const DiscScene& scene, const std::string&) {
 LinearModel model_of(const MatrixScene& scene, const std::string& path) {
   const auto& [name, body] = *scene.substructures.begin();
   const std::string key = "substructures." + name + ".mass";
-  const SparseSystem sparse =
+  SparseSystem sparse =
       MatrixLoader("substructures." + name, path).load(std::get<MatrixBodyParameters>(body));
-  if (sparse.size() > largest_matrix_size) {
-    throw ConfigError(key, fmt::format("has {} unknowns; at most {} are handled", sparse.size(),
-                                       largest_matrix_size));
+  try {
+    SparseCholesky(sparse.mass, "the mass");
+  } catch (const NumericalError&) {
+    throw ConfigError(key, "must be positive definite");
   }
   LinearModel model;
-  model.dense = dense_system(sparse);
   model.highest_frequency = std::numeric_limits<double>::infinity();
-  if (Eigen::LLT<Eigen::MatrixXd>(model.dense.mass).info() != Eigen::Success)
-    throw ConfigError(key, "must be positive definite");
+  if (sparse.size() > largest_dense_size) {
+    model.sparse = std::move(sparse);
+  } else {
+    model.dense = dense_system(sparse);
+  }
   return model;
 }
 
 }  // namespace
 
 const Schema& DiscScene::schema() {
-  static const Schema keys = SchemaOf<DiscScene>("disc_and_pads")
-                                 .integer("format", &DiscScene::format, format_key())
-                                 .include(&DiscScene::model);
+  static const Schema keys =
+      SchemaOf<DiscScene>("disc_and_pads")
+          .integer("format", &DiscScene::format, format_key())
+          .include(&DiscScene::model)
+          .section("time", &DiscScene::time, {.doc = "Steps of `run`.", .optional = true})
+          .section("initial", &DiscScene::initial,
+                   {.doc = "Where `run` starts, about steady sliding.", .optional = true})
+          .section("record", &DiscScene::record, {.doc = "What `run` writes.", .optional = true})
+          .section_list("expect", &DiscScene::expect,
+                        {.doc = "Results that `run --verify` checks.", .optional = true})
+          .check(check_interval);
+  return keys;
+}
+
+const Schema& DiscTimeParameters::schema() {
+  static const Schema keys =
+      SchemaOf<DiscTimeParameters>("disc_time")
+          .real("step", &DiscTimeParameters::step,
+                {.doc = "Time step. What is linear is exact at any step; a contact that opens or "
+                        "sticks is of second order in it.",
+                 .unit = "s",
+                 .range = Range::positive()})
+          .real("end", &DiscTimeParameters::end,
+                {.doc = "End of the run.", .unit = "s", .range = Range::positive()});
+  return keys;
+}
+
+const Schema& DiscInitialParameters::schema() {
+  static const Schema keys =
+      SchemaOf<DiscInitialParameters>("disc_initial")
+          .section(
+              "perturbation", &DiscInitialParameters::perturbation,
+              {.doc = "An eigenvector of the motion about steady sliding; its amplitude is the "
+                      "largest displacement of a pad."});
+  return keys;
+}
+
+const Schema& DiscRecordParameters::schema() {
+  static const Schema keys =
+      SchemaOf<DiscRecordParameters>("disc_record")
+          .real("interval", &DiscRecordParameters::interval,
+                {.doc = "Time between samples, a multiple of time.step; motions and forces are "
+                        "low-passed before they are thinned to it.",
+                 .unit = "s",
+                 .range = Range::positive()});
   return keys;
 }
 

@@ -11,14 +11,37 @@
 #include "io/scene_family.hpp"
 #include "io/scene_tree.hpp"
 #include "models/disc_model.hpp"
+#include "models/initial_parameters.hpp"
 #include "substructures/matrix_body.hpp"
 
 namespace stridor {
 
-/// A scene of this kind is known by its section `disc`.
+/// How a disc with pads moves in time.
+struct DiscTimeParameters {
+  double step = 0.0;  ///< s, > 0
+  double end = 0.0;   ///< s, > 0
+  static const Schema& schema();
+};
+
+/// Where it starts: about steady sliding.
+struct DiscInitialParameters {
+  PerturbationParameters perturbation;  ///< amplitude: of the pads
+  static const Schema& schema();
+};
+
+struct DiscRecordParameters {
+  double interval = 0.0;  ///< between samples, s, a multiple of time.step
+  static const Schema& schema();
+};
+
+/// A scene of this kind is known by its section `disc`. The last four sections are for `run`.
 struct DiscScene {
   int format = 0;
   DiscModelParameters model;
+  std::optional<DiscTimeParameters> time;
+  std::optional<DiscInitialParameters> initial;
+  std::optional<DiscRecordParameters> record;
+  std::vector<Expectation> expect;
   static const Schema& schema();
 };
 
@@ -45,13 +68,14 @@ const void* object_of(const LinearScene& scene);
 
 /// Matrices of a scene and where they come from.
 struct LinearModel {
-  LinearSystem dense;
-  std::optional<DiscModel> disc;   ///< of a disc
-  double highest_frequency = 0.0;  ///< up to which the model answers, Hz; may be infinite
+  LinearSystem dense;                  ///< empty where there is `sparse`
+  std::optional<SparseSystem> sparse;  ///< of more than `largest_dense_size` unknowns
+  std::optional<DiscModel> disc;       ///< of a disc
+  double highest_frequency = 0.0;      ///< up to which the model answers, Hz; may be infinite
 };
 
-/// Largest number of unknowns: all eigenvalues are computed, at a cost of its third power.
-constexpr Eigen::Index largest_matrix_size = 1000;
+/// Number of unknowns up to which all eigenvalues are computed, at a cost of its third power.
+constexpr Eigen::Index largest_dense_size = 1000;
 
 /// @param path of the scene: files of matrices are looked for in its folder
 /// @throws ConfigError with the key path, or with the place in a matrix file; FileError

@@ -9,6 +9,7 @@
 //                             to_time, gain: one entry per window
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,8 @@ struct StabilityMap {
   std::vector<double> y;
   std::vector<std::vector<double>> growth;  ///< largest Re s, 1/s, a row per y; NaN: no equilibrium
   std::vector<BoundaryLine> boundary;
+  /// The eigenvalues looked at are all up to this frequency, Hz.
+  double highest_frequency = std::numeric_limits<double>::infinity();
 };
 
 /// Writes a map to a file of its own: /x, /y, /growth [y][x], /boundary/<k> [point][x, y].

@@ -249,7 +249,7 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
     throw loaded.located(
         ConfigError(is_disc_scene(loaded.tree) ? "disc" : "substructures",
                     "belongs to a scene of small motion, for the verbs eig, locus, threshold and "
-                    "map"));
+                    "map; run takes discs"));
   }
   loaded.scene = read_as<Scene>(loaded.tree);
   return loaded;

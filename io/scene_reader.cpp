@@ -428,12 +428,24 @@ class Reader {
     add_text_problems(node, path);
     std::vector<std::string> texts;
     for (std::size_t i = 0; i < node.items.size(); ++i) {
-      if (is_scalar(node.items[i], "a text", join_path(path, std::to_string(i)))) {
-        texts.push_back(node.items[i].text);
+      const SceneNode& item = node.items[i];
+      const std::string item_path = join_path(path, std::to_string(i));
+      if (key.has_rows && item.kind == Kind::list) {
+        if (auto row = read_row(item, item_path)) texts.push_back(std::move(*row));
+      } else if (is_scalar(item, key.has_rows ? "a row of numbers" : "a text", item_path)) {
+        texts.push_back(item.text);
       }
     }
     if (texts.size() != node.items.size()) return {};
     return texts;
+  }
+
+  /// The text of a list of numbers, as they are written.
+  std::optional<std::string> read_row(const SceneNode& node, const std::string& path) {
+    add_text_problems(node, path);
+    const auto numbers = read_reals(node, "", Range::any(), path);
+    if (!numbers) return std::nullopt;
+    return fmt::format("{}", fmt::join(*numbers, " "));
   }
 
   Value read_constant(const SceneNode& node, const Key& key, const std::string& path) {
@@ -517,7 +529,7 @@ std::string expected_of(const Key& key) {
     case KeyKind::real_list:
       return in_unit("a list of numbers", key.unit);
     case KeyKind::text_list:
-      return "a text or a list of texts";
+      return key.has_rows ? "a text, or a list of rows of numbers" : "a text or a list of texts";
     case KeyKind::curve:
       return in_unit("a number", key.unit) + " or {times: [...], values: [...]}";
     case KeyKind::section:

@@ -190,7 +190,7 @@ class Page {
       case KeyKind::real_list:
         return "list of numbers" + unit;
       case KeyKind::text_list:
-        return "text or list of texts";
+        return key.has_rows ? "text or list of rows" : "text or list of texts";
       case KeyKind::curve:
         return "curve" + unit;
       case KeyKind::section:

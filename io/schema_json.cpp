@@ -217,7 +217,8 @@ class Writer {
         return json;
       case KeyKind::text_list:
         json = typed("string", "array");
-        json["items"] = typed("string");
+        json["items"] = key.has_rows ? typed("string", "array") : typed("string");
+        if (key.has_rows) json["items"]["items"] = typed("number");
         return json;
       case KeyKind::curve:
         json["oneOf"] = Json::array({real_json(key.unit, key.range), table_json(key)});

@@ -48,6 +48,8 @@ class ExponentialPropagator {
 
   /// Displacement at t_{n+1} per force that is constant from t_n on, m/N: n x n.
   Eigen::MatrixXd compliance() const { return by_constant_.topRows(size_); }
+  /// (q, q̇) at t_{n+1} per force that grows from nothing at t_n: 2n x n.
+  const Eigen::MatrixXd& slope_response() const { return by_slope_; }
 
  private:
   Eigen::Index size_;

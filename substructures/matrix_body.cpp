@@ -7,22 +7,22 @@ const Schema& MatrixBodyParameters::schema() {
   const auto matrix = [](const char* doc, bool is_optional) {
     return PlainKey{.doc = std::string(doc) +
                            " The name of a Matrix Market file, from the folder of the scene, or a "
-                           "list of rows, each a text of numbers.",
+                           "list of rows, each a list or a text of numbers.",
                     .optional = is_optional};
   };
   static const Schema keys =
       SchemaOf<P>("matrices")
-          .text_list("mass", &P::mass, matrix("Mass matrix, symmetric positive definite.", false))
-          .text_list("damping", &P::damping, matrix("Damping matrix.", true))
-          .text_list("gyroscopic", &P::gyroscopic,
+          .text_rows("mass", &P::mass, matrix("Mass matrix, symmetric positive definite.", false))
+          .text_rows("damping", &P::damping, matrix("Damping matrix.", true))
+          .text_rows("gyroscopic", &P::gyroscopic,
                      matrix("Gyroscopic matrix, skew-symmetric.", true))
-          .text_list("stiffness", &P::stiffness, matrix("Stiffness matrix.", false))
-          .text_list("circulatory", &P::circulatory,
+          .text_rows("stiffness", &P::stiffness, matrix("Stiffness matrix.", false))
+          .text_rows("circulatory", &P::circulatory,
                      matrix("Circulatory matrix, skew-symmetric.", true))
           .real("load", &P::load, {.doc = "Factor of the matrices below.", .optional = true})
-          .text_list("load_damping", &P::load_damping,
+          .text_rows("load_damping", &P::load_damping,
                      matrix("What one unit of load adds to the velocity matrix.", true))
-          .text_list("load_stiffness", &P::load_stiffness,
+          .text_rows("load_stiffness", &P::load_stiffness,
                      matrix("What one unit of load adds to the position matrix.", true));
   return keys;
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes the figures of README.md, docs/tutorial.md, docs/seeds.md, docs/viscoelastic_contact.md,
-# docs/viscoelastic_sphere.md and docs/precision.md anew; takes some minutes.
+# docs/viscoelastic_sphere.md, docs/precision.md and docs/disc_and_pads.md anew; takes some minutes.
 # Usage: docs/figures/make.sh [STRIDOR], by default build/release/stridor of this source tree.
 set -euo pipefail
 here=$(CDPATH='' cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
@@ -45,3 +45,15 @@ for name in modulus cuts scatter; do cp "$work/fit/$name.png" "$here/fit_$name.p
 cp "$work/precision/precision.png" "$here/precision.png"
 
 "$here/regularisation.sh" "$stridor" "$here/regularisation.png" >/dev/null
+root_locus() {  # FIGURE SCENE FROM TO [OPTION...]
+  local figure=$1 scene=$2 from=$3 to=$4
+  shift 4
+  "$stridor" locus "$source_folder/scenes/examples/$scene.yaml" --parameter substructures.oscillator.load \
+    --from "$from" --to "$to" --points 401 --history "$here/root_locus_$figure.png" --force "$@" >/dev/null
+}
+root_locus gyroscopic gyroscopic 0 1
+root_locus flutter flutter 0 0.4
+root_locus equal_damping flutter_equal_damping 0 0.4
+root_locus uneven_damping flutter_ziegler 0 0.4 --set "substructures.oscillator.damping=[[0.1, 0], [0, 0.3]]"
+root_locus ziegler flutter_ziegler 0 0.4
+root_locus gyroscopic_flutter flutter_gyroscopic 0 0.4

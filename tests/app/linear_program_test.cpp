@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace stridor {
 namespace {
@@ -133,7 +135,11 @@ TEST(DiscProgram, LocusListsEigenvaluesAndWindows) {
 }
 
 TEST(DiscProgram, RefusesWhatItHasNot) {
-  EXPECT_THAT(Program({"run", brake, "-o", "x.h5"}).run().err, HasSubstr("small motion"));
+  const std::string no_run = Program({"run", brake, "-o", "x.h5"}).run().err;
+  EXPECT_THAT(no_run, HasSubstr("contact.formulation: must be `penalty` for run"));
+  EXPECT_THAT(Program({"run", scene_path("examples/flutter.yaml"), "-o", "x.h5"}).run().err,
+              HasSubstr("has no contacts to run with"));
+  EXPECT_THAT(Program({"eig", brake, "--below", "3 m"}).run().err, HasSubstr("--below"));
   EXPECT_THAT(Program({"eig", brake, "--at", "1"}).run().err, HasSubstr("--at"));
   EXPECT_THAT(Program({"eig", brake, "--shapes", "x"}).run().err, HasSubstr("--shapes"));
   const ProgramResult unnamed = Program({"threshold", brake, "--from", "0", "--to", "1"}).run();
@@ -141,6 +147,69 @@ TEST(DiscProgram, RefusesWhatItHasNot) {
   EXPECT_THAT(unnamed.err, HasSubstr("name a key"));
   EXPECT_EQ(Program({"check", brake}).run().exit_code, 0);
   EXPECT_EQ(Program({"check", brake, "--set", "terms=[x]"}).run().exit_code, 2);
+}
+
+TEST(DiscProgram, EveryVerbStatesItsWindow) {
+  const std::vector<std::string> range{"--parameter", friction, "--from",   "0.3",
+                                       "--to",        "0.4",    "--points", "2"};
+  for (const std::string verb : {"locus", "threshold"}) {
+    const auto window_of = [&](std::vector<std::string> more) {
+      std::vector<std::string> arguments{verb, brake};
+      arguments.insert(arguments.end(), range.begin(), range.end());
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      return json_of(arguments)["window"][1].get<double>();
+    };
+    EXPECT_NEAR(window_of({}), 7494.83, 0.01) << verb;  // what the plate leaves out
+    EXPECT_EQ(window_of({"--below", "2 kHz"}), 2000.0) << verb;
+    EXPECT_LT(window_of({"--count", "3"}), 1700.0) << verb;  // the third of 17
+  }
+  EXPECT_NEAR(json_of({"map", brake, "--x", friction, "0.3", "0.4", "2", "--y", "disc.speed", "5",
+                       "20", "2"})["window"][1]
+                  .get<double>(),
+              7494.83, 0.01);
+  const Json eig = json_of({"eig", brake, "--below", "2 kHz"});
+  EXPECT_EQ(eig["window"][1], 2000.0);
+  for (const Json& s : eig["eigenvalues"]) EXPECT_LT(s[1].get<double>(), 2.0 * 3.14159266 * 2000.0);
+}
+
+TEST(DiscProgram, RunsIntoABoundedCycle) {
+  const TemporaryFolder folder;
+  const std::string squeal = scene_path("examples/disc_squeal.yaml");
+  const Json run =
+      json_of({"run", squeal, "-o", (folder / "run.h5").string(), "--set", "time.end=0.04"});
+  EXPECT_EQ(run["status"], "finished");
+  // Without what only run needs.
+  const std::string bare = (folder / "bare.yaml").string();
+  std::ifstream whole(squeal);
+  std::ofstream without(bare);
+  for (std::string line; std::getline(whole, line) && !line.starts_with("time:");)
+    without << line << '\n';
+  without.close();
+  const std::string missing = Program({"run", bare, "-o", (folder / "x.h5").string()}).run().err;
+  for (const std::string key : {"time", "initial", "record"})
+    EXPECT_THAT(missing, HasSubstr(key + ": is required for run"));
+  for (const std::string set : {"contact.preload=0", "disc.speed=0"}) {
+    const std::string err = Program({"run", squeal, "-o", (folder / "x.h5").string(), "--set", set,
+                                     "--set", "terms=[friction]"})
+                                .run()
+                                .err;
+    EXPECT_THAT(err, HasSubstr("must be positive for run")) << set;
+  }
+  EXPECT_GT(run["perturbation"]["growth"].get<double>(), 100.0);
+  EXPECT_GT(run["free_fraction"].get<double>(), 0.05);
+  EXPECT_GE(run["contacts"]["upper"]["contact_force"]["min"].get<double>(), 0.0);
+  const Json info = json_of({"info", (folder / "run.h5").string()});
+  EXPECT_THAT(info.dump(), HasSubstr("pad.upper.z.displacement"));
+  EXPECT_THAT(
+      Program({"run", squeal, "-o", (folder / "y.h5").string(), "--set", "record.interval=1.5e-6"})
+          .run()
+          .err,
+      HasSubstr("record.interval: must be a whole multiple of time.step"));
+  EXPECT_THAT(Program({"run", squeal, "-o", (folder / "y.h5").string(), "--set",
+                       "initial.perturbation.eigenvalue=99"})
+                  .run()
+                  .err,
+              HasSubstr("there are 19 modes, got 99"));
 }
 
 double example_limit(const std::string& name, const std::string& key, const std::string& to,

@@ -58,6 +58,40 @@ TEST(MatrixScene, AddsItsMatricesUp) {
   EXPECT_TRUE(std::isinf(folder.model({}).highest_frequency));
 }
 
+TEST(MatrixScene, RowsAreListsOrTexts) {
+  const MatrixFolder folder;
+  const std::string body = "substructures.body.";
+  const LinearSystem found =
+      folder.model({body + "mass=[[4, 1], [1, 2.5e0]]", body + "gyroscopic=[[0, 3], '-3 0']"})
+          .dense;
+  EXPECT_EQ(found.mass, (Eigen::MatrixXd{{4.0, 1.0}, {1.0, 2.5}}));
+  EXPECT_EQ(found.velocity, (Eigen::MatrixXd{{0.0, 3.0}, {-3.0, 0.0}}));
+  EXPECT_THAT(folder.failure({body + "mass=[[1, 0], [0]]"}),
+              HasSubstr("mass: row 2 has 1 numbers, expected 2"));
+  EXPECT_THAT(folder.failure({body + "mass=[[1, x], [0, 1]]"}),
+              HasSubstr("mass.0.1: 'x' is not a number"));
+}
+
+TEST(MatrixScene, LargeMatricesStaySparse) {
+  const test::TemporaryFolder folder;
+  constexpr int n = 1001;
+  for (const std::string name : {"M", "K"}) {
+    std::ofstream file((folder / (name + ".mtx")).string());
+    file << "%%MatrixMarket matrix coordinate real symmetric\n"
+         << n << ' ' << n << ' ' << (name == "M" ? n : 2 * n - 1) << '\n';
+    for (int i = 1; i <= n; ++i) file << i << ' ' << i << (name == "M" ? " 1\n" : " 2\n");
+    if (name == "M") continue;
+    for (int i = 1; i < n; ++i) file << i + 1 << ' ' << i << " -1\n";
+  }
+  const std::string path = (folder / "scene.yaml").string();
+  std::ofstream(path) << "format: 1\nsubstructures:\n  chain: {type: matrices, mass: M.mtx, "
+                         "stiffness: K.mtx}\n";
+  const LinearModel model = load_linear_scene(path, {}).model();
+  ASSERT_TRUE(model.sparse.has_value());
+  EXPECT_EQ(model.sparse->size(), n);
+  EXPECT_EQ(model.sparse->position.nonZeros(), 3 * n - 2);
+}
+
 TEST(MatrixScene, SaysWhichMatrixIsWrong) {
   const MatrixFolder folder;
   const std::string body = "substructures.body.";

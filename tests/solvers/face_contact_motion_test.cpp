@@ -1,0 +1,178 @@
+#include "solvers/face_contact_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "solvers/dense_eigenvalues.hpp"
+#include "tests/support/reference_brake.hpp"
+
+namespace stridor {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// The reference brake with friction far beyond its limit, by a penalty.
+DiscModelParameters squealing_brake() {
+  DiscModelParameters brake = test::reference_brake(
+      {"gyroscopic", "friction", "friction_damping", "geometric", "structural_damping"});
+  brake.disc.damping.beta = brake.pads.damping.beta = 1e-7;
+  brake.contact.friction.coefficient = 0.45;
+  brake.contact.formulation = ContactFormulation::penalty;
+  brake.contact.penalty = 1e10;
+  return brake;
+}
+
+FaceContactLaw law_of(const DiscModelParameters& brake) {
+  return {brake.contact.preload, brake.contact.friction.coefficient, *brake.contact.penalty,
+          brake.disc.speed, true};
+}
+
+struct FastestMode {
+  Complex s;
+  Eigen::VectorXcd q;
+};
+
+FastestMode fastest_of(const LinearSystem& system) {
+  const Pencil pencil = make_pencil(system);
+  const DenseSpectrum spectrum = dense_spectrum(pencil);
+  const auto fastest =
+      std::max_element(spectrum.eigenvalues.begin(), spectrum.eigenvalues.end(),
+                       [](const auto& a, const auto& b) { return a.growth() < b.growth(); });
+  const Eigen::VectorXcd q =
+      pencil.slots * spectrum.right.col(fastest - spectrum.eigenvalues.begin());
+  return {fastest->s, q / q.cwiseAbs().maxCoeff()};
+}
+
+TEST(FaceContactMotion, SmallMotionGrowsAsTheEigenvalueSays) {
+  const DiscModelParameters brake = squealing_brake();
+  const DiscModel model = make_disc_model(brake);
+  const FastestMode mode = fastest_of(model.system);
+  ASSERT_GT(mode.s.real(), 100.0);
+  constexpr double step = 5e-6;
+  constexpr double amplitude = 1e-12;
+  FaceContactMotion motion(model.system, model.contacts, law_of(brake), step);
+  motion.start(amplitude * mode.q.real(), amplitude * (mode.s * mode.q).real());
+  constexpr int num_steps = 4000;
+  for (int n = 0; n < num_steps; ++n) ASSERT_TRUE(motion.step());
+  const double t = num_steps * step;
+  const Eigen::VectorXcd grown = amplitude * std::exp(mode.s * t) * mode.q;
+  EXPECT_LT((motion.displacement() - grown.real()).norm(), 1e-4 * grown.norm());
+  // The rate from displacement and velocity over |s|, whatever the phase.
+  const auto size = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& v) {
+    const Eigen::VectorXcd phasor = q - Complex(0.0, 1.0) * (v - mode.s.real() * q) / mode.s.imag();
+    return phasor.norm();
+  };
+  const double growth =
+      std::log(size(motion.displacement(), motion.velocity()) /
+               size(amplitude * mode.q.real(), amplitude * (mode.s * mode.q).real())) /
+      t;
+  EXPECT_NEAR(growth, mode.s.real(), 1e-3 * mode.s.real());
+}
+
+TEST(FaceContactMotion, SquealEndsInABoundedCycleWithLiftOff) {
+  const DiscModelParameters brake = squealing_brake();
+  const DiscModel model = make_disc_model(brake);
+  const FaceContactLaw law = law_of(brake);
+  const FastestMode mode = fastest_of(model.system);
+  constexpr double step = 4e-6;
+  FaceContactMotion motion(model.system, model.contacts, law, step);
+  motion.start(1e-7 * mode.q.real(), 1e-7 * (mode.s * mode.q).real());
+  double largest[3] = {0.0, 0.0, 0.0};
+  int num_open = 0;
+  constexpr int num_steps = 20000;
+  for (int n = 0; n < 3 * num_steps; ++n) {
+    ASSERT_TRUE(motion.step()) << n;
+    largest[n / num_steps] = std::max(largest[n / num_steps], motion.displacement().norm());
+    for (int i = 0; i < motion.num_contacts(); ++i) {
+      // The laws of contact from the motion, not from what the solver kept.
+      const FaceContact& contact = model.contacts[static_cast<std::size_t>(i)];
+      const FaceContactState state = motion.contact(i);
+      const double gap = contact.gap().dot(motion.displacement());
+      const double expected = std::max(0.0, law.preload - law.penalty * gap);
+      ASSERT_NEAR(state.force, expected, 1e-6 * (law.preload + expected));
+      const Eigen::Vector2d friction(state.friction_force, state.across_force);
+      ASSERT_LE(friction.norm(), law.friction * state.force * (1.0 + 1e-9));
+      num_open += state.state == ContactState::open ? 1 : 0;
+      if (state.state != ContactState::slip) continue;
+      const double along = law.speed * contact.radius - contact.friction().dot(motion.velocity());
+      EXPECT_GE(along * state.friction_force, -1e-6 * law.preload);
+    }
+  }
+  EXPECT_GT(num_open, num_steps / 10);
+  // Without lift-off it would grow by exp(27) from each window to the next.
+  EXPECT_LT(largest[2], 1.5 * largest[1]);
+  EXPECT_GT(largest[2], largest[1] / 1.5);
+}
+
+/// A mass that bounces on a spring that does not pull.
+LinearSystem bouncer(double mass, double stiffness, double penalty) {
+  const auto one = [](double value) { return Eigen::MatrixXd::Constant(1, 1, value); };
+  return {one(mass), one(0.0), one(stiffness + penalty), Eigen::MatrixXd(0, 1),
+          Eigen::MatrixXd(0, 1)};
+}
+
+FaceContact contact_of(Eigen::Index n, Eigen::Index along, Eigen::Index normal) {
+  FaceContact contact;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(n);
+  contact.plate = {none, none, none, none, none};
+  contact.pad_r = contact.pad_phi = contact.pad_z = none;
+  if (along >= 0) contact.pad_phi(along) = 1.0;
+  contact.pad_z(normal) = 1.0;
+  contact.radius = 1.0;
+  return contact;
+}
+
+TEST(FaceContactMotion, BouncingMassHasItsClosedFormToSecondOrder) {
+  constexpr double m = 2.0, k = 50.0, k_C = 800.0, N0 = 8.0, v0 = 0.7;
+  const double w = std::sqrt(k / m);
+  const double W = std::sqrt((k + k_C) / m);
+  const double opening = N0 / k_C;
+  // Aloft m q̈ + k q = −N0; in contact m q̈ + (k + k_C) q = 0; both begin at the opening.
+  const double flight = 2.0 / w * std::atan(v0 / (w * (opening + N0 / k)));
+  const double contact = 2.0 / W * (std::numbers::pi - std::atan(v0 / (W * opening)));
+  const double period = flight + contact;
+  const auto error = [&](int steps) {
+    FaceContactMotion motion(bouncer(m, k, k_C), {contact_of(1, -1, 0)}, {N0, 0.0, k_C, 1.0, false},
+                             period / steps);
+    motion.start(Eigen::VectorXd::Constant(1, opening), Eigen::VectorXd::Constant(1, v0));
+    for (int n = 0; n < 3 * steps; ++n) EXPECT_TRUE(motion.step());
+    return std::hypot(W * (motion.displacement()(0) - opening), motion.velocity()(0) - v0) / v0;
+  };
+  const double coarse = error(1000);
+  const double fine = error(4000);
+  EXPECT_LT(coarse, 1e-3);
+  EXPECT_LT(fine, coarse / 8.0);
+}
+
+TEST(FaceContactMotion, MassOnABeltSticksAndThenSwingsAtItsSpeed) {
+  // From rest, 0.03 m short of the place where friction holds the spring, a mass on a belt swings
+  // faster than the belt, sticks, and leaves with v at that place: from then on its amplitude is
+  // v/ω.
+  constexpr double m = 1.0, k = 100.0, N0 = 10.0, mu = 0.3, v = 0.1;
+  LinearSystem system;
+  system.mass = m * Eigen::Matrix2d::Identity();
+  system.velocity = Eigen::Matrix2d::Zero();
+  system.position = Eigen::Vector2d(k, 1e4 + 1e5).asDiagonal();
+  system.position(0, 1) = mu * 1e5;
+  system.gaps = system.forces = Eigen::MatrixXd(0, 2);
+  FaceContactMotion motion(system, {contact_of(2, 0, 1)}, {N0, mu, 1e5, v, false}, 1e-3);
+  motion.start(Eigen::Vector2d(-mu * N0 / k, 0.0), Eigen::Vector2d::Zero());
+  bool has_stuck = false;
+  double largest = 0.0;
+  for (int n = 1; n <= 4000; ++n) {
+    ASSERT_TRUE(motion.step());
+    if (motion.contact(0).state == ContactState::stick) {
+      has_stuck = true;
+      EXPECT_NEAR(motion.velocity()(0), v, 1e-9);
+    }
+    if (n > 2000) largest = std::max(largest, motion.displacement()(0));
+  }
+  EXPECT_TRUE(has_stuck);
+  EXPECT_NEAR(largest, v / std::sqrt(k / m), 2e-4);
+}
+
+}  // namespace
+}  // namespace stridor

@@ -1,0 +1,138 @@
+#include "solvers/sparse_spectrum.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/errors.hpp"
+#include "solvers/dense_eigenvalues.hpp"
+#include "solvers/linear_pencil.hpp"
+#include "tests/support/elastic_pads.hpp"
+#include "tests/support/message_of.hpp"
+
+namespace stridor {
+namespace {
+
+using test::message_of;
+using Complex = std::complex<double>;
+
+test::ElasticPads small_pads() {
+  test::ElasticPads pads;
+  pads.along = 6;
+  pads.through = 2;
+  pads.nodal_diameters = 4;
+  return pads;
+}
+
+LinearSystem dense(const SparseSystem& sparse) {
+  const Eigen::Index n = sparse.size();
+  return {Eigen::MatrixXd(sparse.mass), Eigen::MatrixXd(sparse.velocity),
+          Eigen::MatrixXd(sparse.position), Eigen::MatrixXd(0, n), Eigen::MatrixXd(0, n)};
+}
+
+TEST(SparsePencil, FactorSolvesAndKnowsItsDeterminant) {
+  const SparseSystem system = small_pads().system();
+  const SparsePencil pencil(system);
+  const Complex s(300.0, 2e4);
+  const SparseFactor factor = pencil.factorise(s);
+  const Eigen::MatrixXcd P = s * s * Eigen::MatrixXcd(dense(system).mass.cast<Complex>()) +
+                             s * Eigen::MatrixXcd(dense(system).velocity.cast<Complex>()) +
+                             Eigen::MatrixXcd(dense(system).position.cast<Complex>());
+  const Eigen::MatrixXcd x = Eigen::MatrixXcd::Random(system.size(), 3);
+  EXPECT_LT((factor.solve(P * x) - x).norm(), 1e-8 * x.norm());
+  EXPECT_LT((pencil.multiply(s, x.col(0)) - P * x.col(0)).norm(), 1e-13 * P.norm() * x.norm());
+  // The phase of the determinant from another factorisation, pivot by pivot.
+  const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(P);
+  Complex phase = static_cast<double>(lu.permutationP().determinant());
+  for (const Complex& pivot : lu.matrixLU().diagonal()) phase *= pivot / std::abs(pivot);
+  EXPECT_LT(std::abs(factor.determinant_phase() - phase), 1e-9);
+  // The slope is the difference quotient.
+  const Complex t(-100.0, 1e4);
+  EXPECT_LT(((pencil.multiply(t, x.col(0)) - pencil.multiply(s, x.col(0))) / (t - s) -
+             pencil.slope(s, t, x.col(0)))
+                .norm(),
+            1e-11 * pencil.slope(s, t, x.col(0)).norm());
+}
+
+/// The unstable system of the disc with elastic pads against all eigenvalues of the dense problem.
+TEST(SparseSpectrum, FindsWhatTheDenseProblemHasBelowAFrequency) {
+  const SparseSystem system = small_pads().system();
+  const SparseSpectrum found = sparse_spectrum(system, SpectrumWindow::below(8000.0));
+  std::vector<Complex> expected;
+  for (const Eigenvalue& one :
+       dense_eigenvalues(make_pencil(dense(system)), DenseWork::eigenvalues))
+    if (found.rectangle.contains(one.s)) expected.push_back(one.s);
+  EXPECT_TRUE(found.is_complete);
+  EXPECT_EQ(found.num_counted, static_cast<int>(2 * expected.size()));  // none is real
+  ASSERT_EQ(found.eigenvalues.size(), expected.size());
+  EXPECT_GT(expected.size(), 10U);
+  int num_growing = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const Eigenvalue& one = found.eigenvalues[i];
+    // The dense method has an absolute error of the highest frequency, 3e7 rad/s, times rounding.
+    EXPECT_LT(std::abs(one.s - expected[i]), 1e-5) << one.frequency();
+    EXPECT_LT(found.backward_errors[i], 1e-12);
+    EXPECT_LT(one.residual, 1e-8);
+    num_growing += one.growth() > 0.0 ? 1 : 0;
+  }
+  EXPECT_GE(num_growing, 4);
+}
+
+TEST(SparseSpectrum, FindsTheLowestWhereACountIsAsked) {
+  const SparseSystem system = small_pads().system();
+  const SparseSpectrum found = sparse_spectrum(system, SpectrumWindow::lowest(7));
+  EXPECT_TRUE(found.is_complete);
+  ASSERT_GE(found.eigenvalues.size(), 7U);
+  const auto all = dense_eigenvalues(make_pencil(dense(system)), DenseWork::eigenvalues);
+  for (std::size_t i = 0; i < 7; ++i) EXPECT_LT(std::abs(found.eigenvalues[i].s - all[i].s), 1e-5);
+}
+
+TEST(SparseSpectrum, TellsCoincidingEigenvaluesApart) {
+  // Two equal chains side by side, undamped: every eigenvalue is double and on the axis.
+  constexpr int n = 200;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int chain = 0; chain < 2; ++chain) {
+    for (int i = 0; i < n; ++i) {
+      const int at = chain * n + i;
+      entries.emplace_back(at, at, 2.0);
+      if (i + 1 < n) {
+        entries.emplace_back(at, at + 1, -1.0);
+        entries.emplace_back(at + 1, at, -1.0);
+      }
+    }
+  }
+  SparseSystem system;
+  system.mass.resize(2 * n, 2 * n);
+  system.mass.setIdentity();
+  system.velocity.resize(2 * n, 2 * n);
+  system.position.resize(2 * n, 2 * n);
+  system.position.setFromTriplets(entries.begin(), entries.end());
+  const auto omega = [](int k) { return 2.0 * std::sin(0.5 * k * std::numbers::pi / (n + 1.0)); };
+  const double between = 0.5 * (omega(10) + omega(11)) / (2.0 * std::numbers::pi);
+  const SparseSpectrum found = sparse_spectrum(system, SpectrumWindow::below(between));
+  EXPECT_TRUE(found.is_complete);
+  ASSERT_EQ(found.eigenvalues.size(), 20U);
+  for (int k = 0; k < 20; ++k) {
+    const Complex s = found.eigenvalues[static_cast<std::size_t>(k)].s;
+    EXPECT_LT(std::abs(s - Complex(0.0, omega(k / 2 + 1))), 1e-10) << k;
+  }
+}
+
+TEST(SparseSpectrum, RejectsWhatItCannotSolve) {
+  SparseSystem system = small_pads().system();
+  EXPECT_EQ(
+      message_of<std::invalid_argument>([&] { sparse_spectrum(system, SpectrumWindow::all()); }),
+      "sparse eigenvalues: the window is neither a count nor a frequency");
+  system.velocity = SparseMatrix(3, 3);
+  EXPECT_EQ(message_of<std::invalid_argument>([&] { SparsePencil{system}; }),
+            "sparse pencil: the matrices differ in size");
+  system = small_pads().system();
+  system.mass = -system.mass;
+  EXPECT_THROW(sparse_spectrum(system, SpectrumWindow::below(1000.0)), NumericalError);
+}
+
+}  // namespace
+}  // namespace stridor
