@@ -298,9 +298,9 @@ SlidingState BodyStabilityFamily::at(std::span<const double> values) {
 
 double BodyStabilityFamily::trusted_frequency(std::span<const double> values) {
   const std::scoped_lock guard(blas_in_use);
-  const double kept =
-      time_.retain ? time_.retain->frequency : std::numeric_limits<double>::infinity();
-  return std::min(kept, stridor::trusted_frequency(family_.at(values).model->system));
+  const System& system = family_.at(values).model->system;
+  return std::min(asked_frequency(system, time_) / (2.0 * std::numbers::pi),
+                  stridor::trusted_frequency(system));
 }
 
 PencilFamily StabilityFamily::along(std::size_t key, std::vector<double> values, double from,

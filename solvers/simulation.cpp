@@ -160,7 +160,7 @@ struct Simulation::Implementation {
     contact.stretch = sliding.stretch();
     if (const auto& substrate = contact.point().substrate) {
       problem.substrate = &*substrate;
-      problem.indentation = -sliding.present_gap(drive_displacement(time(index)));
+      problem.indentation = -sliding.present_place(drive_displacement(time(index))).gap;
       problem.last_slip = contact.slip_velocity;
       problem.step = step;
     }
@@ -221,7 +221,8 @@ struct Simulation::Implementation {
       if (!substrate) continue;
       has_any = true;
       stand(contact);
-      const double indentation = -contact.sliding.present_gap(drive_displacement(time(index)));
+      const double indentation =
+          -contact.sliding.present_place(drive_displacement(time(index))).gap;
       const double direction = contact.slip_velocity > 0.0 ? 1.0 : -1.0;
       const SubstrateForces acting = substrate->at(indentation, contact.slip_velocity, direction);
       contact.force = acting.normal.value;
