@@ -10,9 +10,15 @@ namespace {
 /// The motion has died down, or does so, where it moves less than this part of the equilibrium and
 /// that is stable: this close to it the motion is linear.
 constexpr double at_rest = 1e-6;
-/// No turn within this time: it sticks, or stands still. A slow substrate takes as long as it
-/// likes to wind up the spring.
-constexpr double longest_loop = 200.0;
+/// How long a turn is waited for: several times what the substrate takes to wind up the spring to
+/// the static strength, as far as that can be waited for.
+double longest_loop(const SubstrateOscillator& oscillator) {
+  const SubstrateEquilibrium rest =
+      find_equilibrium(oscillator, 1e-2 * oscillator.contact.indentation_unit);
+  const double strength = oscillator.contact.static_strength(rest.displacement.y()).value;
+  const double winding = strength / (oscillator.stiffness(0, 0) * oscillator.substrate_speed);
+  return std::clamp(10.0 * winding, 200.0, 5e3);
+}
 
 using Point = Eigen::Vector3d;
 
@@ -29,10 +35,11 @@ struct Return {
   Point point;
   double period = 0.0;
 };
-std::optional<Return> return_map(SubstrateMotion& motion, const Point& z, int loops) {
+std::optional<Return> return_map(SubstrateMotion& motion, const Point& z, const LimitCycle& cycle,
+                                 double longest) {
   start_at(motion, z);
-  for (int i = 0; i < loops; ++i) {
-    if (motion.advance(motion.time() + longest_loop, true) != SubstrateMotion::Stop::turn)
+  for (int i = 0; i < cycle.loops; ++i) {
+    if (motion.advance(motion.time() + longest, true) != SubstrateMotion::Stop::turn)
       return std::nullopt;
   }
   return Return{point_of(motion), motion.time()};
@@ -61,12 +68,13 @@ void measure(const SubstrateMotion& motion, LimitCycle& cycle) {
 }
 
 /// Newton's method for P(z) = z. @return whether it came to a fixed point
-bool solve(SubstrateMotion& motion, const Point& scale, LimitCycle& cycle, Point z) {
+bool solve(SubstrateMotion& motion, const Point& scale, double longest, LimitCycle& cycle,
+           Point z) {
   Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
   constexpr int most_steps = 12;
   double last_residual = 1e300;
   for (int step = 0; step < most_steps; ++step) {
-    const auto found = return_map(motion, z, cycle.loops);
+    const auto found = return_map(motion, z, cycle, longest);
     if (!found) return false;
     const Point miss = (found->point - z).cwiseQuotient(scale);
     const double residual = miss.norm();
@@ -78,8 +86,8 @@ bool solve(SubstrateMotion& motion, const Point& scale, LimitCycle& cycle, Point
         Point behind = z;
         ahead[k] += change * scale[k];
         behind[k] -= change * scale[k];
-        const auto after = return_map(motion, ahead, cycle.loops);
-        const auto before = return_map(motion, behind, cycle.loops);
+        const auto after = return_map(motion, ahead, cycle, longest);
+        const auto before = return_map(motion, behind, cycle, longest);
         if (!after || !before) return false;
         jacobian.col(k) = (after->point - before->point).cwiseQuotient(scale) / (2.0 * change);
       }
@@ -130,13 +138,14 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
   if (motion.advance(options.settle, false) != SubstrateMotion::Stop::end) return cycle;
 
   // The last turns of the settled motion.
+  const double longest = longest_loop(oscillator);
   std::vector<Point> turns;
   std::vector<double> times;
   motion.restart_statistics();
   const double from = motion.time();
   const auto num_turns = static_cast<std::size_t>(2 * options.most_loops + 1);
   while (turns.size() < num_turns) {
-    const SubstrateMotion::Stop stop = motion.advance(motion.time() + longest_loop, true);
+    const SubstrateMotion::Stop stop = motion.advance(motion.time() + longest, true);
     if (stop == SubstrateMotion::Stop::failed) return cycle;
     if (stop == SubstrateMotion::Stop::end) break;
     turns.push_back(point_of(motion));
@@ -169,11 +178,11 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
       cycle.status = CycleStatus::periodic;
       return cycle;
     }
-    if (!solve(motion, scale, cycle, last)) continue;
+    if (!solve(motion, scale, longest, cycle, last)) continue;
     // A motion settles to a stable cycle: an unstable one beside it has fewer loops.
     if (std::abs(cycle.multipliers.front()) > 1.0) continue;
     start_at(motion, {cycle.point.x, cycle.point.y, cycle.point.vertical_velocity});
-    for (int i = 0; i < loops; ++i) (void)motion.advance(motion.time() + longest_loop, true);
+    for (int i = 0; i < loops; ++i) (void)motion.advance(motion.time() + longest, true);
     measure(motion, cycle);
     cycle.status = CycleStatus::periodic;
     return cycle;

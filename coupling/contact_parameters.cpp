@@ -135,8 +135,6 @@ const Schema& ContactParameters::schema() {
               refuse("friction", "is missing: give `friction`, or a `substrate`");
             if (!contact.substrate) return;
             if (contact.friction) refuse("friction", "not used with a substrate, whose law has it");
-            if (contact.master != "rigid")
-              refuse("master", "must be `rigid` with a substrate, which takes its place");
             if (contact.assumption != ContactAssumption::film)
               refuse("assumption",
                      "must be `film` with a substrate: it sticks, slips and lifts off");

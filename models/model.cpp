@@ -148,6 +148,9 @@ ResolvedPair resolve_pair(const std::string& name, const std::string& key,
   pair.parameters = &parameters;
 
   pair.master_name = parameters.master;
+  if (parameters.substrate && parameters.master != rigid_name) {
+    throw ConfigError(key + ".master", "must be `rigid` with a substrate, which takes its place");
+  }
   if (parameters.master == rigid_name) {
     // The rigid master is the last body, without degrees of freedom.
     pair.master_body = static_cast<int>(bodies.size()) - 1;

@@ -490,6 +490,13 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
   const bool has_substrate =
       std::any_of(given.contacts.begin(), given.contacts.end(),
                   [](const ContactPoint& point) { return point.substrate.has_value(); });
+  for (const ContactPoint& point : given.contacts) {
+    if (point.substrate && point.assumption != ContactAssumption::film) {
+      throw ConfigError("contact.assumption",
+                        "must be `film` with a substrate: the others slide on a rigid constraint, "
+                        "and cannot be compared with it");
+    }
+  }
   if (has_substrate && time.retain) {
     throw ConfigError("time.retain",
                       "a contact with a substrate takes all modes; leave out the key, or reduce "

@@ -236,9 +236,10 @@ TEST(SphereProgram, PrecisionSetsErrorAgainstRunTime) {
     const Json& row = found["rows"][k];
     EXPECT_EQ(row["stable"], true) << k;
     EXPECT_GT(row["wall_s"].get<double>(), 0.0);
-    // Within an integrator the error falls with tolerance or step.
+    // Steps from sample to sample are precise at any tolerance; of fixed ones the error falls with
+    // the step.
     if (k % 4 == 0) last = 1e300;
-    EXPECT_LT(row["error"].get<double>(), last) << k;
+    EXPECT_LT(row["error"].get<double>(), k < 4 ? 1e-4 : last) << k;
     last = row["error"];
   }
   EXPECT_EQ(found["rows"][0]["integrator"], "event_driven");

@@ -237,6 +237,16 @@ TEST(SubstrateSystem, WhatIsNotKnownOfASubstrateIsRefused) {
   EXPECT_THAT(
       message_of<ConfigError>([&] { Simulation(system, test::time_of(1e-3), Accounts::energy); }),
       HasSubstr("record.energy: the energy ledger does not know what a substrate stores"));
+  EXPECT_THAT(message_of<ConfigError>([] {
+                ModelParameters on_a_body = reed(71e9);
+                on_a_body.contact->master = "reed.top";
+                make_model(on_a_body, {});
+              }),
+              HasSubstr("contact.master: must be `rigid` with a substrate"));
+  System sliding = system;
+  sliding.contacts[0].assumption = ContactAssumption::subs_b;
+  EXPECT_THAT(message_of<ConfigError>([&] { Simulation(sliding, test::time_of(1e-3)); }),
+              HasSubstr("contact.assumption: must be `film` with a substrate"));
   TimeParameters time = test::time_of(1e-3);
   time.integrator = Integrator::exact;
   time.retain = RetainParameters{1.0};
