@@ -6,6 +6,7 @@
 
 #include "bench/moreau_jean_kernel.hpp"
 #include "bench/processor_clock.hpp"
+#include "solvers/aligned_array.hpp"
 #include "solvers/contact_solver.hpp"
 
 namespace stridor::bench {
@@ -23,28 +24,37 @@ class Body {
     const double theta = parameters.theta;
     const Eigen::ArrayXd square = body.modal.omega.array().square();
     const Eigen::ArrayXd damping = body.modal.damping.alpha + body.modal.damping.beta * square;
-    answer_ = 1.0 / (1.0 + h * theta * damping + h * h * theta * theta * square);
-    kept_ = 1.0 - h * answer_ * (damping + h * theta * square);
-    pulled_ = -h * answer_ * square;
-    loaded_ = Eigen::ArrayXd::Zero(square.size());
-    if (body.load_row >= 0)
-      loaded_ = h * load * answer_ * body.modal.rows.row(body.load_row).transpose().array();
+    num_modes_ = square.size();
+    for (AlignedArray* field :
+         {&answer_, &kept_, &pulled_, &loaded_, &position_, &velocity_, &free_})
+      *field = AlignedArray(padded_size());
+    modes(answer_) = 1.0 / (1.0 + h * theta * damping + h * h * theta * theta * square);
+    modes(kept_) = 1.0 - h * modes(answer_) * (damping + h * theta * square);
+    modes(pulled_) = -h * modes(answer_) * square;
+    if (body.load_row >= 0) {
+      modes(loaded_) =
+          h * load * modes(answer_) * body.modal.rows.row(body.load_row).transpose().array();
+    }
     const ModalStart start = modal_start(body);
-    position_ = start.position;
-    velocity_ = start.velocity;
-    free_ = kept_ * velocity_ + pulled_ * position_ + loaded_;
+    modes(position_) = start.position;
+    modes(velocity_) = start.velocity;
+    modes(free_) =
+        modes(kept_) * modes(velocity_) + modes(pulled_) * modes(position_) + modes(loaded_);
     shares_[0] = h * theta;
     shares_[1] = h * (1.0 - theta);
   }
 
   void watch(const std::array<int, num_slots>& slots) {
-    rows_.resize(position_.size(), num_slots);
-    for (int j = 0; j < num_slots; ++j)
-      rows_.col(j) = all_rows_.row(slots[static_cast<std::size_t>(j)]).transpose();
-    compliance_ = rows_.transpose() * answer_.matrix().asDiagonal() * rows_;
-    displacement = rows_.transpose() * position_.matrix();
-    velocity = rows_.transpose() * velocity_.matrix();
-    free_velocity = rows_.transpose() * free_.matrix();
+    Eigen::Matrix<double, Eigen::Dynamic, num_slots> rows(num_modes_, num_slots);
+    for (std::size_t j = 0; j < num_slots; ++j) {
+      rows.col(static_cast<Eigen::Index>(j)) = all_rows_.row(slots[j]).transpose();
+      rows_[j] = AlignedArray(padded_size());
+      modes(rows_[j]) = rows.col(static_cast<Eigen::Index>(j));
+    }
+    compliance_ = rows.transpose() * modes(answer_).matrix().asDiagonal() * rows;
+    displacement = rows.transpose() * modes(position_).matrix();
+    velocity = rows.transpose() * modes(velocity_).matrix();
+    free_velocity = rows.transpose() * modes(free_).matrix();
   }
 
   void advance(const Slots& impulses) {
@@ -52,20 +62,22 @@ class Body {
     displacement += shares_[0] * next + shares_[1] * velocity;
     velocity = next;
     std::array<const double*, num_slots> rows;
-    for (int j = 0; j < num_slots; ++j) rows[static_cast<std::size_t>(j)] = rows_.col(j).data();
-    const MoreauJeanModes modes{static_cast<int>(position_.size()),
-                                position_.data(),
-                                velocity_.data(),
-                                free_.data(),
-                                answer_.data(),
-                                kept_.data(),
-                                pulled_.data(),
-                                loaded_.data()};
-    advance_moreau_jean<num_slots>(modes, rows.data(), impulses.data(), shares_[0], shares_[1],
+    for (std::size_t j = 0; j < num_slots; ++j) rows[j] = rows_[j].data();
+    const MoreauJeanModes fields{static_cast<int>(padded_size()),
+                                 position_.data(),
+                                 velocity_.data(),
+                                 free_.data(),
+                                 answer_.data(),
+                                 kept_.data(),
+                                 pulled_.data(),
+                                 loaded_.data()};
+    advance_moreau_jean<num_slots>(fields, rows.data(), impulses.data(), shares_[0], shares_[1],
                                    free_velocity.data());
   }
 
-  double displacement_of(int row) const { return all_rows_.row(row).dot(position_.matrix()); }
+  double displacement_of(int row) const {
+    return all_rows_.row(row).dot(Eigen::Map<const Eigen::VectorXd>(position_.data(), num_modes_));
+  }
   const Eigen::Matrix<double, num_slots, num_slots>& compliance() const { return compliance_; }
 
   Slots displacement = Slots::Zero();   ///< at t_k, m
@@ -73,10 +85,15 @@ class Body {
   Slots free_velocity = Slots::Zero();  ///< at t_{k+1} without the contact, m/s
 
  private:
+  /// Whole vectors of the widest instruction set.
+  std::size_t padded_size() const { return (static_cast<std::size_t>(num_modes_) + 7) / 8 * 8; }
+  Eigen::Map<Eigen::ArrayXd> modes(AlignedArray& field) const { return {field.data(), num_modes_}; }
+
   Eigen::MatrixXd all_rows_;
-  Eigen::ArrayXd answer_, kept_, pulled_, loaded_;
-  Eigen::ArrayXd position_, velocity_, free_;
-  Eigen::Matrix<double, Eigen::Dynamic, num_slots> rows_;
+  Eigen::Index num_modes_ = 0;
+  AlignedArray answer_, kept_, pulled_, loaded_;
+  AlignedArray position_, velocity_, free_;
+  std::array<AlignedArray, num_slots> rows_;
   Eigen::Matrix<double, num_slots, num_slots> compliance_;
   double shares_[2];
 };

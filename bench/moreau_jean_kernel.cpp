@@ -1,17 +1,30 @@
 #include "bench/moreau_jean_kernel.hpp"
 
 namespace stridor::bench {
+namespace {
+
+template <class Double>
+Double* aligned(Double* values) {
+  return static_cast<Double*>(__builtin_assume_aligned(values, 64));
+}
+
+}  // namespace
 
 template <int num_slots>
 void advance_moreau_jean(const MoreauJeanModes& modes, const double* const* rows,
                          const double* impulses, double new_share, double old_share, double* seen) {
-  double* const position = modes.position;
-  double* const velocity = modes.velocity;
-  double* const free = modes.free;
-  const double* const r0 = rows[0];
-  const double* const r1 = rows[1];
-  const double* const r2 = rows[num_slots > 2 ? 2 : 0];
-  const double* const r3 = rows[num_slots > 2 ? 3 : 1];
+  double* const position = aligned(modes.position);
+  double* const velocity = aligned(modes.velocity);
+  double* const free = aligned(modes.free);
+  const double* const answer = aligned(modes.answer);
+  const double* const kept = aligned(modes.kept);
+  const double* const pulled = aligned(modes.pulled);
+  const double* const loaded = aligned(modes.loaded);
+  const double* const r0 = aligned(rows[0]);
+  const double* const r1 = aligned(rows[1]);
+  const double* const r2 = aligned(rows[num_slots > 2 ? 2 : 0]);
+  const double* const r3 = aligned(rows[num_slots > 2 ? 3 : 1]);
+  const int count = modes.count / 8 * 8;
   const double p0 = impulses[0];
   const double p1 = impulses[1];
   const double p2 = num_slots > 2 ? impulses[2] : 0.0;
@@ -21,12 +34,12 @@ void advance_moreau_jean(const MoreauJeanModes& modes, const double* const* rows
   double s2 = 0.0;
   double s3 = 0.0;
 #pragma omp simd reduction(+ : s0, s1, s2, s3)
-  for (int i = 0; i < modes.count; ++i) {
+  for (int i = 0; i < count; ++i) {
     double push = r0[i] * p0 + r1[i] * p1;
     if constexpr (num_slots > 2) push += r2[i] * p2 + r3[i] * p3;
-    const double next = free[i] + modes.answer[i] * push;
+    const double next = free[i] + answer[i] * push;
     const double place = position[i] + new_share * next + old_share * velocity[i];
-    const double free_next = modes.kept[i] * next + modes.pulled[i] * place + modes.loaded[i];
+    const double free_next = kept[i] * next + pulled[i] * place + loaded[i];
     velocity[i] = next;
     position[i] = place;
     free[i] = free_next;

@@ -3,7 +3,8 @@
 
 namespace stridor::bench {
 
-/// What a body holds per mode, arrays of equal length.
+/// What a body holds per mode: arrays of equal length, 64-byte aligned and padded with zeros to a
+/// multiple of 8, as the rows are.
 struct MoreauJeanModes {
   int count = 0;
   double* position = nullptr;      ///< q_k
