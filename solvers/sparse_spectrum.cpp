@@ -1,5 +1,7 @@
 #include "solvers/sparse_spectrum.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -18,6 +20,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
+constexpr Eigen::Index most_modes = 1000;  ///< of the symmetric part in the first space
 constexpr double tolerance = 1e-9;         ///< of directions
 constexpr double largest_residual = 1e-6;  ///< of a pair
 
@@ -89,6 +92,12 @@ void SparseSearch::start() {
   Eigen::Index count = window_.count ? 2 * *window_.count + 20 : 40;
   while (true) {
     count = std::min(count, size());
+    if (count > most_modes) {
+      throw NumericalError(fmt::format(
+          "sparse eigenvalues: the window takes more than {} modes of the symmetric part; ask for "
+          "fewer eigenvalues or a lower frequency",
+          most_modes));
+    }
     modes_ = symmetric_modes(pencil_.system(), count);
     const double highest = std::sqrt(std::max(0.0, modes_.omega_squared(count - 1)));
     if (count == size() || window_.count || highest >= 1.5 * wanted) break;
@@ -291,11 +300,17 @@ SparseSpectrum SparseSearch::result(double height) {
 }
 
 SparseSpectrum SparseSearch::run() {
-  constexpr int max_attempts = 3;
+  constexpr int max_attempts = 4;
   start();
   for (int attempt = 1;; ++attempt) {
     refine();
     const double height = window_.count ? height_for_count() : height_;
+    if (height > height_ && attempt < max_attempts) {
+      // Some have come out higher than the first projection had them.
+      height_ = 1.05 * height;
+      project();
+      continue;
+    }
     SparseSpectrum spectrum = result(height);
     if (spectrum.is_complete || attempt == max_attempts) return spectrum;
     enlarge();

@@ -55,7 +55,9 @@ struct SparseSpectrum {
 /// @param window a count, or a frequency; with a count there may be more
 /// @return status in is_complete; where it is false, what was found
 /// @throws std::invalid_argument as SparsePencil, or if the window is neither
-/// @throws NumericalError if M is not positive definite, or as SparsePencil
+/// @throws NumericalError if M is not positive definite, the window takes more than 1,000 modes of
+/// the
+///         symmetric part, or as SparsePencil
 /// Cost: about 2 factorisations for every pair, and 70 for the count.
 SparseSpectrum sparse_spectrum(const SparseSystem& system, const SpectrumWindow& window);
 

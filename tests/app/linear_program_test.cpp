@@ -224,6 +224,55 @@ double example_limit(const std::string& name, const std::string& key, const std:
   return roots.empty() ? 0.0 : roots[0]["value"].get<double>();
 }
 
+/// A scene of a chain of equal masses and springs in a folder, as Matrix Market files.
+std::string chain_scene(const TemporaryFolder& folder, int n) {
+  for (const std::string name : {"M", "K"}) {
+    const bool is_mass = name == "M";
+    std::ofstream file((folder / (name + ".mtx")).string());
+    file << "%%MatrixMarket matrix coordinate real symmetric\n"
+         << n << ' ' << n << ' ' << (is_mass ? n : 2 * n - 1) << '\n';
+    for (int i = 1; i <= n; ++i) file << i << ' ' << i << (is_mass ? " 1\n" : " 2\n");
+    for (int i = 1; i < n && !is_mass; ++i) file << i + 1 << ' ' << i << " -1\n";
+  }
+  const std::string path = (folder / "chain.yaml").string();
+  std::ofstream(path) << "format: 1\nsubstructures:\n  chain: {type: matrices, mass: M.mtx, "
+                         "stiffness: K.mtx, load: 0}\n";
+  return path;
+}
+
+TEST(MatrixProgram, LargeMatricesAreCountedInTheirWindow) {
+  const TemporaryFolder folder;
+  constexpr int n = 1200;
+  const std::string scene = chain_scene(folder, n);
+  const double pi = std::acos(-1.0);
+  const auto omega = [&](int k) { return 2.0 * std::sin(0.5 * k * pi / (n + 1)); };
+  const Json all =
+      json_of({"eig", scene, "--below", std::to_string(0.5 * (omega(6) + omega(7)) / (2.0 * pi))});
+  EXPECT_EQ(all["method"], "sparse");
+  EXPECT_EQ(all["counted"], 12);
+  ASSERT_EQ(all["eigenvalues"].size(), 6U);
+  for (int k = 1; k <= 6; ++k) {
+    const auto i = static_cast<std::size_t>(k - 1);
+    EXPECT_NEAR(all["eigenvalues"][i][1].get<double>(), omega(k), 1e-9 * omega(k));
+    EXPECT_LT(all["backward_errors"][i].get<double>(), 1e-8);
+  }
+  EXPECT_TRUE(all["stable"]);
+  const Json lowest = json_of({"eig", scene, "--count", "4", "--explain", "--mode", "2"});
+  ASSERT_EQ(lowest["eigenvalues"].size(), 4U);
+  EXPECT_NEAR(lowest["window"][1].get<double>(), omega(4) / (2.0 * pi), 1e-9);
+  EXPECT_NEAR(lowest["explanation"]["quotients"]["stiffness"].get<double>(), omega(2) * omega(2),
+              1e-9 * omega(2) * omega(2));
+  EXPECT_NEAR(lowest["explanation"]["frictionless_modes"][0]["share"].get<double>(), 1.0, 1e-9);
+  const ProgramResult locus = Program({"locus", scene, "--parameter", "substructures.chain.load",
+                                       "--from", "0", "--to", "1"})
+                                  .run();
+  EXPECT_EQ(locus.exit_code, 2);
+  EXPECT_THAT(locus.err, HasSubstr("1200 unknowns are for eig"));
+  const ProgramResult too_many = Program({"eig", scene, "--below", "1 kHz"}).run();
+  EXPECT_EQ(too_many.exit_code, 3);
+  EXPECT_THAT(too_many.err, HasSubstr("ask for fewer eigenvalues or a lower frequency"));
+}
+
 TEST(MatrixProgram, ExamplesHaveTheirClosedForms) {
   EXPECT_NEAR(example_limit("flutter", "oscillator", "0.4", {}), 0.2, 1e-12);
   EXPECT_NEAR(example_limit("flutter_equal_damping", "oscillator", "0.4", {}), 0.2280350850, 1e-10);
