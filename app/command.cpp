@@ -1,6 +1,10 @@
 #include "app/command.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
+
+#include "core/errors.hpp"
 
 namespace stridor {
 
@@ -24,6 +28,18 @@ void add_force_option(CLI::App& verb, CommonOptions& options) {
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+std::vector<double> spaced_values(const char* option, const std::vector<double>& range) {
+  const double count = range[2];
+  if (!(range[0] > 0.0) || !(range[1] > range[0]) || !std::isfinite(range[1]))
+    throw ConfigError(option, "needs two positive numbers, the smaller one first");
+  if (!(count >= 4.0) || !(count <= 1000.0) || count != std::trunc(count))
+    throw ConfigError(option, fmt::format("{:g} points are not a whole number, 4 to 1000", count));
+  std::vector<double> values;
+  for (int k = 0; k < static_cast<int>(count); ++k)
+    values.push_back(range[0] * std::pow(range[1] / range[0], k / (count - 1.0)));
+  return values;
 }
 
 }  // namespace stridor

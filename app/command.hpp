@@ -37,6 +37,10 @@ void add_force_option(CLI::App& verb, CommonOptions& options);
 /// A number for JSON; null where it is not finite.
 Json number(double value);
 
+/// Values at equal ratios from {first, last, number of them}.
+/// @throws ConfigError naming the option if they are not 0 < first < last and 4 to 1000 of them
+std::vector<double> spaced_values(const char* option, const std::vector<double>& range);
+
 /// Each verb declares itself; `action` receives what to do when it was given.
 using Action = std::function<ExitCode()>;
 void add_contact_command(CLI::App& program, Action& action, const std::string& command_line);

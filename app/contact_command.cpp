@@ -18,7 +18,9 @@
 #include "io/contact_file.hpp"
 #include "io/contact_scene.hpp"
 #include "io/gnuplot.hpp"
+#include "io/law_table_file.hpp"
 #include "io/panel_plot.hpp"
+#include "solvers/contact_table.hpp"
 #include "solvers/master_curve.hpp"
 
 namespace stridor {
@@ -34,6 +36,9 @@ struct ContactOptions {
   std::optional<std::string> pressure_figure;
   std::optional<std::string> edges_figure;
   std::optional<std::string> master_curve;
+  std::optional<std::string> table;
+  std::vector<double> table_speeds{1e-3, 1e3, 49};        ///< first, last, number
+  std::vector<double> table_indentations{1e-4, 0.3, 15};  ///< likewise
   bool verify = false;
   std::string command_line;
 };
@@ -53,6 +58,27 @@ void check_figure(const std::optional<std::string>& figure, const CommonOptions&
   check_figure_name(*figure);
   if (!common.force && std::filesystem::exists(*figure))
     throw FileError(*figure, "", "exists; use --force to overwrite it");
+}
+
+/// Refuses what an indenter that ends cannot carry.
+void check_reach(const LoadedContactScene& loaded, const SlidingPoints& points) {
+  const double radius = loaded.scene.profile.radius;
+  const IndenterProfile profile(loaded.scene.profile);
+  for (const double indentation : points.indentations) {
+    if (!profile.elastic_contact_radius(indentation * radius)) {
+      throw loaded.problem(
+          "profile", fmt::format("is in contact up to its end at an indentation of {:g} R; its "
+                                 "table must reach further",
+                                 indentation));
+    }
+  }
+  const double reach = profile.reach();
+  for (const double load : points.loads) {
+    if (std::isfinite(reach) && profile.elastic_force(reach) <= load * radius * radius) {
+      throw loaded.problem(
+          "profile", fmt::format("is in contact up to its end under a load of {:g} E_0* R2", load));
+    }
+  }
 }
 
 /// The points of the scene, overridden by those of the command line.
@@ -78,24 +104,7 @@ SlidingPoints settle_points(const ContactOptions& options, const LoadedContactSc
     throw ConfigError("--indentation",
                       "or --load is needed, since the scene has no sliding.indentations");
   }
-  // What an indenter that ends cannot carry.
-  const double radius = loaded.scene.profile.radius;
-  const IndenterProfile profile(loaded.scene.profile);
-  for (const double indentation : points.indentations) {
-    if (!profile.elastic_contact_radius(indentation * radius)) {
-      throw loaded.problem(
-          "profile", fmt::format("is in contact up to its end at an indentation of {:g} R; its "
-                                 "table must reach further",
-                                 indentation));
-    }
-  }
-  const double reach = profile.reach();
-  for (const double load : points.loads) {
-    if (std::isfinite(reach) && profile.elastic_force(reach) <= load * radius * radius) {
-      throw loaded.problem(
-          "profile", fmt::format("is in contact up to its end under a load of {:g} E_0* R2", load));
-    }
-  }
+  check_reach(loaded, points);
   return points;
 }
 
@@ -307,6 +316,76 @@ ExitCode make_master_curve(const ContactOptions& options, const LoadedContactSce
   return ExitCode::done;
 }
 
+/// Computes a table of contacts, which an oscillator takes as its contact law.
+ExitCode make_table(const ContactOptions& options, const LoadedContactScene& loaded) {
+  const ContactScene& scene = loaded.scene;
+  const std::string& path = *options.table;
+  const Overwrite overwrite = options.common.force ? Overwrite::yes : Overwrite::no;
+  check_output(path, overwrite);
+  SlidingPoints points;
+  points.speeds = spaced_values("--speeds", options.table_speeds);
+  points.indentations = spaced_values("--indentations", options.table_indentations);
+  if (scene.material.creep_times.empty())
+    throw loaded.problem("material.creep_times", "is empty: without creep there is no friction");
+  check_reach(loaded, points);
+  const auto num_contacts = static_cast<double>(points.speeds.size() * points.indentations.size());
+  Progress progress("contact table");
+  const ComputedContactTable computed = compute_contact_table(
+      IndenterProfile(scene.profile), creep_lengths(scene, 1.0), points.speeds, points.indentations,
+      scene.contact_solver, [&](std::size_t done) {
+        if (stop_requested()) throw Interrupted("nothing has been written");
+        progress.report(static_cast<double>(done) / num_contacts,
+                        fmt::format("contact {} of {:g}", done, num_contacts));
+      });
+  progress.finish();
+  const auto count = [&](auto&& is_so) {
+    return std::count_if(computed.results.begin(), computed.results.end(), is_so);
+  };
+  if (!computed.converged()) {
+    throw NumericalError(fmt::format(
+        "{} of {:g} contacts of the table did not converge; nothing has been written",
+        count([](const SlidingContactResult& result) { return !result.converged; }), num_contacts));
+  }
+  const auto is_positive = [](double value) { return value > 0.0; };
+  if (!std::all_of(computed.table.friction.begin(), computed.table.friction.end(), is_positive)) {
+    throw NumericalError(
+        "the friction of a contact of the table is not > 0, since its speed is too low for the "
+        "grid: begin at a higher one, or lower contact_solver.tolerance; nothing has been written");
+  }
+  std::vector<double> memory_in_cells;
+  for (const SlidingContactResult& result : computed.results)
+    memory_in_cells.push_back(result.memory_in_cells);
+  write_law_table(path, overwrite, computed.table, memory_in_cells,
+                  file_attributes(options, loaded));
+  const auto num_unresolved =
+      count([](const SlidingContactResult& result) { return !result.has_resolved_memory(); });
+  const auto num_touching =
+      count([](const SlidingContactResult& result) { return result.touches_window; });
+  if (options.common.json) {
+    fmt::print("{}\n", Json{{"speeds", points.speeds},
+                            {"indentations", points.indentations},
+                            {"force", computed.table.force},
+                            {"area", computed.table.area},
+                            {"friction", computed.table.friction},
+                            {"num_unresolved", num_unresolved},
+                            {"num_touching_window", num_touching}}
+                           .dump(2));
+  } else {
+    fmt::print("{} speeds, {} indentations\n", points.speeds.size(), points.indentations.size());
+    if (num_unresolved > 0) {
+      fmt::print(
+          "{} contacts: the layer of length v tau at the edge is less than two cells wide "
+          "and not resolved: the friction is too low\n",
+          num_unresolved);
+    }
+    if (num_touching > 0) {
+      fmt::print("{} contacts reach the border of the window: enlarge it\n", num_touching);
+    }
+    fmt::print("{}\n", path);
+  }
+  return ExitCode::done;
+}
+
 ExitCode contact(const ContactOptions& options) {
   if (options.output)
     check_output(*options.output, options.common.force ? Overwrite::yes : Overwrite::no);
@@ -314,6 +393,7 @@ ExitCode contact(const ContactOptions& options) {
   check_figure(options.edges_figure, options.common);
   const LoadedContactScene loaded = load_contact_scene(options.scene, options.common.sets);
   if (options.master_curve) return make_master_curve(options, loaded);
+  if (options.table) return make_table(options, loaded);
   const SlidingPoints points = settle_points(options, loaded);
   const std::vector<Row> rows = compute_rows(options, loaded, points);
 
@@ -378,6 +458,15 @@ void add_contact_command(CLI::App& program, Action& action, const std::string& c
   verb->add_option("--master-curve", options->master_curve,
                    "Compute the curve on which all paraboloids on this material lie instead, and "
                    "write it to this file");
+  verb->add_option("--table", options->table,
+                   "Compute a table over speeds and indentations instead and write it to this file "
+                   "(HDF5), which the key contact_law of an oscillator takes");
+  verb->add_option("--speeds", options->table_speeds,
+                   "Of the table: first and last speed v tau/R, number; default 1e-3 1e3 49")
+      ->expected(3);
+  verb->add_option("--indentations", options->table_indentations,
+                   "Of the table: indentations y/R likewise; default 1e-4 0.3 15")
+      ->expected(3);
   verb->add_flag("--verify", options->verify,
                  "Compare the results with the scene's `expect` block; exit 3 where they differ");
   add_scene_options(*verb, options->common);

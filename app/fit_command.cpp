@@ -25,19 +25,6 @@ struct FitOptions {
   std::optional<std::string> figures;
 };
 
-/// Values at equal ratios from the first to the last.
-std::vector<double> spaced(const char* option, const std::vector<double>& range) {
-  const double count = range[2];
-  if (!(range[0] > 0.0) || !(range[1] > range[0]) || !std::isfinite(range[1]))
-    throw ConfigError(option, "needs two positive numbers, the smaller one first");
-  if (!(count >= 4.0) || !(count <= 1000.0) || count != std::trunc(count))
-    throw ConfigError(option, fmt::format("{:g} points are not a whole number, 4 to 1000", count));
-  std::vector<double> values;
-  for (int k = 0; k < static_cast<int>(count); ++k)
-    values.push_back(range[0] * std::pow(range[1] / range[0], k / (count - 1.0)));
-  return values;
-}
-
 /// What is compared.
 struct Comparison {
   std::vector<LawSample> samples;
@@ -182,8 +169,8 @@ Json quantities_json(const PerQuantity& values) {
 }
 
 ExitCode fit(const FitOptions& options) {
-  const std::vector<double> speeds = spaced("--speeds", options.speeds);
-  const std::vector<double> indentations = spaced("--indentations", options.indentations);
+  const std::vector<double> speeds = spaced_values("--speeds", options.speeds);
+  const std::vector<double> indentations = spaced_values("--indentations", options.indentations);
   const std::array<const char*, 3> names{"modulus.png", "cuts.png", "scatter.png"};
   if (options.figures) {
     std::error_code error;

@@ -3,7 +3,7 @@
 
 #include "app/burst_text.hpp"
 #include "app/command.hpp"
-#include "app/damage_guard.hpp"
+#include "io/damage_guard.hpp"
 #include "io/run_file.hpp"
 #include "io/run_summary.hpp"
 

@@ -10,9 +10,12 @@
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
 #include "core/version.hpp"
+#include "io/damage_guard.hpp"
 
 namespace stridor {
 namespace {
+
+static_assert(static_cast<int>(ExitCode::file_trouble) == DamageGuard::exit_code);
 
 int report(const char* kind, const std::string& message, ExitCode code) {
   fmt::print(stderr, "stridor: {}\n{}\n", kind, message);

@@ -9,8 +9,8 @@
 #include "analysis/spectrogram.hpp"
 #include "analysis/statistics.hpp"
 #include "app/command.hpp"
-#include "app/damage_guard.hpp"
 #include "core/schema.hpp"
+#include "io/damage_guard.hpp"
 #include "io/run_file.hpp"
 #include "io/run_summary.hpp"
 

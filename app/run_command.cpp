@@ -8,13 +8,13 @@
 #include <optional>
 
 #include "app/command.hpp"
-#include "app/damage_guard.hpp"
 #include "app/disc_run.hpp"
 #include "app/expectations.hpp"
 #include "app/progress.hpp"
 #include "app/sphere_run.hpp"
 #include "app/transient.hpp"
 #include "core/errors.hpp"
+#include "io/damage_guard.hpp"
 #include "io/linear_scene.hpp"
 #include "io/sphere_scene.hpp"
 

@@ -1,6 +1,8 @@
 // Contact of a body with a sliding viscoelastic substrate, as a force law in the body's own units.
 #pragma once
 
+#include <memory>
+
 #include "coupling/regularised_sign.hpp"
 #include "coupling/viscoelastic_law.hpp"
 
@@ -35,12 +37,12 @@ struct SubstrateForces {
 /// with N the applied load or the normal force of the contact. Out of contact (y <= 0) everything
 /// vanishes. Regularised friction has s(v/v_ε) in the place of σ.
 struct SubstrateContact {
-  const ViscoelasticContactLaw* law = nullptr;  ///< must live longer
-  double indentation_unit = 1.0;                ///< y_1: displacement that is ŷ = 1
-  double speed_unit = 1.0;                      ///< v_1: velocity that is v̂ = 1
-  double force_unit = 1.0;                      ///< n: force that is F̃_k = 1
-  double shear = 0.0;                           ///< a: friction per Ã by the interfacial shear
-  double load = 0.0;                            ///< the applied normal force
+  std::shared_ptr<const ViscoelasticContactLaw> law;
+  double indentation_unit = 1.0;  ///< y_1: displacement that is ŷ = 1
+  double speed_unit = 1.0;        ///< v_1: velocity that is v̂ = 1
+  double force_unit = 1.0;        ///< n: force that is F̃_k = 1
+  double shear = 0.0;             ///< a: friction per Ã by the interfacial shear
+  double load = 0.0;              ///< the applied normal force
   FrictionLoad friction_load = FrictionLoad::applied;
   RegularisedSign sign;
 

@@ -2,11 +2,11 @@
 
 namespace stridor {
 
-const ViscoelasticContactLaw& contact_law(SphereContactLaw law) {
-  static const FittedLaw published(published_coefficients());
-  static const BoundaryElementLaw boundary_element(shipped_master_curve());
-  if (law == SphereContactLaw::boundary_element) return boundary_element;
-  return published;
+std::shared_ptr<const ViscoelasticContactLaw> shipped_law(SphereContactLaw law) {
+  using Law = std::shared_ptr<const ViscoelasticContactLaw>;
+  static const Law published = std::make_shared<FittedLaw>(published_coefficients());
+  static const Law boundary_element = std::make_shared<BoundaryElementLaw>(shipped_master_curve());
+  return law == SphereContactLaw::boundary_element ? boundary_element : published;
 }
 
 const Schema& SubstrateParameters::schema() {
@@ -36,7 +36,7 @@ const Schema& SubstrateParameters::schema() {
 SubstrateContact make_substrate_contact(const SubstrateParameters& p) {
   const double force = p.modulus * p.radius * p.radius;
   SubstrateContact contact;
-  contact.law = &contact_law(p.law);
+  contact.law = shipped_law(p.law);
   contact.indentation_unit = p.radius;
   contact.speed_unit = p.radius / p.creep_time;
   contact.force_unit = force;

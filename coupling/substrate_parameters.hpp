@@ -1,6 +1,8 @@
 // What a scene says about a viscoelastic substrate under a sphere.
 #pragma once
 
+#include <memory>
+
 #include "core/schema.hpp"
 #include "coupling/substrate_contact.hpp"
 
@@ -9,8 +11,8 @@ namespace stridor {
 /// The law of the contact between a sphere and a substrate.
 enum class SphereContactLaw { published_fit, boundary_element };
 
-/// Lives as long as the program.
-const ViscoelasticContactLaw& contact_law(SphereContactLaw law);
+/// A law that the program has built in.
+std::shared_ptr<const ViscoelasticContactLaw> shipped_law(SphereContactLaw law);
 
 /// A slave point that carries a sphere, on a viscoelastic half-space.
 struct SubstrateParameters {

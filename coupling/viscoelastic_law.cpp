@@ -14,8 +14,8 @@ namespace {
 
 /// Above this the small slopes behind half-space theory, and the fits, end (PPH, Fig. 3).
 constexpr double deepest = 0.3;
-/// Cells that the edge layer needs before its friction can be relied on.
-constexpr double resolved_cells = 2.0;
+/// Cells that the edge layer needs before the noise of the grid no longer shows in the derivatives.
+constexpr double resolved_cells = 8.0;
 
 ViscoelasticContact no_contact() {
   ViscoelasticContact contact;
@@ -281,7 +281,12 @@ LawValue TabulatedLaw::at(const Surface& surface, double x, double y) const {
     w.slope_by[1] = t * (3.0 * t - 2.0);
     return w;
   };
-  const Weights wx = weights(x_, x);
+  Weights wx = weights(x_, x);
+  if (x < x_.front()) {
+    // Linear in the speed itself, which has a limit at rest.
+    wx.slope_by[0] = std::exp(x - x_.front());
+    wx.slope[0] = std::expm1(x - x_.front());
+  }
   const Weights wy = weights(y_, y);
   double value = 0.0;
   double by_x = 0.0;
@@ -307,20 +312,30 @@ LawValue TabulatedLaw::at(const Surface& surface, double x, double y) const {
 
 ViscoelasticContact TabulatedLaw::at(double indentation, double speed) const {
   if (!(indentation > 0.0)) return no_contact();
-  const double v = std::abs(speed);
+  // At rest as close to it: only quotients by the speed matter there.
+  const double slowest = std::exp(x_.front());
+  const double v = std::max(std::abs(speed), 1e-100 * slowest);
   const double y = std::log(indentation);
-  const double x = v > 0.0 ? std::log(v) : x_.front();
+  const double x = std::log(v);
   ViscoelasticContact contact;
-  if (v == 0.0 || x < x_.front() || x > x_.back() || y < y_.front() || y > y_.back())
+  if (x < x_.front() || x > x_.back() || y < y_.front() || y > y_.back())
     contact.range = LawRange::beyond_data;
   contact.force = at(force_, x, y);
   contact.area = at(area_, x, y);
   contact.friction = at(friction_, x, y);
   for (LawValue* quantity : {&contact.force, &contact.area, &contact.friction}) {
     quantity->by_indentation /= indentation;
-    quantity->by_speed = v > 0.0 ? quantity->by_speed / v : 0.0;
+    quantity->by_speed /= v;
   }
-  if (v == 0.0) contact.friction = {};
+  if (x < x_.front()) {
+    // Friction begins in proportion to the speed: by r exp(1 − r), which has slope 0 at r = 1.
+    const double r = v / slowest;
+    LawValue& friction = contact.friction;
+    const double factor = r * std::exp(1.0 - r);
+    friction.by_indentation *= factor;
+    friction.by_speed = friction.by_speed * factor + friction.value * factor * (1.0 - r) / v;
+    friction.value = speed != 0.0 ? friction.value * factor : 0.0;
+  }
   return contact;
 }
 

@@ -123,8 +123,8 @@ class LimitedSpline {
 ///
 /// Limits: f → 4/3, g → π, m → (1 − e_0) β for β → 0 and f → 4/(3 e_0), g → π,
 /// m → 0.8 (1/e_0 − 1)/β for β → ∞; friction is interpolated as its ratio to a function that has
-/// both. Points whose edge layer v τ is below two cells are left to the limits. Outside the points
-/// in β `beyond_data`, though the limits hold there; above ŷ = 0.3 `too_deep`.
+/// both. Points whose edge layer v τ is below eight cells are left to the limits. Outside the
+/// points in β `beyond_data`, though the limits hold there; above ŷ = 0.3 `too_deep`.
 class BoundaryElementLaw : public ViscoelasticContactLaw {
  public:
   /// @throws std::invalid_argument if fewer than three points are resolved, or the modulus ratio is
@@ -158,9 +158,9 @@ struct ContactTable {
 
 /// A law by interpolation in a table: monotone cubics in the logarithms, of the logarithms of F̃, Ã
 /// and μ; for indenters other than a paraboloid and several creep times. Where the values along a
-/// line of the table rise or fall, so does the law on it. Outside the table it goes on linearly in
-/// the logarithms and says `beyond_data`; at v̂ = 0 friction vanishes and the rest has its limit for
-/// the smallest speed.
+/// line of the table rise or fall, so does the law on it. Outside the table it says `beyond_data`
+/// and goes on: linearly in the logarithms, and below the smallest speed so that at rest friction
+/// vanishes in proportion to the speed and force and area have limits.
 class TabulatedLaw : public ViscoelasticContactLaw {
  public:
   /// @throws std::invalid_argument if the table is not as it says

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
+#include "io/damage_guard.hpp"
 #include "io/run_file.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/equilibrium.hpp"
@@ -45,6 +46,7 @@ void check_modes(const RunFileReader& file, const std::string& path, const Syste
 }
 
 void start_from_file(System& system, const std::string& path) {
+  const DamageGuard guard(path);
   const RunFileReader file(path);
   for (SystemBody& body : system.bodies) {
     if (body.modal.size() == 0) continue;

@@ -64,6 +64,7 @@ class MatrixLoader {
 
   /// @param size expected; 0: any
   SparseMatrix matrix(const char* name, const MatrixText& text, Eigen::Index size) const {
+    if (text.empty() && size == 0) fail(name, "is empty, expected a matrix");
     if (text.empty()) return SparseMatrix(size, size);
     SparseMatrix read;
     const bool is_number =

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <hdf5.h>
-#include <hdf5_hl.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +9,8 @@
 #include <numbers>
 
 #include "core/errors.hpp"
+#include "io/damage_guard.hpp"
+#include "io/hdf5_input.hpp"
 #include "io/hdf5_output.hpp"
 
 namespace stridor {
@@ -119,27 +120,18 @@ void write_map_file(const std::string& path, Overwrite overwrite, const Stabilit
 }
 
 std::vector<TimedWindow> read_locus_windows(const std::string& path) {
+  const DamageGuard guard(path);
   const QuietErrors quiet;
   const Checker at(path);
-  const Handle access = file_access(at);
-  const Handle file =
-      at.own(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose, "", "cannot be opened");
+  const Handle file = open_hdf5_file(at);
   if (H5Lexists(file.id(), "/unstable", H5P_DEFAULT) <= 0)
     throw FileError(path, "/unstable", "is missing; a file of `stridor locus -o` is needed");
   std::vector<TimedWindow> windows;
   for (const Column& column : columns) {
     const std::string dataset = std::string("/unstable/") + column.name;
-    hsize_t size = 0;
-    int rank = 0;
-    at.check(H5LTget_dataset_ndims(file.id(), dataset.c_str(), &rank), dataset, "cannot be read");
-    if (rank != 1) throw FileError(path, dataset, fmt::format("has {} dimensions, not 1", rank));
-    at.check(H5LTget_dataset_info(file.id(), dataset.c_str(), &size, nullptr, nullptr), dataset,
-             "cannot be read");
-    std::vector<double> values(size);
-    if (size > 0) {
-      at.check(H5LTread_dataset_double(file.id(), dataset.c_str(), values.data()), dataset,
-               "cannot be read");
-    }
+    const std::vector<double> values =
+        read_array(at, open_array(at, file.id(), dataset, 1), dataset);
+    const std::size_t size = values.size();
     if (&column == &columns.front()) windows.resize(size);
     if (windows.size() != size) {
       throw FileError(path, dataset,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <stdexcept>
 
 namespace stridor {
 namespace {
@@ -43,6 +44,28 @@ void check_twins(const SphereParameters& parameters, std::vector<Problem>& probl
       problems.push_back(
           {"", fmt::format("`{}` or `{}` is missing", twin.ratio, twin.dimensional), {}, 0, 0});
     }
+  }
+}
+
+std::shared_ptr<const ViscoelasticContactLaw> law_of(const SphereModelParameters& parameters) {
+  if (parameters.contact_law == SphereModelParameters::published_fit)
+    return shipped_law(SphereContactLaw::published_fit);
+  if (parameters.contact_law == SphereModelParameters::boundary_element)
+    return shipped_law(SphereContactLaw::boundary_element);
+  if (!parameters.table)
+    throw std::invalid_argument("make_sphere: the table of the contact law has not been read");
+  return parameters.table;
+}
+
+void check_contact_law(const SphereModelParameters& parameters, std::vector<Problem>& problems) {
+  if (parameters.has_table() && !parameters.contact_law.ends_with(".h5")) {
+    problems.push_back({"contact_law",
+                        fmt::format("'{}' is neither published_fit nor boundary_element nor a file "
+                                    "of `stridor contact --table` (*.h5)",
+                                    parameters.contact_law),
+                        {},
+                        0,
+                        0});
   }
 }
 
@@ -163,12 +186,13 @@ const Schema& SphereModelParameters::schema() {
           .section("sphere", &SphereModelParameters::sphere,
                    {.doc = "A sphere on springs and dampers, pressed against a sliding "
                            "viscoelastic substrate."})
-          .choice("contact_law", &SphereModelParameters::contact_law,
-                  {{"published_fit", SphereContactLaw::published_fit},
-                   {"boundary_element", SphereContactLaw::boundary_element}},
-                  {.doc = "Force, area and friction of the contact: the fits as published, whose "
-                          "axis of speed is off by about two decades, or the boundary elements.",
-                   .optional = true})
+          .text("contact_law", &SphereModelParameters::contact_law,
+                {.doc = "Force, area and friction of the contact: published_fit, the fits as "
+                        "published, whose axis of speed is off by about two decades; "
+                        "boundary_element, the boundary elements of a paraboloid with one creep "
+                        "time and E∞/E0 = 10; or a table of `stridor contact --table` (*.h5), "
+                        "looked for beside the scene.",
+                 .optional = true})
           .choice("friction_normal_force", &SphereModelParameters::friction_normal_force,
                   {{"applied", FrictionLoad::applied}, {"contact", FrictionLoad::contact}},
                   {.doc = "What the viscoelastic friction coefficient is multiplied with: the "
@@ -183,7 +207,8 @@ const Schema& SphereModelParameters::schema() {
               {{"damped", SmallMotionTerms::all}, {"undamped", SmallMotionTerms::without_damping}},
               {.doc = "Whether the eigenvalues are those of the whole system or of the one "
                       "without its damping matrix (PPH, 4.2).",
-               .optional = true});
+               .optional = true})
+          .check(check_contact_law);
   return keys;
 }
 
@@ -229,7 +254,7 @@ SubstrateOscillator make_sphere(const SphereModelParameters& parameters) {
       numbers.frequency_ratio * numbers.frequency_ratio + spring * sine * sine;
   oscillator.load = {0.0, 1.0};
   SubstrateContact& contact = oscillator.contact;
-  contact.law = &contact_law(parameters.contact_law);
+  contact.law = law_of(parameters);
   contact.indentation_unit = numbers.radius_ratio;
   contact.speed_unit = numbers.radius_ratio / numbers.time_ratio;
   contact.force_unit = 1.0 / numbers.normal_load;

@@ -1,6 +1,7 @@
 // From the keys of `sphere` to an oscillator on a sliding viscoelastic substrate.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -46,12 +47,19 @@ struct RegularisationParameters {
 
 /// The part of a scene that describes the mechanics of the oscillator.
 struct SphereModelParameters {
+  static constexpr const char* published_fit = "published_fit";
+  static constexpr const char* boundary_element = "boundary_element";
+
   SphereParameters sphere;
-  SphereContactLaw contact_law = SphereContactLaw::published_fit;
+  std::string contact_law = published_fit;  ///< one of the two, or a file with a table
+  /// The law in that file, which whoever reads the scene reads as well.
+  std::shared_ptr<const ViscoelasticContactLaw> table;
   FrictionLoad friction_normal_force = FrictionLoad::applied;
   RegularisationParameters regularisation;
   SmallMotionTerms small_motion = SmallMotionTerms::all;
   static const Schema& schema();
+
+  bool has_table() const { return contact_law != published_fit && contact_law != boundary_element; }
 };
 
 /// The dimensionless numbers of PPH (9) to (11), and the units that they are measured in.
@@ -75,7 +83,7 @@ struct SphereNumbers {
 SphereNumbers sphere_numbers(const SphereParameters& parameters);
 
 /// PPH (12), corrected (docs/theory.md, 9.1): displacements over x_0, times ω_nx, forces over F_n.
-/// The law lives as long as the program.
+/// @throws std::invalid_argument if the table of a contact law has not been read
 SubstrateOscillator make_sphere(const SphereModelParameters& parameters);
 
 }  // namespace stridor

@@ -19,7 +19,8 @@ namespace stridor {
 /// stored: fields have N/2 rows of N values, row 0 next to the axis, values along x. The window is
 /// padded with as many empty cells, so that the periodic sum of the transform is the plain one.
 /// Along x the transform is a real Fourier transform, along y a cosine transform, which carries the
-/// evenness. Memory grows as N².
+/// evenness; it is a complex Fourier transform of the rows in another order (Makhoul 1980), for
+/// which FFTW has vector code. Memory grows as N².
 class HalfSpaceConvolution {
  public:
   /// Makes the samples of the coefficients and the plans of FFTW, which serve every speed. The
@@ -54,6 +55,11 @@ class HalfSpaceConvolution {
  private:
   /// Takes the transform of a table; leaves it in lines_.
   void transform(const InfluenceTable& table);
+  /// From the Fourier transforms along y in lines_ to the cosine transforms, times `factors`, and
+  /// to what is transformed back.
+  void multiply_cosine_lines(const std::vector<std::complex<double>>& factors);
+  /// How many of the N/2 rows are even: 0, 2, ...
+  std::size_t num_even_rows() const { return (num_cells() / 2 + 1) / 2; }
   void transform_with(const std::vector<std::complex<double>>& factors,
                       std::span<const double> from, std::span<double> to);
 
@@ -64,10 +70,13 @@ class HalfSpaceConvolution {
   std::vector<double> elastic_symbol_;                ///< without scale
   std::vector<std::complex<double>> symbol_;          ///< with the factors of the transforms
   std::vector<std::complex<double>> inverse_symbol_;  ///< likewise
-  detail::FftwPlan along_x_;
+  std::vector<std::complex<double>> turns_;           ///< exp(−iπ k/(2N)), k = 0 … N/2
+  detail::FftwPlan even_along_x_;
+  detail::FftwPlan odd_along_x_;
   detail::FftwPlan along_y_;
   detail::FftwPlan back_along_y_;
-  detail::FftwPlan back_along_x_;
+  detail::FftwPlan even_back_along_x_;
+  detail::FftwPlan odd_back_along_x_;
   detail::FftwPlan table_along_x_;
   detail::FftwPlan table_along_y_;
 };

@@ -71,7 +71,7 @@ std::vector<std::string> SlidingContactResult::remarks() const {
                                residual, rounds));
   }
   if (touches_window) list.push_back("the contact reaches the border of the window: enlarge it");
-  if (memory_in_cells < 2.0) {
+  if (!has_resolved_memory()) {
     list.push_back(
         fmt::format("the layer of length v tau at the edge is {:.2g} cells wide and not "
                     "resolved: the friction is too low",

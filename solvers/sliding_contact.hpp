@@ -44,6 +44,7 @@ struct SlidingContactResult {
   /// The shortest v τ_k in cells; below 2 the layer in which the material stiffens at the edge is
   /// not resolved and the friction is too low. Infinite without creep or at rest.
   double memory_in_cells = 0.0;
+  bool has_resolved_memory() const { return memory_in_cells >= 2.0; }
   std::size_t rounds = 0;    ///< sets of contact cells tried on this grid
   std::size_t products = 0;  ///< transforms there and back on this grid
   double residual = 0.0;     ///< as ComplementarityOutcome

@@ -149,6 +149,99 @@ TEST(ContactProgram, MasterCurveNeedsAParaboloidAndOneTime) {
   EXPECT_THAT(contents_of(file), HasSubstr("{1, 1.62"));
 }
 
+TEST(ContactProgram, TableOfAParaboloidIsTheLawOfTheMasterCurve) {
+  // Made for the material of the shipped curve, read by an oscillator: the same equilibrium and
+  // growth but for the grid (128 cells) and the interpolation.
+  const TemporaryFolder folder;
+  const std::string file = folder / "law.h5";
+  const ProgramResult made =
+      Program({"contact", scene, "--set", "contact_solver.grid=128", "--table", file, "--speeds",
+               "1e-3", "1", "25", "--indentations", "1e-3", "0.1", "9", "--json"})
+          .run();
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const Json table = Json::parse(made.out);
+  EXPECT_EQ(table["force"].size(), 225u);
+  EXPECT_GT(table["num_unresolved"], 0);
+  EXPECT_EQ(table["num_touching_window"], 0);
+  const auto eig = [](const std::string& law) {
+    const ProgramResult result = Program({"eig", scene_path("viscoelastic_sphere.yaml"), "--json",
+                                          "--set", "sphere.speed=0.05", "--set",
+                                          "sphere.normal_load=2e-2", "--set", "contact_law=" + law})
+                                     .run();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return Json::parse(result.out);
+  };
+  const Json expected = eig("boundary_element");
+  const Json found = eig(file);
+  EXPECT_EQ(found["equilibrium"]["law_range"], "inside");
+  for (const char* name : {"normal_force", "friction_force", "area", "viscous_friction"}) {
+    EXPECT_NEAR(
+        found["equilibrium"][name].get<double>() / expected["equilibrium"][name].get<double>(), 1.0,
+        3e-3)
+        << name;
+  }
+  // The growth takes derivatives of the law, in which the interpolation is one order less.
+  EXPECT_NEAR(found["equilibrium"]["equivalent_damping"].get<double>() /
+                  expected["equilibrium"]["equivalent_damping"].get<double>(),
+              1.0, 0.05);
+}
+
+TEST(ContactProgram, TableOfASphereWithTwoCreepTimesDrivesTheOscillator) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "law.h5";
+  const ProgramResult made =
+      run_with({"--set", "profile.shape=sphere", "--set", "material.creep_times=[10 ms, 100 ms]",
+                "--set", "material.creep_shares=[0.5, 0.5]", "--table", file, "--speeds", "1e-2",
+                "10", "7", "--indentations", "1e-3", "0.1", "5"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("7 speeds, 5 indentations"));
+  // A file named in a scene stands beside it.
+  std::filesystem::copy_file(scene_path("viscoelastic_sphere.yaml"), folder / "sphere.yaml");
+  std::string text = contents_of(folder / "sphere.yaml");
+  text.replace(text.find("contact_law: published_fit"), 26, "contact_law: law.h5       ");
+  write_file(folder / "sphere.yaml", text);
+  const ProgramResult run = Program({"cycle", folder / "sphere.yaml", "--json", "--set",
+                                     "sphere.speed=0.05", "--set", "time.settle=100"})
+                                .run();
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_GT(Json::parse(run.out)["x"]["rms"].get<double>(), 0.0);
+
+  const ProgramResult again = run_with({"--table", file});
+  EXPECT_EQ(again.exit_code, 4);
+  EXPECT_THAT(again.err, HasSubstr("use --force"));
+}
+
+TEST(ContactProgram, TablesThatCannotBeAreRefused) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "law.h5";
+  ProgramResult result = run_with({"--table", file, "--speeds", "1", "0.1", "5"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("--speeds: needs two positive numbers"));
+  result =
+      run_with({"--table", file, "--set",
+                "profile={shape: table, radius: 1, radii: [0, 0.1, 0.2], heights: [0, 1, 4]}"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  result = run_with({"--table", file, "--force", "--set",
+                     "profile={shape: table, radius: 1, radii: [0, 0.1, 0.2], heights: [0, 1, 4]}",
+                     "--indentations", "0.1", "100", "4"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("in contact up to its end at an indentation of 10 R"));
+  result = run_with({"--table", file, "--force", "--set", "material.glassy_modulus=1 GPa",
+                     "--speeds", "0.05", "0.2", "4", "--indentations", "0.01", "0.02", "4"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("of the table did not converge; nothing has been written"));
+  const auto eig = [](const std::string& law) {
+    return Program({"eig", scene_path("viscoelastic_sphere.yaml"), "--set", "contact_law=" + law})
+        .run();
+  };
+  result = eig("nothing.h5");
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.err, HasSubstr("nothing.h5: cannot be opened"));
+  result = eig("boundary_elements");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("'boundary_elements' is neither published_fit nor"));
+}
+
 TEST(FitProgram, FindsTheShiftOfTheSpeedAxis) {
   const TemporaryFolder folder;
   const ProgramResult result =

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <random>
 
-#include "app/damage_guard.hpp"
+#include "io/damage_guard.hpp"
 #include "io/run_file.hpp"
 #include "tests/support/program.hpp"
 

@@ -98,6 +98,7 @@ TEST(MatrixScene, SaysWhichMatrixIsWrong) {
   EXPECT_THAT(folder.failure({body + "mass=[1 0, 0 -1]"}),
               HasSubstr("mass: must be positive definite"));
   EXPECT_THAT(folder.failure({body + "mass=[1 2, 0 1]"}), HasSubstr("mass: must be symmetric"));
+  EXPECT_THAT(folder.failure({body + "mass=[]"}), HasSubstr("mass: is empty, expected a matrix"));
   EXPECT_THAT(folder.failure({body + "gyroscopic=[0 1, 1 0]"}),
               HasSubstr("gyroscopic: must be skew-symmetric"));
   EXPECT_THAT(folder.failure({body + "circulatory=[0 1 0, -1 0 0, 0 0 0]"}),

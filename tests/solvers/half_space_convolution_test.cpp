@@ -17,7 +17,7 @@ using test::message_of;
 using ::testing::HasSubstr;
 
 TEST(HalfSpaceConvolution, IsTheSumOverAllCellsAndTheirMirrorImages) {
-  for (const std::size_t n : {std::size_t{8}, std::size_t{18}}) {
+  for (const std::size_t n : {2u, 4u, 8u, 18u}) {
     HalfSpaceConvolution half_space(n);
     const std::vector<SlidingCreep> creep{{0.4, 0.3}, {0.3, 5.0}};
     half_space.set_creep(creep, 0.5);

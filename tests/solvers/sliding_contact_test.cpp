@@ -75,6 +75,36 @@ TEST(SlidingContact, SlowSlidingHasTheFrictionOfTheRelaxedContact) {
   EXPECT_THAT(result.remarks(), ElementsAre(HasSubstr("1.2 cells wide and not resolved")));
 }
 
+TEST(SlidingContact, SlowFrictionOfAnyProfileIsThatOfItsCurvature) {
+  // To first order in the speed K = L + Σ w_k l_k ∂L/∂x and the pressure is that at rest; there
+  // ∫ p_x (L p_x) = ∫ p f_xx, so that μ = Σ w_k l_k ½⟨f″ + f′/r⟩ with the mean over p. Sphere, two
+  // creep times; curvature over the pressures of the contact at rest.
+  ProfileParameters parameters;
+  parameters.shape = ProfileShape::sphere;
+  parameters.radius = 1.0;
+  SlidingContactParameters settings;
+  settings.grid = 128;
+  SlidingContact solver(settings, IndenterProfile(parameters));
+  const SlidingContactResult rest = solver.indent(0.3, {});
+  ASSERT_TRUE(rest.converged);
+  double mean = 0.0;
+  const double side = solver.cell_side();
+  for (std::size_t k = 0; k < solver.pressure().size(); ++k) {
+    const double x = (static_cast<double>(k % 128) - 63.5) * side;
+    const double y = (static_cast<double>(k / 128) + 0.5) * side;
+    const double height = std::sqrt(std::max(1e-9, 1.0 - x * x - y * y));  // of the centre over it
+    mean += 2.0 * solver.pressure()[k] * side * side / rest.force * 0.5 *
+            (std::pow(height, -3.0) + 1.0 / height);
+  }
+  EXPECT_GT(mean, 1.05);  // a paraboloid would have 1
+  const double speed = 0.002;
+  const SlidingContactResult slow = solver.indent(0.3, {{0.3, speed}, {0.2, 2.0 * speed}});
+  ASSERT_TRUE(slow.converged);
+  // The edge layers are 0.2 and 0.4 cells. What is lost there is of first order in the cell: 0.4 %
+  // on the 512 cells of the shipped curve, so 1.7 % here; the next order in the speed is 0.5 %.
+  EXPECT_NEAR(slow.friction / ((0.3 + 0.2 * 2.0) * speed * mean), 1.0, 0.025);
+}
+
 TEST(SlidingContact, FrictionIsOddAndTheRestEvenInTheSpeed) {
   SlidingContact solver = contact(48);
   for (const double beta : {0.1, 1.0, 10.0}) {

@@ -93,8 +93,8 @@ std::vector<SphereModelParameters> extreme_spheres() {
   for (const double shear : {0.0, 1.0}) {
     for (const double speed : {1e-8, 1e-4, 1.0, 1e3}) {
       for (const double load : {1e-8, 1e-4, 0.1}) {
-        for (const SphereContactLaw law :
-             {SphereContactLaw::published_fit, SphereContactLaw::boundary_element}) {
+        for (const char* const law :
+             {SphereModelParameters::published_fit, SphereModelParameters::boundary_element}) {
           spheres.push_back(paper_sphere(speed, shear));
           spheres.back().sphere.normal_load = load;
           spheres.back().contact_law = law;
@@ -115,8 +115,7 @@ SphereModelParameters stiff_sphere() {
 
 std::string described(const SphereModelParameters& model) {
   return fmt::format("shear {:g} speed {:g} load {:g} law {}", *model.sphere.shear_strength,
-                     *model.sphere.speed, *model.sphere.normal_load,
-                     static_cast<int>(model.contact_law));
+                     *model.sphere.speed, *model.sphere.normal_load, model.contact_law);
 }
 
 TEST(SubstrateExtremes, StiffEquilibriumHasAFastEigenvalueByItself) {

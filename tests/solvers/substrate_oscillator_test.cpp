@@ -139,8 +139,8 @@ TEST(SubstrateOscillator, NothingBreaksAtExtremes) {
   for (const double shear : {0.0, 1e-3, 1.0}) {
     for (const double speed : {1e-8, 1e-4, 1.0, 1e3}) {
       for (const double load : {1e-8, 1e-4, 0.1}) {
-        for (const SphereContactLaw law :
-             {SphereContactLaw::published_fit, SphereContactLaw::boundary_element}) {
+        for (const char* law :
+             {SphereModelParameters::published_fit, SphereModelParameters::boundary_element}) {
           SphereModelParameters model = paper_sphere();
           model.contact_law = law;
           model.sphere.normal_load = load;

@@ -25,8 +25,8 @@ class RandomSpheres {
     sphere.angle = uniform(0.0, 0.5 * std::numbers::pi);
     sphere.damping_x = uniform(0.0, 0.1);
     sphere.damping_y = uniform(0.0, 0.1);
-    model.contact_law = uniform(0.0, 1.0) < 0.5 ? SphereContactLaw::published_fit
-                                                : SphereContactLaw::boundary_element;
+    model.contact_law = uniform(0.0, 1.0) < 0.5 ? SphereModelParameters::published_fit
+                                                : SphereModelParameters::boundary_element;
     model.friction_normal_force =
         uniform(0.0, 1.0) < 0.5 ? FrictionLoad::applied : FrictionLoad::contact;
     return model;

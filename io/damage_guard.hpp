@@ -1,18 +1,21 @@
 // Reports a crash over a damaged file as what it is.
 #pragma once
 
+#include <array>
+#include <csignal>
 #include <string>
 
 namespace stridor {
 
-/// While one lives, a crash of the program ends it with ExitCode::file_trouble and a message that
-/// names the file.
+/// While one lives, a crash of the program ends it with exit code 4, file trouble, and a message
+/// that names the file.
 ///
 /// HDF5 trusts much of what it reads, and files in its default format carry no checksums: some
 /// damage to a file makes the library follow wild pointers, when the file is opened, read or
 /// closed. There is no way back from there. Let the guard outlive the reader of the file.
 ///
-/// At most one may live at a time; it acts for the whole process.
+/// It acts for the whole process. Several may live at once, each within the life of the one before;
+/// the latest names its file.
 class DamageGuard {
  public:
   /// @param path the file that is open meanwhile
@@ -21,8 +24,14 @@ class DamageGuard {
   DamageGuard& operator=(const DamageGuard&) = delete;
   ~DamageGuard();
 
+  static constexpr int exit_code = 4;
+  static constexpr std::array<int, 5> crashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
+
  private:
   std::string last_words_;
+  const DamageGuard* outer_ = nullptr;
+  std::array<struct sigaction, crashes.size()> former_actions_{};
+  stack_t former_stack_{};
 };
 
 }  // namespace stridor

@@ -1,0 +1,200 @@
+// Files damaged at random, folders that cannot be written, disks that are full: every verb ends
+// with an exit code that says so, and never otherwise.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/support/program.hpp"
+
+namespace stridor {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+
+const std::string contact_scene = scene_path("viscoelastic_contact.yaml");
+const std::string sphere_scene = scene_path("viscoelastic_sphere.yaml");
+
+using Arguments = std::vector<std::string>;
+
+/// Some damage to the bytes of a file, always the same for a seed.
+std::string damaged(std::string bytes, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto below = [&](std::size_t bound) {
+    return std::uniform_int_distribution<std::size_t>(0, bound - 1)(random);
+  };
+  // Metadata stand mostly at the front; data may become any number.
+  const std::size_t at =
+      below(below(3) == 0 ? bytes.size() : std::min<std::size_t>(bytes.size(), 4096));
+  const std::size_t length = std::min(1 + below(64), bytes.size() - at);
+  switch (seed % 6) {
+    case 0:
+      bytes.resize(at);
+      break;
+    case 1:
+      for (std::size_t i = 0; i < length; ++i) bytes[at + i] = static_cast<char>(below(256));
+      break;
+    case 2:
+      std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), length, '\0');
+      break;
+    case 3:
+      std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), length, '\xff');
+      break;
+    case 4:
+      bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));
+      break;
+    default:
+      bytes.erase(at, length);
+      break;
+  }
+  return bytes;
+}
+
+void write_bytes(const fs::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary)
+      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
+/// Reads a damaged file by some verb, over and over: it is read, refused as a file, or what it says
+/// is refused as input or numbers.
+void expect_survives(const std::string& bytes, unsigned num_seeds, const fs::path& path,
+                     const Arguments& arguments) {
+  unsigned num_refused = 0;
+  for (unsigned seed = 0; seed < num_seeds; ++seed) {
+    write_bytes(path, damaged(bytes, seed));
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_THAT(result.exit_code, AnyOf(0, 2, 3, 4)) << "seed " << seed << ": " << result.err;
+    EXPECT_TRUE(result.exit_code == 0 || !result.err.empty()) << "seed " << seed;
+    if (result.exit_code == 4) ++num_refused;
+  }
+  EXPECT_GT(num_refused, num_seeds / 5);
+}
+
+TEST(Robustness, DamagedRunFilesAreReadOrRefused) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "run.h5";
+  ASSERT_EQ(Program({"run", scene_path("examples/landing.yaml"), "-o", file}).run().exit_code,
+            0);
+  const std::string bytes = contents_of(file);
+  const std::string bad = folder / "bad.h5";
+  expect_survives(bytes, 60, bad, {"info", bad});
+  expect_survives(bytes, 20, bad, {"run", "--resume", bad});
+}
+
+TEST(Robustness, DamagedContactLawsAreReadOrRefused) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "law.h5";
+  ASSERT_EQ(Program({"contact", contact_scene, "--set", "contact_solver.grid=16", "--table", file,
+                     "--speeds", "0.01", "1", "4", "--indentations", "0.01", "0.1", "4"})
+                .run()
+                .exit_code,
+            0);
+  const std::string bad = folder / "bad.h5";
+  expect_survives(contents_of(file), 60, bad, {"eig", sphere_scene, "--set", "contact_law=" + bad});
+}
+
+TEST(Robustness, EveryVerbSaysThatAFolderCannotBeWritten) {
+  const TemporaryFolder folder;
+  const fs::path locked = folder / "locked";
+  fs::create_directory(locked);
+  fs::permissions(locked, fs::perms::owner_read | fs::perms::owner_exec);
+  if (::access(locked.c_str(), W_OK) == 0) {
+    // The superuser may write everywhere but where a file stands in place of the folder.
+    fs::remove(locked);
+    write_file(locked, "");
+  }
+  const std::string at = locked / "a";
+  const std::string disc = scene_path("disc_and_pads.yaml");
+  for (const Arguments& arguments :
+       {Arguments{"run", scene_path("beam_on_beam.yaml"), "-o", at + ".h5"},
+        {"contact", contact_scene, "-o", at + ".h5"},
+        {"contact", contact_scene, "--table", at + ".h5"},
+        {"contact", contact_scene, "--master-curve", at + ".inc"},
+        {"cycle", sphere_scene, "-o", at + ".h5"},
+        {"map", sphere_scene, "--x", "sphere.speed", "0.1", "1", "3", "--y",
+         "sphere.shear_strength", "0.01", "0.1", "3", "-o", at + ".h5"},
+        {"locus", disc, "--parameter", "contact.friction.coefficient", "--from", "0.1", "--to",
+         "0.2", "--points", "2", "-o", at + ".h5"}}) {
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 4) << arguments[0] << ": " << result.err;
+    EXPECT_THAT(result.err, HasSubstr("locked")) << arguments[0];
+  }
+  if (fs::is_directory(locked)) fs::permissions(locked, fs::perms::owner_all);
+}
+
+TEST(Robustness, PathsWithSpacesAndUnicodeWorkEverywhere) {
+  const TemporaryFolder folder;
+  const fs::path place = folder / "Räume & 'Größen' 日本";
+  fs::create_directory(place);
+  fs::copy_file(contact_scene, place / "Kontakt é.yaml");
+  fs::copy_file(sphere_scene, place / "Kugel é.yaml");
+  const std::string law = place / "Gesetz é.h5";
+  EXPECT_EQ(
+      Program({"contact", place / "Kontakt é.yaml", "--set", "contact_solver.grid=16", "--table",
+               law, "--speeds", "0.01", "1", "4", "--indentations", "0.01", "0.1", "4"})
+          .run()
+          .exit_code,
+      0);
+  const std::string figure = place / "Bild é.png";
+  const ProgramResult cycle =
+      Program({"cycle", place / "Kugel é.yaml", "--set", "contact_law=" + law, "--set",
+               "sphere.speed=0.05", "--set", "time.settle=20", "-o", place / "Zyklus é.h5",
+               "--figure", figure})
+          .run();
+  EXPECT_EQ(cycle.exit_code, 0) << cycle.err;
+  EXPECT_GT(fs::file_size(figure), 1000u);
+}
+
+/// A file system of its own, of 16 kB, where the system lets us make one.
+class SmallDisk {
+ public:
+  explicit SmallDisk(const fs::path& place) : place_(place) {
+    fs::create_directory(place_);
+    is_mounted_ = mount("tmpfs", place_.c_str(), "tmpfs", 0, "size=16k") == 0;
+  }
+  ~SmallDisk() {
+    if (is_mounted_) umount2(place_.c_str(), MNT_DETACH);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  bool is_mounted() const { return is_mounted_; }
+
+ private:
+  fs::path place_;
+  bool is_mounted_ = false;
+};
+
+TEST(Robustness, FullDisksAreReportedAndLeaveNoHalfFile) {
+  const TemporaryFolder folder;
+  const SmallDisk disk(folder / "disk");
+  if (!disk.is_mounted()) GTEST_SKIP() << "needs the right to mount a file system";
+  const std::string at = folder / "disk" / "a";
+  for (const Arguments& arguments :
+       {Arguments{"contact", contact_scene, "-o", at + ".h5"},
+        {"cycle", sphere_scene, "--set", "time.settle=20", "-o", at + ".h5"},
+        {"map", sphere_scene, "--x", "sphere.speed", "1e-3", "1", "100", "--y",
+         "sphere.shear_strength", "0.01", "0.1", "100", "-o", at + ".h5"}}) {
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 4) << arguments[0] << ": " << result.err;
+    EXPECT_THAT(result.err, HasSubstr("No space left on device")) << arguments[0];
+    EXPECT_TRUE(fs::is_empty(folder / "disk")) << arguments[0];
+  }
+  // A run keeps what it could write.
+  const ProgramResult run =
+      Program({"run", scene_path("beam_on_beam.yaml"), "-o", at + ".h5"}).run();
+  EXPECT_EQ(run.exit_code, 4) << run.err;
+}
+
+}  // namespace
+}  // namespace stridor
