@@ -86,6 +86,7 @@ TEST(ContactParameters, SchemaRefusesAnEmptyListOfSlaves) {
     return problems;
   };
   ContactParameters contact;
+  contact.friction.emplace().coefficient = 0.3;
   const std::vector<Problem> problems = problems_of(contact);
   ASSERT_THAT(problems, SizeIs(1));
   EXPECT_EQ(problems[0].text(), "slave: is an empty list; name at least one point");

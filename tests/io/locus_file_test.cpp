@@ -74,7 +74,7 @@ TEST(LocusFile, OtherFilesAreRefused) {
               HasSubstr("a file of `stridor locus -o` is needed"));
   write_file(folder / "text.h5", "no HDF5");
   EXPECT_THAT(message_of<FileError>([&] { read_locus_windows((folder / "text.h5").string()); }),
-              HasSubstr("cannot be opened"));
+              HasSubstr("is not an HDF5 file"));
 }
 
 }  // namespace
