@@ -75,10 +75,11 @@ GrowthMap make_growth_map(const std::function<std::unique_ptr<GrowthField>()>& m
   std::exception_ptr failure;
   const auto work = [&] {
     try {
-      const std::unique_ptr<GrowthField> field = make_field();
       while (!has_failed) {
         const std::size_t line = next++;
         if (line >= num_lines) return;
+        // Anew for every line, or what it begins from would depend on the lines of this thread.
+        const std::unique_ptr<GrowthField> field = make_field();
         if (line < y.size()) {
           const double at = y[line];
           std::vector<double>& row = map.growth[line];

@@ -39,7 +39,7 @@ struct GrowthMap {
   std::vector<BoundaryLine> boundary;       ///< its points solved for on the lines of the grid
 };
 
-/// @param make_field makes a field for one thread
+/// @param make_field makes a field for one line of the grid; called by several threads
 /// @param x, y       strictly ascending, at least two each
 /// @param report     called with the share that is done, by one thread at a time; may be empty
 GrowthMap make_growth_map(const std::function<std::unique_ptr<GrowthField>()>& make_field,

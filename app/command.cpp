@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/errors.hpp"
+#include "io/gnuplot.hpp"
 
 namespace stridor {
 
@@ -24,6 +25,12 @@ void add_json_option(CLI::App& verb, CommonOptions& options) {
 
 void add_force_option(CLI::App& verb, CommonOptions& options) {
   verb.add_flag("--force", options.force, "Overwrite the output file if it exists");
+}
+
+void check_figure(const std::filesystem::path& figure, const CommonOptions& options) {
+  check_figure_name(figure);
+  if (!options.force && std::filesystem::exists(figure))
+    throw FileError(figure.string(), "", "exists; use --force to overwrite it");
 }
 
 Json number(double value) {

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "io/run_file.hpp"
 
 namespace stridor {
 
@@ -28,11 +31,18 @@ struct CommonOptions {
   bool json = false;
   bool force = false;
   int threads = 1;
+
+  Overwrite overwrite() const { return force ? Overwrite::yes : Overwrite::no; }
 };
 
 void add_scene_options(CLI::App& verb, CommonOptions& options);
 void add_json_option(CLI::App& verb, CommonOptions& options);
 void add_force_option(CLI::App& verb, CommonOptions& options);
+
+/// Refuses a figure before anything is computed for it.
+/// @throws ConfigError for a name without a known ending
+/// @throws FileError   for one that exists and may not be overwritten
+void check_figure(const std::filesystem::path& figure, const CommonOptions& options);
 
 /// A number for JSON; null where it is not finite.
 Json number(double value);

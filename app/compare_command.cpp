@@ -103,8 +103,7 @@ Candidates run_interleaved(const LoadedScene& loaded, Coordinates coordinates, d
     candidate.file = (folder / fmt::format("{}{}.h5", assumptions[i].name, suffix)).string();
     candidate.transient = std::make_unique<Transient>(
         candidate.scene,
-        TransientOutput{candidate.file, options.common.force ? Overwrite::yes : Overwrite::no,
-                        options.command_line});
+        TransientOutput{candidate.file, options.common.overwrite(), options.command_line});
   }
   constexpr int turns = 100;
   run_in_turns(coordinates == Coordinates::modal ? "modal" : "published form",
@@ -224,7 +223,7 @@ ExitCode compare(const CompareOptions& options) {
     prepare_folder(folder,
                    {"comparison.json", "accelerations.png", "sliding_velocities.png",
                     "contact_forces.png", "spectrograms.png"},
-                   options.common.force ? Overwrite::yes : Overwrite::no);
+                   options.common.overwrite());
   } else {
     scratch.emplace();
     folder = scratch->path();

@@ -53,13 +53,6 @@ struct Row {
   ContactFields fields;
 };
 
-void check_figure(const std::optional<std::string>& figure, const CommonOptions& common) {
-  if (!figure) return;
-  check_figure_name(*figure);
-  if (!common.force && std::filesystem::exists(*figure))
-    throw FileError(*figure, "", "exists; use --force to overwrite it");
-}
-
 /// Refuses what an indenter that ends cannot carry.
 void check_reach(const LoadedContactScene& loaded, const SlidingPoints& points) {
   const double radius = loaded.scene.profile.radius;
@@ -203,8 +196,8 @@ void write_file(const ContactOptions& options, const LoadedContactScene& loaded,
   add("residual", [](const Row& row) { return row.result.residual; });
   std::vector<ContactFields> fields;
   for (const Row& row : rows) fields.push_back(row.fields);
-  write_contact_file(*options.output, options.common.force ? Overwrite::yes : Overwrite::no,
-                     columns, fields, file_attributes(options, loaded));
+  write_contact_file(*options.output, options.common.overwrite(), columns, fields,
+                     file_attributes(options, loaded));
 }
 
 std::string source_text(const ContactOptions& options, const LoadedContactScene& loaded) {
@@ -274,7 +267,7 @@ ExitCode make_master_curve(const ContactOptions& options, const LoadedContactSce
     throw loaded.problem("material.creep_times",
                          "must be one: only then do contacts lie on one curve");
   const std::string& path = *options.master_curve;
-  check_output(path, options.common.force ? Overwrite::yes : Overwrite::no);
+  check_output(path, options.common.overwrite());
   const std::vector<double> betas = master_curve_betas();
   Progress progress("master curve");
   const ComputedMasterCurve computed = compute_master_curve(
@@ -320,7 +313,7 @@ ExitCode make_master_curve(const ContactOptions& options, const LoadedContactSce
 ExitCode make_table(const ContactOptions& options, const LoadedContactScene& loaded) {
   const ContactScene& scene = loaded.scene;
   const std::string& path = *options.table;
-  const Overwrite overwrite = options.common.force ? Overwrite::yes : Overwrite::no;
+  const Overwrite overwrite = options.common.overwrite();
   check_output(path, overwrite);
   SlidingPoints points;
   points.speeds = spaced_values("--speeds", options.table_speeds);
@@ -387,10 +380,10 @@ ExitCode make_table(const ContactOptions& options, const LoadedContactScene& loa
 }
 
 ExitCode contact(const ContactOptions& options) {
-  if (options.output)
-    check_output(*options.output, options.common.force ? Overwrite::yes : Overwrite::no);
-  check_figure(options.pressure_figure, options.common);
-  check_figure(options.edges_figure, options.common);
+  if (options.output) check_output(*options.output, options.common.overwrite());
+  for (const auto& figure : {options.pressure_figure, options.edges_figure}) {
+    if (figure) check_figure(*figure, options.common);
+  }
   const LoadedContactScene loaded = load_contact_scene(options.scene, options.common.sets);
   if (options.master_curve) return make_master_curve(options, loaded);
   if (options.table) return make_table(options, loaded);

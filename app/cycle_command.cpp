@@ -62,13 +62,9 @@ void print_cycle(const LimitCycle& cycle, const SphereNumbers& numbers) {
 }
 
 ExitCode cycle(const CycleCommandOptions& options) {
-  const Overwrite overwrite = options.common.force ? Overwrite::yes : Overwrite::no;
+  const Overwrite overwrite = options.common.overwrite();
   if (options.output) check_output(*options.output, overwrite);
-  if (options.figure) {
-    check_figure_name(*options.figure);
-    if (overwrite == Overwrite::no && std::filesystem::exists(*options.figure))
-      throw FileError(*options.figure, "", "exists; use --force to overwrite it");
-  }
+  if (options.figure) check_figure(*options.figure, options.common);
   const LoadedSphereScene loaded = load_sphere_scene(options.scene, options.common.sets);
   const SphereNumbers numbers = sphere_numbers(loaded.scene.model.sphere);
   const SubstrateOscillator oscillator = make_sphere(loaded.scene.model);

@@ -275,7 +275,7 @@ ExitCode run_disc(const DiscRunOptions& options) {
     return std::chrono::duration<double>(Clock::now() - from).count();
   };
   const auto setup_start = Clock::now();
-  const Overwrite overwrite = options.common.force ? Overwrite::yes : Overwrite::no;
+  const Overwrite overwrite = options.common.overwrite();
   check_output(options.output, overwrite);
   const LoadedLinearScene loaded = load_linear_scene(options.scene, options.common.sets);
   const DiscScene* scene = std::get_if<DiscScene>(&loaded.scene);

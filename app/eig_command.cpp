@@ -82,8 +82,7 @@ std::vector<std::string> write_shapes(const EigOptions& options, const LoadedSce
   const std::filesystem::path stem = folder / fmt::format("mode_{:02}", number);
   std::filesystem::path figure = stem;
   figure += ".png";
-  if (!options.stability.common.force && std::filesystem::exists(figure))
-    throw FileError(figure.string(), "", "exists; use --force to overwrite it");
+  check_figure(figure, options.stability.common);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw FileError(folder.string(), "", "cannot be made: " + error.message());

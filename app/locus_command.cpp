@@ -244,17 +244,10 @@ void print_windows(const std::vector<TimedWindow>& windows, const NumericKey& ke
              key.unit.empty() ? "" : fmt::format(" ({})", printed_units(key)));
 }
 
-Overwrite overwrite_of(const CommonOptions& common) {
-  return common.force ? Overwrite::yes : Overwrite::no;
-}
-
 void check_outputs(const LocusCommandOptions& options) {
-  if (options.output) check_output(*options.output, overwrite_of(options.stability.common));
+  if (options.output) check_output(*options.output, options.stability.common.overwrite());
   for (const auto& figure : {options.figure, options.history}) {
-    if (!figure) continue;
-    check_figure_name(*figure);
-    if (!options.stability.common.force && std::filesystem::exists(*figure))
-      throw FileError(*figure, "", "exists; use --force to overwrite it");
+    if (figure) check_figure(*figure, options.stability.common);
   }
 }
 
@@ -287,7 +280,7 @@ ExitCode locus(const LocusCommandOptions& options) {
   const std::vector<TimedWindow> windows = timed_windows(shown, times);
   const std::string units = printed_units(range.key);
   if (options.output) {
-    write_locus_file(*options.output, overwrite_of(stability.common), shown, windows, units,
+    write_locus_file(*options.output, stability.common.overwrite(), shown, windows, units,
                      {{"parameter", range.key.path},
                       {"units", units},
                       {"about", stability.about},

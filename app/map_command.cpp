@@ -231,13 +231,9 @@ void draw(const MapOptions& options, const std::array<Axis, 2>& axes, const Stab
 
 ExitCode map(const MapOptions& options) {
   const StabilityOptions& stability = options.stability;
-  const Overwrite overwrite = stability.common.force ? Overwrite::yes : Overwrite::no;
+  const Overwrite overwrite = stability.common.overwrite();
   if (options.output) check_output(*options.output, overwrite);
-  if (options.figure) {
-    check_figure_name(*options.figure);
-    if (overwrite == Overwrite::no && std::filesystem::exists(*options.figure))
-      throw FileError(*options.figure, "", "exists; use --force to overwrite it");
-  }
+  if (options.figure) check_figure(*options.figure, stability.common);
   const auto scene = load_stability_scene(stability);
   const StabilityScene& loaded = *scene;
   const std::array<Axis, 2> axes{

@@ -109,13 +109,6 @@ double option_value(const char* option, const std::string& text, const std::stri
   return value;
 }
 
-void check_figure(const PictureOptions& options) {
-  check_figure_name(options.output);
-  if (!options.common.force && std::filesystem::exists(options.output)) {
-    throw FileError(options.output, "", "exists; use --force to overwrite it");
-  }
-}
-
 std::vector<double> RecordedStretch::times() const {
   const auto part = samples.of(file.times());
   return {part.begin(), part.end()};

@@ -48,10 +48,6 @@ void add_data_option(CLI::App& verb, PictureOptions& options);
 double option_value(const char* option, const std::string& text, const std::string& unit,
                     const Range& allowed);
 
-/// @throws ConfigError for a wrong ending, FileError where the figure exists and may not be
-/// replaced
-void check_figure(const PictureOptions& options);
-
 /// A run file and the stretch of it that a picture shows.
 struct RecordedStretch {
   std::unique_ptr<DamageGuard> guard;  ///< outlives the reader

@@ -244,7 +244,7 @@ void check_options(const PlotOptions& options) {
 ExitCode plot(const PlotOptions& options) {
   check_options(options);
   if (options.kind == "spectrogram") return draw_spectrogram(options);
-  check_figure(options);
+  check_figure(options.output, options.common);
   const RecordedStretch run = open_stretch(options);
   const Drawn drawn = options.kind == "history" ? draw_history(options, run)
                       : options.kind == "phase" ? draw_phase(options, run)

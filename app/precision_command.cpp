@@ -26,8 +26,7 @@ ExitCode precision(const PrecisionOptions& options) {
   const PrecisionStudy study = make_precision_study(options);
   const bool is_kept = !options.folder.empty();
   if (is_kept) {
-    prepare_folder(options.folder, {figure_name, json_name},
-                   options.common.force ? Overwrite::yes : Overwrite::no);
+    prepare_folder(options.folder, {figure_name, json_name}, options.common.overwrite());
   }
 
   PrecisionResult result = measure_precision(study, options);

@@ -131,9 +131,7 @@ ExitCode begin(const RunOptions& options) {
         {options.common, options.scene, options.output, options.verify, options.command_line});
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
-  Transient transient(loaded,
-                      {options.output, options.common.force ? Overwrite::yes : Overwrite::no,
-                       options.command_line});
+  Transient transient(loaded, {options.output, options.common.overwrite(), options.command_line});
   return run_to_end(transient, loaded, options.output, options);
 }
 

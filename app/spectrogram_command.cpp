@@ -27,7 +27,7 @@ void check_data_file(const PictureOptions& options) {
     throw ConfigError("--data", fmt::format("'{}' is the run file itself", *options.data));
   if (fs::path(*options.data) == fs::path(options.output))
     throw ConfigError("--data", fmt::format("'{}' is also the figure", *options.data));
-  check_output(*options.data, options.common.force ? Overwrite::yes : Overwrite::no);
+  check_output(*options.data, options.common.overwrite());
 }
 
 std::string chosen_series(const PictureOptions& options, const RecordedStretch& run,
@@ -92,7 +92,7 @@ Attributes data_attributes(const Json& settings, const RecordedStretch& run) {
 }  // namespace
 
 ExitCode draw_spectrogram(const PictureOptions& options) {
-  check_figure(options);
+  check_figure(options.output, options.common);
   check_data_file(options);
   const RecordedStretch run = open_stretch(options);
   const RecordedSettings scene = recorded_settings(run.file, run.path);
@@ -139,8 +139,8 @@ ExitCode draw_spectrogram(const PictureOptions& options) {
                          {"from", run.first_time()},
                          {"to", run.last_time()}};
   if (options.data) {
-    write_spectrogram_file(*options.data, options.common.force ? Overwrite::yes : Overwrite::no,
-                           spectrogram, units, data_attributes(settings, run));
+    write_spectrogram_file(*options.data, options.common.overwrite(), spectrogram, units,
+                           data_attributes(settings, run));
   }
   plot_spectrogram(spectrogram, picture, options.output);
 

@@ -207,8 +207,7 @@ ExitCode precision_of_sphere(const PrecisionOptions& options) {
     throw ConfigError("time.end", "holds less than two samples of `record_interval`");
   const bool is_kept = !options.folder.empty();
   if (is_kept) {
-    prepare_folder(options.folder, {figure_name, json_name},
-                   options.common.force ? Overwrite::yes : Overwrite::no);
+    prepare_folder(options.folder, {figure_name, json_name}, options.common.overwrite());
   }
 
   const Samples reference = run_events(study, reference_tolerance);

@@ -206,7 +206,7 @@ void write_run(const SphereRunOptions& options, const LoadedSphereScene& loaded,
   }
   std::vector<double> time = history.time;
   for (double& at : time) at *= numbers.time_unit;
-  RunFileWriter writer(options.output, options.common.force ? Overwrite::yes : Overwrite::no,
+  RunFileWriter writer(options.output, options.common.overwrite(),
                        {std::string(version), std::string(commit), options.command_line,
                         loaded.hash(), utc_now(), loaded.tree.document, loaded.resolved()},
                        specs);
@@ -249,7 +249,7 @@ ExitCode run_sphere(const SphereRunOptions& options) {
     return std::chrono::duration<double>(Clock::now() - from).count();
   };
   const auto setup_start = Clock::now();
-  const Overwrite overwrite = options.common.force ? Overwrite::yes : Overwrite::no;
+  const Overwrite overwrite = options.common.overwrite();
   check_output(options.output, overwrite);
   const LoadedSphereScene loaded = load_sphere_scene(options.scene, options.common.sets);
   const SphereScene& scene = loaded.scene;

@@ -172,18 +172,14 @@ void write_file(const SweepOptions& options, const LoadedSphereScene& loaded, co
   Attributes attributes = sphere_attributes(loaded, options.command_line);
   attributes.push_back({"parameter", key.path});
   attributes.push_back({"units_of_value", printed_units(key)});
-  write_column_file(*options.output, options.common.force ? Overwrite::yes : Overwrite::no,
-                    "sweep of limit cycles", columns, attributes);
+  write_column_file(*options.output, options.common.overwrite(), "sweep of limit cycles", columns,
+                    attributes);
 }
 
 ExitCode sweep(const SweepOptions& options) {
-  const Overwrite overwrite = options.common.force ? Overwrite::yes : Overwrite::no;
+  const Overwrite overwrite = options.common.overwrite();
   if (options.output) check_output(*options.output, overwrite);
-  if (options.figure) {
-    check_figure_name(*options.figure);
-    if (overwrite == Overwrite::no && std::filesystem::exists(*options.figure))
-      throw FileError(*options.figure, "", "exists; use --force to overwrite it");
-  }
+  if (options.figure) check_figure(*options.figure, options.common);
   if (options.range.parameter.empty()) throw ConfigError("--parameter", "name a key of the scene");
   const LoadedSphereScene loaded = load_sphere_scene(options.scene, options.common.sets);
   const NumericKey key = find_sphere_key(loaded.scene, options.range.parameter, "--parameter");

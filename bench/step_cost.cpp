@@ -44,7 +44,7 @@ TimeParameters exact(double step_size, std::optional<double> frequency) {
   TimeParameters time;
   time.integrator = Integrator::exact;
   time.step = step_size;
-  if (frequency) time.retain = RetainParameters{*frequency};
+  if (frequency) time.retain = RetainParameters{*frequency, {}};
   return time;
 }
 

@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"map_of_the_disc",
                            {"map", disc, "--x", "contact.friction.coefficient", "0.1", "0.5", "4",
                             "--y", "disc.speed", "1", "20", "3"}}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& test) { return test.param.name; });
 
 }  // namespace
 }  // namespace stridor

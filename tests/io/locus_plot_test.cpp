@@ -46,7 +46,9 @@ TEST(WindowLabels, KeepTheirDistanceAndStayWithinTheDiagram) {
   for (std::size_t i = 0; i < labels.size(); ++i) {
     EXPECT_GE(labels[i].x, 0.0);
     EXPECT_LE(labels[i].x, 10.0);
-    if (i > 0) EXPECT_GE(labels[i].x - labels[i - 1].x, 0.5 - 1e-12);
+    if (i > 0) {
+      EXPECT_GE(labels[i].x - labels[i - 1].x, 0.5 - 1e-12);
+    }
   }
 }
 
