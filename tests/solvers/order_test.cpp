@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "tests/support/paper_model.hpp"
+#include "tests/support/relative_difference.hpp"
 
 namespace stridor {
 namespace {
@@ -27,16 +28,6 @@ std::vector<double> free_end_motion(const Model& model, const TimeParameters& ti
     motion.push_back(simulation.displacement(tip.body, tip.rows.y));
   }
   return motion;
-}
-
-double relative_difference(const std::vector<double>& a, const std::vector<double>& reference) {
-  double difference = 0.0;
-  double size = 0.0;
-  for (std::size_t i = 0; i < reference.size(); ++i) {
-    difference += std::pow(a.at(i) - reference[i], 2);
-    size += reference[i] * reference[i];
-  }
-  return std::sqrt(difference / size);
 }
 
 /// The leading scene with a short ramp: it slides one way from the start, so that no event spoils

@@ -10,6 +10,7 @@
 #include "solvers/make_propagator.hpp"
 #include "solvers/retained_modes.hpp"
 #include "tests/support/paper_model.hpp"
+#include "tests/support/relative_difference.hpp"
 
 namespace stridor {
 namespace {
@@ -421,16 +422,6 @@ std::vector<double> free_end_motion(const Model& model, const TimeParameters& ti
     motion.push_back(simulation.displacement(tip.body, tip.rows.y));
   }
   return motion;
-}
-
-double relative_difference(const std::vector<double>& a, const std::vector<double>& reference) {
-  double difference = 0.0;
-  double size = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    difference += (a[i] - reference[i]) * (a[i] - reference[i]);
-    size += reference[i] * reference[i];
-  }
-  return std::sqrt(difference / size);
 }
 
 TEST(ExactSimulation, AndTheCentralDifferenceConvergeToTheSame) {

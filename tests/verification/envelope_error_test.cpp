@@ -7,6 +7,7 @@
 #include "io/scene.hpp"
 #include "solvers/simulation.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/relative_difference.hpp"
 
 namespace stridor {
 namespace {
@@ -47,16 +48,6 @@ std::vector<double> envelope(const std::vector<double>& signal) {
     result.push_back(std::sqrt(sum / window));
   }
   return result;
-}
-
-double relative_difference(const std::vector<double>& a, const std::vector<double>& reference) {
-  double difference = 0.0;
-  double size = 0.0;
-  for (std::size_t i = 0; i < reference.size(); ++i) {
-    difference += std::pow(a.at(i) - reference[i], 2);
-    size += reference[i] * reference[i];
-  }
-  return std::sqrt(difference / size);
 }
 
 class EnvelopeErrorTest : public ::testing::TestWithParam<const char*> {};
