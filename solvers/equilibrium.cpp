@@ -725,7 +725,9 @@ void apply_initial_motion(System& system, const Equilibrium& equilibrium) {
   }
   for (std::size_t b = 0; b < system.bodies.size(); ++b) {
     SystemBody& body = system.bodies[b];
-    body.initial_displacement = body.modal.shapes * equilibrium.displacement[b];
+    // BLAS takes no empty matrix.
+    if (body.modal.size() > 0)
+      body.initial_displacement = body.modal.shapes * equilibrium.displacement[b];
     body.initial_velocity = Eigen::VectorXd::Zero(body.initial_displacement.size());
   }
 }

@@ -41,7 +41,8 @@ StartingMotion starting_motion(const SystemBody& body, const TimeParameters& tim
     return given.size() == 0 ? Eigen::VectorXd(Eigen::VectorXd::Zero(body.reduced.size())) : given;
   };
   StartingMotion motion{or_zero(body.initial_displacement), or_zero(body.initial_velocity)};
-  if (time.coordinates == Coordinates::modal) {
+  // BLAS takes no empty matrix.
+  if (time.coordinates == Coordinates::modal && body.reduced.size() > 0) {
     // ΦᵀMΦ = I, so ΦᵀM takes reduced coordinates to modal ones.
     const Eigen::MatrixXd to_modal = body.modal.shapes.transpose() * body.reduced.mass;
     motion.displacement = (to_modal * motion.displacement).eval();
