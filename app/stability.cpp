@@ -292,15 +292,18 @@ SlidingState BodyStabilityFamily::at(std::span<const double> values) {
     what += (i > 0 ? ", " : "") + value_text(family_.keys()[i], values[i]);
   const SceneFamily::Member member = family_.at(values);
   SlidingState state = sliding_state_of(member, geometry_, what);
-  state.pencil = retained(state.pencil, member.model->system, time_);
+  // Once for all values: it takes much longer than a pencil, and a branch must not change its
+  // modes.
+  if (!asked_) asked_ = asked_frequency(member.model->system, time_);
+  if (std::isfinite(*asked_)) state.pencil = with_residual_modes(state.pencil, *asked_);
   return state;
 }
 
 double BodyStabilityFamily::trusted_frequency(std::span<const double> values) {
   const std::scoped_lock guard(blas_in_use);
   const System& system = family_.at(values).model->system;
-  return std::min(asked_frequency(system, time_) / (2.0 * std::numbers::pi),
-                  stridor::trusted_frequency(system));
+  if (!asked_) asked_ = asked_frequency(system, time_);
+  return std::min(*asked_ / (2.0 * std::numbers::pi), stridor::trusted_frequency(system));
 }
 
 PencilFamily StabilityFamily::along(std::size_t key, std::vector<double> values, double from,

@@ -137,6 +137,7 @@ class BodyStabilityFamily : public StabilityFamily {
 
   SceneFamily family_;
   TimeParameters time_;
+  std::optional<double> asked_;  ///< asked_frequency() of the first values
   ContactGeometry geometry_;
   std::optional<std::string> start_key_;
 };
