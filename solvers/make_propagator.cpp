@@ -96,7 +96,7 @@ void start_motion(Propagator& propagator, const SystemBody& body, const TimePara
                   const double* forces) {
   const bool has_forces = std::any_of(forces, forces + propagator.num_slots(),
                                       [](double force) { return force != 0.0; });
-  if (is_at_rest(body) && !has_forces) return;
+  if (is_at_rest(body) && !has_forces && !propagator.is_starting()) return;
   const StartingMotion motion = starting_motion(body, time);
   propagator.set_motion(motion.displacement, motion.velocity, forces);
 }

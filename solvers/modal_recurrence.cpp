@@ -122,15 +122,27 @@ void ModalRecurrence::foresee(const double* forces, std::span<double> position,
 }
 
 double ModalRecurrence::predicted_displacement(int row) const {
-  const double present = body_displacement(row);
-  if (is_prompt() && !is_starting()) return present;
-  return present + gather_modes(blocks_.data(), num_blocks_, ModalField::increment, row_data(row));
+  return is_prompt() && !is_starting() ? body_displacement(row) : ahead_displacement(row);
 }
 
 double ModalRecurrence::row_compliance(int row_a, int row_b) const {
   double sum = 0.0;
   for (std::size_t i = 0; i < size_; ++i)
     sum += row_data(row_a)[i] * modal_compliance(i) * row_data(row_b)[i];
+  return sum;
+}
+
+double ModalRecurrence::ahead_displacement(int row) const {
+  return body_displacement(row) +
+         gather_modes(blocks_.data(), num_blocks_, ModalField::increment, row_data(row));
+}
+
+double ModalRecurrence::ahead_compliance(int row_a, int row_b) const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < size_; ++i) {
+    const double answer = blocks_[modal_index(i, ModalField::gain)] + prompt_[i];
+    sum += row_data(row_a)[i] * answer * row_data(row_b)[i];
+  }
   return sum;
 }
 
@@ -152,7 +164,9 @@ void ModalRecurrence::set_body_loads(std::span<const double> amplitudes) {
 StepCoefficients ModalRecurrence::coefficients(std::size_t mode) const {
   const double omega = omega_(static_cast<Eigen::Index>(mode));
   const double damping = alpha_ + beta_ * omega * omega;
-  return step_coefficients(scheme_, omega, damping, step_, surplus_);
+  const StepCoefficients c = step_coefficients(scheme_, omega, damping, step_, surplus_);
+  if (is_prompt()) return c;
+  return {c.keep, c.pull, c.answer()};
 }
 
 void ModalRecurrence::set_mass_damping(double alpha) {

@@ -51,6 +51,8 @@ class ModalRecurrence : public Propagator {
   double body_displacement(int row) const override;
   double predicted_displacement(int row) const override;
   double row_compliance(int row_a, int row_b) const override;
+  double ahead_displacement(int row) const override;
+  double ahead_compliance(int row_a, int row_b) const override;
   void slot_changed(int slot) override;
   void set_body_loads(std::span<const double> amplitudes) override;
   void set_body_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,

@@ -82,13 +82,8 @@ std::optional<double> prompt_surplus(const System& system, const TimeParameters&
                   [](const ContactPoint& contact) { return contact.substrate.has_value(); })) {
     return std::nullopt;
   }
-  // Stable are ratios up to 4. Friction, damping and what changes along the path want some room,
-  // and contacts that open more: near the limit the force changes its sign from step to step.
-  const bool may_open =
-      std::any_of(system.contacts.begin(), system.contacts.end(), [](const ContactPoint& contact) {
-        return contact.unilateral_from() < std::numeric_limits<double>::infinity();
-      });
-  const double limit = may_open ? 2.0 : 3.6;
+  // Stable are ratios up to 4. Friction, damping and what changes along the path want some room.
+  constexpr double limit = 3.6;
   // With it every mode by itself has limit · g ≥ e.
   const double enough = 1.0 / limit - 1.0 / 12.0;
   if (system.contacts.size() != 1) return system.contacts.empty() ? 0.0 : enough;

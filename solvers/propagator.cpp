@@ -87,6 +87,8 @@ Propagator::Propagator(int num_slots, bool is_prompt, Residual residual)
   expected_ = predicted_;
   acting_ = {rows_, std::vector<double>(at(num_slots), 0.0)};
   answer_ = predicted_;
+  ahead_ = predicted_;
+  ahead_compliance_ = compliance_;
   if (!has_residual()) {
     find_prompt_slots();
     return;
@@ -231,7 +233,26 @@ void Propagator::place_slots() {
   for (int slot = 0; slot < num_slots(); ++slot) watch(slot, row(slot));
 }
 
+void Propagator::look_ahead() {
+  const std::size_t n = rows_.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    ahead_[i] = ahead_displacement(rows_[i]);
+    if (has_residual()) ahead_[i] += slot_load_[i];
+  }
+  if (has_ahead_compliance_) return;
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t i = 0; i < n; ++i) {
+      double& compliance = ahead_compliance_[j * n + i];
+      compliance = ahead_compliance(rows_[i], rows_[j]);
+      // What is constant over a step does not lag.
+      if (has_residual()) compliance += residual_.modes.flexibility(rows_[i], rows_[j]);
+    }
+  }
+  has_ahead_compliance_ = true;
+}
+
 void Propagator::renew_compliance(int slot) {
+  has_ahead_compliance_ = false;
   const int row_a = row(slot);
   const std::size_t n = rows_.size();
   for (int other = 0; other < num_slots(); ++other) {

@@ -67,6 +67,8 @@ class Propagator {
 
   /// Whether W is what the forces do at once, at t_n.
   bool is_prompt() const { return is_prompt_; }
+  /// Whether u* and W are those of foresee_start().
+  bool is_starting() const { return is_starting_; }
 
   /// u* at a slot, m.
   double predicted(int slot) const { return predicted_[at(slot)]; }
@@ -86,6 +88,15 @@ class Propagator {
   const double* increments() const { return increment_.data(); }
   /// W, column after column.
   const double* compliances() const { return compliance_.data(); }
+
+  /// For a body that answers at once: finds what its slots do in the next step. Cost: a product of
+  /// the length of the body for every slot, and where slots have changed their rows as `watch`.
+  void look_ahead();
+  /// u at the slots at t_{n+1} without forces from t_n on, m, as of the last `look_ahead`.
+  const double* ahead() const { return ahead_.data(); }
+  /// Displacement of slots at t_{n+1} per force that is constant from t_n on, m/N, column after
+  /// column, likewise.
+  const double* ahead_compliances() const { return ahead_compliance_.data(); }
 
   /// Makes u_n = u and its rate v, in the coordinates of the body, and predicts anew from the loads
   /// and the damping set last.
@@ -142,8 +153,6 @@ class Propagator {
   void start();
 
   const std::vector<int>& rows() const { return rows_; }
-  /// Whether u* and W are those of foresee_start().
-  bool is_starting() const { return is_starting_; }
   /// W is another from here on.
   void renew_compliances();
 
@@ -180,6 +189,10 @@ class Propagator {
   /// u* of a row.
   virtual double predicted_displacement(int row) const = 0;
   virtual double row_compliance(int row_a, int row_b) const = 0;
+  /// u at t_{n+1} without forces from t_n on, and what constant ones do, of a body that answers at
+  /// once.
+  virtual double ahead_displacement(int /*row*/) const { return 0.0; }
+  virtual double ahead_compliance(int /*row_a*/, int /*row_b*/) const { return 0.0; }
   virtual void slot_changed(int slot) = 0;
   virtual void set_body_loads(std::span<const double> amplitudes) = 0;
   virtual void set_body_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,
@@ -204,6 +217,9 @@ class Propagator {
   std::vector<double> expected_;
   RowForces acting_;            ///< f of the last `settle`
   std::vector<double> answer_;  ///< W f at the slots
+  std::vector<double> ahead_;
+  std::vector<double> ahead_compliance_;
+  bool has_ahead_compliance_ = false;
   std::vector<double> last_increment_;
   /// Of the rows of acting_ on the rows asked for; emptied when either changes.
   mutable std::vector<Influence> influences_;

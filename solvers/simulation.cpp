@@ -27,6 +27,9 @@ constexpr const char* persistent_sliding_remedy =
     "lift off (contact.assumption: film, or contact.on_violation: unilateral), lower the friction "
     "coefficient, or raise contact.armed_from if this is start-up";
 constexpr int slave_slots = 2;
+/// A contact is steady after this many steps without a change: by then what the change has stirred
+/// up in the forces has faded to a hundredth or less (docs/theory.md, 3.5).
+constexpr int steady_after = 6;
 
 }  // namespace
 
@@ -48,12 +51,14 @@ struct RunningContact {
   /// Place on the master, along its undeformed surface, that the slave was over at the end of the
   /// last step; the material point that a sticking contact keeps.
   double anchor = 0.0;
+  int steady_steps = 0;  ///< closed without a change of state, up to steady_after
   ContactStatistics statistics;
   ViolationCount violations;
 
   // Scratch of one step.
-  double friction = 0.0;  ///< μ, for messages
-  double stretch = 1.0;   ///< SlidingPoint::stretch()
+  bool looks_ahead = false;  ///< its problem is that of t_{n+1}
+  double friction = 0.0;     ///< μ, for messages
+  double stretch = 1.0;      ///< SlidingPoint::stretch()
 
   const ContactPoint& point() const { return sliding.point(); }
   double rise_at(double time) const {
@@ -157,6 +162,7 @@ struct Simulation::Implementation {
     problem.direction = contact.slip_velocity < 0.0 ? -1.0 : 1.0;
     problem.is_unilateral = time(index) >= contact.unilateral_from;
     if (!contact.tracks_slip) return true;
+    contact.looks_ahead = false;
     contact.stretch = sliding.stretch();
     if (const auto& substrate = contact.point().substrate) {
       problem.substrate = &*substrate;
@@ -172,6 +178,12 @@ struct Simulation::Implementation {
     }
     problem.slip = (sliding.place() - contact.anchor) * contact.stretch;
     if (is_prompt) problem.slip += sliding.predicted_slip();
+    set_sticking_friction(contact, problem, rise);
+    return true;
+  }
+
+  static void set_sticking_friction(const RunningContact& contact, LocalProblem& problem,
+                                    double rise) {
     // A contact that stuck is held by the static limit; one whose sliding would turn round in this
     // step passes through rest on the way.
     const bool may_rest =
@@ -182,7 +194,75 @@ struct Simulation::Implementation {
       problem.sticking_friction =
           std::max(problem.sticking_friction, rise * contact.point().friction.static_coefficient);
     }
-    return true;
+  }
+
+  /// Whether a contact that answers at once is sought at t_{n+1} (docs/theory.md, 3.5): where it is
+  /// open, or has closed or changed between stick and slip not long ago.
+  bool is_unsteady(std::size_t i) const {
+    return local[i].is_unilateral && contacts[i].steady_steps < steady_after;
+  }
+
+  /// Whether stick, slip or the direction of the slip are others than in the step before.
+  bool has_changed(std::size_t i) const {
+    return local[i].state != contacts[i].state ||
+           (local[i].state == ContactState::slip &&
+            local[i].tangential * contacts[i].friction_force < 0.0);
+  }
+
+  /// Poses the problem of one contact anew, with gap and slip at t_{n+1} under forces that are
+  /// constant from t_n on.
+  void pose_ahead(RunningContact& contact, LocalProblem& problem, double drive_at, double rise) {
+    contact.looks_ahead = true;
+    const SlidingPoint& sliding = contact.sliding;
+    // A sticking contact keeps its material point, another one that of t_n, where the step begins.
+    if (contact.state != ContactState::stick) contact.anchor = sliding.place();
+    const double drawn =
+        0.5 * step * (sliding_velocity(time(index)) + sliding_velocity(time(index + 1)));
+    problem.penetration =
+        sliding.roughness() - sliding.gap_ahead(drive_at, drive.is_frozen ? 0.0 : drawn);
+    problem.slip = (sliding.place() - contact.anchor) * contact.stretch + sliding.slip_ahead(drawn);
+    set_sticking_friction(contact, problem, rise);
+  }
+
+  /// Solves the contacts as posed; those that are unsteady, or change, ahead.
+  ContactAnswer solve_contacts(double drive_at, double rise_time) {
+    if (slides_only || !is_prompt || is_foreseeing_start) {
+      fill_delassus();
+      return solver.solve(local);
+    }
+    bool is_ahead = false;
+    const auto look_ahead = [&](std::size_t i) {
+      if (!is_ahead) {
+        for (const auto& body : bodies) body->look_ahead();
+      }
+      is_ahead = true;
+      pose_ahead(contacts[i], local[i], drive_at, contacts[i].rise_at(rise_time));
+    };
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      if (is_unsteady(i)) look_ahead(i);
+    }
+    fill_delassus();
+    ContactAnswer answer = solver.solve(local);
+    bool has_any_changed = false;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      if (!local[i].is_unilateral || contacts[i].looks_ahead || !has_changed(i)) continue;
+      contacts[i].steady_steps = 0;
+      look_ahead(i);
+      has_any_changed = true;
+    }
+    if (has_any_changed) {
+      fill_delassus();
+      answer = solver.solve(local);
+    }
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      int& steady = contacts[i].steady_steps;
+      if (local[i].state == ContactState::open || (contacts[i].looks_ahead && has_changed(i))) {
+        steady = 0;
+      } else if (steady < steady_after) {
+        ++steady;
+      }
+    }
+    return answer;
   }
 
   /// Sets the bodies moving and finds the first contact forces.
@@ -192,11 +272,13 @@ struct Simulation::Implementation {
         contact.statistics = {};
         contact.violations = {};
         contact.state = ContactState::open;
+        contact.steady_steps = 0;
         stand(contact);
       }
       if (solve() != StepOutcome::done) throw NumericalError(failure);
     };
-    if (is_prompt && !starts_at_rest(system)) {
+    const bool is_loaded = drive.load.value(0.0) != 0.0 || drive.acceleration(0.0) != 0.0;
+    if (is_prompt && (is_loaded || !starts_at_rest(system))) {
       // The part of the motion that answers at once is known with the forces only.
       is_foreseeing_start = true;
       for (std::size_t b = 0; b < bodies.size(); ++b)
@@ -242,10 +324,7 @@ struct Simulation::Implementation {
       if (!pose(contact, local[i], drive_at, contact.rise_at(sought_time)))
         return fail(contact, StepOutcome::master_lost);
     }
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      for (std::size_t j = 0; j < contacts.size(); ++j) fill_delassus(i, j);
-    }
-    const ContactAnswer answer = solver.solve(local);
+    const ContactAnswer answer = solve_contacts(drive_at, sought_time);
     if (answer.status != ContactStatus::converged) {
       RunningContact& contact = contacts[static_cast<std::size_t>(answer.contact)];
       const LocalProblem& problem = local[static_cast<std::size_t>(answer.contact)];
@@ -293,7 +372,8 @@ struct Simulation::Implementation {
 
   /// The material point of a contact that does not stick moves with its corrected slip.
   void move_anchor(RunningContact& contact, std::size_t i) {
-    if (contact.state == ContactState::stick) return;
+    // Where the problem was that of t_{n+1} it stays that of t_n.
+    if (contact.state == ContactState::stick || contact.looks_ahead) return;
     double slip = local[i].slip;
     const auto row = static_cast<Eigen::Index>(2 * i + 1);
     for (std::size_t j = 0; j < contacts.size(); ++j) {
@@ -317,6 +397,12 @@ struct Simulation::Implementation {
                           forces_on(contact.sliding.surface().body).data());
   }
 
+  void fill_delassus() {
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      for (std::size_t j = 0; j < contacts.size(); ++j) fill_delassus(i, j);
+    }
+  }
+
   /// Rows n and t of contact i against columns n and t of contact j. Forces are λ_n along the
   /// normal and λ_t against the tangent of the slave. Where no contact ever sticks or lifts off,
   /// the column of λ_n holds what its friction does as well.
@@ -329,7 +415,10 @@ struct Simulation::Implementation {
           contacts[j].sliding, local[j].direction * local[j].sliding_friction);
       return;
     }
-    const ContactCompliance w = contacts[i].sliding.compliance(contacts[j].sliding);
+    const SlidingPoint& sliding = contacts[i].sliding;
+    const ContactCompliance w = contacts[i].looks_ahead
+                                    ? sliding.compliance_ahead(contacts[j].sliding)
+                                    : sliding.compliance(contacts[j].sliding);
     delassus(row, column) = w.nn;
     delassus(row, column + 1) = -w.nt;
     delassus(row + 1, column) = -w.tn;
@@ -688,6 +777,7 @@ State Simulation::save() const {
                              static_cast<double>(c.state),
                              c.slip_velocity,
                              c.anchor,
+                             static_cast<double>(c.steady_steps),
                              c.statistics.force_min,
                              c.statistics.force_max,
                              static_cast<double>(c.statistics.steps),
@@ -718,7 +808,7 @@ void Simulation::load(const State& state) {
   }
   for (std::size_t i = 0; i < run.contacts.size(); ++i) {
     RunningContact& c = run.contacts[i];
-    double values[18];
+    double values[19];
     state.get(fmt::format("contacts/{}", i), values);
     const auto count = [&](int k) { return static_cast<std::int64_t>(values[k]); };
     c.sliding.restore(static_cast<int>(values[0]), values[1], {values[2], values[3]});
@@ -727,8 +817,9 @@ void Simulation::load(const State& state) {
     c.state = static_cast<ContactState>(count(6));
     c.slip_velocity = values[7];
     c.anchor = values[8];
-    c.statistics = {values[9], values[10], count(11), count(12), count(13)};
-    c.violations = {count(14), count(15), count(16), values[17]};
+    c.steady_steps = static_cast<int>(values[9]);
+    c.statistics = {values[10], values[11], count(12), count(13), count(14)};
+    c.violations = {count(15), count(16), count(17), values[18]};
     // The guess that the next step starts from.
     run.local[i].normal = c.force;
     run.local[i].tangential = c.friction_force;

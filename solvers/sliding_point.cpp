@@ -84,10 +84,13 @@ double sliding_through_both(const double* slave, std::size_t slave_stride, const
                  master_pull);
 }
 
-/// W at slots of a body, columns num_slots apart.
-const double* block_of(const Propagator& body, int slot_a, int slot_b) {
-  return body.compliances() +
+/// W from slots of a body on, columns num_slots apart.
+const double* block_of(const Propagator& body, const double* compliances, int slot_a, int slot_b) {
+  return compliances +
          static_cast<std::size_t>(slot_b) * static_cast<std::size_t>(body.num_slots()) + slot_a;
+}
+const double* block_of(const Propagator& body, int slot_a, int slot_b) {
+  return block_of(body, body.compliances(), slot_a, slot_b);
 }
 
 }  // namespace
@@ -212,6 +215,16 @@ double SlidingPoint::predicted_slip() const {
          relative(tangent_, slave_->expected(), master_->expected());
 }
 
+double SlidingPoint::gap_ahead(double drive_at, double advance) const {
+  return undeformed_arm(projection_.normal, drive_at + advance) +
+         relative(normal_, slave_->ahead(), master_->ahead());
+}
+
+double SlidingPoint::slip_ahead(double advance) const {
+  return driven(advance) + relative(tangent_, slave_->ahead(), master_->ahead()) -
+         relative(tangent_, slave_->expected(), master_->expected());
+}
+
 double SlidingPoint::increment() const {
   return relative(tangent_, slave_->increments(), master_->increments());
 }
@@ -254,13 +267,22 @@ void SlidingPoint::for_shared_bodies(const SlidingPoint& other, const Visit& vis
   if (master_ == other.slave_) visit(*master_, on_master(*this), on_slave(other));
 }
 
-ContactCompliance SlidingPoint::compliance(const SlidingPoint& other) const {
+ContactCompliance SlidingPoint::compliance_by(const SlidingPoint& other,
+                                              Compliances compliances) const {
   ContactCompliance sum;
   for_shared_bodies(other, [&](const Propagator& body, const Entries& a, const Entries& b) {
-    add_through(block_of(body, a.slot, b.slot), static_cast<std::size_t>(body.num_slots()), a, b,
-                sum);
+    add_through(block_of(body, (body.*compliances)(), a.slot, b.slot),
+                static_cast<std::size_t>(body.num_slots()), a, b, sum);
   });
   return sum;
+}
+
+ContactCompliance SlidingPoint::compliance(const SlidingPoint& other) const {
+  return compliance_by(other, &Propagator::compliances);
+}
+
+ContactCompliance SlidingPoint::compliance_ahead(const SlidingPoint& other) const {
+  return compliance_by(other, &Propagator::ahead_compliances);
 }
 
 double SlidingPoint::sliding_compliance(const SlidingPoint& other, double friction) const {

@@ -55,6 +55,10 @@ class SlidingPoint {
   double predicted_gap(double drive_at) const;
   /// How far the displacements predicted are ahead of those expected along the tangent, m.
   double predicted_slip() const;
+  /// The same two at t_{n+1} by Propagator::ahead(), with the rows of t_n.
+  /// @param advance of the drive in the step, m
+  double gap_ahead(double drive_at, double advance) const;
+  double slip_ahead(double advance) const;
   /// Relative velocity along the tangent times the step, from the increments, m.
   double increment() const;
   /// The drive's part in the motion of the slave against the master along the tangent.
@@ -74,6 +78,8 @@ class SlidingPoint {
 
   /// W of this contact per force of another.
   ContactCompliance compliance(const SlidingPoint& other) const;
+  /// The same at t_{n+1}, by Propagator::ahead_compliances().
+  ContactCompliance compliance_ahead(const SlidingPoint& other) const;
   /// n_i W (n_j − κ t_j): displacement along this normal per normal force of another contact that
   /// slides with κ = χ μ. Cost: less than half of compliance().
   double sliding_compliance(const SlidingPoint& other, double friction) const;
@@ -95,6 +101,8 @@ class SlidingPoint {
     SurfacePiece master;
   };
 
+  using Compliances = const double* (Propagator::*)() const;
+  ContactCompliance compliance_by(const SlidingPoint& other, Compliances compliances) const;
   /// Calls visit(body, entries of this, entries of the other) for every body that both share.
   template <class Visit>
   void for_shared_bodies(const SlidingPoint& other, const Visit& visit) const;
