@@ -13,6 +13,7 @@
 #include "app/progress.hpp"
 #include "app/sphere_run.hpp"
 #include "app/transient.hpp"
+#include "app/transient_results.hpp"
 #include "core/errors.hpp"
 #include "io/damage_guard.hpp"
 #include "io/linear_scene.hpp"

@@ -3,17 +3,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <tuple>
 
-#include "app/burst_text.hpp"
+#include "app/transient_results.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
 #include "core/version.hpp"
 #include "io/initial_state.hpp"
-#include "solvers/make_propagator.hpp"
-#include "solvers/retained_modes.hpp"
 
 namespace stridor {
 namespace {
@@ -59,18 +56,6 @@ void store_results(RunFileWriter& writer, const std::string& prefix, const Json&
   }
 }
 
-Json bursts_json(const std::vector<Burst>& bursts) {
-  Json list = Json::array();
-  for (const Burst& burst : bursts) {
-    list.push_back({{"start", burst.start},
-                    {"end", burst.end},
-                    {"frequency", burst.frequency},
-                    {"peak", burst.peak},
-                    {"gain", burst.gain}});
-  }
-  return list;
-}
-
 /// One array per property of the bursts, so that any reader of HDF5 can take them.
 void store_bursts(RunFileWriter& writer, const std::vector<Burst>& bursts) {
   const std::vector<std::tuple<const char*, double Burst::*, const char*>> properties{
@@ -84,69 +69,6 @@ void store_bursts(RunFileWriter& writer, const std::vector<Burst>& bursts) {
     for (const Burst& burst : bursts) values.push_back(burst.*member);
     writer.write_static(std::string("/bursts/") + name, values, units);
   }
-}
-
-Json force_json(const std::optional<ContactStatistics>& statistics) {
-  if (!statistics) return {{"min", nullptr}, {"max", nullptr}};
-  return {{"min", number(statistics->force_min)}, {"max", number(statistics->force_max)}};
-}
-
-Json fraction(std::int64_t part, std::int64_t whole) {
-  return whole > 0 ? Json(static_cast<double>(part) / static_cast<double>(whole)) : Json(nullptr);
-}
-
-Json contact_json(const Simulation& simulation, const System& system,
-                  const MeasuredContacts& measured) {
-  Json results = Json::object();
-  ContactStatistics sum;
-  Json contacts = Json::object();
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    const ContactStatistics one = measured[i].value_or(ContactStatistics{});
-    sum.steps += one.steps;
-    sum.sticking += one.sticking;
-    sum.open += one.open;
-    contacts[system.contacts[i].name] = {
-        {"contact_force", force_json(measured[i])},
-        {"violations", simulation.violations(static_cast<int>(i)).total()},
-        {"stick_fraction", fraction(one.sticking, one.steps)},
-        {"free_fraction", fraction(one.open, one.steps)}};
-  }
-  if (measured.size() == 1) {
-    results["contact_force"] = force_json(measured[0]);
-  } else {
-    results["contacts"] = contacts;
-  }
-  results["stick_fraction"] = fraction(sum.sticking, sum.steps);
-  results["free_fraction"] = fraction(sum.open, sum.steps);
-  return results;
-}
-
-/// How many modes of every body move and how many are left to their static residual.
-Json modes_json(const System& system, const TimeParameters& time) {
-  Json bodies = Json::object();
-  const double highest = retained_frequency(system, time);
-  for (const SystemBody& body : system.bodies) {
-    const Eigen::Index moving = (body.modal.omega.array() <= highest).count();
-    bodies[body.name] = {{"moving", moving}, {"residual", body.modal.size() - moving}};
-  }
-  return bodies;
-}
-
-Json violations_json(const Simulation& simulation) {
-  ViolationCount sum;
-  for (int i = 0; i < simulation.num_contacts(); ++i) {
-    const ViolationCount& one = simulation.violations(i);
-    sum.negative_force += one.negative_force;
-    sum.reversed_sliding += one.reversed_sliding;
-    sum.before_armed += one.before_armed;
-    sum.last_time = std::max(sum.last_time, one.last_time);
-  }
-  return {{"violations", sum.total()},
-          {"violation_details",
-           {{"negative_force", sum.negative_force},
-            {"reversed_sliding", sum.reversed_sliding},
-            {"before_armed", sum.before_armed},
-            {"last_time", sum.total() > 0 ? number(sum.last_time) : Json(nullptr)}}}};
 }
 
 }  // namespace
@@ -232,17 +154,11 @@ void Transient::make_march() {
   const double step = scene.time.step;
   recorder_.emplace(model_, channels_, step, interval_, *writer_);
   end_step_ = static_cast<std::int64_t>(std::llround(scene.time.end / step));
-  const auto to_step = [&](double time) {
-    return static_cast<std::int64_t>(std::ceil(time / step - 1e-6));
-  };
-  MarchPlan plan;
   // The last sample needs the filter's look-ahead beyond the end.
   last_step_ = end_step_ + recorder_->latency();
-  plan.last_step = last_step_;
   recorder_->limit_samples(
       static_cast<std::int64_t>(std::floor(scene.time.end / interval_ + 1e-6)) + 1);
-  plan.measure_from = to_step(scene.measure.from);
-  plan.measure_to = std::min(end_step_, scene.measure.to ? to_step(*scene.measure.to) : end_step_);
+  MarchPlan plan = measured_plan(scene, last_step_);
   plan.on_progress = [this](const Simulation& running) { look_after(running); };
   march_.emplace(*simulation_, &*recorder_, std::move(plan));
 }
@@ -339,32 +255,13 @@ Json Transient::finish() {
   writer_->flush();
   const auto acceleration = summarise_acceleration(RunFileReader(file_), scene.measure);
   const std::int64_t steps = simulation_->step_index();
-  Json results = {{"status", end_ == MarchEnd::finished  ? "done"
-                             : end_ == MarchEnd::stopped ? "stopped"
-                                                         : "failed"},
-                  {"steps", steps},
-                  {"step", scene.time.step},
-                  {"step_limit", scene.time.integrator == Integrator::exact
-                                     ? Json(nullptr)
-                                     : number(step_limit(model_.system).step)},
-                  {"wall_s", march_seconds_},
-                  {"setup_s", setup_seconds_},
-                  {"output_s", file_seconds_ + writer_->write_seconds()},
-                  {"step_ns", steps > 0 ? number(march_seconds_ * 1e9 / static_cast<double>(steps))
-                                        : Json(nullptr)}};
-  results["modes"] = modes_json(model_.system, scene.time);
-  results.update(contact_json(*simulation_, model_.system, march_->statistics()));
-  results["free_end_acceleration"] = nullptr;
-  if (acceleration) {
-    results["free_end_acceleration"] = {{"peak", number(acceleration->peak)},
-                                        {"rms", number(acceleration->rms)},
-                                        {"channel", acceleration->channel}};
-  }
-  results.update(violations_json(*simulation_));
-  results["bursts"] = nullptr;
-  if (acceleration && acceleration->bursts) results["bursts"] = bursts_json(*acceleration->bursts);
-  const EnergyLedger* energy = simulation_->energy();
-  results["energy_error"] = energy != nullptr ? number(energy->relative_error()) : Json(nullptr);
+  Json results = transient_results(*simulation_, model_.system, scene.time, end_,
+                                   march_->statistics(), acceleration);
+  results["wall_s"] = march_seconds_;
+  results["setup_s"] = setup_seconds_;
+  results["output_s"] = file_seconds_ + writer_->write_seconds();
+  results["step_ns"] =
+      steps > 0 ? number(march_seconds_ * 1e9 / static_cast<double>(steps)) : Json(nullptr);
   results["file"] = file_;
   keep_final_motion();
   write_final_motion();
@@ -374,14 +271,6 @@ Json Transient::finish() {
   }
   writer_->close();
   return results;
-}
-
-void print_bursts(const Json& results) {
-  if (results["bursts"].is_null()) return;
-  if (results["bursts"].empty()) fmt::print("{:<24}none\n", "bursts");
-  for (const Json& burst : results["bursts"]) {
-    fmt::print("{:<24}{}\n", "burst", burst_text(burst));
-  }
 }
 
 }  // namespace stridor

@@ -111,7 +111,4 @@ class Transient {
   Clock::time_point last_checkpoint_ = Clock::now();
 };
 
-/// Writes the bursts of the JSON object of `run` in one line each, or that there are none.
-void print_bursts(const Json& results);
-
 }  // namespace stridor

@@ -83,10 +83,8 @@ double Recorder::Stream::value(const Simulation& simulation) const {
 }
 
 Recorder::Recorder(const Model& model, std::vector<Channel> channels, double step, double interval,
-                   RunFileWriter& writer)
-    : interval_(interval),
-      max_samples_(std::numeric_limits<std::int64_t>::max()),
-      writer_(&writer) {
+                   RowSink& rows)
+    : interval_(interval), max_samples_(std::numeric_limits<std::int64_t>::max()), rows_(&rows) {
   const auto filter = make_filter(model.system, step, interval);
   stride_ = steps_per_sample(step, interval) / filter->ratio();
   for (const Channel& channel : channels) {
@@ -178,7 +176,7 @@ void Recorder::sample(const Simulation& simulation) {
     const std::optional<Derivative> derivative = columns_[i].derivative;
     row_[i] = derivative ? decimator.value(*derivative) : decimator.sample();
   }
-  writer_->append(static_cast<double>(number) * interval_, row_);
+  rows_->append(static_cast<double>(number) * interval_, row_);
 }
 
 std::int64_t Recorder::latency() const {

@@ -31,9 +31,9 @@ int sampling_stride(const System& system, double step, int ratio);
 /// states and energies are taken at that instant as they are.
 class Recorder : public SampleSink {
  public:
-  /// @param writer receives the rows; must live longer
+  /// @param rows receives the rows; must live longer
   Recorder(const Model& model, std::vector<Channel> channels, double step, double interval,
-           RunFileWriter& writer);
+           RowSink& rows);
 
   /// What the run file must hold for these channels, in the order of the columns.
   static std::vector<SeriesSpec> series(const Model& model, const std::vector<Channel>& channels,
@@ -79,7 +79,7 @@ class Recorder : public SampleSink {
   std::vector<Stream> streams_;
   std::vector<Column> columns_;
   std::vector<double> row_;
-  RunFileWriter* writer_;
+  RowSink* rows_;
 };
 
 }  // namespace stridor

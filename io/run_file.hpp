@@ -82,6 +82,14 @@ struct RunFileOptions {
   std::function<void()> on_write = {};
 };
 
+/// Where the rows of a recorder go.
+class RowSink {
+ public:
+  virtual ~RowSink() = default;
+  /// Adds one row: `row` has one entry per series. @throws FileError if it cannot be kept
+  virtual void append(double time, std::span<const double> row) = 0;
+};
+
 /// Writes a run file in blocks.
 ///
 /// The file is made under the temporary name `<name>.part-<pid>` in the same folder and takes its
@@ -95,7 +103,7 @@ struct RunFileOptions {
 /// If a write fails, the rows up to the present len(/time) stay readable. With a failed reservation
 /// (disk full) nothing is lost: the rows stay in memory and a later flush() may succeed. After any
 /// other failure the writer accepts nothing more.
-class RunFileWriter {
+class RunFileWriter : public RowSink {
  public:
   /// @param path      final name; an existing file is replaced only with Overwrite::yes
   /// @param overwrite whether an existing file may be replaced
@@ -117,7 +125,7 @@ class RunFileWriter {
   static RunFileWriter resume(const std::string& path, std::vector<SeriesSpec> series,
                               const Checkpoint& checkpoint, RunFileOptions options = {});
   /// Closes without reporting errors; call close() to learn of them.
-  ~RunFileWriter();
+  ~RunFileWriter() override;
   RunFileWriter(RunFileWriter&&) noexcept;
   RunFileWriter& operator=(RunFileWriter&&) noexcept;
 
@@ -131,7 +139,7 @@ class RunFileWriter {
   ///         added then
   void append(std::span<const double> time, const std::vector<std::span<const double>>& columns);
   /// Adds one row: `row` has one entry per series. @throws as above
-  void append(double time, std::span<const double> row);
+  void append(double time, std::span<const double> row) override;
   /// Writes and flushes what is in memory. @throws FileError as append()
   void flush();
 

@@ -48,18 +48,16 @@ std::optional<std::string> acceleration_channel(const RecordParameters& record) 
   return acceleration_among(names);
 }
 
-std::optional<AccelerationSummary> summarise_acceleration(const RunFileReader& file,
+std::optional<AccelerationSummary> summarise_acceleration(const std::string& channel,
+                                                          const std::vector<double>& times,
+                                                          const std::vector<double>& values,
                                                           const MeasureParameters& measure) {
-  const auto channel = acceleration_channel(file);
-  const std::vector<double>& times = file.times();
-  if (!channel || times.size() < 2) return std::nullopt;
+  if (times.size() < 2) return std::nullopt;
   const double interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
   const Window window{measure.from, measure.to.value_or(std::numeric_limits<double>::infinity())};
   const IndexRange range = samples_in(window, times.front(), interval, times.size());
   if (range.is_empty()) return std::nullopt;
-  const std::vector<double> values = file.series(*channel);
-  AccelerationSummary summary{channel->substr(channel->rfind('/') + 1), peak(range.of(values)), 0.0,
-                              std::nullopt};
+  AccelerationSummary summary{channel, peak(range.of(values)), 0.0, std::nullopt};
   if (measure.band.empty()) {
     summary.rms = rms(range.of(values));
   } else {
@@ -72,6 +70,14 @@ std::optional<AccelerationSummary> summarise_acceleration(const RunFileReader& f
     summary.bursts = find_bursts(values, interval, parameters, times.front());
   }
   return summary;
+}
+
+std::optional<AccelerationSummary> summarise_acceleration(const RunFileReader& file,
+                                                          const MeasureParameters& measure) {
+  const auto channel = acceleration_channel(file);
+  if (!channel) return std::nullopt;
+  return summarise_acceleration(channel->substr(channel->rfind('/') + 1), file.times(),
+                                file.series(*channel), measure);
 }
 
 std::vector<Burst> recorded_bursts(const RunFileReader& file, const std::string& path) {

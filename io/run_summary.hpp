@@ -27,6 +27,16 @@ std::optional<std::string> acceleration_channel(const RunFileReader& file);
 /// The same channel of the run that a scene will make, "<body>.<point>.<x|y>.acceleration".
 std::optional<std::string> acceleration_channel(const RecordParameters& record);
 
+/// Sums up an acceleration.
+/// @param channel  its name
+/// @param times    equidistant, s
+/// @param values   as many, m/s²
+/// @return nothing where the window of `measure` holds no sample
+std::optional<AccelerationSummary> summarise_acceleration(const std::string& channel,
+                                                          const std::vector<double>& times,
+                                                          const std::vector<double>& values,
+                                                          const MeasureParameters& measure);
+
 /// Reads the acceleration_channel() of a run file.
 /// @return nothing where there is no such channel or the window holds no sample
 /// @throws FileError if the file cannot be read

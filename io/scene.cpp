@@ -265,6 +265,11 @@ LoadedScene load_resolved_scene(const std::string& text, const std::string& sour
 }
 
 Model build_model(const LoadedScene& loaded) {
+  BodyCache cache;
+  return build_model(loaded, cache);
+}
+
+Model build_model(const LoadedScene& loaded, BodyCache& cache) {
   try {
     const Scene& scene = loaded.scene;
     std::vector<std::pair<PointName, std::string>> observed;
@@ -273,7 +278,7 @@ Model build_model(const LoadedScene& loaded) {
     for (const Channel& channel : channels) {
       if (channel.point) observed.emplace_back(*channel.point, channel.key);
     }
-    return make_model(scene.model, observed);
+    return make_model(scene.model, observed, cache);
   } catch (const ConfigError& error) {
     throw loaded.located(error);
   }

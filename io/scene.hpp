@@ -97,5 +97,7 @@ LoadedScene load_resolved_scene(const std::string& text, const std::string& sour
 /// The model of a scene with the points that its channels ask for.
 /// @throws ConfigError with the place of the key in the scene
 Model build_model(const LoadedScene& loaded);
+/// The same with bodies and reductions from a cache where it has them.
+Model build_model(const LoadedScene& loaded, BodyCache& cache);
 
 }  // namespace stridor

@@ -56,6 +56,24 @@ bool is_straight_along_drive(const MasterSurface& surface) {
   return true;
 }
 
+std::string assignment_of(const std::string& path, double value) {
+  return fmt::format("{}={}", path, value);
+}
+
+/// The same error where the user wrote the ends of a range, not these values.
+ConfigError in_settings(const ConfigError& error, const Settings& settings) {
+  std::vector<Problem> problems = error.problems();
+  for (Problem& problem : problems) {
+    for (const auto& [path, value] : settings) {
+      const std::string written = assignment_of(path, value);
+      if (problem.source != "--set " + written) continue;
+      problem.source = written;
+      problem.excerpt.clear();
+    }
+  }
+  return ConfigError(std::move(problems));
+}
+
 }  // namespace
 
 NumericKey find_numeric_key(const Scene& scene, const std::string& path,
@@ -180,6 +198,29 @@ std::optional<std::string> start_key(const ModelParameters& model) {
   return "contacts." + model.contacts.begin()->first + ".start";
 }
 
+LoadedScene with_settings(const LoadedScene& scene, const Settings& settings) {
+  LoadedScene changed = scene;
+  try {
+    for (const auto& [path, value] : settings) {
+      const std::string assignment = assignment_of(path, value);
+      set_value(changed.tree, assignment);
+      changed.sets.push_back(assignment);
+    }
+    changed.scene = read_as<Scene>(changed.tree);
+  } catch (const ConfigError& error) {
+    throw in_settings(changed.located(error), settings);
+  }
+  return changed;
+}
+
+Model build_model_with(const LoadedScene& scene, const Settings& settings, BodyCache& cache) {
+  try {
+    return build_model(scene, cache);
+  } catch (const ConfigError& error) {
+    throw in_settings(error, settings);
+  }
+}
+
 SceneFamily::SceneFamily(LoadedScene loaded, std::vector<NumericKey> keys)
     : loaded_(std::move(loaded)), keys_(std::move(keys)) {
   const auto start = start_key(loaded_.scene.model);
@@ -238,33 +279,10 @@ std::optional<double> SceneFamily::position() const {
 void SceneFamily::build(const Settings& settings) {
   if (model_ && settings == built_) return;
   model_.reset();
-  LoadedScene changed = loaded_;
-  try {
-    for (const auto& [path, value] : settings)
-      set_value(changed.tree, fmt::format("{}={}", path, value));
-    changed.scene = read_as<Scene>(changed.tree);
-    const Scene& scene = changed.scene;
-    std::vector<std::pair<PointName, std::string>> observed;
-    if (scene.record) {
-      for (const Channel& channel : parse_channels(*scene.record, scene.model))
-        if (channel.point) observed.emplace_back(*channel.point, channel.key);
-    }
-    model_ = make_model(scene.model, observed, cache_);
-    built_ = settings;
-    start_ = scene.model.pairs().begin()->second.start;
-  } catch (const ConfigError& error) {
-    // The user wrote the ends of a range, not this value.
-    std::vector<Problem> problems = changed.located(error).problems();
-    for (Problem& problem : problems) {
-      for (const auto& [path, value] : settings) {
-        const std::string written = fmt::format("{}={}", path, value);
-        if (problem.source != "--set " + written) continue;
-        problem.source = written;
-        problem.excerpt.clear();
-      }
-    }
-    throw ConfigError(std::move(problems));
-  }
+  const LoadedScene changed = with_settings(loaded_, settings);
+  model_ = build_model_with(changed, settings, cache_);
+  built_ = settings;
+  start_ = changed.scene.model.pairs().begin()->second.start;
 }
 
 }  // namespace stridor

@@ -43,6 +43,15 @@ enum class Spacing { linear, logarithmic };
 std::vector<double> spaced_values(const NumericKey& key, double from, double to, int count,
                                   Spacing spacing);
 
+/// Values of keys by their paths.
+using Settings = std::vector<std::pair<std::string, double>>;
+
+/// A scene with some of its keys set anew.
+/// @throws ConfigError naming the values if one is not allowed, or does not fit the others
+LoadedScene with_settings(const LoadedScene& scene, const Settings& settings);
+/// Its model. @throws likewise
+Model build_model_with(const LoadedScene& scene, const Settings& settings, BodyCache& cache);
+
 /// The systems of a scene for any values of some of its keys.
 ///
 /// For the position at which a single pair starts, the drive displaces the slave instead, where
@@ -71,8 +80,6 @@ class SceneFamily {
   const BodyCache& cache() const { return cache_; }
 
  private:
-  using Settings = std::vector<std::pair<std::string, double>>;
-
   void build(const Settings& settings);
   std::optional<double> displacement_to(double start) const;
   std::optional<double> position() const;

@@ -31,6 +31,10 @@ for surface in polyline smooth rough; do
   "$stridor" spectrogram "$work/$surface.h5" -o "$here/seeds_$surface.png" --force
 done
 
+"$stridor" sweep "$source_folder/scenes/beam_on_beam.yaml" --parameter contact.friction.coefficient \
+  --from 0.1 --to 0.35 --points 21 --set time.integrator=exact --set time.step=5e-6 \
+  --set time.retain.frequency=30kHz --figure "$here/sweep.png" --force >/dev/null
+
 contact_scene=$source_folder/scenes/viscoelastic_contact.yaml
 "$stridor" contact "$contact_scene" --speed 0.1 --indentation 0.01 --pressure "$here/contact_pressure.png" \
   --force >/dev/null

@@ -1,0 +1,31 @@
+// What the verb sweep was asked for, and what it does on every kind of scene.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/command.hpp"
+#include "app/stability.hpp"
+
+namespace stridor {
+
+struct SweepOptions {
+  CommonOptions common;
+  std::string scene;
+  RangeOptions range;
+  std::string scale = "linear";
+  bool is_up_and_down = false;
+  std::optional<std::string> output;
+  std::optional<std::string> figure;
+  std::string command_line;
+
+  Spacing spacing() const { return scale == "log" ? Spacing::logarithmic : Spacing::linear; }
+};
+
+/// Limit cycles of a sphere on a viscoelastic substrate.
+ExitCode sweep_spheres(const SweepOptions& options);
+/// Transients of beams, each from the start that the scene says.
+ExitCode sweep_transients(const SweepOptions& options);
+
+}  // namespace stridor

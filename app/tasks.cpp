@@ -1,0 +1,44 @@
+#include "app/tasks.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "core/errors.hpp"
+#include "core/stop_token.hpp"
+
+namespace stridor {
+
+void run_tasks(std::size_t count, int num_threads,
+               const std::function<void(std::size_t task, std::size_t thread)>& work,
+               const std::function<void(std::size_t num_done, std::size_t task)>& done) {
+  std::atomic<std::size_t> next{0};
+  std::size_t num_done = 0;
+  std::exception_ptr failure;
+  std::mutex telling;
+  const auto take_tasks = [&](std::size_t thread) {
+    try {
+      for (std::size_t task = next++; task < count && !stop_requested(); task = next++) {
+        work(task, thread);
+        const std::lock_guard lock(telling);
+        done(++num_done, task);
+      }
+    } catch (...) {
+      const std::lock_guard lock(telling);
+      if (!failure) failure = std::current_exception();
+      next = count;
+    }
+  };
+  std::vector<std::thread> threads;
+  const std::size_t num_used = std::min(count, static_cast<std::size_t>(std::max(num_threads, 1)));
+  for (std::size_t i = 1; i < num_used; ++i) threads.emplace_back(take_tasks, i);
+  take_tasks(0);
+  for (std::thread& thread : threads) thread.join();
+  if (failure) std::rethrow_exception(failure);
+  if (stop_requested()) throw Interrupted("nothing has been written");
+}
+
+}  // namespace stridor

@@ -1,0 +1,141 @@
+#include "app/transient_results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "app/burst_text.hpp"
+#include "solvers/make_propagator.hpp"
+#include "solvers/retained_modes.hpp"
+
+namespace stridor {
+namespace {
+
+Json bursts_json(const std::vector<Burst>& bursts) {
+  Json list = Json::array();
+  for (const Burst& burst : bursts) {
+    list.push_back({{"start", burst.start},
+                    {"end", burst.end},
+                    {"frequency", burst.frequency},
+                    {"peak", burst.peak},
+                    {"gain", burst.gain}});
+  }
+  return list;
+}
+
+Json force_json(const std::optional<ContactStatistics>& statistics) {
+  if (!statistics) return {{"min", nullptr}, {"max", nullptr}};
+  return {{"min", number(statistics->force_min)}, {"max", number(statistics->force_max)}};
+}
+
+Json fraction(std::int64_t part, std::int64_t whole) {
+  return whole > 0 ? Json(static_cast<double>(part) / static_cast<double>(whole)) : Json(nullptr);
+}
+
+Json contact_json(const Simulation& simulation, const System& system,
+                  const MeasuredContacts& measured) {
+  Json results = Json::object();
+  ContactStatistics sum;
+  Json contacts = Json::object();
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    const ContactStatistics one = measured[i].value_or(ContactStatistics{});
+    sum.steps += one.steps;
+    sum.sticking += one.sticking;
+    sum.open += one.open;
+    contacts[system.contacts[i].name] = {
+        {"contact_force", force_json(measured[i])},
+        {"violations", simulation.violations(static_cast<int>(i)).total()},
+        {"stick_fraction", fraction(one.sticking, one.steps)},
+        {"free_fraction", fraction(one.open, one.steps)}};
+  }
+  if (measured.size() == 1) {
+    results["contact_force"] = force_json(measured[0]);
+  } else {
+    results["contacts"] = contacts;
+  }
+  results["stick_fraction"] = fraction(sum.sticking, sum.steps);
+  results["free_fraction"] = fraction(sum.open, sum.steps);
+  return results;
+}
+
+/// How many modes of every body move and how many are left to their static residual.
+Json modes_json(const System& system, const TimeParameters& time) {
+  Json bodies = Json::object();
+  const double highest = retained_frequency(system, time);
+  for (const SystemBody& body : system.bodies) {
+    const Eigen::Index moving = (body.modal.omega.array() <= highest).count();
+    bodies[body.name] = {{"moving", moving}, {"residual", body.modal.size() - moving}};
+  }
+  return bodies;
+}
+
+Json violations_json(const Simulation& simulation) {
+  ViolationCount sum;
+  for (int i = 0; i < simulation.num_contacts(); ++i) {
+    const ViolationCount& one = simulation.violations(i);
+    sum.negative_force += one.negative_force;
+    sum.reversed_sliding += one.reversed_sliding;
+    sum.before_armed += one.before_armed;
+    sum.last_time = std::max(sum.last_time, one.last_time);
+  }
+  return {{"violations", sum.total()},
+          {"violation_details",
+           {{"negative_force", sum.negative_force},
+            {"reversed_sliding", sum.reversed_sliding},
+            {"before_armed", sum.before_armed},
+            {"last_time", sum.total() > 0 ? number(sum.last_time) : Json(nullptr)}}}};
+}
+
+}  // namespace
+
+MarchPlan measured_plan(const Scene& scene, std::int64_t last_step) {
+  const double step = scene.time.step;
+  const auto to_step = [&](double time) {
+    return static_cast<std::int64_t>(std::ceil(time / step - 1e-6));
+  };
+  const auto end_step = static_cast<std::int64_t>(std::llround(scene.time.end / step));
+  MarchPlan plan;
+  plan.last_step = last_step;
+  plan.measure_from = to_step(scene.measure.from);
+  plan.measure_to = std::min(end_step, scene.measure.to ? to_step(*scene.measure.to) : end_step);
+  return plan;
+}
+
+Json transient_results(const Simulation& simulation, const System& system,
+                       const TimeParameters& time, MarchEnd end, const MeasuredContacts& measured,
+                       const std::optional<AccelerationSummary>& acceleration) {
+  Json results = {
+      {"status", end == MarchEnd::finished  ? "done"
+                 : end == MarchEnd::stopped ? "stopped"
+                                            : "failed"},
+      {"steps", simulation.step_index()},
+      {"step", time.step},
+      {"step_limit",
+       time.integrator == Integrator::exact ? Json(nullptr) : number(step_limit(system).step)}};
+  results["modes"] = modes_json(system, time);
+  results.update(contact_json(simulation, system, measured));
+  results["free_end_acceleration"] = nullptr;
+  results["bursts"] = nullptr;
+  if (acceleration) {
+    results["free_end_acceleration"] = {{"peak", number(acceleration->peak)},
+                                        {"rms", number(acceleration->rms)},
+                                        {"channel", acceleration->channel}};
+    if (acceleration->bursts) results["bursts"] = bursts_json(*acceleration->bursts);
+  }
+  results.update(violations_json(simulation));
+  const EnergyLedger* energy = simulation.energy();
+  results["energy_error"] = energy != nullptr ? number(energy->relative_error()) : Json(nullptr);
+  return results;
+}
+
+void print_bursts(const Json& results) {
+  if (results["bursts"].is_null()) return;
+  if (results["bursts"].empty()) fmt::print("{:<24}none\n", "bursts");
+  for (const Json& burst : results["bursts"]) {
+    fmt::print("{:<24}{}\n", "burst", burst_text(burst));
+  }
+}
+
+}  // namespace stridor
