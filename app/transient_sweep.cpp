@@ -6,8 +6,10 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "app/progress.hpp"
@@ -25,6 +27,12 @@
 
 namespace stridor {
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// Keeps one channel.
 class ChannelMemory : public RowSink {
@@ -76,65 +84,92 @@ std::vector<Channel> summed_up(const Scene& scene) {
 /// steps in between do not, but for many contacts (see num_threads()).
 std::mutex one_at_a_time;
 
-/// Runs a scene as `run` does, without a file.
-void run_transient(const LoadedScene& loaded, const Settings& settings, BodyCache& cache,
-                   TransientPoint& point) {
-  const auto start = std::chrono::steady_clock::now();
-  const Scene& scene = loaded.scene;
-  const double step = scene.time.step;
-  std::unique_lock lock(one_at_a_time);
-  Model model = build_model_with(loaded, settings, cache);
-  std::optional<Simulation> simulation;
-  try {
-    set_initial_state(model.system, scene);
-    const bool has_ledger = scene.record && scene.record->energy;
-    simulation.emplace(model.system, scene.time, has_ledger ? Accounts::energy : Accounts::none);
-  } catch (const ConfigError& error) {
-    throw loaded.located(error);
-  }
+/// One transient of a sweep.
+struct Transit {
+  LoadedScene loaded;
+  Model model;
+  std::vector<Channel> channels;
   ChannelMemory memory;
-  const std::vector<Channel> channels = summed_up(scene);
-  const double interval = scene.record ? scene.record->interval : step;
-  Recorder recorder(model, channels, step, interval, memory);
-  recorder.limit_samples(static_cast<std::int64_t>(std::floor(scene.time.end / interval + 1e-6)) +
-                         1);
-  const auto end_step = static_cast<std::int64_t>(std::llround(scene.time.end / step));
-  const auto started = std::chrono::steady_clock::now();
-  lock.unlock();
-  March march(*simulation, &recorder, measured_plan(scene, end_step + recorder.latency()));
-  MarchEnd end = march.run_until(end_step + recorder.latency());
-  const auto ended = std::chrono::steady_clock::now();
-  // Losing the contact within the filter's look-ahead is no failure of the run that was asked for.
-  if (end == MarchEnd::failed && simulation->step_index() >= end_step) end = MarchEnd::finished;
-  if (end == MarchEnd::failed) point.failure = simulation->failure();
-  std::optional<AccelerationSummary> acceleration;
-  lock.lock();
-  if (!channels.empty()) {
-    acceleration =
-        summarise_acceleration(channels.front().name, memory.times, memory.values, scene.measure);
-  }
-  point.results = transient_results(*simulation, model.system, scene.time, end, march.statistics(),
-                                    acceleration);
-  const auto seconds = [](auto duration) {
-    return std::chrono::duration<double>(duration).count();
-  };
-  point.results["wall_s"] = seconds(ended - started);
-  point.results["setup_s"] = seconds(started - start);
-}
+  std::optional<Simulation> simulation;
+  std::optional<Recorder> recorder;
+  std::optional<March> march;
+  std::int64_t end_step = 0;
+  double setup_seconds = 0.0;
 
-TransientPoint point_at(const LoadedScene& scene, const NumericKey& key, double value,
-                        BodyCache& cache) {
-  TransientPoint point;
-  point.value = value;
-  const Settings settings{{key.path, value}};
-  try {
-    run_transient(with_settings(scene, settings), settings, cache, point);
-  } catch (const NumericalError& error) {
-    // It did not start; the others may.
-    point.results = {{"status", "failed"}};
-    point.failure = error.what();
+  Transit(LoadedScene scene, const Settings& settings, BodyCache& cache)
+      : loaded(std::move(scene)), model(build_model_with(loaded, settings, cache)) {
+    const auto start = Clock::now();
+    const Scene& given = loaded.scene;
+    const double step = given.time.step;
+    try {
+      set_initial_state(model.system, given);
+      const bool has_ledger = given.record && given.record->energy;
+      simulation.emplace(model.system, given.time, has_ledger ? Accounts::energy : Accounts::none);
+    } catch (const ConfigError& error) {
+      throw loaded.located(error);
+    }
+    channels = summed_up(given);
+    const double interval = given.record ? given.record->interval : step;
+    recorder.emplace(model, channels, step, interval, memory);
+    recorder->limit_samples(
+        static_cast<std::int64_t>(std::floor(given.time.end / interval + 1e-6)) + 1);
+    end_step = static_cast<std::int64_t>(std::llround(given.time.end / step));
+    march.emplace(*simulation, &*recorder, measured_plan(given, end_step + recorder->latency()));
+    setup_seconds = seconds_since(start);
   }
-  return point;
+  Transit(const Transit&) = delete;
+  Transit& operator=(const Transit&) = delete;
+
+  TransientPoint point(double value, MarchEnd end, double wall_seconds) const {
+    TransientPoint point;
+    point.value = value;
+    // Losing the contact within the filter's look-ahead is no failure of the run asked for.
+    if (end == MarchEnd::failed && simulation->step_index() >= end_step) end = MarchEnd::finished;
+    if (end == MarchEnd::failed) point.failure = simulation->failure();
+    std::optional<AccelerationSummary> acceleration;
+    if (!channels.empty()) {
+      acceleration = summarise_acceleration(channels.front().name, memory.times, memory.values,
+                                            loaded.scene.measure);
+    }
+    point.results = transient_results(*simulation, model.system, loaded.scene.time, end,
+                                      march->statistics(), acceleration);
+    point.results["wall_s"] = wall_seconds;
+    point.results["setup_s"] = setup_seconds;
+    return point;
+  }
+};
+
+/// The transients at some values, stepped together.
+std::vector<TransientPoint> points_at(const LoadedScene& scene, const NumericKey& key,
+                                      std::span<const double> values, BodyCache& cache) {
+  std::vector<TransientPoint> points(values.size());
+  std::vector<std::unique_ptr<Transit>> transits(values.size());
+  std::vector<March*> marches;
+  {
+    const std::lock_guard lock(one_at_a_time);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const Settings settings{{key.path, values[i]}};
+      try {
+        transits[i] = std::make_unique<Transit>(with_settings(scene, settings), settings, cache);
+        marches.push_back(&*transits[i]->march);
+      } catch (const NumericalError& error) {
+        // It did not start; the others may.
+        points[i].value = values[i];
+        points[i].results = {{"status", "failed"}};
+        points[i].failure = error.what();
+      }
+    }
+  }
+  const auto start = Clock::now();
+  const std::vector<MarchEnd> ends = march_together(marches);
+  const double seconds =
+      seconds_since(start) / static_cast<double>(std::max<std::size_t>(marches.size(), 1));
+  const std::lock_guard lock(one_at_a_time);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (transits[i]) points[i] = transits[i]->point(values[i], ends[next++], seconds);
+  }
+  return points;
 }
 
 using Points = std::vector<TransientPoint>;
@@ -312,15 +347,24 @@ ExitCode sweep_transients(const SweepOptions& options) {
   Points points(values.size());
   const int threads = num_threads(loaded, options.common.threads);
   std::vector<BodyCache> caches(static_cast<std::size_t>(threads));
+  // As many together as vectors hold, but work for every thread.
+  constexpr std::size_t largest_batch = 8;
+  const std::size_t share = (values.size() + caches.size() - 1) / caches.size();
+  const std::size_t batch = std::min(share, largest_batch);
+  const std::size_t num_batches = (values.size() + batch - 1) / batch;
   Progress progress("sweep");
   run_tasks(
-      values.size(), threads,
-      [&](std::size_t i, std::size_t thread) {
-        points[i] = point_at(loaded, key, values[i], caches[thread]);
+      num_batches, threads,
+      [&](std::size_t task, std::size_t thread) {
+        const std::size_t first = task * batch;
+        const std::span<const double> here(values.data() + first,
+                                           std::min(batch, values.size() - first));
+        Points done = points_at(loaded, key, here, caches[thread]);
+        std::move(done.begin(), done.end(), points.begin() + static_cast<std::ptrdiff_t>(first));
       },
-      [&](std::size_t num_done, std::size_t i) {
-        progress.report(static_cast<double>(num_done) / static_cast<double>(values.size()),
-                        value_text(key, values[i]));
+      [&](std::size_t num_done, std::size_t task) {
+        progress.report(static_cast<double>(num_done) / static_cast<double>(num_batches),
+                        value_text(key, values[task * batch]));
       });
   progress.finish();
 

@@ -1,4 +1,4 @@
-// What a step costs: against the number of modes, contacts, master nodes and threads.
+// What a step costs: against the number of modes, contacts, master nodes, batches and threads.
 //
 //   build/release/bench/step_cost [ROUNDS]
 //
@@ -20,6 +20,7 @@
 #include "analysis/precision_study.hpp"
 #include "bench/processor_clock.hpp"
 #include "io/scene.hpp"
+#include "solvers/batch.hpp"
 #include "solvers/simulation.hpp"
 
 using namespace stridor;
@@ -156,6 +157,45 @@ void against_nodes(int rounds) {
   print("nodes of the master", cases);
 }
 
+/// Eight runs one after the other and in a batch, in turns.
+void against_batch(const System& system, int rounds) {
+  constexpr double fine = 2.5e-7;
+  constexpr int num_runs = 8;
+  fmt::print(
+      "\n| modes up to | moving modes | eight runs, ns per step of one | in a batch | ratio "
+      "|\n|---|---|---|---|---|\n");
+  for (const double frequency : {10e3, 30e3, 50e3, 80e3, 100e3, 400e3}) {
+    const TimeParameters time = exact(fine, frequency);
+    std::vector<Simulation> alone;
+    std::vector<Simulation> together;
+    for (int i = 0; i < num_runs; ++i) {
+      alone.emplace_back(system, time).step_until(1000);
+      together.emplace_back(system, time);
+    }
+    std::vector<Simulation*> runs;
+    for (Simulation& simulation : together) runs.push_back(&simulation);
+    Batch batch(runs);
+    batch.step_until(1000);
+    double least_alone = std::numeric_limits<double>::infinity();
+    double least_together = least_alone;
+    for (int round = 1; round <= rounds; ++round) {
+      double start = processor_seconds();
+      for (Simulation& simulation : alone) march(simulation, stretch);
+      least_alone = std::min(least_alone, processor_seconds() - start);
+      start = processor_seconds();
+      batch.step_until(1000 + round * stretch);
+      least_together = std::min(least_together, processor_seconds() - start);
+      for (std::size_t i = 0; i < runs.size(); ++i) {
+        if (batch.outcome(i) != StepOutcome::done) throw std::runtime_error(runs[i]->failure());
+      }
+    }
+    const double nanoseconds = 1e9 / static_cast<double>(num_runs * stretch);
+    fmt::print("| {:g} kHz | {} | {:.1f} | {:.1f} | {:.2f} |\n", frequency * 1e-3,
+               num_moving_modes(system, time), least_alone * nanoseconds,
+               least_together * nanoseconds, least_alone / least_together);
+  }
+}
+
 /// Independent runs at once, one per thread.
 struct Throughput {
   double steps_per_second = 0.0;  ///< of all threads together, by the wall clock
@@ -223,6 +263,7 @@ int main(int argc, char** argv) {
   against_modes(system, rounds);
   against_contacts(system, rounds);
   against_nodes(rounds);
+  against_batch(system, rounds);
   // Short ones, and many: others leave both cores to this program for a few milliseconds only.
   against_threads(system, 60 * rounds);
 }

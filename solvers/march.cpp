@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/stop_token.hpp"
+#include "solvers/batch.hpp"
 
 namespace stridor {
 namespace {
@@ -70,18 +71,68 @@ void March::load(const State& state, const std::string& prefix) {
   if (sink_ != nullptr) sink_next_ = sink_->next_step();
 }
 
+void March::attend() {
+  const std::int64_t now = simulation_->step_index();
+  note_window(now);
+  if (sink_next_ != now) return;
+  sink_->sample(*simulation_);
+  sink_next_ = sink_->next_step();
+}
+
+std::int64_t March::next_event() const {
+  const std::int64_t now = simulation_->step_index();
+  std::int64_t event = plan_.last_step;
+  if (sink_next_ > now) event = std::min(event, sink_next_);
+  if (window_ == Window::ahead && plan_.measure_from > now)
+    event = std::min(event, plan_.measure_from);
+  if (window_ == Window::open) event = std::min(event, plan_.measure_to);
+  return event;
+}
+
+std::vector<MarchEnd> march_together(const std::vector<March*>& marches) {
+  std::vector<Simulation*> simulations;
+  for (const March* march : marches) simulations.push_back(march->simulation_);
+  Batch batch(simulations);
+  std::vector<std::optional<MarchEnd>> ends(marches.size());
+  std::int64_t next_look = 0;
+  while (true) {
+    std::int64_t event = std::numeric_limits<std::int64_t>::max();
+    std::int64_t now = event;
+    for (std::size_t i = 0; i < marches.size(); ++i) {
+      if (ends[i]) continue;
+      if (batch.outcome(i) != StepOutcome::done) {
+        ends[i] = MarchEnd::failed;
+        continue;
+      }
+      marches[i]->attend();
+      now = std::min(now, simulations[i]->step_index());
+      if (simulations[i]->step_index() >= marches[i]->last_step()) {
+        ends[i] = MarchEnd::finished;
+      } else {
+        event = std::min(event, marches[i]->next_event());
+      }
+    }
+    if (event == std::numeric_limits<std::int64_t>::max()) break;
+    if (now >= next_look) {
+      next_look = now + block;
+      if (stop_requested()) break;
+    }
+    batch.step_until(std::min(event, next_look));
+  }
+  batch.synchronise();
+  std::vector<MarchEnd> all;
+  for (const auto& end : ends) all.push_back(end.value_or(MarchEnd::stopped));
+  return all;
+}
+
 MarchEnd March::run_until(std::int64_t step) {
   using Clock = std::chrono::steady_clock;
   const std::int64_t last_step = std::min(step, plan_.last_step);
   auto next_report = Clock::now() + std::chrono::milliseconds(250);
   std::int64_t next_look = simulation_->step_index();
   while (true) {
+    attend();
     const std::int64_t now = simulation_->step_index();
-    note_window(now);
-    if (sink_next_ == now) {
-      sink_->sample(*simulation_);
-      sink_next_ = sink_->next_step();
-    }
     if (now >= last_step) return MarchEnd::finished;
     if (now >= next_look) {
       next_look = now + block;

@@ -48,6 +48,13 @@ class March {
   /// @throws whatever the sink throws; the simulation stands between two steps then
   MarchEnd run_until(std::int64_t step);
 
+  /// What `run_until` does between steps, for what steps the simulation in its place: takes the
+  /// sample and opens or closes the window where that is due at the present step.
+  void attend();
+  /// The next step at which `attend` has something to do, at most the last of the plan.
+  std::int64_t next_event() const;
+  std::int64_t last_step() const { return plan_.last_step; }
+
   /// Statistics of the window as far as it was run.
   MeasuredContacts statistics() const;
 
@@ -57,6 +64,7 @@ class March {
   void load(const State& state, const std::string& prefix);
 
  private:
+  friend std::vector<MarchEnd> march_together(const std::vector<March*>& marches);
   enum class Window { ahead, open, closed };
 
   void note_window(std::int64_t now);
@@ -68,6 +76,13 @@ class March {
   Window window_ = Window::ahead;
   MeasuredContacts closed_statistics_;
 };
+
+/// Runs the plans of several marches together (see Batch), with a march of its own for every
+/// simulation.
+/// @param marches of simulations of the same step; not null
+/// @return how each ended; all are `stopped` that had not ended when that was requested
+/// @throws whatever a sink throws
+std::vector<MarchEnd> march_together(const std::vector<March*>& marches);
 
 /// Runs a whole plan.
 MarchResult march(Simulation& simulation, SampleSink* sink, const MarchPlan& plan);

@@ -27,6 +27,8 @@ StepCoefficients step_coefficients(Integrator scheme, double omega, double dampi
 /// The increment is carried beside the position: r_{n+1} − r_n taken from positions would lose
 /// ε/(ω h)² of relative accuracy.
 class ModalRecurrence : public Propagator {
+  friend struct LaneAccess;
+
  public:
   /// @param body      modes; not referenced afterwards
   /// @param patterns  one column per load pattern, modal coordinates

@@ -46,6 +46,8 @@ struct PromptSlots {
 ///
 /// Public functions keep the slots, the private hooks compute.
 class Propagator {
+  friend struct LaneAccess;
+
  public:
   /// The modes that a body which answers at once leaves out.
   struct Residual {

@@ -114,6 +114,9 @@ class Simulation {
   /// to do.
   const std::string& failure() const;
 
+  struct Implementation;  ///< see simulation_implementation.hpp
+  Implementation& implementation() { return *implementation_; }
+
   State save() const;
   /// Goes on from a state saved by a simulation of the same system, step and accounts, bitwise as
   /// if never stopped.
@@ -121,7 +124,6 @@ class Simulation {
   void load(const State& state);
 
  private:
-  struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
 

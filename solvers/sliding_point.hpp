@@ -34,6 +34,8 @@ struct ContactPlace {
 /// Kinematics of a contact (docs/theory.md, 2.2): where the slave point is over its master, with
 /// which normal and tangent, and what gap, slip and forces are at the slots of the bodies.
 class SlidingPoint {
+  friend struct LaneAccess;
+
  public:
   /// Watches the rows of the slave and of the first segment.
   /// @param surface, slave, master referenced from here on

@@ -1,0 +1,86 @@
+// The step of several simulations at once, one in each lane of a vector.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "coupling/contact.hpp"
+#include "solvers/modal_kernel.hpp"
+
+namespace stridor {
+
+/// Simulations that a vector of this processor holds: 8 with AVX-512, else 4.
+std::size_t num_kernel_lanes();
+
+/// Numbers of one body in all lanes. Every pointer is to entries of num_kernel_lanes() numbers,
+/// 64-byte aligned, one for each lane; names are those of ModalRecurrence and Propagator.
+struct BodyLanes {
+  std::size_t num_modes = 0;
+  std::size_t num_slots = 0;  ///< 2 of a slave, 4 of a straight segment of a master
+  bool has_residual = false;
+
+  std::array<double*, num_modal_fields> fields{};  ///< by ModalField, an entry per mode
+  double* rows = nullptr;                          ///< an entry per slot, mode after mode
+  double* compliance = nullptr;                    ///< W, column after column
+  double* lag = nullptr;                           ///< (1 − w) R, likewise
+  double* share = nullptr;                         ///< w
+  // Entries per slot.
+  double* load = nullptr;
+  double* predicted = nullptr;
+  double* expected = nullptr;
+  double* current = nullptr;
+  double* increment = nullptr;
+  double* answer = nullptr;
+  double* lagging = nullptr;
+  double* forces = nullptr;
+};
+
+/// One contact in all lanes: a slave point on a straight segment of another body, sliding for good.
+/// Pointers as in BodyLanes; x and y are two entries.
+struct ContactLanes {
+  double* origin = nullptr;   ///< of the slave, undeformed, from T1
+  double* end = nullptr;      ///< T2 from T1, undeformed
+  double* tangent = nullptr;  ///< of the undeformed segment
+  double* length = nullptr;   ///< of the undeformed segment
+  double* drive_share = nullptr;
+  double* friction = nullptr;  ///< μ
+
+  double* xi = nullptr;
+  double* found_tangent = nullptr;  ///< of the projection
+  double* force = nullptr;          ///< λ_n
+  double* friction_force = nullptr;
+  double* slip_velocity = nullptr;
+  double* force_min = nullptr;
+  double* force_max = nullptr;
+
+  // Drive: displacement = drive_displacement + drive_velocity (t − drive_from), moving or not.
+  double* drive_displacement = nullptr;
+  double* drive_velocity = nullptr;  ///< with which it moves
+  double* drive_from = nullptr;
+  double* sliding_velocity = nullptr;  ///< with which it would slide
+};
+
+/// Everything that a step of all lanes reads and writes.
+struct Lanes {
+  bool is_prompt = false;
+  ContactAssumption assumption = ContactAssumption::subs_b;
+  BodyLanes slave;
+  BodyLanes master;
+  ContactLanes contact;
+  double* step = nullptr;     ///< h
+  double* index = nullptr;    ///< n
+  double* is_used = nullptr;  ///< 1 or 0; what is not used holds no state
+};
+
+/// Steps all lanes until `max_steps` are done or a lane needs what is not done here: another
+/// segment, a force that pulls, jams or is not finite, sliding against the drive. Such a lane has
+/// done the last step up to the contact, which stands as before: index and bodies are at t_n, slots
+/// predicted.
+///
+/// What a lane computes depends on no other lane, nor on which it is.
+/// @param flagged 1 for such lanes, else 0
+/// @return steps done, the last one included
+std::int64_t step_lanes(const Lanes& lanes, std::int64_t max_steps, double* flagged);
+
+}  // namespace stridor

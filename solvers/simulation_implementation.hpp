@@ -1,0 +1,580 @@
+// The state of a simulation and what a step does to it; for simulation.cpp and what steps several
+// simulations at once.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/errors.hpp"
+#include "solvers/make_propagator.hpp"
+#include "solvers/simulation.hpp"
+
+namespace stridor {
+
+/// No contact of a computable scene carries this; beyond it the numbers have run away.
+inline constexpr double absurd_force = 1e30;
+/// Likewise the sum of the squares of what moves, in SI units.
+inline constexpr double absurd_motion = 1e30;
+/// Steps between looks at the motion of the bodies: a thousandth of the cost of a step.
+inline constexpr std::int64_t health_interval = 1024;
+inline constexpr const char* persistent_sliding_remedy =
+    "the assumption of persistent sliding no longer holds from here on; let the contact stick and "
+    "lift off (contact.assumption: film, or contact.on_violation: unilateral), lower the friction "
+    "coefficient, or raise contact.armed_from if this is start-up";
+inline constexpr int slave_slots = 2;
+/// A contact is steady after this many steps without a change: by then what the change has stirred
+/// up in the forces has faded to a hundredth or less (docs/theory.md, 3.5).
+inline constexpr int steady_after = 6;
+
+/// A contact while it runs.
+struct RunningContact {
+  explicit RunningContact(SlidingPoint point) : sliding(std::move(point)) {}
+
+  SlidingPoint sliding;
+  double unilateral_from = 0.0;
+  bool tracks_slip = false;    ///< it is unilateral or may become so
+  double constant_from = 0.0;  ///< of the rise of its friction
+  double rise = 0.0;           ///< from then on
+
+  // State.
+  double force = 0.0;           ///< λ_n
+  double friction_force = 0.0;  ///< λ_t
+  ContactState state = ContactState::open;
+  double slip_velocity = 0.0;
+  /// Place on the master, along its undeformed surface, that the slave was over at the end of the
+  /// last step; the material point that a sticking contact keeps.
+  double anchor = 0.0;
+  int steady_steps = 0;  ///< closed without a change of state, up to steady_after
+  ContactStatistics statistics;
+  ViolationCount violations;
+
+  // Scratch of one step.
+  bool looks_ahead = false;  ///< its problem is that of t_{n+1}
+  double friction = 0.0;     ///< μ, for messages
+  double stretch = 1.0;      ///< SlidingPoint::stretch()
+
+  const ContactPoint& point() const { return sliding.point(); }
+  double rise_at(double time) const {
+    return time < constant_from ? point().friction_rise.value(time) : rise;
+  }
+};
+
+struct Simulation::Implementation {
+  std::vector<MasterSurface> surfaces;
+  std::vector<std::string> names;  ///< of the bodies
+  std::vector<bool> follows_drive;
+  std::vector<RayleighDamping> damping;
+  Drive drive;
+  double step;
+  std::int64_t next_health_check = 0;
+  bool is_prompt = false;  ///< bodies answer at once (Propagator::is_prompt)
+  bool is_foreseeing_start = false;
+  bool slides_only = true;  ///< no contact tracks its slip
+  std::int64_t index = 0;
+  std::vector<std::unique_ptr<Propagator>> bodies;
+  std::vector<Eigen::MatrixXd> shapes;  ///< of the modes; empty in reduced coordinates
+  std::vector<RunningContact> contacts;
+  std::vector<std::vector<double>> forces;  ///< per body, at its slots
+  std::string failure;
+
+  // What no longer changes is not computed again.
+  double loads_constant_from = 0.0;
+  double drive_constant_from = 0.0;
+  double end_displacement = 0.0;  ///< of the drive at drive_constant_from
+  double end_velocity = 0.0;
+
+  std::optional<EnergyLedger> ledger;
+  std::vector<ContactAction> actions;   ///< of the ledger's step, per contact
+  std::vector<double> slip_velocities;  ///< likewise
+
+  ContactSolver solver{0};
+  std::vector<LocalProblem> local;  ///< per contact
+
+  double time(std::int64_t at_index) const { return static_cast<double>(at_index) * step; }
+  /// Step at which gap and slip are sought to be what the contacts allow.
+  std::int64_t sought_index() const { return index + (is_prompt && !is_foreseeing_start ? 0 : 1); }
+
+  double drive_displacement(double at) const {
+    if (at < drive_constant_from) return drive.displacement(at);
+    return end_displacement + (drive.is_frozen ? 0.0 : end_velocity * (at - drive_constant_from));
+  }
+
+  double sliding_velocity(double at) const {
+    return at < drive_constant_from ? drive.velocity.value(at) : end_velocity;
+  }
+
+  void set_loads(double at) {
+    const double amplitudes[] = {drive.load.value(at), drive.acceleration(at)};
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      if (follows_drive[b]) bodies[b]->set_loads(amplitudes);
+    }
+  }
+
+  std::span<double> forces_on(int body) { return forces[static_cast<std::size_t>(body)]; }
+
+  /// The contacts of a system, whose slots follow each other on every body.
+  void add_contacts(const System& system) {
+    std::vector<int> next_slot(bodies.size(), 0);
+    for (const ContactPoint& point : system.contacts) {
+      const MasterSurface& surface = surfaces[static_cast<std::size_t>(point.surface)];
+      const auto slave = static_cast<std::size_t>(point.slave_body);
+      const auto master = static_cast<std::size_t>(surface.body);
+      const int slave_slot = next_slot[slave];
+      next_slot[slave] += slave_slots;
+      const int master_slot = next_slot[master];
+      next_slot[master] += 2 * surface.stencil_size();
+      const double share = (follows_drive[slave] ? 1.0 : 0.0) - (follows_drive[master] ? 1.0 : 0.0);
+      RunningContact contact(SlidingPoint(point, surface, *bodies[slave], *bodies[master],
+                                          slave_slot, master_slot, share));
+      contact.unilateral_from = point.unilateral_from();
+      contact.tracks_slip = contact.unilateral_from < std::numeric_limits<double>::infinity();
+      contact.constant_from = point.friction_rise.constant_from();
+      contact.rise = point.friction_rise.value(contact.constant_from);
+      slides_only = slides_only && !contact.tracks_slip;
+      contacts.push_back(std::move(contact));
+    }
+  }
+
+  /// Takes projection, material point and slip velocity from the motion at the present time.
+  void stand(RunningContact& contact) {
+    contact.sliding.stand(drive_displacement(time(index)));
+    contact.anchor = contact.sliding.place();
+    update_slip_velocity(contact, sliding_velocity(time(index)));
+  }
+
+  /// Poses the problem of one contact: what its forces at t_n have to do. @returns false where it
+  /// has left its master
+  bool pose(RunningContact& contact, LocalProblem& problem, double drive_at, double rise) {
+    SlidingPoint& sliding = contact.sliding;
+    if (!sliding.find(drive_at)) return false;
+    // Gap and slip are those without the contact forces; what these do at once is part of the
+    // Delassus operator.
+    problem.penetration = sliding.roughness() - sliding.predicted_gap(drive_at);
+    problem.sliding_friction =
+        rise * sliding_friction(contact.point().friction, contact.slip_velocity);
+    problem.direction = contact.slip_velocity < 0.0 ? -1.0 : 1.0;
+    problem.is_unilateral = time(index) >= contact.unilateral_from;
+    if (!contact.tracks_slip) return true;
+    contact.looks_ahead = false;
+    contact.stretch = sliding.stretch();
+    if (const auto& substrate = contact.point().substrate) {
+      problem.substrate = &*substrate;
+      problem.indentation = -sliding.present_place(drive_displacement(time(index))).gap;
+      problem.last_slip = contact.slip_velocity;
+      problem.step = step;
+    }
+    if (drive.is_frozen && sought_index() > 0) {
+      // Held in place, the material of the master slides away below.
+      const double velocity = 0.5 * (sliding_velocity(time(sought_index() - 1)) +
+                                     sliding_velocity(time(sought_index())));
+      contact.anchor -= sliding.driven(velocity * step);
+    }
+    problem.slip = (sliding.place() - contact.anchor) * contact.stretch;
+    if (is_prompt) problem.slip += sliding.predicted_slip();
+    set_sticking_friction(contact, problem, rise);
+    return true;
+  }
+
+  static void set_sticking_friction(const RunningContact& contact, LocalProblem& problem,
+                                    double rise) {
+    // A contact that stuck is held by the static limit; one whose sliding would turn round in this
+    // step passes through rest on the way.
+    const bool may_rest =
+        contact.state == ContactState::stick || problem.slip * problem.direction <= 0.0;
+    // Never below the friction of sliding, or that would turn the sliding round and drive it.
+    problem.sticking_friction = problem.sliding_friction;
+    if (may_rest) {
+      problem.sticking_friction =
+          std::max(problem.sticking_friction, rise * contact.point().friction.static_coefficient);
+    }
+  }
+
+  /// Whether a contact that answers at once is sought at t_{n+1} (docs/theory.md, 3.5): where it is
+  /// open, or has closed or changed between stick and slip not long ago.
+  bool is_unsteady(std::size_t i) const {
+    return local[i].is_unilateral && contacts[i].steady_steps < steady_after;
+  }
+
+  /// Whether stick, slip or the direction of the slip are others than in the step before.
+  bool has_changed(std::size_t i) const {
+    return local[i].state != contacts[i].state ||
+           (local[i].state == ContactState::slip &&
+            local[i].tangential * contacts[i].friction_force < 0.0);
+  }
+
+  /// Poses the problem of one contact anew, with gap and slip at t_{n+1} under forces that are
+  /// constant from t_n on.
+  void pose_ahead(RunningContact& contact, LocalProblem& problem, double drive_at, double rise) {
+    contact.looks_ahead = true;
+    const SlidingPoint& sliding = contact.sliding;
+    // A sticking contact keeps its material point, another one that of t_n, where the step begins.
+    if (contact.state != ContactState::stick) contact.anchor = sliding.place();
+    const double drawn =
+        0.5 * step * (sliding_velocity(time(index)) + sliding_velocity(time(index + 1)));
+    problem.penetration =
+        sliding.roughness() - sliding.gap_ahead(drive_at, drive.is_frozen ? 0.0 : drawn);
+    problem.slip = (sliding.place() - contact.anchor) * contact.stretch + sliding.slip_ahead(drawn);
+    set_sticking_friction(contact, problem, rise);
+  }
+
+  /// Solves the contacts as posed; those that are unsteady, or change, ahead.
+  ContactAnswer solve_contacts(double drive_at, double rise_time) {
+    if (slides_only || !is_prompt || is_foreseeing_start) {
+      fill_delassus();
+      return solver.solve(local);
+    }
+    bool is_ahead = false;
+    const auto look_ahead = [&](std::size_t i) {
+      if (!is_ahead) {
+        for (const auto& body : bodies) body->look_ahead();
+      }
+      is_ahead = true;
+      pose_ahead(contacts[i], local[i], drive_at, contacts[i].rise_at(rise_time));
+    };
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      if (is_unsteady(i)) look_ahead(i);
+    }
+    fill_delassus();
+    ContactAnswer answer = solver.solve(local);
+    bool has_any_changed = false;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      if (!local[i].is_unilateral || contacts[i].looks_ahead || !has_changed(i)) continue;
+      contacts[i].steady_steps = 0;
+      look_ahead(i);
+      has_any_changed = true;
+    }
+    if (has_any_changed) {
+      fill_delassus();
+      answer = solver.solve(local);
+    }
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      int& steady = contacts[i].steady_steps;
+      if (local[i].state == ContactState::open || (contacts[i].looks_ahead && has_changed(i))) {
+        steady = 0;
+      } else if (steady < steady_after) {
+        ++steady;
+      }
+    }
+    return answer;
+  }
+
+  /// Sets the bodies moving and finds the first contact forces.
+  void start(const System& system, const TimeParameters& time_parameters) {
+    const auto stand_and_solve = [&] {
+      for (RunningContact& contact : contacts) {
+        contact.statistics = {};
+        contact.violations = {};
+        contact.state = ContactState::open;
+        contact.steady_steps = 0;
+        stand(contact);
+      }
+      if (solve() != StepOutcome::done) throw NumericalError(failure);
+    };
+    const bool is_loaded = drive.load.value(0.0) != 0.0 || drive.acceleration(0.0) != 0.0;
+    if (is_prompt && (is_loaded || !starts_at_rest(system))) {
+      // The part of the motion that answers at once is known with the forces only.
+      is_foreseeing_start = true;
+      for (std::size_t b = 0; b < bodies.size(); ++b)
+        foresee_start(*bodies[b], system.bodies[b], time_parameters);
+      stand_and_solve();
+      is_foreseeing_start = false;
+    }
+    const auto set_moving = [&] {
+      for (std::size_t b = 0; b < bodies.size(); ++b)
+        start_motion(*bodies[b], system.bodies[b], time_parameters, forces[b].data());
+    };
+    set_moving();
+    if (apply_substrates()) set_moving();
+    stand_and_solve();
+  }
+
+  /// Forces of the contacts with a force law as the motion stands. @returns whether there are any
+  bool apply_substrates() {
+    bool has_any = false;
+    for (RunningContact& contact : contacts) {
+      const auto& substrate = contact.point().substrate;
+      if (!substrate) continue;
+      has_any = true;
+      stand(contact);
+      const double indentation =
+          -contact.sliding.present_place(drive_displacement(time(index))).gap;
+      const double direction = contact.slip_velocity > 0.0 ? 1.0 : -1.0;
+      const SubstrateForces acting = substrate->at(indentation, contact.slip_velocity, direction);
+      contact.force = acting.normal.value;
+      // At rest it sticks; what that takes is not known before the first step.
+      contact.friction_force = contact.slip_velocity == 0.0 ? 0.0 : -acting.tangential.value;
+      apply_forces(contact);
+    }
+    return has_any;
+  }
+
+  /// Contact forces at t_n: those that make gap and slip what the contacts allow.
+  StepOutcome solve() {
+    const double sought_time = time(sought_index());
+    const double drive_at = drive_displacement(sought_time);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      RunningContact& contact = contacts[i];
+      if (!pose(contact, local[i], drive_at, contact.rise_at(sought_time)))
+        return fail(contact, StepOutcome::master_lost);
+    }
+    const ContactAnswer answer = solve_contacts(drive_at, sought_time);
+    if (answer.status != ContactStatus::converged) {
+      RunningContact& contact = contacts[static_cast<std::size_t>(answer.contact)];
+      const LocalProblem& problem = local[static_cast<std::size_t>(answer.contact)];
+      contact.friction = problem.sliding_friction;
+      contact.force = problem.normal;
+      if (!std::isfinite(problem.penetration)) {
+        contact.force = problem.penetration;
+        return fail(contact, StepOutcome::diverged);
+      }
+      return fail(contact, answer.status == ContactStatus::jammed ? StepOutcome::jammed
+                                                                  : StepOutcome::not_converged);
+    }
+
+    StepOutcome outcome = StepOutcome::done;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      RunningContact& contact = contacts[i];
+      contact.force = local[i].normal;
+      contact.friction_force = local[i].tangential;
+      contact.state = local[i].state;
+      if (!(std::abs(contact.force) < absurd_force)) return fail(contact, StepOutcome::diverged);
+      count(contact);
+      if (contact.tracks_slip) move_anchor(contact, i);
+      if (local[i].is_unilateral) {
+        note_unilateral(contact);
+      } else if (contact.force < 0.0 && !tolerate(contact, contact.violations.negative_force)) {
+        outcome = fail(contact, StepOutcome::pulling);
+      }
+      apply_forces(contact);
+    }
+    if (is_prompt && !is_foreseeing_start) {
+      for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b]->settle(forces[b].data());
+      if (!update_slip_velocities()) outcome = StepOutcome::sliding_reversed;
+    }
+    return outcome;
+  }
+
+  static void count(RunningContact& contact) {
+    ContactStatistics& statistics = contact.statistics;
+    statistics.force_min = std::min(statistics.force_min, contact.force);
+    statistics.force_max = std::max(statistics.force_max, contact.force);
+    ++statistics.steps;
+    if (contact.state == ContactState::stick) ++statistics.sticking;
+    if (contact.state == ContactState::open) ++statistics.open;
+  }
+
+  /// The material point of a contact that does not stick moves with its corrected slip.
+  void move_anchor(RunningContact& contact, std::size_t i) {
+    // Where the problem was that of t_{n+1} it stays that of t_n.
+    if (contact.state == ContactState::stick || contact.looks_ahead) return;
+    double slip = local[i].slip;
+    const auto row = static_cast<Eigen::Index>(2 * i + 1);
+    for (std::size_t j = 0; j < contacts.size(); ++j) {
+      const auto column = static_cast<Eigen::Index>(2 * j);
+      slip -= solver.delassus()(row, column) * local[j].normal +
+              solver.delassus()(row, column + 1) * local[j].tangential;
+    }
+    contact.anchor += slip / contact.stretch;
+  }
+
+  /// Counts what persistent sliding would not have allowed, where it had been assumed.
+  void note_unilateral(RunningContact& contact) {
+    if (contact.point().assumption == ContactAssumption::film) return;
+    if (contact.state == ContactState::open) note(contact, contact.violations.negative_force);
+    if (contact.state == ContactState::stick) note(contact, contact.violations.reversed_sliding);
+  }
+
+  void apply_forces(const RunningContact& contact) {
+    contact.sliding.apply(contact.force, contact.friction_force,
+                          forces_on(contact.point().slave_body).data(),
+                          forces_on(contact.sliding.surface().body).data());
+  }
+
+  void fill_delassus() {
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      for (std::size_t j = 0; j < contacts.size(); ++j) fill_delassus(i, j);
+    }
+  }
+
+  /// Rows n and t of contact i against columns n and t of contact j. Forces are λ_n along the
+  /// normal and λ_t against the tangent of the slave. Where no contact ever sticks or lifts off,
+  /// the column of λ_n holds what its friction does as well.
+  void fill_delassus(std::size_t i, std::size_t j) {
+    const auto row = static_cast<Eigen::Index>(2 * i);
+    const auto column = static_cast<Eigen::Index>(2 * j);
+    Eigen::MatrixXd& delassus = solver.delassus();
+    if (slides_only) {
+      delassus(row, column) = contacts[i].sliding.sliding_compliance(
+          contacts[j].sliding, local[j].direction * local[j].sliding_friction);
+      return;
+    }
+    const SlidingPoint& sliding = contacts[i].sliding;
+    const ContactCompliance w = contacts[i].looks_ahead
+                                    ? sliding.compliance_ahead(contacts[j].sliding)
+                                    : sliding.compliance(contacts[j].sliding);
+    delassus(row, column) = w.nn;
+    delassus(row, column + 1) = -w.nt;
+    delassus(row + 1, column) = -w.tn;
+    delassus(row + 1, column + 1) = w.tt;
+  }
+
+  /// From t_n to t_{n+1} with the forces that `solve` found.
+  void advance() {
+    const double next_time = time(index + 1);
+    if (time(index) < loads_constant_from) set_loads(next_time);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      if (time(index) < damping[b].constant_from())
+        bodies[b]->set_mass_damping(damping[b].alpha_at(next_time));
+      bodies[b]->advance(forces[b].data());
+    }
+    ++index;
+  }
+
+  /// With the bodies at t_n, before the contacts are solved.
+  StepOutcome arrive() {
+    return is_prompt || update_slip_velocities() ? StepOutcome::done
+                                                 : StepOutcome::sliding_reversed;
+  }
+
+  /// What a step does once the bodies are at t_n.
+  StepOutcome finish_step() {
+    const StepOutcome outcome = arrive();
+    return outcome == StepOutcome::done ? solve() : outcome;
+  }
+
+  /// @returns false where an armed contact slides against the drive
+  bool update_slip_velocities() {
+    bool is_allowed = true;
+    const double now = time(index);
+    const double drive_velocity = sliding_velocity(now);
+    for (RunningContact& contact : contacts) {
+      const double driven = update_slip_velocity(contact, drive_velocity);
+      if (contact.slip_velocity * driven < 0.0 && now < contact.unilateral_from &&
+          !tolerate(contact, contact.violations.reversed_sliding)) {
+        fail(contact, StepOutcome::sliding_reversed);
+        is_allowed = false;
+      }
+    }
+    return is_allowed;
+  }
+
+  /// `advance` and `arrive` with an entry in the ledger.
+  StepOutcome advance_on_account() {
+    const double acting_at = time(index);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const auto body = static_cast<int>(b);
+      bodies[b]->foresee(forces[b].data(), ledger->position(body), ledger->increment(body));
+    }
+    advance();
+    const StepOutcome outcome = arrive();
+    // What the contacts have done stands until they are solved anew.
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      actions[i] = action_of(contacts[i]);
+      slip_velocities[i] = contacts[i].slip_velocity;
+    }
+    ledger->add(acting_at, actions, slip_velocities);
+    return outcome;
+  }
+
+  static ContactAction action_of(const RunningContact& contact) {
+    return {contact.sliding.segment(), contact.sliding.projection(), contact.force,
+            contact.friction_force, contact.state};
+  }
+
+  /// t·(v_C − v_M) from the increments of the last step. @returns the drive's part of it
+  double update_slip_velocity(RunningContact& contact, double drive_velocity) const {
+    const double driven = contact.sliding.driven(drive_velocity);
+    contact.slip_velocity = contact.sliding.increment() / step + driven;
+    return driven;
+  }
+
+  void note(RunningContact& contact, std::int64_t& counter) {
+    ++counter;
+    contact.violations.last_time = time(index);
+  }
+
+  /// Counts a violation of persistent sliding; false where the contact is armed.
+  bool tolerate(RunningContact& contact, std::int64_t& counter) {
+    note(contact, counter);
+    if (time(index) >= contact.point().armed_from) return false;
+    ++contact.violations.before_armed;
+    return true;
+  }
+
+  /// Contacts watch their forces; a body that none of them touches may run away unnoticed.
+  StepOutcome check_health() {
+    next_health_check = index + health_interval;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const Propagator::Motion motion = bodies[b]->motion(forces[b].data());
+      const double size = motion.displacement.squaredNorm() + motion.velocity.squaredNorm();
+      if (size < absurd_motion) continue;
+      failure = fmt::format(
+          "{} at t = {:.9g} s (step {}): the sum of the squares of its displacements and "
+          "velocities is {:.3g}: the computation has diverged. Remedy: take a smaller time.step, "
+          "or check material, damping and initial state of this body.",
+          names[b], time(index), index, size);
+      return StepOutcome::diverged;
+    }
+    return StepOutcome::done;
+  }
+
+  StepOutcome fail(const RunningContact& contact, StepOutcome outcome) {
+    const MasterSurface& surface = contact.sliding.surface();
+    const double position = contact.sliding.position();
+    std::string what;
+    std::string remedy;
+    switch (outcome) {
+      case StepOutcome::master_lost:
+        what = fmt::format("the slave point has left the end of the surface {} ({:.6g} m long)",
+                           surface.name, surface.arc_length.back());
+        remedy =
+            "end the run earlier (time.end), start elsewhere (contact.start) or slide more slowly "
+            "(drive.velocity)";
+        break;
+      case StepOutcome::pulling:
+        what = fmt::format(
+            "the contact force is {:.6g} N: a bilateral contact pulls where real bodies would part",
+            contact.force);
+        remedy = persistent_sliding_remedy;
+        break;
+      case StepOutcome::sliding_reversed:
+        what = fmt::format(
+            "the sliding velocity is {:.6g} m/s, against the drive: real bodies would stick",
+            contact.slip_velocity);
+        remedy = persistent_sliding_remedy;
+        break;
+      case StepOutcome::jammed:
+        what = fmt::format(
+            "no contact force closes the gap (friction coefficient {:.4g}): the contact jams",
+            contact.friction);
+        remedy = "lower the friction coefficient or change the angle of the bodies";
+        break;
+      case StepOutcome::not_converged:
+        what = fmt::format(
+            "the contact forces have not settled in the sweeps allowed (force {:.6g} N)",
+            contact.force);
+        remedy = "take a smaller time.step, or let time.contact_sweeps be larger";
+        break;
+      case StepOutcome::diverged:
+        what = fmt::format("the contact force is {:.3g} N: the computation has diverged",
+                           contact.force);
+        remedy = "take a smaller time.step";
+        break;
+      case StepOutcome::done:
+        break;
+    }
+    failure = fmt::format("{} at t = {:.9g} s (step {}), position {:.6g} m: {}. Remedy: {}.",
+                          contact.point().name, time(index), index, position, what, remedy);
+    return outcome;
+  }
+};
+
+}  // namespace stridor
