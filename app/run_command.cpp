@@ -49,6 +49,16 @@ void print_summary(const Json& results, const std::string& output) {
     fmt::print("{:<24}{} moving, {} left to their static residual\n", "modes of " + name,
                modes["moving"].get<int>(), modes["residual"].get<int>());
   }
+  const Json& left_out = results["left_out"];
+  const auto part = [](const Json& one) {
+    return fmt::format("{} of {}", one["left_out"].get<std::int64_t>(),
+                       one["of"].get<std::int64_t>());
+  };
+  fmt::print("{:<24}{} modes, {} rows under contacts: {} instead of {} multiplications a step\n",
+             "left out", part(left_out["modes"]), part(left_out["contact_rows"]),
+             left_out["multiplications"]["done"].get<std::int64_t>(),
+             left_out["multiplications"]["of"].get<std::int64_t>());
+  for (const Json& what : left_out["rest"]) fmt::print("{:<24}{}\n", "", what.get<std::string>());
   const std::string step_time =
       results["step_ns"].is_null()
           ? ""

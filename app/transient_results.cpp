@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <vector>
 
 #include "app/burst_text.hpp"
 #include "solvers/make_propagator.hpp"
@@ -61,14 +63,69 @@ Json contact_json(const Simulation& simulation, const System& system,
 }
 
 /// How many modes of every body move and how many are left to their static residual.
-Json modes_json(const System& system, const TimeParameters& time) {
+Json modes_json(const System& system, double highest) {
   Json bodies = Json::object();
-  const double highest = retained_frequency(system, time);
   for (const SystemBody& body : system.bodies) {
     const Eigen::Index moving = (body.modal.omega.array() <= highest).count();
     bodies[body.name] = {{"moving", moving}, {"residual", body.modal.size() - moving}};
   }
   return bodies;
+}
+
+/// What no step computes, and what the modes and rows left out would have cost.
+/// @param highest frequency of a mode that moves, rad/s
+Json left_out_json(const System& system, double highest, bool has_ledger) {
+  // Rows of the bodies that contacts follow at a time, and all on which they might stand.
+  std::vector<Eigen::Index> followed(system.bodies.size(), 0);
+  std::vector<Eigen::Index> touchable(system.bodies.size(), 0);
+  bool has_friction = false;
+  bool slides_only = true;
+  bool has_fixed_normal = true;
+  for (const ContactPoint& contact : system.contacts) {
+    const MasterSurface& surface = system.surface_of(contact);
+    const auto slave = static_cast<std::size_t>(contact.slave_body);
+    const auto master = static_cast<std::size_t>(surface.body);
+    followed[slave] += 2;
+    touchable[slave] += 2;
+    followed[master] += 2 * surface.stencil_size();
+    touchable[master] += 2 * static_cast<Eigen::Index>(surface.positions.size());
+    has_friction |= contact.substrate || contact.friction.static_coefficient > 0.0 ||
+                    contact.friction.dynamic_coefficient > 0.0;
+    slides_only &= contact.unilateral_from() == std::numeric_limits<double>::infinity();
+    has_fixed_normal &= contact.assumption == ContactAssumption::subs_a ||
+                        contact.assumption == ContactAssumption::subs_c;
+  }
+  Eigen::Index moving = 0, modes = 0, rows = 0, all_rows = 0, done = 0, all = 0;
+  double damping_until = 0.0;
+  for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+    const ModalBody& modal = system.bodies[b].modal;
+    const Eigen::Index of_body = (modal.omega.array() <= highest).count();
+    moving += of_body;
+    modes += modal.size();
+    if (modal.size() > 0) {
+      rows += followed[b];
+      all_rows += touchable[b];
+    }
+    // Correct and predict a mode: 4, and a force and a displacement at every row.
+    done += of_body * (4 + 2 * followed[b]);
+    all += modal.size() * (4 + 2 * touchable[b]);
+    damping_until = std::max(damping_until, modal.damping.constant_from());
+  }
+  Json rest = Json::array();
+  if (slides_only) rest.push_back("stick, slip and lift-off");
+  if (!has_friction) rest.push_back("friction");
+  if (has_fixed_normal) rest.push_back("rotation of the normal");
+  if (!has_ledger) rest.push_back("energy ledger");
+  const auto push_changes = [&](const char* of, double until) {
+    rest.push_back(until > 0.0 ? fmt::format("changes of {} from {:.4g} s on", of, until)
+                               : fmt::format("changes of {}", of));
+  };
+  push_changes("load and drive", system.drive.constant_from());
+  push_changes("damping", damping_until);
+  return {{"modes", {{"left_out", modes - moving}, {"of", modes}}},
+          {"contact_rows", {{"left_out", all_rows - rows}, {"of", all_rows}}},
+          {"multiplications", {{"done", done}, {"of", all}}},
+          {"rest", rest}};
 }
 
 Json violations_json(const Simulation& simulation) {
@@ -114,7 +171,9 @@ Json transient_results(const Simulation& simulation, const System& system,
       {"step", time.step},
       {"step_limit",
        time.integrator == Integrator::exact ? Json(nullptr) : number(step_limit(system).step)}};
-  results["modes"] = modes_json(system, time);
+  const double highest = retained_frequency(system, time);
+  results["modes"] = modes_json(system, highest);
+  results["left_out"] = left_out_json(system, highest, simulation.energy() != nullptr);
   results.update(contact_json(simulation, system, measured));
   results["free_end_acceleration"] = nullptr;
   results["bursts"] = nullptr;

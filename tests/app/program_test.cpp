@@ -99,6 +99,25 @@ TEST(Program, FinishedFileIsKeptWithoutForceAndReplacedWithIt) {
   EXPECT_EQ(RunFileReader((folder / "a.h5").string()).times().size(), 201u);
 }
 
+TEST(Program, RunTellsWhatItLeavesOut) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      Program(
+          short_run(folder / "a.h5", {"--json", "--set", "time.integrator=exact", "--set",
+                                      "time.step=5e-6", "--set", "time.retain.frequency=30kHz"}))
+          .run();
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json left_out = nlohmann::json::parse(result.out)["left_out"];
+  EXPECT_EQ(left_out["modes"]["of"], 243);
+  EXPECT_EQ(left_out["modes"]["left_out"], 243 - 29);
+  // x and y of the slave; of the 101 nodes of the master two are followed.
+  EXPECT_EQ(left_out["contact_rows"]["of"], 2 + 202);
+  EXPECT_EQ(left_out["contact_rows"]["left_out"], 202 - 4);
+  EXPECT_EQ(left_out["multiplications"]["done"], 9 * (4 + 4) + 20 * (4 + 8));
+  EXPECT_EQ(left_out["multiplications"]["of"], 23 * (4 + 4) + 220 * (4 + 404));
+  EXPECT_THAT(left_out["rest"].dump(), HasSubstr("stick, slip and lift-off"));
+}
+
 TEST(Program, WrongSceneLeavesTheOldFileAlone) {
   const TemporaryFolder folder;
   ASSERT_EQ(Program(short_run(folder / "a.h5")).run().exit_code, 0);
