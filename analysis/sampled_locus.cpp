@@ -40,13 +40,14 @@ class Sampler {
     sample.value = value;
     sample.excess = -std::numeric_limits<double>::infinity();
     const double top = 2.0 * std::numbers::pi * options_.frequency;
+    const double trusted = 2.0 * std::numbers::pi * options_.trusted;
     int num_pairs = 0;
     for (std::size_t i = 0; i < all.eigenvalues.size(); ++i) {
       const Complex s = all.eigenvalues[i].s;
       if (s.imag() > top || (s.imag() > 0.0 && ++num_pairs > options_.count)) break;
       sample.eigenvalues.push_back(s);
       const double excess = s.real() - rounding_of(all, i);
-      if (excess <= sample.excess) continue;
+      if (excess <= sample.excess || s.imag() > trusted) continue;
       sample.excess = excess;
       sample.fastest = s;
     }

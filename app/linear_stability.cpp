@@ -178,7 +178,10 @@ ExitCode eig_of_linear_scene(const StabilityOptions& options, bool explain,
   for (const Eigenvalue& one : eigenvalues) object["residuals"].push_back(number(one.residual));
   if (explain) {
     const std::size_t num_real = num_real_of(eigenvalues);
-    const std::size_t chosen = chosen_mode(eigenvalues, num_real, mode);
+    // The one to explain is among those over which the verdict is.
+    std::vector<Eigenvalue> choice = eigenvalues;
+    if (!mode) std::erase_if(choice, [&](const auto& one) { return one.frequency() > highest; });
+    const std::size_t chosen = chosen_mode(choice, num_real, mode);
     const Eigenvalue& one = eigenvalues[chosen];
     object["explanation"] = {
         {"mode", chosen - num_real + 1}, {"frequency", one.frequency()}, {"growth", one.growth()}};

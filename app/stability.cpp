@@ -382,14 +382,18 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
                   const LocusOptions& options) {
   // An end that is not allowed is named as it was given, before anything is computed in between.
   std::vector<double> ends = values;
+  double trusted = std::numeric_limits<double>::infinity();
   for (const double end : {range.front(), range.back()}) {
     ends[key] = end;
     family.pencil(ends);
+    trusted = std::min(trusted, family.trusted_frequency(ends));
   }
   const PencilFamily pencils = family.along(key, values, range.front(), range.back());
   if (varied.is_integer) return locus_at(pencils, range, options);
-  return family.is_sampled() ? sample_locus(pencils, range, options)
-                             : trace_locus(pencils, range, options);
+  if (!family.is_sampled()) return trace_locus(pencils, range, options);
+  LocusOptions within = options;
+  within.trusted = trusted;
+  return sample_locus(pencils, range, within);
 }
 
 std::vector<StabilityChange> stability_changes(const Locus& locus) {

@@ -172,6 +172,53 @@ TEST(DiscProgram, EveryVerbStatesItsWindow) {
   for (const Json& s : eig["eigenvalues"]) EXPECT_LT(s[1].get<double>(), 2.0 * 3.14159266 * 2000.0);
 }
 
+TEST(DiscProgram, ElasticPadsInEveryVerbOfSmallMotion) {
+  const std::string elastic = scene_path("examples/elastic_pads.yaml");
+  const Json eig = json_of({"eig", elastic, "--explain"});
+  EXPECT_FALSE(eig["stable"]);
+  EXPECT_EQ(eig["equilibrium"]["contacts"].size(), 10U);
+  EXPECT_EQ(eig["equilibrium"]["contacts"][3]["force"], 600.0);
+  const double highest = eig["window"][1].get<double>();
+  // Motions above the window grow faster and are not what is explained.
+  EXPECT_LT(eig["explanation"]["frequency"].get<double>(), highest);
+  EXPECT_GT(eig["explanation"]["growth"].get<double>(), 0.0);
+  const Json roots = json_of({"threshold", elastic, "--parameter", friction, "--from", "0.1",
+                              "--to", "0.5", "--points", "2"})["roots"];
+  ASSERT_EQ(roots.size(), 1U);
+  EXPECT_LT(roots[0]["frequency"].get<double>(), highest);
+  const double limit = roots[0]["value"].get<double>();
+  for (const auto& [share, is_stable] : {std::pair{1.0 - 1e-6, true}, {1.0 + 1e-6, false}}) {
+    EXPECT_EQ(json_of({"eig", elastic, "--set",
+                       friction + "=" + std::to_string(share * limit)})["stable"],
+              is_stable);
+  }
+  const Json map =
+      json_of({"map", elastic, "--x", friction, "0.1", "0.5", "2", "--y", "disc.speed", "10", "20",
+               "2", "--set", "pads.elastic.reduction.fixed_interface_modes=4"});
+  EXPECT_EQ(map["growth"].size(), 2U);
+  const Json locus = json_of(
+      {"locus", elastic, "--parameter", "pads.elastic.material.youngs_modulus", "--from", "10e9",
+       "--to", "20e9", "--points", "2", "--set", "pads.elastic.reduction.fixed_interface_modes=4"});
+  EXPECT_EQ(locus["eigenvalues"].size(), 2U);
+}
+
+TEST(DiscProgram, SaysWhatElasticPadsCannotHave) {
+  const std::string elastic = scene_path("examples/elastic_pads.yaml");
+  const auto refused = [&](const std::string& set) {
+    const ProgramResult result = Program({"check", elastic, "--set", set}).run();
+    EXPECT_EQ(result.exit_code, 2) << set;
+    return result.out + result.err;
+  };
+  EXPECT_THAT(refused("pads.mass=0.2"), HasSubstr("an elastic pad has the mass of its material"));
+  EXPECT_THAT(refused("contact.offsets=[0, 0.031]"),
+              HasSubstr("must lie on the pad, within 0.03 m of its centre, got 0.031 m"));
+  EXPECT_THAT(refused("pads.elastic.reduction.fixed_interface_modes=1000"),
+              HasSubstr("must not exceed 268"));
+  EXPECT_THAT(refused("pads.elastic.material.poissons_ratio=0.7"), HasSubstr("poissons_ratio"));
+  const ProgramResult none = Program({"check", brake, "--set", "pads.mass=-1"}).run();
+  EXPECT_EQ(none.exit_code, 2);
+}
+
 TEST(DiscProgram, RunsIntoABoundedCycle) {
   const TemporaryFolder folder;
   const std::string squeal = scene_path("examples/disc_squeal.yaml");
