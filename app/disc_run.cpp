@@ -39,22 +39,11 @@ void check_run(const DiscScene& scene) {
   need(scene.model.contact.formulation == ContactFormulation::penalty, "contact.formulation",
        "must be `penalty` for run: rigid contacts that open would close with impacts, for which "
        "there is no law");
-  need(scene.model.contact.preload > 0.0, "contact.preload",
+  need(scene.model.contact.preload != 0.0, "contact.preload",
        "must be positive for run, else the pads do not touch");
   need(scene.model.disc.speed > 0.0, "disc.speed",
        "must be positive for run: it says where friction acts");
   if (!problems.empty()) throw ConfigError(std::move(problems));
-}
-
-FaceContactLaw law_of(const DiscScene& scene, const DiscModel& model) {
-  const DiscTerms terms = disc_terms(scene.model.terms);
-  FaceContactLaw law;
-  law.preload = model.contact_preload;
-  law.friction = terms.friction ? scene.model.contact.friction.coefficient : 0.0;
-  law.penalty = *scene.model.contact.penalty;
-  law.speed = scene.model.disc.speed;
-  law.friction_turns = terms.friction_damping;
-  return law;
 }
 
 /// An eigenvalue and its motion at t = 0, scaled to an amplitude of the pads.
@@ -286,7 +275,7 @@ ExitCode run_disc(const DiscRunOptions& options) {
   const DiscModel& model = *linear.disc;
   const Perturbation perturbation = perturbation_of(*scene, model);
   const double step = scene->time->step;
-  FaceContactMotion motion(model.system, model.contacts, law_of(*scene, model), step);
+  FaceContactMotion motion(model.bodies, model.contacts, model.law, model.state, step);
   motion.start(perturbation.displacement, perturbation.velocity);
   DiscRecorder recorder(model, step, scene->record->interval);
   RunFileWriter writer(options.output, overwrite,

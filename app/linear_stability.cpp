@@ -47,18 +47,40 @@ class LinearFamily : public StabilityFamily {
   std::vector<NumericKey> keys_;
 };
 
-/// The contacts of the sliding state, with the forces about which the system is linearised.
-Json equilibrium_json(const LinearModel& model, const DiscScene& scene) {
+/// The contacts of the sliding state about which the system is linearised.
+Json equilibrium_json(const DiscModel& model) {
   Json contacts = Json::array();
-  const double friction =
-      disc_terms(scene.model.terms).friction ? scene.model.contact.friction.coefficient : 0.0;
-  for (const FaceContact& contact : model.disc->contacts) {
+  for (std::size_t i = 0; i < model.contacts.size(); ++i) {
+    const FaceContact& contact = model.contacts[i];
+    const FaceContactPoint& point = model.state.contacts[i];
+    const Eigen::VectorXd& q = model.state.displacement;
     contacts.push_back({{"side", contact.side},
-                        {"force", number(model.disc->contact_preload)},
-                        {"friction_force", number(friction * model.disc->contact_preload)},
-                        {"slip_velocity", number(scene.model.disc.speed * contact.radius)}});
+                        {"closed", point.is_closed},
+                        {"force", number(point.force)},
+                        {"friction_force", number(model.law.friction * point.force)},
+                        {"gap", number(point.gap)},
+                        {"slip_velocity", number(point.velocity.norm())},
+                        {"pad_displacement",
+                         {number(contact.pad_r.dot(q)), number(contact.pad_phi.dot(q)),
+                          number(contact.pad_z.dot(q))}}});
   }
   return {{"contacts", contacts}};
+}
+
+/// The same in two lines: the forces of the contact points of each pad, along the circumference.
+void print_equilibrium(const DiscModel& model) {
+  const std::size_t per_pad = model.contacts.size() / 2;
+  for (const std::size_t pad : {0, 1}) {
+    std::string forces;
+    double sum = 0.0;
+    for (std::size_t i = pad * per_pad; i < (pad + 1) * per_pad; ++i) {
+      const FaceContactPoint& point = model.state.contacts[i];
+      forces += point.is_closed ? fmt::format(" {:.6g}", point.force) : std::string(" open");
+      sum += point.force;
+    }
+    fmt::print("{:<24}{:.8g} N{}\n", pad == 0 ? "contact force, upper" : "contact force, lower",
+               sum, per_pad > 1 ? ", of its points" + forces : "");
+  }
 }
 
 /// What eig found, by whichever method.
@@ -173,8 +195,7 @@ ExitCode eig_of_linear_scene(const StabilityOptions& options, bool explain,
                  {"residuals", Json::array()},      {"stable", is_stable},
                  {"window", {0.0, number(highest)}}};
   object.update(found.more);
-  if (const DiscScene* disc = std::get_if<DiscScene>(&loaded.scene))
-    object["equilibrium"] = equilibrium_json(model, *disc);
+  if (model.disc) object["equilibrium"] = equilibrium_json(*model.disc);
   for (const Eigenvalue& one : eigenvalues) object["residuals"].push_back(number(one.residual));
   if (explain) {
     const std::size_t num_real = num_real_of(eigenvalues);
@@ -191,6 +212,7 @@ ExitCode eig_of_linear_scene(const StabilityOptions& options, bool explain,
     fmt::print("{}\n", object.dump(2));
     return ExitCode::done;
   }
+  if (model.disc) print_equilibrium(*model.disc);
   print_eigenvalues(eigenvalues, model.highest_frequency);
   if (!std::isfinite(highest)) {
     fmt::print("{} at all frequencies\n", is_stable ? "stable" : "unstable");

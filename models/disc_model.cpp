@@ -6,6 +6,10 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
+
+#include "core/errors.hpp"
+#include "solvers/sliding_state.hpp"
 
 namespace stridor {
 namespace {
@@ -82,18 +86,35 @@ LinearSystem free_bodies(const AnnularPlate& plate, const PadBody& pad,
   return system;
 }
 
-/// Adds what the forces of the sliding state do.
-void add_preload(LinearSystem& system, const FaceContact& contact, double normal_force,
-                 double friction, double speed, const DiscTerms& terms) {
-  const double friction_force = terms.friction ? friction * normal_force : 0.0;
-  if (terms.geometric) {
-    system.position += normal_preload_stiffness(contact, normal_force) +
-                       friction_preload_stiffness(contact, friction_force);
+FaceContactLaw law_of(const DiscModelParameters& parameters, const DiscTerms& terms) {
+  FaceContactLaw law;
+  law.friction = terms.friction ? parameters.contact.friction.coefficient : 0.0;
+  if (parameters.contact.formulation == ContactFormulation::penalty)
+    law.penalty = parameters.contact.penalty;
+  law.speed = parameters.disc.speed;
+  law.friction_turns = terms.friction_damping;
+  law.forces_bend = terms.geometric;
+  return law;
+}
+
+/// Generalised forces of the pistons behind both pads.
+Eigen::VectorXd piston_loads(const PistonParameters& piston, const PadBody& pad, Eigen::Index first,
+                             Eigen::Index size) {
+  const Eigen::VectorXd on_pad =
+      piston.force ? *piston.force * pad.pushed : *piston.displacement * pad.advanced;
+  return padded(on_pad, first, size) + padded(on_pad, first + pad.size(), size);
+}
+
+/// @throws NumericalError if there is none
+FaceSlidingState sliding_state_of(const DiscModel& model, const Eigen::VectorXd& loads) {
+  SlidingStateSolution found = solve_sliding_state(model.bodies, model.contacts, model.law, loads);
+  if (!found.has_converged) {
+    throw NumericalError(
+        "disc: found no state in which it slides steadily between the pads; friction may draw them "
+        "in without bound, as where it times pads.stiffness.coupling exceeds "
+        "pads.stiffness.circumferential");
   }
-  if (terms.friction_damping && friction_force > 0.0) {
-    system.velocity += friction_damping(contact, friction_force, speed);
-    system.position += friction_turning_stiffness(contact, friction_force);
-  }
+  return std::move(found.state);
 }
 
 void check(const DiscModelParameters& parameters, const DiscTerms& terms) {
@@ -105,6 +126,8 @@ void check(const DiscModelParameters& parameters, const DiscTerms& terms) {
   }
   if (parameters.pads.mass.has_value() == parameters.pads.elastic.has_value())
     throw std::invalid_argument("disc: pads have either a mass or an elastic body");
+  if (parameters.contact.preload.has_value() == parameters.pads.piston.has_value())
+    throw std::invalid_argument("disc: contacts have either a preload or pads with a piston");
   if (parameters.contact.formulation == ContactFormulation::penalty && !parameters.contact.penalty)
     throw std::invalid_argument("disc: the penalty formulation needs a penalty");
   if (terms.friction_damping && !(parameters.disc.speed > 0.0))
@@ -116,18 +139,16 @@ void check(const DiscModelParameters& parameters, const DiscTerms& terms) {
 DiscModel make_disc_model(const DiscModelParameters& parameters) {
   const DiscTerms terms = disc_terms(parameters.terms);
   check(parameters, terms);
-  const double speed = parameters.disc.speed;
-  const AnnularPlate plate(parameters.disc.plate, parameters.disc.centrifugal ? speed : 0.0);
+  const AnnularPlate plate(parameters.disc.plate,
+                           parameters.disc.centrifugal ? parameters.disc.speed : 0.0);
   const std::vector<double> offsets = contact_offsets(parameters);
   const PadBody pad = make_pad(parameters, offsets);
   DiscModel model;
   model.highest_frequency =
       std::min(plate.lowest_omitted(), 0.5 * pad.highest_kept) / (2.0 * std::numbers::pi);
-  model.system = free_bodies(plate, pad, parameters, terms);
-  const Eigen::Index size = model.system.size();
-
-  const FaceContactParameters& contact = parameters.contact;
-  model.contact_preload = contact.preload / static_cast<double>(offsets.size());
+  model.bodies = free_bodies(plate, pad, parameters, terms);
+  model.law = law_of(parameters, terms);
+  const Eigen::Index size = model.bodies.size();
   for (const int side : {1, -1}) {
     const Eigen::Index first = plate.size() + (side > 0 ? 0 : pad.size());
     for (std::size_t i = 0; i < offsets.size(); ++i) {
@@ -135,23 +156,13 @@ DiscModel make_disc_model(const DiscModelParameters& parameters) {
           make_contact(plate, pad.points[i], parameters, side, first, size, offsets[i]));
     }
   }
-  const double friction = terms.friction ? contact.friction.coefficient : 0.0;
-  const auto num_contacts = static_cast<Eigen::Index>(model.contacts.size());
-  const bool is_constrained = contact.formulation == ContactFormulation::lagrange;
-  model.system.gaps.resize(is_constrained ? num_contacts : 0, size);
-  model.system.forces.resize(is_constrained ? num_contacts : 0, size);
-  for (Eigen::Index i = 0; i < num_contacts; ++i) {
-    const FaceContact& point = model.contacts[static_cast<std::size_t>(i)];
-    const Eigen::VectorXd gap = point.gap();
-    const Eigen::VectorXd force = gap + friction * point.friction();
-    if (is_constrained) {
-      model.system.gaps.row(i) = gap;
-      model.system.forces.row(i) = force;
-    } else {
-      model.system.position += *contact.penalty * force * gap.transpose();
-    }
-    add_preload(model.system, point, model.contact_preload, friction, speed, terms);
-  }
+  const std::optional<double>& preload = parameters.contact.preload;
+  model.state =
+      preload
+          ? prescribed_sliding_state(model.contacts, model.law,
+                                     *preload / static_cast<double>(offsets.size()))
+          : sliding_state_of(model, piston_loads(*parameters.pads.piston, pad, plate.size(), size));
+  model.system = linearise(model.bodies, model.contacts, model.law, model.state);
   return model;
 }
 

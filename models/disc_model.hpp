@@ -9,24 +9,28 @@
 
 namespace stridor {
 
-/// Matrices of a disc with pads about steady sliding, and where they hold.
+/// A disc with pads, and its small motion about steady sliding.
 struct DiscModel {
-  LinearSystem system;                ///< coordinates: of the plate, then of each pad (PadBody)
+  LinearSystem bodies;                ///< without contact: of the plate, then of each pad (PadBody)
   std::vector<FaceContact> contacts;  ///< those of the pad on the face of larger z come first
-  double contact_preload = 0.0;       ///< N₀ of each of them, N
+  FaceContactLaw law;
+  FaceSlidingState state;  ///< about which motion is small
+  LinearSystem system;     ///< of this motion
   /// Hz: the lowest mode of the plate that is left out, or half the highest that is kept of a pad.
   double highest_frequency = 0.0;
 };
 
 /// Assembles the linearised equations (docs/theory.md, 10.3; HS (21), (26)).
 ///
-/// With Lagrange multipliers the contacts are constraints, N q = 0; with a penalty their forces are
-/// k_C times the gap. The disc has the modes of its plate; its material damping acts on what a
-/// particle sees, ∂q/∂t + Ω S q, where the gyroscopic terms are kept.
+/// The sliding state is that of the undeformed bodies with the preload of the scene, or follows
+/// from what presses the pads. With Lagrange multipliers the closed contacts are constraints; with
+/// a penalty their forces are k_C times the gap. The disc has the modes of its plate; its material
+/// damping acts on what a particle sees, ∂q/∂t + Ω S q, where the gyroscopic terms are kept.
 ///
 /// @throws std::invalid_argument if a radius is off the plate, pads have not either a mass or an
-/// elastic body, a penalty is missing, or friction damping is wanted at no speed; as
-/// make_elastic_pad()
+/// elastic body, contacts not either a preload or a piston behind them, a penalty is missing, or
+/// friction damping is wanted at no speed; as make_elastic_pad()
+/// @throws NumericalError if pads that are pressed on have no state of steady sliding
 DiscModel make_disc_model(const DiscModelParameters& parameters);
 
 }  // namespace stridor

@@ -115,6 +115,32 @@ const Schema& DiscParameters::schema() {
   return keys;
 }
 
+const Schema& PistonParameters::schema() {
+  using P = PistonParameters;
+  static const Schema keys =
+      SchemaOf<P>("piston")
+          .real("force", &P::force,
+                {.doc = "Force on the back of each pad.",
+                 .unit = "N",
+                 .range = Range::non_negative(),
+                 .optional = true})
+          .real("displacement", &P::displacement,
+                {.doc = "Displacement of the far ends of the springs towards the disc.",
+                 .unit = "m",
+                 .range = Range::non_negative(),
+                 .optional = true})
+          .check([](const P& piston, std::vector<Problem>& problems) {
+            if (piston.force.has_value() == piston.displacement.has_value()) {
+              problems.push_back({piston.force ? "displacement" : "force",
+                                  "expected either `force` or `displacement`",
+                                  {},
+                                  0,
+                                  0});
+            }
+          });
+  return keys;
+}
+
 const Schema& PadsParameters::schema() {
   static const Schema keys =
       SchemaOf<PadsParameters>("pads")
@@ -131,6 +157,10 @@ const Schema& PadsParameters::schema() {
           .section("stiffness", &PadsParameters::stiffness,
                    {.doc = "Springs that hold a pad; over the back of an elastic one they are "
                            "spread evenly."})
+          .section("piston", &PadsParameters::piston,
+                   {.doc = "What presses the pads on the disc, in place of contact.preload: the "
+                           "sliding state is computed, with the forces of its contacts.",
+                    .optional = true})
           .real("radius", &PadsParameters::radius,
                 {.doc = "Where the pads stand, from the axis of the disc.",
                  .unit = "m",
@@ -168,9 +198,12 @@ const Schema& FaceContactParameters::schema() {
   static const Schema keys =
       SchemaOf<P>("face_contact")
           .real("preload", &P::preload,
-                {.doc = "Normal force of each pad in the sliding state.",
+                {.doc =
+                     "Normal force of each pad in the sliding state, evenly on its contact points; "
+                     "pads.piston takes its place.",
                  .unit = "N",
-                 .range = Range::non_negative()})
+                 .range = Range::non_negative(),
+                 .optional = true})
           .section("friction", &P::friction, {.doc = "Friction of both contacts."})
           .choice("formulation", &P::formulation,
                   {{"lagrange", ContactFormulation::lagrange},
@@ -236,6 +269,19 @@ const Schema& DiscModelParameters::schema() {
                    fmt::format("must lie between the edges of the disc, {:g} and "
                                "{:g} m, got {:g} m",
                                plate.inner_radius, plate.outer_radius, model.pads.radius),
+                   {},
+                   0,
+                   0});
+            }
+          })
+          .check([](const P& model, std::vector<Problem>& problems) {
+            if (model.contact.preload.has_value() == model.pads.piston.has_value()) {
+              problems.push_back(
+                  {model.contact.preload ? "pads.piston" : "contact.preload",
+                   model.contact.preload
+                       ? "the forces of the sliding state are prescribed by contact.preload; leave "
+                         "one of them away"
+                       : "is required, or a section pads.piston from which it follows",
                    {},
                    0,
                    0});

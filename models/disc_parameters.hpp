@@ -26,11 +26,20 @@ struct DiscParameters {
   static const Schema& schema();
 };
 
+/// What presses the back of a pad towards the disc: a force, or a displacement of the far ends of
+/// its springs.
+struct PistonParameters {
+  std::optional<double> force;         ///< N, >= 0
+  std::optional<double> displacement;  ///< m, >= 0
+  static const Schema& schema();
+};
+
 /// Two pads, one on each face, mirror images of each other; rigid or elastic.
 struct PadsParameters {
   std::optional<double> mass;                   ///< of each, where they are rigid, kg, > 0
   std::optional<ElasticPadParameters> elastic;  ///< or what they are made of
   PadStiffness stiffness;
+  std::optional<PistonParameters> piston;
   double radius = 0.0;  ///< where they stand, m
   double angle = 0.0;   ///< rad
   MaterialDamping damping;
@@ -45,7 +54,8 @@ struct FaceFrictionParameters {
 };
 
 struct FaceContactParameters {
-  double preload = 0.0;  ///< normal force of each pad in the sliding state, N, >= 0
+  /// Normal force of each pad in the sliding state, N, >= 0; else it follows from the piston.
+  std::optional<double> preload;
   FaceFrictionParameters friction;
   ContactFormulation formulation = ContactFormulation::lagrange;
   std::optional<double> penalty;  ///< k_C of each contact point, N/m, > 0
