@@ -40,17 +40,16 @@ namespace {
 
 /// Contact points must lie on elastic pads, and leave them as many modes as are wanted.
 void check_elastic_pads(const DiscModelParameters& model, std::vector<Problem>& problems) {
-  constexpr std::size_t most_points = 400;
   const std::optional<ElasticPadParameters>& pad = model.pads.elastic;
   if (!pad) return;
   const std::string from_nodes = model.contact.offsets.empty() ? "pads.elastic.mesh.along" : "";
   const std::size_t asked = model.contact.offsets.empty()
                                 ? 2 * static_cast<std::size_t>(pad->mesh.along) + 1
                                 : model.contact.offsets.size();
-  if (asked > most_points) {
+  if (asked > most_contact_points) {
     problems.push_back(
         {from_nodes.empty() ? "contact.offsets" : from_nodes,
-         fmt::format("a pad may have up to {} contact points, got {}{}", most_points, asked,
+         fmt::format("a pad may have up to {} contact points, got {}{}", most_contact_points, asked,
                      from_nodes.empty() ? "" : "; name some in contact.offsets"),
          {},
          0,

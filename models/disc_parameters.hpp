@@ -73,6 +73,9 @@ struct DiscModelParameters {
   static const Schema& schema();
 };
 
+/// Most contact points of a pad.
+constexpr std::size_t most_contact_points = 400;
+
 /// The contact points of every pad along φ from its centre, m: those of the scene, else the nodes
 /// of an elastic face, else the centre.
 std::vector<double> contact_offsets(const DiscModelParameters& parameters);

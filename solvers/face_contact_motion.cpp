@@ -1,5 +1,9 @@
 #include "solvers/face_contact_motion.hpp"
 
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +13,7 @@ namespace stridor {
 namespace {
 
 constexpr Eigen::Index per_contact = 3;  // normal, along, across
+constexpr double tolerance = 1e-12;      // of the largest force
 
 const FaceContactLaw& checked(const FaceContactLaw& law) {
   if (!law.penalty || !(law.speed > 0.0)) {
@@ -16,6 +21,47 @@ const FaceContactLaw& checked(const FaceContactLaw& law) {
         "motion of face contacts: takes contacts with a penalty, and a plate that turns");
   }
   return law;
+}
+
+/// sin(x)/x, and its lowest value from where that is first reached.
+double least_sine_ratio(double x) {
+  constexpr double lowest_at = 4.493409457909064;
+  const double to = std::min(x, lowest_at);
+  return to > 0.0 ? std::sin(to) / to : 1.0;
+}
+
+/// The springs of closed contacts are part of what is propagated, and one that opens is taken out
+/// by a force. The law has one solution where that force, which acts on itself through what it
+/// moves by the end of a step, is always left a positive share: 1 − k_C W, with
+///
+///   W = Σ φ φᵀ (1 − sin(ω h)/(ω h))/ω²
+///
+/// of the modes of the closed system at the contacts. No longer step is better.
+void check_step(const LinearSystem& closed, const FaceSlidingState& state, double penalty,
+                double step) {
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(
+      split(closed.position).symmetric, closed.mass);
+  std::vector<Eigen::VectorXd> rows;
+  for (const FaceContactPoint& point : state.contacts)
+    if (point.is_closed) rows.push_back(modes.eigenvectors().transpose() * point.normal);
+  Eigen::VectorXd moved(closed.size());
+  for (Eigen::Index i = 0; i < moved.size(); ++i) {
+    const double square = std::max(modes.eigenvalues()(i), 0.0);
+    const double angle = std::sqrt(square) * step;
+    moved(i) = angle > 1e-4 ? (1.0 - least_sine_ratio(angle)) / square : step * step / 6.0;
+  }
+  const auto size = static_cast<Eigen::Index>(rows.size());
+  Eigen::MatrixXd share = Eigen::MatrixXd::Identity(size, size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    for (Eigen::Index j = 0; j < size; ++j) {
+      share(i, j) -= penalty * rows[static_cast<std::size_t>(i)].dot(
+                                   moved.cwiseProduct(rows[static_cast<std::size_t>(j)]));
+    }
+  }
+  if (size == 0 || Eigen::LLT<Eigen::MatrixXd>(share).info() == Eigen::Success) return;
+  throw std::invalid_argument(fmt::format(
+      "motion of face contacts: a step of {:g} s is too long for contacts as stiff as these",
+      step));
 }
 
 }  // namespace
@@ -31,6 +77,7 @@ FaceContactMotion::FaceContactMotion(const LinearSystem& bodies, std::vector<Fac
   const auto num_contacts = static_cast<Eigen::Index>(contacts_.size());
   const Eigen::Index m = per_contact * num_contacts;
   const double penalty = *law_.penalty;
+  check_step(linearise(bodies, contacts_, law_, sliding_), sliding_, penalty, step);
   gap_rows_ = velocity_rows_ = Eigen::MatrixXd::Zero(m, n);
   drive_ = preload_ = Eigen::VectorXd::Zero(m);
   inputs_ = Eigen::MatrixXd::Zero(n, m);
@@ -134,7 +181,6 @@ void FaceContactMotion::start(const Eigen::VectorXd& displacement,
 
 bool FaceContactMotion::step() {
   constexpr int max_repeats = 100;
-  constexpr double tolerance = 1e-12;
   const Eigen::Index n = q_.size();
   const bool bends = bending_.size() > 0;  // BLAS takes no empty matrices
   Eigen::VectorXd before = inputs_ * remainder_;
@@ -163,44 +209,121 @@ bool FaceContactMotion::step() {
 /// Forces at the end of a step.
 /// @param predicted what is linear of gap and velocities there, without any remainder
 bool FaceContactMotion::solve(const Eigen::VectorXd& predicted) {
-  constexpr int max_sweeps = 1000;
-  constexpr double tolerance = 1e-12;
+  free_ = answering_ * (predicted - bare_ * preload_);
+  const bool has_converged = sweep() || search();
+  relative_ = free_ + compliance_ * forces_;
+  remainder_ = forces_ - linear_forces(relative_);
+  return has_converged;
+}
+
+/// What the law compares: friction at the end of the step and what would stop the slip then, in
+/// velocities.
+double FaceContactMotion::softness(Eigen::Index k) const {
+  return std::max({0.0, -compliance_(k + 1, k + 1), -compliance_(k + 2, k + 2)});
+}
+
+double FaceContactMotion::gap_at_rest(Eigen::Index k) const {
+  const Eigen::Index i = k / per_contact;
+  return sliding_.contacts[static_cast<std::size_t>(i)].gap + gap_bending_(i) + free_(k);
+}
+
+/// Gauss and Seidel's sweeps. @return whether they have converged
+bool FaceContactMotion::sweep() {
+  constexpr int max_sweeps = 40;
   const double penalty = *law_.penalty;
-  const Eigen::VectorXd free = answering_ * (predicted - bare_ * preload_);
   const double least = preload_.cwiseAbs().maxCoeff();
   Eigen::VectorXd& f = forces_;
-  bool has_converged = false;
-  for (int sweep = 0; sweep < max_sweeps && !has_converged; ++sweep) {
+  for (int sweep = 0; sweep < max_sweeps; ++sweep) {
     double largest = least;
     double change = 0.0;
     for (Eigen::Index k = 0; k < f.size(); k += per_contact) {
-      const Eigen::Index i = k / per_contact;
       const Eigen::Vector3d last = f.segment<3>(k);
       const double W = compliance_(k, k);
-      const double gap = sliding_.contacts[static_cast<std::size_t>(i)].gap + gap_bending_(i) +
-                         free(k) + compliance_.row(k).dot(f) - W * f(k);
+      const double gap = gap_at_rest(k) + compliance_.row(k).dot(f) - W * f(k);
       f(k) = std::max(0.0, -penalty * gap / (1.0 + penalty * W));
       const double limit = law_.friction * f(k);
       const Eigen::Vector2d velocity =
-          drive_.segment<2>(k + 1) + free.segment<2>(k + 1) + compliance_.middleRows<2>(k + 1) * f;
+          drive_.segment<2>(k + 1) + free_.segment<2>(k + 1) + compliance_.middleRows<2>(k + 1) * f;
       // Without slip friction is what stops it, unless that is more than there can be.
-      const double softness =
-          std::max({0.0, -compliance_(k + 1, k + 1), -compliance_(k + 2, k + 2)});
-      const Eigen::Vector2d trial = softness * f.segment<2>(k + 1) + velocity;
+      const double soft = softness(k);
+      const Eigen::Vector2d trial = soft * f.segment<2>(k + 1) + velocity;
       const double size = trial.norm();
-      if (size > softness * limit) {
+      if (size > soft * limit) {
         f.segment<2>(k + 1) = limit / size * trial;
-      } else if (softness > 0.0) {
-        f.segment<2>(k + 1) = trial / softness;
+      } else if (soft > 0.0) {
+        f.segment<2>(k + 1) = trial / soft;
       }
       change = std::max(change, (f.segment<3>(k) - last).cwiseAbs().maxCoeff());
       largest = std::max(largest, f(k));
     }
-    has_converged = change <= tolerance * largest;
+    if (change <= tolerance * largest) return true;
   }
-  relative_ = free + compliance_ * f;
-  remainder_ = f - linear_forces(relative_);
-  return has_converged;
+  return false;
+}
+
+/// How far forces are from the laws, and its slope where that is wanted.
+Eigen::VectorXd FaceContactMotion::deviation(const Eigen::VectorXd& f,
+                                             Eigen::MatrixXd* slope) const {
+  const double penalty = *law_.penalty;
+  const Eigen::VectorXd moved = compliance_ * f;
+  Eigen::VectorXd apart = f;
+  if (slope != nullptr) slope->setIdentity(f.size(), f.size());
+  for (Eigen::Index k = 0; k < f.size(); k += per_contact) {
+    const double gap = gap_at_rest(k) + moved(k);
+    if (gap < 0.0) {
+      apart(k) += penalty * gap;
+      if (slope != nullptr) slope->row(k) += penalty * compliance_.row(k);
+    }
+    const double soft = softness(k);
+    const double limit = law_.friction * std::max(0.0, f(k));
+    const Eigen::Vector2d velocity =
+        drive_.segment<2>(k + 1) + free_.segment<2>(k + 1) + moved.segment<2>(k + 1);
+    const Eigen::Vector2d trial = soft * f.segment<2>(k + 1) + velocity;
+    const double size = trial.norm();
+    const auto rows = compliance_.middleRows<2>(k + 1);
+    if (size > soft * limit) {
+      const Eigen::Vector2d direction = trial / size;
+      apart.segment<2>(k + 1) -= limit * direction;
+      if (slope == nullptr) continue;
+      const Eigen::Matrix2d turning =
+          limit / size * (Eigen::Matrix2d::Identity() - direction * direction.transpose());
+      slope->middleRows<2>(k + 1) -= turning * rows;
+      slope->block<2, 2>(k + 1, k + 1) -= soft * turning;
+      if (f(k) > 0.0) slope->block<2, 1>(k + 1, k) -= law_.friction * direction;
+    } else if (soft > 0.0) {
+      apart.segment<2>(k + 1) = -velocity / soft;
+      if (slope == nullptr) continue;
+      slope->middleRows<2>(k + 1) = -rows / soft;
+      // A direction that friction has not is left where it is.
+      for (const Eigen::Index row : {k + 1, k + 2})
+        if (compliance_(row, row) == 0.0) (*slope)(row, row) = 1.0;
+    }
+  }
+  return apart;
+}
+
+/// Newton's method where sweeps go round in circles, with steps that are halved until the deviation
+/// falls.
+bool FaceContactMotion::search() {
+  constexpr int max_iterations = 60;
+  constexpr int max_halvings = 12;
+  Eigen::MatrixXd slope;
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
+    const Eigen::VectorXd apart = deviation(forces_, &slope);
+    const double largest = std::max(preload_.cwiseAbs().maxCoeff(), forces_.cwiseAbs().maxCoeff());
+    if (!std::isfinite(largest)) return false;
+    if (apart.cwiseAbs().maxCoeff() <= tolerance * largest) return true;
+    const Eigen::VectorXd change = slope.partialPivLu().solve(-apart);
+    if (change.cwiseAbs().maxCoeff() <= tolerance * largest) {
+      forces_ += change;
+      return true;
+    }
+    double share = 1.0;
+    for (int halving = 0; halving < max_halvings; ++halving, share *= 0.5)
+      if (deviation(forces_ + share * change, nullptr).norm() < apart.norm()) break;
+    forces_ += share * change;
+  }
+  return false;
 }
 
 FaceContactState FaceContactMotion::contact(int index) const {

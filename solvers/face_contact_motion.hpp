@@ -31,15 +31,18 @@ struct FaceContactState {
 ///
 /// hold exactly, with the gap g of FaceContact and v = (Ω r − b q̇, −a q̇ − Ω r c q) the velocity of
 /// the face against the pad. They act along n + A q, b + B q and a, each with its force of that
-/// instant. They are solved by Gauss and Seidel's sweeps over the contacts, as FiLM does, and what
-/// bends by repeating them. Order 2 in the step where the contacts are not linear.
+/// instant. They are solved by Gauss and Seidel's sweeps over the contacts, as FiLM does, or by
+/// Newton's method where those do not converge, and what bends by repeating that. Order 2 in the
+/// step where the contacts are not linear.
 class FaceContactMotion {
  public:
   /// @param bodies without contact
   /// @param law    with a penalty, and a speed > 0
   /// @param state  about which motion is linear
   /// @param step   h, s, > 0
-  /// @throws std::invalid_argument without a penalty or speed; as ExponentialPropagator
+  /// @throws std::invalid_argument without a penalty or speed, or if the step is too long for the
+  /// stiffness of the contacts, about half a period of a mass on one of them; as
+  /// ExponentialPropagator
   FaceContactMotion(const LinearSystem& bodies, std::vector<FaceContact> contacts,
                     const FaceContactLaw& law, const FaceSlidingState& state, double step);
 
@@ -62,6 +65,11 @@ class FaceContactMotion {
   Eigen::VectorXd relative(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const;
   Eigen::VectorXd linear_forces(const Eigen::VectorXd& relative) const;
   bool solve(const Eigen::VectorXd& predicted);
+  bool sweep();
+  bool search();
+  Eigen::VectorXd deviation(const Eigen::VectorXd& forces, Eigen::MatrixXd* slope) const;
+  double softness(Eigen::Index row) const;
+  double gap_at_rest(Eigen::Index row) const;
   void bend(const Eigen::VectorXd& displacement);
 
   std::vector<FaceContact> contacts_;
@@ -82,6 +90,7 @@ class FaceContactMotion {
   Eigen::MatrixXd normal_bending_, friction_bending_;  ///< K_A, K_B, 7k x n
   Eigen::MatrixXd bending_answer_, bending_bare_;      ///< 2n x 7k, 3k x 7k
   Eigen::VectorXd q_, v_, forces_, relative_, remainder_;
+  Eigen::VectorXd free_;         ///< gap and velocities at the end of a step without forces
   Eigen::VectorXd bending_;      ///< what acts on bending_inputs_ besides the linear part, 7k
   Eigen::VectorXd gap_bending_;  ///< ½ xᵀ A x of every contact, m
 };

@@ -221,6 +221,14 @@ TEST(DiscProgram, SaysWhatElasticPadsCannotHave) {
   EXPECT_THAT(refused("pads.elastic.reduction.fixed_interface_modes=1000"),
               HasSubstr("must not exceed 268"));
   EXPECT_THAT(refused("pads.elastic.material.poissons_ratio=0.7"), HasSubstr("poissons_ratio"));
+  EXPECT_THAT(refused("record.channels=[upper_9.force]"), HasSubstr("there is none of this name"));
+  EXPECT_THAT(refused("record.channels=[upper_1.gap, upper_1.gap]"), HasSubstr("is listed twice"));
+  const TemporaryFolder folder;
+  EXPECT_THAT(Program({"run", elastic, "-o", (folder / "x.h5").string(), "--set", "time.step=4e-6",
+                       "--set", "record.interval=2e-5"})
+                  .run()
+                  .err,
+              HasSubstr("time.step: motion of face contacts: a step of 4e-06 s is too long"));
   EXPECT_THAT(refused("contact.preload=3000"), HasSubstr("prescribed by contact.preload"));
   EXPECT_THAT(refused("pads.piston.displacement=40um"),
               HasSubstr("expected either `force` or `displacement`"));

@@ -7,12 +7,14 @@
 #include <numbers>
 
 #include "solvers/dense_eigenvalues.hpp"
+#include "tests/support/message_of.hpp"
 #include "tests/support/reference_brake.hpp"
 
 namespace stridor {
 namespace {
 
 using Complex = std::complex<double>;
+using test::message_of;
 
 /// The reference brake with friction far beyond its limit, by a penalty.
 DiscModelParameters squealing_brake() {
@@ -145,6 +147,101 @@ TEST(FaceContactMotion, BouncingMassHasItsClosedFormToSecondOrder) {
   const double fine = error(4000);
   EXPECT_LT(coarse, 1e-3);
   EXPECT_LT(fine, coarse / 8.0);
+}
+
+TEST(FaceContactMotion, RefusesAStepTooLongForItsContacts) {
+  constexpr double m = 2.0, k = 50.0, k_C = 800.0;
+  const std::vector<FaceContact> contacts{contact_of(1, -1, 0)};
+  const FaceContactLaw law{0.0, k_C, 1.0, false, false};
+  const FaceSlidingState state = prescribed_sliding_state(contacts, law, 8.0);
+  // Taking the spring out leaves 1 − k_C/(k + k_C) (1 − sin x/x) of it, x = ω h.
+  double low = std::numbers::pi, high = 4.0;
+  for (int i = 0; i < 60; ++i) {
+    const double x = 0.5 * (low + high);
+    (std::sin(x) / x > -k / k_C ? low : high) = x;
+  }
+  const double longest = low / std::sqrt((k + k_C) / m);
+  EXPECT_NO_THROW(FaceContactMotion(bouncer(m, k), contacts, law, state, 0.999 * longest));
+  EXPECT_NE(message_of<std::invalid_argument>([&] {
+              FaceContactMotion(bouncer(m, k), contacts, law, state, 1.001 * longest);
+            }).find("is too long for contacts as stiff as these"),
+            std::string::npos);
+  EXPECT_THROW(FaceContactMotion(bouncer(m, k), contacts, law, state, 2.2 * longest),
+               std::invalid_argument);
+  const FaceContactLaw rigid{0.0, std::nullopt, 1.0, false, false};
+  EXPECT_EQ(message_of<std::invalid_argument>(
+                [&] { FaceContactMotion(bouncer(m, k), contacts, rigid, state, 1e-3); }),
+            "motion of face contacts: takes contacts with a penalty, and a plate that turns");
+}
+
+TEST(FaceContactMotion, ManyContactsThatStickAndLiftOffKeepTheLaws) {
+  // Pads of three points each with friction that couples them, kicked so that some stick: sweeps
+  // over the contacts alone would go round in circles.
+  DiscModelParameters brake = squealing_brake();
+  brake.pads.mass.reset();
+  brake.pads.elastic.emplace();
+  brake.pads.elastic->length = 0.06;
+  brake.pads.elastic->thickness = 0.015;
+  brake.pads.elastic->width = 0.04;
+  brake.pads.elastic->material = {1e10, 0.3, 2500.0};
+  brake.pads.elastic->mesh = {6, 2};
+  brake.pads.elastic->reduction.fixed_interface_modes = 8;
+  brake.contact.offsets = {-0.03, 0.0, 0.03};
+  brake.contact.penalty = 1e9;
+  brake.contact.friction.coefficient = 0.6;
+  const DiscModel model = make_disc_model(brake);
+  const FastestMode mode = fastest_of(model.system);
+  FaceContactMotion motion(model.bodies, model.contacts, model.law, model.state, 5e-7);
+  motion.start(1e-5 * mode.q.real(), 1e-5 * (mode.s * mode.q).real());
+  int seen[3] = {0, 0, 0};
+  for (int n = 0; n < 6000; ++n) {
+    ASSERT_TRUE(motion.step()) << n;
+    const Eigen::VectorXd& q = motion.displacement();
+    for (int i = 0; i < motion.num_contacts(); ++i) {
+      const FaceContact& contact = model.contacts[static_cast<std::size_t>(i)];
+      const FaceContactState state = motion.contact(i);
+      const double bent =
+          0.5 * (contact.normal_bending() * q).dot(contact.bending_forces().transpose() * q);
+      const double expected =
+          std::max(0.0, model.state.contacts[static_cast<std::size_t>(i)].force -
+                            1e9 * (contact.gap().dot(q) + bent));
+      ASSERT_NEAR(state.force, expected, 1e-6 * (1000.0 + expected)) << n;
+      const Eigen::Vector2d friction(state.friction_force, state.across_force);
+      const double limit = 0.6 * state.force;
+      ASSERT_LE(friction.norm(), limit + 1e-6 * (1000.0 + limit)) << n;
+      ++seen[static_cast<int>(state.state)];
+      if (state.state != ContactState::slip) continue;
+      const double sliding = model.law.speed * contact.radius;
+      const Eigen::Vector2d v(
+          sliding - contact.friction().dot(motion.velocity()),
+          -contact.across().dot(motion.velocity()) - sliding * contact.turning().dot(q));
+      ASSERT_LT((friction - limit * v.normalized()).norm(), 1e-5 * (1000.0 + limit)) << n;
+    }
+  }
+  for (const int count : seen) EXPECT_GT(count, 0);
+}
+
+TEST(FaceContactMotion, GoesOnBitwiseFromItsState) {
+  const DiscModelParameters brake = squealing_brake();
+  const DiscModel model = make_disc_model(brake);
+  const FastestMode mode = fastest_of(model.system);
+  const auto fresh = [&] {
+    FaceContactMotion motion(model.bodies, model.contacts, model.law, model.state, 4e-6);
+    motion.start(1e-5 * mode.q.real(), 1e-5 * (mode.s * mode.q).real());
+    return motion;
+  };
+  FaceContactMotion whole = fresh();
+  for (int n = 0; n < 900; ++n) ASSERT_TRUE(whole.step());
+  State state;
+  whole.save(state, "motion/");
+  FaceContactMotion second = fresh();
+  second.load(state, "motion/");
+  for (int n = 0; n < 300; ++n) {
+    ASSERT_TRUE(whole.step());
+    ASSERT_TRUE(second.step());
+  }
+  EXPECT_EQ(whole.displacement(), second.displacement());
+  EXPECT_EQ(whole.contact(0).force, second.contact(0).force);
 }
 
 TEST(FaceContactMotion, MassOnABeltSticksAndThenSwingsAtItsSpeed) {

@@ -227,7 +227,7 @@ TEST(SlidingState, MotionAboutItStaysAtRest) {
   const SlidingStateSolution found =
       solve_sliding_state(brake.bodies, brake.contacts, brake.law, brake.loads);
   ASSERT_TRUE(found.has_converged);
-  FaceContactMotion motion(brake.bodies, brake.contacts, brake.law, found.state, 5e-6);
+  FaceContactMotion motion(brake.bodies, brake.contacts, brake.law, found.state, 5e-7);
   for (int n = 0; n < 200; ++n) ASSERT_TRUE(motion.step()) << n;
   EXPECT_LT(motion.displacement().norm(), 1e-9 * found.state.displacement.norm());
 }
