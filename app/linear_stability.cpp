@@ -17,34 +17,52 @@
 namespace stridor {
 namespace {
 
-/// @throws ConfigError if the system is too large for all its eigenvalues
-const LinearSystem& dense_of(const LinearModel& model) {
-  if (model.sparse) {
-    throw ConfigError(
-        "substructures",
-        fmt::format("{} unknowns are for eig; the other verbs take up to {}, for which "
-                    "all eigenvalues are computed",
-                    model.sparse->size(), largest_dense_size));
+/// All eigenvalues in a window. A count within a frequency is taken from all below it.
+/// @throws NumericalError unless every one was found
+SparseSpectrum whole_spectrum(const SparseSystem& system, SpectrumWindow window) {
+  if (std::isfinite(window.frequency)) window.count.reset();
+  SparseSpectrum spectrum = sparse_spectrum(system, window);
+  if (!spectrum.is_complete) {
+    throw NumericalError(
+        fmt::format("below {:.6g} Hz the argument principle counts {} eigenvalues, and {} were "
+                    "found with their conjugates; try another frequency with --below",
+                    spectrum.rectangle.height / (2.0 * std::numbers::pi), spectrum.num_counted,
+                    spectrum.num_found));
   }
-  return model.dense;
+  return spectrum;
 }
 
 class LinearFamily : public StabilityFamily {
  public:
   LinearFamily(LoadedLinearScene loaded, std::vector<NumericKey> keys)
-      : loaded_(std::move(loaded)), keys_(std::move(keys)) {}
+      : loaded_(std::move(loaded)),
+        keys_(std::move(keys)),
+        is_sparse_(loaded_.model().sparse.has_value()) {}
 
   Pencil pencil(std::span<const double> values) override {
-    return make_pencil(dense_of(loaded_.model(keys_, values)));
+    return make_pencil(loaded_.model(keys_, values).dense);
   }
   double trusted_frequency(std::span<const double> values) override {
     return loaded_.model(keys_, values).highest_frequency;
   }
   bool is_sampled() const override { return true; }
+  bool is_sparse() const override { return is_sparse_; }
+  SampledSpectrum spectrum(std::span<const double> values, const LocusOptions& options) override {
+    constexpr double rounding = 1e-9;  // of |s|, as the pairs have converged
+    const LinearModel model = loaded_.model(keys_, values);
+    SampledSpectrum found;
+    for (const Eigenvalue& one :
+         whole_spectrum(*model.sparse, {options.count, options.frequency}).eigenvalues) {
+      found.eigenvalues.push_back(one.s);
+      found.rounding.push_back(rounding * std::abs(one.s));
+    }
+    return found;
+  }
 
  private:
   LoadedLinearScene loaded_;
   std::vector<NumericKey> keys_;
+  bool is_sparse_;
 };
 
 /// The contacts of the sliding state about which the system is linearised.
@@ -124,18 +142,8 @@ FoundSpectrum find_dense(const LinearModel& model, const SpectrumWindow& window)
 
 /// @throws NumericalError unless every eigenvalue in the window was found
 FoundSpectrum find_sparse(const SparseSystem& system, const SpectrumWindow& asked) {
-  // A count within a frequency is taken from all below it.
-  SpectrumWindow window = asked;
-  if (std::isfinite(window.frequency)) window.count.reset();
-  const auto spectrum = std::make_shared<const SparseSpectrum>(sparse_spectrum(system, window));
+  const auto spectrum = std::make_shared<const SparseSpectrum>(whole_spectrum(system, asked));
   const double height = spectrum->rectangle.height / (2.0 * std::numbers::pi);
-  if (!spectrum->is_complete) {
-    throw NumericalError(
-        fmt::format("below {:.6g} Hz the argument principle counts {} eigenvalues, and {} were "
-                    "found with their "
-                    "conjugates; try another frequency with --below",
-                    height, spectrum->num_counted, spectrum->num_found));
-  }
   FoundSpectrum found{"sparse", spectrum->eigenvalues, 0.0, {}, Json::object()};
   keep_window(found.eigenvalues, asked);
   std::vector<std::complex<double>> roots;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -355,14 +356,64 @@ TEST(MatrixProgram, LargeMatricesAreCountedInTheirWindow) {
   EXPECT_NEAR(lowest["explanation"]["quotients"]["stiffness"].get<double>(), omega(2) * omega(2),
               1e-9 * omega(2) * omega(2));
   EXPECT_NEAR(lowest["explanation"]["frictionless_modes"][0]["share"].get<double>(), 1.0, 1e-9);
-  const ProgramResult locus = Program({"locus", scene, "--parameter", "substructures.chain.load",
-                                       "--from", "0", "--to", "1"})
-                                  .run();
-  EXPECT_EQ(locus.exit_code, 2);
-  EXPECT_THAT(locus.err, HasSubstr("1200 unknowns are for eig"));
+  const Json locus = json_of({"locus", scene, "--parameter", "substructures.chain.load", "--from",
+                              "0", "--to", "1", "--points", "2", "--count", "4"});
+  EXPECT_EQ(locus["eigenvalues"][1], lowest["eigenvalues"]);
+  EXPECT_TRUE(locus["unstable"].empty());
   const ProgramResult too_many = Program({"eig", scene, "--below", "1 kHz"}).run();
   EXPECT_EQ(too_many.exit_code, 3);
   EXPECT_THAT(too_many.err, HasSubstr("ask for fewer eigenvalues or a lower frequency"));
+}
+
+TEST(MatrixProgram, LargeMatricesHaveLociAndThresholds) {
+  // 505 oscillators of two coordinates with stiffness i diag(1, 1.4) and damping 0.1, each under
+  // the circulatory load: the first one flutters from 0.2280350850 on, the second one from beyond
+  // 0.4.
+  const TemporaryFolder folder;
+  constexpr int n = 1010;
+  const auto write = [&](const std::string& name, int per_row, const auto& entries) {
+    std::ofstream file((folder / (name + ".mtx")).string());
+    file << "%%MatrixMarket matrix coordinate real general\n"
+         << n << ' ' << n << ' ' << per_row * n << '\n';
+    for (int i = 0; i < n; ++i) entries(file, i);
+  };
+  const auto diagonal = [&](const std::string& name, const auto& value) {
+    write(name, 1, [&](std::ofstream& file, int i) {
+      file << i + 1 << ' ' << i + 1 << ' ' << value(i) << '\n';
+    });
+  };
+  diagonal("M", [](int) { return 1.0; });
+  diagonal("D", [](int) { return 0.1; });
+  diagonal("K", [](int i) { return (i / 2 + 1) * (i % 2 == 0 ? 1.0 : 1.4); });
+  write("N", 1, [](std::ofstream& file, int i) {
+    file << i + 1 << ' ' << (i % 2 == 0 ? i + 2 : i) << (i % 2 == 0 ? " 1\n" : " -1\n");
+  });
+  const std::string scene = (folder / "pairs.yaml").string();
+  std::ofstream(scene)
+      << "format: 1\nsubstructures:\n  pairs: {type: matrices, mass: M.mtx, damping: "
+         "D.mtx, stiffness: K.mtx, load: 0, load_stiffness: N.mtx}\n";
+  const std::vector<std::string> range{"--parameter", "substructures.pairs.load",
+                                       "--from",      "0",
+                                       "--to",        "0.35",
+                                       "--points",    "3",
+                                       "--below",     "0.3"};
+  std::vector<std::string> arguments{"threshold", scene};
+  arguments.insert(arguments.end(), range.begin(), range.end());
+  const Json threshold = json_of(arguments);
+  ASSERT_EQ(threshold["roots"].size(), 1U);
+  EXPECT_NEAR(threshold["roots"][0]["value"].get<double>(), 0.2280350850, 1e-8);
+  EXPECT_EQ(threshold["window"][1], 0.3);
+  arguments[0] = "locus";
+  const Json locus = json_of(arguments);
+  ASSERT_EQ(locus["unstable"].size(), 1U);
+  EXPECT_NEAR(locus["unstable"][0]["from"].get<double>(), 0.2280350850, 1e-8);
+  EXPECT_EQ(locus["unstable"][0]["to"], 0.35);
+  // At 0.35: s = −0.05 ± sqrt(...) of s² + 0.1 s + 1.2 ± i sqrt(0.35² − 0.2²) = 0.
+  const std::complex<double> root =
+      -0.05 + std::sqrt(std::complex<double>(0.0025 - 1.2, -std::sqrt(0.35 * 0.35 - 0.04)));
+  double largest = -1e300;
+  for (const Json& s : locus["eigenvalues"][2]) largest = std::max(largest, s[0].get<double>());
+  EXPECT_NEAR(largest, root.real(), 1e-9);
 }
 
 TEST(MatrixProgram, ExamplesHaveTheirClosedForms) {
