@@ -41,6 +41,9 @@ struct LocusOptions {
   int count = 20;
   /// No higher than this, Hz, > 0.
   double frequency = std::numeric_limits<double>::infinity();
+  /// Windows and crossings are of eigenvalues up to here, Hz; those above are only listed. For
+  /// sampled loci (analysis/sampled_locus.hpp).
+  double trusted = std::numeric_limits<double>::infinity();
   /// Smallest interval between two values, relative to the range, > 0. A window narrower than this
   /// can be missed.
   double resolution = 1e-9;

@@ -25,32 +25,23 @@ struct Sample {
   double growth() const { return std::max(fastest.real(), 0.0); }
 };
 
-class Sampler {
+/// All eigenvalues of the dense problem, and what may be rounding of them.
+class DenseSpectra {
  public:
-  Sampler(const PencilFamily& family, const LocusOptions& options)
-      : family_(family), options_(options) {}
+  explicit DenseSpectra(const PencilFamily& family) : family_(&family) {}
 
-  Sample at(double value) {
-    family_.place(value, pencil_);
+  SampledSpectrum operator()(double value) {
+    family_->place(value, pencil_);
     // What is beyond doubt needs no condition numbers.
     DenseSpectrum all = dense_spectrum(pencil_, DenseWork::eigenvalues);
     if (std::any_of(all.eigenvalues.begin(), all.eigenvalues.end(), is_doubtful))
       all = dense_spectrum(pencil_, DenseWork::conditions);
-    Sample sample;
-    sample.value = value;
-    sample.excess = -std::numeric_limits<double>::infinity();
-    const double top = 2.0 * std::numbers::pi * options_.frequency;
-    int num_pairs = 0;
+    SampledSpectrum spectrum;
     for (std::size_t i = 0; i < all.eigenvalues.size(); ++i) {
-      const Complex s = all.eigenvalues[i].s;
-      if (s.imag() > top || (s.imag() > 0.0 && ++num_pairs > options_.count)) break;
-      sample.eigenvalues.push_back(s);
-      const double excess = s.real() - rounding_of(all, i);
-      if (excess <= sample.excess) continue;
-      sample.excess = excess;
-      sample.fastest = s;
+      spectrum.eigenvalues.push_back(all.eigenvalues[i].s);
+      spectrum.rounding.push_back(rounding_of(all, i));
     }
-    return sample;
+    return spectrum;
   }
 
  private:
@@ -69,30 +60,81 @@ class Sampler {
                     largest_rounding * std::abs(all.eigenvalues[i].s));
   }
 
-  const PencilFamily& family_;
-  const LocusOptions& options_;
+  const PencilFamily* family_;
   Pencil pencil_;
 };
 
-/// Halves the interval between a sample that grows and one that does not until nothing lies
+class Sampler {
+ public:
+  Sampler(const SpectrumFamily& family, const LocusOptions& options, const SamplingEffort& effort)
+      : family_(family), options_(options), effort_(effort) {}
+
+  const SamplingEffort& effort() const { return effort_; }
+
+  Sample at(double value) {
+    const SampledSpectrum all = family_(value);
+    Sample sample;
+    sample.value = value;
+    sample.excess = -std::numeric_limits<double>::infinity();
+    const double top = 2.0 * std::numbers::pi * options_.frequency;
+    const double trusted = 2.0 * std::numbers::pi * options_.trusted;
+    int num_pairs = 0;
+    for (std::size_t i = 0; i < all.eigenvalues.size(); ++i) {
+      const Complex s = all.eigenvalues[i];
+      if (s.imag() > top || (s.imag() > 0.0 && ++num_pairs > options_.count)) break;
+      sample.eigenvalues.push_back(s);
+      const double excess = s.real() - all.rounding[i];
+      if (excess <= sample.excess || s.imag() > trusted) continue;
+      sample.excess = excess;
+      sample.fastest = s;
+    }
+    return sample;
+  }
+
+ private:
+  const SpectrumFamily& family_;
+  const LocusOptions& options_;
+  SamplingEffort effort_;
+};
+
+/// Narrows the interval between a sample that grows and one that does not until nothing lies
 /// between; `stable` and `growing` are its ends afterwards.
-void bisect(Sampler& sampler, Sample& stable, Sample& growing) {
-  constexpr int max_halvings = 200;
-  for (int i = 0; i < max_halvings; ++i) {
-    const double middle = 0.5 * (stable.value + growing.value);
+void narrow(Sampler& sampler, Sample& stable, Sample& growing) {
+  constexpr int max_steps = 200;
+  const bool has_secants = sampler.effort().ends == SamplingEffort::Ends::secants;
+  double stable_weight = 1.0, growing_weight = 1.0;
+  int num_growing = 0, num_stable = 0;  // in a row
+  for (int i = 0; i < max_steps; ++i) {
+    double next = 0.5 * (stable.value + growing.value);
     const double width = std::abs(growing.value - stable.value);
-    if (middle == stable.value || middle == growing.value || width <= 1e-13 * std::abs(middle)) {
+    if (next == stable.value || next == growing.value ||
+        width <= sampler.effort().tolerance * std::abs(next)) {
       return;
     }
-    Sample sample = sampler.at(middle);
-    (sample.is_growing() ? growing : stable) = std::move(sample);
+    // The secant, with the excess halved at an end that stays again (Illinois); now and then the
+    // middle, as the excess may have a kink.
+    const double below = stable_weight * stable.excess;
+    const double above = growing_weight * growing.excess;
+    if (has_secants && i % 6 != 5 && std::isfinite(below)) {
+      const double at = stable.value + (growing.value - stable.value) * below / (below - above);
+      const double margin = 0.3 * sampler.effort().tolerance * std::abs(next);
+      next = std::clamp(at, std::min(stable.value, growing.value) + margin,
+                        std::max(stable.value, growing.value) - margin);
+    }
+    Sample sample = sampler.at(next);
+    const bool is_growing = sample.is_growing();
+    num_growing = is_growing ? num_growing + 1 : 0;
+    num_stable = is_growing ? 0 : num_stable + 1;
+    stable_weight = num_growing > 1 ? 0.5 * stable_weight : 1.0;
+    growing_weight = num_stable > 1 ? 0.5 * growing_weight : 1.0;
+    (is_growing ? growing : stable) = std::move(sample);
   }
 }
 
 /// Climbs to the largest growth between three samples by golden sections; stops early where
 /// something grows if `until_growing`.
 Sample climb(Sampler& sampler, double low, const Sample& middle, double high, bool until_growing) {
-  constexpr int max_steps = 40;
+  const int max_steps = sampler.effort().climbing_steps;
   const double ratio = 0.5 * (3.0 - std::sqrt(5.0));
   Sample best = middle;
   const double width = high - low;
@@ -113,8 +155,7 @@ Sample climb(Sampler& sampler, double low, const Sample& middle, double high, bo
 }
 
 /// Values asked for, and others between them where they are sparse.
-std::vector<double> fill_in(const std::vector<double>& wanted) {
-  constexpr int least_in_all = 64;
+std::vector<double> fill_in(const std::vector<double>& wanted, int least_in_all) {
   std::vector<double> grid{wanted.front()};
   const double longest = (wanted.back() - wanted.front()) / least_in_all;
   for (std::size_t i = 0; i + 1 < wanted.size(); ++i) {
@@ -186,7 +227,7 @@ void find_windows(Sampler& sampler, const std::vector<Sample>& samples, Locus& l
     if (i > 0 && was_growing != is_growing) {
       Sample stable = was_growing ? samples[i] : samples[i - 1];
       Sample growing = was_growing ? samples[i - 1] : samples[i];
-      bisect(sampler, stable, growing);
+      narrow(sampler, stable, growing);
       add_crossing(growing, was_growing ? -1 : 1);
       open.push_back(growing);
       if (was_growing) close();
@@ -196,12 +237,11 @@ void find_windows(Sampler& sampler, const std::vector<Sample>& samples, Locus& l
   if (!open.empty()) close();
 }
 
-void check(const PencilFamily& family, const std::vector<double>& values,
-           const LocusOptions& options) {
+void check(bool has_family, const std::vector<double>& values, const LocusOptions& options) {
   const auto reject = [](const std::string& message) {
     throw std::invalid_argument("locus: " + message);
   };
-  if (!family.place) reject("there is no family");
+  if (!has_family) reject("there is no family");
   if (values.empty()) reject("there are no values");
   const bool ascends =
       std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
@@ -213,10 +253,17 @@ void check(const PencilFamily& family, const std::vector<double>& values,
 
 Locus sample_locus(const PencilFamily& family, const std::vector<double>& values,
                    const LocusOptions& options) {
-  check(family, values, options);
-  Sampler sampler(family, options);
+  check(family.place != nullptr, values, options);
+  return sample_locus(SpectrumFamily(DenseSpectra(family)), values, options, SamplingEffort{});
+}
+
+Locus sample_locus(const SpectrumFamily& family, const std::vector<double>& values,
+                   const LocusOptions& options, const SamplingEffort& effort) {
+  check(family != nullptr, values, options);
+  Sampler sampler(family, options, effort);
   std::vector<Sample> samples;
-  for (const double value : fill_in(values)) samples.push_back(sampler.at(value));
+  for (const double value : fill_in(values, effort.least_values))
+    samples.push_back(sampler.at(value));
   Locus locus;
   locus.values = values;
   locus.num_places = static_cast<int>(samples.size());

@@ -1,9 +1,31 @@
 // Locus of a small system from all its eigenvalues at every value, without following any.
 #pragma once
 
+#include <complex>
+#include <functional>
+#include <vector>
+
 #include "analysis/locus.hpp"
 
 namespace stridor {
+
+/// Eigenvalues at one value of a parameter.
+struct SampledSpectrum {
+  std::vector<std::complex<double>> eigenvalues;  ///< Im s >= 0, ascending Im s
+  std::vector<double> rounding;  ///< what rounding may have added to each real part, 1/s
+};
+/// Those of a system that depends on one parameter; called in any order.
+using SpectrumFamily = std::function<SampledSpectrum(double value)>;
+
+/// How many spectra a locus may cost.
+struct SamplingEffort {
+  int least_values = 64;     ///< looked at in all, where fewer are asked for
+  double tolerance = 1e-13;  ///< of the ends of windows, relative
+  int climbing_steps = 40;   ///< of golden sections towards the largest growth
+  enum class Ends { halving, secants } ends = Ends::halving;  ///< how ends of windows are found
+};
+/// For spectra that take seconds: as many as are asked for, and few besides.
+inline constexpr SamplingEffort sparing_effort{1, 1e-9, 8, SamplingEffort::Ends::secants};
 
 /// Eigenvalues and unstable windows along a parameter, for systems whose eigenvalues coincide or
 /// lie on the imaginary axis over whole intervals: without damping, with bodies that are alike.
@@ -22,5 +44,9 @@ namespace stridor {
 /// @throws as trace_locus()
 Locus sample_locus(const PencilFamily& family, const std::vector<double>& values,
                    const LocusOptions& options = {});
+/// The same from spectra that come from elsewhere. With sparing_effort a window that lies between
+/// two of the values asked for is missed.
+Locus sample_locus(const SpectrumFamily& family, const std::vector<double>& values,
+                   const LocusOptions& options, const SamplingEffort& effort);
 
 }  // namespace stridor

@@ -103,7 +103,7 @@ Candidates run_interleaved(const LoadedScene& loaded, Coordinates coordinates, d
     candidate.file = (folder / fmt::format("{}{}.h5", assumptions[i].name, suffix)).string();
     candidate.transient = std::make_unique<Transient>(
         candidate.scene,
-        TransientOutput{candidate.file, options.common.overwrite(), options.command_line});
+        RunOutput{candidate.file, options.common.overwrite(), options.command_line});
   }
   constexpr int turns = 100;
   run_in_turns(coordinates == Coordinates::modal ? "modal" : "published form",

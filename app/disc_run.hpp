@@ -1,22 +1,16 @@
 // The verb `run` on a disc between pads.
 #pragma once
 
-#include <string>
-
-#include "app/command.hpp"
+#include "app/disc_transient.hpp"
 
 namespace stridor {
 
-struct DiscRunOptions {
-  CommonOptions common;
-  std::string scene;
-  std::string output;
-  bool verify = false;
-  std::string command_line;
-};
-
 /// Marches the scene from a perturbed steady sliding, and writes samples and results.
-/// @throws ConfigError if the scene is no disc, or lacks what a run needs
-ExitCode run_disc(const DiscRunOptions& options);
+/// @throws ConfigError if the scene is no disc, or lacks what a run needs; Interrupted,
+/// NumericalError
+ExitCode run_disc(const LoadedLinearScene& loaded, const RunOutput& output,
+                  const RunEnding& ending);
+/// Goes on with such a run.
+ExitCode resume_disc(const InterruptedRun& interrupted, const RunEnding& ending);
 
 }  // namespace stridor

@@ -3,6 +3,7 @@
 
 #include "app/burst_text.hpp"
 #include "app/command.hpp"
+#include "app/transient_results.hpp"
 #include "io/damage_guard.hpp"
 #include "io/run_file.hpp"
 #include "io/run_summary.hpp"
@@ -18,19 +19,6 @@ struct InfoOptions {
 Json attribute_json(const std::variant<std::string, double>& value) {
   if (const double* real = std::get_if<double>(&value)) return number(*real);
   return std::get<std::string>(value);
-}
-
-/// The bursts that `run` found; empty where it found none or did not look.
-Json bursts_json(const std::vector<Burst>& bursts) {
-  Json list = Json::array();
-  for (const Burst& burst : bursts) {
-    list.push_back({{"start", number(burst.start)},
-                    {"end", number(burst.end)},
-                    {"frequency", number(burst.frequency)},
-                    {"peak", number(burst.peak)},
-                    {"gain", number(burst.gain)}});
-  }
-  return list;
 }
 
 ExitCode info(const InfoOptions& options) {

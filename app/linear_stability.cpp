@@ -17,48 +17,88 @@
 namespace stridor {
 namespace {
 
-/// @throws ConfigError if the system is too large for all its eigenvalues
-const LinearSystem& dense_of(const LinearModel& model) {
-  if (model.sparse) {
-    throw ConfigError(
-        "substructures",
-        fmt::format("{} unknowns are for eig; the other verbs take up to {}, for which "
-                    "all eigenvalues are computed",
-                    model.sparse->size(), largest_dense_size));
+/// All eigenvalues in a window. A count within a frequency is taken from all below it.
+/// @throws NumericalError unless every one was found
+SparseSpectrum whole_spectrum(const SparseSystem& system, SpectrumWindow window) {
+  if (std::isfinite(window.frequency)) window.count.reset();
+  SparseSpectrum spectrum = sparse_spectrum(system, window);
+  if (!spectrum.is_complete) {
+    throw NumericalError(
+        fmt::format("below {:.6g} Hz the argument principle counts {} eigenvalues, and {} were "
+                    "found with their conjugates; try another frequency with --below",
+                    spectrum.rectangle.height / (2.0 * std::numbers::pi), spectrum.num_counted,
+                    spectrum.num_found));
   }
-  return model.dense;
+  return spectrum;
 }
 
 class LinearFamily : public StabilityFamily {
  public:
   LinearFamily(LoadedLinearScene loaded, std::vector<NumericKey> keys)
-      : loaded_(std::move(loaded)), keys_(std::move(keys)) {}
+      : loaded_(std::move(loaded)),
+        keys_(std::move(keys)),
+        is_sparse_(loaded_.model().sparse.has_value()) {}
 
   Pencil pencil(std::span<const double> values) override {
-    return make_pencil(dense_of(loaded_.model(keys_, values)));
+    return make_pencil(loaded_.model(keys_, values).dense);
   }
   double trusted_frequency(std::span<const double> values) override {
     return loaded_.model(keys_, values).highest_frequency;
   }
   bool is_sampled() const override { return true; }
+  bool is_sparse() const override { return is_sparse_; }
+  SampledSpectrum spectrum(std::span<const double> values, const LocusOptions& options) override {
+    constexpr double rounding = 1e-9;  // of |s|, as the pairs have converged
+    const LinearModel model = loaded_.model(keys_, values);
+    SampledSpectrum found;
+    for (const Eigenvalue& one :
+         whole_spectrum(*model.sparse, {options.count, options.frequency}).eigenvalues) {
+      found.eigenvalues.push_back(one.s);
+      found.rounding.push_back(rounding * std::abs(one.s));
+    }
+    return found;
+  }
 
  private:
   LoadedLinearScene loaded_;
   std::vector<NumericKey> keys_;
+  bool is_sparse_;
 };
 
-/// The contacts of the sliding state, with the forces about which the system is linearised.
-Json equilibrium_json(const LinearModel& model, const DiscScene& scene) {
+/// The contacts of the sliding state about which the system is linearised.
+Json equilibrium_json(const DiscModel& model) {
   Json contacts = Json::array();
-  const double friction =
-      disc_terms(scene.model.terms).friction ? scene.model.contact.friction.coefficient : 0.0;
-  for (const FaceContact& contact : model.disc->contacts) {
+  for (std::size_t i = 0; i < model.contacts.size(); ++i) {
+    const FaceContact& contact = model.contacts[i];
+    const FaceContactPoint& point = model.state.contacts[i];
+    const Eigen::VectorXd& q = model.state.displacement;
     contacts.push_back({{"side", contact.side},
-                        {"force", number(model.disc->contact_preload)},
-                        {"friction_force", number(friction * model.disc->contact_preload)},
-                        {"slip_velocity", number(scene.model.disc.speed * contact.radius)}});
+                        {"closed", point.is_closed},
+                        {"force", number(point.force)},
+                        {"friction_force", number(model.law.friction * point.force)},
+                        {"gap", number(point.gap)},
+                        {"slip_velocity", number(point.velocity.norm())},
+                        {"pad_displacement",
+                         {number(contact.pad_r.dot(q)), number(contact.pad_phi.dot(q)),
+                          number(contact.pad_z.dot(q))}}});
   }
   return {{"contacts", contacts}};
+}
+
+/// The same in two lines: the forces of the contact points of each pad, along the circumference.
+void print_equilibrium(const DiscModel& model) {
+  const std::size_t per_pad = model.contacts.size() / 2;
+  for (const std::size_t pad : {0, 1}) {
+    std::string forces;
+    double sum = 0.0;
+    for (std::size_t i = pad * per_pad; i < (pad + 1) * per_pad; ++i) {
+      const FaceContactPoint& point = model.state.contacts[i];
+      forces += point.is_closed ? fmt::format(" {:.6g}", point.force) : std::string(" open");
+      sum += point.force;
+    }
+    fmt::print("{:<24}{:.8g} N{}\n", pad == 0 ? "contact force, upper" : "contact force, lower",
+               sum, per_pad > 1 ? ", of its points" + forces : "");
+  }
 }
 
 /// What eig found, by whichever method.
@@ -102,18 +142,8 @@ FoundSpectrum find_dense(const LinearModel& model, const SpectrumWindow& window)
 
 /// @throws NumericalError unless every eigenvalue in the window was found
 FoundSpectrum find_sparse(const SparseSystem& system, const SpectrumWindow& asked) {
-  // A count within a frequency is taken from all below it.
-  SpectrumWindow window = asked;
-  if (std::isfinite(window.frequency)) window.count.reset();
-  const auto spectrum = std::make_shared<const SparseSpectrum>(sparse_spectrum(system, window));
+  const auto spectrum = std::make_shared<const SparseSpectrum>(whole_spectrum(system, asked));
   const double height = spectrum->rectangle.height / (2.0 * std::numbers::pi);
-  if (!spectrum->is_complete) {
-    throw NumericalError(
-        fmt::format("below {:.6g} Hz the argument principle counts {} eigenvalues, and {} were "
-                    "found with their "
-                    "conjugates; try another frequency with --below",
-                    height, spectrum->num_counted, spectrum->num_found));
-  }
   FoundSpectrum found{"sparse", spectrum->eigenvalues, 0.0, {}, Json::object()};
   keep_window(found.eigenvalues, asked);
   std::vector<std::complex<double>> roots;
@@ -173,12 +203,14 @@ ExitCode eig_of_linear_scene(const StabilityOptions& options, bool explain,
                  {"residuals", Json::array()},      {"stable", is_stable},
                  {"window", {0.0, number(highest)}}};
   object.update(found.more);
-  if (const DiscScene* disc = std::get_if<DiscScene>(&loaded.scene))
-    object["equilibrium"] = equilibrium_json(model, *disc);
+  if (model.disc) object["equilibrium"] = equilibrium_json(*model.disc);
   for (const Eigenvalue& one : eigenvalues) object["residuals"].push_back(number(one.residual));
   if (explain) {
     const std::size_t num_real = num_real_of(eigenvalues);
-    const std::size_t chosen = chosen_mode(eigenvalues, num_real, mode);
+    // The one to explain is among those over which the verdict is.
+    std::vector<Eigenvalue> choice = eigenvalues;
+    if (!mode) std::erase_if(choice, [&](const auto& one) { return one.frequency() > highest; });
+    const std::size_t chosen = chosen_mode(choice, num_real, mode);
     const Eigenvalue& one = eigenvalues[chosen];
     object["explanation"] = {
         {"mode", chosen - num_real + 1}, {"frequency", one.frequency()}, {"growth", one.growth()}};
@@ -188,6 +220,7 @@ ExitCode eig_of_linear_scene(const StabilityOptions& options, bool explain,
     fmt::print("{}\n", object.dump(2));
     return ExitCode::done;
   }
+  if (model.disc) print_equilibrium(*model.disc);
   print_eigenvalues(eigenvalues, model.highest_frequency);
   if (!std::isfinite(highest)) {
     fmt::print("{} at all frequencies\n", is_stable ? "stable" : "unstable");

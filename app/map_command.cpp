@@ -70,6 +70,19 @@ double largest_growth(const std::vector<std::complex<double>>& eigenvalues) {
   return largest;
 }
 
+std::vector<std::complex<double>> eigenvalues_at(StabilityFamily& family,
+                                                 const std::vector<double>& values,
+                                                 const LocusOptions& options) {
+  if (family.is_sparse()) return family.spectrum(values, options).eigenvalues;
+  const EigenvalueMethod method =
+      options.method == LocusMethod::dense ? EigenvalueMethod::dense : EigenvalueMethod::secular;
+  std::vector<std::complex<double>> found;
+  for (const Eigenvalue& one :
+       lowest_eigenvalues(family.pencil(values), method, {options.count, options.frequency}))
+    found.push_back(one.s);
+  return found;
+}
+
 /// @param varied index of the key along the line: 0 for x
 LineResult trace_line(StabilityFamily& family, const std::array<Axis, 2>& axes, std::size_t varied,
                       double other, const LocusOptions& options) {
@@ -100,13 +113,7 @@ LineResult trace_line(StabilityFamily& family, const std::array<Axis, 2>& axes, 
     values[varied] = value;
     double growth = std::numeric_limits<double>::quiet_NaN();
     try {
-      const EigenvalueMethod method = options.method == LocusMethod::dense
-                                          ? EigenvalueMethod::dense
-                                          : EigenvalueMethod::secular;
-      std::vector<std::complex<double>> found;
-      for (const Eigenvalue& one :
-           lowest_eigenvalues(family.pencil(values), method, {options.count, options.frequency}))
-        found.push_back(one.s);
+      const std::vector<std::complex<double>> found = eigenvalues_at(family, values, options);
       result.highest =
           std::min(result.highest, verdict_limit(found, {options.count, options.frequency},
                                                  family.trusted_frequency(values)));

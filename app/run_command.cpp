@@ -100,9 +100,9 @@ void print_summary(const Json& results, const std::string& output) {
 ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::string& file,
                     const RunOptions& options) {
   Progress progress("run");
-  transient.on_progress(
+  transient.keeper().on_progress(
       [&](double fraction, const std::string& detail) { progress.report(fraction, detail); });
-  transient.limit_wall_time(options.max_wall);
+  transient.keeper().limit_wall_time(options.max_wall);
   const MarchEnd end = transient.run_to_end();
   progress.finish();
   if (end == MarchEnd::stopped) transient.write_checkpoint();
@@ -117,10 +117,7 @@ ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::
 
   const Simulation& simulation = transient.simulation();
   if (end == MarchEnd::stopped) {
-    throw Interrupted(fmt::format(
-        "at t = {:.6g} of {:.6g} s; {} holds everything up to then. It can be resumed:\n"
-        "stridor run --resume '{}'",
-        simulation.time(), loaded.scene.time.end, file, file));
+    throw_interrupted(simulation.time(), loaded.scene.time.end, file, Resumable::yes);
   }
   if (end == MarchEnd::failed) {
     throw NumericalError(
@@ -133,16 +130,14 @@ ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::
 }
 
 ExitCode begin(const RunOptions& options) {
-  if (is_sphere_scene_file(options.scene)) {
-    return run_sphere(
-        {options.common, options.scene, options.output, options.verify, options.command_line});
-  }
-  if (is_linear_scene_file(options.scene)) {
-    return run_disc(
-        {options.common, options.scene, options.output, options.verify, options.command_line});
-  }
+  const RunOutput output{options.output, options.common.overwrite(), options.command_line};
+  const RunEnding ending{options.max_wall, options.common.json, options.verify};
+  if (is_sphere_scene_file(options.scene))
+    return run_sphere(load_sphere_scene(options.scene, options.common.sets), output, ending);
+  if (is_linear_scene_file(options.scene))
+    return run_disc(load_linear_scene(options.scene, options.common.sets), output, ending);
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
-  Transient transient(loaded, {options.output, options.common.overwrite(), options.command_line});
+  Transient transient(loaded, output);
   return run_to_end(transient, loaded, options.output, options);
 }
 
@@ -150,8 +145,10 @@ ExitCode resume(const RunOptions& options) {
   std::optional<DamageGuard> guard(options.resumed);
   const InterruptedRun interrupted = find_interrupted_run(options.resumed);
   guard.reset();
-  const LoadedScene loaded =
-      load_resolved_scene(interrupted.scene_text, options.resumed + ":/scene/resolved");
+  const std::string source = options.resumed + ":/scene/resolved";
+  if (is_disc_scene(read_scene_text(interrupted.scene_text, source)))
+    return resume_disc(interrupted, {options.max_wall, options.common.json, options.verify});
+  const LoadedScene loaded = load_resolved_scene(interrupted.scene_text, source);
   Transient transient(loaded, interrupted);
   return run_to_end(transient, loaded, options.resumed, options);
 }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -11,7 +10,6 @@
 #include "app/sphere_motion.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
-#include "core/version.hpp"
 #include "io/run_file.hpp"
 #include "solvers/substrate_stepper.hpp"
 
@@ -98,7 +96,7 @@ struct MarchResult {
 };
 
 MarchResult march_events(const SphereScene& scene, const SubstrateOscillator& oscillator,
-                         CycleMeter& meter, Progress& progress) {
+                         CycleMeter& meter, RunKeeper& keeper) {
   SubstrateMotion motion(oscillator, scene.time.tolerance);
   motion.start(initial_displacement(scene, oscillator), Eigen::Vector2d::Zero());
   MarchResult result;
@@ -118,8 +116,8 @@ MarchResult march_events(const SphereScene& scene, const SubstrateOscillator& os
       }
     }
     if (!result.failed) result.history.add(oscillator, motion);
-    if (k % 256 == 0)
-      progress.report(motion.time() / scene.time.end, fmt::format("t = {:.6g}", motion.time()));
+    if (k % 256 == 0 && keeper.is_due())
+      keeper.look_after(motion.time(), scene.time.end, nullptr, {});
   }
   result.steps = motion.statistics().steps;
   result.reached = motion.time();
@@ -127,7 +125,7 @@ MarchResult march_events(const SphereScene& scene, const SubstrateOscillator& os
 }
 
 MarchResult march_steps(const SphereScene& scene, const SubstrateOscillator& oscillator,
-                        SubstrateStepper& stepper, CycleMeter& meter, Progress& progress) {
+                        SubstrateStepper& stepper, CycleMeter& meter, RunKeeper& keeper) {
   const double h = *scene.time.step;
   stepper.start(initial_displacement(scene, oscillator), Eigen::Vector2d::Zero());
   const auto num_steps = static_cast<std::int64_t>(std::llround(scene.time.end / h));
@@ -166,7 +164,7 @@ MarchResult march_steps(const SphereScene& scene, const SubstrateOscillator& osc
     result.reached = time;
     if (n % 65536 == 0) {
       if (stop_requested()) break;
-      progress.report(time / scene.time.end, fmt::format("t = {:.6g}", time));
+      if (keeper.is_due()) keeper.look_after(time, scene.time.end, nullptr, {});
     }
   }
   result.steps = stepper.steps();
@@ -174,7 +172,7 @@ MarchResult march_steps(const SphereScene& scene, const SubstrateOscillator& osc
 }
 
 /// The run in SI units, as the run files of bodies.
-void write_run(const SphereRunOptions& options, const LoadedSphereScene& loaded,
+void write_run(const RunOutput& output, const LoadedSphereScene& loaded,
                const SphereNumbers& numbers, const SphereHistory& history, const Json& results) {
   const double length = numbers.length_unit;
   const double velocity = length / numbers.time_unit;
@@ -206,15 +204,11 @@ void write_run(const SphereRunOptions& options, const LoadedSphereScene& loaded,
   }
   std::vector<double> time = history.time;
   for (double& at : time) at *= numbers.time_unit;
-  RunFileWriter writer(options.output, options.common.overwrite(),
-                       {std::string(version), std::string(commit), options.command_line,
-                        loaded.hash(), utc_now(), loaded.tree.document, loaded.resolved()},
+  RunFileWriter writer(output.file, output.overwrite,
+                       run_header(output.command_line, loaded.tree.document, loaded.resolved()),
                        specs);
   writer.append(time, {columns.begin(), columns.end()});
-  for (const auto& [name, value] : results.items()) {
-    if (value.is_number()) writer.write_result(name, value.get<double>());
-    if (value.is_string()) writer.write_result(name, value.get<std::string>());
-  }
+  store_results(writer, results);
   writer.close();
 }
 
@@ -243,15 +237,10 @@ void print_results(const Json& results, const SphereNumbers& numbers, const std:
 
 }  // namespace
 
-ExitCode run_sphere(const SphereRunOptions& options) {
-  using Clock = std::chrono::steady_clock;
-  const auto seconds = [](Clock::time_point from) {
-    return std::chrono::duration<double>(Clock::now() - from).count();
-  };
-  const auto setup_start = Clock::now();
-  const Overwrite overwrite = options.common.overwrite();
-  check_output(options.output, overwrite);
-  const LoadedSphereScene loaded = load_sphere_scene(options.scene, options.common.sets);
+ExitCode run_sphere(const LoadedSphereScene& loaded, const RunOutput& output,
+                    const RunEnding& ending) {
+  check_output(output.file, output.overwrite);
+  RunKeeper keeper;
   const SphereScene& scene = loaded.scene;
   const SphereNumbers numbers = sphere_numbers(scene.model.sphere);
   const SubstrateOscillator oscillator = make_sphere(scene.model);
@@ -267,49 +256,41 @@ ExitCode run_sphere(const SphereRunOptions& options) {
   }
   CycleMeter meter(scene.time.end);
   Progress progress("run");
-  const double setup_s = seconds(setup_start);
-  const auto start = Clock::now();
+  keeper.on_progress(
+      [&](double fraction, const std::string& detail) { progress.report(fraction, detail); });
+  keeper.limit_wall_time(ending.max_wall);
+  RunTimes times;
+  times.setup = keeper.seconds();
   const MarchResult march = is_event_driven
-                                ? march_events(scene, oscillator, meter, progress)
-                                : march_steps(scene, oscillator, *stepper, meter, progress);
-  const double wall_s = seconds(start);
+                                ? march_events(scene, oscillator, meter, keeper)
+                                : march_steps(scene, oscillator, *stepper, meter, keeper);
+  times.march = keeper.seconds() - times.setup;
   progress.finish();
   const bool is_stopped = !march.failed && stop_requested();
 
-  Json results = {
-      {"status", march.failed ? "failed"
-                 : is_stopped ? "stopped"
-                              : "finished"},
-      {"steps", march.steps},
-      {"step", is_event_driven ? Json(nullptr) : number(*scene.time.step)},
-      {"step_limit", limit},
-      {"setup_s", setup_s},
-      {"wall_s", wall_s},
-      {"step_ns", 1e9 * wall_s / static_cast<double>(std::max<std::int64_t>(1, march.steps))}};
+  Json results = {{"status", march.failed ? "failed" : is_stopped ? "stopped" : "finished"}};
+  results.update(effort_json(
+      march.steps, is_event_driven ? Json(nullptr) : number(*scene.time.step), limit, times));
   meter.report(results);
   results["length_unit"] = numbers.length_unit;
   results["time_unit"] = numbers.time_unit;
-  const auto output_start = Clock::now();
-  write_run(options, loaded, numbers, march.history, results);
-  results["output_s"] = seconds(output_start);
-  results["file"] = options.output;
-  if (options.common.json) {
+  write_run(output, loaded, numbers, march.history, results);
+  results["output_s"] = keeper.seconds() - times.setup - times.march;
+  results["file"] = output.file;
+  if (ending.json) {
     fmt::print("{}\n", results.dump(2));
   } else {
-    print_results(results, numbers, options.output);
+    print_results(results, numbers, output.file);
   }
   std::fflush(stdout);
   if (march.failed) {
     throw NumericalError(fmt::format(
         "the motion grew without bound, or its steps became too small, after t = {:.6g} "
         "of {:g}; {} holds what came before",
-        march.reached, scene.time.end, options.output));
+        march.reached, scene.time.end, output.file));
   }
-  if (is_stopped) {
-    throw Interrupted(fmt::format("at t = {:.6g} of {:g}; {} holds everything up to then",
-                                  march.reached, scene.time.end, options.output));
-  }
-  if (options.verify) check_expectations(scene.expect, results);
+  if (is_stopped) throw_interrupted(march.reached, scene.time.end, output.file, Resumable::no);
+  if (ending.verify) check_expectations(scene.expect, results);
   return ExitCode::done;
 }
 

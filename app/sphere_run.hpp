@@ -1,21 +1,14 @@
 // The verb `run` on a sphere on a viscoelastic substrate.
 #pragma once
 
-#include <string>
-
-#include "app/command.hpp"
+#include "app/run_keeping.hpp"
+#include "io/sphere_scene.hpp"
 
 namespace stridor {
 
-struct SphereRunOptions {
-  CommonOptions common;
-  std::string scene;
-  std::string output;
-  bool verify = false;
-  std::string command_line;
-};
-
 /// Marches the scene with the integrator that it names, and writes samples and results.
-ExitCode run_sphere(const SphereRunOptions& options);
+/// @throws NumericalError, FileError; Interrupted, after which it cannot be resumed
+ExitCode run_sphere(const LoadedSphereScene& loaded, const RunOutput& output,
+                    const RunEnding& ending);
 
 }  // namespace stridor

@@ -320,6 +320,17 @@ PencilFamily StabilityFamily::along(std::size_t key, std::vector<double> values,
   return along;
 }
 
+SpectrumFamily StabilityFamily::spectra(std::size_t key, std::vector<double> values,
+                                        const LocusOptions& options) {
+  return [this, key, values, options](double value) mutable {
+    if (stop_requested()) throw Interrupted("nothing has been written");
+    values[key] = value;
+    SampledSpectrum found = spectrum(values, options);
+    if (report_) report_(value);
+    return found;
+  };
+}
+
 /// Positions at which the contact passes a master node, if the position is what varies.
 std::vector<double> BodyStabilityFamily::kinks(std::size_t key, const std::vector<double>& values,
                                                double from, double to) {
@@ -382,14 +393,20 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
                   const LocusOptions& options) {
   // An end that is not allowed is named as it was given, before anything is computed in between.
   std::vector<double> ends = values;
+  double trusted = std::numeric_limits<double>::infinity();
   for (const double end : {range.front(), range.back()}) {
     ends[key] = end;
-    family.pencil(ends);
+    if (!family.is_sparse()) family.pencil(ends);
+    trusted = std::min(trusted, family.trusted_frequency(ends));
   }
+  LocusOptions within = options;
+  within.trusted = trusted;
+  if (family.is_sparse())
+    return sample_locus(family.spectra(key, values, within), range, within, sparing_effort);
   const PencilFamily pencils = family.along(key, values, range.front(), range.back());
   if (varied.is_integer) return locus_at(pencils, range, options);
-  return family.is_sampled() ? sample_locus(pencils, range, options)
-                             : trace_locus(pencils, range, options);
+  if (!family.is_sampled()) return trace_locus(pencils, range, options);
+  return sample_locus(pencils, range, within);
 }
 
 std::vector<StabilityChange> stability_changes(const Locus& locus) {

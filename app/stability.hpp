@@ -9,6 +9,7 @@
 
 #include "analysis/growth_field.hpp"
 #include "analysis/locus.hpp"
+#include "analysis/sampled_locus.hpp"
 #include "app/command.hpp"
 #include "io/scene_family.hpp"
 #include "solvers/linearise.hpp"
@@ -101,6 +102,15 @@ class StabilityFamily {
   virtual double trusted_frequency(std::span<const double> values) = 0;
   /// Whether eigenvalues are sampled rather than followed (analysis/sampled_locus.hpp).
   virtual bool is_sampled() const { return false; }
+
+  /// Whether the system is too large for a pencil: spectra() takes its place, and there is no
+  /// pencil().
+  virtual bool is_sparse() const { return false; }
+  /// The eigenvalues wanted at some values of the keys.
+  /// @throws NumericalError naming the values if one may be missing
+  virtual SampledSpectrum spectrum(std::span<const double>, const LocusOptions&) { return {}; }
+  /// spectrum() along one of the keys; arguments as of along().
+  SpectrumFamily spectra(std::size_t key, std::vector<double> values, const LocusOptions& options);
 
   /// The pencils along one of the keys.
   /// @param key      its index

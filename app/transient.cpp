@@ -8,30 +8,10 @@
 
 #include "app/transient_results.hpp"
 #include "core/errors.hpp"
-#include "core/stop_token.hpp"
-#include "core/version.hpp"
 #include "io/initial_state.hpp"
 
 namespace stridor {
 namespace {
-
-constexpr const char* checkpoint_group = "/checkpoint";
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-RunFileHeader make_header(const LoadedScene& loaded, const std::string& command_line) {
-  RunFileHeader header;
-  header.version = version;
-  header.commit = commit;
-  header.command = command_line;
-  header.scene_hash = loaded.hash();
-  header.date = utc_now();
-  header.scene_text = loaded.text;
-  header.scene_resolved = loaded.resolved();
-  return header;
-}
 
 /// Frequencies and damping ratios of a reduced body; the damping is the one after its schedule.
 void write_modes(RunFileWriter& writer, const SystemBody& body) {
@@ -45,15 +25,6 @@ void write_modes(RunFileWriter& writer, const SystemBody& body) {
   }
   writer.write_static("/modal/" + body.name + "/frequency", frequency, "Hz");
   writer.write_static("/modal/" + body.name + "/damping_ratio", damping_ratio, "1");
-}
-
-/// Writes the numbers and texts of a JSON object under dotted names.
-void store_results(RunFileWriter& writer, const std::string& prefix, const Json& object) {
-  for (const auto& [name, value] : object.items()) {
-    if (value.is_object()) store_results(writer, prefix + name + ".", value);
-    if (value.is_number()) writer.write_result(prefix + name, value.get<double>());
-    if (value.is_string()) writer.write_result(prefix + name, value.get<std::string>());
-  }
 }
 
 /// One array per property of the bursts, so that any reader of HDF5 can take them.
@@ -73,35 +44,8 @@ void store_bursts(RunFileWriter& writer, const std::vector<Burst>& bursts) {
 
 }  // namespace
 
-InterruptedRun find_interrupted_run(const std::string& file) {
-  const RunFileReader reader(file);
-  const RunFileHeader& header = reader.header();
-  if (header.version != version || header.commit != commit) {
-    throw FileError(file, "",
-                    fmt::format("was written by stridor {} ({}), this is {} ({}); only the program "
-                                "that began a run goes on with it bitwise",
-                                header.version, header.commit, version, commit));
-  }
-  const auto results = reader.results();
-  const auto status = results.find("status");
-  const std::string* text =
-      status == results.end() ? nullptr : std::get_if<std::string>(&status->second);
-  if (text != nullptr && *text == "done")
-    throw FileError(file, "", "holds a whole run, there is nothing to go on with");
-  if (text != nullptr && *text == "failed") {
-    throw FileError(file, "",
-                    "holds a run that failed, and would again; change the scene and run it anew");
-  }
-  std::optional<Checkpoint> checkpoint = reader.checkpoint();
-  if (!checkpoint) {
-    throw FileError(file, checkpoint_group,
-                    "there is no whole checkpoint to go on from; run the scene anew");
-  }
-  return {file, header.scene_resolved, *std::move(checkpoint)};
-}
-
-Transient::Transient(const LoadedScene& loaded, const TransientOutput& output)
-    : loaded_(&loaded), file_(output.file) {
+Transient::Transient(const LoadedScene& loaded, const RunOutput& output)
+    : loaded_(&loaded), file_(output.file), keeper_(loaded.scene.checkpoint.every) {
   const Scene& scene = loaded.scene;
   check_output(file_, output.overwrite);
   model_ = build_model(loaded);
@@ -112,16 +56,17 @@ Transient::Transient(const LoadedScene& loaded, const TransientOutput& output)
     throw loaded.located(error);
   }
   const auto file_start = Clock::now();
-  writer_.emplace(file_, output.overwrite, make_header(loaded, output.command_line), series());
+  writer_.emplace(file_, output.overwrite,
+                  run_header(output.command_line, loaded.text, loaded.resolved()), series());
   for (const SystemBody& body : model_.system.bodies) write_modes(*writer_, body);
   make_march();
   write_checkpoint();
   file_seconds_ = seconds_since(file_start);
-  setup_seconds_ = seconds_since(setup_start_) - file_seconds_;
+  setup_seconds_ = keeper_.seconds() - file_seconds_;
 }
 
 Transient::Transient(const LoadedScene& loaded, const InterruptedRun& interrupted)
-    : loaded_(&loaded), file_(interrupted.file) {
+    : loaded_(&loaded), file_(interrupted.file), keeper_(loaded.scene.checkpoint.every) {
   model_ = build_model(loaded);
   make_simulation();
   try {
@@ -131,10 +76,9 @@ Transient::Transient(const LoadedScene& loaded, const InterruptedRun& interrupte
     make_march();
     load(interrupted.checkpoint.state);
   } catch (const std::invalid_argument& error) {
-    throw FileError(file_, checkpoint_group,
-                    fmt::format("does not fit the scene in the file: {}", error.what()));
+    throw_unfit_checkpoint(file_, error.what());
   }
-  setup_seconds_ = seconds_since(setup_start_) - file_seconds_;
+  setup_seconds_ = keeper_.seconds() - file_seconds_;
 }
 
 void Transient::make_simulation() {
@@ -159,22 +103,11 @@ void Transient::make_march() {
   recorder_->limit_samples(
       static_cast<std::int64_t>(std::floor(scene.time.end / interval_ + 1e-6)) + 1);
   MarchPlan plan = measured_plan(scene, last_step_);
-  plan.on_progress = [this](const Simulation& running) { look_after(running); };
+  plan.on_progress = [this](const Simulation& running) {
+    keeper_.look_after(running.time(), loaded_->scene.time.end, &*writer_,
+                       [this] { return save(); });
+  };
   march_.emplace(*simulation_, &*recorder_, std::move(plan));
-}
-
-/// Between steps, about four times a second.
-void Transient::look_after(const Simulation& running) {
-  const double end = loaded_->scene.time.end;
-  if (report_)
-    report_(running.time() / end, fmt::format("t = {:.4g} of {:.4g} s", running.time(), end));
-  if (seconds_since(last_checkpoint_) > loaded_->scene.checkpoint.every) {
-    write_checkpoint();
-  } else if (seconds_since(last_flush_) > 2.0) {
-    writer_->flush();
-    last_flush_ = Clock::now();
-  }
-  if (seconds_since(setup_start_) > wall_limit_) request_stop();
 }
 
 State Transient::save() const {
@@ -198,8 +131,7 @@ void Transient::load(const State& state) {
 }
 
 void Transient::write_checkpoint() {
-  writer_->write_checkpoint(save());
-  last_checkpoint_ = last_flush_ = Clock::now();
+  keeper_.write_checkpoint(*writer_, save());
 }
 
 MarchEnd Transient::run_to_step(std::int64_t step) {
@@ -257,15 +189,13 @@ Json Transient::finish() {
   const std::int64_t steps = simulation_->step_index();
   Json results = transient_results(*simulation_, model_.system, scene.time, end_,
                                    march_->statistics(), acceleration);
-  results["wall_s"] = march_seconds_;
-  results["setup_s"] = setup_seconds_;
-  results["output_s"] = file_seconds_ + writer_->write_seconds();
-  results["step_ns"] =
-      steps > 0 ? number(march_seconds_ * 1e9 / static_cast<double>(steps)) : Json(nullptr);
+  results.update(
+      effort_json(steps, scene.time.step, step_limit_json(model_.system, scene.time),
+                  {setup_seconds_, march_seconds_, file_seconds_ + writer_->write_seconds()}));
   results["file"] = file_;
   keep_final_motion();
   write_final_motion();
-  store_results(*writer_, "", results);
+  store_results(*writer_, results);
   if (acceleration && acceleration->bursts && !acceleration->bursts->empty()) {
     store_bursts(*writer_, *acceleration->bursts);
   }

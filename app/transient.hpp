@@ -2,13 +2,12 @@
 #pragma once
 
 #include <chrono>
-#include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "app/command.hpp"
+#include "app/run_keeping.hpp"
 #include "io/recorder.hpp"
 #include "io/run_summary.hpp"
 #include "io/scene.hpp"
@@ -16,31 +15,12 @@
 
 namespace stridor {
 
-/// Where the results of a transient go, and by which command.
-struct TransientOutput {
-  std::string file;  ///< run file (HDF5)
-  Overwrite overwrite = Overwrite::no;
-  std::string command_line;
-};
-
-/// A run that can go on.
-struct InterruptedRun {
-  std::string file;
-  std::string scene_text;  ///< resolved
-  Checkpoint checkpoint;
-};
-
-/// Finds out whether and from where a run can go on.
-/// @throws FileError if the file is no run file, was written by another program, holds a whole run
-///         or no checkpoint
-InterruptedRun find_interrupted_run(const std::string& file);
-
 class Transient {
  public:
   /// Builds the model, the simulation and the run file.
   /// @param loaded must live longer
   /// @throws ConfigError with places in the scene, FileError, NumericalError
-  Transient(const LoadedScene& loaded, const TransientOutput& output);
+  Transient(const LoadedScene& loaded, const RunOutput& output);
   /// Goes on with a run from the latest checkpoint of its file, bitwise as if it had not stopped.
   /// @param loaded the scene of `interrupted`
   /// @throws FileError if the file has no checkpoint, or not one of this program and scene, or
@@ -54,17 +34,11 @@ class Transient {
   MarchEnd run_until(double time);
   MarchEnd run_to_end();
 
-  /// Called about four times a second with the fraction done and a short text.
-  void on_progress(std::function<void(double, const std::string&)> report) {
-    report_ = std::move(report);
-  }
-
   /// Stores the state of the run in its file.
   /// @throws FileError if it cannot be written
   void write_checkpoint();
-  /// A request to stop is made by itself when this much wall time has passed since the
-  /// construction, s.
-  void limit_wall_time(double seconds) { wall_limit_ = seconds; }
+  /// Progress and the limit of wall time.
+  RunKeeper& keeper() { return keeper_; }
 
   /// Flushes, reads the statistics off the file, stores them in it and closes it.
   /// @return the JSON object of `run`
@@ -83,14 +57,13 @@ class Transient {
   std::vector<SeriesSpec> series() const;
   State save() const;
   void load(const State& state);
-  void look_after(const Simulation& running);
   MarchEnd run_to_step(std::int64_t step);
   void keep_final_motion();
   void write_final_motion();
 
   const LoadedScene* loaded_;
   std::string file_;
-  Clock::time_point setup_start_ = Clock::now();
+  RunKeeper keeper_;
   Model model_;
   std::vector<Channel> channels_;
   double interval_ = 0.0;  ///< of the samples, s
@@ -102,13 +75,9 @@ class Transient {
   std::int64_t last_step_ = 0;
   MarchEnd end_ = MarchEnd::finished;
   State final_motion_;  ///< by path under /final; empty before the end
-  double wall_limit_ = std::numeric_limits<double>::infinity();
   double setup_seconds_ = 0.0;
   double file_seconds_ = 0.0;
   double march_seconds_ = 0.0;
-  std::function<void(double, const std::string&)> report_;
-  Clock::time_point last_flush_ = Clock::now();
-  Clock::time_point last_checkpoint_ = Clock::now();
 };
 
 }  // namespace stridor

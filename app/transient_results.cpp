@@ -15,18 +15,6 @@
 namespace stridor {
 namespace {
 
-Json bursts_json(const std::vector<Burst>& bursts) {
-  Json list = Json::array();
-  for (const Burst& burst : bursts) {
-    list.push_back({{"start", burst.start},
-                    {"end", burst.end},
-                    {"frequency", burst.frequency},
-                    {"peak", burst.peak},
-                    {"gain", burst.gain}});
-  }
-  return list;
-}
-
 Json force_json(const std::optional<ContactStatistics>& statistics) {
   if (!statistics) return {{"min", nullptr}, {"max", nullptr}};
   return {{"min", number(statistics->force_min)}, {"max", number(statistics->force_max)}};
@@ -147,6 +135,22 @@ Json violations_json(const Simulation& simulation) {
 
 }  // namespace
 
+Json bursts_json(const std::vector<Burst>& bursts) {
+  Json list = Json::array();
+  for (const Burst& burst : bursts) {
+    list.push_back({{"start", burst.start},
+                    {"end", burst.end},
+                    {"frequency", burst.frequency},
+                    {"peak", burst.peak},
+                    {"gain", burst.gain}});
+  }
+  return list;
+}
+
+Json step_limit_json(const System& system, const TimeParameters& time) {
+  return time.integrator == Integrator::exact ? Json(nullptr) : number(step_limit(system).step);
+}
+
 MarchPlan measured_plan(const Scene& scene, std::int64_t last_step) {
   const double step = scene.time.step;
   const auto to_step = [&](double time) {
@@ -163,14 +167,9 @@ MarchPlan measured_plan(const Scene& scene, std::int64_t last_step) {
 Json transient_results(const Simulation& simulation, const System& system,
                        const TimeParameters& time, MarchEnd end, const MeasuredContacts& measured,
                        const std::optional<AccelerationSummary>& acceleration) {
-  Json results = {
-      {"status", end == MarchEnd::finished  ? "done"
-                 : end == MarchEnd::stopped ? "stopped"
-                                            : "failed"},
-      {"steps", simulation.step_index()},
-      {"step", time.step},
-      {"step_limit",
-       time.integrator == Integrator::exact ? Json(nullptr) : number(step_limit(system).step)}};
+  Json results = {{"status", end == MarchEnd::finished  ? "done"
+                             : end == MarchEnd::stopped ? "stopped"
+                                                        : "failed"}};
   const double highest = retained_frequency(system, time);
   results["modes"] = modes_json(system, highest);
   results["left_out"] = left_out_json(system, highest, simulation.energy() != nullptr);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "app/command.hpp"
 #include "io/run_summary.hpp"
@@ -13,7 +14,12 @@ namespace stridor {
 /// A plan up to a step whose window of statistics is that of `measure`.
 MarchPlan measured_plan(const Scene& scene, std::int64_t last_step);
 
-/// The numbers of a run, without those of its cost and its file.
+/// A list with an object for every burst.
+Json bursts_json(const std::vector<Burst>& bursts);
+/// The largest stable step, s; null where there is none.
+Json step_limit_json(const System& system, const TimeParameters& time);
+
+/// The numbers of a run, without those of its effort and its file.
 /// @param measured     of the window of `measure`
 /// @param acceleration nothing where none was recorded
 Json transient_results(const Simulation& simulation, const System& system,

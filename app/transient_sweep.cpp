@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "app/progress.hpp"
+#include "app/run_keeping.hpp"
 #include "app/sweep.hpp"
 #include "app/tasks.hpp"
 #include "app/transient_results.hpp"
@@ -29,10 +30,6 @@ namespace stridor {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Keeps one channel.
 class ChannelMemory : public RowSink {
@@ -133,8 +130,9 @@ struct Transit {
     }
     point.results = transient_results(*simulation, model.system, loaded.scene.time, end,
                                       march->statistics(), acceleration);
-    point.results["wall_s"] = wall_seconds;
-    point.results["setup_s"] = setup_seconds;
+    point.results.update(effort_json(simulation->step_index(), loaded.scene.time.step,
+                                     step_limit_json(model.system, loaded.scene.time),
+                                     {setup_seconds, wall_seconds, 0.0}));
     return point;
   }
 };

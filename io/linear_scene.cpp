@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/errors.hpp"
+#include "io/disc_recorder.hpp"
 #include "io/matrix_market.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_reader.hpp"
@@ -20,8 +21,14 @@ PlainKey format_key() {
   return {.doc = "Version of the scene language: 1.", .range = Range::between(1, 1)};
 }
 
-void check_interval(const DiscScene& scene, std::vector<Problem>& problems) {
-  if (!scene.record || !scene.time) return;
+void check_recording(const DiscScene& scene, std::vector<Problem>& problems) {
+  if (!scene.record) return;
+  const std::size_t per_pad = contact_offsets(scene.model).size();
+  if (!scene.record->channels.empty() && per_pad <= most_contact_points) {
+    const std::vector<Problem> channels = channel_problems(scene.record->channels, per_pad);
+    problems.insert(problems.end(), channels.begin(), channels.end());
+  }
+  if (!scene.time) return;
   const double ratio = scene.record->interval / scene.time->step;
   if (ratio < 1.0 - 1e-9 || std::abs(ratio - std::round(ratio)) > 1e-6 || ratio > 1e5) {
     problems.push_back(
@@ -147,9 +154,11 @@ const Schema& DiscScene::schema() {
           .section("initial", &DiscScene::initial,
                    {.doc = "Where `run` starts, about steady sliding.", .optional = true})
           .section("record", &DiscScene::record, {.doc = "What `run` writes.", .optional = true})
+          .section("checkpoint", &DiscScene::checkpoint,
+                   {.doc = "When the state of a run is stored.", .optional = true})
           .section_list("expect", &DiscScene::expect,
                         {.doc = "Results that `run --verify` checks.", .optional = true})
-          .check(check_interval);
+          .check(check_recording);
   return keys;
 }
 
@@ -183,7 +192,14 @@ const Schema& DiscRecordParameters::schema() {
                 {.doc = "Time between samples, a multiple of time.step; motions and forces are "
                         "low-passed before they are thinned to it.",
                  .unit = "s",
-                 .range = Range::positive()});
+                 .range = Range::positive()})
+          .text_list("channels", &DiscRecordParameters::channels,
+                     {.doc = "What is recorded: pad.<contact>.<r|phi|z>.<displacement|velocity|"
+                             "acceleration>, disc.<contact>.z.<...>, <contact>.<force|"
+                             "friction_force|gap|slip_velocity|state>, with the contacts upper and "
+                             "lower, or upper_0, upper_1, ... where a pad has several points. "
+                             "Default: all.",
+                      .optional = true});
   return keys;
 }
 
@@ -272,6 +288,14 @@ LinearModel LoadedLinearScene::model(const std::vector<NumericKey>& keys,
 
 bool is_linear_scene_file(const std::string& path) {
   return is_linear_scene(read_scene_file(path));
+}
+
+LoadedLinearScene load_resolved_linear_scene(const std::string& text, const std::string& source) {
+  LoadedLinearScene loaded;
+  loaded.path = source;
+  loaded.tree = read_scene_text(text, source);
+  loaded.scene = read_linear_scene(loaded.tree);
+  return loaded;
 }
 
 LoadedLinearScene load_linear_scene(const std::string& path, const std::vector<std::string>& sets) {

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "io/scene.hpp"
 #include "io/scene_family.hpp"
 #include "io/scene_tree.hpp"
 #include "models/disc_model.hpp"
@@ -30,17 +31,19 @@ struct DiscInitialParameters {
 };
 
 struct DiscRecordParameters {
-  double interval = 0.0;  ///< between samples, s, a multiple of time.step
+  double interval = 0.0;              ///< between samples, s, a multiple of time.step
+  std::vector<std::string> channels;  ///< of disc_channels(); empty: all
   static const Schema& schema();
 };
 
-/// A scene of this kind is known by its section `disc`. The last four sections are for `run`.
+/// A scene of this kind is known by its section `disc`. From `time` on its sections are for `run`.
 struct DiscScene {
   int format = 0;
   DiscModelParameters model;
   std::optional<DiscTimeParameters> time;
   std::optional<DiscInitialParameters> initial;
   std::optional<DiscRecordParameters> record;
+  CheckpointParameters checkpoint;
   std::vector<Expectation> expect;
   static const Schema& schema();
 };
@@ -97,6 +100,11 @@ struct LoadedLinearScene {
 
 /// Whether a file holds a scene of either kind. @throws ConfigError, FileError if it cannot be read
 bool is_linear_scene_file(const std::string& path);
+
+/// Reads such a scene from its resolved text, as run files hold it.
+/// @param source what messages call it
+/// @throws ConfigError as load_linear_scene
+LoadedLinearScene load_resolved_linear_scene(const std::string& text, const std::string& source);
 
 /// Reads such a scene and applies `--set key.path=value` settings.
 /// @throws ConfigError with all problems of the file; FileError if it cannot be read

@@ -44,6 +44,23 @@ Crossing limit_of(const DiscModelParameters& brake) {
   return locus.crossings.front();
 }
 
+TEST(SampledLocus, SparingEffortFindsTheSameEndWithFewSpectra) {
+  // One eigenvalue whose real part is not linear: it crosses zero at 0.3.
+  int num_spectra = 0;
+  const SpectrumFamily family = [&](double value) {
+    ++num_spectra;
+    return SampledSpectrum{{{-1.0, 5.0}, {std::exp(value) - std::exp(0.3), 20.0}}, {0.0, 0.0}};
+  };
+  const Locus locus = sample_locus(family, {0.0, 0.5, 1.0}, {}, sparing_effort);
+  ASSERT_EQ(locus.crossings.size(), 1U);
+  EXPECT_NEAR(locus.crossings[0].value, 0.3, 1e-9);
+  EXPECT_NEAR(locus.crossings[0].frequency, 20.0 / two_pi, 1e-12);
+  ASSERT_EQ(locus.unstable.size(), 1U);
+  EXPECT_EQ(locus.unstable[0].to, 1.0);
+  EXPECT_EQ(locus.num_places, 3);
+  EXPECT_LT(num_spectra, 30);
+}
+
 TEST(SampledLocus, CirculatoryBrakeFluttersFromItsCriticalFriction) {
   const Crossing found = limit_of(reference_brake({"friction"}));
   EXPECT_NEAR(found.value, 0.3596654112, 1e-10);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -172,6 +173,98 @@ TEST(DiscProgram, EveryVerbStatesItsWindow) {
   for (const Json& s : eig["eigenvalues"]) EXPECT_LT(s[1].get<double>(), 2.0 * 3.14159266 * 2000.0);
 }
 
+TEST(DiscProgram, ElasticPadsInEveryVerbOfSmallMotion) {
+  const std::string elastic = scene_path("examples/elastic_pads.yaml");
+  const Json eig = json_of({"eig", elastic, "--explain"});
+  EXPECT_FALSE(eig["stable"]);
+  EXPECT_EQ(eig["equilibrium"]["contacts"].size(), 10U);
+  // Friction presses the leading half, and the leaning springs add to the pistons.
+  const auto force = [&](std::size_t i) {
+    return eig["equilibrium"]["contacts"][i]["force"].get<double>();
+  };
+  EXPECT_GT(force(0) + force(1), 1.5 * (force(3) + force(4)));
+  EXPECT_GT(force(0) + force(1) + force(2) + force(3) + force(4), 3000.0);
+  EXPECT_NEAR(force(6), force(1), 1e-9 * force(1));
+  const double highest = eig["window"][1].get<double>();
+  // Motions above the window grow faster and are not what is explained.
+  EXPECT_LT(eig["explanation"]["frequency"].get<double>(), highest);
+  EXPECT_GT(eig["explanation"]["growth"].get<double>(), 0.0);
+  const std::string few = "pads.elastic.reduction.fixed_interface_modes=4";
+  const Json roots = json_of({"threshold", elastic, "--parameter", friction, "--from", "0.1",
+                              "--to", "0.5", "--points", "2", "--set", few})["roots"];
+  ASSERT_EQ(roots.size(), 1U);
+  EXPECT_LT(roots[0]["frequency"].get<double>(), highest);
+  const double limit = roots[0]["value"].get<double>();
+  for (const auto& [share, is_stable] : {std::pair{1.0 - 1e-4, true}, {1.0 + 1e-4, false}}) {
+    EXPECT_EQ(json_of({"eig", elastic, "--set", friction + "=" + std::to_string(share * limit),
+                       "--set", few})["stable"],
+              is_stable);
+  }
+  const Json map = json_of({"map", elastic, "--x", friction, "0.1", "0.5", "2", "--y", "disc.speed",
+                            "10", "20", "2", "--set", few});
+  EXPECT_EQ(map["growth"].size(), 2U);
+  const Json locus =
+      json_of({"locus", elastic, "--parameter", "pads.elastic.material.youngs_modulus", "--from",
+               "10e9", "--to", "20e9", "--points", "2", "--set", few});
+  EXPECT_EQ(locus["eigenvalues"].size(), 2U);
+}
+
+TEST(DiscProgram, SaysWhatElasticPadsCannotHave) {
+  const std::string elastic = scene_path("examples/elastic_pads.yaml");
+  const auto refused = [&](const std::string& set) {
+    const ProgramResult result = Program({"check", elastic, "--set", set}).run();
+    EXPECT_EQ(result.exit_code, 2) << set;
+    return result.out + result.err;
+  };
+  EXPECT_THAT(refused("pads.mass=0.2"), HasSubstr("an elastic pad has the mass of its material"));
+  EXPECT_THAT(refused("contact.offsets=[0, 0.031]"),
+              HasSubstr("must lie on the pad, within 0.03 m of its centre, got 0.031 m"));
+  EXPECT_THAT(refused("pads.elastic.reduction.fixed_interface_modes=1000"),
+              HasSubstr("must not exceed 268"));
+  EXPECT_THAT(refused("pads.elastic.material.poissons_ratio=0.7"), HasSubstr("poissons_ratio"));
+  EXPECT_THAT(refused("record.channels=[upper_9.force]"), HasSubstr("there is none of this name"));
+  EXPECT_THAT(refused("record.channels=[upper_1.gap, upper_1.gap]"), HasSubstr("is listed twice"));
+  const TemporaryFolder folder;
+  EXPECT_THAT(Program({"run", elastic, "-o", (folder / "x.h5").string(), "--set", "time.step=4e-6",
+                       "--set", "record.interval=2e-5"})
+                  .run()
+                  .err,
+              HasSubstr("time.step: motion of face contacts: a step of 4e-06 s is too long"));
+  EXPECT_THAT(refused("contact.preload=3000"), HasSubstr("prescribed by contact.preload"));
+  EXPECT_THAT(refused("pads.piston.displacement=40um"),
+              HasSubstr("expected either `force` or `displacement`"));
+  const ProgramResult none = Program({"check", brake, "--set", "pads.mass=-1"}).run();
+  EXPECT_EQ(none.exit_code, 2);
+}
+
+TEST(DiscProgram, PistonsMakeTheForcesOfTheSlidingState) {
+  const TemporaryFolder folder;
+  const std::string pressed = (folder / "pressed.yaml").string();
+  std::ifstream whole(brake);
+  std::ofstream changed(pressed);
+  for (std::string line; std::getline(whole, line);) {
+    if (line.find("preload:") != std::string::npos) continue;
+    changed << line << '\n';
+    if (line.starts_with("pads:")) changed << "  piston: {displacement: 40 um}\n";
+  }
+  changed.close();
+  // As SlidingState.SpringsThatComeCloserPress; what bends adds nothing between two pads alike.
+  const Json eig = json_of({"eig", pressed});
+  const double force = (1e8 - 2e7 * 2e7 / 4e7) * 4e-5 / (1.0 - 0.3 * 2e7 / 4e7);
+  for (const Json& contact : eig["equilibrium"]["contacts"]) {
+    EXPECT_NEAR(contact["force"].get<double>(), force, 1e-9 * force);
+    EXPECT_EQ(contact["closed"], true);
+  }
+  const ProgramResult jammed =
+      Program({"eig", pressed, "--set", "contact.friction.coefficient=2.01"}).run();
+  EXPECT_EQ(jammed.exit_code, 3);
+  EXPECT_THAT(jammed.err, HasSubstr("no state in which it slides steadily"));
+  const Json run = json_of({"run", pressed, "-o", (folder / "run.h5").string(), "--set",
+                            "contact.formulation=penalty", "--set", "time.end=0.002"});
+  EXPECT_GT(run["contacts"]["upper"]["contact_force"]["min"].get<double>(), 0.9 * force);
+  EXPECT_LT(run["contacts"]["upper"]["contact_force"]["max"].get<double>(), 1.1 * force);
+}
+
 TEST(DiscProgram, RunsIntoABoundedCycle) {
   const TemporaryFolder folder;
   const std::string squeal = scene_path("examples/disc_squeal.yaml");
@@ -263,14 +356,64 @@ TEST(MatrixProgram, LargeMatricesAreCountedInTheirWindow) {
   EXPECT_NEAR(lowest["explanation"]["quotients"]["stiffness"].get<double>(), omega(2) * omega(2),
               1e-9 * omega(2) * omega(2));
   EXPECT_NEAR(lowest["explanation"]["frictionless_modes"][0]["share"].get<double>(), 1.0, 1e-9);
-  const ProgramResult locus = Program({"locus", scene, "--parameter", "substructures.chain.load",
-                                       "--from", "0", "--to", "1"})
-                                  .run();
-  EXPECT_EQ(locus.exit_code, 2);
-  EXPECT_THAT(locus.err, HasSubstr("1200 unknowns are for eig"));
+  const Json locus = json_of({"locus", scene, "--parameter", "substructures.chain.load", "--from",
+                              "0", "--to", "1", "--points", "2", "--count", "4"});
+  EXPECT_EQ(locus["eigenvalues"][1], lowest["eigenvalues"]);
+  EXPECT_TRUE(locus["unstable"].empty());
   const ProgramResult too_many = Program({"eig", scene, "--below", "1 kHz"}).run();
   EXPECT_EQ(too_many.exit_code, 3);
   EXPECT_THAT(too_many.err, HasSubstr("ask for fewer eigenvalues or a lower frequency"));
+}
+
+TEST(MatrixProgram, LargeMatricesHaveLociAndThresholds) {
+  // 505 oscillators of two coordinates with stiffness i diag(1, 1.4) and damping 0.1, each under
+  // the circulatory load: the first one flutters from 0.2280350850 on, the second one from beyond
+  // 0.4.
+  const TemporaryFolder folder;
+  constexpr int n = 1010;
+  const auto write = [&](const std::string& name, int per_row, const auto& entries) {
+    std::ofstream file((folder / (name + ".mtx")).string());
+    file << "%%MatrixMarket matrix coordinate real general\n"
+         << n << ' ' << n << ' ' << per_row * n << '\n';
+    for (int i = 0; i < n; ++i) entries(file, i);
+  };
+  const auto diagonal = [&](const std::string& name, const auto& value) {
+    write(name, 1, [&](std::ofstream& file, int i) {
+      file << i + 1 << ' ' << i + 1 << ' ' << value(i) << '\n';
+    });
+  };
+  diagonal("M", [](int) { return 1.0; });
+  diagonal("D", [](int) { return 0.1; });
+  diagonal("K", [](int i) { return (i / 2 + 1) * (i % 2 == 0 ? 1.0 : 1.4); });
+  write("N", 1, [](std::ofstream& file, int i) {
+    file << i + 1 << ' ' << (i % 2 == 0 ? i + 2 : i) << (i % 2 == 0 ? " 1\n" : " -1\n");
+  });
+  const std::string scene = (folder / "pairs.yaml").string();
+  std::ofstream(scene)
+      << "format: 1\nsubstructures:\n  pairs: {type: matrices, mass: M.mtx, damping: "
+         "D.mtx, stiffness: K.mtx, load: 0, load_stiffness: N.mtx}\n";
+  const std::vector<std::string> range{"--parameter", "substructures.pairs.load",
+                                       "--from",      "0",
+                                       "--to",        "0.35",
+                                       "--points",    "3",
+                                       "--below",     "0.3"};
+  std::vector<std::string> arguments{"threshold", scene};
+  arguments.insert(arguments.end(), range.begin(), range.end());
+  const Json threshold = json_of(arguments);
+  ASSERT_EQ(threshold["roots"].size(), 1U);
+  EXPECT_NEAR(threshold["roots"][0]["value"].get<double>(), 0.2280350850, 1e-8);
+  EXPECT_EQ(threshold["window"][1], 0.3);
+  arguments[0] = "locus";
+  const Json locus = json_of(arguments);
+  ASSERT_EQ(locus["unstable"].size(), 1U);
+  EXPECT_NEAR(locus["unstable"][0]["from"].get<double>(), 0.2280350850, 1e-8);
+  EXPECT_EQ(locus["unstable"][0]["to"], 0.35);
+  // At 0.35: s = −0.05 ± sqrt(...) of s² + 0.1 s + 1.2 ± i sqrt(0.35² − 0.2²) = 0.
+  const std::complex<double> root =
+      -0.05 + std::sqrt(std::complex<double>(0.0025 - 1.2, -std::sqrt(0.35 * 0.35 - 0.04)));
+  double largest = -1e300;
+  for (const Json& s : locus["eigenvalues"][2]) largest = std::max(largest, s[0].get<double>());
+  EXPECT_NEAR(largest, root.real(), 1e-9);
 }
 
 TEST(MatrixProgram, ExamplesHaveTheirClosedForms) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/disc_transient.hpp"
 #include "app/transient.hpp"
 #include "core/stop_token.hpp"
 #include "tests/app/resume_fixture.hpp"
@@ -100,7 +101,68 @@ INSTANTIATE_TEST_SUITE_P(
                      0.0002}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
+TEST(ResumeDisc, GoesOnBitwiseAsIfTheRunHadNotStopped) {
+  const TemporaryFolder folder;
+  const std::string whole = (folder / "whole.h5").string();
+  const std::string broken = (folder / "broken.h5").string();
+  constexpr double end = 0.004;
+  // From a large perturbation, so that contacts lift off and stick at every stop.
+  const LoadedLinearScene loaded = load_linear_scene(
+      scene_path("examples/elastic_pads.yaml"),
+      {"time.end=0.004", "initial.perturbation.amplitude=20um", "record.interval=1e-5"});
+  {
+    DiscTransient transient(loaded, {whole, Overwrite::no, "test"});
+    ASSERT_EQ(transient.run_to_end(), MarchEnd::finished);
+    EXPECT_GT(transient.finish()["free_fraction"].get<double>(), 0.0);
+  }
+  {
+    DiscTransient transient(loaded, {broken, Overwrite::no, "test"});
+    transient.run_until(0.21 * end);
+    transient.write_checkpoint();
+    transient.run_until(0.35 * end);  // more rows than the checkpoint knows
+  }
+  for (const double stop : {0.47, 0.66, 1.0}) {
+    const InterruptedRun interrupted = find_interrupted_run(broken);
+    const LoadedLinearScene again = load_resolved_linear_scene(interrupted.scene_text, broken);
+    DiscTransient transient(again, interrupted);
+    if (stop == 1.0) {
+      ASSERT_EQ(transient.run_to_end(), MarchEnd::finished);
+      transient.finish();
+      break;
+    }
+    transient.run_until(stop * end);
+    request_stop();
+    EXPECT_EQ(transient.run_to_end(), MarchEnd::stopped);
+    request_stop(false);
+    transient.write_checkpoint();
+    transient.finish();
+  }
+  EXPECT_EQ(difference(whole, broken), "");
+}
+
 // ---------------------------------------------------------------- the program
+
+TEST(ResumeProgram, ATimeLimitStopsDiscsAndSpheres) {
+  const TemporaryFolder folder;
+  const std::string disc = (folder / "disc.h5").string();
+  ProgramResult result = Program({"run", scene_path("examples/elastic_pads.yaml"), "-o", disc,
+                                  "--set", "time.end=10", "--max-wall", "0.3"})
+                             .run();
+  ASSERT_EQ(result.exit_code, 5) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("--resume '" + disc + "'"));
+  result = Program({"run", "--resume", disc, "--max-wall", "0.3", "--json"}).run();
+  ASSERT_EQ(result.exit_code, 5) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(result.out)["status"], "stopped");
+  const std::string sphere = (folder / "sphere.h5").string();
+  result = Program({"run", scene_path("viscoelastic_sphere.yaml"), "-o", sphere, "--set",
+                    "time.end=1e7", "--max-wall", "0.3"})
+               .run();
+  EXPECT_EQ(result.exit_code, 5) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("it cannot be resumed"));
+  result = Program({"run", "--resume", sphere}).run();
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.err, HasSubstr("no whole checkpoint to go on from"));
+}
 
 TEST(ResumeProgram, KilledRunsGoOnBitwise) {
   kill_and_resume(5, 400);

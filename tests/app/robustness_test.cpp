@@ -84,8 +84,7 @@ void expect_survives(const std::string& bytes, unsigned num_seeds, const fs::pat
 TEST(Robustness, DamagedRunFilesAreReadOrRefused) {
   const TemporaryFolder folder;
   const std::string file = folder / "run.h5";
-  ASSERT_EQ(Program({"run", scene_path("examples/landing.yaml"), "-o", file}).run().exit_code,
-            0);
+  ASSERT_EQ(Program({"run", scene_path("examples/landing.yaml"), "-o", file}).run().exit_code, 0);
   const std::string bytes = contents_of(file);
   const std::string bad = folder / "bad.h5";
   expect_survives(bytes, 60, bad, {"info", bad});

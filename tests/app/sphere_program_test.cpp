@@ -224,7 +224,7 @@ TEST(SphereProgram, RunFilesAreInSiUnitsAndCanBeDrawn) {
   }
   const ProgramResult resumed = Program({"run", "--resume", file}).run();
   EXPECT_EQ(resumed.exit_code, 4);
-  EXPECT_THAT(resumed.err, HasSubstr("no whole checkpoint to go on from"));
+  EXPECT_THAT(resumed.err, HasSubstr("holds a whole run, there is nothing to go on with"));
 }
 
 TEST(SphereProgram, PrecisionSetsErrorAgainstRunTime) {

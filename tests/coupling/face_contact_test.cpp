@@ -125,13 +125,29 @@ FaceContact linear_contact(const Place& at) {
   return contact;
 }
 
-/// Derivative of the exact forces along a direction, of eighth order.
-Eigen::VectorXd derivative(const Place& at, const Motion& along, double step) {
+/// Bodies without mass, stiffness and damping of their own.
+LinearSystem nothing(const Place& at) {
+  const Eigen::Index n = at.plate.size() + num_pad;
+  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(n, n);
+  return {Eigen::MatrixXd::Identity(n, n), zero, zero, Eigen::MatrixXd(0, n),
+          Eigen::MatrixXd(0, n)};
+}
+
+FaceContactLaw law_of(const Place& at) {
+  return {at.friction, std::nullopt, at.speed, true, true};
+}
+
+/// Derivative of forces along a direction, of eighth order.
+template <class Forces>
+Eigen::VectorXd derivative(const Forces& forces, const Motion& about, const Motion& along,
+                           double step) {
   constexpr std::array weights{4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0};
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(at.plate.size() + num_pad);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(along.q.size());
   for (std::size_t k = 0; k < weights.size(); ++k) {
     const double distance = step * static_cast<double>(k + 1);
-    const auto at_distance = [&](double d) { return exact_forces(at, {d * along.q, d * along.v}); };
+    const auto at_distance = [&](double d) -> Eigen::VectorXd {
+      return forces({about.q + d * along.q, about.v + d * along.v});
+    };
     sum += weights[k] * (at_distance(distance) - at_distance(-distance));
   }
   return sum / step;
@@ -168,23 +184,112 @@ TEST(FaceContact, LinearForcesAreTheDerivativesOfTheExactOnes) {
   std::mt19937 generator(20240611);
   for (int trial = 0; trial < 20; ++trial) {
     const Place at = random_place(generator);
-    const FaceContact contact = linear_contact(at);
-    const double friction_force = at.friction * at.normal_force;
-    const Eigen::MatrixXd stiffness = normal_preload_stiffness(contact, at.normal_force) +
-                                      friction_preload_stiffness(contact, friction_force) +
-                                      friction_turning_stiffness(contact, friction_force);
-    const Eigen::MatrixXd damping = friction_damping(contact, friction_force, at.speed);
+    const std::vector<FaceContact> contacts{linear_contact(at)};
+    const FaceContactLaw law = law_of(at);
+    const LinearSystem system = linearise(nothing(at), contacts, law,
+                                          prescribed_sliding_state(contacts, law, at.normal_force));
+    const Eigen::MatrixXd& stiffness = system.position;
+    const Eigen::MatrixXd& damping = system.velocity;
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(at.plate.size() + num_pad);
 
     const Eigen::VectorXd q = random_direction(generator, at.plate);
-    const Eigen::VectorXd by_position = derivative(at, {q, zero}, 1e-4);
+    const auto forces = [&](const Motion& motion) { return exact_forces(at, motion); };
+    const Eigen::VectorXd by_position = derivative(forces, {zero, zero}, {q, zero}, 1e-4);
     const Eigen::VectorXd expected = -stiffness * q;
     EXPECT_LT((by_position - expected).norm(), 1e-9 * expected.norm()) << "trial " << trial;
 
     const Eigen::VectorXd v = random_direction(generator, at.plate);
-    const Eigen::VectorXd by_velocity = derivative(at, {zero, v}, 1e-3 * at.speed);
+    const Eigen::VectorXd by_velocity =
+        derivative(forces, {zero, zero}, {zero, v}, 1e-3 * at.speed);
     const Eigen::VectorXd braked = -damping * v;
     EXPECT_LT((by_velocity - braked).norm(), 1e-9 * braked.norm()) << "trial " << trial;
+  }
+}
+
+/// Forces of a contact at a multiplier of N₀ to second order in displacements, put together from
+/// the rows and matrices of the header's formulas, with friction against the whole velocity.
+Eigen::VectorXd second_order_forces(const Place& at, const FaceContact& c, const Motion& motion) {
+  const double s = c.side;
+  const double half = c.half_thickness;
+  const double r = c.radius;
+  const Eigen::VectorXd& q = motion.q;
+  const Eigen::VectorXd g_phi = c.plate.w_phi / r;
+  const double slope_r = c.plate.w_r.dot(q), slope_phi = g_phi.dot(q);
+  const double p_r = c.pad_r.dot(q), p_phi = c.pad_phi.dot(q);
+  const Eigen::VectorXd normal =
+      s * (c.pad_z - c.plate.w) - half * (slope_r * c.plate.w_r + slope_phi * g_phi) -
+      s * (p_r * c.plate.w_r + p_phi * g_phi + slope_r * c.pad_r + slope_phi * c.pad_phi);
+  const Eigen::VectorXd across = s * half * c.plate.w_r + c.pad_r;
+  const Eigen::VectorXd b = s * half * g_phi + c.pad_phi;
+  const Eigen::VectorXd along =
+      b + slope_phi * (c.pad_z - c.plate.w) +
+      s * half *
+          (across.dot(q) * (c.plate.w_r_phi / r - c.plate.w_phi / (r * r)) +
+           b.dot(q) * (c.plate.w_phi_phi / (r * r) + c.plate.w_r / r));
+  const double turned = (c.pad_phi + s * half * c.plate.w_r_phi).dot(q) / r;
+  const Eigen::Vector2d v(at.speed * r - b.dot(motion.v),
+                          -across.dot(motion.v) - at.speed * r * turned);
+  const Eigen::Vector2d d = v.normalized();
+  return at.normal_force * (normal + at.friction * (d.x() * along + d.y() * across));
+}
+
+TEST(FaceContact, SecondOrderForcesAreTheExactOnesToSecondOrder) {
+  std::mt19937 generator(77);
+  for (int trial = 0; trial < 5; ++trial) {
+    const Place at = random_place(generator);
+    const FaceContact contact = linear_contact(at);
+    const FaceContactLaw law = law_of(at);
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(at.plate.size() + num_pad);
+    const Eigen::VectorXd q = random_direction(generator, at.plate);
+    // Of the code, at rest.
+    const auto error = [&](double size) {
+      const FaceContactPoint point = face_contact_point(contact, law, size * q, at.normal_force);
+      return (at.normal_force * unit_force(contact, law, point) -
+              exact_forces(at, {size * q, zero}))
+          .norm();
+    };
+    const double order = std::log2(error(2e-5) / error(1e-5));
+    EXPECT_GT(order, 1.9) << trial;
+    EXPECT_LT(order, 2.1) << trial;
+  }
+}
+
+TEST(FaceContact, LinearForcesAboutDeformedStatesAreDerivativesToo) {
+  std::mt19937 generator(31);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Place at = random_place(generator);
+    const std::vector<FaceContact> contacts{linear_contact(at)};
+    const FaceContactLaw law = law_of(at);
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(at.plate.size() + num_pad);
+    FaceSlidingState state;
+    state.displacement = 1e-3 * random_direction(generator, at.plate);
+    state.contacts = {face_contact_point(contacts[0], law, state.displacement, at.normal_force)};
+    const LinearSystem system = linearise(nothing(at), contacts, law, state);
+    const auto forces = [&](const Motion& motion) {
+      return second_order_forces(at, contacts[0], motion);
+    };
+    const Motion rest{state.displacement, zero};
+    const Eigen::VectorXd expected =
+        at.normal_force * unit_force(contacts[0], law, state.contacts[0]);
+    EXPECT_LT((forces(rest) - expected).norm(), 1e-12 * expected.norm()) << trial;
+    EXPECT_LT((system.forces.row(0).transpose() * at.normal_force - expected).norm(),
+              1e-12 * expected.norm());
+    const Eigen::VectorXd q = random_direction(generator, at.plate);
+    const Eigen::VectorXd turned = -system.position * q;
+    EXPECT_LT((derivative(forces, rest, {q, zero}, 1e-4) - turned).norm(), 1e-9 * turned.norm())
+        << trial;
+    const Eigen::VectorXd v = random_direction(generator, at.plate);
+    const Eigen::VectorXd braked = -system.velocity * v;
+    EXPECT_LT((derivative(forces, rest, {zero, v}, 1e-3 * at.speed) - braked).norm(),
+              1e-9 * braked.norm())
+        << trial;
+    // The row of the constraint is the slope of the gap.
+    const auto gap = [&](const Motion& motion) -> Eigen::VectorXd {
+      return Eigen::VectorXd::Constant(motion.q.size(),
+                                       face_contact_point(contacts[0], law, motion.q, 0.0).gap);
+    };
+    const double slope = system.gaps.row(0).dot(q);
+    EXPECT_NEAR(derivative(gap, rest, {q, zero}, 1e-4)(0), slope, 1e-9 * std::abs(slope));
   }
 }
 

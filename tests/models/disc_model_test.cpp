@@ -82,7 +82,7 @@ TEST(DiscModel, SeveralContactPointsShareThePreload) {
   brake.contact.offsets = {-0.01, 0.01};
   const DiscModel model = make_disc_model(brake);
   EXPECT_EQ(model.contacts.size(), 4U);
-  EXPECT_EQ(model.contact_preload, 1500.0);
+  for (const FaceContactPoint& point : model.state.contacts) EXPECT_EQ(point.force, 1500.0);
   EXPECT_EQ(make_pencil(model.system).num_eigenvalues(), 30);
   // Points that come together are one.
   const auto one = dense_eigenvalues(pencil_of([&] {

@@ -7,12 +7,14 @@
 #include <numbers>
 
 #include "solvers/dense_eigenvalues.hpp"
+#include "tests/support/message_of.hpp"
 #include "tests/support/reference_brake.hpp"
 
 namespace stridor {
 namespace {
 
 using Complex = std::complex<double>;
+using test::message_of;
 
 /// The reference brake with friction far beyond its limit, by a penalty.
 DiscModelParameters squealing_brake() {
@@ -23,11 +25,6 @@ DiscModelParameters squealing_brake() {
   brake.contact.formulation = ContactFormulation::penalty;
   brake.contact.penalty = 1e10;
   return brake;
-}
-
-FaceContactLaw law_of(const DiscModelParameters& brake) {
-  return {brake.contact.preload, brake.contact.friction.coefficient, *brake.contact.penalty,
-          brake.disc.speed, true};
 }
 
 struct FastestMode {
@@ -53,7 +50,7 @@ TEST(FaceContactMotion, SmallMotionGrowsAsTheEigenvalueSays) {
   ASSERT_GT(mode.s.real(), 100.0);
   constexpr double step = 5e-6;
   constexpr double amplitude = 1e-12;
-  FaceContactMotion motion(model.system, model.contacts, law_of(brake), step);
+  FaceContactMotion motion(model.bodies, model.contacts, model.law, model.state, step);
   motion.start(amplitude * mode.q.real(), amplitude * (mode.s * mode.q).real());
   constexpr int num_steps = 4000;
   for (int n = 0; n < num_steps; ++n) ASSERT_TRUE(motion.step());
@@ -75,10 +72,11 @@ TEST(FaceContactMotion, SmallMotionGrowsAsTheEigenvalueSays) {
 TEST(FaceContactMotion, SquealEndsInABoundedCycleWithLiftOff) {
   const DiscModelParameters brake = squealing_brake();
   const DiscModel model = make_disc_model(brake);
-  const FaceContactLaw law = law_of(brake);
+  const FaceContactLaw& law = model.law;
+  const double preload = model.state.contacts.front().force;
   const FastestMode mode = fastest_of(model.system);
   constexpr double step = 4e-6;
-  FaceContactMotion motion(model.system, model.contacts, law, step);
+  FaceContactMotion motion(model.bodies, model.contacts, law, model.state, step);
   motion.start(1e-7 * mode.q.real(), 1e-7 * (mode.s * mode.q).real());
   double largest[3] = {0.0, 0.0, 0.0};
   int num_open = 0;
@@ -90,15 +88,18 @@ TEST(FaceContactMotion, SquealEndsInABoundedCycleWithLiftOff) {
       // The laws of contact from the motion, not from what the solver kept.
       const FaceContact& contact = model.contacts[static_cast<std::size_t>(i)];
       const FaceContactState state = motion.contact(i);
-      const double gap = contact.gap().dot(motion.displacement());
-      const double expected = std::max(0.0, law.preload - law.penalty * gap);
-      ASSERT_NEAR(state.force, expected, 1e-6 * (law.preload + expected));
+      const Eigen::VectorXd& q = motion.displacement();
+      const double bent =
+          0.5 * (contact.normal_bending() * q).dot(contact.bending_forces().transpose() * q);
+      const double gap = contact.gap().dot(q) + bent;
+      const double expected = std::max(0.0, preload - *law.penalty * gap);
+      ASSERT_NEAR(state.force, expected, 1e-6 * (preload + expected));
       const Eigen::Vector2d friction(state.friction_force, state.across_force);
       ASSERT_LE(friction.norm(), law.friction * state.force * (1.0 + 1e-9));
       num_open += state.state == ContactState::open ? 1 : 0;
       if (state.state != ContactState::slip) continue;
       const double along = law.speed * contact.radius - contact.friction().dot(motion.velocity());
-      EXPECT_GE(along * state.friction_force, -1e-6 * law.preload);
+      EXPECT_GE(along * state.friction_force, -1e-6 * preload);
     }
   }
   EXPECT_GT(num_open, num_steps / 10);
@@ -108,10 +109,9 @@ TEST(FaceContactMotion, SquealEndsInABoundedCycleWithLiftOff) {
 }
 
 /// A mass that bounces on a spring that does not pull.
-LinearSystem bouncer(double mass, double stiffness, double penalty) {
+LinearSystem bouncer(double mass, double stiffness) {
   const auto one = [](double value) { return Eigen::MatrixXd::Constant(1, 1, value); };
-  return {one(mass), one(0.0), one(stiffness + penalty), Eigen::MatrixXd(0, 1),
-          Eigen::MatrixXd(0, 1)};
+  return {one(mass), one(0.0), one(stiffness), Eigen::MatrixXd(0, 1), Eigen::MatrixXd(0, 1)};
 }
 
 FaceContact contact_of(Eigen::Index n, Eigen::Index along, Eigen::Index normal) {
@@ -135,8 +135,10 @@ TEST(FaceContactMotion, BouncingMassHasItsClosedFormToSecondOrder) {
   const double contact = 2.0 / W * (std::numbers::pi - std::atan(v0 / (W * opening)));
   const double period = flight + contact;
   const auto error = [&](int steps) {
-    FaceContactMotion motion(bouncer(m, k, k_C), {contact_of(1, -1, 0)}, {N0, 0.0, k_C, 1.0, false},
-                             period / steps);
+    const std::vector<FaceContact> contacts{contact_of(1, -1, 0)};
+    const FaceContactLaw law{0.0, k_C, 1.0, false, false};
+    FaceContactMotion motion(bouncer(m, k), contacts, law,
+                             prescribed_sliding_state(contacts, law, N0), period / steps);
     motion.start(Eigen::VectorXd::Constant(1, opening), Eigen::VectorXd::Constant(1, v0));
     for (int n = 0; n < 3 * steps; ++n) EXPECT_TRUE(motion.step());
     return std::hypot(W * (motion.displacement()(0) - opening), motion.velocity()(0) - v0) / v0;
@@ -147,6 +149,101 @@ TEST(FaceContactMotion, BouncingMassHasItsClosedFormToSecondOrder) {
   EXPECT_LT(fine, coarse / 8.0);
 }
 
+TEST(FaceContactMotion, RefusesAStepTooLongForItsContacts) {
+  constexpr double m = 2.0, k = 50.0, k_C = 800.0;
+  const std::vector<FaceContact> contacts{contact_of(1, -1, 0)};
+  const FaceContactLaw law{0.0, k_C, 1.0, false, false};
+  const FaceSlidingState state = prescribed_sliding_state(contacts, law, 8.0);
+  // Taking the spring out leaves 1 − k_C/(k + k_C) (1 − sin x/x) of it, x = ω h.
+  double low = std::numbers::pi, high = 4.0;
+  for (int i = 0; i < 60; ++i) {
+    const double x = 0.5 * (low + high);
+    (std::sin(x) / x > -k / k_C ? low : high) = x;
+  }
+  const double longest = low / std::sqrt((k + k_C) / m);
+  EXPECT_NO_THROW(FaceContactMotion(bouncer(m, k), contacts, law, state, 0.999 * longest));
+  EXPECT_NE(message_of<std::invalid_argument>([&] {
+              FaceContactMotion(bouncer(m, k), contacts, law, state, 1.001 * longest);
+            }).find("is too long for contacts as stiff as these"),
+            std::string::npos);
+  EXPECT_THROW(FaceContactMotion(bouncer(m, k), contacts, law, state, 2.2 * longest),
+               std::invalid_argument);
+  const FaceContactLaw rigid{0.0, std::nullopt, 1.0, false, false};
+  EXPECT_EQ(message_of<std::invalid_argument>(
+                [&] { FaceContactMotion(bouncer(m, k), contacts, rigid, state, 1e-3); }),
+            "motion of face contacts: takes contacts with a penalty, and a plate that turns");
+}
+
+TEST(FaceContactMotion, ManyContactsThatStickAndLiftOffKeepTheLaws) {
+  // Pads of three points each with friction that couples them, kicked so that some stick: sweeps
+  // over the contacts alone would go round in circles.
+  DiscModelParameters brake = squealing_brake();
+  brake.pads.mass.reset();
+  brake.pads.elastic.emplace();
+  brake.pads.elastic->length = 0.06;
+  brake.pads.elastic->thickness = 0.015;
+  brake.pads.elastic->width = 0.04;
+  brake.pads.elastic->material = {1e10, 0.3, 2500.0};
+  brake.pads.elastic->mesh = {6, 2};
+  brake.pads.elastic->reduction.fixed_interface_modes = 8;
+  brake.contact.offsets = {-0.03, 0.0, 0.03};
+  brake.contact.penalty = 1e9;
+  brake.contact.friction.coefficient = 0.6;
+  const DiscModel model = make_disc_model(brake);
+  const FastestMode mode = fastest_of(model.system);
+  FaceContactMotion motion(model.bodies, model.contacts, model.law, model.state, 5e-7);
+  motion.start(1e-5 * mode.q.real(), 1e-5 * (mode.s * mode.q).real());
+  int seen[3] = {0, 0, 0};
+  for (int n = 0; n < 6000; ++n) {
+    ASSERT_TRUE(motion.step()) << n;
+    const Eigen::VectorXd& q = motion.displacement();
+    for (int i = 0; i < motion.num_contacts(); ++i) {
+      const FaceContact& contact = model.contacts[static_cast<std::size_t>(i)];
+      const FaceContactState state = motion.contact(i);
+      const double bent =
+          0.5 * (contact.normal_bending() * q).dot(contact.bending_forces().transpose() * q);
+      const double expected =
+          std::max(0.0, model.state.contacts[static_cast<std::size_t>(i)].force -
+                            1e9 * (contact.gap().dot(q) + bent));
+      ASSERT_NEAR(state.force, expected, 1e-6 * (1000.0 + expected)) << n;
+      const Eigen::Vector2d friction(state.friction_force, state.across_force);
+      const double limit = 0.6 * state.force;
+      ASSERT_LE(friction.norm(), limit + 1e-6 * (1000.0 + limit)) << n;
+      ++seen[static_cast<int>(state.state)];
+      if (state.state != ContactState::slip) continue;
+      const double sliding = model.law.speed * contact.radius;
+      const Eigen::Vector2d v(
+          sliding - contact.friction().dot(motion.velocity()),
+          -contact.across().dot(motion.velocity()) - sliding * contact.turning().dot(q));
+      ASSERT_LT((friction - limit * v.normalized()).norm(), 1e-5 * (1000.0 + limit)) << n;
+    }
+  }
+  for (const int count : seen) EXPECT_GT(count, 0);
+}
+
+TEST(FaceContactMotion, GoesOnBitwiseFromItsState) {
+  const DiscModelParameters brake = squealing_brake();
+  const DiscModel model = make_disc_model(brake);
+  const FastestMode mode = fastest_of(model.system);
+  const auto fresh = [&] {
+    FaceContactMotion motion(model.bodies, model.contacts, model.law, model.state, 4e-6);
+    motion.start(1e-5 * mode.q.real(), 1e-5 * (mode.s * mode.q).real());
+    return motion;
+  };
+  FaceContactMotion whole = fresh();
+  for (int n = 0; n < 900; ++n) ASSERT_TRUE(whole.step());
+  State state;
+  whole.save(state, "motion/");
+  FaceContactMotion second = fresh();
+  second.load(state, "motion/");
+  for (int n = 0; n < 300; ++n) {
+    ASSERT_TRUE(whole.step());
+    ASSERT_TRUE(second.step());
+  }
+  EXPECT_EQ(whole.displacement(), second.displacement());
+  EXPECT_EQ(whole.contact(0).force, second.contact(0).force);
+}
+
 TEST(FaceContactMotion, MassOnABeltSticksAndThenSwingsAtItsSpeed) {
   // From rest, 0.03 m short of the place where friction holds the spring, a mass on a belt swings
   // faster than the belt, sticks, and leaves with v at that place: from then on its amplitude is
@@ -155,10 +252,12 @@ TEST(FaceContactMotion, MassOnABeltSticksAndThenSwingsAtItsSpeed) {
   LinearSystem system;
   system.mass = m * Eigen::Matrix2d::Identity();
   system.velocity = Eigen::Matrix2d::Zero();
-  system.position = Eigen::Vector2d(k, 1e4 + 1e5).asDiagonal();
-  system.position(0, 1) = mu * 1e5;
+  system.position = Eigen::Vector2d(k, 1e4).asDiagonal();
   system.gaps = system.forces = Eigen::MatrixXd(0, 2);
-  FaceContactMotion motion(system, {contact_of(2, 0, 1)}, {N0, mu, 1e5, v, false}, 1e-3);
+  const std::vector<FaceContact> contacts{contact_of(2, 0, 1)};
+  const FaceContactLaw law{mu, 1e5, v, false, false};
+  FaceContactMotion motion(system, contacts, law, prescribed_sliding_state(contacts, law, N0),
+                           1e-3);
   motion.start(Eigen::Vector2d(-mu * N0 / k, 0.0), Eigen::Vector2d::Zero());
   bool has_stuck = false;
   double largest = 0.0;
