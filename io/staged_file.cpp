@@ -223,7 +223,8 @@ bool StagedFile::read(haddr_t address, unsigned char* bytes, std::size_t size) c
 
 std::vector<StagedFile::Blocks::const_iterator> StagedFile::safe_order() const {
   const auto rank = [this](const Blocks::const_iterator& block) {
-    const auto& [address, content] = *block;
+    const haddr_t address = block->first;
+    const auto& content = block->second;
     const auto known = committed_.find(address);
     // Room that was freed counts as new where it now serves another purpose.
     const bool is_new =
