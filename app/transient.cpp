@@ -344,9 +344,7 @@ Json Transient::finish() {
                                                          : "failed"},
                   {"steps", steps},
                   {"step", scene.time.step},
-                  {"step_limit", scene.time.integrator == Integrator::exact
-                                     ? Json(nullptr)
-                                     : number(step_limit(model_.system).step)},
+                  {"step_limit", number(step_limit(model_.system, scene.time).step)},
                   {"wall_s", march_seconds_},
                   {"setup_s", setup_seconds_},
                   {"output_s", file_seconds_ + writer_->write_seconds()},
