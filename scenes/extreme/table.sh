@@ -88,4 +88,10 @@ runs to its end.
 |---|---|---|---|---|---|---|
 TEXT
 for scene in "$here"/*.yaml; do check "$scene"; done
+cat <<'TEXT'
+
+`ten_million_steps` was run for a billion steps once (`--set time.end=2000 --set record.interval=0.1 --set
+measure.from=1000`, 315 s beside other work): over its second half the force stays between 0.19999999962 and
+0.19999999963 N, 4e-12 N apart.
+TEXT
 exit "$wrong"
