@@ -54,6 +54,7 @@ PointAnswer answer_of(const ModalBody& body, const std::vector<StepCoefficients>
   }
   const Eigen::MatrixXd& residual = body.residual.flexibility;
   if (residual.size() > 0) {
+    // Of a force that changes its sign with every step, w/(2 − w).
     const double share = step / (step + 2.0 * body.residual.beta);
     sum.prompt += share * rows_of(rows_of(residual, point).transpose(), point);
   }
