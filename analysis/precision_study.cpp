@@ -43,7 +43,7 @@ std::vector<int> step_ladder(int coarsest, int finest, int count) {
 }
 
 int stable_steps_per_sample(const System& system, const TimeParameters& time, double interval) {
-  const double limit = step_limit(retained(system, time)).step;
+  const double limit = step_limit(system, time).step;
   // One part in 10⁹ below the limit, so that rounding does not lift a step above it.
   const double steps = std::ceil(interval / limit * (1.0 + 1e-9));
   if (!(steps <= 1e5)) {

@@ -1,7 +1,10 @@
 // stridor check: all errors of a scene at once.
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "app/command.hpp"
+#include "app/step_stability_report.hpp"
 #include "core/errors.hpp"
 #include "io/contact_scene.hpp"
 #include "io/linear_scene.hpp"
@@ -15,24 +18,39 @@ namespace {
 struct CheckOptions {
   CommonOptions common;
   std::string scene;
+  bool stability = false;
+  int places = 101;
 };
+
+using Report = std::optional<StepStabilityReport>;
+
+/// Of a scene of another kind. @throws ConfigError
+void refuse_stability(const CheckOptions& options) {
+  if (!options.stability) return;
+  throw ConfigError("--stability",
+                    "takes a scene of bodies in contact, which `run` marches with time.step; the "
+                    "vibrations of this one are followed by eig and locus");
+}
 
 /// Reads the scene, builds its model and checks the step, as `run` would; a scene of a sliding
 /// contact is only read.
-void check_scene(const CheckOptions& options) {
+Report check_scene(const CheckOptions& options) {
   SceneNode tree = read_scene_file(options.scene);
   for (const std::string& assignment : options.common.sets) set_value(tree, assignment);
   if (is_contact_scene(tree)) {
     (void)load_contact_scene(options.scene, options.common.sets);
-    return;
+    refuse_stability(options);
+    return {};
   }
   if (is_linear_scene(tree)) {
     (void)load_linear_scene(options.scene, options.common.sets).model();
-    return;
+    refuse_stability(options);
+    return {};
   }
   if (is_sphere_scene(tree)) {
     (void)load_sphere_scene(options.scene, options.common.sets);
-    return;
+    refuse_stability(options);
+    return {};
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   const Model model = build_model(loaded);
@@ -41,6 +59,8 @@ void check_scene(const CheckOptions& options) {
   } catch (const ConfigError& error) {
     throw loaded.located(error);
   }
+  if (!options.stability) return {};
+  return check_step_stability(model, loaded.scene.time, options.places);
 }
 
 Json problem_json(const Problem& problem) {
@@ -53,8 +73,9 @@ Json problem_json(const Problem& problem) {
 
 ExitCode check(const CheckOptions& options) {
   std::vector<Problem> problems;
+  Report report;
   try {
-    check_scene(options);
+    report = check_scene(options);
   } catch (const ConfigError& error) {
     if (!options.common.json) throw;
     problems = error.problems();
@@ -62,11 +83,15 @@ ExitCode check(const CheckOptions& options) {
   if (options.common.json) {
     Json errors = Json::array();
     for (const Problem& problem : problems) errors.push_back(problem_json(problem));
-    fmt::print("{}\n", Json{{"errors", errors}}.dump(2));
+    Json object = {{"errors", errors}};
+    if (report) object["stability"] = step_stability_json(*report);
+    fmt::print("{}\n", object.dump(2));
   } else {
     fmt::print("{}: no errors\n", options.scene);
+    if (report) print_step_stability(*report);
   }
-  return problems.empty() ? ExitCode::done : ExitCode::bad_input;
+  if (!problems.empty()) return ExitCode::bad_input;
+  return report && report->steps_grow() ? ExitCode::numbers_failed : ExitCode::done;
 }
 
 }  // namespace
@@ -77,6 +102,11 @@ void add_check_command(CLI::App& program, Action& action) {
   verb->add_option("scene", options->scene, "Scene file (YAML)")->required();
   add_scene_options(*verb, options->common);
   add_json_option(*verb, options->common);
+  verb->add_flag("--stability", options->stability,
+                 "Also whether the steps are stable along the path: spectral radius of a step with "
+                 "the sliding held, against the growth of the bodies themselves");
+  verb->add_option("--places", options->places, "How many places of the path (default 101)")
+      ->check(CLI::Range(1, 100000));
   verb->callback([options, &action] { action = [options] { return check(*options); }; });
 }
 

@@ -148,7 +148,7 @@ Json bursts_json(const std::vector<Burst>& bursts) {
 }
 
 Json step_limit_json(const System& system, const TimeParameters& time) {
-  return time.integrator == Integrator::exact ? Json(nullptr) : number(step_limit(system).step);
+  return number(step_limit(system, time).step);
 }
 
 MarchPlan measured_plan(const Scene& scene, std::int64_t last_step) {

@@ -360,8 +360,9 @@ class SchemaOf {
       return opened;
     };
     key.visit = [member](const void* object, const Key::Visitor& see) {
-      for (const auto& [entry, slot] : static_cast<const T*>(object)->*member) {
-        std::visit([&](const auto& nested) { see(entry, slot.index(), &nested); }, slot);
+      for (const auto& entry : static_cast<const T*>(object)->*member) {
+        std::visit([&](const auto& nested) { see(entry.first, entry.second.index(), &nested); },
+                   entry.second);
       }
     };
     schema_.keys.push_back(std::move(key));

@@ -30,7 +30,7 @@ void check_recording(const DiscScene& scene, std::vector<Problem>& problems) {
   }
   if (!scene.time) return;
   const double ratio = scene.record->interval / scene.time->step;
-  if (ratio < 1.0 - 1e-9 || std::abs(ratio - std::round(ratio)) > 1e-6 || ratio > 1e5) {
+  if (ratio < 1.0 - 1e-9 || std::abs(ratio - std::round(ratio)) > 1e-6 || std::round(ratio) > 1e5) {
     problems.push_back(
         {"record.interval",
          fmt::format("must be a whole multiple of time.step = {:g} s, up to 100000 of "

@@ -178,16 +178,18 @@ const Schema& Scene::schema() {
           .check([](const Scene& scene, std::vector<Problem>& problems) {
             if (!scene.record) return;
             const double ratio = scene.record->interval / scene.time.step;
-            if (ratio < 1.0 - 1e-9 || std::abs(ratio - std::round(ratio)) > 1e-6 || ratio > 1e5) {
-              problems.push_back({"record.interval",
-                                  fmt::format("{:g} s must be a whole multiple (1 to 100000) of "
-                                              "time.step = {:g} s, is {:g} of it; the "
-                                              "nearest is {:g} s",
-                                              scene.record->interval, scene.time.step, ratio,
-                                              std::max(1.0, std::round(ratio)) * scene.time.step),
-                                  {},
-                                  0,
-                                  0});
+            if (ratio < 1.0 - 1e-9 || std::abs(ratio - std::round(ratio)) > 1e-6 ||
+                std::round(ratio) > 1e5) {
+              problems.push_back(
+                  {"record.interval",
+                   fmt::format("{:g} s must be a whole multiple (1 to 100000) of "
+                               "time.step = {:g} s, is {:g} of it; the "
+                               "nearest is {:g} s",
+                               scene.record->interval, scene.time.step, ratio,
+                               std::clamp(std::round(ratio), 1.0, 1e5) * scene.time.step),
+                   {},
+                   0,
+                   0});
             }
             const double nyquist = 0.5 / scene.record->interval;
             if (!scene.measure.band.empty() && scene.measure.band.back() >= nyquist) {

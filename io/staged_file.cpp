@@ -1,6 +1,7 @@
 #include "io/staged_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -21,6 +22,20 @@ namespace {
 
 /// A write may be cut off by a kill between two pages of memory, not within one.
 constexpr haddr_t page = 4096;
+
+/// Keeps other processes from writing the file as long as the descriptor is open; readers do not
+/// ask. @return false where another one holds it. Some file systems know no locks: true there.
+bool lock(int descriptor) {
+  return flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+}
+
+/// Whether the file that is open has this name.
+bool is_named(int descriptor, const std::string& path) {
+  struct stat mine = {};
+  struct stat named = {};
+  return fstat(descriptor, &mine) == 0 && stat(path.c_str(), &named) == 0 &&
+         mine.st_ino == named.st_ino && mine.st_dev == named.st_dev;
+}
 
 int write_all(int descriptor, const unsigned char* bytes, std::size_t size, haddr_t address) {
   while (size > 0) {
@@ -153,6 +168,7 @@ void StagedFile::create(const std::string& path) {
   path_ = path;
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor_ < 0) throw FileError(path, "", "cannot be made: " + errno_text(errno));
+  lock(descriptor_);
 }
 
 void StagedFile::open(const std::string& path) {
@@ -160,6 +176,12 @@ void StagedFile::open(const std::string& path) {
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor_ < 0)
     throw FileError(path, "", "cannot be opened for writing: " + errno_text(errno));
+  // The process that wrote it may have put a copy in its place meanwhile (commit_by_copy).
+  if (!lock(descriptor_) || !is_named(descriptor_, path)) {
+    throw FileError(path, "",
+                    "another process is writing it, a run that goes on; wait for its end or stop "
+                    "it (Ctrl-C leaves a checkpoint)");
+  }
   written_end_ = size_of(descriptor_);
 }
 
@@ -223,7 +245,8 @@ bool StagedFile::read(haddr_t address, unsigned char* bytes, std::size_t size) c
 
 std::vector<StagedFile::Blocks::const_iterator> StagedFile::safe_order() const {
   const auto rank = [this](const Blocks::const_iterator& block) {
-    const auto& [address, content] = *block;
+    const haddr_t address = block->first;
+    const auto& content = block->second;
     const auto known = committed_.find(address);
     // Room that was freed counts as new where it now serves another purpose.
     const bool is_new =
@@ -317,16 +340,13 @@ int StagedFile::copy_to(int descriptor) const {
 
 int StagedFile::commit_by_copy() {
   if (is_frozen_ || blocks_.empty()) return 0;
-  struct stat mine = {};
-  struct stat named = {};
   // A file that was moved or replaced meanwhile keeps its name to itself.
-  if (fstat(descriptor_, &mine) != 0 || stat(path_.c_str(), &named) != 0 ||
-      mine.st_ino != named.st_ino || mine.st_dev != named.st_dev)
-    return commit();
+  if (!is_named(descriptor_, path_)) return commit();
   PartFile part(path_);
   const int copy = ::open(part.path().c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (copy < 0) return commit();
   part.made();
+  lock(copy);
   bool is_whole = copy_to(copy) == 0;
   if (is_whole) {
     try {

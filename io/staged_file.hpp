@@ -39,7 +39,8 @@ class StagedFile {
 
   /// Makes an empty file. @throws FileError if the system refuses
   void create(const std::string& path);
-  /// Opens a file to change it. @throws FileError if the system refuses
+  /// Opens a file to change it. @throws FileError if the system refuses, or if another process has
+  /// it open to change it
   void open(const std::string& path);
   /// What H5Fcreate or H5Fopen takes to work on this file, which must live longer than what they
   /// open. @throws FileError if HDF5 refuses

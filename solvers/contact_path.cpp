@@ -13,20 +13,26 @@ Eigen::MatrixXd rows_of(const Eigen::MatrixXd& matrix, const WeightedRows& point
   return sum;
 }
 
+DriveRange drive_range(const Drive& drive, double end) {
+  DriveRange range;
+  constexpr int num_instants = 1000;
+  for (int i = 0; i <= num_instants; ++i) {
+    const double moved = drive.displacement(end * i / num_instants);
+    range.least = std::min(range.least, moved);
+    range.most = std::max(range.most, moved);
+  }
+  return range;
+}
+
 std::vector<WeightedRows> path_of(const System& system, const ContactPoint& contact, double end) {
   const MasterSurface& surface = system.surface_of(contact);
   const auto driven = [&](int body) {
     return system.bodies[static_cast<std::size_t>(body)].follows_drive ? 1.0 : 0.0;
   };
   const double share = driven(contact.slave_body) - driven(surface.body);
-  double least = 0.0;
-  double most = 0.0;
-  constexpr int num_instants = 1000;
-  for (int i = 0; i <= num_instants; ++i) {
-    const double moved = share * system.drive.displacement(end * i / num_instants);
-    least = std::min(least, moved);
-    most = std::max(most, moved);
-  }
+  const DriveRange range = drive_range(system.drive, end);
+  const double least = std::min(share * range.least, share * range.most);
+  const double most = std::max(share * range.least, share * range.most);
   double longest = 0.0;
   for (std::size_t k = 1; k < surface.arc_length.size(); ++k)
     longest = std::max(longest, surface.arc_length[k] - surface.arc_length[k - 1]);

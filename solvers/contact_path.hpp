@@ -16,6 +16,13 @@ struct WeightedRows {
 /// Weighted sum of the rows of a matrix, x and y.
 Eigen::MatrixXd rows_of(const Eigen::MatrixXd& matrix, const WeightedRows& point);
 
+/// Smallest and largest displacement of a drive until `end`, 0 included, m.
+struct DriveRange {
+  double least = 0.0;
+  double most = 0.0;
+};
+DriveRange drive_range(const Drive& drive, double end);
+
 /// Places on the master that the slave passes until `end`, with some to spare for its deformation:
 /// a hundredth of the path and the length of a segment. The ends of every segment and its middle,
 /// where what stiff modes add to the flexibility is least.

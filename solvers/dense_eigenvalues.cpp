@@ -158,4 +158,12 @@ std::vector<Eigenvalue> dense_eigenvalues(const Pencil& pencil, DenseWork work) 
   return dense_spectrum(pencil, work).eigenvalues;
 }
 
+std::vector<Complex> matrix_eigenvalues(Eigen::MatrixXd matrix) {
+  const LapackResult found = eigenvalues_of(std::move(matrix), DenseWork::eigenvalues);
+  std::vector<Complex> eigenvalues;
+  for (Eigen::Index i = 0; i < found.re.size(); ++i)
+    eigenvalues.emplace_back(found.re(i), found.im(i));
+  return eigenvalues;
+}
+
 }  // namespace stridor

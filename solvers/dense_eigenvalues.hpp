@@ -51,4 +51,8 @@ DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work = DenseWork::r
 std::vector<Eigenvalue> dense_eigenvalues(const Pencil& pencil,
                                           DenseWork work = DenseWork::residuals);
 
+/// All eigenvalues of a square matrix, balanced first; conjugates one by one.
+/// @throws NumericalError if the iteration fails
+std::vector<std::complex<double>> matrix_eigenvalues(Eigen::MatrixXd matrix);
+
 }  // namespace stridor

@@ -5,6 +5,7 @@
 
 #include "solvers/dense_two_step.hpp"
 #include "solvers/modal_recurrence.hpp"
+#include "solvers/retained_modes.hpp"
 
 namespace stridor {
 namespace {
@@ -41,14 +42,12 @@ StartingMotion starting_motion(const SystemBody& body, const TimeParameters& tim
     return given.size() == 0 ? Eigen::VectorXd(Eigen::VectorXd::Zero(body.reduced.size())) : given;
   };
   StartingMotion motion{or_zero(body.initial_displacement), or_zero(body.initial_velocity)};
+  if (time.coordinates != Coordinates::modal) return motion;
   // BLAS takes no empty matrix.
-  if (time.coordinates == Coordinates::modal && body.reduced.size() > 0) {
-    // ΦᵀMΦ = I, so ΦᵀM takes reduced coordinates to modal ones.
-    const Eigen::MatrixXd to_modal = body.modal.shapes.transpose() * body.reduced.mass;
-    motion.displacement = (to_modal * motion.displacement).eval();
-    motion.velocity = (to_modal * motion.velocity).eval();
-  }
-  return motion;
+  if (body.modal.size() == 0) return {};
+  // ΦᵀMΦ = I, so ΦᵀM takes reduced coordinates to modal ones.
+  const Eigen::MatrixXd to_modal = body.modal.shapes.transpose() * body.reduced.mass;
+  return {to_modal * motion.displacement, to_modal * motion.velocity};
 }
 
 }  // namespace
@@ -107,6 +106,13 @@ StepLimit step_limit(const System& system) {
     const double step = central_difference_limit(body.modal);
     if (step < limit.step) limit = {step, body.name};
   }
+  return limit;
+}
+
+StepLimit step_limit(const System& system, const TimeParameters& time) {
+  if (time.integrator == Integrator::exact) return {std::numeric_limits<double>::infinity(), ""};
+  StepLimit limit = step_limit(retained(system, time));
+  if (time.retain) limit.step *= 0.9;
   return limit;
 }
 

@@ -43,4 +43,10 @@ struct StepLimit {
 };
 StepLimit step_limit(const System& system);
 
+/// The same of a run: of the modes that it keeps, and nine tenths of it where it leaves out others,
+/// whose answer at once leaves no room beside the fastest damped ones (docs/theory.md, 3.6);
+/// infinite for exact propagation.
+/// @param system with all modes
+StepLimit step_limit(const System& system, const TimeParameters& time);
+
 }  // namespace stridor

@@ -54,7 +54,8 @@ PointAnswer answer_of(const ModalBody& body, const std::vector<StepCoefficients>
   }
   const Eigen::MatrixXd& residual = body.residual.flexibility;
   if (residual.size() > 0) {
-    const double share = step / (step + body.residual.beta);
+    // Of a force that changes its sign with every step, w/(2 − w).
+    const double share = step / (step + 2.0 * body.residual.beta);
     sum.prompt += share * rows_of(rows_of(residual, point).transpose(), point);
   }
   return sum;
@@ -73,6 +74,21 @@ double least_surplus(const PointAnswer& at, double limit) {
   return std::max(0.0, pair.eigenvalues().maxCoeff());
 }
 
+/// Least δ with which every mode by itself has q g ≥ e/(1 + r₁)(1 + r₂), which no contact can ask
+/// more than. With exact propagation at most 1/q − 1/12.
+double surplus_of_every_mode(const System& system, const TimeParameters& time, double limit) {
+  double surplus = 0.0;
+  for (const SystemBody& body : system.bodies) {
+    for (const StepCoefficients& c : coefficients_of(body.modal, time)) {
+      const double alternating = 0.25 * (2.0 + 2.0 * c.keep - c.pull);
+      const double lacking = c.gain - limit * c.prompt * alternating;
+      const double gained = c.answer() * (limit * alternating + c.pull);
+      if (gained > 0.0) surplus = std::max(surplus, lacking / gained);
+    }
+  }
+  return surplus;
+}
+
 }  // namespace
 
 std::optional<double> prompt_surplus(const System& system, const TimeParameters& time) {
@@ -84,8 +100,7 @@ std::optional<double> prompt_surplus(const System& system, const TimeParameters&
   }
   // Stable are ratios up to 4. Friction, damping and what changes along the path want some room.
   constexpr double limit = 3.6;
-  // With it every mode by itself has limit · g ≥ e.
-  const double enough = 1.0 / limit - 1.0 / 12.0;
+  const double enough = surplus_of_every_mode(system, time, limit);
   if (system.contacts.size() != 1) return system.contacts.empty() ? 0.0 : enough;
   const ContactPoint& contact = system.contacts.front();
   const auto body = [&](int index) -> const ModalBody& {

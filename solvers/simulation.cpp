@@ -39,8 +39,8 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
                       "leave it out");
   }
   const System system = retained(given, time);
-  const StepLimit limit = step_limit(system);
-  if (time.integrator == Integrator::central_difference && !(time.step <= limit.step)) {
+  const StepLimit limit = step_limit(given, time);
+  if (!(time.step <= limit.step)) {
     throw ConfigError(
         "time.step",
         fmt::format(
@@ -137,7 +137,7 @@ Propagator::Motion Simulation::reduced_motion(int body) const {
   const auto b = static_cast<std::size_t>(body);
   Propagator::Motion motion = this->motion(body);
   const Eigen::MatrixXd& shapes = implementation_->shapes[b];
-  if (shapes.size() == 0) return motion;
+  if (shapes.rows() == 0) return motion;
   motion.displacement = shapes * motion.displacement;
   motion.velocity = shapes * motion.velocity;
   const Eigen::VectorXd residual = implementation_->bodies[b]->residual_displacement();

@@ -62,8 +62,7 @@ enum class Accounts {
 class Simulation {
  public:
   /// @param system copied in what it needs; not referenced afterwards
-  /// @param time   step h > 0, with the central difference at most `step_limit(system)`; `end` is
-  ///               not used here
+  /// @param time   step h > 0, at most `step_limit(system, time)`; `end` is not used here
   /// @throws ConfigError for `time.step` if h is above the limit, naming both; for keys that do not
   ///         go together
   /// @throws NumericalError if the start itself fails (outcome other than `done`)

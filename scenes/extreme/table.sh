@@ -79,7 +79,8 @@ held to its outcome and its `expect:` block by a test of its name (`ctest -R Ext
 
 *Outcome*: `done`, or how the program refuses (before the run, exit 2) or stops (exit 3) and the words
 in its message. *Force*: smallest and largest contact force of the window of `measure`; most of these
-scenes start in sliding equilibrium under the load of 0.2 N, at which it should stay. *Energy*: largest
+scenes start in sliding equilibrium under the load of 0.2 N, at which it should stay; of the sphere the
+smallest and largest displacement over its unit of length. *Energy*: largest
 error of the energy balance over the energy turned over. *Copes*: a setting with which the same scene
 runs to its end.
 
@@ -87,4 +88,10 @@ runs to its end.
 |---|---|---|---|---|---|---|
 TEXT
 for scene in "$here"/*.yaml; do check "$scene"; done
+cat <<'TEXT'
+
+`ten_million_steps` was run for a billion steps once (`--set time.end=2000 --set record.interval=0.1 --set
+measure.from=1000`, 315 s beside other work): over its second half the force stays between 0.19999999962 and
+0.19999999963 N, 4e-12 N apart.
+TEXT
 exit "$wrong"

@@ -95,5 +95,60 @@ TEST(Check, JsonHoldsPlaceKeyAndMessageAlone) {
   EXPECT_EQ(errors[1]["column"], 0);
 }
 
+TEST(CheckStability, SaysWhereTheSlidingItselfGrows) {
+  // The burst near 3.52 kHz of the main scene, which its sagged geometry makes.
+  const std::vector<std::string> arguments{"check", scene_path("beam_on_beam.yaml"), "--stability",
+                                           "--places", "11"};
+  const ProgramResult text = Program(arguments).run();
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("step 2e-07 s, largest stable step of the bodies 2.9162e-07 s"));
+  EXPECT_THAT(text.out, HasSubstr("grows as in the bodies"));
+  EXPECT_THAT(text.out, HasSubstr("the step adds no growth of its own"));
+
+  std::vector<std::string> with_json = arguments;
+  with_json.push_back("--json");
+  const Json found = Json::parse(Program(with_json).run().out)["stability"];
+  EXPECT_EQ(found["steps_grow"], false);
+  EXPECT_EQ(found["stable_step"], nullptr);
+  ASSERT_EQ(found["places"].size(), 11u);
+  for (const Json& place : found["places"]) {
+    const bool grows = place["verdict"] == "grows as in the bodies";
+    EXPECT_EQ(grows, place["radius"] > 1.0);
+    if (!grows) continue;
+    EXPECT_NEAR(place["frequency"].get<double>(), 3520.0, 20.0);
+    EXPECT_NEAR(place["growth"].get<double>(), place["growth_of_bodies"].get<double>(), 0.1);
+  }
+}
+
+TEST(CheckStability, RefusesAStepThatFrictionMakesTooLarge) {
+  // Below the limit of the reed by itself; pushed ahead, friction lowers it.
+  const auto check = [](const std::string& step) {
+    return Program({"check", scene_path("examples/stick_slip.yaml"), "--stability", "--places", "3",
+                    "--json", "--set", "substructures.reed.angle=150 deg", "--set",
+                    "contact.friction.dynamic=0.4", "--set", "time.step=" + step, "--set",
+                    "record.interval=" + step})
+        .run();
+  };
+  const ProgramResult refused = check("8e-6");
+  EXPECT_EQ(refused.exit_code, 3) << refused.err;
+  const Json found = Json::parse(refused.out)["stability"];
+  EXPECT_EQ(found["steps_grow"], true);
+  EXPECT_LT(8e-6, found["step_limit"].get<double>());
+  EXPECT_EQ(found["places"][0]["verdict"], "grows by the step");
+  const double cured = found["stable_step"].get<double>();
+  EXPECT_LT(cured, 8e-6);
+  EXPECT_EQ(check(std::to_string(0.99e6 * cured) + "e-6").exit_code, 0);
+  EXPECT_EQ(check(std::to_string(1.01e6 * cured) + "e-6").exit_code, 3);
+}
+
+TEST(CheckStability, TakesScenesOfBodiesInContactOnly) {
+  for (const char* scene : {"disc_and_pads.yaml", "viscoelastic_sphere.yaml",
+                            "viscoelastic_contact.yaml", "examples/beam_on_substrate.yaml"}) {
+    const ProgramResult result = Program({"check", scene_path(scene), "--stability"}).run();
+    EXPECT_EQ(result.exit_code, 2) << scene;
+    EXPECT_THAT(result.err, HasSubstr("--stability: takes")) << scene;
+  }
+}
+
 }  // namespace
 }  // namespace stridor

@@ -193,6 +193,29 @@ TEST(ResumeProgram, ARequestToStopAndATimeLimitLeaveARunThatGoesOn) {
   EXPECT_THAT(result.err, HasSubstr("holds a whole run, there is nothing to go on with"));
 }
 
+TEST(ResumeProgram, OfTwoAtOnceOneIsRefused) {
+  const TemporaryFolder folder;
+  const std::string whole = (folder / "whole.h5").string();
+  const std::string broken = (folder / "broken.h5").string();
+  ASSERT_EQ(Program(long_run(whole, "1.5")).run().exit_code, 0);
+  std::vector<std::string> stopped = long_run(broken, "1.5");
+  stopped.insert(stopped.end(), {"--max-wall", "0.05"});
+  ASSERT_EQ(Program(stopped).run().exit_code, 5);
+
+  Program one({"run", "--resume", broken});
+  Program other({"run", "--resume", broken});
+  one.start();
+  other.start();
+  const ProgramResult first = one.wait();
+  const ProgramResult second = other.wait();
+  EXPECT_THAT((std::vector<int>{first.exit_code, second.exit_code}),
+              ::testing::UnorderedElementsAre(0, 4))
+      << first.err << second.err;
+  EXPECT_THAT(first.err + second.err,
+              HasSubstr(broken + ": another process is writing it, a run that goes on"));
+  EXPECT_EQ(difference(whole, broken), "") << "the run that was refused has left it alone";
+}
+
 class ResumeRefusal : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -66,6 +66,23 @@ TEST(Scene, EnergyIsRecordedWhereAskedFor) {
       load_scene(scene_path("beam_on_beam.yaml"), {"record.energy=true"}).scene.record->energy);
 }
 
+TEST(Scene, RecordsAtMostEveryHundredThousandthStepHoweverTheQuotientRounds) {
+  ASSERT_GT(0.2 / 2e-6, 1e5);
+  const std::vector<std::string> sets{"time.step=2e-6", "measure.from=0", "measure.band=[]"};
+  const auto with_interval = [&](const char* interval) {
+    std::vector<std::string> all = sets;
+    all.push_back(std::string("record.interval=") + interval);
+    return load_scene(scene_path("beam_on_beam.yaml"), all).scene.record->interval;
+  };
+  EXPECT_EQ(with_interval("0.2"), 0.2);
+  try {
+    with_interval("0.200002");
+    FAIL() << "not refused";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is 100001 of it; the nearest is 0.2 s"));
+  }
+}
+
 TEST(Scene, SceneWithoutRecordIsAllowed) {
   const TemporaryFolder folder;
   std::string text = contents_of(scene_path("beam_on_beam.yaml"));

@@ -1,0 +1,145 @@
+#include "solvers/frozen_step.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/errors.hpp"
+#include "solvers/dense_eigenvalues.hpp"
+#include "solvers/modal_recurrence.hpp"
+#include "solvers/prompt_surplus.hpp"
+#include "solvers/retained_modes.hpp"
+
+namespace stridor {
+namespace {
+
+/// The modes that move, as columns of one array each.
+struct MovingModes {
+  Eigen::VectorXd keep;    ///< s
+  Eigen::VectorXd pull;    ///< k
+  Eigen::VectorXd gain;    ///< e
+  Eigen::MatrixXd gaps;    ///< C
+  Eigen::MatrixXd forces;  ///< E
+  Eigen::MatrixXd closed;  ///< what a unit of λ closes of the gaps at once: C g Eᵀ, or C e Eᵀ
+};
+
+MovingModes moving_modes(const Pencil& contacts, const TimeParameters& time,
+                         std::optional<double> surplus, double cutoff) {
+  std::vector<Eigen::Index> moving;
+  for (Eigen::Index i = 0; i < contacts.num_modes(); ++i) {
+    if (contacts.omega(i) <= cutoff) moving.push_back(i);
+  }
+  const auto n = static_cast<Eigen::Index>(moving.size());
+  MovingModes modes{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n), {}, {}, {}};
+  const Eigen::MatrixXd slots = contacts.slots(Eigen::all, moving);
+  modes.gaps = contacts.compatibility * slots;
+  modes.forces = contacts.equilibrium * slots;
+  Eigen::VectorXd prompt(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Index mode = moving[static_cast<std::size_t>(i)];
+    const StepCoefficients c =
+        step_coefficients(time.integrator, contacts.omega(mode), contacts.damping(mode), time.step,
+                          surplus.value_or(0.0));
+    modes.keep(i) = c.keep;
+    modes.pull(i) = c.pull;
+    modes.gain(i) = c.gain;
+    prompt(i) = c.prompt;
+  }
+  const Eigen::VectorXd& answer = surplus ? prompt : modes.gain;
+  modes.closed = modes.gaps * answer.asDiagonal() * modes.forces.transpose();
+  return modes;
+}
+
+/// What the forces on the contacts do through the modes that one body leaves out.
+struct LeftOut {
+  Eigen::MatrixXd closed;  ///< R_b
+  double share;            ///< w
+};
+
+std::vector<LeftOut> left_out_modes(const Pencil& contacts, const System& system, double step,
+                                    double cutoff) {
+  std::vector<LeftOut> found;
+  Eigen::Index first = 0;
+  for (const SystemBody& body : system.bodies) {
+    const Eigen::Index size = body.modal.size();
+    Eigen::VectorXd flexibility = Eigen::VectorXd::Zero(size);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const double omega = contacts.omega(first + i);
+      if (omega > cutoff) flexibility(i) = 1.0 / (omega * omega);
+    }
+    if (!flexibility.isZero(0.0)) {
+      const auto slots = contacts.slots.middleCols(first, size);
+      found.push_back({contacts.compatibility * slots * flexibility.asDiagonal() *
+                           slots.transpose() * contacts.equilibrium.transpose(),
+                       step / (step + body.modal.damping.beta)});
+    }
+    first += size;
+  }
+  return found;
+}
+
+}  // namespace
+
+FrozenStep::FrozenStep(const System& system, const TimeParameters& time)
+    : FrozenStep(system, time, prompt_surplus(retained(system, time), time)) {}
+
+FrozenStep::FrozenStep(const System& system, const TimeParameters& time,
+                       std::optional<double> surplus)
+    : system_(&system), time_(time), surplus_(surplus), cutoff_(retained_frequency(system, time)) {}
+
+std::vector<std::complex<double>> FrozenStep::factors(const Pencil& contacts) const {
+  check_pencil(contacts);
+  if (contacts.num_modes() != make_modal_pencil(*system_).num_modes())
+    throw std::invalid_argument("FrozenStep: the contacts are on other modes than the system has");
+  const MovingModes modes = moving_modes(contacts, time_, surplus_, cutoff_);
+  const std::vector<LeftOut> left_out = left_out_modes(contacts, *system_, time_.step, cutoff_);
+  Eigen::MatrixXd closed = modes.closed;
+  for (const LeftOut& body : left_out) closed += body.share * body.closed;
+  for (Eigen::Index i = 0; i < closed.rows(); ++i) {
+    if (!(closed(i, i) > 0.0))
+      throw NumericalError(fmt::format("no force of contact {} closes its gap: it jams", i));
+  }
+  const Eigen::PartialPivLU<Eigen::MatrixXd> close(closed);
+
+  // State: r, d, and λ~ of every body that leaves out modes. λ_n = by_position r + by_increment d +
+  // Σ by_lag λ~.
+  const Eigen::Index n = modes.keep.size();
+  const Eigen::Index k = closed.rows();
+  const Eigen::Index size = 2 * n + k * static_cast<Eigen::Index>(left_out.size());
+  Eigen::MatrixXd force = Eigen::MatrixXd::Zero(k, size);
+  if (surplus_) {
+    force.leftCols(n) = modes.gaps;
+    for (std::size_t b = 0; b < left_out.size(); ++b) {
+      force.middleCols(2 * n + k * static_cast<Eigen::Index>(b), k) =
+          -(1.0 - left_out[b].share) * left_out[b].closed;
+    }
+  } else {
+    force.leftCols(n) = modes.gaps * (1.0 - modes.pull.array()).matrix().asDiagonal();
+    force.middleCols(n, n) = modes.gaps * modes.keep.asDiagonal();
+  }
+  if (k > 0) force = close.solve(force).eval();
+
+  Eigen::MatrixXd map = Eigen::MatrixXd::Zero(size, size);
+  auto increment = map.middleRows(n, n);
+  increment = -(modes.gain.asDiagonal() * modes.forces.transpose() * force);
+  increment.leftCols(n).diagonal() -= modes.pull;
+  increment.middleCols(n, n).diagonal() += modes.keep;
+  map.topRows(n) = increment;
+  map.topLeftCorner(n, n).diagonal().array() += 1.0;
+  for (std::size_t b = 0; b < left_out.size(); ++b) {
+    const Eigen::Index first = 2 * n + k * static_cast<Eigen::Index>(b);
+    map.middleRows(first, k) = left_out[b].share * force;
+    map.block(first, first, k, k).diagonal().array() += 1.0 - left_out[b].share;
+  }
+  return matrix_eigenvalues(std::move(map));
+}
+
+double spectral_radius(const std::vector<std::complex<double>>& factors) {
+  double largest = 0.0;
+  for (const std::complex<double>& factor : factors) largest = std::max(largest, std::abs(factor));
+  return largest;
+}
+
+}  // namespace stridor

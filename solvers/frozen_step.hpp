@@ -1,0 +1,59 @@
+// The step of a simulation as a linear map, its sliding held.
+#pragma once
+
+#include <complex>
+#include <optional>
+#include <vector>
+
+#include "coupling/system.hpp"
+#include "solvers/pencil.hpp"
+#include "solvers/time_parameters.hpp"
+
+namespace stridor {
+
+/// One step, prediction and correction, of bodies whose contacts slide with rows that stay as they
+/// are (docs/theory.md, 3.7). Loads and drive drop out, so that the step is a linear map of the
+/// state. The motions of the bodies change in a step by factors z with |z| at most the spectral
+/// radius.
+///
+/// With C = B_C S and E = B_E S the rows of all modes, and s, k, e, g the coefficients of their
+/// scheme,
+///
+///   r_{n+1} = r_n + d_{n+1},   d_{n+1} = s d_n − k r_n − e Eᵀ λ_n
+///
+/// where λ_n closes the gaps at t_{n+1}, or those at t_n where bodies answer at once:
+///
+///   (C e Eᵀ) λ_n = C (r_n + s d_n − k r_n),   or   (C g Eᵀ + Σ w R_b) λ_n = C r_n − Σ (1 − w) R_b
+///   λ~, λ~_n = w λ_n + (1 − w) λ~_{n−1}
+///
+/// with R_b = B_C R B_Eᵀ of the modes that body b leaves out and λ~ the force as they feel it.
+class FrozenStep {
+ public:
+  /// As a simulation takes it up: with the modes that `time` keeps, and prompt_surplus().
+  /// @param system with all modes; referenced as long as this is used
+  FrozenStep(const System& system, const TimeParameters& time);
+  /// With another surplus.
+  FrozenStep(const System& system, const TimeParameters& time, std::optional<double> surplus);
+
+  double step() const { return time_.step; }
+
+  /// All factors by which motions change in a step, conjugates one by one, in no order; those of
+  /// the gaps, which one step closes, are 0.
+  /// @param contacts rows of sliding or sticking contacts on all modes of the system, with their
+  ///                 damping; G and H, which turn the rows with the motion, are left out
+  /// @throws std::invalid_argument as check_pencil(), or if it has other modes than the system
+  /// @throws NumericalError if no contact forces close the gaps: the contact jams
+  /// Cost: of order 10 (2n)³ operations for n modes that move.
+  std::vector<std::complex<double>> factors(const Pencil& contacts) const;
+
+ private:
+  const System* system_;
+  TimeParameters time_;
+  std::optional<double> surplus_;
+  double cutoff_;  ///< ω of the last mode that moves, rad/s
+};
+
+/// The largest of some factors, |z|.
+double spectral_radius(const std::vector<std::complex<double>>& factors);
+
+}  // namespace stridor

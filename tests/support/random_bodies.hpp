@@ -1,0 +1,72 @@
+// Two bodies of a few random degrees of freedom, one sliding on the other.
+#pragma once
+
+#include <random>
+
+#include "tests/support/small_systems.hpp"
+
+namespace stridor::test {
+
+/// A body of 2 to 6 degrees of freedom with springs of 1 to 300 and Rayleigh damping of up
+/// to a tenth of the critical one; `num_points` points that all of them move.
+inline SystemBody random_body(std::string name, std::mt19937& engine, int num_points,
+                              bool is_damped) {
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  const auto n = static_cast<Eigen::Index>(2 + engine() % 5);
+  const auto matrix = [&](Eigen::Index rows, Eigen::Index columns) {
+    return Eigen::MatrixXd(
+        Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal(engine); }));
+  };
+  const Eigen::MatrixXd shape = matrix(n, n);
+  const Eigen::MatrixXd mass = shape * shape.transpose() + 0.2 * Eigen::MatrixXd::Identity(n, n);
+  const Eigen::VectorXd springs =
+      Eigen::VectorXd::NullaryExpr(n, [&] { return std::pow(300.0, uniform(engine)); });
+  const Eigen::MatrixXd turn = matrix(n, n);
+  SystemBody body =
+      driven_body(std::move(name), mass, turn * springs.asDiagonal() * turn.transpose(),
+                  matrix(2 * num_points, n), 0);
+  if (is_damped) {
+    const double highest = body.modal.omega.maxCoeff();
+    body.reduced.damping.alpha = 0.2 * uniform(engine) * body.modal.omega.minCoeff();
+    body.reduced.damping.beta = 0.2 * uniform(engine) / highest;
+    body.modal = make_modal(body.reduced);
+  }
+  return body;
+}
+
+/// One point on the straight line y = 0 through the four nodes of the other body, at one of them or
+/// in the middle between two. It slides forward for ever where it is, by Subs-a: with rows that
+/// nothing changes.
+inline System random_sliding_bodies(unsigned seed, double friction, bool is_damped) {
+  std::mt19937 engine(seed);
+  System system;
+  system.bodies.push_back(random_body("slave", engine, 1, is_damped));
+  system.bodies.push_back(random_body("master", engine, 4, is_damped));
+  system.bodies[1].follows_drive = false;
+  system.bodies[1].load_row = -1;
+  MasterSurface surface;
+  surface.name = "master.top";
+  surface.body = 1;
+  for (int node = 0; node < 4; ++node) {
+    surface.rows.push_back({2 * node, 2 * node + 1});
+    surface.positions.emplace_back(node, 0.0);
+    surface.arc_length.push_back(node);
+  }
+  system.surfaces.push_back(surface);
+  ContactPoint contact;
+  contact.name = "contact";
+  contact.slave_rows = {0, 1};
+  contact.slave_position = {0.5 * static_cast<double>(1 + engine() % 5), 0.0};
+  contact.first_segment = static_cast<int>(contact.slave_position.x());
+  contact.assumption = ContactAssumption::subs_a;
+  contact.friction = constant_friction(friction);
+  contact.armed_from = 1e9;
+  system.contacts.push_back(contact);
+  system.drive.velocity = TimeCurve(1e9);
+  system.drive.load = TimeCurve(0.0);
+  system.drive.is_frozen = true;
+  return system;
+}
+
+}  // namespace stridor::test
