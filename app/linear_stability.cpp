@@ -37,19 +37,18 @@ class LinearFamily : public StabilityFamily {
   LinearFamily(LoadedLinearScene loaded, std::vector<NumericKey> keys)
       : loaded_(std::move(loaded)),
         keys_(std::move(keys)),
-        is_sparse_(loaded_.model().sparse.has_value()) {}
+        is_sparse_(std::holds_alternative<MatrixScene>(loaded_.scene) &&
+                   loaded_.model().sparse.has_value()) {}
 
-  Pencil pencil(std::span<const double> values) override {
-    return make_pencil(loaded_.model(keys_, values).dense);
-  }
+  Pencil pencil(std::span<const double> values) override { return make_pencil(at(values).dense); }
   double trusted_frequency(std::span<const double> values) override {
-    return loaded_.model(keys_, values).highest_frequency;
+    return at(values).highest_frequency;
   }
   bool is_sampled() const override { return true; }
   bool is_sparse() const override { return is_sparse_; }
   SampledSpectrum spectrum(std::span<const double> values, const LocusOptions& options) override {
     constexpr double rounding = 1e-9;  // of |s|, as the pairs have converged
-    const LinearModel model = loaded_.model(keys_, values);
+    const LinearModel model = at(values);
     SampledSpectrum found;
     for (const Eigenvalue& one :
          whole_spectrum(*model.sparse, {options.count, options.frequency}).eigenvalues) {
@@ -60,6 +59,18 @@ class LinearFamily : public StabilityFamily {
   }
 
  private:
+  /// @throws NumericalError naming the values where there is no sliding state
+  LinearModel at(std::span<const double> values) const {
+    try {
+      return loaded_.model(keys_, values);
+    } catch (const NumericalError& error) {
+      std::string place;
+      for (std::size_t i = 0; i < keys_.size(); ++i)
+        place += (i > 0 ? ", " : "at ") + value_text(keys_[i], values[i]);
+      throw NumericalError(place + ": " + error.what());
+    }
+  }
+
   LoadedLinearScene loaded_;
   std::vector<NumericKey> keys_;
   bool is_sparse_;

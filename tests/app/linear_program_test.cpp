@@ -259,6 +259,18 @@ TEST(DiscProgram, PistonsMakeTheForcesOfTheSlidingState) {
       Program({"eig", pressed, "--set", "contact.friction.coefficient=2.01"}).run();
   EXPECT_EQ(jammed.exit_code, 3);
   EXPECT_THAT(jammed.err, HasSubstr("no state in which it slides steadily"));
+  const ProgramResult locus = Program({"locus", pressed, "--parameter", friction, "--from", "0.1",
+                                       "--to", "2.01", "--points", "2"})
+                                  .run();
+  EXPECT_EQ(locus.exit_code, 3);
+  EXPECT_THAT(locus.err, HasSubstr("at contact.friction.coefficient = 2.01: disc: found no state"));
+  // A map has no growth there, and goes on.
+  const Json map = json_of({"map", pressed, "--x", friction, "1.9", "2.01", "2", "--y",
+                            "pads.piston.displacement", "20e-6", "40e-6", "2"});
+  for (const Json& row : map["growth"]) {
+    EXPECT_TRUE(row[0].is_number());
+    EXPECT_TRUE(row[1].is_null());
+  }
   const Json run = json_of({"run", pressed, "-o", (folder / "run.h5").string(), "--set",
                             "contact.formulation=penalty", "--set", "time.end=0.002"});
   EXPECT_GT(run["contacts"]["upper"]["contact_force"]["min"].get<double>(), 0.9 * force);
