@@ -7,6 +7,7 @@
 namespace stridor {
 namespace {
 
+using Lanes2 = double __attribute__((vector_size(16)));
 using Lanes4 = double __attribute__((vector_size(32)));
 using Lanes8 = double __attribute__((vector_size(64)));
 
@@ -274,7 +275,7 @@ STRIDOR_INLINE std::int64_t step_all(const Lanes& lanes, std::int64_t max_steps,
 using Step = std::int64_t (*)(const Lanes&, std::int64_t, double*);
 
 std::int64_t step_portable(const Lanes& lanes, std::int64_t max_steps, double* flagged) {
-  return step_all<Lanes4>(lanes, max_steps, flagged);
+  return step_all<Lanes2>(lanes, max_steps, flagged);
 }
 #if defined(__x86_64__)
 __attribute__((target("arch=x86-64-v3"))) std::int64_t step_v3(const Lanes& lanes,
@@ -299,7 +300,7 @@ Kernel kernel_of_this_processor() {
   if (__builtin_cpu_supports("x86-64-v4")) return {step_v4, 8};
   if (__builtin_cpu_supports("x86-64-v3")) return {step_v3, 4};
 #endif
-  return {step_portable, 4};
+  return {step_portable, 2};
 }
 
 const Kernel kernel = kernel_of_this_processor();

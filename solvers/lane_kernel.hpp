@@ -10,7 +10,7 @@
 
 namespace stridor {
 
-/// Simulations that a vector of this processor holds: 8 with AVX-512, else 4.
+/// Simulations that a vector of this processor holds: 8 with AVX-512, 4 with AVX2, else 2.
 std::size_t num_kernel_lanes();
 
 /// Numbers of one body in all lanes. Every pointer is to entries of num_kernel_lanes() numbers,
