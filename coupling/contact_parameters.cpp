@@ -37,12 +37,12 @@ const Schema& FrictionParameters::schema() {
             const bool is_constant = friction.law == Kind::constant;
             const auto demand = [&](const char* key, bool is_given, bool is_wanted) {
               if (is_given == is_wanted) return;
-              const char* law = is_constant                      ? "constant"
-                                : friction.law == Kind::stribeck ? "stribeck"
-                                                                 : "static_dynamic";
+              const char* kind = is_constant                      ? "constant"
+                                 : friction.law == Kind::stribeck ? "stribeck"
+                                                                  : "static_dynamic";
               problems.push_back({key,
                                   fmt::format("{} by the {} friction law",
-                                              is_wanted ? "missing: needed" : "not used", law),
+                                              is_wanted ? "missing: needed" : "not used", kind),
                                   {},
                                   0,
                                   0});

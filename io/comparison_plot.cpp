@@ -59,6 +59,7 @@ std::vector<std::filesystem::path> plot_comparison(const std::vector<ComparisonR
                                                    const std::filesystem::path& folder,
                                                    const Scene& scene) {
   std::vector<RunFileReader> files;
+  files.reserve(runs.size());
   for (const ComparisonRun& run : runs) files.emplace_back(run.file);
   const ComparisonRun& reference = runs.back();
   std::vector<std::filesystem::path> figures;

@@ -42,7 +42,7 @@ std::string read_text(const Checker& at, hid_t file, hid_t type, const std::stri
     char* text = nullptr;
     const Handle memory = at.own(H5Tcopy(type), H5Tclose, dataset, "cannot be read");
     at.check(read(memory.id(), &text), dataset, "cannot be read");
-    const std::string result = text != nullptr ? text : "";
+    std::string result = text != nullptr ? text : "";
     H5free_memory(text);
     return result;
   }
