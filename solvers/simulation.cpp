@@ -97,12 +97,12 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 StepOutcome Simulation::step() {
   Implementation& run = *implementation_;
-  if (run.ledger) {
-    const StepOutcome outcome = run.advance_on_account();
-    return outcome == StepOutcome::done ? run.solve() : outcome;
+  if (!run.ledger) {
+    run.advance();
+    return run.finish_step();
   }
-  run.advance();
-  return run.finish_step();
+  const StepOutcome outcome = run.advance_on_account();
+  return outcome == StepOutcome::done ? run.solve() : outcome;
 }
 
 StepOutcome Simulation::step_until(std::int64_t target) {

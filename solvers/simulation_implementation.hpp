@@ -162,7 +162,13 @@ struct Simulation::Implementation {
         rise * sliding_friction(contact.point().friction, contact.slip_velocity);
     problem.direction = contact.slip_velocity < 0.0 ? -1.0 : 1.0;
     problem.is_unilateral = time(index) >= contact.unilateral_from;
-    if (!contact.tracks_slip) return true;
+    if (contact.tracks_slip) pose_slip(contact, problem, rise);
+    return true;
+  }
+
+  /// What stick, lift-off and force laws take besides.
+  [[gnu::noinline]] void pose_slip(RunningContact& contact, LocalProblem& problem, double rise) {
+    const SlidingPoint& sliding = contact.sliding;
     contact.looks_ahead = false;
     contact.stretch = sliding.stretch();
     if (const auto& substrate = contact.point().substrate) {
@@ -180,7 +186,6 @@ struct Simulation::Implementation {
     problem.slip = (sliding.place() - contact.anchor) * contact.stretch;
     if (is_prompt) problem.slip += sliding.predicted_slip();
     set_sticking_friction(contact, problem, rise);
-    return true;
   }
 
   static void set_sticking_friction(const RunningContact& contact, LocalProblem& problem,
@@ -231,6 +236,10 @@ struct Simulation::Implementation {
       fill_delassus();
       return solver.solve(local);
     }
+    return solve_unsteady_contacts(drive_at, rise_time);
+  }
+
+  [[gnu::noinline]] ContactAnswer solve_unsteady_contacts(double drive_at, double rise_time) {
     bool is_ahead = false;
     const auto look_ahead = [&](std::size_t i) {
       if (!is_ahead) {
@@ -367,8 +376,8 @@ struct Simulation::Implementation {
     statistics.force_min = std::min(statistics.force_min, contact.force);
     statistics.force_max = std::max(statistics.force_max, contact.force);
     ++statistics.steps;
-    if (contact.state == ContactState::stick) ++statistics.sticking;
-    if (contact.state == ContactState::open) ++statistics.open;
+    if (contact.state == ContactState::slip) return;
+    ++(contact.state == ContactState::stick ? statistics.sticking : statistics.open);
   }
 
   /// The material point of a contact that does not stick moves with its corrected slip.
