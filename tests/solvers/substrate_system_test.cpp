@@ -249,7 +249,7 @@ TEST(SubstrateSystem, WhatIsNotKnownOfASubstrateIsRefused) {
               HasSubstr("contact.assumption: must be `film` with a substrate"));
   TimeParameters time = test::time_of(1e-3);
   time.integrator = Integrator::exact;
-  time.retain = RetainParameters{1.0};
+  time.retain = RetainParameters{1.0, {}};
   EXPECT_THAT(message_of<ConfigError>([&] { Simulation(system, time); }),
               HasSubstr("time.retain: a contact with a substrate takes all modes"));
 }
