@@ -150,11 +150,7 @@ void write_file(const SweepOptions& options, const LoadedSphereScene& loaded, co
 ExitCode sweep_spheres(const SweepOptions& options) {
   const LoadedSphereScene loaded = load_sphere_scene(options.scene, options.common.sets);
   const NumericKey key = find_sphere_key(loaded.scene, options.range.parameter, "--parameter");
-  const double from = parse_value(key, options.range.from, "--from");
-  const double to = parse_value(key, options.range.to, "--to");
-  if (from > to) throw ConfigError("--from", "is beyond --to; --up-down sweeps both ways");
-  const std::vector<double> values =
-      spaced_values(key, from, to, options.range.points, options.spacing());
+  const std::vector<double> values = range_values(key, options.range, options.spacing());
   Branches branches;
   Progress progress("sweep");
   if (options.is_up_and_down) {

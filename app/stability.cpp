@@ -120,6 +120,16 @@ NumericKey find_stability_key(const Scene& scene, const std::string& path,
   return key;
 }
 
+std::vector<double> range_values(const NumericKey& key, const RangeOptions& options,
+                                 Spacing spacing) {
+  const double from = parse_value(key, options.from, "--from");
+  const double to = parse_value(key, options.to, "--to");
+  if (from > to) {
+    throw ConfigError("--from", fmt::format("'{}' is beyond --to '{}'", options.from, options.to));
+  }
+  return spaced_values(key, from, to, options.points, spacing);
+}
+
 KeyRange make_range(const StabilityScene& scene, const RangeOptions& options) {
   std::string path = options.parameter;
   if (path.empty()) {
@@ -128,12 +138,7 @@ KeyRange make_range(const StabilityScene& scene, const RangeOptions& options) {
     path = *key;
   }
   KeyRange range{scene.find_key(path, "--parameter"), {}};
-  const double from = parse_value(range.key, options.from, "--from");
-  const double to = parse_value(range.key, options.to, "--to");
-  if (from > to) {
-    throw ConfigError("--from", fmt::format("'{}' is beyond --to '{}'", options.from, options.to));
-  }
-  range.values = spaced_values(range.key, from, to, options.points, Spacing::linear);
+  range.values = range_values(range.key, options, Spacing::linear);
   return range;
 }
 

@@ -47,6 +47,11 @@ struct RangeOptions {
   int points = 101;
 };
 
+/// The values of a key in a range.
+/// @throws ConfigError as parse_value() and spaced_values(), or if the range ends before it starts
+std::vector<double> range_values(const NumericKey& key, const RangeOptions& options,
+                                 Spacing spacing);
+
 /// --parameter, --from, --to, --points.
 void add_range_options(CLI::App& verb, RangeOptions& options);
 

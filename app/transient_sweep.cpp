@@ -330,14 +330,7 @@ void print(const NumericKey& key, const Points& points) {
 ExitCode sweep_transients(const SweepOptions& options) {
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   const NumericKey key = find_numeric_key(loaded.scene, options.range.parameter, "--parameter");
-  const double from = parse_value(key, options.range.from, "--from");
-  const double to = parse_value(key, options.range.to, "--to");
-  if (from > to) {
-    throw ConfigError(
-        "--from", fmt::format("'{}' is beyond --to '{}'", options.range.from, options.range.to));
-  }
-  const std::vector<double> values =
-      spaced_values(key, from, to, options.range.points, options.spacing());
+  const std::vector<double> values = range_values(key, options.range, options.spacing());
   // The ends of the range are read first: a mistake should not show after an hour.
   for (const double value : {values.front(), values.back()})
     with_settings(loaded, {{key.path, value}});

@@ -111,6 +111,11 @@ struct Simulation::Implementation {
     return at < drive_constant_from ? drive.velocity.value(at) : end_velocity;
   }
 
+  /// How far the drive slides in the step from an instant on, m, frozen or not.
+  double drawn_in_step(std::int64_t from) const {
+    return 0.5 * step * (sliding_velocity(time(from)) + sliding_velocity(time(from + 1)));
+  }
+
   void set_loads(double at) {
     const double amplitudes[] = {drive.load.value(at), drive.acceleration(at)};
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -179,9 +184,7 @@ struct Simulation::Implementation {
     }
     if (drive.is_frozen && sought_index() > 0) {
       // Held in place, the material of the master slides away below.
-      const double velocity = 0.5 * (sliding_velocity(time(sought_index() - 1)) +
-                                     sliding_velocity(time(sought_index())));
-      contact.anchor -= sliding.driven(velocity * step);
+      contact.anchor -= sliding.driven(drawn_in_step(sought_index() - 1));
     }
     problem.slip = (sliding.place() - contact.anchor) * contact.stretch;
     if (is_prompt) problem.slip += sliding.predicted_slip();
@@ -222,8 +225,7 @@ struct Simulation::Implementation {
     const SlidingPoint& sliding = contact.sliding;
     // A sticking contact keeps its material point, another one that of t_n, where the step begins.
     if (contact.state != ContactState::stick) contact.anchor = sliding.place();
-    const double drawn =
-        0.5 * step * (sliding_velocity(time(index)) + sliding_velocity(time(index + 1)));
+    const double drawn = drawn_in_step(index);
     problem.penetration =
         sliding.roughness() - sliding.gap_ahead(drive_at, drive.is_frozen ? 0.0 : drawn);
     problem.slip = (sliding.place() - contact.anchor) * contact.stretch + sliding.slip_ahead(drawn);
