@@ -11,6 +11,7 @@
 #include "analysis/sampled_locus.hpp"
 #include "app/linear_stability.hpp"
 #include "app/sphere_stability.hpp"
+#include "app/tasks.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
 #include "solvers/dense_eigenvalues.hpp"
@@ -19,10 +20,6 @@
 
 namespace stridor {
 namespace {
-
-/// Held while dense products may go to BLAS: a build of OpenBLAS without threads of its own hands
-/// the same work space to callers from two threads.
-std::mutex blas_in_use;
 
 /// Displacement of a point of a body, without that of the drive.
 Json displacement_json(const System& system, const Equilibrium& equilibrium, int body,

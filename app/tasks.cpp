@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -11,6 +10,8 @@
 #include "core/stop_token.hpp"
 
 namespace stridor {
+
+std::mutex blas_in_use;
 
 void run_tasks(std::size_t count, int num_threads,
                const std::function<void(std::size_t task, std::size_t thread)>& work,

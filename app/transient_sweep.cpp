@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -77,10 +76,6 @@ std::vector<Channel> summed_up(const Scene& scene) {
   return channels;
 }
 
-/// BLAS, LAPACK and the plans of FFTW serve one thread at a time. Set-up and summary use them; the
-/// steps in between do not, but for many contacts (see num_threads()).
-std::mutex one_at_a_time;
-
 /// One transient of a sweep.
 struct Transit {
   LoadedScene loaded;
@@ -144,7 +139,9 @@ std::vector<TransientPoint> points_at(const LoadedScene& scene, const NumericKey
   std::vector<std::unique_ptr<Transit>> transits(values.size());
   std::vector<March*> marches;
   {
-    const std::lock_guard lock(one_at_a_time);
+    // Set-up and summary use BLAS, LAPACK and plans of FFTW; the steps in between do not, but for
+    // many contacts (see num_threads()).
+    const std::lock_guard lock(blas_in_use);
     for (std::size_t i = 0; i < values.size(); ++i) {
       const Settings settings{{key.path, values[i]}};
       try {
@@ -162,7 +159,7 @@ std::vector<TransientPoint> points_at(const LoadedScene& scene, const NumericKey
   const std::vector<MarchEnd> ends = march_together(marches);
   const double seconds =
       seconds_since(start) / static_cast<double>(std::max<std::size_t>(marches.size(), 1));
-  const std::lock_guard lock(one_at_a_time);
+  const std::lock_guard lock(blas_in_use);
   std::size_t next = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (transits[i]) points[i] = transits[i]->point(values[i], ends[next++], seconds);

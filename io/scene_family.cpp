@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <stdexcept>
 
 #include "core/suggestion.hpp"
@@ -215,9 +214,6 @@ LoadedScene with_settings(const LoadedScene& scene, const Settings& settings) {
 }
 
 Model build_model_with(const LoadedScene& scene, const Settings& settings, BodyCache& cache) {
-  // A reduction is made of BLAS and LAPACK, which serve one thread at a time.
-  static std::mutex one_at_a_time;
-  const std::lock_guard lock(one_at_a_time);
   try {
     return build_model(scene, cache);
   } catch (const ConfigError& error) {
