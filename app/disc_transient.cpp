@@ -28,9 +28,6 @@ void check_run(const LoadedLinearScene& loaded) {
   need(scene->initial.has_value(), "initial",
        "is required for run: {perturbation: {eigenvalue, amplitude}}");
   need(scene->record.has_value(), "record", "is required for run: {interval}");
-  need(scene->model.contact.formulation == ContactFormulation::penalty, "contact.formulation",
-       "must be `penalty` for run: rigid contacts that open would close with impacts, for which "
-       "there is no law");
   need(scene->model.contact.preload != 0.0, "contact.preload",
        "must be positive for run, else the pads do not touch");
   need(scene->model.disc.speed > 0.0, "disc.speed",
@@ -148,7 +145,8 @@ void DiscTransient::make_model() {
   const double end = scene().time->end;
   model_ = *loaded_->model().disc;
   try {
-    motion_.emplace(model_->bodies, model_->contacts, model_->law, model_->state, step);
+    motion_ = make_face_contact_motion(model_->bodies, model_->contacts, model_->law, model_->state,
+                                       step);
   } catch (const std::invalid_argument& error) {
     std::vector<Problem> problems{{"time.step", error.what(), {}, 0, 0}};
     locate(problems, loaded_->tree);

@@ -77,7 +77,7 @@ class DiscTransient {
   std::string file_;
   RunKeeper keeper_;
   std::optional<DiscModel> model_;
-  std::optional<FaceContactMotion> motion_;
+  std::unique_ptr<FaceContactMotion> motion_;
   std::optional<DiscRecorder> recorder_;
   std::optional<DiscStatistics> statistics_;
   std::optional<RunFileWriter> writer_;

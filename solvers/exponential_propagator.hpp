@@ -50,6 +50,8 @@ class ExponentialPropagator {
   Eigen::MatrixXd compliance() const { return by_constant_.topRows(size_); }
   /// (q, q̇) at t_{n+1} per force that grows from nothing at t_n: 2n x n.
   const Eigen::MatrixXd& slope_response() const { return by_slope_; }
+  /// e^{Ah}: (q, q̇) at t_{n+1} per (q, q̇) at t_n.
+  const Eigen::MatrixXd& free_response() const { return free_; }
 
  private:
   Eigen::Index size_;

@@ -1,98 +1,97 @@
 // Motion of bodies that rub on the faces of a spinning plate, with lift-off and stick.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/state.hpp"
 #include "coupling/face_contact.hpp"
 #include "solvers/contact_solver.hpp"
-#include "solvers/exponential_propagator.hpp"
 
 namespace stridor {
 
 /// A contact at one instant.
 struct FaceContactState {
-  double gap = 0.0;             ///< m; negative where it is pressed
-  double force = 0.0;           ///< λ, N, >= 0
+  double gap = 0.0;  ///< m; of a contact with a penalty negative where it is pressed
+  /// λ, N, >= 0; of a rigid contact the impulse of a step over the step
+  double force = 0.0;
   double friction_force = 0.0;  ///< along the sliding direction, on the pad, N
   double across_force = 0.0;    ///< across it, N
   double slip_velocity = 0.0;   ///< of the face against the pad, magnitude, m/s
   ContactState state = ContactState::slip;
 };
 
-/// Marches M ẍ + P ẋ + Q x = ρ about a sliding state, x = q − q₀, where P and Q hold the contacts
-/// as linear about it and ρ what the contacts do besides (docs/theory.md, 10.6).
-///
-/// The linear part is propagated exactly (ExponentialPropagator), so that small motion grows as the
-/// eigenvalues say at any step. ρ is linear over a step; at its end the laws
-///
-///   λ = max(0, −k_C g),   τ = μ λ v/|v|, or |τ| <= μ λ where v = 0
-///
-/// hold exactly, with the gap g of FaceContact and v = (Ω r − b q̇, −a q̇ − Ω r c q) the velocity of
-/// the face against the pad. They act along n + A q, b + B q and a, each with its force of that
-/// instant. They are solved by Gauss and Seidel's sweeps over the contacts, as FiLM does, or by
-/// Newton's method where those do not converge, and what bends by repeating that. Order 2 in the
-/// step where the contacts are not linear.
+/// What contacts see of a displacement x from a sliding state, and how their forces act: three of
+/// each of k contacts, along its normal, along the sliding direction and across it.
+struct FaceContactRows {
+  FaceContactRows(const LinearSystem& bodies, const std::vector<FaceContact>& contacts,
+                  const FaceContactLaw& law, const FaceSlidingState& state);
+
+  Eigen::MatrixXd displacement;  ///< gap and velocities on x, 3k x n
+  Eigen::MatrixXd velocity;      ///< on ẋ
+  Eigen::VectorXd drive;         ///< gap and velocities of the sliding state, 3k
+  Eigen::MatrixXd inputs;        ///< n + A q₀, b + B q₀ and a, n x 3k
+  Eigen::VectorXd preload;       ///< forces of the sliding state, 3k
+  /// A and B of every contact (FaceContact), F K_A and F K_B; empty without bending.
+  Eigen::MatrixXd bending_inputs;                    ///< F, n x 7k
+  Eigen::MatrixXd normal_bending, friction_bending;  ///< K_A, K_B, 7k x n
+
+  int num_contacts() const { return static_cast<int>(drive.size() / 3); }
+  bool bends() const { return bending_inputs.cols() > 0; }
+  /// ½ xᵀ A x of every contact, m.
+  Eigen::VectorXd gap_bending(const Eigen::VectorXd& x) const;
+  /// What forces f do by bending at a displacement, on `bending_inputs`: λ K_A x + τ K_B x, 7k.
+  Eigen::VectorXd bending(const Eigen::VectorXd& f, const Eigen::VectorXd& x) const;
+};
+
+/// Marches M ẍ + P ẋ + Q x = the deviation of contact forces from those of a sliding state, x = q −
+/// q₀ (docs/theory.md, 10.6). The laws of the contacts are those of FaceContactSolver, with the gap
+/// g of FaceContact and v = (Ω r − b q̇, −a q̇ − Ω r c q) the velocity of the face against the pad.
+/// Forces act along n + A q, b + B q and a.
 class FaceContactMotion {
  public:
-  /// @param bodies without contact
-  /// @param law    with a penalty, and a speed > 0
-  /// @param state  about which motion is linear
-  /// @param step   h, s, > 0
-  /// @throws std::invalid_argument without a penalty or speed, or if the step is too long for the
-  /// stiffness of the contacts, about half a period of a mass on one of them; as
-  /// ExponentialPropagator
-  FaceContactMotion(const LinearSystem& bodies, std::vector<FaceContact> contacts,
-                    const FaceContactLaw& law, const FaceSlidingState& state, double step);
+  virtual ~FaceContactMotion() = default;
 
   /// At t = 0, from the sliding state.
-  void start(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity);
+  virtual void start(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity) = 0;
   /// One step. @return whether the contact forces have converged and the motion is finite
-  bool step();
+  virtual bool step() = 0;
 
   /// x, from the sliding state.
-  const Eigen::VectorXd& displacement() const { return q_; }
-  const Eigen::VectorXd& velocity() const { return v_; }
-  int num_contacts() const { return static_cast<int>(contacts_.size()); }
-  FaceContactState contact(int index) const;
+  virtual const Eigen::VectorXd& displacement() const = 0;
+  virtual Eigen::VectorXd velocity() const = 0;
+  virtual int num_contacts() const = 0;
+  virtual FaceContactState contact(int index) const = 0;
 
-  void save(State& state, const std::string& prefix) const;
+  virtual void save(State& state, const std::string& prefix) const = 0;
   /// @throws std::invalid_argument if the state is of another system
-  void load(const State& state, const std::string& prefix);
-
- private:
-  Eigen::VectorXd relative(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const;
-  Eigen::VectorXd linear_forces(const Eigen::VectorXd& relative) const;
-  bool solve(const Eigen::VectorXd& predicted);
-  bool sweep();
-  bool search();
-  Eigen::VectorXd deviation(const Eigen::VectorXd& forces, Eigen::MatrixXd* slope) const;
-  double softness(Eigen::Index row) const;
-  double gap_at_rest(Eigen::Index row) const;
-  void bend(const Eigen::VectorXd& displacement);
-
-  std::vector<FaceContact> contacts_;
-  FaceContactLaw law_;
-  FaceSlidingState sliding_;
-  ExponentialPropagator propagator_;
-  Eigen::MatrixXd gap_rows_;        ///< of gap and velocities on x, 3k x n
-  Eigen::MatrixXd velocity_rows_;   ///< on ẋ
-  Eigen::VectorXd drive_;           ///< velocities of the sliding state
-  Eigen::MatrixXd inputs_;          ///< n + A q₀, b + B q₀ and a of every contact, n x 3k
-  Eigen::MatrixXd linear_;          ///< of the linear forces on gap and velocities, 3k x 3k
-  Eigen::VectorXd preload_;         ///< forces of the sliding state
-  Eigen::MatrixXd answer_;          ///< (x, ẋ) at the end of a step per force there, 2n x 3k
-  Eigen::MatrixXd compliance_;      ///< gap and velocities per force, linear forces answering
-  Eigen::MatrixXd answering_;       ///< (1 + W L)⁻¹
-  Eigen::MatrixXd bare_;            ///< W
-  Eigen::MatrixXd bending_inputs_;  ///< n x 7k; none without bending
-  Eigen::MatrixXd normal_bending_, friction_bending_;  ///< K_A, K_B, 7k x n
-  Eigen::MatrixXd bending_answer_, bending_bare_;      ///< 2n x 7k, 3k x 7k
-  Eigen::VectorXd q_, v_, forces_, relative_, remainder_;
-  Eigen::VectorXd free_;         ///< gap and velocities at the end of a step without forces
-  Eigen::VectorXd bending_;      ///< what acts on bending_inputs_ besides the linear part, 7k
-  Eigen::VectorXd gap_bending_;  ///< ½ xᵀ A x of every contact, m
+  virtual void load(const State& state, const std::string& prefix) = 0;
 };
+
+/// Of springs where the law has a penalty (SpringContactMotion), else of rigid contacts
+/// (RigidContactMotion).
+/// @throws std::invalid_argument as they do
+std::unique_ptr<FaceContactMotion> make_face_contact_motion(
+    const LinearSystem& bodies, const std::vector<FaceContact>& contacts, const FaceContactLaw& law,
+    const FaceSlidingState& state, double step);
+
+/// @param seen   gap, and velocities of the face against the pad
+/// @param forces of the contact
+FaceContactState face_contact_state(const FaceContactLaw& law, const FaceContact& contact,
+                                    const Eigen::Vector3d& seen, const Eigen::Vector3d& forces);
+
+/// sin(x)/x, and its lowest value from where that is first reached.
+double least_sine_ratio(double x);
+
+/// Σ φ φᵀ answer(ω) of the modes of a system, damping and skew parts left aside, at the normals of
+/// the closed contacts: k x k.
+/// @param answer of a mode of unit mass with ω, rad/s
+Eigen::MatrixXd normal_answer(const LinearSystem& system, const FaceSlidingState& state,
+                              const std::function<double(double)>& answer);
+
+/// Of the symmetric part; true of a matrix without rows.
+bool is_positive_definite(const Eigen::MatrixXd& matrix);
 
 }  // namespace stridor

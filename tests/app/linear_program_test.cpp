@@ -136,8 +136,6 @@ TEST(DiscProgram, LocusListsEigenvaluesAndWindows) {
 }
 
 TEST(DiscProgram, RefusesWhatItHasNot) {
-  const std::string no_run = Program({"run", brake, "-o", "x.h5"}).run().err;
-  EXPECT_THAT(no_run, HasSubstr("contact.formulation: must be `penalty` for run"));
   EXPECT_THAT(Program({"run", scene_path("examples/flutter.yaml"), "-o", "x.h5"}).run().err,
               HasSubstr("has no contacts to run with"));
   EXPECT_THAT(Program({"eig", brake, "--below", "3 m"}).run().err, HasSubstr("--below"));
@@ -315,6 +313,38 @@ TEST(DiscProgram, RunsIntoABoundedCycle) {
                   .run()
                   .err,
               HasSubstr("there are 19 modes, got 99"));
+}
+
+TEST(DiscProgram, RunsWithRigidContacts) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "run.h5").string();
+  const std::vector<std::string> rigid{
+      "run",   scene_path("examples/disc_squeal.yaml"), "-o", file, "--force",
+      "--set", "contact.formulation=lagrange"};
+  const auto with = [&](const std::string& set) {
+    std::vector<std::string> arguments = rigid;
+    arguments.insert(arguments.end(), {"--set", set});
+    return arguments;
+  };
+  const Json run = json_of(rigid);
+  EXPECT_NEAR(run["perturbation"]["growth"].get<double>(), 345.387, 0.001);
+  // A cycle, and the same in steps of another length.
+  const double largest = run["pad_displacement"]["second_half"].get<double>();
+  EXPECT_NEAR(run["pad_displacement"]["first_half"].get<double>(), largest, 1e-3 * largest);
+  EXPECT_NEAR(json_of(with("time.step=4e-6"))["pad_displacement"]["second_half"].get<double>(),
+              largest, 2e-3 * largest);
+  EXPECT_NEAR(run["free_fraction"].get<double>(), 0.39, 0.02);
+  EXPECT_NEAR(run["stick_fraction"].get<double>(), 0.12, 0.02);
+  std::vector<std::string> long_steps = with("time.step=2e-4");
+  long_steps.insert(long_steps.end(), {"--set", "record.interval=2e-4"});
+  const ProgramResult too_long = Program(long_steps).run();
+  EXPECT_EQ(too_long.exit_code, 2);
+  EXPECT_THAT(too_long.err,
+              HasSubstr("time.step: motion of rigid face contacts: a step of 0.0002 s "
+                        "is too long for bodies as stiff as these"));
+  // The brake as it is given decays, in steps too.
+  EXPECT_LT(json_of({"run", brake, "-o", file, "--force"})["perturbation"]["growth"].get<double>(),
+            0.0);
 }
 
 double example_limit(const std::string& name, const std::string& key, const std::string& to,

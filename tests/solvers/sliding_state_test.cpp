@@ -8,7 +8,7 @@
 
 #include "core/errors.hpp"
 #include "solvers/dense_eigenvalues.hpp"
-#include "solvers/face_contact_motion.hpp"
+#include "solvers/spring_contact_motion.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/reference_brake.hpp"
 
@@ -210,7 +210,7 @@ TEST(SlidingState, IsWhereADampedMotionSettles) {
     free.contacts.push_back(face_contact_point(contact, brake.law, free.displacement, 0.0));
     free.contacts.back().is_closed = false;
   }
-  FaceContactMotion motion(brake.bodies, brake.contacts, brake.law, free, 5e-6);
+  SpringContactMotion motion(brake.bodies, brake.contacts, brake.law, free, 5e-6);
   motion.start(Eigen::VectorXd::Zero(brake.bodies.size()),
                Eigen::VectorXd::Zero(brake.bodies.size()));
   const Eigen::VectorXd way = found.state.displacement - free.displacement;
@@ -227,7 +227,7 @@ TEST(SlidingState, MotionAboutItStaysAtRest) {
   const SlidingStateSolution found =
       solve_sliding_state(brake.bodies, brake.contacts, brake.law, brake.loads);
   ASSERT_TRUE(found.has_converged);
-  FaceContactMotion motion(brake.bodies, brake.contacts, brake.law, found.state, 5e-7);
+  SpringContactMotion motion(brake.bodies, brake.contacts, brake.law, found.state, 5e-7);
   for (int n = 0; n < 200; ++n) ASSERT_TRUE(motion.step()) << n;
   EXPECT_LT(motion.displacement().norm(), 1e-9 * found.state.displacement.norm());
 }

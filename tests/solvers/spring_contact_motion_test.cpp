@@ -1,4 +1,4 @@
-#include "solvers/face_contact_motion.hpp"
+#include "solvers/spring_contact_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,51 +6,27 @@
 #include <cmath>
 #include <numbers>
 
-#include "solvers/dense_eigenvalues.hpp"
+#include "tests/support/face_contacts.hpp"
 #include "tests/support/message_of.hpp"
-#include "tests/support/reference_brake.hpp"
 
 namespace stridor {
 namespace {
 
 using Complex = std::complex<double>;
+using test::contact_of;
+using test::fastest_of;
+using test::FastestMode;
 using test::message_of;
+using test::squealing_brake;
 
-/// The reference brake with friction far beyond its limit, by a penalty.
-DiscModelParameters squealing_brake() {
-  DiscModelParameters brake = test::reference_brake(
-      {"gyroscopic", "friction", "friction_damping", "geometric", "structural_damping"});
-  brake.disc.damping.beta = brake.pads.damping.beta = 1e-7;
-  brake.contact.friction.coefficient = 0.45;
-  brake.contact.formulation = ContactFormulation::penalty;
-  brake.contact.penalty = 1e10;
-  return brake;
-}
-
-struct FastestMode {
-  Complex s;
-  Eigen::VectorXcd q;
-};
-
-FastestMode fastest_of(const LinearSystem& system) {
-  const Pencil pencil = make_pencil(system);
-  const DenseSpectrum spectrum = dense_spectrum(pencil);
-  const auto fastest =
-      std::max_element(spectrum.eigenvalues.begin(), spectrum.eigenvalues.end(),
-                       [](const auto& a, const auto& b) { return a.growth() < b.growth(); });
-  const Eigen::VectorXcd q =
-      pencil.slots * spectrum.right.col(fastest - spectrum.eigenvalues.begin());
-  return {fastest->s, q / q.cwiseAbs().maxCoeff()};
-}
-
-TEST(FaceContactMotion, SmallMotionGrowsAsTheEigenvalueSays) {
+TEST(SpringContactMotion, SmallMotionGrowsAsTheEigenvalueSays) {
   const DiscModelParameters brake = squealing_brake();
   const DiscModel model = make_disc_model(brake);
   const FastestMode mode = fastest_of(model.system);
   ASSERT_GT(mode.s.real(), 100.0);
   constexpr double step = 5e-6;
   constexpr double amplitude = 1e-12;
-  FaceContactMotion motion(model.bodies, model.contacts, model.law, model.state, step);
+  SpringContactMotion motion(model.bodies, model.contacts, model.law, model.state, step);
   motion.start(amplitude * mode.q.real(), amplitude * (mode.s * mode.q).real());
   constexpr int num_steps = 4000;
   for (int n = 0; n < num_steps; ++n) ASSERT_TRUE(motion.step());
@@ -69,14 +45,14 @@ TEST(FaceContactMotion, SmallMotionGrowsAsTheEigenvalueSays) {
   EXPECT_NEAR(growth, mode.s.real(), 1e-3 * mode.s.real());
 }
 
-TEST(FaceContactMotion, SquealEndsInABoundedCycleWithLiftOff) {
+TEST(SpringContactMotion, SquealEndsInABoundedCycleWithLiftOff) {
   const DiscModelParameters brake = squealing_brake();
   const DiscModel model = make_disc_model(brake);
   const FaceContactLaw& law = model.law;
   const double preload = model.state.contacts.front().force;
   const FastestMode mode = fastest_of(model.system);
   constexpr double step = 4e-6;
-  FaceContactMotion motion(model.bodies, model.contacts, law, model.state, step);
+  SpringContactMotion motion(model.bodies, model.contacts, law, model.state, step);
   motion.start(1e-7 * mode.q.real(), 1e-7 * (mode.s * mode.q).real());
   double largest[3] = {0.0, 0.0, 0.0};
   int num_open = 0;
@@ -114,18 +90,7 @@ LinearSystem bouncer(double mass, double stiffness) {
   return {one(mass), one(0.0), one(stiffness), Eigen::MatrixXd(0, 1), Eigen::MatrixXd(0, 1)};
 }
 
-FaceContact contact_of(Eigen::Index n, Eigen::Index along, Eigen::Index normal) {
-  FaceContact contact;
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(n);
-  contact.plate = {none, none, none, none, none};
-  contact.pad_r = contact.pad_phi = contact.pad_z = none;
-  if (along >= 0) contact.pad_phi(along) = 1.0;
-  contact.pad_z(normal) = 1.0;
-  contact.radius = 1.0;
-  return contact;
-}
-
-TEST(FaceContactMotion, BouncingMassHasItsClosedFormToSecondOrder) {
+TEST(SpringContactMotion, BouncingMassHasItsClosedFormToSecondOrder) {
   constexpr double m = 2.0, k = 50.0, k_C = 800.0, N0 = 8.0, v0 = 0.7;
   const double w = std::sqrt(k / m);
   const double W = std::sqrt((k + k_C) / m);
@@ -137,8 +102,8 @@ TEST(FaceContactMotion, BouncingMassHasItsClosedFormToSecondOrder) {
   const auto error = [&](int steps) {
     const std::vector<FaceContact> contacts{contact_of(1, -1, 0)};
     const FaceContactLaw law{0.0, k_C, 1.0, false, false};
-    FaceContactMotion motion(bouncer(m, k), contacts, law,
-                             prescribed_sliding_state(contacts, law, N0), period / steps);
+    SpringContactMotion motion(bouncer(m, k), contacts, law,
+                               prescribed_sliding_state(contacts, law, N0), period / steps);
     motion.start(Eigen::VectorXd::Constant(1, opening), Eigen::VectorXd::Constant(1, v0));
     for (int n = 0; n < 3 * steps; ++n) EXPECT_TRUE(motion.step());
     return std::hypot(W * (motion.displacement()(0) - opening), motion.velocity()(0) - v0) / v0;
@@ -149,7 +114,7 @@ TEST(FaceContactMotion, BouncingMassHasItsClosedFormToSecondOrder) {
   EXPECT_LT(fine, coarse / 8.0);
 }
 
-TEST(FaceContactMotion, RefusesAStepTooLongForItsContacts) {
+TEST(SpringContactMotion, RefusesAStepTooLongForItsContacts) {
   constexpr double m = 2.0, k = 50.0, k_C = 800.0;
   const std::vector<FaceContact> contacts{contact_of(1, -1, 0)};
   const FaceContactLaw law{0.0, k_C, 1.0, false, false};
@@ -161,20 +126,20 @@ TEST(FaceContactMotion, RefusesAStepTooLongForItsContacts) {
     (std::sin(x) / x > -k / k_C ? low : high) = x;
   }
   const double longest = low / std::sqrt((k + k_C) / m);
-  EXPECT_NO_THROW(FaceContactMotion(bouncer(m, k), contacts, law, state, 0.999 * longest));
+  EXPECT_NO_THROW(SpringContactMotion(bouncer(m, k), contacts, law, state, 0.999 * longest));
   EXPECT_NE(message_of<std::invalid_argument>([&] {
-              FaceContactMotion(bouncer(m, k), contacts, law, state, 1.001 * longest);
+              SpringContactMotion(bouncer(m, k), contacts, law, state, 1.001 * longest);
             }).find("is too long for contacts as stiff as these"),
             std::string::npos);
-  EXPECT_THROW(FaceContactMotion(bouncer(m, k), contacts, law, state, 2.2 * longest),
+  EXPECT_THROW(SpringContactMotion(bouncer(m, k), contacts, law, state, 2.2 * longest),
                std::invalid_argument);
   const FaceContactLaw rigid{0.0, std::nullopt, 1.0, false, false};
   EXPECT_EQ(message_of<std::invalid_argument>(
-                [&] { FaceContactMotion(bouncer(m, k), contacts, rigid, state, 1e-3); }),
+                [&] { SpringContactMotion(bouncer(m, k), contacts, rigid, state, 1e-3); }),
             "motion of face contacts: takes contacts with a penalty, and a plate that turns");
 }
 
-TEST(FaceContactMotion, ManyContactsThatStickAndLiftOffKeepTheLaws) {
+TEST(SpringContactMotion, ManyContactsThatStickAndLiftOffKeepTheLaws) {
   // Pads of three points each with friction that couples them, kicked so that some stick: sweeps
   // over the contacts alone would go round in circles.
   DiscModelParameters brake = squealing_brake();
@@ -191,7 +156,7 @@ TEST(FaceContactMotion, ManyContactsThatStickAndLiftOffKeepTheLaws) {
   brake.contact.friction.coefficient = 0.6;
   const DiscModel model = make_disc_model(brake);
   const FastestMode mode = fastest_of(model.system);
-  FaceContactMotion motion(model.bodies, model.contacts, model.law, model.state, 5e-7);
+  SpringContactMotion motion(model.bodies, model.contacts, model.law, model.state, 5e-7);
   motion.start(1e-5 * mode.q.real(), 1e-5 * (mode.s * mode.q).real());
   int seen[3] = {0, 0, 0};
   for (int n = 0; n < 6000; ++n) {
@@ -221,20 +186,20 @@ TEST(FaceContactMotion, ManyContactsThatStickAndLiftOffKeepTheLaws) {
   for (const int count : seen) EXPECT_GT(count, 0);
 }
 
-TEST(FaceContactMotion, GoesOnBitwiseFromItsState) {
+TEST(SpringContactMotion, GoesOnBitwiseFromItsState) {
   const DiscModelParameters brake = squealing_brake();
   const DiscModel model = make_disc_model(brake);
   const FastestMode mode = fastest_of(model.system);
   const auto fresh = [&] {
-    FaceContactMotion motion(model.bodies, model.contacts, model.law, model.state, 4e-6);
+    SpringContactMotion motion(model.bodies, model.contacts, model.law, model.state, 4e-6);
     motion.start(1e-5 * mode.q.real(), 1e-5 * (mode.s * mode.q).real());
     return motion;
   };
-  FaceContactMotion whole = fresh();
+  SpringContactMotion whole = fresh();
   for (int n = 0; n < 900; ++n) ASSERT_TRUE(whole.step());
   State state;
   whole.save(state, "motion/");
-  FaceContactMotion second = fresh();
+  SpringContactMotion second = fresh();
   second.load(state, "motion/");
   for (int n = 0; n < 300; ++n) {
     ASSERT_TRUE(whole.step());
@@ -244,7 +209,7 @@ TEST(FaceContactMotion, GoesOnBitwiseFromItsState) {
   EXPECT_EQ(whole.contact(0).force, second.contact(0).force);
 }
 
-TEST(FaceContactMotion, MassOnABeltSticksAndThenSwingsAtItsSpeed) {
+TEST(SpringContactMotion, MassOnABeltSticksAndThenSwingsAtItsSpeed) {
   // From rest, 0.03 m short of the place where friction holds the spring, a mass on a belt swings
   // faster than the belt, sticks, and leaves with v at that place: from then on its amplitude is
   // v/ω.
@@ -256,8 +221,8 @@ TEST(FaceContactMotion, MassOnABeltSticksAndThenSwingsAtItsSpeed) {
   system.gaps = system.forces = Eigen::MatrixXd(0, 2);
   const std::vector<FaceContact> contacts{contact_of(2, 0, 1)};
   const FaceContactLaw law{mu, 1e5, v, false, false};
-  FaceContactMotion motion(system, contacts, law, prescribed_sliding_state(contacts, law, N0),
-                           1e-3);
+  SpringContactMotion motion(system, contacts, law, prescribed_sliding_state(contacts, law, N0),
+                             1e-3);
   motion.start(Eigen::Vector2d(-mu * N0 / k, 0.0), Eigen::Vector2d::Zero());
   bool has_stuck = false;
   double largest = 0.0;

@@ -1,0 +1,53 @@
+// Contacts on the faces of a plate, in a brake that squeals and one by one.
+#pragma once
+
+#include <algorithm>
+#include <complex>
+
+#include "coupling/face_contact.hpp"
+#include "solvers/dense_eigenvalues.hpp"
+#include "tests/support/reference_brake.hpp"
+
+namespace stridor::test {
+
+/// The reference brake with friction far beyond its limit, by a penalty.
+inline DiscModelParameters squealing_brake() {
+  DiscModelParameters brake = reference_brake(
+      {"gyroscopic", "friction", "friction_damping", "geometric", "structural_damping"});
+  brake.disc.damping.beta = brake.pads.damping.beta = 1e-7;
+  brake.contact.friction.coefficient = 0.45;
+  brake.contact.formulation = ContactFormulation::penalty;
+  brake.contact.penalty = 1e10;
+  return brake;
+}
+
+struct FastestMode {
+  std::complex<double> s;
+  Eigen::VectorXcd q;
+};
+
+inline FastestMode fastest_of(const LinearSystem& system) {
+  const Pencil pencil = make_pencil(system);
+  const DenseSpectrum spectrum = dense_spectrum(pencil);
+  const auto fastest =
+      std::max_element(spectrum.eigenvalues.begin(), spectrum.eigenvalues.end(),
+                       [](const auto& a, const auto& b) { return a.growth() < b.growth(); });
+  const Eigen::VectorXcd q =
+      pencil.slots * spectrum.right.col(fastest - spectrum.eigenvalues.begin());
+  return {fastest->s, q / q.cwiseAbs().maxCoeff()};
+}
+
+/// On a pad alone, with coordinates along (none if negative) and away from the plate, which is
+/// flat.
+inline FaceContact contact_of(Eigen::Index n, Eigen::Index along, Eigen::Index normal) {
+  FaceContact contact;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(n);
+  contact.plate = {none, none, none, none, none};
+  contact.pad_r = contact.pad_phi = contact.pad_z = none;
+  if (along >= 0) contact.pad_phi(along) = 1.0;
+  contact.pad_z(normal) = 1.0;
+  contact.radius = 1.0;
+  return contact;
+}
+
+}  // namespace stridor::test
