@@ -71,8 +71,16 @@ class Sampler {
 
   const SamplingEffort& effort() const { return effort_; }
 
-  Sample at(double value) {
-    const SampledSpectrum all = family_(value);
+  bool has_glimpses() const { return family_.glimpse != nullptr; }
+  Sample at(double value) { return sample_of(value, family_.at(value)); }
+  /// Of which only the fastest matters.
+  Sample near(double value) {
+    return family_.near ? sample_of(value, family_.near(value)) : at(value);
+  }
+  Sample glimpse(double value) { return sample_of(value, family_.glimpse(value)); }
+
+ private:
+  Sample sample_of(double value, const SampledSpectrum& all) const {
     Sample sample;
     sample.value = value;
     sample.excess = -std::numeric_limits<double>::infinity();
@@ -91,7 +99,6 @@ class Sampler {
     return sample;
   }
 
- private:
   const SpectrumFamily& family_;
   const LocusOptions& options_;
   SamplingEffort effort_;
@@ -121,7 +128,7 @@ void narrow(Sampler& sampler, Sample& stable, Sample& growing) {
       next = std::clamp(at, std::min(stable.value, growing.value) + margin,
                         std::max(stable.value, growing.value) - margin);
     }
-    Sample sample = sampler.at(next);
+    Sample sample = sampler.near(next);
     const bool is_growing = sample.is_growing();
     num_growing = is_growing ? num_growing + 1 : 0;
     num_stable = is_growing ? 0 : num_stable + 1;
@@ -133,7 +140,10 @@ void narrow(Sampler& sampler, Sample& stable, Sample& growing) {
 
 /// Climbs to the largest growth between three samples by golden sections; stops early where
 /// something grows if `until_growing`.
-Sample climb(Sampler& sampler, double low, const Sample& middle, double high, bool until_growing) {
+/// @param look takes a sample at a value
+template <class Look>
+Sample climb(Sampler& sampler, const Look& look, double low, const Sample& middle, double high,
+             bool until_growing) {
   const int max_steps = sampler.effort().climbing_steps;
   const double ratio = 0.5 * (3.0 - std::sqrt(5.0));
   Sample best = middle;
@@ -143,7 +153,7 @@ Sample climb(Sampler& sampler, double low, const Sample& middle, double high, bo
     const bool is_right = high - best.value > best.value - low;
     const double next = is_right ? best.value + ratio * (high - best.value)
                                  : best.value - ratio * (best.value - low);
-    Sample sample = sampler.at(next);
+    Sample sample = look(next);
     if (sample.excess > best.excess) {
       (is_right ? low : high) = best.value;
       best = std::move(sample);
@@ -177,12 +187,56 @@ void add_maxima(Sampler& sampler, std::vector<Sample>& samples) {
     const bool is_stable =
         !samples[i - 1].is_growing() && !here.is_growing() && !samples[i + 1].is_growing();
     if (!is_maximum || !is_damped || !is_stable) continue;
-    Sample top = climb(sampler, samples[i - 1].value, here, samples[i + 1].value, true);
+    const auto look = [&](double value) { return sampler.near(value); };
+    Sample top = climb(sampler, look, samples[i - 1].value, here, samples[i + 1].value, true);
     if (!top.is_growing()) continue;
     const auto after = static_cast<std::ptrdiff_t>(top.value > here.value ? i + 1 : i);
     samples.insert(samples.begin() + after, std::move(top));
     ++i;
   }
+}
+
+/// What two samples do not show of the values between them, by several glimpses there. Ascending.
+std::vector<Sample> hidden_between(Sampler& sampler, const Sample& low, const Sample& high,
+                                   int num_glimpses) {
+  std::vector<Sample> looks{low};
+  for (int i = 1; i <= num_glimpses; ++i)
+    looks.push_back(
+        sampler.glimpse(low.value + (high.value - low.value) * i / (num_glimpses + 1.0)));
+  looks.push_back(high);
+  std::vector<Sample> hidden;
+  const auto look_closely = [&](const Sample& look) {
+    Sample sample = look.is_growing() ? sampler.near(look.value) : sampler.at(look.value);
+    if (sample.is_growing() == look.is_growing()) hidden.push_back(std::move(sample));
+  };
+  // Stretches of growth and of none, without those that either end belongs to.
+  for (std::size_t first = 1; first + 1 < looks.size();) {
+    std::size_t last = first;
+    while (last + 1 < looks.size() && looks[last + 1].is_growing() == looks[first].is_growing())
+      ++last;
+    const bool is_at_end =
+        last + 1 == looks.size() || looks[first].is_growing() == looks[first - 1].is_growing();
+    if (!is_at_end) {
+      const auto begin = looks.begin() + static_cast<std::ptrdiff_t>(first);
+      const auto end = looks.begin() + static_cast<std::ptrdiff_t>(last) + 1;
+      const auto by_excess = [](const Sample& a, const Sample& b) { return a.excess < b.excess; };
+      look_closely(looks[first].is_growing() ? *std::max_element(begin, end, by_excess)
+                                             : *std::min_element(begin, end, by_excess));
+    }
+    first = last + 1;
+  }
+  if (!hidden.empty() || low.is_growing() || high.is_growing()) return hidden;
+  // Nothing grows by any of them: the largest may be the foot of a narrow window.
+  const auto top =
+      std::max_element(looks.begin(), looks.end(),
+                       [](const Sample& a, const Sample& b) { return a.excess < b.excess; });
+  if (top == looks.begin() || top + 1 == looks.end()) return hidden;
+  const Sample peak = climb(
+      sampler, [&](double value) { return sampler.glimpse(value); }, (top - 1)->value, *top,
+      (top + 1)->value, true);
+  Sample sample = sampler.near(peak.value);
+  if (sample.is_growing()) hidden.push_back(std::move(sample));
+  return hidden;
 }
 
 UnstableWindow window_of(Sampler& sampler, const std::vector<Sample>& samples) {
@@ -193,12 +247,14 @@ UnstableWindow window_of(Sampler& sampler, const std::vector<Sample>& samples) {
       std::max_element(samples.begin(), samples.end(),
                        [](const Sample& a, const Sample& b) { return a.growth() < b.growth(); });
   Sample peak = *top;
-  if (top != samples.begin() && top + 1 != samples.end())
-    peak = climb(sampler, (top - 1)->value, *top, (top + 1)->value, false);
+  if (top != samples.begin() && top + 1 != samples.end()) {
+    const auto look = [&](double value) { return sampler.near(value); };
+    peak = climb(sampler, look, (top - 1)->value, *top, (top + 1)->value, false);
+  }
   for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
     const Sample& a = samples[i];
     const Sample& b = samples[i + 1];
-    const Sample middle = sampler.at(0.5 * (a.value + b.value));
+    const Sample middle = sampler.near(0.5 * (a.value + b.value));
     if (middle.growth() > peak.growth()) peak = middle;
     // Simpson's rule.
     window.growth_integral +=
@@ -254,19 +310,28 @@ void check(bool has_family, const std::vector<double>& values, const LocusOption
 Locus sample_locus(const PencilFamily& family, const std::vector<double>& values,
                    const LocusOptions& options) {
   check(family.place != nullptr, values, options);
-  return sample_locus(SpectrumFamily(DenseSpectra(family)), values, options, SamplingEffort{});
+  return sample_locus(SpectrumFamily{DenseSpectra(family), nullptr, nullptr}, values, options,
+                      SamplingEffort{});
 }
 
 Locus sample_locus(const SpectrumFamily& family, const std::vector<double>& values,
                    const LocusOptions& options, const SamplingEffort& effort) {
-  check(family != nullptr, values, options);
+  check(family.at != nullptr, values, options);
   Sampler sampler(family, options, effort);
   std::vector<Sample> samples;
-  for (const double value : fill_in(values, effort.least_values))
-    samples.push_back(sampler.at(value));
   Locus locus;
   locus.values = values;
-  locus.num_places = static_cast<int>(samples.size());
+  const auto num_intervals = static_cast<int>(values.size()) - 1;
+  const int num_glimpses = std::max(7, effort.least_glimpses / std::max(1, num_intervals));
+  for (const double value : fill_in(values, effort.least_values)) {
+    Sample sample = sampler.at(value);
+    ++locus.num_places;
+    if (sampler.has_glimpses() && !samples.empty()) {
+      for (Sample& hidden : hidden_between(sampler, samples.back(), sample, num_glimpses))
+        samples.push_back(std::move(hidden));
+    }
+    samples.push_back(std::move(sample));
+  }
   auto wanted = values.begin();
   for (const Sample& sample : samples) {
     if (wanted == values.end() || sample.value != *wanted) continue;

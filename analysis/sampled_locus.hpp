@@ -15,7 +15,13 @@ struct SampledSpectrum {
   std::vector<double> rounding;  ///< what rounding may have added to each real part, 1/s
 };
 /// Those of a system that depends on one parameter; called in any order.
-using SpectrumFamily = std::function<SampledSpectrum(double value)>;
+struct SpectrumFamily {
+  /// All that are wanted.
+  std::function<SampledSpectrum(double value)> at;
+  /// Where `at` takes long: the fastest growing right and others perhaps missing, between values at
+  /// which all are known; and a first look, right in neither. Both or none.
+  std::function<SampledSpectrum(double value)> near, glimpse;
+};
 
 /// How many spectra a locus may cost.
 struct SamplingEffort {
@@ -23,8 +29,9 @@ struct SamplingEffort {
   double tolerance = 1e-13;  ///< of the ends of windows, relative
   int climbing_steps = 40;   ///< of golden sections towards the largest growth
   enum class Ends { halving, secants } ends = Ends::halving;  ///< how ends of windows are found
+  int least_glimpses = 64;  ///< in all, where a family has them
 };
-/// For spectra that take seconds: as many as are asked for, and few besides.
+/// For spectra that take seconds: all eigenvalues where they are asked for, and few besides.
 inline constexpr SamplingEffort sparing_effort{1, 1e-9, 8, SamplingEffort::Ends::secants};
 
 /// Eigenvalues and unstable windows along a parameter, for systems whose eigenvalues coincide or
@@ -44,8 +51,9 @@ inline constexpr SamplingEffort sparing_effort{1, 1e-9, 8, SamplingEffort::Ends:
 /// @throws as trace_locus()
 Locus sample_locus(const PencilFamily& family, const std::vector<double>& values,
                    const LocusOptions& options = {});
-/// The same from spectra that come from elsewhere. With sparing_effort a window that lies between
-/// two of the values asked for is missed.
+/// The same from spectra that come from elsewhere. Where the family has glimpses, several of them
+/// are taken between any two values, and the largest of them climbed: what grows there by their
+/// account, or does not where it grows on both sides, is looked at closely.
 Locus sample_locus(const SpectrumFamily& family, const std::vector<double>& values,
                    const LocusOptions& options, const SamplingEffort& effort);
 

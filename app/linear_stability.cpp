@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <memory>
 #include <numbers>
 
@@ -32,6 +33,79 @@ SparseSpectrum whole_spectrum(const SparseSystem& system, SpectrumWindow window)
   return spectrum;
 }
 
+/// Spectra of large matrices along a key. All eigenvalues take a search; between two values where
+/// they are known their eigenvectors say where to look.
+class SparseSpectra {
+ public:
+  using System = std::function<SparseSystem(double value)>;
+  SparseSpectra(System system, const LocusOptions& options)
+      : system_(std::move(system)), window_{options.count, options.frequency} {}
+
+  SampledSpectrum at(double value) {
+    SparseSpectrum spectrum = whole_spectrum(system_(value), window_);
+    spectrum.modes.resize(0, 0);
+    const SampledSpectrum found = sampled(spectrum.eigenvalues);
+    constexpr Eigen::Index most_kept = Eigen::Index{1} << 26;  // complex numbers: 1 GB
+    kept_ += spectrum.right.size();
+    known_.insert_or_assign(value, std::move(spectrum));
+    while (kept_ > most_kept && known_.size() > 2) {
+      const auto first =
+          known_.begin()->first == value ? std::next(known_.begin()) : known_.begin();
+      kept_ -= first->second.right.size();
+      known_.erase(first);
+    }
+    return found;
+  }
+
+  SampledSpectrum near(double value) {
+    constexpr int num_refined = 3;
+    const SpectrumBasis* basis = basis_at(value);
+    if (basis == nullptr) return at(value);
+    return sampled(fastest_near(system_(value), *basis, num_refined).eigenvalues);
+  }
+
+  SampledSpectrum glimpse(double value) {
+    const SpectrumBasis* basis = basis_at(value);
+    if (basis == nullptr) return at(value);
+    SampledSpectrum found;
+    found.eigenvalues = projected_eigenvalues(system_(value), *basis);
+    for (const std::complex<double>& s : found.eigenvalues)
+      found.rounding.push_back(rounding * std::abs(s));
+    return found;
+  }
+
+ private:
+  static constexpr double rounding = 1e-9;  ///< of |s|, as pairs have converged
+
+  static SampledSpectrum sampled(const std::vector<Eigenvalue>& eigenvalues) {
+    SampledSpectrum found;
+    for (const Eigenvalue& one : eigenvalues) {
+      found.eigenvalues.push_back(one.s);
+      found.rounding.push_back(rounding * std::abs(one.s));
+    }
+    return found;
+  }
+
+  /// Of the values next to it; null where there are not two, or where it is one of them.
+  const SpectrumBasis* basis_at(double value) {
+    const auto above = known_.lower_bound(value);
+    if (above == known_.end() || above == known_.begin() || above->first == value) return nullptr;
+    const auto below = std::prev(above);
+    if (std::pair(below->first, above->first) != basis_of_) {
+      basis_ = spectrum_basis({&below->second, &above->second});
+      basis_of_ = {below->first, above->first};
+    }
+    return &basis_;
+  }
+
+  System system_;
+  SpectrumWindow window_;
+  std::map<double, SparseSpectrum> known_;
+  Eigen::Index kept_ = 0;  ///< complex numbers in known_
+  SpectrumBasis basis_;
+  std::pair<double, double> basis_of_{0.0, 0.0};
+};
+
 class LinearFamily : public StabilityFamily {
  public:
   LinearFamily(LoadedLinearScene loaded, std::vector<NumericKey> keys)
@@ -46,19 +120,20 @@ class LinearFamily : public StabilityFamily {
   }
   bool is_sampled() const override { return true; }
   bool is_sparse() const override { return is_sparse_; }
-  SampledSpectrum spectrum(std::span<const double> values, const LocusOptions& options) override {
-    constexpr double rounding = 1e-9;  // of |s|, as the pairs have converged
-    const LinearModel model = at(values);
-    SampledSpectrum found;
-    for (const Eigenvalue& one :
-         whole_spectrum(*model.sparse, {options.count, options.frequency}).eigenvalues) {
-      found.eigenvalues.push_back(one.s);
-      found.rounding.push_back(rounding * std::abs(one.s));
-    }
-    return found;
-  }
 
  private:
+  SpectrumFamily sparse_spectra(std::size_t key, std::vector<double> values,
+                                const LocusOptions& options) override {
+    const auto system = [this, key, values](double value) mutable {
+      values[key] = value;
+      return *at(values).sparse;
+    };
+    const auto spectra = std::make_shared<SparseSpectra>(system, options);
+    return {[spectra](double value) { return spectra->at(value); },
+            [spectra](double value) { return spectra->near(value); },
+            [spectra](double value) { return spectra->glimpse(value); }};
+  }
+
   /// @throws NumericalError naming the values where there is no sliding state
   LinearModel at(std::span<const double> values) const {
     try {

@@ -324,13 +324,16 @@ PencilFamily StabilityFamily::along(std::size_t key, std::vector<double> values,
 
 SpectrumFamily StabilityFamily::spectra(std::size_t key, std::vector<double> values,
                                         const LocusOptions& options) {
-  return [this, key, values, options](double value) mutable {
-    if (stop_requested()) throw Interrupted("nothing has been written");
-    values[key] = value;
-    SampledSpectrum found = spectrum(values, options);
-    if (report_) report_(value);
-    return found;
-  };
+  SpectrumFamily family = sparse_spectra(key, std::move(values), options);
+  for (auto* spectrum : {&family.at, &family.near, &family.glimpse}) {
+    *spectrum = [this, found_at = std::move(*spectrum)](double value) {
+      if (stop_requested()) throw Interrupted("nothing has been written");
+      SampledSpectrum found = found_at(value);
+      if (report_) report_(value);
+      return found;
+    };
+  }
+  return family;
 }
 
 /// Positions at which the contact passes a master node, if the position is what varies.

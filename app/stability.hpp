@@ -111,10 +111,8 @@ class StabilityFamily {
   /// Whether the system is too large for a pencil: spectra() takes its place, and there is no
   /// pencil().
   virtual bool is_sparse() const { return false; }
-  /// The eigenvalues wanted at some values of the keys.
-  /// @throws NumericalError naming the values if one may be missing
-  virtual SampledSpectrum spectrum(std::span<const double>, const LocusOptions&) { return {}; }
-  /// spectrum() along one of the keys; arguments as of along().
+  /// The eigenvalues wanted along one of the keys; arguments as of along(). They throw
+  /// NumericalError naming the values if one may be missing.
   SpectrumFamily spectra(std::size_t key, std::vector<double> values, const LocusOptions& options);
 
   /// The pencils along one of the keys.
@@ -128,6 +126,9 @@ class StabilityFamily {
   void on_value(std::function<void(double)> report) { report_ = std::move(report); }
 
  private:
+  virtual SpectrumFamily sparse_spectra(std::size_t, std::vector<double>, const LocusOptions&) {
+    return {};
+  }
   virtual std::vector<double> kinks(std::size_t, const std::vector<double>&, double, double) {
     return {};
   }

@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <stdexcept>
@@ -59,6 +61,8 @@ class SparseSearch {
   }
 
   SparseSpectrum run();
+  /// @param count of the pairs that grow fastest
+  SparseSpectrum run(const SpectrumBasis& basis, int count);
 
  private:
   Eigen::Index size() const { return pencil_.size(); }
@@ -72,11 +76,13 @@ class SparseSearch {
   void add_random(const SparseFactor& factor, Complex shift, int count);
   double height_for_count() const;
   bool is_near(Complex s) const;
-  SparseSpectrum result(double height);
+  SparseSpectrum found_up_to(double height) const;
+  void count(SparseSpectrum& spectrum);
 
   SparsePencil pencil_;
   SpectrumWindow window_;
   double height_ = 0.0;  ///< up to where pairs are refined
+  double least_growth_ = -std::numeric_limits<double>::infinity();  ///< of pairs that are refined
   Modes modes_;
   Eigen::MatrixXd basis_;    ///< V with Vᵀ M V = 1
   Eigen::MatrixXd momenta_;  ///< M V
@@ -221,6 +227,10 @@ void SparseSearch::refine() {
     bool have_converged = true;
     std::vector<Pair> improved = pairs_;
     for (std::size_t first = 0; first < pairs_.size();) {
+      if (pairs_[first].s.real() < least_growth_) {
+        ++first;
+        continue;
+      }
       std::size_t last = first;
       while (last < pairs_.size() && std::abs(pairs_[last].s - pairs_[first].s) <= width) ++last;
       // Beside the group, so that no member of it drowns the others.
@@ -234,7 +244,7 @@ void SparseSearch::refine() {
         improve(improved[first], vector);
       }
       // What the first space has nothing of would never come in by itself.
-      if (round == 0) add_random(factor, shift, 2);
+      if (round == 0 && std::isinf(least_growth_)) add_random(factor, shift, 2);
     }
     if (have_converged) {
       pairs_ = std::move(improved);
@@ -266,15 +276,14 @@ void SparseSearch::enlarge() {
   project();
 }
 
-SparseSpectrum SparseSearch::result(double height) {
+/// The pairs in a rectangle.
+SparseSpectrum SparseSearch::found_up_to(double height) const {
   SparseSpectrum spectrum;
   spectrum.rectangle.height = height;
-  std::vector<Complex> known = far_;
   const SparseMatrix& mass = pencil_.system().mass;
   spectrum.right.resize(size(), static_cast<Eigen::Index>(pairs_.size()));
   Eigen::Index num = 0;
   for (const Pair& pair : pairs_) {
-    known.push_back(pair.s);
     const double residual = pencil_.scaled_residual(pair.s, pair.x);
     // A projection may have eigenvalues near which the problem has none.
     if (!spectrum.rectangle.contains(pair.s) || residual > largest_residual) continue;
@@ -285,18 +294,25 @@ SparseSpectrum SparseSearch::result(double height) {
     spectrum.num_found += pair.s.imag() > 0.0 ? 2 : 1;
   }
   spectrum.right.conservativeResize(size(), num);
+  spectrum.omega = modes_.omega_squared.cwiseMax(0.0).cwiseSqrt();
+  spectrum.modes = modes_.shapes;
+  return spectrum;
+}
+
+/// Compares with the argument principle.
+void SparseSearch::count(SparseSpectrum& spectrum) {
+  std::vector<Complex> known = far_;
+  for (const Pair& pair : pairs_) known.push_back(pair.s);
   const auto phase = [&](Complex s) {
     ++factorisations_;
     return pencil_.factorise(s).determinant_phase();
   };
-  const auto counted = count_in_rectangle(phase, spectrum.rectangle.left(),
-                                          spectrum.rectangle.right(), height, known);
+  const auto counted =
+      count_in_rectangle(phase, spectrum.rectangle.left(), spectrum.rectangle.right(),
+                         spectrum.rectangle.height, known);
   spectrum.num_counted = counted.value_or(0);
   spectrum.is_complete = counted && *counted == spectrum.num_found;
   spectrum.factorisations = factorisations_;
-  spectrum.omega = modes_.omega_squared.cwiseMax(0.0).cwiseSqrt();
-  spectrum.modes = modes_.shapes;
-  return spectrum;
 }
 
 SparseSpectrum SparseSearch::run() {
@@ -311,13 +327,81 @@ SparseSpectrum SparseSearch::run() {
       project();
       continue;
     }
-    SparseSpectrum spectrum = result(height);
+    SparseSpectrum spectrum = found_up_to(height);
+    count(spectrum);
     if (spectrum.is_complete || attempt == max_attempts) return spectrum;
     enlarge();
   }
 }
 
+SparseSpectrum SparseSearch::run(const SpectrumBasis& basis, int count) {
+  constexpr int max_attempts = 4;
+  height_ = basis.height;
+  const SparseMatrix& mass = pencil_.system().mass;
+  dim_ = basis.vectors.cols();
+  const Eigen::MatrixXd momenta = mass * basis.vectors;
+  const Eigen::LLT<Eigen::MatrixXd> product(basis.vectors.transpose() * momenta);
+  basis_ = product.matrixL().solve(basis.vectors.transpose()).transpose();
+  momenta_ = mass * basis_;
+  project();
+  for (int attempt = 1; attempt <= max_attempts; ++attempt) {
+    std::vector<double> growths;
+    for (const Pair& pair : pairs_) growths.push_back(pair.s.real());
+    if (growths.empty()) break;
+    std::sort(growths.begin(), growths.end(), std::greater<>());
+    const auto last = std::min(growths.size(), static_cast<std::size_t>(count)) - 1;
+    // Refined they may be others.
+    if (least_growth_ <= growths[last] && attempt > 1) break;
+    least_growth_ = growths[last] - 1e-3 * std::abs(growths[last]);
+    refine();
+  }
+  SparseSpectrum spectrum = found_up_to(height_);
+  spectrum.factorisations = factorisations_;
+  return spectrum;
+}
+
 }  // namespace
+
+SpectrumBasis spectrum_basis(const std::vector<const SparseSpectrum*>& spectra) {
+  constexpr double new_share = 1e-7;  // of a direction
+  Eigen::Index columns = 0;
+  for (const SparseSpectrum* one : spectra) columns += 2 * one->right.cols();
+  SpectrumBasis basis;
+  basis.height = std::numeric_limits<double>::infinity();
+  Eigen::MatrixXd vectors(spectra.front()->right.rows(), columns);
+  columns = 0;
+  for (const SparseSpectrum* one : spectra) {
+    basis.height = std::min(basis.height, one->rectangle.height);
+    for (const auto& x : one->right.colwise()) {
+      vectors.col(columns++) = x.real() / x.norm();
+      vectors.col(columns++) = x.imag() / x.norm();
+    }
+  }
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(vectors);
+  qr.setThreshold(new_share);
+  basis.vectors = qr.householderQ() * Eigen::MatrixXd::Identity(vectors.rows(), qr.rank());
+  return basis;
+}
+
+std::vector<std::complex<double>> projected_eigenvalues(const SparseSystem& system,
+                                                        const SpectrumBasis& basis) {
+  const Eigen::MatrixXd& V = basis.vectors;
+  LinearSystem reduced;
+  reduced.mass = V.transpose() * (system.mass * V).eval();
+  reduced.velocity = V.transpose() * (system.velocity * V).eval();
+  reduced.position = V.transpose() * (system.position * V).eval();
+  reduced.gaps = reduced.forces = Eigen::MatrixXd(0, V.cols());
+  const SpectrumRectangle rectangle{basis.height};
+  std::vector<Complex> found;
+  for (const Eigenvalue& one : dense_eigenvalues(make_pencil(reduced)))
+    if (rectangle.contains(one.s)) found.push_back(one.s);
+  return found;
+}
+
+SparseSpectrum fastest_near(const SparseSystem& system, const SpectrumBasis& basis, int count) {
+  if (count < 1) throw std::invalid_argument(fmt::format("sparse eigenvalues: {} are none", count));
+  return SparseSearch(system, {}).run(basis, count);
+}
 
 SparseSpectrum sparse_spectrum(const SparseSystem& system, const SpectrumWindow& window) {
   const bool has_count = window.count && *window.count > 0;

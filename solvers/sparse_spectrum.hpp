@@ -61,4 +61,26 @@ struct SparseSpectrum {
 /// Cost: about 2 factorisations for every pair, and 70 for the count.
 SparseSpectrum sparse_spectrum(const SparseSystem& system, const SpectrumWindow& window);
 
+/// Eigenvectors of systems like one another, as a basis for one between them.
+struct SpectrumBasis {
+  Eigen::MatrixXd vectors;  ///< orthonormal
+  double height = 0.0;      ///< up to where they are all there, rad/s
+};
+
+/// @param spectra of systems of one size, at least one
+SpectrumBasis spectrum_basis(const std::vector<const SparseSpectrum*>& spectra);
+
+/// Eigenvalues up to the height of a basis by Galerkin's projection: approximations, among which
+/// may be some near which the system has none. Im s >= 0.
+/// Cost: that of a dense problem with the columns of the basis, without factorisations.
+std::vector<std::complex<double>> projected_eigenvalues(const SparseSystem& system,
+                                                        const SpectrumBasis& basis);
+
+/// Those of the projected eigenvalues that grow fastest, refined as in sparse_spectrum(). What
+/// grows in another direction than the basis has is missed, and nothing is counted.
+/// @param count how many of them to refine, >= 1
+/// @throws as sparse_spectrum()
+/// Cost: a few factorisations.
+SparseSpectrum fastest_near(const SparseSystem& system, const SpectrumBasis& basis, int count);
+
 }  // namespace stridor

@@ -47,7 +47,8 @@ Crossing limit_of(const DiscModelParameters& brake) {
 TEST(SampledLocus, SparingEffortFindsTheSameEndWithFewSpectra) {
   // One eigenvalue whose real part is not linear: it crosses zero at 0.3.
   int num_spectra = 0;
-  const SpectrumFamily family = [&](double value) {
+  SpectrumFamily family;
+  family.at = [&](double value) {
     ++num_spectra;
     return SampledSpectrum{{{-1.0, 5.0}, {std::exp(value) - std::exp(0.3), 20.0}}, {0.0, 0.0}};
   };
@@ -59,6 +60,43 @@ TEST(SampledLocus, SparingEffortFindsTheSameEndWithFewSpectra) {
   EXPECT_EQ(locus.unstable[0].to, 1.0);
   EXPECT_EQ(locus.num_places, 3);
   EXPECT_LT(num_spectra, 30);
+}
+
+TEST(SampledLocus, GlimpsesShowWhatLiesBetweenTheValues) {
+  // Growth 1e-4 − (x − 0.3)² beside a motion that decays, and a stretch of none in one that grows.
+  // Glimpses have both 2e-4 too low and 1e-3 too far.
+  int num_whole = 0;
+  const auto family_of = [&](const std::function<double(double)>& growth) {
+    SpectrumFamily family;
+    family.near = [growth](double x) {
+      return SampledSpectrum{{{-1.0, 5.0}, {growth(x), 20.0}}, {0.0, 0.0}};
+    };
+    family.at = [&num_whole, near = family.near](double x) {
+      ++num_whole;
+      return near(x);
+    };
+    family.glimpse = [growth](double x) {
+      return SampledSpectrum{{{growth(x - 1e-3) - 2e-4, 20.0}}, {0.0}};
+    };
+    return family;
+  };
+  const Locus window =
+      sample_locus(family_of([](double x) { return 1e-4 - (x - 0.3) * (x - 0.3); }),
+                   {0.0, 0.5, 1.0}, {}, sparing_effort);
+  EXPECT_EQ(num_whole, 3);
+  ASSERT_EQ(window.unstable.size(), 1U);
+  EXPECT_NEAR(window.unstable[0].from, 0.29, 1e-8);
+  EXPECT_NEAR(window.unstable[0].to, 0.31, 1e-8);
+  EXPECT_NEAR(window.unstable[0].growth_max, 1e-4, 1e-6);
+  EXPECT_EQ(window.eigenvalues.size(), 3U);
+  num_whole = 0;
+  const Locus gap = sample_locus(family_of([](double x) { return (x - 0.3) * (x - 0.3) - 1e-2; }),
+                                 {0.0, 1.0}, {}, sparing_effort);
+  // That nothing grows takes all eigenvalues.
+  EXPECT_EQ(num_whole, 3);
+  ASSERT_EQ(gap.unstable.size(), 2U);
+  EXPECT_NEAR(gap.unstable[0].to, 0.2, 1e-8);
+  EXPECT_NEAR(gap.unstable[1].from, 0.4, 1e-8);
 }
 
 TEST(SampledLocus, CirculatoryBrakeFluttersFromItsCriticalFriction) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -407,33 +408,52 @@ TEST(MatrixProgram, LargeMatricesAreCountedInTheirWindow) {
   EXPECT_THAT(too_many.err, HasSubstr("ask for fewer eigenvalues or a lower frequency"));
 }
 
-TEST(MatrixProgram, LargeMatricesHaveLociAndThresholds) {
-  // 505 oscillators of two coordinates with stiffness i diag(1, 1.4) and damping 0.1, each under
-  // the circulatory load: the first one flutters from 0.2280350850 on, the second one from beyond
-  // 0.4.
-  const TemporaryFolder folder;
-  constexpr int n = 1010;
-  const auto write = [&](const std::string& name, int per_row, const auto& entries) {
-    std::ofstream file((folder / (name + ".mtx")).string());
+/// One entry in every row: its column and its value.
+using RowEntry = std::function<std::pair<int, double>(int row)>;
+
+/// 505 oscillators of two coordinates, in a folder.
+class ManyOscillators {
+ public:
+  static constexpr int size = 1010;
+
+  ManyOscillators() {
+    write("M", [](int i) { return std::pair(i, 1.0); });
+  }
+
+  void write(const std::string& name, const RowEntry& entry) const {
+    std::ofstream file((folder_ / (name + ".mtx")).string());
     file << "%%MatrixMarket matrix coordinate real general\n"
-         << n << ' ' << n << ' ' << per_row * n << '\n';
-    for (int i = 0; i < n; ++i) entries(file, i);
-  };
-  const auto diagonal = [&](const std::string& name, const auto& value) {
-    write(name, 1, [&](std::ofstream& file, int i) {
-      file << i + 1 << ' ' << i + 1 << ' ' << value(i) << '\n';
-    });
-  };
-  diagonal("M", [](int) { return 1.0; });
-  diagonal("D", [](int) { return 0.1; });
-  diagonal("K", [](int i) { return (i / 2 + 1) * (i % 2 == 0 ? 1.0 : 1.4); });
-  write("N", 1, [](std::ofstream& file, int i) {
-    file << i + 1 << ' ' << (i % 2 == 0 ? i + 2 : i) << (i % 2 == 0 ? " 1\n" : " -1\n");
-  });
-  const std::string scene = (folder / "pairs.yaml").string();
-  std::ofstream(scene)
-      << "format: 1\nsubstructures:\n  pairs: {type: matrices, mass: M.mtx, damping: "
-         "D.mtx, stiffness: K.mtx, load: 0, load_stiffness: N.mtx}\n";
+         << size << ' ' << size << ' ' << size << '\n';
+    for (int i = 0; i < size; ++i) {
+      const auto [column, value] = entry(i);
+      file << i + 1 << ' ' << column + 1 << ' ' << value << '\n';
+    }
+  }
+  /// The other coordinate of an oscillator, with the sign of a skew matrix.
+  static std::pair<int, double> across(int row, double value) {
+    return row % 2 == 0 ? std::pair(row + 1, value) : std::pair(row - 1, -value);
+  }
+  std::string scene(const std::string& matrices) const {
+    const std::string path = (folder_ / "pairs.yaml").string();
+    std::ofstream(path) << "format: 1\nsubstructures:\n  pairs: {type: matrices, mass: M.mtx, "
+                        << matrices << "}\n";
+    return path;
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST(MatrixProgram, LargeMatricesHaveLociAndThresholds) {
+  // With stiffness i diag(1, 1.4) and damping 0.1, each under the circulatory load: the first one
+  // flutters from 0.2280350850 on, the second one from beyond 0.4.
+  const ManyOscillators oscillators;
+  oscillators.write("D", [](int i) { return std::pair(i, 0.1); });
+  oscillators.write("K",
+                    [](int i) { return std::pair(i, (i / 2 + 1) * (i % 2 == 0 ? 1.0 : 1.4)); });
+  oscillators.write("N", [](int i) { return ManyOscillators::across(i, 1.0); });
+  const std::string scene =
+      oscillators.scene("damping: D.mtx, stiffness: K.mtx, load: 0, load_stiffness: N.mtx");
   const std::vector<std::string> range{"--parameter", "substructures.pairs.load",
                                        "--from",      "0",
                                        "--to",        "0.35",
@@ -456,6 +476,27 @@ TEST(MatrixProgram, LargeMatricesHaveLociAndThresholds) {
   double largest = -1e300;
   for (const Json& s : locus["eigenvalues"][2]) largest = std::max(largest, s[0].get<double>());
   EXPECT_NEAR(largest, root.real(), 1e-9);
+}
+
+TEST(MatrixProgram, WindowsOfLargeMatricesAreFoundBetweenTheValues) {
+  // The load softens one spring of the first oscillator, which is under a circulatory force 0.02:
+  // its two frequencies pass each other, and near 0.4 they do not keep apart. With damping d = 0.01
+  // they flutter where (0.4 - p)²/4 < 0.02² - d² (2.4 - p)/2.
+  const ManyOscillators oscillators;
+  oscillators.write("D", [](int i) { return std::pair(i, 0.01); });
+  oscillators.write("K",
+                    [](int i) { return std::pair(i, (i / 2 + 1) * (i % 2 == 0 ? 1.0 : 1.4)); });
+  oscillators.write("N", [](int i) { return ManyOscillators::across(i, 0.02); });
+  oscillators.write("L", [](int i) { return std::pair(i, i == 1 ? -1.0 : 0.0); });
+  const std::string scene = oscillators.scene(
+      "damping: D.mtx, stiffness: K.mtx, circulatory: N.mtx, load: 0, load_stiffness: L.mtx");
+  const Json locus = json_of({"locus", scene, "--parameter", "substructures.pairs.load", "--from",
+                              "0", "--to", "1", "--points", "3", "--below", "0.25"});
+  ASSERT_EQ(locus["eigenvalues"].size(), 3U);
+  ASSERT_EQ(locus["unstable"].size(), 1U);
+  const double half = std::sqrt(1e-8 + 12e-4);
+  EXPECT_NEAR(locus["unstable"][0]["from"].get<double>(), 0.4001 - half, 1e-8);
+  EXPECT_NEAR(locus["unstable"][0]["to"].get<double>(), 0.4001 + half, 1e-8);
 }
 
 TEST(MatrixProgram, ExamplesHaveTheirClosedForms) {

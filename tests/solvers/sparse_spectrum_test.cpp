@@ -121,6 +121,43 @@ TEST(SparseSpectrum, TellsCoincidingEigenvaluesApart) {
   }
 }
 
+TEST(SparseSpectrum, OfASystemBetweenTwoFollowsFromTheirs) {
+  test::ElasticPads pads = small_pads();
+  const auto system = [&](double friction) {
+    pads.friction = friction;
+    return pads.system();
+  };
+  const SpectrumWindow window = SpectrumWindow::below(8000.0);
+  const SparseSpectrum below = sparse_spectrum(system(0.4), window);
+  const SparseSpectrum above = sparse_spectrum(system(0.5), window);
+  const SpectrumBasis basis = spectrum_basis({&below, &above});
+  EXPECT_LE(basis.vectors.cols(), 2 * (below.right.cols() + above.right.cols()));
+  EXPECT_LT((basis.vectors.transpose() * basis.vectors -
+             Eigen::MatrixXd::Identity(basis.vectors.cols(), basis.vectors.cols()))
+                .norm(),
+            1e-12);
+  const SparseSpectrum whole = sparse_spectrum(system(0.46), window);
+  const std::vector<Complex> glimpse = projected_eigenvalues(system(0.46), basis);
+  for (const Eigenvalue& one : whole.eigenvalues) {
+    EXPECT_TRUE(std::any_of(glimpse.begin(), glimpse.end(), [&](const Complex& s) {
+      return std::abs(s - one.s) < 1e-3 * std::abs(s);
+    })) << one.frequency();
+  }
+  const SparseSpectrum near = fastest_near(system(0.46), basis, 2);
+  EXPECT_LT(near.factorisations, 20);
+  std::vector<Eigenvalue> expected = whole.eigenvalues;
+  std::vector<Eigenvalue> found = near.eigenvalues;
+  for (auto* list : {&expected, &found}) {
+    std::sort(list->begin(), list->end(),
+              [](const auto& a, const auto& b) { return a.growth() > b.growth(); });
+  }
+  ASSERT_GE(found.size(), 2U);
+  for (const std::size_t i : {0U, 1U})
+    EXPECT_LT(std::abs(found[i].s - expected[i].s), 1e-9 * std::abs(expected[i].s));
+  EXPECT_EQ(message_of<std::invalid_argument>([&] { fastest_near(system(0.46), basis, 0); }),
+            "sparse eigenvalues: 0 are none");
+}
+
 TEST(SparseSpectrum, RejectsWhatItCannotSolve) {
   SparseSystem system = small_pads().system();
   EXPECT_EQ(
