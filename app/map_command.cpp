@@ -73,6 +73,7 @@ double largest_growth(const std::vector<std::complex<double>>& eigenvalues) {
 std::vector<std::complex<double>> eigenvalues_at(StabilityFamily& family,
                                                  const std::vector<double>& values,
                                                  const LocusOptions& options) {
+  if (family.is_sparse()) return family.spectra(0, values, options).at(values[0]).eigenvalues;
   const EigenvalueMethod method =
       options.method == LocusMethod::dense ? EigenvalueMethod::dense : EigenvalueMethod::secular;
   std::vector<std::complex<double>> found;

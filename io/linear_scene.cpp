@@ -48,20 +48,25 @@ class MatrixLoader {
   MatrixLoader(std::string key, const std::string& scene_path)
       : key_(std::move(key)), folder_(std::filesystem::path(scene_path).parent_path()) {}
 
-  SparseSystem load(const MatrixBodyParameters& body) const {
-    SparseSystem system;
-    system.mass = matrix("mass", body.mass, 0);
-    const Eigen::Index n = system.mass.rows();
-    expect_symmetry("mass", system.mass, 1.0);
-    const SparseMatrix gyroscopic = matrix("gyroscopic", body.gyroscopic, n);
-    const SparseMatrix circulatory = matrix("circulatory", body.circulatory, n);
-    expect_symmetry("gyroscopic", gyroscopic, -1.0);
-    expect_symmetry("circulatory", circulatory, -1.0);
-    system.velocity = matrix("damping", body.damping, n) + gyroscopic +
-                      body.load * matrix("load_damping", body.load_damping, n);
-    system.position = matrix("stiffness", body.stiffness, n) + circulatory +
-                      body.load * matrix("load_stiffness", body.load_stiffness, n);
-    return system;
+  SceneMatrices load(const MatrixBodyParameters& body) const {
+    SceneMatrices parts;
+    parts.mass = matrix("mass", body.mass, 0);
+    const Eigen::Index n = parts.mass.rows();
+    expect_symmetry("mass", parts.mass, 1.0);
+    try {
+      SparseCholesky(parts.mass, "the mass");
+    } catch (const NumericalError&) {
+      fail("mass", "must be positive definite");
+    }
+    parts.damping = matrix("damping", body.damping, n);
+    parts.gyroscopic = matrix("gyroscopic", body.gyroscopic, n);
+    expect_symmetry("gyroscopic", parts.gyroscopic, -1.0);
+    parts.stiffness = matrix("stiffness", body.stiffness, n);
+    parts.circulatory = matrix("circulatory", body.circulatory, n);
+    expect_symmetry("circulatory", parts.circulatory, -1.0);
+    parts.load_damping = matrix("load_damping", body.load_damping, n);
+    parts.load_stiffness = matrix("load_stiffness", body.load_stiffness, n);
+    return parts;
   }
 
  private:
@@ -106,6 +111,17 @@ class MatrixLoader {
   std::filesystem::path folder_;
 };
 
+SparseSystem sum(const SceneMatrices& parts, const MatrixBodyParameters& body) {
+  const MatrixFactors& factors = body.factors;
+  SparseSystem system;
+  system.mass = parts.mass;
+  system.velocity = factors.damping * parts.damping + factors.gyroscopic * parts.gyroscopic +
+                    body.load * parts.load_damping;
+  system.position = factors.stiffness * parts.stiffness + factors.circulatory * parts.circulatory +
+                    body.load * parts.load_stiffness;
+  return system;
+}
+
 LinearSystem dense_system(const SparseSystem& sparse) {
   LinearSystem dense;
   dense.mass = sparse.mass;
@@ -115,7 +131,7 @@ LinearSystem dense_system(const SparseSystem& sparse) {
   return dense;
 }
 
-LinearModel model_of(const DiscScene& scene, const std::string&) {
+LinearModel model_of(const DiscScene& scene, const LoadedLinearScene&) {
   LinearModel model;
   model.disc = make_disc_model(scene.model);
   model.dense = model.disc->system;
@@ -123,16 +139,15 @@ LinearModel model_of(const DiscScene& scene, const std::string&) {
   return model;
 }
 
-LinearModel model_of(const MatrixScene& scene, const std::string& path) {
-  const auto& [name, body] = *scene.substructures.begin();
-  const std::string key = "substructures." + name + ".mass";
-  SparseSystem sparse =
-      MatrixLoader("substructures." + name, path).load(std::get<MatrixBodyParameters>(body));
-  try {
-    SparseCholesky(sparse.mass, "the mass");
-  } catch (const NumericalError&) {
-    throw ConfigError(key, "must be positive definite");
+/// @throws ConfigError with the key path
+LinearModel model_of(const MatrixScene& scene, const LoadedLinearScene& loaded) {
+  const auto& [name, variant] = *scene.substructures.begin();
+  const auto& body = std::get<MatrixBodyParameters>(variant);
+  if (!loaded.matrices) {
+    loaded.matrices = std::make_shared<const SceneMatrices>(
+        MatrixLoader("substructures." + name, loaded.path).load(body));
   }
+  SparseSystem sparse = sum(*loaded.matrices, body);
   LinearModel model;
   model.highest_frequency = std::numeric_limits<double>::infinity();
   if (sparse.size() > largest_dense_size) {
@@ -255,10 +270,6 @@ const void* object_of(const LinearScene& scene) {
   return std::visit([](const auto& one) -> const void* { return &one; }, scene);
 }
 
-LinearModel make_linear_model(const LinearScene& scene, const std::string& path) {
-  return std::visit([&](const auto& one) { return model_of(one, path); }, scene);
-}
-
 std::string LoadedLinearScene::resolved() const {
   return resolved_yaml(schema_of(scene), object_of(scene));
 }
@@ -269,7 +280,7 @@ std::string LoadedLinearScene::hash() const {
 
 LinearModel LoadedLinearScene::model() const {
   try {
-    return make_linear_model(scene, path);
+    return std::visit([&](const auto& one) { return model_of(one, *this); }, scene);
   } catch (const ConfigError& error) {
     std::vector<Problem> problems = error.problems();
     locate(problems, tree);
@@ -283,7 +294,9 @@ LinearModel LoadedLinearScene::model(const std::vector<NumericKey>& keys,
   for (std::size_t i = 0; i < keys.size(); ++i)
     set_value(changed.tree, fmt::format("{}={}", keys[i].path, values[i]));
   changed.scene = read_linear_scene(changed.tree);
-  return changed.model();
+  LinearModel made = changed.model();
+  matrices = changed.matrices;
+  return made;
 }
 
 bool is_linear_scene_file(const std::string& path) {

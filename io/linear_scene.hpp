@@ -77,22 +77,26 @@ struct LinearModel {
   double highest_frequency = 0.0;      ///< up to which the model answers, Hz; may be infinite
 };
 
+/// The matrices of a body as its scene names them, all n x n.
+struct SceneMatrices {
+  SparseMatrix mass, damping, gyroscopic, stiffness, circulatory, load_damping, load_stiffness;
+};
+
 /// Number of unknowns up to which all eigenvalues are computed, at a cost of its third power.
 constexpr Eigen::Index largest_dense_size = 1000;
-
-/// @param path of the scene: files of matrices are looked for in its folder
-/// @throws ConfigError with the key path, or with the place in a matrix file; FileError
-LinearModel make_linear_model(const LinearScene& scene, const std::string& path);
 
 /// As LoadedScene.
 struct LoadedLinearScene {
   std::string path;
   SceneNode tree;
   LinearScene scene;
+  /// Read when they are first needed; copies share them.
+  mutable std::shared_ptr<const SceneMatrices> matrices;
 
   std::string resolved() const;
   std::string hash() const;
-  /// As make_linear_model(), with the places of keys.
+  /// Files of matrices are looked for in the folder of the scene.
+  /// @throws ConfigError with the places of keys, or with the place in a matrix file; FileError
   LinearModel model() const;
   /// The same with some numbers set. @throws ConfigError also if they do not fit the others
   LinearModel model(const std::vector<NumericKey>& keys, std::span<const double> values) const;

@@ -2,6 +2,20 @@
 
 namespace stridor {
 
+const Schema& MatrixFactors::schema() {
+  using P = MatrixFactors;
+  const auto factor = [](const char* doc) { return RealKey{.doc = doc, .optional = true}; };
+  static const Schema keys = SchemaOf<P>("matrix_factors")
+                                 .real("damping", &P::damping, factor("Factor of `damping`."))
+                                 .real("gyroscopic", &P::gyroscopic,
+                                       factor("Factor of `gyroscopic`: a speed, if that is of a "
+                                              "unit speed."))
+                                 .real("stiffness", &P::stiffness, factor("Factor of `stiffness`."))
+                                 .real("circulatory", &P::circulatory,
+                                       factor("Factor of `circulatory`: friction, for instance."));
+  return keys;
+}
+
 const Schema& MatrixBodyParameters::schema() {
   using P = MatrixBodyParameters;
   const auto matrix = [](const char* doc, bool is_optional) {
@@ -19,6 +33,9 @@ const Schema& MatrixBodyParameters::schema() {
           .text_rows("stiffness", &P::stiffness, matrix("Stiffness matrix.", false))
           .text_rows("circulatory", &P::circulatory,
                      matrix("Circulatory matrix, skew-symmetric.", true))
+          .section("factors", &P::factors,
+                   {.doc = "Factors of these matrices, each a key that can be varied.",
+                    .optional = true})
           .real("load", &P::load, {.doc = "Factor of the matrices below.", .optional = true})
           .text_rows("load_damping", &P::load_damping,
                      matrix("What one unit of load adds to the velocity matrix.", true))

@@ -499,6 +499,60 @@ TEST(MatrixProgram, WindowsOfLargeMatricesAreFoundBetweenTheValues) {
   EXPECT_NEAR(locus["unstable"][0]["to"].get<double>(), 0.4001 + half, 1e-8);
 }
 
+TEST(MatrixProgram, FactorsOfMatricesAreVaried) {
+  // Flutter of diag(1, 1.4) under a circulatory force n: from 0.2 on, with damping 0.1 of both from
+  // 0.2280350850.
+  const TemporaryFolder folder;
+  const std::string scene = (folder / "two.yaml").string();
+  std::ofstream(scene) << "format: 1\nsubstructures:\n  two: {type: matrices, mass: [[1, 0], [0, "
+                          "1]], stiffness: [[1, 0], [0, 1.4]], damping: [[1, 0], [0, 1]], "
+                          "circulatory: [[0, 1], [-1, 0]], factors: {damping: 0}}\n";
+  const std::string n = "substructures.two.factors.circulatory";
+  const std::string d = "substructures.two.factors.damping";
+  const auto limit = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"threshold", scene, "--parameter", n,
+                                       "--from",    "0",   "--to",        "0.4"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return json_of(arguments)["roots"].at(0)["value"].get<double>();
+  };
+  EXPECT_NEAR(limit({}), 0.2, 1e-12);
+  EXPECT_NEAR(limit({"--set", d + "=0.1"}), 0.2280350850, 1e-10);
+  EXPECT_NEAR(limit({"--set", "substructures.two.factors.stiffness=1.5"}), 0.3, 1e-12);
+  const Json map = json_of({"map", scene, "--x", n, "0", "0.4", "5", "--y", d, "0.1", "0.3", "3"});
+  // 0.2² + d² 1.2 = n².
+  const auto stable = [&](std::size_t row, std::size_t column) {
+    return map["growth"][row][column].get<double>() <= 0.0;
+  };
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 5; ++column) {
+      const double at = 0.1 * static_cast<double>(column);
+      const double damping = 0.1 + 0.1 * static_cast<double>(row);
+      EXPECT_EQ(stable(row, column), at * at < 0.04 + 1.2 * damping * damping) << row << column;
+    }
+  }
+}
+
+TEST(MatrixProgram, LargeMatricesHaveMaps) {
+  const ManyOscillators oscillators;
+  oscillators.write("D", [](int i) { return std::pair(i, 1.0); });
+  oscillators.write("K",
+                    [](int i) { return std::pair(i, (i / 2 + 1) * (i % 2 == 0 ? 1.0 : 1.4)); });
+  oscillators.write("N", [](int i) { return ManyOscillators::across(i, 1.0); });
+  const std::string scene =
+      oscillators.scene("damping: D.mtx, stiffness: K.mtx, circulatory: N.mtx");
+  const std::string factors = "substructures.pairs.factors.";
+  const Json map = json_of({"map", scene, "--x", factors + "circulatory", "0.1", "0.3", "2", "--y",
+                            factors + "damping", "0.1", "0.2", "2", "--below", "0.25"});
+  const auto stable = [&](std::size_t row, std::size_t column) {
+    return map["growth"][row][column].get<double>() <= 0.0;
+  };
+  // 0.04 + 1.2 d² is 0.052 and 0.088.
+  EXPECT_TRUE(stable(0, 0));
+  EXPECT_FALSE(stable(0, 1));
+  EXPECT_TRUE(stable(1, 0));
+  EXPECT_FALSE(stable(1, 1));
+}
+
 TEST(MatrixProgram, ExamplesHaveTheirClosedForms) {
   EXPECT_NEAR(example_limit("flutter", "oscillator", "0.4", {}), 0.2, 1e-12);
   EXPECT_NEAR(example_limit("flutter_equal_damping", "oscillator", "0.4", {}), 0.2280350850, 1e-10);

@@ -120,7 +120,8 @@ TEST(DiscScene, ReadsTheReferenceBrake) {
   EXPECT_NEAR(model.highest_frequency, 7494.83, 0.01);
   // What is resolved reads back as the same.
   const LinearScene again = read_linear_scene(read_scene_text(loaded.resolved(), "resolved"));
-  EXPECT_EQ(make_linear_model(again, "").dense.position, model.dense.position);
+  EXPECT_EQ(load_resolved_linear_scene(loaded.resolved(), "resolved").model().dense.position,
+            model.dense.position);
 }
 
 TEST(DiscScene, SaysWhatDoesNotFit) {
