@@ -25,21 +25,6 @@ DiscModelParameters rigid_brake() {
   return brake;
 }
 
-/// Three points on each of two elastic pads.
-DiscModelParameters elastic_brake() {
-  DiscModelParameters brake = rigid_brake();
-  brake.pads.mass.reset();
-  brake.pads.elastic.emplace();
-  brake.pads.elastic->length = 0.06;
-  brake.pads.elastic->thickness = 0.015;
-  brake.pads.elastic->width = 0.04;
-  brake.pads.elastic->material = {1e10, 0.3, 2500.0};
-  brake.pads.elastic->mesh = {6, 2};
-  brake.pads.elastic->reduction.fixed_interface_modes = 8;
-  brake.contact.offsets = {-0.03, 0.0, 0.03};
-  return brake;
-}
-
 RigidContactMotion motion_of(const DiscModel& model, double step) {
   return {model.bodies, model.contacts, model.law, model.state, step};
 }
@@ -212,7 +197,7 @@ TEST(RigidContactMotion, SquealEndsInABoundedCycleThatDoesNotDependOnTheStep) {
 }
 
 TEST(RigidContactMotion, ManyContactsThatStickAndLiftOffKeepTheLaws) {
-  DiscModelParameters brake = elastic_brake();
+  DiscModelParameters brake = test::with_elastic_pads(rigid_brake());
   brake.contact.friction.coefficient = 0.6;
   const DiscModel model = make_disc_model(brake);
   const FastestMode mode = fastest_of(model.system);

@@ -142,16 +142,7 @@ TEST(SpringContactMotion, RefusesAStepTooLongForItsContacts) {
 TEST(SpringContactMotion, ManyContactsThatStickAndLiftOffKeepTheLaws) {
   // Pads of three points each with friction that couples them, kicked so that some stick: sweeps
   // over the contacts alone would go round in circles.
-  DiscModelParameters brake = squealing_brake();
-  brake.pads.mass.reset();
-  brake.pads.elastic.emplace();
-  brake.pads.elastic->length = 0.06;
-  brake.pads.elastic->thickness = 0.015;
-  brake.pads.elastic->width = 0.04;
-  brake.pads.elastic->material = {1e10, 0.3, 2500.0};
-  brake.pads.elastic->mesh = {6, 2};
-  brake.pads.elastic->reduction.fixed_interface_modes = 8;
-  brake.contact.offsets = {-0.03, 0.0, 0.03};
+  DiscModelParameters brake = test::with_elastic_pads(squealing_brake());
   brake.contact.penalty = 1e9;
   brake.contact.friction.coefficient = 0.6;
   const DiscModel model = make_disc_model(brake);

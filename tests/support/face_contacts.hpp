@@ -21,6 +21,20 @@ inline DiscModelParameters squealing_brake() {
   return brake;
 }
 
+/// With three points on each of two elastic pads.
+inline DiscModelParameters with_elastic_pads(DiscModelParameters brake) {
+  brake.pads.mass.reset();
+  ElasticPadParameters& pad = brake.pads.elastic.emplace();
+  pad.length = 0.06;
+  pad.thickness = 0.015;
+  pad.width = 0.04;
+  pad.material = {1e10, 0.3, 2500.0};
+  pad.mesh = {6, 2};
+  pad.reduction.fixed_interface_modes = 8;
+  brake.contact.offsets = {-0.03, 0.0, 0.03};
+  return brake;
+}
+
 struct FastestMode {
   std::complex<double> s;
   Eigen::VectorXcd q;
