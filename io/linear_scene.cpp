@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <stdexcept>
 
@@ -45,8 +44,9 @@ void check_recording(const DiscScene& scene, std::vector<Problem>& problems) {
 /// The matrices of one body, with checks that name their keys.
 class MatrixLoader {
  public:
-  MatrixLoader(std::string key, const std::string& scene_path)
-      : key_(std::move(key)), folder_(std::filesystem::path(scene_path).parent_path()) {}
+  /// @param key  path of the body
+  /// @param tree of the scene; must live longer
+  MatrixLoader(std::string key, const SceneNode& tree) : key_(std::move(key)), tree_(&tree) {}
 
   SparseSystem load(const MatrixBodyParameters& body) const {
     SparseSystem system;
@@ -77,7 +77,7 @@ class MatrixLoader {
     const bool is_number =
         text.front().find_first_not_of("+-.eE0123456789 \t") == std::string::npos;
     if (text.size() == 1 && !is_number) {
-      read = read_matrix_file((folder_ / text.front()).string());
+      read = read_matrix_file(path_of_file(*tree_, key_ + "." + name, text.front()));
     } else {
       try {
         read = parse_matrix_rows(text);
@@ -103,7 +103,7 @@ class MatrixLoader {
   }
 
   std::string key_;
-  std::filesystem::path folder_;
+  const SceneNode* tree_;
 };
 
 LinearSystem dense_system(const SparseSystem& sparse) {
@@ -115,7 +115,7 @@ LinearSystem dense_system(const SparseSystem& sparse) {
   return dense;
 }
 
-LinearModel model_of(const DiscScene& scene, const std::string&) {
+LinearModel model_of(const DiscScene& scene, const SceneNode&) {
   LinearModel model;
   model.disc = make_disc_model(scene.model);
   model.dense = model.disc->system;
@@ -123,11 +123,11 @@ LinearModel model_of(const DiscScene& scene, const std::string&) {
   return model;
 }
 
-LinearModel model_of(const MatrixScene& scene, const std::string& path) {
+LinearModel model_of(const MatrixScene& scene, const SceneNode& tree) {
   const auto& [name, body] = *scene.substructures.begin();
   const std::string key = "substructures." + name + ".mass";
   SparseSystem sparse =
-      MatrixLoader("substructures." + name, path).load(std::get<MatrixBodyParameters>(body));
+      MatrixLoader("substructures." + name, tree).load(std::get<MatrixBodyParameters>(body));
   try {
     SparseCholesky(sparse.mass, "the mass");
   } catch (const NumericalError&) {
@@ -255,10 +255,6 @@ const void* object_of(const LinearScene& scene) {
   return std::visit([](const auto& one) -> const void* { return &one; }, scene);
 }
 
-LinearModel make_linear_model(const LinearScene& scene, const std::string& path) {
-  return std::visit([&](const auto& one) { return model_of(one, path); }, scene);
-}
-
 std::string LoadedLinearScene::resolved() const {
   return resolved_yaml(schema_of(scene), object_of(scene));
 }
@@ -269,7 +265,7 @@ std::string LoadedLinearScene::hash() const {
 
 LinearModel LoadedLinearScene::model() const {
   try {
-    return make_linear_model(scene, path);
+    return std::visit([&](const auto& one) { return model_of(one, tree); }, scene);
   } catch (const ConfigError& error) {
     std::vector<Problem> problems = error.problems();
     locate(problems, tree);

@@ -80,10 +80,6 @@ struct LinearModel {
 /// Number of unknowns up to which all eigenvalues are computed, at a cost of its third power.
 constexpr Eigen::Index largest_dense_size = 1000;
 
-/// @param path of the scene: files of matrices are looked for in its folder
-/// @throws ConfigError with the key path, or with the place in a matrix file; FileError
-LinearModel make_linear_model(const LinearScene& scene, const std::string& path);
-
 /// As LoadedScene.
 struct LoadedLinearScene {
   std::string path;
@@ -92,7 +88,7 @@ struct LoadedLinearScene {
 
   std::string resolved() const;
   std::string hash() const;
-  /// As make_linear_model(), with the places of keys.
+  /// @throws ConfigError with the place of the key, or the place in a matrix file; FileError
   LinearModel model() const;
   /// The same with some numbers set. @throws ConfigError also if they do not fit the others
   LinearModel model(const std::vector<NumericKey>& keys, std::span<const double> values) const;
