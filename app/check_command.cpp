@@ -7,6 +7,7 @@
 #include "app/step_stability_report.hpp"
 #include "core/errors.hpp"
 #include "io/contact_scene.hpp"
+#include "io/initial_state.hpp"
 #include "io/linear_scene.hpp"
 #include "io/scene.hpp"
 #include "io/sphere_scene.hpp"
@@ -32,8 +33,8 @@ void refuse_stability(const CheckOptions& options) {
                     "vibrations of this one are followed by eig and locus");
 }
 
-/// Reads the scene, builds its model and checks the step, as `run` would; a scene of a sliding
-/// contact is only read.
+/// Reads the scene and does what `run` does before its first step; a scene of a sliding contact is
+/// only read.
 Report check_scene(const CheckOptions& options) {
   SceneNode tree = read_scene_file(options.scene);
   for (const std::string& assignment : options.common.sets) set_value(tree, assignment);
@@ -53,9 +54,10 @@ Report check_scene(const CheckOptions& options) {
     return {};
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
-  const Model model = build_model(loaded);
+  Model model = build_model(loaded);
+  set_initial_state(model.system, loaded);
   try {
-    const Simulation simulation(model.system, loaded.scene.time);
+    const Simulation simulation(model.system, loaded.scene.time, accounts_of(loaded.scene));
   } catch (const ConfigError& error) {
     throw loaded.located(error);
   }

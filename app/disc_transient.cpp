@@ -250,7 +250,7 @@ MarchEnd DiscTransient::run_to_end() {
 }
 
 Json DiscTransient::finish() {
-  Json results = {{"status", end_ == MarchEnd::finished  ? "finished"
+  Json results = {{"status", end_ == MarchEnd::finished  ? "done"
                              : end_ == MarchEnd::stopped ? "stopped"
                                                          : "failed"}};
   results.update(effort_json(std::min(step_, end_step_), scene().time->step, nullptr,

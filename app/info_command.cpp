@@ -3,6 +3,7 @@
 
 #include "app/burst_text.hpp"
 #include "app/command.hpp"
+#include "app/pictures.hpp"
 #include "app/transient_results.hpp"
 #include "io/damage_guard.hpp"
 #include "io/run_file.hpp"
@@ -14,6 +15,7 @@ namespace {
 struct InfoOptions {
   CommonOptions common;
   std::string file;
+  std::optional<std::string> band;  ///< of bursts
 };
 
 Json attribute_json(const std::variant<std::string, double>& value) {
@@ -38,7 +40,7 @@ ExitCode info(const InfoOptions& options) {
   }
   object["results"] = Json::object();
   for (const auto& [name, value] : file.results()) object["results"][name] = attribute_json(value);
-  object["bursts"] = bursts_json(recorded_bursts(file, options.file));
+  object["bursts"] = bursts_json(bursts_of(file, options.file, options.band));
 
   if (options.common.json) {
     fmt::print("{}\n", object.dump(2));
@@ -55,6 +57,7 @@ ExitCode info(const InfoOptions& options) {
                                               times.back()));
   fmt::print("series\n");
   for (const std::string& name : file.series_names()) line("  " + name, file.units(name));
+  if (object["bursts"].empty()) line("bursts", "none");
   for (const Json& burst : object["bursts"]) line("burst", burst_text(burst));
   fmt::print("results\n");
   for (const auto& [name, value] : object["results"].items()) {
@@ -69,6 +72,7 @@ void add_info_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* verb = program.add_subcommand("info", "What a run file holds");
   verb->add_option("file", options->file, "Run file (HDF5)")->required();
+  add_band_option(*verb, options->band);
   add_json_option(*verb, options->common);
   verb->callback([options, &action] { action = [options] { return info(*options); }; });
 }

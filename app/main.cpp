@@ -1,14 +1,18 @@
 // The command line of stridor.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <vector>
 
 #include "app/command.hpp"
 #include "app/sphere_commands.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
+#include "core/suggestion.hpp"
 #include "core/version.hpp"
 #include "io/damage_guard.hpp"
 
@@ -29,6 +33,17 @@ std::string joined_arguments(int argc, char** argv) {
     command += argv[i];
   }
   return command;
+}
+
+/// What is wrong with the verb that the user wrote, or "".
+std::string verb_problem(CLI::App& program, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return "";
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : program.get_subcommands([](const CLI::App*) { return true; }))
+    verbs.push_back(verb->get_name());
+  if (std::find(verbs.begin(), verbs.end(), argv[1]) != verbs.end()) return "";
+  return fmt::format("there is no verb '{}'{} (there are: {})", argv[1],
+                     did_you_mean(argv[1], verbs), fmt::join(verbs, ", "));
 }
 
 int run_program(int argc, char** argv) {
@@ -64,8 +79,9 @@ int run_program(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const bool is_failure = error.get_exit_code() != 0;
     if (is_failure) {
+      const std::string verb = verb_problem(program, argc, argv);
       fmt::print(stderr, "stridor: {}\nTry 'stridor --help' or 'stridor VERB --help'.\n",
-                 error.what());
+                 verb.empty() ? error.what() : verb);
       return static_cast<int>(ExitCode::bad_input);
     }
     return program.exit(error);

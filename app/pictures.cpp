@@ -88,6 +88,13 @@ void add_spectrum_options(CLI::App& verb, PictureOptions& options) {
                   "Amplitude of 0 dB, in the unit of the channel or with a unit; default: "
                   "1 µm/s², 1 nm/s, 1 pm, 1 µN (ISO 1683)");
   verb.add_option("--range", options.range, "Levels shown below the highest one, dB");
+  add_band_option(verb, options.band);
+}
+
+void add_band_option(CLI::App& verb, std::optional<std::string>& band) {
+  verb.add_option("--band", band,
+                  "Seek bursts anew, in the band LOWER,UPPER (Hz or with units); default: those "
+                  "that the run found in measure.band");
 }
 
 void add_data_option(CLI::App& verb, PictureOptions& options) {
@@ -107,6 +114,31 @@ double option_value(const char* option, const std::string& text, const std::stri
                                           unit.empty() ? "" : " ", unit, text));
   }
   return value;
+}
+
+std::vector<Burst> bursts_of(const RunFileReader& file, const std::string& path,
+                             const std::optional<std::string>& band) {
+  if (!band) return recorded_bursts(file, path);
+  constexpr const char* option = "--band";
+  const std::size_t comma = band->find(',');
+  if (comma == std::string::npos)
+    throw ConfigError(option, fmt::format("'{}' is no band; write LOWER,UPPER", *band));
+  const Band wanted{option_value(option, band->substr(0, comma), "Hz", Range::positive()),
+                    option_value(option, band->substr(comma + 1), "Hz", Range::positive())};
+  const double interval = sampling_interval(file, path);
+  const double nyquist = interval > 0.0 ? 0.5 / interval : 0.0;
+  if (!(wanted.lower < wanted.upper && wanted.upper < nyquist)) {
+    throw ConfigError(option, fmt::format("{:g} to {:g} Hz must be a lower and an upper frequency "
+                                          "below {:g} Hz, half the sampling rate of {}",
+                                          wanted.lower, wanted.upper, nyquist, path));
+  }
+  auto bursts = bursts_in_band(file, path, recorded_settings(file, path).measure, wanted);
+  if (!bursts) {
+    throw ConfigError(option, path +
+                                  " holds no acceleration in the window of measure.from and "
+                                  "measure.to, in which bursts are sought");
+  }
+  return *std::move(bursts);
 }
 
 std::vector<double> RecordedStretch::times() const {
@@ -238,10 +270,10 @@ double settle_reference(const PictureOptions& options, const std::string& units)
                       Range::positive());
 }
 
-std::vector<NumberedBurst> bursts_in(const RecordedStretch& run) {
+std::vector<NumberedBurst> bursts_in(const RecordedStretch& run, const PictureOptions& options) {
   std::vector<NumberedBurst> found;
   std::size_t number = 0;
-  for (const Burst& burst : recorded_bursts(run.file, run.path)) {
+  for (const Burst& burst : bursts_of(run.file, run.path, options.band)) {
     ++number;
     if (burst.end >= run.first_time() && burst.start <= run.last_time())
       found.push_back({number, burst});

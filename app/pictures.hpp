@@ -30,6 +30,7 @@ struct PictureOptions {
   std::optional<std::string> max_frequency;
   std::optional<std::string> reference;
   std::optional<std::string> range;
+  std::optional<std::string> band;  ///< of bursts
   std::optional<std::string> data;
   std::optional<std::string> predict;  ///< locus file
 };
@@ -40,6 +41,16 @@ void add_picture_options(CLI::App& verb, PictureOptions& options);
 void add_spectrum_options(CLI::App& verb, PictureOptions& options);
 /// --data.
 void add_data_option(CLI::App& verb, PictureOptions& options);
+
+/// --band, of verbs that tell the bursts of a run.
+void add_band_option(CLI::App& verb, std::optional<std::string>& band);
+
+/// The bursts of a run: those that it found, or those in the band of --band.
+/// @param path of the file, for messages
+/// @throws ConfigError if the band is none that the samples resolve, or there is no acceleration
+///         to seek bursts in; FileError
+std::vector<Burst> bursts_of(const RunFileReader& file, const std::string& path,
+                             const std::optional<std::string>& band);
 
 /// A number that the user wrote behind an option.
 /// @param unit    SI unit of the result; a bare number is in it
@@ -106,14 +117,14 @@ std::string source_text(const RecordedStretch& run);
 /// --reference, or standard_reference().
 double settle_reference(const PictureOptions& options, const std::string& units);
 
-/// A burst as pictures name it: its number from 1, as listed by `run` and `info`.
+/// A burst as pictures name it: its number from 1, as listed by `run` and `info` for the same band.
 struct NumberedBurst {
   std::size_t number = 0;
   Burst burst;
 };
 
-/// The recorded bursts that touch the stretch.
-std::vector<NumberedBurst> bursts_in(const RecordedStretch& run);
+/// The bursts_of() the run that touch the stretch.
+std::vector<NumberedBurst> bursts_in(const RecordedStretch& run, const PictureOptions& options);
 
 /// Makes the spectrogram of a channel: figure, data, and what is printed.
 /// @throws ConfigError, FileError

@@ -54,6 +54,8 @@ std::string quantity_words(const std::string& name) {
 using Drawn = Json;
 
 Drawn draw_history(const PlotOptions& options, const RecordedStretch& run) {
+  const auto acceleration = acceleration_channel(run.file);
+  const std::vector<NumberedBurst> bursts = bursts_in(run, options);
   std::vector<Panel> panels;
   for (const std::string& series : wanted_series(options, run)) {
     const std::string name = channel_name(series);
@@ -61,9 +63,13 @@ Drawn draw_history(const PlotOptions& options, const RecordedStretch& run) {
                       quantity_words(name),
                       typeset_units(run.file.units(series)),
                       {{run.times(), run.values(series), ""}}});
+    if (series != acceleration || bursts.empty()) continue;
+    panels.back().title += "  (shaded: bursts)";
+    for (const auto& [number, burst] : bursts)
+      panels.back().marks.push_back({burst.start, burst.end, std::to_string(number)});
   }
   plot_histories(panels, options.output, "");
-  return {{"panels", panels.size()}};
+  return {{"panels", panels.size()}, {"bursts", bursts.size()}};
 }
 
 // ---------------------------------------------------------------- one channel against another
@@ -203,14 +209,16 @@ Drawn draw_spectrum(const PlotOptions& options, const RecordedStretch& run) {
     channels.push_back(
         {{"channel", channel_name(series)}, {"units", units}, {"reference", panel->reference}});
   }
-  const std::vector<NumberedBurst> bursts = bursts_in(run);
+  const std::vector<NumberedBurst> bursts = bursts_in(run, options);
   for (const auto& [number, burst] : bursts)
     picture.marks.push_back({burst.frequency, std::to_string(number)});
   const std::size_t num_pieces = panels.front().curves.front().spectrum.num_pieces;
   picture.caption = fmt::format(
       "Peak amplitudes, r.m.s. of {} pieces from {:.6g} to {:.6g} s: {}. {}.", num_pieces,
       run.first_time(), run.last_time(), pieces_text(parameters, run.interval), source_text(run));
-  if (!bursts.empty()) picture.caption += " Dashed: frequencies of the bursts.";
+  if (!bursts.empty())
+    picture.caption += fmt::format(" Dashed: frequencies of the bursts{}.",
+                                   options.band ? " in the band " + *options.band : "");
   plot_spectra(panels, picture, options.output);
   return {{"channels", channels},
           {"window", window_name(parameters.window)},
@@ -239,6 +247,7 @@ void check_options(const PlotOptions& options) {
   refuse_option(options, "--max-frequency", options.max_frequency);
   refuse_option(options, "--reference", options.reference);
   refuse_option(options, "--range", options.range);
+  if (options.kind == "phase") refuse_option(options, "--band", options.band);
 }
 
 ExitCode plot(const PlotOptions& options) {

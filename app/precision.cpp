@@ -177,11 +177,7 @@ PrecisionStudy make_precision_study(const PrecisionOptions& options) {
   }
   study.channel = *channel;
   study.model = build_model(study.loaded);
-  try {
-    set_initial_state(study.model.system, scene);
-  } catch (const ConfigError& error) {
-    throw study.loaded.located(error);
-  }
+  set_initial_state(study.model.system, study.loaded);
   for (const Channel& one : parse_channels(*scene.record, scene.model)) {
     if (one.name != study.channel) continue;
     const Model::Point& point = study.model.points.at(*one.point);

@@ -46,7 +46,7 @@ void print_summary(const Json& results, const std::string& output) {
   fmt::print("{:<24}{} of {:g} s ({})\n", "steps", results["steps"].get<std::int64_t>(),
              results["step"].get<double>(), limit);
   for (const auto& [name, modes] : results["modes"].items()) {
-    fmt::print("{:<24}{} moving, {} left to their static residual\n", "modes of " + name,
+    fmt::print("{:<23} {} moving, {} left to their static residual\n", "modes of " + name,
                modes["moving"].get<int>(), modes["residual"].get<int>());
   }
   const Json& left_out = results["left_out"];
@@ -67,17 +67,18 @@ void print_summary(const Json& results, const std::string& output) {
              results["wall_s"].get<double>(), step_time, results["setup_s"].get<double>(),
              results["output_s"].get<double>());
   const auto print_force = [&](const std::string& name, const Json& force) {
-    fmt::print("{:<24}{} to {} N\n", name, text(force["min"]), text(force["max"]));
+    fmt::print("{:<23} {} to {} N\n", name, text(force["min"]), text(force["max"]));
   };
   if (results.contains("contact_force")) print_force("contact force", results["contact_force"]);
   if (results.contains("contacts")) {
     for (const auto& [name, contact] : results["contacts"].items())
-      print_force("contact force " + name, contact["contact_force"]);
+      print_force("contact force, " + name, contact["contact_force"]);
   }
   if (!results["free_end_acceleration"].is_null()) {
     const Json& acceleration = results["free_end_acceleration"];
-    fmt::print("{:<24}peak {} m/s^2, r.m.s. in band {} m/s^2\n", "free-end acceleration",
-               text(acceleration["peak"]), text(acceleration["rms"]));
+    fmt::print("{:<24}peak {} m/s^2, r.m.s. {}{} m/s^2, of {}\n", "acceleration",
+               text(acceleration["peak"]), results["bursts"].is_null() ? "" : "in band ",
+               text(acceleration["rms"]), text(acceleration["channel"]));
   }
   print_bursts(results);
   const auto fraction_text = [&](const char* name) {

@@ -35,7 +35,7 @@ InterruptedRun find_interrupted_run(const std::string& file) {
   const auto status = results.find("status");
   const std::string* text =
       status == results.end() ? nullptr : std::get_if<std::string>(&status->second);
-  if (text != nullptr && (*text == "done" || *text == "finished"))
+  if (text != nullptr && *text == "done")
     throw FileError(file, "", "holds a whole run, there is nothing to go on with");
   if (text != nullptr && *text == "failed") {
     throw FileError(file, "",

@@ -65,13 +65,10 @@ std::vector<SpectrogramMark> burst_marks(const std::vector<NumberedBurst>& burst
   return marks;
 }
 
-/// The channel in which `run` looked for bursts.
-std::string burst_channel(const RunFileReader& file) {
-  const auto results = file.results();
-  const auto found = results.find("free_end_acceleration.channel");
-  const std::string* name =
-      found == results.end() ? nullptr : std::get_if<std::string>(&found->second);
-  return name != nullptr ? *name : "the run";
+/// The channel in which bursts are sought.
+std::string acceleration_name(const RunFileReader& file) {
+  const auto series = acceleration_channel(file);
+  return series ? channel_name(*series) : "the run";
 }
 
 Attributes data_attributes(const Json& settings, const RecordedStretch& run) {
@@ -109,13 +106,14 @@ ExitCode draw_spectrogram(const PictureOptions& options) {
   picture.reference = settle_reference(options, units);
   if (options.range) picture.range = option_value("--range", *options.range, "", Range::positive());
   picture.mean_lines = main_lobe_lines(parameters.window);
-  const std::vector<NumberedBurst> bursts = bursts_in(run);
+  const std::vector<NumberedBurst> bursts = bursts_in(run, options);
   picture.marks = burst_marks(bursts);
   picture.caption = fmt::format("Peak amplitudes: {}. {}.", pieces_text(parameters, run.interval),
                                 source_text(run));
   if (!bursts.empty()) {
-    picture.caption += fmt::format(" Dashed: bursts in {}, frequency at the steepest rise.",
-                                   burst_channel(run.file));
+    picture.caption +=
+        fmt::format(" Dashed: bursts in {}{}, frequency at the steepest rise.",
+                    acceleration_name(run.file), options.band ? ", band " + *options.band : "");
   }
 
   std::vector<PredictedBurst> predictions;

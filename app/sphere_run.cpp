@@ -268,7 +268,7 @@ ExitCode run_sphere(const LoadedSphereScene& loaded, const RunOutput& output,
   progress.finish();
   const bool is_stopped = !march.failed && stop_requested();
 
-  Json results = {{"status", march.failed ? "failed" : is_stopped ? "stopped" : "finished"}};
+  Json results = {{"status", march.failed ? "failed" : is_stopped ? "stopped" : "done"}};
   results.update(effort_json(
       march.steps, is_event_driven ? Json(nullptr) : number(*scene.time.step), limit, times));
   meter.report(results);

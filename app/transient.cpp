@@ -42,6 +42,34 @@ void store_bursts(RunFileWriter& writer, const std::vector<Burst>& bursts) {
   }
 }
 
+/// How the bodies and the drive were when the run began, so that one that goes on begins likewise:
+/// what they were taken from may be gone.
+void save_start(const System& system, State& state) {
+  state.put("start/drive", system.drive.displaced);
+  const auto put = [&](const std::string& name, const Eigen::VectorXd& motion) {
+    if (motion.size() > 0)
+      state.put(name, {motion.data(), static_cast<std::size_t>(motion.size())});
+  };
+  for (const SystemBody& body : system.bodies) {
+    put("start/" + body.name + "/displacement", body.initial_displacement);
+    put("start/" + body.name + "/velocity", body.initial_velocity);
+  }
+}
+
+void load_start(const State& state, System& system) {
+  system.drive.displaced = state.get("start/drive");
+  const auto get = [&](const std::string& name, Eigen::VectorXd& motion) {
+    const auto found = state.arrays().find(name);
+    if (found == state.arrays().end()) return;
+    motion = Eigen::Map<const Eigen::VectorXd>(found->second.data(),
+                                               static_cast<Eigen::Index>(found->second.size()));
+  };
+  for (SystemBody& body : system.bodies) {
+    get("start/" + body.name + "/displacement", body.initial_displacement);
+    get("start/" + body.name + "/velocity", body.initial_velocity);
+  }
+}
+
 }  // namespace
 
 Transient::Transient(const LoadedScene& loaded, const RunOutput& output)
@@ -49,8 +77,8 @@ Transient::Transient(const LoadedScene& loaded, const RunOutput& output)
   const Scene& scene = loaded.scene;
   check_output(file_, output.overwrite);
   model_ = build_model(loaded);
+  set_initial_state(model_.system, loaded);
   try {
-    set_initial_state(model_.system, scene);
     make_simulation();
   } catch (const ConfigError& error) {
     throw loaded.located(error);
@@ -68,8 +96,9 @@ Transient::Transient(const LoadedScene& loaded, const RunOutput& output)
 Transient::Transient(const LoadedScene& loaded, const InterruptedRun& interrupted)
     : loaded_(&loaded), file_(interrupted.file), keeper_(loaded.scene.checkpoint.every) {
   model_ = build_model(loaded);
-  make_simulation();
   try {
+    load_start(interrupted.checkpoint.state, model_.system);
+    make_simulation();
     const auto file_start = Clock::now();
     writer_.emplace(RunFileWriter::resume(file_, series(), interrupted.checkpoint));
     file_seconds_ = seconds_since(file_start);
@@ -83,8 +112,7 @@ Transient::Transient(const LoadedScene& loaded, const InterruptedRun& interrupte
 
 void Transient::make_simulation() {
   const Scene& scene = loaded_->scene;
-  const bool has_ledger = scene.record && scene.record->energy;
-  simulation_.emplace(model_.system, scene.time, has_ledger ? Accounts::energy : Accounts::none);
+  simulation_.emplace(model_.system, scene.time, accounts_of(scene));
   if (scene.record) channels_ = parse_channels(*scene.record, scene.model);
   interval_ = scene.record ? scene.record->interval : scene.time.step;
 }
@@ -115,6 +143,7 @@ State Transient::save() const {
   recorder_->save(state, "recorder/");
   march_->save(state, "march/");
   state.put("march_seconds", march_seconds_);
+  save_start(model_.system, state);
   for (const auto& [path, values] : final_motion_.arrays()) state.put("final/" + path, values);
   return state;
 }

@@ -93,10 +93,9 @@ struct Transit {
     const auto start = Clock::now();
     const Scene& given = loaded.scene;
     const double step = given.time.step;
+    set_initial_state(model.system, loaded);
     try {
-      set_initial_state(model.system, given);
-      const bool has_ledger = given.record && given.record->energy;
-      simulation.emplace(model.system, given.time, has_ledger ? Accounts::energy : Accounts::none);
+      simulation.emplace(model.system, given.time, accounts_of(given));
     } catch (const ConfigError& error) {
       throw loaded.located(error);
     }

@@ -137,9 +137,12 @@ struct Drive {
   TimeCurve velocity;      ///< of guided supports in +x, m/s
   TimeCurve load;          ///< on every guided support in +y, N
   bool is_frozen = false;  ///< the supports stay where they are, friction acts as if they moved
+  double displaced = 0.0;  ///< of the guided supports in +x at t = 0, m
 
   /// Displacement of the guided supports in +x, m.
-  double displacement(double time) const { return is_frozen ? 0.0 : velocity.integral(time); }
+  double displacement(double time) const {
+    return displaced + (is_frozen ? 0.0 : velocity.integral(time));
+  }
   double acceleration(double time) const { return is_frozen ? 0.0 : velocity.slope(time); }
   /// From this time on velocity and load no longer change.
   double constant_from() const { return std::max(velocity.constant_from(), load.constant_from()); }

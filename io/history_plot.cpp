@@ -51,6 +51,31 @@ void add_data(std::string& script, const std::string& block, const Curve& curve,
   script += "END_OF_DATA\n";
 }
 
+// Commands that shade stretches of time, and those that end it for the next panel.
+struct Shading {
+  std::string begin;
+  std::string end;
+};
+
+Shading shading(const std::vector<TimeMark>& marks, const AxisScale& time, ValueRange shown,
+                int first_tag) {
+  Shading commands;
+  int tag = first_tag;
+  for (const TimeMark& mark : marks) {
+    const double from = as_number(std::max(mark.from, shown.lower), time);
+    const double to = as_number(std::min(mark.to, shown.upper), time);
+    if (from > to) continue;
+    commands.begin += fmt::format(
+        "set object {} rectangle from {:.9g}, graph 0 to {:.9g}, graph 1 behind fillcolor "
+        "'#fbe3bd' fillstyle solid noborder\n"
+        "set label {} {} at {:.9g}, graph 0.92 center front\n",
+        tag, from, to, tag, gnuplot_string(mark.label), 0.5 * (from + to));
+    commands.end += fmt::format("unset object {}\nunset label {}\n", tag, tag);
+    ++tag;
+  }
+  return commands;
+}
+
 bool has_names(const Panel& panel) {
   return std::any_of(panel.curves.begin(), panel.curves.end(),
                      [](const Curve& c) { return !c.name.empty(); });
@@ -206,7 +231,8 @@ void plot_histories(const std::vector<Panel>& panels, const std::filesystem::pat
                                 : "title " + gnuplot_string(panel.curves[c].name));
       if (c + 1 < panel.curves.size()) curves += ", ";
     }
-    plots += "plot " + curves + "\n";
+    const Shading shaded = shading(panel.marks, time, time_range, static_cast<int>(num_lines) + 2);
+    plots += shaded.begin + "plot " + curves + "\n" + shaded.end;
   }
 
   std::string script = data_blocks;

@@ -19,12 +19,20 @@ struct Curve {
   std::string name;            ///< in the key; no key where all names of a panel are empty
 };
 
+/// A stretch of time that is shaded behind the curves.
+struct TimeMark {
+  double from = 0.0;  ///< s
+  double to = 0.0;    ///< s, >= from
+  std::string label;  ///< at its top
+};
+
 /// One diagram of a stack.
 struct Panel {
   std::string title;          ///< above the panel; may be empty
   std::string label;          ///< what the axis shows, e.g. "contact force"
   std::string units;          ///< e.g. "N"; empty where dimensionless
   std::vector<Curve> curves;  ///< at least one; later ones are drawn over earlier ones
+  std::vector<TimeMark> marks{};
 };
 
 /// Points to draw instead of a long series so that the picture looks the same.

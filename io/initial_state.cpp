@@ -45,9 +45,15 @@ void check_modes(const RunFileReader& file, const std::string& path, const Syste
   }
 }
 
+/// The drive and the bodies stand and move as they did at the end of the run.
 void start_from_file(System& system, const std::string& path) {
+  constexpr const char* drive = "/final/drive_displacement";
   const DamageGuard guard(path);
   const RunFileReader file(path);
+  const std::vector<double> displaced = file.static_array(drive);
+  if (displaced.size() != 1 || !std::isfinite(displaced.front()))
+    throw FileError(path, drive, "should be one finite number");
+  system.drive.displaced = displaced.front();
   for (SystemBody& body : system.bodies) {
     if (body.modal.size() == 0) continue;
     check_modes(file, path, body);
@@ -106,16 +112,20 @@ Eigen::VectorXd sum(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 
 }  // namespace
 
-void set_initial_state(System& system, const Scene& scene) {
-  const InitialParameters& initial = scene.model.initial;
+void set_initial_state(System& system, const LoadedScene& loaded) {
+  const InitialParameters& initial = loaded.scene.model.initial;
   if (initial.state == InitialParameters::rest) return;
   const std::vector<SystemBody> prescribed = system.bodies;
-  if (initial.is_file()) {
-    start_from_file(system, initial.state);
-  } else {
-    const Equilibrium equilibrium = equilibrium_at_start(system);
-    apply_initial_motion(system, equilibrium);
-    if (initial.perturbation) perturb(system, equilibrium, *initial.perturbation);
+  try {
+    if (initial.is_file()) {
+      start_from_file(system, path_of_file(loaded.tree, state_key, initial.state));
+    } else {
+      const Equilibrium equilibrium = equilibrium_at_start(system);
+      apply_initial_motion(system, equilibrium);
+      if (initial.perturbation) perturb(system, equilibrium, *initial.perturbation);
+    }
+  } catch (const ConfigError& error) {
+    throw loaded.located(error);
   }
   for (std::size_t b = 0; b < system.bodies.size(); ++b) {
     SystemBody& body = system.bodies[b];

@@ -9,10 +9,10 @@ namespace stridor {
 /// displacements and velocities that the system starts with.
 ///
 /// @param system of the scene's model
-/// @throws ConfigError (key paths below "initial") if there is no such equilibrium or eigenvalue,
+/// @throws ConfigError with the place in the scene if there is no such equilibrium or eigenvalue,
 /// or
 ///         the run file is of other bodies
 /// @throws FileError naming file and dataset if the run file cannot be read
-void set_initial_state(System& system, const Scene& scene);
+void set_initial_state(System& system, const LoadedScene& loaded);
 
 }  // namespace stridor

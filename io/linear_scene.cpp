@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <stdexcept>
 
@@ -45,8 +44,9 @@ void check_recording(const DiscScene& scene, std::vector<Problem>& problems) {
 /// The matrices of one body, with checks that name their keys.
 class MatrixLoader {
  public:
-  MatrixLoader(std::string key, const std::string& scene_path)
-      : key_(std::move(key)), folder_(std::filesystem::path(scene_path).parent_path()) {}
+  /// @param key  path of the body
+  /// @param tree of the scene; must live longer
+  MatrixLoader(std::string key, const SceneNode& tree) : key_(std::move(key)), tree_(&tree) {}
 
   SceneMatrices load(const MatrixBodyParameters& body) const {
     SceneMatrices parts;
@@ -82,7 +82,7 @@ class MatrixLoader {
     const bool is_number =
         text.front().find_first_not_of("+-.eE0123456789 \t") == std::string::npos;
     if (text.size() == 1 && !is_number) {
-      read = read_matrix_file((folder_ / text.front()).string());
+      read = read_matrix_file(path_of_file(*tree_, key_ + "." + name, text.front()));
     } else {
       try {
         read = parse_matrix_rows(text);
@@ -108,7 +108,7 @@ class MatrixLoader {
   }
 
   std::string key_;
-  std::filesystem::path folder_;
+  const SceneNode* tree_;
 };
 
 SparseSystem sum(const SceneMatrices& parts, const MatrixBodyParameters& body) {
@@ -145,7 +145,7 @@ LinearModel model_of(const MatrixScene& scene, const LoadedLinearScene& loaded) 
   const auto& body = std::get<MatrixBodyParameters>(variant);
   if (!loaded.matrices) {
     loaded.matrices = std::make_shared<const SceneMatrices>(
-        MatrixLoader("substructures." + name, loaded.path).load(body));
+        MatrixLoader("substructures." + name, loaded.tree).load(body));
   }
   SparseSystem sparse = sum(*loaded.matrices, body);
   LinearModel model;

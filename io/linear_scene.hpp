@@ -95,8 +95,7 @@ struct LoadedLinearScene {
 
   std::string resolved() const;
   std::string hash() const;
-  /// Files of matrices are looked for in the folder of the scene.
-  /// @throws ConfigError with the places of keys, or with the place in a matrix file; FileError
+  /// @throws ConfigError with the place of the key, or the place in a matrix file; FileError
   LinearModel model() const;
   /// The same with some numbers set. @throws ConfigError also if they do not fit the others
   LinearModel model(const std::vector<NumericKey>& keys, std::span<const double> values) const;

@@ -108,6 +108,17 @@ std::vector<Burst> recorded_bursts(const RunFileReader& file, const std::string&
   return bursts;
 }
 
+std::optional<std::vector<Burst>> bursts_in_band(const RunFileReader& file, const std::string& path,
+                                                 MeasureParameters measure, Band band) {
+  if (const auto channel = acceleration_channel(file)) {
+    for (const double value : file.series(*channel))
+      if (!std::isfinite(value)) throw FileError(path, *channel, "is not finite everywhere");
+  }
+  measure.band = {band.lower, band.upper};
+  const auto summary = summarise_acceleration(file, measure);
+  return summary ? summary->bursts : std::nullopt;
+}
+
 RecordedSettings recorded_settings(const RunFileReader& file, const std::string& path) {
   RecordedSettings settings;
   try {

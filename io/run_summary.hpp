@@ -50,6 +50,14 @@ std::optional<AccelerationSummary> summarise_acceleration(const RunFileReader& f
 ///         or a burst ends before it starts
 std::vector<Burst> recorded_bursts(const RunFileReader& file, const std::string& path);
 
+/// The bursts of a run in another band than the one of its scene, sought as `run` does.
+/// @param measure of its scene
+/// @return nothing where there is no acceleration, or no sample in the window of `measure`
+/// @throws FileError naming the channel if one of its samples is not finite
+/// @throws std::invalid_argument unless 0 < lower < upper < half the sampling rate
+std::optional<std::vector<Burst>> bursts_in_band(const RunFileReader& file, const std::string& path,
+                                                 MeasureParameters measure, Band band);
+
 /// What the scene in a run file says of how its results are read.
 struct RecordedSettings {
   MeasureParameters measure;

@@ -87,8 +87,8 @@ const Schema& MeasureParameters::schema() {
                  .range = Range::positive(),
                  .optional = true})
           .real_list("band", &MeasureParameters::band,
-                     {.doc = "Band of the r.m.s. values: lower and upper frequency; default: all "
-                             "frequencies.",
+                     {.doc = "Band of the r.m.s. values, and in which bursts are sought: lower and "
+                             "upper frequency; default: all frequencies, and no bursts.",
                       .unit = "Hz",
                       .range = Range::positive(),
                       .optional = true})
@@ -203,6 +203,10 @@ const Schema& Scene::schema() {
             }
           });
   return keys;
+}
+
+Accounts accounts_of(const Scene& scene) {
+  return scene.record && scene.record->energy ? Accounts::energy : Accounts::none;
 }
 
 std::string LoadedScene::resolved() const {

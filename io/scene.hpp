@@ -65,6 +65,9 @@ struct Scene {
   static const Schema& schema();
 };
 
+/// What a run of the scene keeps account of.
+Accounts accounts_of(const Scene& scene);
+
 /// A scene together with where its keys stand.
 struct LoadedScene {
   std::string path;

@@ -297,10 +297,18 @@ class Reader {
       report(type->value.place, type_path,
              fmt::format("expected {}, got {}{}", expected, quoted(type->value.text),
                          did_you_mean(type->value.text, names)));
-      return std::nullopt;
+      return meant_alternative(type->value.text, names);
     }
     add_text_problems(type->value, type_path);
     return static_cast<std::size_t>(found - names.begin());
+  }
+
+  /// Which alternative is read on where its name is misspelt: the nearest one.
+  static std::optional<std::size_t> meant_alternative(const std::string& written,
+                                                      const std::vector<std::string>& names) {
+    const auto meant = std::find(names.begin(), names.end(), nearest(written, names));
+    if (meant == names.end()) return std::nullopt;
+    return static_cast<std::size_t>(meant - names.begin());
   }
 
   /// The value of a scalar, list or curve key; monostate where it is wrong, which has been

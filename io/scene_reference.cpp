@@ -24,6 +24,10 @@ converted, and a dimensionless number may be written in `%`. A curve is a number
 `{times: [...], values: [...]}` with strictly increasing times in s. Keys that are neither required
 nor have a default are left out where they are not wanted. In the headings, NAME stands for a name
 of your choice (letters, digits, `_` and `-`, no digit or `-` first) and N for the index in a list.
+
+The path of a file is from the folder of the scene where it is written in the scene, and from the
+working directory where it comes from `--set`. The scene hash that results carry covers every key
+with its value, the paths of such files among them, but not what the files hold.
 )";
 
 /// The anchor that Markdown renderers give to a heading.

@@ -594,6 +594,12 @@ Problem problem_at(const Place& place, std::string key, std::string message) {
           place.column > 0 ? excerpt_of(place.source, 0, place.column) : ""};
 }
 
+std::string path_of_file(const SceneNode& root, const std::string& key, const std::string& name) {
+  const Place place = place_of(root, key);
+  if (place.line == 0) return name;
+  return (std::filesystem::path(place.source).parent_path() / name).string();
+}
+
 void add_excerpts(std::vector<Problem>& problems, const SceneNode& root) {
   add_excerpts(problems, root.place.source, root.document);
 }

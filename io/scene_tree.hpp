@@ -101,6 +101,12 @@ Place place_of(const SceneNode& root, const std::string& path);
 /// @param key path of the key that is meant
 Problem problem_at(const Place& place, std::string key, std::string message);
 
+/// The path of a file that a scene names: from the folder of the scene where the name was written
+/// in it, from the working directory where it comes from `--set`.
+/// @param key  path of the key that holds the name
+/// @param name as written
+std::string path_of_file(const SceneNode& root, const std::string& key, const std::string& name);
+
 /// Gives the problems that lie in the file of this scene the line there as their excerpt.
 /// @param root map at the top
 void add_excerpts(std::vector<Problem>& problems, const SceneNode& root);

@@ -178,7 +178,7 @@ void add_marks(FigureScript& script, const std::vector<SpectrogramMark>& marks, 
         "noborder",
         object++, corners(at));
     script.add_text(
-        mark.label, left + 0.5 * (at.left + at.right), bottom + 0.5 * (at.bottom + at.top),
+        place.text, left + 0.5 * (at.left + at.right), bottom + 0.5 * (at.bottom + at.top),
         is_found ? "center front textcolor '#000000'" : "center front textcolor '#a02000'",
         map.font_size);
   }

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "io/law_table_file.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_reader.hpp"
@@ -114,11 +112,8 @@ LoadedSphereScene load_sphere_scene(const std::string& path, const std::vector<s
   loaded.scene = read_as<SphereScene>(loaded.tree);
   SphereModelParameters& model = loaded.scene.model;
   if (model.has_table()) {
-    // A file named in the scene stands beside it, one of --set is meant from where the user is.
-    const bool is_of_scene = place_of(loaded.tree, "contact_law").source == path;
-    const std::filesystem::path folder =
-        is_of_scene ? std::filesystem::path(path).parent_path() : std::filesystem::path();
-    model.table = std::make_shared<TabulatedLaw>(read_law_table(folder / model.contact_law));
+    model.table = std::make_shared<TabulatedLaw>(
+        read_law_table(path_of_file(loaded.tree, "contact_law", model.contact_law)));
   }
   return loaded;
 }

@@ -41,11 +41,12 @@ const Schema& PerturbationParameters::schema() {
 const Schema& InitialParameters::schema() {
   static const Schema keys =
       SchemaOf<InitialParameters>("initial")
-          .text("state", &InitialParameters::state,
-                {.doc = "State at the start: rest; equilibrium (steady sliding under the loads of "
-                        "t = 0: needs drive.ramp 0); or a run file (*.h5), whose final motion is "
-                        "taken.",
-                 .optional = true})
+          .text(
+              "state", &InitialParameters::state,
+              {.doc = "State at the start: rest; equilibrium (steady sliding under the loads of "
+                      "t = 0: needs drive.ramp 0); or a file, from the folder of the scene: a run "
+                      "(*.h5), whose final motion is taken.",
+               .optional = true})
           .section_list("displacement", &InitialParameters::displacement,
                         {.doc = "Displacements added to the state.", .optional = true})
           .section_list("velocity", &InitialParameters::velocity,

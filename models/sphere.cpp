@@ -190,8 +190,8 @@ const Schema& SphereModelParameters::schema() {
                 {.doc = "Force, area and friction of the contact: published_fit, the fits as "
                         "published, whose axis of speed is off by about two decades; "
                         "boundary_element, the boundary elements of a paraboloid with one creep "
-                        "time and E∞/E0 = 10; or a table of `stridor contact --table` (*.h5), "
-                        "looked for beside the scene.",
+                        "time and E∞/E0 = 10; or a file, from the folder of the scene: a table "
+                        "of `stridor contact --table` (*.h5).",
                  .optional = true})
           .choice("friction_normal_force", &SphereModelParameters::friction_normal_force,
                   {{"applied", FrictionLoad::applied}, {"contact", FrictionLoad::contact}},

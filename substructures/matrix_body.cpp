@@ -19,10 +19,11 @@ const Schema& MatrixFactors::schema() {
 const Schema& MatrixBodyParameters::schema() {
   using P = MatrixBodyParameters;
   const auto matrix = [](const char* doc, bool is_optional) {
-    return PlainKey{.doc = std::string(doc) +
-                           " The name of a Matrix Market file, from the folder of the scene, or a "
-                           "list of rows, each a list or a text of numbers.",
-                    .optional = is_optional};
+    return PlainKey{
+        .doc = std::string(doc) +
+               " A Matrix Market file, from the folder of the scene, or a list of rows, "
+               "each a list or a text of numbers.",
+        .optional = is_optional};
   };
   static const Schema keys =
       SchemaOf<P>("matrices")

@@ -75,6 +75,27 @@ TEST(Check, ErrorsThatOnlyTheModelFindsAreShownInTheirLine) {
   }
 }
 
+TEST(Check, FindsWhatRunFindsBeforeItsFirstStep) {
+  const std::string scene = scene_path("beam_on_beam.yaml");
+  for (const auto& [settings, key] :
+       {std::pair{std::vector<std::string>{"record.energy=true", "time.integrator=exact"},
+                  "record.energy: the energy ledger takes"},
+        std::pair{std::vector<std::string>{"initial.state=equilibrium"},
+                  "initial.state: equilibrium is that under the loads of t = 0"},
+        std::pair{std::vector<std::string>{"time.step=1e-6"},
+                  "time.step: 1e-06 s is above the largest stable step"}}) {
+    std::vector<std::string> arguments{"check", scene};
+    for (const std::string& one : settings) arguments.insert(arguments.end(), {"--set", one});
+    const ProgramResult check = Program(arguments).run();
+    EXPECT_EQ(check.exit_code, 2);
+    EXPECT_THAT(check.err, HasSubstr(key));
+    const TemporaryFolder folder;
+    arguments[0] = "run";
+    arguments.insert(arguments.end(), {"-o", (folder / "x.h5").string()});
+    EXPECT_EQ(Program(arguments).run().err, check.err);
+  }
+}
+
 TEST(Check, JsonHoldsPlaceKeyAndMessageAlone) {
   const TemporaryFolder folder;
   const std::string path = folder / "bad.yaml";

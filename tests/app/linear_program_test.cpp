@@ -281,7 +281,7 @@ TEST(DiscProgram, RunsIntoABoundedCycle) {
   const std::string squeal = scene_path("examples/disc_squeal.yaml");
   const Json run =
       json_of({"run", squeal, "-o", (folder / "run.h5").string(), "--set", "time.end=0.04"});
-  EXPECT_EQ(run["status"], "finished");
+  EXPECT_EQ(run["status"], "done");
   // Without what only run needs.
   const std::string bare = (folder / "bare.yaml").string();
   std::ifstream whole(squeal);

@@ -146,6 +146,33 @@ TEST_F(Pictures, SpectrogramMarksBurstsAndNamesReferenceAndSettings) {
   }
 }
 
+TEST_F(Pictures, HistoryShadesTheBurstsOfTheAcceleration) {
+  const std::string run = make_run();
+  EXPECT_EQ(json_of({"plot", run, "--kind", "history", "-o", path("a.svg")})["bursts"], 1);
+  EXPECT_THAT(contents_of(path("a.svg")), HasSubstr("beam.tip.y  (shaded: bursts)"));
+  EXPECT_THAT(contents_of(path("a.svg")), HasSubstr("rgb(251, 227, 189)"));
+  json_of({"plot", run, "--kind", "history", "-o", path("b.svg"), "--to", "0.1"});
+  EXPECT_THAT(contents_of(path("b.svg")), Not(HasSubstr("shaded")));
+}
+
+TEST_F(Pictures, BurstsAreSoughtInAnotherBand) {
+  const std::string file = make_run({.has_bursts = false});
+  EXPECT_EQ(json_of({"info", file})["bursts"], Json::array());
+  const Json info = json_of({"info", file, "--band", "800,1.2 kHz"});
+  ASSERT_EQ(info["bursts"].size(), 1u);
+  // In perfect silence the ringing of the filter before the tone belongs to the burst.
+  EXPECT_LT(info["bursts"][0]["start"].get<double>(), 0.2);
+  EXPECT_GT(info["bursts"][0]["end"].get<double>(), 0.3);
+  EXPECT_NEAR(info["bursts"][0]["peak"].get<double>(), 2.0, 0.4);  // the filter overshoots
+  const Json picture = json_of({"spectrogram", file, "-o", path("a.svg"), "--band", "800,1200"});
+  EXPECT_EQ(picture["bursts"], 1);
+  EXPECT_THAT(contents_of(path("a.svg")), HasSubstr("band 800,1200"));
+  EXPECT_THAT(contents_of(path("a.svg")), HasSubstr("<text>1: "));
+  const Json spectrum = json_of(
+      {"plot", file, "--kind", "spectrum", "-o", path("b.svg"), "--band", "800 Hz,1200 Hz"});
+  EXPECT_EQ(spectrum["bursts"], 1);
+}
+
 TEST_F(Pictures, SpectrogramWithoutBurstsIsDrawn) {
   RunContents quiet;
   quiet.has_bursts = false;
@@ -413,6 +440,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadUsage{{"spectrogram", "--reference", "0"}, "--reference: must be > 0 m/s^2"},
         BadUsage{{"spectrogram", "--reference", "1 N"}, "--reference: '1 N' has unit N"},
         BadUsage{{"spectrogram", "--range", "-3"}, "--range: must be > 0"},
+        BadUsage{{"spectrogram", "--band", "800"}, "--band: '800' is no band; write LOWER,UPPER"},
+        BadUsage{{"spectrogram", "--band", "800,1 m"}, "--band: '1 m' has unit m"},
+        BadUsage{{"spectrogram", "--band", "1200,800"}, "must be a lower and an upper frequency"},
+        BadUsage{{"spectrogram", "--band", "1 kHz,5 kHz"}, "below 5000 Hz, half the sampling rate"},
+        BadUsage{{"plot", "--kind", "phase", "--band", "1,2"}, "--band: means nothing"},
         BadUsage{{"spectrogram", "-o", "figure.bmp"}, "must end with .png, .svg or .pdf"},
         BadUsage{{"plot", "--kind", "spectrogram", "--length", "1 s"}, "is longer than the 0.4 s"},
         BadUsage{{"plot", "--kind", "spectrogram", "-o", "figure.jpg"}, "must end with"},

@@ -13,6 +13,7 @@ namespace stridor {
 namespace {
 
 using namespace test;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using Json = nlohmann::json;
@@ -54,6 +55,19 @@ TEST(Program, StatisticsAreNullWhereTheWindowIsEmpty) {
   const Json object = Json::parse(result.out);
   EXPECT_TRUE(object["contact_force"]["min"].is_null());
   EXPECT_TRUE(object["free_end_acceleration"].is_null());
+}
+
+TEST(Program, SummaryNamesTheChannelAndTheBandOfTheAcceleration) {
+  const TemporaryFolder folder;
+  const ProgramResult banded =
+      Program(short_run(folder / "a.h5", {"--set", "measure.from=0"})).run();
+  EXPECT_THAT(banded.out, ContainsRegex("acceleration +peak [^ ]+ m/s\\^2, r.m.s. in band [^ ]+ "
+                                        "m/s\\^2, of cantilever.free_end.y.acceleration\n"));
+  EXPECT_THAT(banded.out, ContainsRegex("\nbursts +none\n"));
+  const ProgramResult plain =
+      Program(short_run(folder / "b.h5", {"--set", "measure={from: 0}"})).run();
+  EXPECT_THAT(plain.out, ContainsRegex("acceleration +peak [^ ]+ m/s\\^2, r.m.s. [0-9.e-]+ m/s"));
+  EXPECT_THAT(plain.out, Not(HasSubstr("burst")));
 }
 
 TEST(Program, RunFileHoldsTheChannelsAskedForUpToTheEnd) {
@@ -304,6 +318,7 @@ TEST(Program, MissingSceneIsFileTrouble) {
 TEST(Program, WrongUsageExits2) {
   EXPECT_EQ(Program({}).run().exit_code, 2);
   EXPECT_EQ(Program({"rum"}).run().exit_code, 2);
+  EXPECT_THAT(Program({"rum"}).run().err, HasSubstr("there is no verb 'rum', did you mean 'run'?"));
   EXPECT_EQ(Program({"run", main_scene}).run().exit_code, 2);  // no -o
   EXPECT_EQ(Program({"run", main_scene, "-o", "x.h5", "--nonsense"}).run().exit_code, 2);
   EXPECT_EQ(Program({"--help"}).run().exit_code, 0);

@@ -119,9 +119,8 @@ TEST(DiscScene, ReadsTheReferenceBrake) {
   EXPECT_EQ(model.dense.gaps.rows(), 2);
   EXPECT_NEAR(model.highest_frequency, 7494.83, 0.01);
   // What is resolved reads back as the same.
-  const LinearScene again = read_linear_scene(read_scene_text(loaded.resolved(), "resolved"));
-  EXPECT_EQ(load_resolved_linear_scene(loaded.resolved(), "resolved").model().dense.position,
-            model.dense.position);
+  const LoadedLinearScene again = load_resolved_linear_scene(loaded.resolved(), "resolved");
+  EXPECT_EQ(again.model().dense.position, model.dense.position);
 }
 
 TEST(DiscScene, SaysWhatDoesNotFit) {

@@ -383,6 +383,17 @@ TEST(SceneFile, ThatCannotBeOpenedIsAFileError) {
   EXPECT_THAT(file_failure(folder / "s.yaml/below"), HasSubstr("does not exist"));
 }
 
+TEST(PathOfFile, IsFromTheSceneOrOfAnAssignmentFromTheWorkingDirectory) {
+  SceneNode root = read_scene_text("a: {b: x.h5}\nc: /y.h5\nd: [m.mtx]\n", "folder/s.yaml");
+  EXPECT_EQ(path_of_file(root, "a.b", "x.h5"), "folder/x.h5");
+  EXPECT_EQ(path_of_file(root, "a.b", "../x.h5"), "folder/../x.h5");
+  EXPECT_EQ(path_of_file(root, "c", "/y.h5"), "/y.h5");
+  EXPECT_EQ(path_of_file(root, "d", "m.mtx"), "folder/m.mtx");
+  set_value(root, "a.b=z.h5");
+  EXPECT_EQ(path_of_file(root, "a.b", "z.h5"), "z.h5");
+  EXPECT_EQ(path_of_file(read_scene_text("c: y.h5\n", "s.yaml"), "c", "y.h5"), "y.h5");
+}
+
 // --- set_value
 // --------------------------------------------------------------------------------------
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -363,6 +364,23 @@ TEST(SceneReference, PageOnDiskIsCurrent) {
 TEST(JsonSchema, FileOnDiskIsCurrent) {
   expect_current("docs/scene.schema.json", all_scenes_json_schema(),
                  "build/release/stridor schema > docs/scene.schema.json");
+}
+
+TEST(JsonSchema, EveryShippedSceneNamesItForEditors) {
+  const std::filesystem::path source = STRIDOR_SOURCE_DIR;
+  int num_scenes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(source / "scenes")) {
+    const std::filesystem::path& path = entry.path();
+    if (path.extension() != ".yaml") continue;
+    ++num_scenes;
+    std::ifstream file(path);
+    std::string line;
+    std::getline(file, line);
+    const auto schema =
+        (source / "docs" / "scene.schema.json").lexically_relative(path.parent_path());
+    EXPECT_EQ(line, "# yaml-language-server: $schema=" + schema.string()) << path;
+  }
+  EXPECT_GE(num_scenes, 60);
 }
 
 }  // namespace

@@ -265,6 +265,17 @@ TEST(PlotSpectrogram, SaysWhatItShows) {
   }
 }
 
+TEST(PlotSpectrogram, WritesTheShortLabelWhereThereIsNoRoomForTheLong) {
+  const TemporaryFolder folder;
+  SpectrogramPicture picture = picture_of_acceleration();
+  const std::string wide(200, 'w');
+  picture.marks = {{1e-3, 2e-3, 10000.0, wide, "17", MarkStyle::found}};
+  plot_spectrogram(tone(500), picture, folder / "a.svg");
+  const std::string svg = contents_of(folder / "a.svg");
+  EXPECT_THAT(svg, HasSubstr(">17<"));
+  EXPECT_THAT(svg, Not(HasSubstr(wide)));
+}
+
 TEST(PlotSpectrogram, LongRunsMakeSmallFiles) {
   const TemporaryFolder folder;
   // 12,000 pieces of 26 lines: 312,000 amplitudes, as text alone 2 MB.

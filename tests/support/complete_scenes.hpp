@@ -79,8 +79,11 @@ class Repair {
 
   /// @param problems_of what the checks say, none hiding another
   /// @param wanted      pattern of a key that must stay
-  Repair(Problems problems_of, std::string wanted)
-      : problems_of_(std::move(problems_of)), wanted_(std::move(wanted)) {}
+  /// @param fixed       path of a value that must stay as it is; "": none
+  Repair(Problems problems_of, std::string wanted, std::string fixed = "")
+      : problems_of_(std::move(problems_of)),
+        wanted_(std::move(wanted)),
+        fixed_(std::move(fixed)) {}
 
   /// @return what is still wrong where nothing helped; empty where the draft is right
   std::vector<Problem> operator()(Draft& root) {
@@ -165,8 +168,14 @@ class Repair {
     return false;
   }
 
+  /// Whether the value that must stay is at `path` or below.
+  bool holds_fixed(const std::string& path) const {
+    return !fixed_.empty() && (fixed_ + ".").starts_with(path + ".");
+  }
+
   /// Another value for the key at `path`.
   bool change(Draft& root, const std::string& path, const IsBetter& is_better) {
+    if (holds_fixed(path)) return false;
     Draft* draft = find_draft(root, path);
     if (draft == nullptr || draft->key == nullptr) return false;
     const Draft before = *draft;
@@ -181,6 +190,7 @@ class Repair {
   }
 
   bool leave_out(Draft& root, const std::string& path, const IsBetter& is_better) {
+    if (holds_fixed(path)) return false;
     const Draft* draft = find_draft(root, path);
     if (draft == nullptr || draft->key == nullptr || !draft->key->is_optional ||
         (wanted_ + ".").starts_with(draft->pattern + ".")) {
@@ -196,6 +206,7 @@ class Repair {
 
   Problems problems_of_;
   std::string wanted_;
+  std::string fixed_;
   std::set<std::string> visited_;
 };
 

@@ -81,6 +81,8 @@ inline std::vector<double> allowed_numbers(const Key& key) {
   for (const double value : {1.0, 2.0, 0.5, 0.1, 10.0, 0.01, 100.0, 1e-3, 0.0, -1.0}) {
     add(value);
   }
+  add(key.range.low);
+  add(key.range.high);
   if (numbers.empty()) add(0.5 * (key.range.low + key.range.high));
   if (numbers.empty()) add(std::ceil(key.range.low));
   return numbers;
@@ -89,7 +91,7 @@ inline std::vector<double> allowed_numbers(const Key& key) {
 inline std::vector<std::string> words_of(const std::string& sentence) {
   std::vector<std::string> words(1);
   for (const char c : sentence) {
-    if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_') {
+    if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_') {
       words.back() += c;
     } else if (!words.back().empty()) {
       words.emplace_back();
@@ -121,17 +123,27 @@ inline std::vector<Draft> candidates(const Key& key) {
       for (const std::string& choice : key.choices) drafts.push_back(text_draft(choice));
       return drafts;
     case KeyKind::real_list: {
+      if (key.doc.find("ascending from 0") != std::string::npos)
+        drafts.push_back(list_draft({"0", "1", "2"}));
       for (const double value : allowed_numbers(key)) {
         if (key.range.contains(2.0 * value)) {
           drafts.push_back(list_draft({number_text(value), number_text(2.0 * value)}));
         }
       }
-      drafts.push_back(list_draft({number_text(allowed_numbers(key).at(0))}));
+      const std::string number = number_text(allowed_numbers(key).at(0));
+      drafts.push_back(list_draft({number}));
+      if (key.range.contains(0.5)) drafts.push_back(list_draft({"0.5", "0.5"}));  // shares
       return drafts;
     }
     case KeyKind::text_list:
-      return {list_draft({"a", "b"}), list_draft({"a.b", "c.d"}), list_draft({"a"}),
-              text_draft("a")};
+      drafts = {list_draft({"a", "b"}), list_draft({"a.b", "c.d"}), list_draft({"a"}),
+                text_draft("a")};
+      for (const std::string& word : words_of(key.doc)) drafts.push_back(list_draft({word}));
+      for (const std::string& first : words_of(key.doc)) {
+        for (const std::string& second : words_of(key.doc))
+          drafts.push_back(list_draft({first + "." + second}));
+      }
+      return drafts;
     case KeyKind::curve:
       for (const double value : allowed_numbers(key)) {
         const std::string text = number_text(value);
