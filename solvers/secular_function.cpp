@@ -113,14 +113,18 @@ void SecularFunction::assign_modes(const Pencil& pencil) {
   }
   std::fill_n(omega_.data(), padded_, padding_omega);
   extent_ = 0.0;
+  smallest_pole_ = std::numeric_limits<double>::infinity();
   height_of_.clear();
   for (std::size_t i = 0; i < order_.size(); ++i) {
     omega_[i] = pencil.omega(order_[i]);
     damping_[i] = pencil.damping(order_[i]);
     height_of_.push_back(poles(static_cast<Eigen::Index>(i)).front().imag());
     extent_ = std::max({extent_, omega_[i], std::abs(damping_[i])});
+    for (const Complex pole : poles(static_cast<Eigen::Index>(i)))
+      if (pole != 0.0) smallest_pole_ = std::min(smallest_pole_, std::abs(pole));
   }
   if (extent_ == 0.0) extent_ = 1.0;
+  smallest_pole_ = std::min(smallest_pole_, extent_);
   heights_ = height_of_;
   std::sort(heights_.begin(), heights_.end());
 
@@ -348,7 +352,8 @@ SecularFunction::Zero SecularFunction::find_zero(Complex guess, double spacing, 
     zero.s += step;
     const double size = magnitude(step);
     const double distance_to_origin = magnitude(zero.s);
-    const double rounding = eps * distance_to_origin;
+    const double size_of_zero = std::max(distance_to_origin, smallest_pole_);
+    const double rounding = eps * size_of_zero;
     if (!std::isfinite(size)) return zero;
     // Poles that were not multiplied out bend F as other zeros do.
     for (const int i : {hint - 1, hint + 1}) {
@@ -361,7 +366,7 @@ SecularFunction::Zero SecularFunction::find_zero(Complex guess, double spacing, 
     // have reached the rounding of F; between two close zeros they go astray for a while, so that
     // growing ones alone do not mean much.
     const bool has_stalled =
-        zero.evaluations > num_expected && size >= 0.9 * last && size <= 1e-7 * distance_to_origin;
+        zero.evaluations > num_expected && size >= 0.9 * last && size <= 1e-7 * size_of_zero;
     if (size * size <= rounding * spacing || size <= 4.0 * rounding || has_stalled) {
       zero.is_converged = true;
       return zero;
@@ -414,7 +419,20 @@ SecularFunction::Line& SecularFunction::line_at(double height) {
   if (lines_.size() >= max_lines) lines_.clear();
 
   Line line;
-  const double end = 8.0 * extent_;
+  const double end = 1e3 * extent_;
+  double left_pole = 0.0;
+  double right_pole = 0.0;
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    for (const Complex pole : poles(static_cast<Eigen::Index>(i))) {
+      if (pole.imag() != 0.0) continue;
+      left_pole = std::min(left_pole, pole.real());
+      right_pole = std::max(right_pole, pole.real());
+    }
+  }
+  // Between real poles there may be two real zeros below one long step, which turn arg once around
+  // unseen. A table that were to grow beyond its bounds must do with longer steps.
+  constexpr double most_steps = 500.0;
+  const double step_past_zeros = std::max(2.0 * height, (right_pole - left_pole) / most_steps);
   line.places.emplace_back(end, 0.0);
   double x = end;
   while (x > -end) {
@@ -426,7 +444,9 @@ SecularFunction::Line& SecularFunction::line_at(double height) {
       }
     }
     // Next to a pole the count fails in any case; the floor keeps the number of samples finite.
-    x -= std::max(0.5 * distance, 1e-9 * end);
+    double step = std::max(0.5 * distance, 1e-9 * extent_);
+    if (x > left_pole && x - step < right_pole) step = std::min(step, step_past_zeros);
+    x -= step;
   }
   line.places.emplace_back(-end, height);
   line.places.emplace_back(-end, 0.0);

@@ -1,6 +1,7 @@
 // The secular function of a pencil: its zeros are the eigenvalues.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <complex>
 #include <map>
@@ -46,6 +47,9 @@ class SecularFunction {
   std::array<std::complex<double>, 2> poles(Eigen::Index i) const;
   /// A length beyond every pole and, unless B_C S Sᵀ B_Eᵀ is almost singular, every zero, 1/s.
   double extent() const { return extent_; }
+  /// A zero this much smaller than the smallest pole that is not zero is no different from zero, as
+  /// one of this relative error is exact: the size of numbers whose rounding steps are measured by.
+  double size_of(std::complex<double> s) const { return std::max(std::abs(s), smallest_pole_); }
 
   /// F'/F at a number, and what was multiplied out of the poles.
   struct LogSlope {
@@ -79,9 +83,10 @@ class SecularFunction {
   ///
   ///   zeros − poles = (1/π) change of arg det A along +X, +X + i h, −X + i h, −X
   ///
-  /// with X of eight times extent(). Two samples on the line are closer together than half their
-  /// distance to the nearest pole, and another one is put between where arg turns by more than
-  /// 1 rad.
+  /// with X of a thousand times extent(): next to jamming, where B_C S Sᵀ B_Eᵀ is almost singular,
+  /// real zeros lie far beyond the poles. Two samples on the line are closer together than half
+  /// their distance to the nearest pole, and between real poles than 2 h; another one is put
+  /// between where arg turns by more than 1 rad.
   /// @return nothing where a zero or pole is too close to the line to tell on which side it is
   std::optional<int> count_zeros_below(double height);
 
@@ -122,6 +127,7 @@ class SecularFunction {
   std::vector<double> heights_;
   std::vector<double> height_of_;  ///< by mode
   double extent_ = 0.0;
+  double smallest_pole_ = 0.0;  ///< of those that are not zero; extent_ where all are
   std::map<double, Line> lines_;
 
   ModalRows rows_;                     ///< in ascending ω
