@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "core/errors.hpp"
@@ -77,23 +78,39 @@ class Tracker {
     track.branch.values.push_back(value_);
     track.branch.s.push_back(s);
     track.spacing.push_back(0.0);
+    track.nearest.push_back(0.0);
     active_.push_back(tracks_.size());
     tracks_.push_back(std::move(track));
   }
 
-  /// Distance of every active eigenvalue to the nearest other one, conjugates included.
+  static bool are_tied(Complex a, Complex b) {
+    return std::norm(a - b) <= tie * tie * std::max(std::norm(a), std::norm(b));
+  }
+
+  /// Distances of every active eigenvalue to other ones, conjugates included.
   void set_spacings(const std::vector<Complex>& set) {
-    squares_.resize(set.size());
+    spacings_.assign(set.size(), {});
     for (std::size_t j = 0; j < set.size(); ++j) {
-      squares_[j] = is_pair(set[j]) ? 4.0 * set[j].imag() * set[j].imag() : inf;
+      Spacing& one = spacings_[j];
+      if (is_pair(set[j])) one.spacing = one.nearest = 4.0 * set[j].imag() * set[j].imag();
       for (std::size_t k = 0; k < j; ++k) {
+        Spacing& other = spacings_[k];
         const double square = std::norm(set[k] - set[j]);
-        squares_[j] = std::min(squares_[j], square);
-        squares_[k] = std::min(squares_[k], square);
+        one.nearest = std::min(one.nearest, square);
+        other.nearest = std::min(other.nearest, square);
+        if (are_tied(set[j], set[k])) {
+          one.is_tied = other.is_tied = true;
+        } else {
+          one.spacing = std::min(one.spacing, square);
+          other.spacing = std::min(other.spacing, square);
+        }
       }
     }
     for (std::size_t j = 0; j < set.size(); ++j) {
-      tracks_[active_[j]].spacing.back() = std::sqrt(squares_[j]);
+      Track& track = tracks_[active_[j]];
+      track.spacing.back() = std::sqrt(spacings_[j].spacing);
+      track.nearest.back() = std::sqrt(spacings_[j].nearest);
+      track.is_tied = spacings_[j].is_tied;
     }
   }
 
@@ -142,6 +159,7 @@ class Tracker {
     for (std::size_t j = 0; j < before.size(); ++j) {
       if (is_pair(before[j]) && turns(before[j].imag(), after[j].imag())) return false;
       for (std::size_t k = 0; k < j; ++k) {
+        if (are_tied(before[j], before[k]) && are_tied(after[j], after[k])) continue;
         if (turns(before[j] - before[k], after[j] - after[k])) return false;
       }
     }
@@ -152,20 +170,67 @@ class Tracker {
     source_.move_to(value);
     before_.clear();
     next_.clear();
+    bool has_ties = false;
     for (const std::size_t index : active_) {
       Track& track = tracks_[index];
       const Complex guess = guess_at(track, value);
-      const double spacing = track.spacing.back();
-      const SpectrumSource::Followed followed = source_.follow(guess, 0.1 * spacing, track.hint);
-      if (!followed.is_converged || std::abs(followed.s - guess) > 0.25 * spacing) return false;
-      if (is_pair(track.last()) != is_pair(followed.s)) return false;
       before_.push_back(track.last());
-      next_.push_back(followed.s);
+      next_.push_back(guess);
+      has_ties = has_ties || track.is_tied;
+      if (!track.is_tied && !follow(track, next_.back())) return false;
     }
+    if (has_ties && !place_tied()) return false;
     if (!is_resolved(before_, next_)) return false;
     const bool is_covered = source_.covers(next_, needed_height(next_));
     if (!is_covered && !add_newcomers(value)) return false;
     accept(value);
+    return true;
+  }
+
+  /// Whether what was found may be what a track was thought to go on with.
+  static bool is_continuation(const Track& track, Complex guess, Complex found) {
+    return std::abs(found - guess) <= 0.25 * track.spacing.back() &&
+           is_pair(track.last()) == is_pair(found);
+  }
+
+  /// Corrects a guess of what a track goes on with; false where that is in doubt.
+  bool follow(Track& track, Complex& s) {
+    const Complex guess = s;
+    const SpectrumSource::Followed followed =
+        source_.follow(guess, 0.1 * track.spacing.back(), track.hint);
+    s = followed.s;
+    return followed.is_converged && is_continuation(track, guess, s);
+  }
+
+  /// Corrects the guesses in next_ of what is tied: from any of them Newton's method would find the
+  /// same one, so they are taken from all there are.
+  bool place_tied() {
+    const auto found = source_.search();
+    if (!found) return false;
+    std::vector<Complex> rest = *found;
+    const auto take_nearest = [&](Complex s) -> std::optional<Complex> {
+      const auto nearest = std::min_element(rest.begin(), rest.end(), [&](Complex a, Complex b) {
+        return std::norm(a - s) < std::norm(b - s);
+      });
+      if (nearest == rest.end()) return std::nullopt;
+      const Complex taken = *nearest;
+      rest.erase(nearest);
+      return taken;
+    };
+    for (std::size_t j = 0; j < active_.size(); ++j) {
+      if (!tracks_[active_[j]].is_tied && source_.is_searched(next_[j])) take_nearest(next_[j]);
+    }
+    for (std::size_t j = 0; j < active_.size(); ++j) {
+      Track& track = tracks_[active_[j]];
+      if (!track.is_tied) continue;
+      if (!source_.is_searched(next_[j])) {
+        if (!follow(track, next_[j])) return false;
+        continue;
+      }
+      const auto taken = take_nearest(next_[j]);
+      if (!taken || !is_continuation(track, next_[j], *taken)) return false;
+      next_[j] = *taken;
+    }
     return true;
   }
 
@@ -177,15 +242,12 @@ class Tracker {
       return true;
     }
     std::vector<Complex> rest = *found;
-    double height = 0.0;
-    for (const Complex s : rest) height = std::max(height, s.imag());
     for (const Complex s : next_) {
-      const auto same = std::find_if(rest.begin(), rest.end(), [&](Complex other) {
-        return std::abs(other - s) <= 1e-8 * std::abs(s);
-      });
+      const auto same =
+          std::find_if(rest.begin(), rest.end(), [&](Complex other) { return are_tied(other, s); });
       if (same != rest.end()) {
         rest.erase(same);
-      } else if (s.imag() < height) {
+      } else if (source_.is_searched(s)) {
         return false;
       }
     }
@@ -201,6 +263,7 @@ class Tracker {
       track.branch.values.push_back(value);
       track.branch.s.push_back(next_[j]);
       track.spacing.push_back(0.0);
+      track.nearest.push_back(0.0);
     }
     for (const Complex s : newcomers_) {
       begin_track(s);
@@ -213,21 +276,28 @@ class Tracker {
   /// Two eigenvalues meet: all are found anew, and go to the branch that they are nearest to, or,
   /// where several are equally near, whose shape they have.
   void jump_to(double value) {
+    constexpr int most_jumps = 10'000;
+    if (++num_jumps_ > most_jumps) {
+      throw NumericalError(
+          fmt::format("locus: eigenvalues that nearly coincide cannot be told apart along {:g} to "
+                      "{:g}; several "
+                      "equal bodies? Ask for single values, or vary what makes the bodies differ",
+                      grid_.values.front(), grid_.values.back()));
+    }
     std::vector<Complex> before;
     for (const std::size_t index : active_) before.push_back(tracks_[index].last());
     source_.move_to(value);
     std::vector<Complex> after;
-    double height = 0.0;
-    if (auto found = source_.search()) {
-      after = std::move(*found);
-      for (const Complex s : after) height = std::max(height, s.imag());
+    const auto found = source_.search();
+    if (found) {
+      after = *found;
     } else {
       locus_.unverified.push_back(value);
     }
-    // Eigenvalues above those searched are followed as before.
+    // Eigenvalues beyond the search are followed as before.
     for (const std::size_t index : active_) {
       Track& track = tracks_[index];
-      if (track.last().imag() <= height) continue;
+      if (found && source_.is_searched(track.last())) continue;
       const auto followed = source_.follow(track.last(), 0.1 * track.spacing.back(), track.hint);
       const bool is_known = std::any_of(after.begin(), after.end(), [&](Complex s) {
         return std::abs(s - followed.s) <= 1e-8 * std::abs(s);
@@ -338,10 +408,18 @@ class Tracker {
   double smallest_step_;
   double value_ = 0.0;
   double last_kink_ = 0.0;
+  int num_jumps_ = 0;
   std::vector<Track> tracks_;
   std::vector<std::size_t> active_;  ///< tracks that are followed
   std::vector<Complex> before_, next_, newcomers_;
-  std::vector<double> heights_, squares_;  ///< scratch
+  /// Squares of Track::spacing and Track::nearest.
+  struct Spacing {
+    double spacing = inf;
+    double nearest = inf;
+    bool is_tied = false;
+  };
+  std::vector<double> heights_;    ///< scratch
+  std::vector<Spacing> spacings_;  ///< scratch
 };
 
 }  // namespace

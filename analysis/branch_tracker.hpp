@@ -9,6 +9,11 @@
 
 namespace stridor {
 
+/// Eigenvalues that differ by less, relative to their size, are tied: equal bodies have equal ones.
+/// Rounding moves a double one by the root of what it does to others, and which of them continues
+/// which has no meaning.
+inline constexpr double tie = 1e-7;
+
 /// Values to be visited in any case, ascending.
 struct Grid {
   std::vector<double> values;
@@ -24,7 +29,9 @@ Grid make_grid(const std::vector<double>& wanted, const std::vector<double>& kin
 /// A branch with what is needed to come back to it.
 struct Track {
   Branch branch;
-  std::vector<double> spacing;  ///< of every sample: distance to the nearest other eigenvalue
+  std::vector<double> spacing;  ///< of every sample: distance to the nearest one not tied to it
+  std::vector<double> nearest;  ///< of every sample: distance to the nearest one of all
+  bool is_tied = false;         ///< whether the last sample is tied to another eigenvalue
   int hint = -1;
   bool is_followed = true;
 

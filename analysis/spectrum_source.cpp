@@ -33,9 +33,12 @@ class SecularSource : public SpectrumSource {
   std::optional<std::vector<Complex>> search() override {
     SecularSpectrum spectrum = secular_spectrum(function_, window_);
     if (!spectrum.is_complete) return std::nullopt;
+    searched_ = spectrum.height;
     if (spectrum.height == inf) drop_unwanted(spectrum);
     return std::move(spectrum.found);
   }
+
+  bool is_searched(Complex s) const override { return SecularFunction::height_of(s) < searched_; }
 
   Followed follow(Complex guess, double spacing, int& hint) override {
     const SecularFunction::Zero zero = function_.find_zero(guess, spacing, hint);
@@ -49,7 +52,8 @@ class SecularSource : public SpectrumSource {
       for (const Complex s : set) total += is_pair(s) ? 2 : 1;
       return total == function_.num_zeros();
     }
-    for (const Complex s : set) below += s.imag() < line_ ? (is_pair(s) ? 2 : 1) : 0;
+    for (const Complex s : set)
+      below += SecularFunction::height_of(s) < line_ ? (is_pair(s) ? 2 : 1) : 0;
     return function_.count_zeros_below(line_) == below;
   }
 
@@ -71,12 +75,14 @@ class SecularSource : public SpectrumSource {
       if (is_pair(eigenvalue.s) && ++num_pairs == window_.count) needed = eigenvalue.s.imag();
     }
     if (!find_line(spectrum.found, needed)) return;
-    std::erase_if(spectrum.found, [&](Complex s) { return s.imag() > line_; });
+    searched_ = line_;
+    std::erase_if(spectrum.found, [&](Complex s) { return !is_searched(s); });
   }
 
   double clearance(const std::vector<Complex>& set, double line) const {
     double least = inf;
-    for (const Complex s : set) least = std::min(least, std::abs(s.imag() - line));
+    for (const Complex s : set)
+      least = std::min(least, std::abs(SecularFunction::height_of(s) - line));
     return least;
   }
 
@@ -116,6 +122,7 @@ class SecularSource : public SpectrumSource {
   Pencil pencil_;
   SecularFunction function_;
   SpectrumWindow window_;
+  double searched_ = 0.0;  ///< height below which the last search found all
   double line_ = -1.0;
   double line_gap_ = 0.0;
 };
@@ -142,8 +149,11 @@ class DenseSource : public SpectrumSource {
       if (is_pair(s) && ++num_pairs > count_) break;
       lowest.push_back(s);
     }
+    searched_ = lowest.empty() ? 0.0 : lowest.back().imag();
     return lowest;
   }
+
+  bool is_searched(Complex s) const override { return s.imag() <= searched_; }
 
   Followed follow(Complex guess, double, int&) override {
     const auto nearest = std::min_element(known_.begin(), known_.end(), [&](Complex a, Complex b) {
@@ -166,6 +176,7 @@ class DenseSource : public SpectrumSource {
   Pencil pencil_;
   int count_;
   double value_ = std::numeric_limits<double>::quiet_NaN();
+  double searched_ = 0.0;       ///< Im s up to which the last search found all
   std::vector<Complex> known_;  ///< ascending imaginary part
 };
 

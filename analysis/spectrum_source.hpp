@@ -27,8 +27,10 @@ class SpectrumSource {
 
   virtual ~SpectrumSource() = default;
   virtual void move_to(double value) = 0;
-  /// All eigenvalues below some height, those wanted among them; empty where the search failed.
+  /// All eigenvalues of some region, those wanted among them; empty where the search failed.
   virtual std::optional<std::vector<Complex>> search() = 0;
+  /// Whether an eigenvalue lies in the region of the last search.
+  virtual bool is_searched(Complex s) const = 0;
   /// The eigenvalue next to a guess.
   virtual Followed follow(Complex guess, double spacing, int& hint) = 0;
   /// Whether every eigenvalue with Im s <= needed is in the set, and no stranger.

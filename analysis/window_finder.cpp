@@ -25,7 +25,7 @@ class WindowFinder {
     track_ = &track;
     growth_.clear();
     for (std::size_t i = 0; i < values().size(); ++i) {
-      growth_.push_back(growth_of(track.branch.s[i], track.spacing[i]));
+      growth_.push_back(growth_of(track.branch.s[i], track.nearest[i]));
     }
     for (std::size_t i = 0; i + 1 < values().size();) {
       if (is_resolved(i)) {
@@ -57,14 +57,20 @@ class WindowFinder {
   double growth(std::size_t i) const { return growth_[i]; }
 
   /// Re s less what rounding may make of zero: without damping eigenvalues lie on the axis over
-  /// whole intervals. Next to another one an eigenvalue is ill-conditioned.
-  double growth_of(Complex s, double spacing) const {
+  /// whole intervals. Next to another one an eigenvalue is ill-conditioned, and a double one is off
+  /// by the root of the rounding.
+  double growth_of(Complex s, double nearest) const {
     constexpr double rounding = 20.0 * std::numeric_limits<double>::epsilon();
-    return s.real() - rounding * source_.magnitude(s) * (1.0 + std::abs(s) / spacing);
+    constexpr double closest = 1e-7;  // of |s|
+    const double distance = std::max(nearest, closest * std::abs(s));
+    return s.real() - rounding * source_.magnitude(s) * (1.0 + std::abs(s) / distance);
   }
 
   double spacing_in(std::size_t i) const {
     return std::min(track_->spacing[i], track_->spacing[i + 1]);
+  }
+  double nearest_in(std::size_t i) const {
+    return std::min(track_->nearest[i], track_->nearest[i + 1]);
   }
 
   /// The branch at a value between two of its samples.
@@ -122,12 +128,14 @@ class WindowFinder {
     const double middle = 0.5 * (values()[i] + values()[i + 1]);
     const Complex s = between(i, middle);
     const double spacing = spacing_in(i);
+    const double nearest = nearest_in(i);
     const auto offset = static_cast<std::ptrdiff_t>(i) + 1;
     Branch& branch = track_->branch;
     branch.values.insert(branch.values.begin() + offset, middle);
     branch.s.insert(branch.s.begin() + offset, s);
     track_->spacing.insert(track_->spacing.begin() + offset, spacing);
-    growth_.insert(growth_.begin() + offset, growth_of(s, spacing));
+    track_->nearest.insert(track_->nearest.begin() + offset, nearest);
+    growth_.insert(growth_.begin() + offset, growth_of(s, nearest));
   }
 
   /// Zero of the growth between samples i and i + 1, which have different signs: regula falsi, the
@@ -146,7 +154,7 @@ class WindowFinder {
       const double last = middle;
       middle = (a * growth_b - b * growth_a) / (growth_b - growth_a);
       if (!(middle > a && middle < b)) middle = 0.5 * (a + b);
-      const double found = growth_of(between(i, middle), spacing_in(i));
+      const double found = growth_of(between(i, middle), nearest_in(i));
       if (found == 0.0) return middle;
       if ((found > 0.0) == (growth_a > 0.0)) {
         a = middle;

@@ -157,7 +157,7 @@ void sort_zeros(std::vector<Complex>& zeros) {
 int count_below(const std::vector<Complex>& zeros, double height) {
   int count = 0;
   for (const Complex& s : zeros) {
-    if (s.imag() < height) count += s.imag() > 0.0 ? 2 : 1;
+    if (SecularFunction::height_of(s) < height) count += s.imag() > 0.0 ? 2 : 1;
   }
   return count;
 }
@@ -203,7 +203,7 @@ bool find_pairs(SecularFunction& function, double height, int number, std::vecto
     for (std::size_t j = 0; j < iterates.pairs.size(); ++j) {
       Complex& s = iterates.pairs[j];
       if (!turn_up(function, s)) return false;
-      if (s.imag() < height) continue;
+      if (SecularFunction::height_of(s) < height) continue;
       // P_h has zeros above the line as well. Those below that were found are divided out, so
       // another start is drawn towards the one that is missing.
       all_below = false;

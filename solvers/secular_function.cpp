@@ -118,7 +118,7 @@ void SecularFunction::assign_modes(const Pencil& pencil) {
   for (std::size_t i = 0; i < order_.size(); ++i) {
     omega_[i] = pencil.omega(order_[i]);
     damping_[i] = pencil.damping(order_[i]);
-    height_of_.push_back(poles(static_cast<Eigen::Index>(i)).front().imag());
+    height_of_.push_back(std::max(0.0, height_of(poles(static_cast<Eigen::Index>(i)).front())));
     extent_ = std::max({extent_, omega_[i], std::abs(damping_[i])});
     for (const Complex pole : poles(static_cast<Eigen::Index>(i)))
       if (pole != 0.0) smallest_pole_ = std::min(smallest_pole_, std::abs(pole));
@@ -420,36 +420,29 @@ SecularFunction::Line& SecularFunction::line_at(double height) {
 
   Line line;
   const double end = 1e3 * extent_;
-  double left_pole = 0.0;
-  double right_pole = 0.0;
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    for (const Complex pole : poles(static_cast<Eigen::Index>(i))) {
-      if (pole.imag() != 0.0) continue;
-      left_pole = std::min(left_pole, pole.real());
-      right_pole = std::max(right_pole, pole.real());
-    }
-  }
-  // Between real poles there may be two real zeros below one long step, which turn arg once around
-  // unseen. A table that were to grow beyond its bounds must do with longer steps.
-  constexpr double most_steps = 500.0;
-  const double step_past_zeros = std::max(2.0 * height, (right_pole - left_pole) / most_steps);
-  line.places.emplace_back(end, 0.0);
+  const auto on_side = [&](double x) { return Complex(x, height + std::abs(x)); };
+  // Far from all poles det A is a power of s.
+  constexpr int num_rises = 4;
+  for (int i = 0; i < num_rises; ++i)
+    line.places.emplace_back(end, i * on_side(end).imag() / num_rises);
   double x = end;
   while (x > -end) {
-    line.places.emplace_back(x, height);
-    double distance = std::numeric_limits<double>::infinity();
+    const Complex place = on_side(x);
+    line.places.push_back(place);
+    double distance = place.imag();
     for (std::size_t i = 0; i < order_.size(); ++i) {
-      for (const Complex pole : poles(static_cast<Eigen::Index>(i))) {
-        distance = std::min(distance, std::abs(pole - Complex(x, height)));
-      }
+      for (const Complex pole : poles(static_cast<Eigen::Index>(i)))
+        distance = std::min(distance, std::abs(pole - place));
     }
-    // Next to a pole the count fails in any case; the floor keeps the number of samples finite.
-    double step = std::max(0.5 * distance, 1e-9 * extent_);
-    if (x > left_pole && x - step < right_pole) step = std::min(step, step_past_zeros);
-    x -= step;
+    // The floor keeps the number of samples finite.
+    constexpr double closest = 1e-9;
+    line.meets_pole = line.meets_pole || distance < closest * place.imag();
+    const double step = std::max(0.5 * distance / std::numbers::sqrt2, closest * extent_);
+    // The corner is one of the samples.
+    x = x > 0.0 ? std::max(x - step, 0.0) : x - step;
   }
-  line.places.emplace_back(-end, height);
-  line.places.emplace_back(-end, 0.0);
+  for (int i = num_rises; i >= 0; --i)
+    line.places.emplace_back(-end, i * on_side(end).imag() / num_rises);
   line.inverses = AlignedArray(2 * padded_ * line.places.size());
   for (std::size_t p = 0; p < line.places.size(); ++p) {
     double* const re = line.inverses.data() + 2 * padded_ * p;
@@ -463,6 +456,7 @@ SecularFunction::Line& SecularFunction::line_at(double height) {
 
 std::optional<int> SecularFunction::count_zeros_below(double height) {
   Line& line = line_at(height);
+  if (line.meets_pole) return std::nullopt;
   for (std::size_t p = 0; p < line.places.size(); ++p) {
     const double* const re = line.inverses.data() + 2 * padded_ * p;
     line.values[p] = determinant(re, re + padded_, line.places[p]);

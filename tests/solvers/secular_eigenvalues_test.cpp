@@ -43,7 +43,8 @@ double largest_difference(const std::vector<Eigenvalue>& found, std::vector<Eige
 int count_below(const std::vector<Eigenvalue>& eigenvalues, double height) {
   int count = 0;
   for (const Eigenvalue& eigenvalue : eigenvalues) {
-    if (eigenvalue.s.imag() < height) count += eigenvalue.s.imag() > 0.0 ? 2 : 1;
+    if (SecularFunction::height_of(eigenvalue.s) < height)
+      count += eigenvalue.s.imag() > 0.0 ? 2 : 1;
   }
   return count;
 }
@@ -167,11 +168,45 @@ TEST(SecularEigenvalues, WhatIsCalledCompleteIsWhatTheDenseMethodFinds) {
     }
     // And none below the line is missing, but for those that rounding may put on either side.
     for (const Complex s : rest) {
-      EXPECT_GT(std::abs(s.imag()), spectrum.height - 1e-6 * largest) << "seed " << seed;
+      EXPECT_GT(SecularFunction::height_of(s), spectrum.height - 1e-6 * largest) << seed;
     }
   }
   // The others are almost jammed: B_C S Sᵀ B_Eᵀ is singular but for rounding.
   EXPECT_GT(num_complete, 0.99 * num_pencils);
+}
+
+TEST(SecularEigenvalues, EqualBodiesThatFrictionDrivesApartGrowAlike) {
+  // Each alone: s² + 1 and s² + 100 under one contact whose friction falls with the velocity,
+  // H = −h along b: real eigenvalues far to the right of all poles, as many as there are bodies.
+  const auto bodies = [](int count) {
+    const Eigen::Index n = 3 * count;
+    Pencil pencil;
+    pencil.omega.resize(n);
+    pencil.damping = Eigen::VectorXd::Zero(n);
+    pencil.slots = Eigen::MatrixXd::Zero(2 * count, n);
+    pencil.compatibility = Eigen::MatrixXd::Zero(count, 2 * count);
+    for (int i = 0; i < count; ++i) {
+      pencil.omega.segment(3 * i, 3) << 1.0, 4.0, 10.0;
+      pencil.slots.block(2 * i, 3 * i, 2, 3) << 1.0, 0.4, 0.7, 0.3, -1.0, 0.6;
+      pencil.compatibility(i, 2 * i) = 1.0;
+    }
+    pencil.equilibrium = pencil.compatibility;
+    pencil.slot_damping = Eigen::MatrixXd::Zero(2 * count, 2 * count);
+    for (int i = 0; i < count; ++i) pencil.slot_damping(2 * i + 1, 2 * i + 1) = -1e4;
+    return pencil;
+  };
+  const auto one = secular_eigenvalues(bodies(1), SpectrumWindow::lowest(1));
+  ASSERT_EQ(one[1].s.imag(), 0.0);
+  const double fastest = one[1].s.real();
+  EXPECT_GT(fastest, 1e3);
+  for (const int count : {2, 3}) {
+    const auto all = secular_eigenvalues(bodies(count), SpectrumWindow::lowest(1));
+    EXPECT_EQ(std::count_if(all.begin(), all.end(),
+                            [&](const Eigenvalue& found) {
+                              return std::abs(found.s - fastest) < 1e-4 * fastest;
+                            }),
+              count);
+  }
 }
 
 TEST(SecularEigenvalues, ABodyThatIsFreeHasEigenvaluesOfZero) {
