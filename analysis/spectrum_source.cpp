@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numbers>
 #include <utility>
 
+#include "core/tasks.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/secular_eigenvalues.hpp"
 
@@ -15,6 +17,11 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double inf = std::numeric_limits<double>::infinity();
+
+Eigen::VectorXcd shape_of(const Pencil& pencil, Complex s) {
+  const std::scoped_lock guard(blas_in_use);
+  return eigenvector(pencil, s).right;
+}
 
 class SecularSource : public SpectrumSource {
  public:
@@ -57,7 +64,7 @@ class SecularSource : public SpectrumSource {
     return function_.count_zeros_below(line_) == below;
   }
 
-  Eigen::VectorXcd shape(Complex s) override { return eigenvector(pencil_, s).right; }
+  Eigen::VectorXcd shape(Complex s) override { return shape_of(pencil_, s); }
   double magnitude(Complex s) const override { return std::abs(s); }
 
  private:
@@ -168,7 +175,7 @@ class DenseSource : public SpectrumSource {
     });
   }
 
-  Eigen::VectorXcd shape(Complex s) override { return eigenvector(pencil_, s).right; }
+  Eigen::VectorXcd shape(Complex s) override { return shape_of(pencil_, s); }
   double magnitude(Complex) const override { return pencil_.omega.maxCoeff(); }
 
  private:

@@ -1,6 +1,6 @@
 #include "solvers/secular_function.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -51,6 +51,31 @@ bool equilibrate(Eigen::MatrixXcd& B, Eigen::MatrixXcd& slope) {
     }
   }
   return true;
+}
+
+/// det B by elimination with row pivoting, B destroyed. By hand as below, and because BLAS may
+/// serve one thread at a time (core/tasks.hpp).
+Complex determinant_of(Eigen::MatrixXcd& B) {
+  const Eigen::Index size = B.rows();
+  Complex product = 1.0;
+  for (Eigen::Index k = 0; k < size; ++k) {
+    Eigen::Index pivot = k;
+    for (Eigen::Index i = k + 1; i < size; ++i) {
+      if (std::norm(B(i, k)) > std::norm(B(pivot, k))) pivot = i;
+    }
+    if (B(pivot, k) == 0.0) return 0.0;
+    if (pivot != k) {
+      B.row(k).swap(B.row(pivot));
+      product = -product;
+    }
+    product *= B(k, k);
+    const Complex scale = reciprocal(B(k, k));
+    for (Eigen::Index i = k + 1; i < size; ++i) {
+      const Complex factor = B(i, k) * scale;
+      for (Eigen::Index j = k + 1; j < size; ++j) B(i, j) -= factor * B(k, j);
+    }
+  }
+  return product;
 }
 
 /// tr(B⁻¹ C) by elimination with row pivoting, both destroyed; nothing where B is singular. For
@@ -401,7 +426,7 @@ Complex SecularFunction::determinant(const double* inverse_re, const double* inv
     const double largest = matrix.row(a).cwiseAbs2().maxCoeff();
     if (largest > 0.0) matrix.row(a) *= 1.0 / std::sqrt(largest);
   }
-  return matrix.determinant();
+  return determinant_of(matrix);
 }
 
 Complex SecularFunction::determinant_at(Complex s) {
