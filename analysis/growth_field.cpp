@@ -1,12 +1,10 @@
 #include "analysis/growth_field.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <limits>
-#include <mutex>
-#include <thread>
+
+#include "core/tasks.hpp"
 
 namespace stridor {
 namespace {
@@ -68,44 +66,23 @@ GrowthMap make_growth_map(const std::function<std::unique_ptr<GrowthField>()>& m
   crossings.along_x.resize(y.size());
   crossings.along_y.resize(x.size());
   const std::size_t num_lines = x.size() + y.size();
-  std::atomic<std::size_t> next{0};
-  std::atomic<bool> has_failed{false};
-  std::size_t num_done = 0;
-  std::mutex reporting;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    try {
-      while (!has_failed) {
-        const std::size_t line = next++;
-        if (line >= num_lines) return;
-        // Anew for every line, or what it begins from would depend on the lines of this thread.
-        const std::unique_ptr<GrowthField> field = make_field();
-        if (line < y.size()) {
-          const double at = y[line];
-          std::vector<double>& row = map.growth[line];
-          for (const double value : x) row.push_back(field->leading(value, at).real());
-          crossings.along_x[line] =
-              sign_changes([&](double value) { return field->margin(value, at); }, x);
-        } else {
-          const double at = x[line - y.size()];
-          crossings.along_y[line - y.size()] =
-              sign_changes([&](double value) { return field->margin(at, value); }, y);
-        }
-        const std::lock_guard lock(reporting);
-        ++num_done;
-        if (report) report(static_cast<double>(num_done) / static_cast<double>(num_lines));
-      }
-    } catch (...) {
-      const std::lock_guard lock(reporting);
-      failure = std::current_exception();
-      has_failed = true;
+  const auto trace = [&](std::size_t line, std::size_t) {
+    // Anew for every line, or what it begins from would depend on the lines of this thread.
+    const std::unique_ptr<GrowthField> field = make_field();
+    if (line < y.size()) {
+      const double at = y[line];
+      for (const double value : x) map.growth[line].push_back(field->leading(value, at).real());
+      crossings.along_x[line] =
+          sign_changes([&](double value) { return field->margin(value, at); }, x);
+    } else {
+      const double at = x[line - y.size()];
+      crossings.along_y[line - y.size()] =
+          sign_changes([&](double value) { return field->margin(at, value); }, y);
     }
   };
-  std::vector<std::thread> threads;
-  for (int i = 1; i < num_threads; ++i) threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
-  if (failure) std::rethrow_exception(failure);
+  run_tasks(num_lines, num_threads, trace, [&](std::size_t num_done, std::size_t) {
+    if (report) report(static_cast<double>(num_done) / static_cast<double>(num_lines));
+  });
   map.boundary = boundary_lines(crossings);
   return map;
 }

@@ -42,6 +42,7 @@ struct GrowthMap {
 /// @param make_field makes a field for one line of the grid; called by several threads
 /// @param x, y       strictly ascending, at least two each
 /// @param report     called with the share that is done, by one thread at a time; may be empty
+/// @throws Interrupted where a stop was requested
 GrowthMap make_growth_map(const std::function<std::unique_ptr<GrowthField>()>& make_field,
                           const std::vector<double>& x, const std::vector<double>& y,
                           int num_threads, const std::function<void(double)>& report = {});

@@ -96,7 +96,7 @@ struct Locus {
 /// half of itself: then no two of them can be mistaken for each other, and since branches can turn
 /// sharply only where two of them almost meet, the samples resolve them. Where two do meet (the
 /// step reaches the resolution), eigenvalues are searched anew and connected by the shapes of their
-/// modes, modal_assurance().
+/// modes, modal_assurance(). Two that coincide to 1e-7, as those of equal bodies, go on together.
 ///
 /// A branch is refined wherever its real part, by the curvature of its samples, may reach zero
 /// between two of them. Crossings are then solved for. What is found does not depend on the values
@@ -104,8 +104,8 @@ struct Locus {
 ///
 /// @param values  strictly ascending, at least one
 /// @throws std::invalid_argument if the values or an option are out of range, or as check_pencil()
-/// @throws NumericalError if the eigenvalues at the first value cannot be found, or with the dense
-///         method as dense_eigenvalues()
+/// @throws NumericalError if the eigenvalues at the first value cannot be found, if several of them
+///         nearly coincide everywhere, or with the dense method as dense_eigenvalues()
 Locus trace_locus(const PencilFamily& family, const std::vector<double>& values,
                   const LocusOptions& options = {});
 

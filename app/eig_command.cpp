@@ -234,9 +234,10 @@ void add_eig_command(CLI::App& program, Action& action) {
   CLI::App* verb =
       program.add_subcommand("eig", "Sliding equilibrium and its eigenvalues at one position");
   add_stability_options(*verb, options->stability);
-  verb->add_option(
-      "--at", options->at,
-      "Position of the contact along the master, m or with a unit; default: contact.start");
+  verb->add_option("--at", options->at,
+                   "Position of the contact along the master, about the deformed geometry on the "
+                   "deformed one, m "
+                   "or with a unit; default: contact.start");
   verb->add_flag("--explain", options->explain,
                  "Say why a mode grows: what it sees of damping, stiffness and friction, where its "
                  "energy comes from, which modes without friction it is made of");

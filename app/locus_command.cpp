@@ -73,20 +73,73 @@ class PassingTimes {
   BodyStabilityFamily* family_;
 };
 
+/// ∫ Re s dt over the part of a window that the run passes, by the samples of its branch.
+double gain_between(const Branch& branch, double from, double to, const PassingTimes& times) {
+  const auto growth_at = [&](double value) {
+    const auto upper = std::upper_bound(branch.values.begin(), branch.values.end(), value);
+    const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
+        upper - branch.values.begin(), 1, std::ssize(branch.values) - 1));
+    const double share = (value - branch.values[i - 1]) / (branch.values[i] - branch.values[i - 1]);
+    return std::lerp(branch.s[i - 1].real(), branch.s[i].real(), share);
+  };
+  constexpr int num_parts = 64;
+  double gain = 0.0;
+  double before = times.at(from);
+  for (int i = 0; i < num_parts; ++i) {
+    const double after = times.at(std::lerp(from, to, (i + 1.0) / num_parts));
+    gain += growth_at(std::lerp(from, to, (i + 0.5) / num_parts)) * std::abs(after - before);
+    before = after;
+  }
+  return gain;
+}
+
+/// When the run of the scene is in a window, and what grows by then: it may start or end inside.
+TimedWindow timed(const Locus& locus, const UnstableWindow& window, const PassingTimes& times) {
+  TimedWindow one{window, never, never, never};
+  const auto is_passed = [&](double value) { return std::isfinite(times.at(value)); };
+  double from = window.from;
+  double to = window.to;
+  if (!is_passed(from) || !is_passed(to)) {
+    constexpr int num_places = 32;
+    std::optional<double> inside;
+    for (int i = 0; i <= num_places && !inside; ++i) {
+      const double value = std::lerp(from, to, static_cast<double>(i) / num_places);
+      if (is_passed(value)) inside = value;
+    }
+    if (!inside) return one;
+    // The last value on the way from `inside` to an end that is passed.
+    const auto last_passed = [&](double end) {
+      if (is_passed(end)) return end;
+      double passed = *inside;
+      constexpr int num_halvings = 40;
+      for (int i = 0; i < num_halvings; ++i) {
+        const double middle = 0.5 * (passed + end);
+        (is_passed(middle) ? passed : end) = middle;
+      }
+      return passed;
+    };
+    from = last_passed(from);
+    to = last_passed(to);
+  }
+  if (!(from < to)) return one;
+  const double at_from = times.at(from);
+  const double at_to = times.at(to);
+  one.from_time = std::min(at_from, at_to);
+  one.to_time = std::max(at_from, at_to);
+  const bool is_whole = from == window.from && to == window.to;
+  // A whole window is passed at constant speed, as good as.
+  one.gain = is_whole ? window.growth_integral * (one.to_time - one.from_time) / (to - from)
+                      : gain_between(locus.branches[static_cast<std::size_t>(window.branch)], from,
+                                     to, times);
+  return one;
+}
+
 std::vector<TimedWindow> timed_windows(const Locus& locus,
                                        const std::optional<PassingTimes>& times) {
-  std::vector<TimedWindow> timed;
-  for (const UnstableWindow& window : locus.unstable) {
-    TimedWindow one{window, never, never, never};
-    if (times) {
-      one.from_time = times->at(window.from);
-      one.to_time = times->at(window.to);
-      // A window is passed at constant speed, as good as.
-      one.gain = window.growth_integral * (one.to_time - one.from_time) / (window.to - window.from);
-    }
-    timed.push_back(one);
-  }
-  return timed;
+  std::vector<TimedWindow> all;
+  for (const UnstableWindow& window : locus.unstable)
+    all.push_back(times ? timed(locus, window, *times) : TimedWindow{window, never, never, never});
+  return all;
 }
 
 Json complex_list(const std::vector<std::complex<double>>& eigenvalues) {

@@ -2,19 +2,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <thread>
 
 #include "analysis/boundary_continuation.hpp"
 #include "app/progress.hpp"
 #include "app/stability.hpp"
 #include "core/errors.hpp"
-#include "core/stop_token.hpp"
+#include "core/tasks.hpp"
 #include "core/version.hpp"
 #include "io/gnuplot.hpp"
 #include "io/locus_file.hpp"
@@ -61,7 +58,6 @@ struct LineResult {
   std::vector<double> growth;                                ///< at every value, 1/s
   std::vector<double> changes;                               ///< of stability, ascending
   double highest = std::numeric_limits<double>::infinity();  ///< up to where all were looked at, Hz
-  std::exception_ptr failure;
 };
 
 double largest_growth(const std::vector<std::complex<double>>& eigenvalues) {
@@ -125,48 +121,32 @@ LineResult trace_line(StabilityFamily& family, const std::array<Axis, 2>& axes, 
   return result;
 }
 
-/// Traces all rows, then all columns. Every line is a job of its own and begins from nothing, so
+/// Traces all rows, then all columns. Every line is a task of its own and begins from nothing, so
 /// that the results do not depend on which thread takes it.
 std::vector<LineResult> trace_lines(const StabilityScene& loaded, const std::array<Axis, 2>& axes,
                                     const StabilityOptions& stability) {
   const std::size_t num_rows = axes[1].values.size();
   const std::size_t num_lines = num_rows + axes[0].values.size();
-  std::vector<LineResult> results(num_lines);
-  std::atomic<std::size_t> next{0};
-  std::atomic<bool> has_failed{false};
-  std::mutex printing;
-  Progress progress("map");
-  std::size_t num_done = 0;
-  const auto work = [&] {
-    const auto family = loaded.family({axes[0].key, axes[1].key}, stability.geometry());
-    while (!has_failed) {
-      const std::size_t line = next++;
-      if (line >= num_lines) return;
-      try {
-        const bool is_row = line < num_rows;
-        results[line] = trace_line(*family, axes, is_row ? 0 : 1,
-                                   is_row ? axes[1].values[line] : axes[0].values[line - num_rows],
-                                   stability.locus_options());
-      } catch (...) {
-        results[line].failure = std::current_exception();
-        has_failed = true;
-      }
-      const std::lock_guard lock(printing);
-      ++num_done;
-      progress.report(static_cast<double>(num_done) / static_cast<double>(num_lines),
-                      fmt::format("line {} of {}", num_done, num_lines));
-    }
-  };
-  // The dense method lives in LAPACK, which two threads must not enter at once (see stability.cpp).
+  // The dense method lives in LAPACK, which two threads must not enter at once (core/tasks.hpp).
   const bool is_dense = stability.locus_options().method == LocusMethod::dense;
   const int num_threads = is_dense || loaded.needs_one_thread() ? 1 : stability.common.threads;
-  std::vector<std::thread> threads;
-  for (int i = 1; i < num_threads; ++i) threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
+  std::vector<std::unique_ptr<StabilityFamily>> families(
+      static_cast<std::size_t>(std::max(num_threads, 1)));
+  std::vector<LineResult> results(num_lines);
+  const auto trace = [&](std::size_t line, std::size_t thread) {
+    std::unique_ptr<StabilityFamily>& family = families[thread];
+    if (!family) family = loaded.family({axes[0].key, axes[1].key}, stability.geometry());
+    const bool is_row = line < num_rows;
+    results[line] = trace_line(*family, axes, is_row ? 0 : 1,
+                               is_row ? axes[1].values[line] : axes[0].values[line - num_rows],
+                               stability.locus_options());
+  };
+  Progress progress("map");
+  run_tasks(num_lines, num_threads, trace, [&](std::size_t num_done, std::size_t) {
+    progress.report(static_cast<double>(num_done) / static_cast<double>(num_lines),
+                    fmt::format("line {} of {}", num_done, num_lines));
+  });
   progress.finish();
-  for (const LineResult& result : results)
-    if (result.failure) std::rethrow_exception(result.failure);
   return results;
 }
 

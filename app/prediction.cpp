@@ -52,10 +52,12 @@ Json prediction_json(const std::vector<PredictedBurst>& predictions) {
                 {"growth_max", timed.window.growth_max},
                 {"gain", number(timed.gain)},
                 {"burst", nullptr},
+                {"burst_start", nullptr},
                 {"burst_frequency", nullptr},
                 {"burst_gain", nullptr}};
     if (burst) {
       row["burst"] = burst->number;
+      row["burst_start"] = burst->burst.start;
       row["burst_frequency"] = burst->burst.frequency;
       row["burst_gain"] = number(burst->burst.gain);
     }
@@ -65,14 +67,14 @@ Json prediction_json(const std::vector<PredictedBurst>& predictions) {
 }
 
 void print_prediction(const std::vector<PredictedBurst>& predictions) {
-  fmt::print("{:>20}  {:>12} {:>8}   {:>5}  {:>12} {:>8}\n", "predicted, s", "Hz", "gain", "burst",
-             "Hz", "gain");
+  fmt::print("{:>20}  {:>12} {:>8}   {:>5} {:>9}  {:>12} {:>8}\n", "predicted, s", "Hz", "gain",
+             "burst", "from, s", "Hz", "gain");
   for (const auto& [timed, burst] : predictions) {
     fmt::print("{:>9.4f} to {:>7.4f}  {:>12.2f} {:>8.3f}   ", timed.from_time, timed.to_time,
                timed.window.frequency, timed.gain);
     if (burst) {
-      fmt::print("{:>5}  {:>12.2f} {:>8.3f}\n", burst->number, burst->burst.frequency,
-                 burst->burst.gain);
+      fmt::print("{:>5} {:>9.4f}  {:>12.2f} {:>8.3f}\n", burst->number, burst->burst.start,
+                 burst->burst.frequency, burst->burst.gain);
     } else {
       fmt::print("{:>5}\n", "-");
     }

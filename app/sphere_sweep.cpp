@@ -9,9 +9,9 @@
 #include "app/progress.hpp"
 #include "app/sphere_motion.hpp"
 #include "app/sphere_stability.hpp"
-#include "app/tasks.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
+#include "core/tasks.hpp"
 #include "io/gnuplot.hpp"
 #include "io/panel_plot.hpp"
 

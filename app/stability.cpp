@@ -11,9 +11,9 @@
 #include "analysis/sampled_locus.hpp"
 #include "app/linear_stability.hpp"
 #include "app/sphere_stability.hpp"
-#include "app/tasks.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
+#include "core/tasks.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/retained_modes.hpp"
 #include "solvers/secular_eigenvalues.hpp"
@@ -199,11 +199,9 @@ std::string value_text(const NumericKey& key, double value) {
 
 std::vector<Eigenvalue> lowest_eigenvalues(const Pencil& pencil, EigenvalueMethod method,
                                            const SpectrumWindow& window) {
+  const std::scoped_lock guard(blas_in_use);
   if (method == EigenvalueMethod::secular) return secular_eigenvalues(pencil, window);
-  std::vector<Eigenvalue> all = [&] {
-    const std::scoped_lock guard(blas_in_use);
-    return dense_eigenvalues(pencil);
-  }();
+  std::vector<Eigenvalue> all = dense_eigenvalues(pencil);
   keep_window(all, window);
   return all;
 }

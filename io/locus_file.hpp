@@ -22,8 +22,8 @@ namespace stridor {
 /// An unstable window and when a run passes it. Times are NaN where no run does.
 struct TimedWindow {
   UnstableWindow window;
-  double from_time = 0.0;  ///< s
-  double to_time = 0.0;    ///< s
+  double from_time = 0.0;  ///< when the run comes into it, s
+  double to_time = 0.0;    ///< when it leaves it, or ends, s
   double gain = 0.0;       ///< ∫ Re s dt from one to the other
 };
 

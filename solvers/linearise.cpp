@@ -100,6 +100,7 @@ void add_perturbation(System& system, const Eigen::VectorXcd& vector, std::compl
   const std::complex<double> scale = amplitude / largest;
   first = 0;
   for (SystemBody& body : system.bodies) {
+    if (body.modal.size() == 0) continue;  // BLAS takes no empty matrix
     const Eigen::VectorXcd motion = scale * vector.segment(first, body.modal.size());
     add_motion(body.initial_displacement, body.modal.shapes, motion.real());
     add_motion(body.initial_velocity, body.modal.shapes, (s * motion).real());

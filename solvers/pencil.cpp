@@ -89,6 +89,37 @@ void multiply(const Eigen::Ref<const Eigen::MatrixXd>& rows, const Eigen::Matrix
   }
 }
 
+/// Orthonormal rows that span the rows of both matrices, of which either may be empty or zero.
+///
+/// By the modified Gram-Schmidt process, the longest row that is left first, each direction taken
+/// out twice. By hand, since loci call it in several threads, and BLAS may serve one at a time
+/// (core/tasks.hpp).
+Eigen::MatrixXd common_row_space(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second) {
+  constexpr double negligible = 1e-14;
+  const Eigen::Index m = std::max(first.cols(), second.cols());
+  Eigen::MatrixXd rest(0, m);
+  for (const Eigen::MatrixXd* matrix : {&first, &second}) {
+    const double size = matrix->size() > 0 ? matrix->norm() : 0.0;
+    if (size == 0.0) continue;
+    rest.conservativeResize(rest.rows() + matrix->rows(), m);
+    rest.bottomRows(matrix->rows()) = *matrix / size;
+  }
+  Eigen::MatrixXd basis(0, m);
+  while (basis.rows() < std::min(rest.rows(), m)) {
+    Eigen::Index longest = 0;
+    const double length = rest.rowwise().norm().maxCoeff(&longest);
+    if (length <= negligible) break;
+    const Eigen::RowVectorXd direction = rest.row(longest) / length;
+    for (Eigen::Index i = 0; i < rest.rows(); ++i) {
+      for (int pass = 0; pass < 2; ++pass) rest.row(i) -= direction.dot(rest.row(i)) * direction;
+    }
+    rest.row(longest).setZero();
+    basis.conservativeResize(basis.rows() + 1, m);
+    basis.bottomRows(1) = direction;
+  }
+  return basis;
+}
+
 /// Segment under a point of the undeformed master and the projection on it.
 std::pair<int, Projection> undeformed_place(const MasterSurface& surface,
                                             const Eigen::Vector2d& point, int first) {
@@ -262,23 +293,7 @@ ModalRows modal_rows(const Pencil& pencil) {
   ModalRows rows;
   rows.num_constraints = pencil.num_constraints();
   const Eigen::Index k = rows.num_constraints;
-  const Eigen::Index m = pencil.num_slots();
-  Eigen::MatrixXd stacked(m, 0);
-  const auto append = [&](const Eigen::MatrixXd& matrix) {
-    const double size = matrix.size() > 0 ? matrix.norm() : 0.0;
-    if (size == 0.0) return;
-    stacked.conservativeResize(m, stacked.cols() + m);
-    stacked.rightCols(m) = matrix.transpose() / size;
-  };
-  append(pencil.slot_stiffness);
-  append(pencil.slot_damping);
-  Eigen::MatrixXd V(0, m);
-  if (stacked.cols() > 0) {
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(stacked);
-    qr.setThreshold(1e-14);
-    const Eigen::MatrixXd Q = qr.householderQ();
-    V = Q.leftCols(qr.rank()).transpose();
-  }
+  const Eigen::MatrixXd V = common_row_space(pencil.slot_stiffness, pencil.slot_damping);
   rows.rank = V.rows();
   const Eigen::Index r = rows.rank;
   rows.outputs.resize(k + r, pencil.num_modes());
@@ -288,8 +303,9 @@ ModalRows modal_rows(const Pencil& pencil) {
   if (r > 0) {
     multiply(V, pencil.slots, rows.outputs.bottomRows(r));
     const auto fill = [&](const Eigen::MatrixXd& matrix, Eigen::Index first) {
-      if (matrix.size() > 0)
-        rows.inputs.middleRows(first, r) = (matrix * V.transpose()).transpose() * pencil.slots;
+      if (matrix.size() == 0) return;
+      const Eigen::MatrixXd combined = V.lazyProduct(matrix.transpose());
+      multiply(combined, pencil.slots, rows.inputs.middleRows(first, r));
     };
     fill(pencil.slot_stiffness, k);
     fill(pencil.slot_damping, k + r);

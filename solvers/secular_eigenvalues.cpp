@@ -82,15 +82,19 @@ class Aberth {
     if (length > farthest) step *= farthest / length;
     s += step;
     length = std::abs(step);
-    const double rounding = eps * std::abs(s);
+    const double size = function_.size_of(s);
+    const double rounding = eps * size;
+    // A small step next to another iterate is the other's doing, unless a zero is as close.
+    constexpr double nearby = 1e-6;
+    const bool is_near_zero = 1.0 <= std::abs(slope.value) * std::max(spacing, nearby * size);
     // Steps towards a double zero end when they have reached the rounding of P_h.
     constexpr int num_expected = 20;
     const bool has_stalled =
-        sweep > num_expected && length >= 0.9 * last_[j] && length <= 1e-7 * std::abs(s);
-    const bool is_last =
+        sweep > num_expected && length >= 0.9 * last_[j] && length <= 1e-7 * size;
+    const bool is_small =
         length * length <= 1e-2 * rounding * spacing || length <= 4.0 * rounding || has_stalled;
     last_[j] = length;
-    return is_last;
+    return is_small && is_near_zero;
   }
 
   SecularFunction& function_;
@@ -117,14 +121,20 @@ std::vector<Complex> starts_below(const SecularFunction& function, double height
   return starts;
 }
 
+/// Whether only rounding keeps a zero off the real axis.
+bool is_real(const SecularFunction& function, Complex s) {
+  constexpr double ratio = 1e-10;
+  return std::abs(s.imag()) <= ratio * function.size_of(s);
+}
+
 /// The zeros of the upper half plane and the real ones out of a set that should be its own
 /// conjugate; false where it is not.
-bool fold(const std::vector<Complex>& zeros, std::vector<Complex>& folded) {
-  constexpr double real_ratio = 1e-10;
+bool fold(const SecularFunction& function, const std::vector<Complex>& zeros,
+          std::vector<Complex>& folded) {
   std::vector<Complex> lower;
   folded.clear();
   for (const Complex& s : zeros) {
-    if (std::abs(s.imag()) <= real_ratio * std::abs(s)) {
+    if (is_real(function, s)) {
       folded.emplace_back(s.real(), 0.0);
     } else if (s.imag() > 0.0) {
       folded.push_back(s);
@@ -147,17 +157,16 @@ void sort_zeros(std::vector<Complex>& zeros) {
 int count_below(const std::vector<Complex>& zeros, double height) {
   int count = 0;
   for (const Complex& s : zeros) {
-    if (s.imag() < height) count += s.imag() > 0.0 ? 2 : 1;
+    if (SecularFunction::height_of(s) < height) count += s.imag() > 0.0 ? 2 : 1;
   }
   return count;
 }
 
 /// A pair as its member in the upper half plane; false where it lies on the real axis, on which
 /// no two of a pair are distinct.
-bool turn_up(Complex& s) {
-  constexpr double real_ratio = 1e-10;
+bool turn_up(const SecularFunction& function, Complex& s) {
   s.imag(std::abs(s.imag()));
-  return s.imag() > real_ratio * std::abs(s);
+  return !is_real(function, s);
 }
 
 /// The start that is farthest from everything in `zeros`, in proportion to its height.
@@ -193,8 +202,8 @@ bool find_pairs(SecularFunction& function, double height, int number, std::vecto
     bool all_below = true;
     for (std::size_t j = 0; j < iterates.pairs.size(); ++j) {
       Complex& s = iterates.pairs[j];
-      if (!turn_up(s)) return false;
-      if (s.imag() < height) continue;
+      if (!turn_up(function, s)) return false;
+      if (SecularFunction::height_of(s) < height) continue;
       // P_h has zeros above the line as well. Those below that were found are divided out, so
       // another start is drawn towards the one that is missing.
       all_below = false;
@@ -220,8 +229,9 @@ bool find_zeros(SecularFunction& function, double height, int number, std::vecto
     const auto poles = function.poles(i);
     if (poles[0].imag() > 0.0) continue;
     for (const Complex pole : poles) {
-      starts.push_back(pole +
-                       1e-3 * (std::abs(pole) + 1e-3 * function.extent()) * Complex(1.0, 0.5));
+      // Poles may coincide, as those of two rigid modes; starts must not, or they move as one.
+      const Complex aside = std::polar(1.0, 0.5 + static_cast<double>(starts.size()));
+      starts.push_back(pole + 1e-3 * (std::abs(pole) + 1e-3 * function.extent()) * aside);
     }
   }
   // The starts between the lowest poles would stand beside these.
@@ -235,7 +245,7 @@ bool find_zeros(SecularFunction& function, double height, int number, std::vecto
   Aberth aberth(function, height);
   const bool is_converged = aberth.run(iterates, is_done);
   evaluations += aberth.evaluations();
-  return fold(iterates.singles, zeros) && is_converged;
+  return fold(function, iterates.singles, zeros) && is_converged;
 }
 
 /// A line above a height, between two poles, below which zeros can be counted.

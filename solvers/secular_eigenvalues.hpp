@@ -28,10 +28,11 @@ struct SecularSpectrum {
   /// Im s >= 0, ascending Im s, then ascending Re s; real ones first, all of them. Multiple ones
   /// repeated.
   std::vector<Eigenvalue> eigenvalues;
-  /// Every eigenvalue with |Im s| < height is among `found`, rad/s.
+  /// Every eigenvalue whose SecularFunction::height_of() is less is among `found`: those with
+  /// |Im s| < height and all real ones, rad/s.
   double height = 0.0;
   int num_counted = 0;  ///< such eigenvalues by the argument principle, conjugates counted
-  /// All zeros with 0 <= Im s < height, ascending Im s: more than `eigenvalues` where a line
+  /// All zeros below `height` with Im s >= 0, ascending Im s: more than `eigenvalues` where a line
   /// between two poles lies above the window.
   std::vector<std::complex<double>> found;
   bool is_complete = false;  ///< as many distinct ones were found as counted
@@ -40,9 +41,9 @@ struct SecularSpectrum {
 
 /// Zeros of the secular function in a window (docs/theory.md, 7.3).
 ///
-/// A line Im s = h is drawn above the window, midway between two poles. The argument principle
-/// gives the number N of zeros between it and its conjugate, Ehrlich and Aberth's iteration finds N
-/// zeros at once from starts between the poles:
+/// A line |Im s| = h + |Re s| is drawn above the window, midway between two poles. The argument
+/// principle gives the number N of zeros between it and its conjugate, Ehrlich and Aberth's
+/// iteration finds N zeros at once from starts between the poles:
 ///
 ///   s_j ← s_j − 1/(P_h′/P_h − Σ_{k≠j} 1/(s_j − s_k))
 ///

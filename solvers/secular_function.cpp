@@ -1,6 +1,6 @@
 #include "solvers/secular_function.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -51,6 +51,31 @@ bool equilibrate(Eigen::MatrixXcd& B, Eigen::MatrixXcd& slope) {
     }
   }
   return true;
+}
+
+/// det B by elimination with row pivoting, B destroyed. By hand as below, and because BLAS may
+/// serve one thread at a time (core/tasks.hpp).
+Complex determinant_of(Eigen::MatrixXcd& B) {
+  const Eigen::Index size = B.rows();
+  Complex product = 1.0;
+  for (Eigen::Index k = 0; k < size; ++k) {
+    Eigen::Index pivot = k;
+    for (Eigen::Index i = k + 1; i < size; ++i) {
+      if (std::norm(B(i, k)) > std::norm(B(pivot, k))) pivot = i;
+    }
+    if (B(pivot, k) == 0.0) return 0.0;
+    if (pivot != k) {
+      B.row(k).swap(B.row(pivot));
+      product = -product;
+    }
+    product *= B(k, k);
+    const Complex scale = reciprocal(B(k, k));
+    for (Eigen::Index i = k + 1; i < size; ++i) {
+      const Complex factor = B(i, k) * scale;
+      for (Eigen::Index j = k + 1; j < size; ++j) B(i, j) -= factor * B(k, j);
+    }
+  }
+  return product;
 }
 
 /// tr(B⁻¹ C) by elimination with row pivoting, both destroyed; nothing where B is singular. For
@@ -113,14 +138,18 @@ void SecularFunction::assign_modes(const Pencil& pencil) {
   }
   std::fill_n(omega_.data(), padded_, padding_omega);
   extent_ = 0.0;
+  smallest_pole_ = std::numeric_limits<double>::infinity();
   height_of_.clear();
   for (std::size_t i = 0; i < order_.size(); ++i) {
     omega_[i] = pencil.omega(order_[i]);
     damping_[i] = pencil.damping(order_[i]);
-    height_of_.push_back(poles(static_cast<Eigen::Index>(i)).front().imag());
+    height_of_.push_back(std::max(0.0, height_of(poles(static_cast<Eigen::Index>(i)).front())));
     extent_ = std::max({extent_, omega_[i], std::abs(damping_[i])});
+    for (const Complex pole : poles(static_cast<Eigen::Index>(i)))
+      if (pole != 0.0) smallest_pole_ = std::min(smallest_pole_, std::abs(pole));
   }
   if (extent_ == 0.0) extent_ = 1.0;
+  smallest_pole_ = std::min(smallest_pole_, extent_);
   heights_ = height_of_;
   std::sort(heights_.begin(), heights_.end());
 
@@ -348,7 +377,8 @@ SecularFunction::Zero SecularFunction::find_zero(Complex guess, double spacing, 
     zero.s += step;
     const double size = magnitude(step);
     const double distance_to_origin = magnitude(zero.s);
-    const double rounding = eps * distance_to_origin;
+    const double size_of_zero = std::max(distance_to_origin, smallest_pole_);
+    const double rounding = eps * size_of_zero;
     if (!std::isfinite(size)) return zero;
     // Poles that were not multiplied out bend F as other zeros do.
     for (const int i : {hint - 1, hint + 1}) {
@@ -361,7 +391,7 @@ SecularFunction::Zero SecularFunction::find_zero(Complex guess, double spacing, 
     // have reached the rounding of F; between two close zeros they go astray for a while, so that
     // growing ones alone do not mean much.
     const bool has_stalled =
-        zero.evaluations > num_expected && size >= 0.9 * last && size <= 1e-7 * distance_to_origin;
+        zero.evaluations > num_expected && size >= 0.9 * last && size <= 1e-7 * size_of_zero;
     if (size * size <= rounding * spacing || size <= 4.0 * rounding || has_stalled) {
       zero.is_converged = true;
       return zero;
@@ -396,7 +426,7 @@ Complex SecularFunction::determinant(const double* inverse_re, const double* inv
     const double largest = matrix.row(a).cwiseAbs2().maxCoeff();
     if (largest > 0.0) matrix.row(a) *= 1.0 / std::sqrt(largest);
   }
-  return matrix.determinant();
+  return determinant_of(matrix);
 }
 
 Complex SecularFunction::determinant_at(Complex s) {
@@ -414,22 +444,30 @@ SecularFunction::Line& SecularFunction::line_at(double height) {
   if (lines_.size() >= max_lines) lines_.clear();
 
   Line line;
-  const double end = 8.0 * extent_;
-  line.places.emplace_back(end, 0.0);
+  const double end = 1e3 * extent_;
+  const auto on_side = [&](double x) { return Complex(x, height + std::abs(x)); };
+  // Far from all poles det A is a power of s.
+  constexpr int num_rises = 4;
+  for (int i = 0; i < num_rises; ++i)
+    line.places.emplace_back(end, i * on_side(end).imag() / num_rises);
   double x = end;
   while (x > -end) {
-    line.places.emplace_back(x, height);
-    double distance = std::numeric_limits<double>::infinity();
+    const Complex place = on_side(x);
+    line.places.push_back(place);
+    double distance = place.imag();
     for (std::size_t i = 0; i < order_.size(); ++i) {
-      for (const Complex pole : poles(static_cast<Eigen::Index>(i))) {
-        distance = std::min(distance, std::abs(pole - Complex(x, height)));
-      }
+      for (const Complex pole : poles(static_cast<Eigen::Index>(i)))
+        distance = std::min(distance, std::abs(pole - place));
     }
-    // Next to a pole the count fails in any case; the floor keeps the number of samples finite.
-    x -= std::max(0.5 * distance, 1e-9 * end);
+    // The floor keeps the number of samples finite.
+    constexpr double closest = 1e-9;
+    line.meets_pole = line.meets_pole || distance < closest * place.imag();
+    const double step = std::max(0.5 * distance / std::numbers::sqrt2, closest * extent_);
+    // The corner is one of the samples.
+    x = x > 0.0 ? std::max(x - step, 0.0) : x - step;
   }
-  line.places.emplace_back(-end, height);
-  line.places.emplace_back(-end, 0.0);
+  for (int i = num_rises; i >= 0; --i)
+    line.places.emplace_back(-end, i * on_side(end).imag() / num_rises);
   line.inverses = AlignedArray(2 * padded_ * line.places.size());
   for (std::size_t p = 0; p < line.places.size(); ++p) {
     double* const re = line.inverses.data() + 2 * padded_ * p;
@@ -443,6 +481,7 @@ SecularFunction::Line& SecularFunction::line_at(double height) {
 
 std::optional<int> SecularFunction::count_zeros_below(double height) {
   Line& line = line_at(height);
+  if (line.meets_pole) return std::nullopt;
   for (std::size_t p = 0; p < line.places.size(); ++p) {
     const double* const re = line.inverses.data() + 2 * padded_ * p;
     line.values[p] = determinant(re, re + padded_, line.places[p]);

@@ -1,6 +1,7 @@
 // The secular function of a pencil: its zeros are the eigenvalues.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <complex>
 #include <map>
@@ -39,13 +40,21 @@ class SecularFunction {
   Eigen::Index num_constraints() const { return rows_.num_constraints; }
   /// Zeros of P, 2 (n − k).
   Eigen::Index num_zeros() const { return 2 * (num_modes_ - rows_.num_constraints); }
-  /// Imaginary parts of the poles, √(ω² − c²/4) or 0, ascending; one per mode.
+  /// Height of a number over the sides of the wedge |Im s| < |Re s| in which growth or decay is
+  /// faster than vibration: |Im s| − |Re s|, 1/s.
+  static double height_of(std::complex<double> s) {
+    return std::abs(s.imag()) - std::abs(s.real());
+  }
+  /// Heights of the poles, 0 for those within the wedge, ascending; one per mode.
   const std::vector<double>& pole_heights() const { return heights_; }
   /// The poles of mode i, in ascending ω: that with the larger imaginary part, or the right one of
   /// two real ones, first.
   std::array<std::complex<double>, 2> poles(Eigen::Index i) const;
   /// A length beyond every pole and, unless B_C S Sᵀ B_Eᵀ is almost singular, every zero, 1/s.
   double extent() const { return extent_; }
+  /// A zero this much smaller than the smallest pole that is not zero is no different from zero, as
+  /// one of this relative error is exact: the size of numbers whose rounding steps are measured by.
+  double size_of(std::complex<double> s) const { return std::max(std::abs(s), smallest_pole_); }
 
   /// F'/F at a number, and what was multiplied out of the poles.
   struct LogSlope {
@@ -56,7 +65,7 @@ class SecularFunction {
   /// @param hint mode nearest to s if known, else any; becomes that mode
   LogSlope log_slope(std::complex<double> s, int& hint);
 
-  /// P_W'/P_W, with P_W = det A Π_W d_i for the modes of lower height than a limit.
+  /// P_W'/P_W, with P_W = det A Π_W d_i for the modes whose poles are below a limit.
   ///
   /// Has no poles below the limit, so that the zeros below it can be divided out one by one.
   LogSlope log_slope_below(std::complex<double> s, double height, int& hint);
@@ -74,14 +83,16 @@ class SecularFunction {
   /// @param hint    as log_slope()
   Zero find_zero(std::complex<double> guess, double spacing, int& hint);
 
-  /// Zeros with |Im s| < height, conjugates and real ones counted one by one, by the argument
-  /// principle.
+  /// Zeros with height_of() below a limit h, conjugates and real ones counted one by one, by the
+  /// argument principle; all with |Im s| < h and all real ones are among them.
   ///
-  ///   zeros − poles = (1/π) change of arg det A along +X, +X + i h, −X + i h, −X
+  ///   zeros − poles = (1/π) change of arg det A along +X, +X + j(h + X), jh, −X + j(h + X), −X
   ///
-  /// with X of eight times extent(). Two samples on the line are closer together than half their
-  /// distance to the nearest pole, and another one is put between where arg turns by more than
-  /// 1 rad.
+  /// with X of a thousand times extent(): next to jamming, where B_C S Sᵀ B_Eᵀ is almost singular,
+  /// real zeros lie far beyond the poles. Two samples are closer together than half their distance
+  /// to the nearest pole and to the real axis, so that even several real zeros in one place turn
+  /// arg by little from sample to sample. Another one is put between where it turns by more than 1
+  /// rad.
   /// @return nothing where a zero or pole is too close to the line to tell on which side it is
   std::optional<int> count_zeros_below(double height);
 
@@ -93,6 +104,7 @@ class SecularFunction {
     std::vector<Complex> places;  ///< from right to left
     AlignedArray inverses;        ///< of each place: real parts of 1/d, then imaginary parts
     std::vector<Complex> values;  ///< det A
+    bool meets_pole = false;
   };
 
   void assign_modes(const Pencil& pencil);
@@ -122,6 +134,7 @@ class SecularFunction {
   std::vector<double> heights_;
   std::vector<double> height_of_;  ///< by mode
   double extent_ = 0.0;
+  double smallest_pole_ = 0.0;  ///< of those that are not zero; extent_ where all are
   std::map<double, Line> lines_;
 
   ModalRows rows_;                     ///< in ascending ω

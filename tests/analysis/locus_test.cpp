@@ -100,6 +100,51 @@ TEST(Locus, DampedFlutterCrossesTheAxisWhereItShould) {
   }
 }
 
+/// A family of systems, each beside another one that is equal.
+PencilFamily twice(const PencilFamily& family) {
+  return {[place = family.place](double value, Pencil& pencil) {
+            Pencil one;
+            place(value, one);
+            const auto both = [](const Eigen::MatrixXd& matrix) {
+              Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(2 * matrix.rows(), 2 * matrix.cols());
+              blocks.topLeftCorner(matrix.rows(), matrix.cols()) = matrix;
+              blocks.bottomRightCorner(matrix.rows(), matrix.cols()) = matrix;
+              return blocks;
+            };
+            pencil.omega = one.omega.replicate(2, 1);
+            pencil.damping = one.damping.replicate(2, 1);
+            pencil.slots = both(one.slots);
+            pencil.compatibility = both(one.compatibility);
+            pencil.equilibrium = both(one.equilibrium);
+            pencil.slot_stiffness = both(one.slot_stiffness);
+          },
+          family.kinks};
+}
+
+TEST(Locus, EqualSystemsHaveEveryWindowTwice) {
+  // Every eigenvalue is double at every value. Those of a search are known to the root of its
+  // rounding then, which moves the threshold by that over the slope of the growth.
+  for (const LocusMethod method : {LocusMethod::secular, LocusMethod::dense}) {
+    LocusOptions options;
+    options.method = method;
+    const Locus locus = trace_locus(twice(flutter_family(0.1)), range(0.0, 0.4, 5), options);
+    ASSERT_THAT(locus.unstable, SizeIs(2));
+    for (const UnstableWindow& window : locus.unstable) {
+      EXPECT_NEAR(window.from, 0.2280350850, 2e-7);
+      EXPECT_EQ(window.to, 0.4);
+      EXPECT_NEAR(window.growth_max, locus.unstable[0].growth_max, 1e-7);
+    }
+    EXPECT_THAT(locus.branches, SizeIs(4));
+    EXPECT_THAT(locus.unverified, IsEmpty());
+    for (const auto& eigenvalues : locus.eigenvalues) EXPECT_THAT(eigenvalues, SizeIs(4));
+  }
+  // Without friction, nothing grows: a double eigenvalue on the axis is not taken for one that
+  // does.
+  const Locus undamped = trace_locus(twice(flutter_family(0.0)), range(0.0, 0.19, 20));
+  EXPECT_THAT(undamped.unstable, IsEmpty());
+  EXPECT_LT(undamped.num_places, 300);
+}
+
 TEST(Locus, HoffmannsModelLosesStabilityAtThreeQuarters) {
   const PencilFamily family{
       [](double friction, Pencil& pencil) {

@@ -1,8 +1,6 @@
 // The verbs contact and fit, as a user would run them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <hdf5.h>
-#include <hdf5_hl.h>
 
 #include <cmath>
 #include <filesystem>
@@ -10,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/dataset.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {
@@ -26,17 +25,6 @@ ProgramResult run_with(std::vector<std::string> more) {
   std::vector<std::string> arguments = small;
   arguments.insert(arguments.end(), more.begin(), more.end());
   return Program(arguments).run();
-}
-
-std::vector<double> dataset(const std::filesystem::path& path, const std::string& name) {
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  EXPECT_GE(file, 0);
-  hsize_t shape[2] = {1, 1};
-  EXPECT_GE(H5LTget_dataset_info(file, name.c_str(), shape, nullptr, nullptr), 0) << name;
-  std::vector<double> values(shape[0] * shape[1]);
-  H5LTread_dataset_double(file, name.c_str(), values.data());
-  H5Fclose(file);
-  return values;
 }
 
 TEST(ContactProgram, ReportsEveryPairOfSpeedAndIndentation) {

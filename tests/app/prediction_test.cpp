@@ -54,6 +54,7 @@ TEST(PredictionJson, HasNullWhereThereIsNoBurst) {
   const Json rows = prediction_json(match_bursts({window(1.0, 1.1, 3500.0)}, {}));
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_TRUE(rows[0]["burst"].is_null());
+  EXPECT_TRUE(rows[0]["burst_start"].is_null());
   EXPECT_EQ(rows[0]["gain"], 2.0);
 }
 

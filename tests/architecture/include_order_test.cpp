@@ -257,10 +257,32 @@ class SourceText : public testing::Test {
 };
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 
 TEST(IncludeOrder, HoldsInThisSourceTree) {
   EXPECT_THAT(check_tree(STRIDOR_SOURCE_DIR, folders_in_order), IsEmpty());
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(Sources, AreAllListedForTheBuild) {
+  // Files are listed by hand, and one that is left out breaks nothing.
+  const fs::path root = STRIDOR_SOURCE_DIR;
+  Strings folders = folders_in_order;
+  folders.insert(folders.end(), {"tests", "bench"});
+  for (const std::string& folder : folders) {
+    const std::string list = text_of(root / folder / "CMakeLists.txt");
+    ASSERT_FALSE(list.empty()) << folder;
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      const fs::path file = fs::relative(entry.path(), root / folder);
+      if (file.extension() != ".cpp" || *file.begin() == "fuzz") continue;
+      EXPECT_THAT(list, HasSubstr(file.generic_string())) << "in " << folder << "/CMakeLists.txt";
+    }
+  }
 }
 
 TEST_F(SourceText, MayIncludeFromItsOwnFolderAndThoseAbove) {

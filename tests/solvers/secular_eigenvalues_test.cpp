@@ -43,7 +43,8 @@ double largest_difference(const std::vector<Eigenvalue>& found, std::vector<Eige
 int count_below(const std::vector<Eigenvalue>& eigenvalues, double height) {
   int count = 0;
   for (const Eigenvalue& eigenvalue : eigenvalues) {
-    if (eigenvalue.s.imag() < height) count += eigenvalue.s.imag() > 0.0 ? 2 : 1;
+    if (SecularFunction::height_of(eigenvalue.s) < height)
+      count += eigenvalue.s.imag() > 0.0 ? 2 : 1;
   }
   return count;
 }
@@ -127,6 +128,101 @@ TEST(SecularEigenvalues, AgreeWithTheDenseOnesForManyContactsAndAllTerms) {
       EXPECT_LT(std::abs(lowest[i].s - all[i].s), 1e-10 * std::abs(all[i].s) + 1e-12);
       EXPECT_LT(lowest[i].residual, 1e-11);
     }
+  }
+}
+
+/// With conjugates.
+std::vector<Complex> both_halves(const std::vector<Complex>& upper) {
+  std::vector<Complex> all = upper;
+  for (const Complex s : upper)
+    if (s.imag() > 0.0) all.push_back(std::conj(s));
+  return all;
+}
+
+TEST(SecularEigenvalues, WhatIsCalledCompleteIsWhatTheDenseMethodFinds) {
+  constexpr unsigned num_pencils = 1000;
+  int num_complete = 0;
+  for (unsigned seed = 0; seed < num_pencils; ++seed) {
+    const Pencil pencil = test::awkward_pencil(seed);
+    SecularFunction function(pencil);
+    const SecularSpectrum spectrum =
+        secular_spectrum(function, SpectrumWindow::lowest(1 + static_cast<int>(seed % 12)));
+    if (!spectrum.is_complete) continue;
+    ++num_complete;
+    std::vector<Complex> dense;
+    double largest = 0.0;
+    for (const Eigenvalue& one : dense_eigenvalues(pencil, DenseWork::eigenvalues)) {
+      dense.push_back(one.s);
+      largest = std::max(largest, std::abs(one.s));
+    }
+    std::vector<Complex> rest = both_halves(dense);
+    const std::vector<Complex> found = both_halves(spectrum.found);
+    ASSERT_LE(found.size(), rest.size()) << "seed " << seed;
+    // Two eigenvalues that coincide are known to the root of what the dense method rounds by.
+    for (const Complex s : found) {
+      const auto nearest = std::min_element(rest.begin(), rest.end(), [&](Complex a, Complex b) {
+        return std::abs(a - s) < std::abs(b - s);
+      });
+      EXPECT_LT(std::abs(*nearest - s), 1e-6 * largest) << "seed " << seed;
+      rest.erase(nearest);
+    }
+    // And none below the line is missing, but for those that rounding may put on either side.
+    for (const Complex s : rest) {
+      EXPECT_GT(SecularFunction::height_of(s), spectrum.height - 1e-6 * largest) << seed;
+    }
+  }
+  // The others are almost jammed: B_C S Sᵀ B_Eᵀ is singular but for rounding.
+  EXPECT_GT(num_complete, 0.99 * num_pencils);
+}
+
+TEST(SecularEigenvalues, EqualBodiesThatFrictionDrivesApartGrowAlike) {
+  // Each alone: s² + 1 and s² + 100 under one contact whose friction falls with the velocity,
+  // H = −h along b: real eigenvalues far to the right of all poles, as many as there are bodies.
+  const auto bodies = [](int count) {
+    const Eigen::Index n = 3 * count;
+    Pencil pencil;
+    pencil.omega.resize(n);
+    pencil.damping = Eigen::VectorXd::Zero(n);
+    pencil.slots = Eigen::MatrixXd::Zero(2 * count, n);
+    pencil.compatibility = Eigen::MatrixXd::Zero(count, 2 * count);
+    for (int i = 0; i < count; ++i) {
+      pencil.omega.segment(3 * i, 3) << 1.0, 4.0, 10.0;
+      pencil.slots.block(2 * i, 3 * i, 2, 3) << 1.0, 0.4, 0.7, 0.3, -1.0, 0.6;
+      pencil.compatibility(i, 2 * i) = 1.0;
+    }
+    pencil.equilibrium = pencil.compatibility;
+    pencil.slot_damping = Eigen::MatrixXd::Zero(2 * count, 2 * count);
+    for (int i = 0; i < count; ++i) pencil.slot_damping(2 * i + 1, 2 * i + 1) = -1e4;
+    return pencil;
+  };
+  const auto one = secular_eigenvalues(bodies(1), SpectrumWindow::lowest(1));
+  ASSERT_EQ(one[1].s.imag(), 0.0);
+  const double fastest = one[1].s.real();
+  EXPECT_GT(fastest, 1e3);
+  for (const int count : {2, 3}) {
+    const auto all = secular_eigenvalues(bodies(count), SpectrumWindow::lowest(1));
+    EXPECT_EQ(std::count_if(all.begin(), all.end(),
+                            [&](const Eigenvalue& found) {
+                              return std::abs(found.s - fastest) < 1e-4 * fastest;
+                            }),
+              count);
+  }
+}
+
+TEST(SecularEigenvalues, ABodyThatIsFreeHasEigenvaluesOfZero) {
+  // Two rigid modes, of which the contact holds one combination.
+  const Eigen::VectorXd omega{{0.0, 0.0, 3.0, 50.0}};
+  const Eigen::MatrixXd rows{{1.0, 2.0, 0.5, 0.1}};
+  for (const double friction : {0.0, 0.3}) {
+    const Pencil pencil =
+        test::constrained_modes(omega, Eigen::VectorXd::Zero(4), rows,
+                                rows + friction * Eigen::MatrixXd{{0.2, -0.1, 0.3, 0.4}});
+    const auto found = secular_eigenvalues(pencil, SpectrumWindow::all());
+    const auto dense = dense_eigenvalues(pencil);
+    EXPECT_EQ(count_below(found, 1000.0), count_below(dense, 1000.0));
+    // A double zero comes out to the root of the rounding, real or as a pair.
+    EXPECT_LT(std::abs(found.front().s), 1e-7 * 3.0);
+    EXPECT_NEAR(std::abs(found.back().s), std::abs(dense.back().s), 1e-9);
   }
 }
 

@@ -65,6 +65,57 @@ inline Pencil random_pencil(unsigned seed, Eigen::Index n, Eigen::Index k, Conta
   return pencil;
 }
 
+/// random_pencil() of 3 to 40 modes and up to 3 contacts with what is awkward about some systems:
+/// no damping, overdamped modes and modes that are fed, rigid modes, modes that coincide or almost,
+/// modes that the contacts feel hardly or not at all, friction that nearly jams.
+inline Pencil awkward_pencil(unsigned seed) {
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<double> uniform;
+  const auto one_in = [&](unsigned count) { return engine() % count == 0; };
+  const Eigen::Index k = 1 + engine() % 3;
+  const Eigen::Index n = k + 2 + engine() % 35;
+  const ContactTerms terms =
+      one_in(2) ? ContactTerms::rows_only : static_cast<ContactTerms>(engine() % 3);
+  Pencil pencil = random_pencil(seed, n, k, terms);
+  switch (engine() % 4) {
+    case 0:
+      pencil.damping.setZero();
+      break;
+    case 1:
+      for (double& c : pencil.damping) c = one_in(4) ? 2500.0 * uniform(engine) : c;
+      break;
+    case 2:
+      for (double& c : pencil.damping) c = one_in(5) ? -c : c;
+      break;
+    default:
+      break;
+  }
+  if (one_in(4)) {
+    for (unsigned i = 0; i < 2; ++i) {
+      const Eigen::Index mode = engine() % n;
+      pencil.omega(mode) = 0.0;
+      if (one_in(2)) pencil.damping(mode) = 0.0;
+    }
+  }
+  if (one_in(3)) {
+    const double apart = one_in(3) ? 0.0 : std::pow(10.0, -13.0 + 9.0 * uniform(engine));
+    for (Eigen::Index i = 0; i + 1 < n; i += 2 + engine() % 5) {
+      pencil.omega(i + 1) = pencil.omega(i) * (1.0 + apart);
+      pencil.damping(i + 1) = pencil.damping(i);
+    }
+  }
+  if (one_in(3)) {
+    const double felt = one_in(3) ? 0.0 : std::pow(10.0, -14.0 + 11.0 * uniform(engine));
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (one_in(3)) pencil.slots.col(i) *= felt;
+  }
+  if (one_in(3)) {
+    const Pencil other = random_pencil(seed + 1, n, k, terms);
+    pencil.equilibrium = pencil.compatibility + 10.0 * uniform(engine) * other.compatibility;
+  }
+  return pencil;
+}
+
 /// P(s) = s² + s (diag(c) + SᵀHS) + diag(ω²) + SᵀGS.
 inline Eigen::MatrixXcd dynamic_stiffness(const Pencil& pencil, std::complex<double> s) {
   const Eigen::Index n = pencil.num_modes();

@@ -70,7 +70,7 @@ class Program {
 };
 
 inline std::string scene_path(const std::string& name) {
-  return std::string(STRIDOR_SOURCE_DIR) + "/scenes/" + name;
+  return STRIDOR_SOURCE_DIR "/scenes/" + name;
 }
 
 }  // namespace stridor::test

@@ -55,6 +55,7 @@ TEST_P(PredictionTest, EveryBurstHasItsWindow) {
       continue;
     }
     is_predicted.at(row["burst"].get<std::size_t>() - 1) = true;
+    EXPECT_NEAR(row["burst_start"].get<double>(), row["from"].get<double>(), 0.05) << row;
     EXPECT_NEAR(row["burst_frequency"].get<double>(), row["frequency"].get<double>(),
                 0.02 * row["frequency"].get<double>());
     EXPECT_NEAR(row["burst_gain"].get<double>(), row["gain"].get<double>(),

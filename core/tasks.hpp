@@ -8,7 +8,8 @@
 namespace stridor {
 
 /// Held while dense products may go to BLAS: a build of OpenBLAS without threads of its own hands
-/// the same work space to callers from two threads.
+/// the same work space to callers from two threads, and their results are rarely, and slightly,
+/// wrong.
 extern std::mutex blas_in_use;
 
 /// Does tasks 0 … count − 1, each once, on several threads. Which thread does a task must not
@@ -16,8 +17,8 @@ extern std::mutex blas_in_use;
 ///
 /// @param work gets the task and the number of the thread, from 0
 /// @param done called after every task, one at a time, with how many are done
-/// @throws what a task has thrown first, once the others that had begun are done; Interrupted where
-///         a stop was requested
+/// @throws what the first task in order has thrown that has thrown anything, whatever the threads
+///         do, once those that had begun are done; Interrupted where a stop was requested
 void run_tasks(std::size_t count, int num_threads,
                const std::function<void(std::size_t task, std::size_t thread)>& work,
                const std::function<void(std::size_t num_done, std::size_t task)>& done);

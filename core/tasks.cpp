@@ -1,4 +1,4 @@
-#include "app/tasks.hpp"
+#include "core/tasks.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -19,18 +19,23 @@ void run_tasks(std::size_t count, int num_threads,
   std::atomic<std::size_t> next{0};
   std::size_t num_done = 0;
   std::exception_ptr failure;
+  std::size_t failed_task = count;
   std::mutex telling;
   const auto take_tasks = [&](std::size_t thread) {
-    try {
-      for (std::size_t task = next++; task < count && !stop_requested(); task = next++) {
+    for (std::size_t task = next++; task < count && !stop_requested(); task = next++) {
+      try {
         work(task, thread);
         const std::lock_guard lock(telling);
         done(++num_done, task);
+      } catch (...) {
+        const std::lock_guard lock(telling);
+        if (task < failed_task) {
+          failure = std::current_exception();
+          failed_task = task;
+        }
+        next = count;
+        return;
       }
-    } catch (...) {
-      const std::lock_guard lock(telling);
-      if (!failure) failure = std::current_exception();
-      next = count;
     }
   };
   std::vector<std::thread> threads;

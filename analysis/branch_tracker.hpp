@@ -1,0 +1,48 @@
+// Eigenvalues followed from value to value of a parameter.
+#pragma once
+
+#include <algorithm>
+#include <complex>
+#include <vector>
+
+#include "analysis/spectrum_source.hpp"
+
+namespace stridor {
+
+/// Eigenvalues that differ by less, relative to their size, are tied: equal bodies have equal ones.
+/// Rounding moves a double one by the root of what it does to others, and which of them continues
+/// which has no meaning.
+inline constexpr double tie = 1e-7;
+
+/// Values to be visited in any case, ascending.
+struct Grid {
+  std::vector<double> values;
+  std::vector<double> kinks;  ///< those inside the range
+
+  bool is_kink(double value) const { return std::binary_search(kinks.begin(), kinks.end(), value); }
+};
+
+/// @param wanted values asked for, ascending
+/// @param kinks  values where the pencil is not smooth, ascending
+Grid make_grid(const std::vector<double>& wanted, const std::vector<double>& kinks);
+
+/// A branch with what is needed to come back to it.
+struct Track {
+  Branch branch;
+  std::vector<double> spacing;  ///< of every sample: distance to the nearest one not tied to it
+  std::vector<double> nearest;  ///< of every sample: distance to the nearest one of all
+  bool is_tied = false;         ///< whether the last sample is tied to another eigenvalue
+  int hint = -1;
+  bool is_followed = true;
+
+  std::complex<double> last() const { return branch.s.back(); }
+};
+
+/// Follows every eigenvalue over the grid (trace_locus()).
+///
+/// @param locus its values are asked for; receives eigenvalues, places and what is unverified
+/// @throws NumericalError if the eigenvalues at the first value cannot be found
+std::vector<Track> follow_branches(SpectrumSource& source, const LocusOptions& options,
+                                   const Grid& grid, Locus& locus);
+
+}  // namespace stridor

@@ -1,0 +1,428 @@
+// The verbs about small vibrations on scenes of every kind: several pairs, friction laws, surfaces,
+// open contacts, equal bodies, other scales. Eigenvalues against transients, against the dense
+// method and against dimensional analysis.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "tests/support/dataset.hpp"
+#include "tests/support/program.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::SizeIs;
+using Json = nlohmann::json;
+using Complex = std::complex<double>;
+using Strings = std::vector<std::string>;
+
+/// The JSON object that the program prints; null, with a failure, where it does not end well.
+Json run_json(Strings arguments, const Strings& sets = {}) {
+  for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+  arguments.push_back("--json");
+  const ProgramResult result = Program(arguments).run();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return result.exit_code == 0 ? Json::parse(result.out) : Json();
+}
+
+Complex complex_of(const Json& eigenvalue) {
+  return {eigenvalue[0].get<double>(), eigenvalue[1].get<double>()};
+}
+
+/// Those with positive imaginary part.
+std::vector<Complex> vibrations(const Json& eigenvalues) {
+  std::vector<Complex> found;
+  for (const Json& one : eigenvalues)
+    if (one[1] > 0.0) found.push_back(complex_of(one));
+  return found;
+}
+
+struct Transient {
+  const char* name;
+  std::string scene;
+  Strings sets;
+  std::string channel;  ///< an acceleration
+  double from, to;      ///< s; growth is measured from the first half to the second
+  bool has_one_contact = true;
+};
+
+void PrintTo(const Transient& transient, std::ostream* stream) {
+  *stream << transient.name;
+}
+
+class FrozenGrowth : public ::testing::TestWithParam<Transient> {};
+
+/// Component at the frequency of s of a stretch of a signal, by a Hann window.
+Complex component(const std::vector<double>& time, const std::vector<double>& signal, double from,
+                  double length, double omega) {
+  Complex sum = 0.0;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const double phase = (time[i] - from) / length;
+    if (phase < 0.0 || phase > 1.0) continue;
+    const double window = 1.0 - std::cos(2.0 * std::numbers::pi * phase);
+    sum += window * signal[i] * std::exp(Complex(0.0, -omega * time[i]));
+  }
+  return sum;
+}
+
+TEST_P(FrozenGrowth, IsTheRealPartOfTheEigenvalue) {
+  const Transient& of = GetParam();
+  const std::string scene = scene_path(of.scene);
+  const TemporaryFolder folder;
+  const std::string file = (folder / "run.h5").string();
+  const auto run = [&](const Strings& more) {
+    Strings sets = of.sets;
+    sets.insert(sets.end(), {"drive.ramp=0", "initial.state=equilibrium", "measure={from: 0}"});
+    sets.insert(sets.end(), more.begin(), more.end());
+    run_json({"run", scene, "-o", file, "--force"}, sets);
+  };
+  Strings eig{"eig", scene, "--about", "deformed", "--count", "16"};
+  if (of.has_one_contact) {
+    // A run starts with the drive at 0; friction and load have bent the tip away from there.
+    run({"time.end=1e-5", "record.channels=[contact.position]"});
+    const double position = dataset(file, "/contact/contact/position").front();
+    eig.insert(eig.end(), {"--at", fmt::format("{:.12g}", position)});
+  }
+  const std::vector<Complex> modes = vibrations(run_json(eig, of.sets)["eigenvalues"]);
+  const auto fastest = std::max_element(modes.begin(), modes.end(),
+                                        [](Complex a, Complex b) { return a.real() < b.real(); });
+  ASSERT_NE(fastest, modes.end());
+  const Complex s = *fastest;
+
+  run({fmt::format("time.end={}", of.to), fmt::format("record.channels=[{}]", of.channel),
+       fmt::format("initial.perturbation={{eigenvalue: {}, amplitude: 1e-10}}",
+                   fastest - modes.begin() + 1)});
+  const std::vector<double> time = dataset(file, "/time");
+  const std::vector<double> signal = dataset(file, "/channels/" + of.channel);
+  const double half = 0.5 * (of.to - of.from);
+  const Complex early = component(time, signal, of.from, half, s.imag());
+  const Complex late = component(time, signal, of.from + half, half, s.imag());
+  const Complex rate = std::log(late / early) / half;
+  EXPECT_NEAR(rate.real(), s.real(), 0.01 * std::abs(s.real()));
+  EXPECT_NEAR(rate.imag(), 0.0, 1e-3 * s.imag());
+}
+
+const Strings two_frozen{"contacts.front.sliding=frozen", "contacts.rear.sliding=frozen"};
+Strings with(Strings sets, const Strings& more) {
+  sets.insert(sets.end(), more.begin(), more.end());
+  return sets;
+}
+const Strings main_frozen{"contact.sliding=frozen", "contact.start=75.2 mm",
+                          "substructures.oblique.damping={alpha: 0.2, beta: 4e-8}"};
+const std::string tip = "cantilever.free_end.y.acceleration";
+const std::string edge = "examples/slave_edge.yaml";
+const std::string foot = "post.end_top.y.acceleration";
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, FrozenGrowth,
+    ::testing::Values(
+        Transient{"TwoPairs", "examples/two_pairs.yaml",
+                  with(two_frozen, {"contacts.front.start=75.2 mm"}), tip, 0.01, 0.05, false},
+        Transient{"SubsB", "beam_on_beam.yaml", main_frozen, tip, 0.01, 0.05},
+        Transient{"SubsC", "beam_on_beam.yaml", with(main_frozen, {"contact.assumption=subs_c"}),
+                  tip, 0.01, 0.05},
+        Transient{"Stribeck", "beam_on_beam.yaml",
+                  with(main_frozen, {"contact.friction={law: stribeck, static: 0.45, dynamic: "
+                                     "0.25, decay_velocity: 0.03}"}),
+                  tip, 0.01, 0.05},
+        Transient{"SmoothAndRough", "beam_on_beam.yaml",
+                  with(main_frozen, {"contact.surface=smooth",
+                                     "contact.roughness={rms: 2e-7, correlation_length: 1e-4, "
+                                     "seed: 1}"}),
+                  tip, 0.01, 0.05},
+        Transient{"OneOfThreeOpen", edge, {"contact.sliding=frozen"}, foot, 0.0002, 0.0022, false},
+        Transient{"TwoOfThreeOpen",
+                  edge,
+                  {"contact.sliding=frozen", "contact.friction.coefficient=0.5"},
+                  foot,
+                  0.0,
+                  0.0004,
+                  false}),
+    [](const auto& one) { return one.param.name; });
+
+/// Windows that both methods must have in common: those wider and higher than rounding.
+std::vector<std::array<double, 4>> windows_of(const Json& unstable) {
+  std::vector<std::array<double, 4>> windows;
+  for (const Json& one : unstable) {
+    windows.push_back({one["from"], one["to"], one["growth_max"], one["growth_integral"]});
+  }
+  return windows;
+}
+
+struct Range {
+  const char* name;
+  std::string scene;
+  std::string parameter, from, to;
+  Strings sets;
+  bool has_windows = true;
+};
+
+void PrintTo(const Range& range, std::ostream* stream) {
+  *stream << range.name;
+}
+
+class BothMethods : public ::testing::TestWithParam<Range> {};
+
+TEST_P(BothMethods, FindTheSameLocus) {
+  const Range& of = GetParam();
+  const auto locus = [&](const char* method) {
+    return run_json(
+        {"locus", scene_path(of.scene), "--parameter", of.parameter, "--from", of.from, "--to",
+         of.to, "--points", "5", "--count", "16", "--about", "deformed", "--method", method},
+        of.sets);
+  };
+  const Json secular = locus("secular");
+  const Json dense = locus("dense");
+  EXPECT_THAT(secular["unverified"], IsEmpty());
+  ASSERT_EQ(secular["eigenvalues"].size(), 5u);
+  for (std::size_t i = 0; i < 5; ++i) {
+    const std::vector<Complex> a = vibrations(secular["eigenvalues"][i]);
+    const std::vector<Complex> b = vibrations(dense["eigenvalues"][i]);
+    EXPECT_EQ(secular["eigenvalues"][i].size(), dense["eigenvalues"][i].size());
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t k = 0; k < a.size(); ++k)
+      EXPECT_LT(std::abs(a[k] - b[k]), 1e-8 * std::abs(a[k])) << i << ' ' << k;
+  }
+  const auto a = windows_of(secular["unstable"]);
+  const auto b = windows_of(dense["unstable"]);
+  ASSERT_EQ(a.size(), b.size()) << secular["unstable"].dump(1) << dense["unstable"].dump(1);
+  EXPECT_EQ(!a.empty(), of.has_windows);
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(a[k][i], b[k][i], 1e-5 * std::abs(a[k][i]));
+  }
+}
+
+/// So that the dense method takes milliseconds.
+const Strings few_modes{"time.integrator=exact", "time.retain={frequency: 20 kHz}"};
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, BothMethods,
+    ::testing::Values(
+        Range{"PositionOfOneOfTwoPairs", "examples/two_pairs.yaml", "contacts.front.start", "74 mm",
+              "76.5 mm", few_modes},
+        // Two of three contacts open on the way; at the end an eigenvalue has become real.
+        Range{"FrictionUnderAnEdge",
+              "examples/slave_edge.yaml",
+              "contact.friction.coefficient",
+              "0.05",
+              "1.5",
+              {}},
+        Range{"VelocityUnderStribecksLaw", "beam_on_beam.yaml", "drive.velocity", "0.01", "0.2",
+              with(few_modes, {"contact.friction={law: stribeck, static: 0.45, dynamic: 0.25, "
+                               "decay_velocity: 0.03}"})},
+        Range{"LoadOnASmoothSurface", "beam_on_beam.yaml", "drive.load", "-0.4", "-0.05",
+              with(few_modes, {"contact.surface=smooth", "contact.start=75.2 mm"})},
+        Range{"ARigidMaster",
+              "examples/stick_slip.yaml",
+              "drive.velocity",
+              "0.002",
+              "0.02",
+              {},
+              false}),
+    [](const auto& one) { return one.param.name; });
+
+/// The main scene in units of length, mass and time other than SI, given in SI.
+std::string scaled_scene(double length, double mass, double time) {
+  const double pressure = mass / (length * time * time);
+  const double density = mass / (length * length * length);
+  const auto beam = [&](const char* name, double l, double t, double w, const char* angle, double E,
+                        double nu, double rho, double alpha, const char* rest) {
+    return fmt::format(
+        "  {}:\n    type: beam\n    length: {}\n    thickness: {}\n    width: {}\n"
+        "    angle: {}\n    material: {{youngs_modulus: {}, poissons_ratio: {}, density: {}}}\n"
+        "    damping: {{alpha: {}, beta: {}}}\n{}"
+        "    reduction: {{fixed_interface_modes: 12}}\n",
+        name, l * length, t * length, w * length, angle, E * pressure, nu, rho * density,
+        alpha / time, 4e-8 * time, rest);
+  };
+  return "format: 1\nsubstructures:\n" +
+         beam("oblique", 0.075, 0.0015, 0.010, "30 deg", 71e9, 0.33, 2770.0, 0.2,
+              "    mesh: {along: 20, through: 1}\n    supports: {end: guided}\n") +
+         beam("cantilever", 0.1, 0.002, 0.020, "0", 2.38e9, 0.40, 1200.0, 40.0,
+              "    mesh: {along: 50, through: 1}\n    supports: {start: clamped}\n") +
+         fmt::format(
+             "contact: {{slave: oblique.tip, master: cantilever.top, assumption: subs_b, start: "
+             "{}, friction: {{coefficient: 0.3}}}}\n"
+             "drive: {{velocity: {}, load: {}, ramp: {}}}\ntime: {{step: {}, end: {}}}\n"
+             "record: {{interval: {}, channels: [contact.force]}}\n",
+             0.030 * length, 0.030 * length / time, -0.2 * mass * length / (time * time),
+             0.1 * time, 2e-7 * time, 2.25 * time, 1e-5 * time);
+}
+
+TEST(SimilarScenes, HaveTheSameLocusInTheirOwnUnits) {
+  // Bodies of 0.8 mm and of 13 m, frequencies of 0.01 Hz and of 40 MHz. Even powers of two, so that
+  // the arithmetic is the same: not a threshold in it may have a unit.
+  struct Units {
+    double length, mass, time;
+  };
+  const TemporaryFolder folder;
+  const std::string scene = (folder / "scene.yaml").string();
+  for (const char* about : {"undeformed", "deformed"}) {
+    const auto locus = [&](const Units& of) {
+      std::ofstream(scene) << scaled_scene(of.length, of.mass, of.time);
+      return run_json({"locus", scene, "--about", about, "--from",
+                       fmt::format("{}", 0.07 * of.length), "--to",
+                       fmt::format("{}", 0.098 * of.length), "--points", "15"});
+    };
+    const Json one = locus({1.0, 1.0, 1.0});
+    ASSERT_THAT(one["unstable"], Not(IsEmpty()));
+    for (const Units& of : {Units{0x1p-7, 0x1p-20, 0x1p-12}, Units{0x1p7, 0x1p20, 0x1p12},
+                            Units{0x1p7, 0x1p-10, 0x1p5}}) {
+      const Json other = locus(of);
+      ASSERT_EQ(other["eigenvalues"].size(), one["eigenvalues"].size());
+      for (std::size_t i = 0; i < one["eigenvalues"].size(); ++i) {
+        ASSERT_EQ(other["eigenvalues"][i].size(), one["eigenvalues"][i].size());
+        for (std::size_t k = 0; k < one["eigenvalues"][i].size(); ++k) {
+          const Complex s = complex_of(one["eigenvalues"][i][k]);
+          EXPECT_LT(std::abs(of.time * complex_of(other["eigenvalues"][i][k]) - s),
+                    1e-11 * std::abs(s));
+        }
+      }
+      ASSERT_EQ(other["unstable"].size(), one["unstable"].size());
+      for (std::size_t k = 0; k < one["unstable"].size(); ++k) {
+        const auto same = [&](const char* key, double unit, double tolerance) {
+          const double expected = one["unstable"][k][key];
+          EXPECT_NEAR(other["unstable"][k][key].get<double>() * unit, expected,
+                      tolerance * std::abs(expected))
+              << key;
+        };
+        same("from", 1.0 / of.length, 1e-11);
+        same("to", 1.0 / of.length, 1e-11);
+        same("growth_max", of.time, 1e-11);
+        // Where the growth is largest it hardly depends on the place.
+        same("frequency", of.time, 1e-8);
+        same("growth_integral", of.time / of.length, 1e-9);
+        same("from_time", 1.0 / of.time, 1e-9);
+        same("gain", 1.0, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(PassedWindows, AddUpToTheWholeWhereARunEndsAndAnotherOneStarts) {
+  const auto locus = [](const Strings& more) {
+    Strings sets{"drive.ramp=0"};
+    sets.insert(sets.end(), more.begin(), more.end());
+    return run_json({"locus", scene_path("beam_on_beam.yaml"), "--about", "deformed", "--from",
+                     "80 mm", "--to", "83 mm", "--points", "4"},
+                    sets);
+  };
+  const Json whole = locus({"contact.start=79 mm", "time.end=1"});
+  const Json first = locus({"contact.start=79 mm", "time.end=0.09"});
+  const Json second = locus({"contact.start=81.7 mm", "time.end=1"});
+  for (const Json* of : {&whole, &first, &second}) ASSERT_EQ((*of)["unstable"].size(), 1u);
+  const auto number = [](const Json& of, const char* key) {
+    return of["unstable"][0][key].get<double>();
+  };
+  EXPECT_GT(number(first, "gain"), 1.0);
+  EXPECT_GT(number(second, "gain"), 1.0);
+  EXPECT_NEAR(number(first, "gain") + number(second, "gain"), number(whole, "gain"), 0.005);
+  EXPECT_NEAR(number(first, "to_time"), 0.09, 1e-6);
+  EXPECT_NEAR(number(second, "from_time"), 0.0, 1e-6);
+  EXPECT_NEAR(number(second, "to_time"), number(whole, "to_time") - 0.09, 1e-6);
+}
+
+TEST(PassedWindows, HaveAGainWhereTheDriveGoesBackwards) {
+  const Json locus = run_json({"locus", scene_path("beam_on_beam_leading.yaml"), "--about",
+                               "deformed", "--from", "95 mm", "--to", "97 mm", "--points", "3"},
+                              {"drive.velocity=-0.03", "contact.start=97.5 mm"});
+  ASSERT_EQ(locus["unstable"].size(), 1u);
+  const Json& window = locus["unstable"][0];
+  EXPECT_LT(window["from_time"].get<double>(), window["to_time"].get<double>());
+  EXPECT_NEAR(window["gain"].get<double>(), window["growth_integral"].get<double>() / 0.03,
+              0.02 * window["gain"].get<double>());
+}
+
+TEST(EqualArms, HaveEveryEigenvalueTwiceAllTheWay) {
+  const TemporaryFolder folder;
+  const std::string scene = (folder / "scene.yaml").string();
+  std::ofstream(scene) << R"(format: 1
+substructures:
+  a: &arm
+    type: beam
+    length: 30 mm
+    thickness: 6 mm
+    width: 10 mm
+    angle: 60 deg
+    material: {youngs_modulus: 70 GPa, poissons_ratio: 0.33, density: 2700}
+    mesh: {along: 10, through: 1}
+    damping: {alpha: 2000, beta: 2.0e-7}
+    supports: {end: guided}
+    reduction: {fixed_interface_modes: 8}
+  b: *arm
+contacts:
+  one: {slave: a.tip, master: rigid, assumption: subs_b, start: 0, friction: &law {law: stribeck, static: 0.9, dynamic: 0.2, decay_velocity: 0.01}}
+  two: {slave: b.tip, master: rigid, assumption: subs_b, start: 0, friction: *law}
+drive: {velocity: 50 mm/s, load: -30, ramp: 2 ms}
+time: {step: 1.0e-7, end: 0.01}
+record: {interval: 1.0e-6, channels: [one.force]}
+)";
+  for (const char* method : {"secular", "dense"}) {
+    const Json locus =
+        run_json({"locus", scene, "--parameter", "drive.velocity", "--from", "0.06", "--to", "0.1",
+                  "--points", "6", "--count", "6", "--method", method});
+    ASSERT_THAT(locus["unstable"], SizeIs(2)) << method;
+    for (const char* key : {"from", "to", "growth_max"}) {
+      EXPECT_NEAR(locus["unstable"][0][key].get<double>(), locus["unstable"][1][key].get<double>(),
+                  1e-6 * locus["unstable"][0][key].get<double>());
+    }
+    for (const Json& eigenvalues : locus["eigenvalues"]) {
+      const std::vector<Complex> pairs = vibrations(eigenvalues);
+      ASSERT_THAT(pairs, SizeIs(6));
+      for (std::size_t k = 0; k < 6; k += 2)
+        EXPECT_LT(std::abs(pairs[k] - pairs[k + 1]), 1e-6 * std::abs(pairs[k]));
+    }
+  }
+  // Friction that falls this steeply drives a real eigenvalue far beyond all frequencies, in both.
+  const auto fastest = [&](const char* method) {
+    const Json eig =
+        run_json({"eig", scene, "--count", "2", "--method", method}, {"drive.velocity=0.01"});
+    std::vector<double> growing;
+    for (const Json& one : eig["eigenvalues"])
+      if (one[0] > 1e7) growing.push_back(one[0]);
+    return growing;
+  };
+  ASSERT_THAT(fastest("secular"), SizeIs(2));
+  ASSERT_THAT(fastest("dense"), SizeIs(2));
+  EXPECT_NEAR(fastest("secular")[0], fastest("dense")[0], 1e-5 * fastest("dense")[0]);
+}
+
+TEST(StoppedVerbs, WriteNothing) {
+  const TemporaryFolder folder;
+  const std::string scene = scene_path("beam_on_beam.yaml");
+  const std::string output = (folder / "out.h5").string();
+  const std::vector<Strings> verbs{
+      {"locus", scene, "--from", "30mm", "--to", "98mm", "--points", "100000", "--about",
+       "deformed", "-o", output},
+      {"map", scene, "--x", "contact.start", "30mm", "98mm", "1000", "--y",
+       "contact.friction.coefficient", "0", "1", "1000", "-o", output},
+      {"map", scene_path("viscoelastic_sphere.yaml"), "--x", "sphere.speed", "1e-5", "1", "3000",
+       "--y", "sphere.shear_strength", "1e-4", "0.1", "3000", "--scale", "log", "-o", output},
+      {"threshold", scene, "--from", "30mm", "--to", "98mm", "--points", "100000"}};
+  for (const Strings& verb : verbs) {
+    Program program(verb);
+    program.start();
+    usleep(300'000);
+    program.send(SIGINT);
+    const ProgramResult result = program.wait();
+    EXPECT_EQ(result.exit_code, 5) << verb[0];
+    EXPECT_THAT(result.err, HasSubstr("nothing has been written"));
+    EXPECT_TRUE(result.out.empty()) << result.out;
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << verb[0];
+  }
+}
+
+}  // namespace
+}  // namespace stridor
