@@ -216,6 +216,62 @@ TEST(ResumeProgram, OfTwoAtOnceOneIsRefused) {
   EXPECT_EQ(difference(whole, broken), "") << "the run that was refused has left it alone";
 }
 
+TEST(ResumeProgram, AFileThatIsBeingWrittenIsNotReplaced) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "run.h5").string();
+  const auto is_refused = HasSubstr(file + ": another process is writing it, a run that goes on");
+  Program running(long_run(file, "100"));
+  running.start();
+  wait_for(file);
+  const std::string sphere = scene_path("viscoelastic_sphere.yaml");
+  const std::vector<std::vector<std::string>> intruders{
+      long_run(file),
+      {"run", scene_path("examples/elastic_pads.yaml"), "-o", file},
+      {"run", sphere, "-o", file},
+      {"locus", scene_path("beam_on_beam.yaml"), "--from", "30mm", "--to", "40mm", "--points", "2",
+       "-o", file},
+      {"sweep", scene_path("beam_on_beam.yaml"), "--from", "30mm", "--to", "40mm", "--points", "2",
+       "-o", file}};
+  for (std::vector<std::string> intruder : intruders) {
+    intruder.emplace_back("--force");
+    const ProgramResult result = Program(intruder).run();
+    EXPECT_EQ(result.exit_code, 4) << intruder[0] << ' ' << intruder[1] << result.err;
+    EXPECT_THAT(result.err, is_refused) << intruder[0] << ' ' << intruder[1];
+  }
+  running.send(SIGTERM);
+  const ProgramResult stopped = running.wait();
+  ASSERT_EQ(stopped.exit_code, 5) << stopped.err;
+  const double reached = RunFileReader(file).times().back();
+
+  // It is whole, and once nobody writes it any more it goes on or may be replaced.
+  const ProgramResult resumed = Program({"run", "--resume", file, "--max-wall", "0.1"}).run();
+  EXPECT_EQ(resumed.exit_code, 5) << resumed.err;
+  EXPECT_GT(RunFileReader(file).times().back(), reached);
+  std::vector<std::string> next = long_run(file, "0.01");
+  next.insert(next.end(), {"--set", "measure.from=0", "--force"});
+  EXPECT_EQ(Program(next).run().exit_code, 0);
+}
+
+TEST(ResumeProgram, OfTwoThatMakeOrReplaceAFileAtOnceOneIsRefused) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "run.h5").string();
+  std::vector<std::string> command = long_run(file, "100");
+  command.insert(command.end(), {"--max-wall", "1", "--force"});
+  for (const char* what : {"made", "replaced", "replaced again"}) {
+    Program one(command);
+    Program other(command);
+    one.start();
+    other.start();
+    const ProgramResult first = one.wait();
+    const ProgramResult second = other.wait();
+    EXPECT_THAT((std::vector<int>{first.exit_code, second.exit_code}),
+                ::testing::UnorderedElementsAre(5, 4))
+        << what << first.err << second.err;
+    EXPECT_THAT(first.err + second.err, HasSubstr(file + ": another process is writing it"));
+    EXPECT_GT(RunFileReader(file).times().size(), 1U);
+  }
+}
+
 class ResumeRefusal : public ::testing::Test {
  protected:
   void SetUp() override {
