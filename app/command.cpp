@@ -29,8 +29,7 @@ void add_force_option(CLI::App& verb, CommonOptions& options) {
 
 void check_figure(const std::filesystem::path& figure, const CommonOptions& options) {
   check_figure_name(figure);
-  if (!options.force && std::filesystem::exists(figure))
-    throw FileError(figure.string(), "", "exists; use --force to overwrite it");
+  check_replaceable(figure.string(), options.overwrite());
 }
 
 Json number(double value) {

@@ -54,13 +54,10 @@ ExitCode run_to_end(DiscTransient& transient, const LoadedLinearScene& loaded,
     print_results(results, file);
   }
   std::fflush(stdout);
-  if (end == MarchEnd::stopped)
-    throw_interrupted(transient.time(), scene.time->end, file, Resumable::yes);
+  if (end == MarchEnd::stopped) throw_interrupted(transient.time(), scene.time->end, file);
   if (end == MarchEnd::failed) {
     throw NumericalError(
-        fmt::format("the contact forces have not converged after t = {:.6g} s; a shorter time.step "
-                    "may help. {} holds everything up to then",
-                    transient.time(), file));
+        fmt::format("{}\n{} holds everything up to then", transient.failure(), file));
   }
   if (ending.verify) check_expectations(scene.expect, results);
   return ExitCode::done;

@@ -214,11 +214,40 @@ void DiscTransient::write_checkpoint() {
   keeper_.write_checkpoint(*writer_, save());
 }
 
+/// Whether the run can go on from a step; says in failure_ why not. Contacts that are springs say
+/// nothing of a pad that has gone through the middle of the disc.
+bool DiscTransient::is_sound(bool has_converged) {
+  const double depth = 0.5 * scene().model.disc.plate.thickness;
+  const std::string when = fmt::format("at t = {:.6g} s", time());
+  if (!std::isfinite(motion_->displacement().sum() + motion_->velocity().sum())) {
+    failure_ = fmt::format(
+        "the motion has grown beyond all bounds {}; a shorter time.step or a "
+        "smaller initial.perturbation.amplitude may help",
+        when);
+    return false;
+  }
+  for (int i = 0; i < motion_->num_contacts(); ++i) {
+    const double gap = motion_->contact(i).gap;
+    if (!(gap < -depth)) continue;
+    const auto num_pad_contacts = static_cast<std::size_t>(motion_->num_contacts()) / 2;
+    failure_ = fmt::format(
+        "contact {} has gone {:.4g} m into the disc {}, more than half its thickness; a smaller "
+        "initial.perturbation.amplitude, a larger contact.penalty or a shorter time.step may help",
+        disc_contact_name(static_cast<std::size_t>(i), num_pad_contacts), -gap, when);
+    return false;
+  }
+  if (!has_converged) {
+    failure_ =
+        fmt::format("the contact forces have not converged {}; a shorter time.step may help", when);
+  }
+  return has_converged;
+}
+
 MarchEnd DiscTransient::run_to_step(std::int64_t last) {
   constexpr std::int64_t steps_between_looks = 256;
   const auto start = std::chrono::steady_clock::now();
   const double writing_before = writer_->write_seconds();
-  end_ = MarchEnd::finished;
+  end_ = is_sound(true) ? MarchEnd::finished : MarchEnd::failed;
   while (step_ < last && end_ == MarchEnd::finished) {
     if (step_ % steps_between_looks == 0) {
       if (stop_requested()) {
@@ -226,14 +255,15 @@ MarchEnd DiscTransient::run_to_step(std::int64_t last) {
         break;
       }
       if (keeper_.is_due())
-        keeper_.look_after(time(), scene().time->end, &*writer_, [this] { return save(); });
+        keeper_.look_after(time(), scene().time->end, *writer_, [this] { return save(); });
     }
-    if (!motion_->step()) {
+    const bool has_converged = motion_->step();
+    ++step_;
+    if (!is_sound(has_converged)) {
       // Within the filters' look-ahead it is no failure of the run that was asked for.
-      end_ = step_ < end_step_ ? MarchEnd::failed : MarchEnd::finished;
+      end_ = step_ <= end_step_ ? MarchEnd::failed : MarchEnd::finished;
       break;
     }
-    ++step_;
     recorder_->sample(*motion_, *writer_, last_sample_);
     if (step_ <= end_step_) statistics_->add(*motion_, time());
   }

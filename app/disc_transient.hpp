@@ -58,6 +58,8 @@ class DiscTransient {
   Json finish();
 
   double time() const;
+  /// What has gone wrong with whom and when, and what to try; empty unless the run has failed.
+  const std::string& failure() const { return failure_; }
 
  private:
   /// The eigenvalue of the motion at the start, and that motion.
@@ -70,6 +72,7 @@ class DiscTransient {
   void make_model();
   Perturbation perturbation() const;
   MarchEnd run_to_step(std::int64_t step);
+  bool is_sound(bool has_converged);
   State save() const;
   void load(const State& state);
 
@@ -86,6 +89,7 @@ class DiscTransient {
   std::int64_t end_step_ = 0;
   std::int64_t last_sample_ = 0;
   MarchEnd end_ = MarchEnd::finished;
+  std::string failure_;
   double setup_seconds_ = 0.0, march_seconds_ = 0.0;
 };
 

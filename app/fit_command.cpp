@@ -11,6 +11,7 @@
 
 #include "analysis/law_fit.hpp"
 #include "app/command.hpp"
+#include "app/output_folder.hpp"
 #include "core/errors.hpp"
 #include "io/panel_plot.hpp"
 #include "substructures/viscoelastic_material.hpp"
@@ -172,16 +173,8 @@ ExitCode fit(const FitOptions& options) {
   const std::vector<double> speeds = spaced_values("--speeds", options.speeds);
   const std::vector<double> indentations = spaced_values("--indentations", options.indentations);
   const std::array<const char*, 3> names{"modulus.png", "cuts.png", "scatter.png"};
-  if (options.figures) {
-    std::error_code error;
-    std::filesystem::create_directories(*options.figures, error);
-    if (error) throw FileError(*options.figures, "", "cannot be made: " + error.message());
-    for (const char* name : names) {
-      const auto path = std::filesystem::path(*options.figures) / name;
-      if (!options.common.force && std::filesystem::exists(path))
-        throw FileError(path.string(), "", "exists; use --force to overwrite it");
-    }
-  }
+  if (options.figures)
+    prepare_folder(*options.figures, {names.begin(), names.end()}, options.common.overwrite());
   const Comparison comparison = compare(speeds, indentations);
   if (options.figures) {
     const std::filesystem::path folder = *options.figures;

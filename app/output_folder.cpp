@@ -13,10 +13,7 @@ void prepare_folder(const fs::path& folder, const std::vector<std::string>& name
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw FileError(folder.string(), "", "cannot be made: " + error.message());
-  for (const std::string& name : names) {
-    if (overwrite == Overwrite::no && fs::exists(folder / name))
-      throw FileError((folder / name).string(), "", "exists; use --force to overwrite it");
-  }
+  for (const std::string& name : names) check_replaceable((folder / name).string(), overwrite);
 }
 
 void write_json(const fs::path& path, const Json& object) {

@@ -118,7 +118,7 @@ ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::
 
   const Simulation& simulation = transient.simulation();
   if (end == MarchEnd::stopped) {
-    throw_interrupted(simulation.time(), loaded.scene.time.end, file, Resumable::yes);
+    throw_interrupted(simulation.time(), loaded.scene.time.end, file);
   }
   if (end == MarchEnd::failed) {
     throw NumericalError(
@@ -147,8 +147,10 @@ ExitCode resume(const RunOptions& options) {
   const InterruptedRun interrupted = find_interrupted_run(options.resumed);
   guard.reset();
   const std::string source = options.resumed + ":/scene/resolved";
-  if (is_disc_scene(read_scene_text(interrupted.scene_text, source)))
-    return resume_disc(interrupted, {options.max_wall, options.common.json, options.verify});
+  const SceneNode tree = read_scene_text(interrupted.scene_text, source);
+  const RunEnding ending{options.max_wall, options.common.json, options.verify};
+  if (is_disc_scene(tree)) return resume_disc(interrupted, ending);
+  if (is_sphere_scene(tree)) return resume_sphere(interrupted, ending);
   const LoadedScene loaded = load_resolved_scene(interrupted.scene_text, source);
   Transient transient(loaded, interrupted);
   return run_to_end(transient, loaded, options.resumed, options);

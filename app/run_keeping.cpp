@@ -91,13 +91,13 @@ bool RunKeeper::is_due() {
   return true;
 }
 
-void RunKeeper::look_after(double time, double end, RunFileWriter* writer,
+void RunKeeper::look_after(double time, double end, RunFileWriter& writer,
                            const std::function<State()>& save) {
   if (report_) report_(time / end, fmt::format("t = {:.4g} of {:.4g}", time, end));
-  if (writer != nullptr && seconds_since(last_checkpoint_) > every_) {
-    write_checkpoint(*writer, save());
-  } else if (writer != nullptr && seconds_since(last_flush_) > 2.0) {
-    writer->flush();
+  if (seconds_since(last_checkpoint_) > every_) {
+    write_checkpoint(writer, save());
+  } else if (seconds_since(last_flush_) > 2.0) {
+    writer.flush();
     last_flush_ = Clock::now();
   }
   if (seconds() > wall_limit_) request_stop();
@@ -108,13 +108,11 @@ void RunKeeper::write_checkpoint(RunFileWriter& writer, const State& state) {
   last_checkpoint_ = last_flush_ = Clock::now();
 }
 
-void throw_interrupted(double time, double end, const std::string& file, Resumable resumable) {
-  const std::string reached =
-      fmt::format("at t = {:.6g} of {:.6g}; {} holds everything up to then", time, end, file);
+void throw_interrupted(double time, double end, const std::string& file) {
   throw Interrupted(
-      resumable == Resumable::yes
-          ? fmt::format("{}. It can be resumed:\nstridor run --resume '{}'", reached, file)
-          : reached + "; it cannot be resumed");
+      fmt::format("at t = {:.6g} of {:.6g}; {} holds everything up to then. It can be resumed:\n"
+                  "stridor run --resume '{}'",
+                  time, end, file, file));
 }
 
 }  // namespace stridor

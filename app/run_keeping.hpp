@@ -75,9 +75,8 @@ class RunKeeper {
   /// Whether a quarter of a second has passed since this was last true.
   bool is_due();
   /// To be called about four times a second.
-  /// @param writer, save the file and the state for checkpoints; may be null for a run that has
-  /// none
-  void look_after(double time, double end, RunFileWriter* writer,
+  /// @param save gives the state for checkpoints
+  void look_after(double time, double end, RunFileWriter& writer,
                   const std::function<State()>& save);
   /// @throws FileError if it cannot be written
   void write_checkpoint(RunFileWriter& writer, const State& state);
@@ -94,10 +93,8 @@ class RunKeeper {
   std::function<void(double, const std::string&)> report_;
 };
 
-enum class Resumable { no, yes };
-/// That a run was stopped on request.
+/// That a run was stopped on request, and how it goes on.
 /// @param time, end s, or in units of the run
-[[noreturn]] void throw_interrupted(double time, double end, const std::string& file,
-                                    Resumable resumable);
+[[noreturn]] void throw_interrupted(double time, double end, const std::string& file);
 
 }  // namespace stridor

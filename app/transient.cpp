@@ -132,7 +132,7 @@ void Transient::make_march() {
       static_cast<std::int64_t>(std::floor(scene.time.end / interval_ + 1e-6)) + 1);
   MarchPlan plan = measured_plan(scene, last_step_);
   plan.on_progress = [this](const Simulation& running) {
-    keeper_.look_after(running.time(), loaded_->scene.time.end, &*writer_,
+    keeper_.look_after(running.time(), loaded_->scene.time.end, *writer_,
                        [this] { return save(); });
   };
   march_.emplace(*simulation_, &*recorder_, std::move(plan));

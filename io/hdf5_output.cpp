@@ -6,8 +6,10 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <optional>
 
 #include "core/errors.hpp"
+#include "io/write_lock.hpp"
 
 namespace stridor {
 
@@ -43,15 +45,23 @@ PartFile::~PartFile() {
 }
 
 void PartFile::move_to_final(Overwrite overwrite) {
-  int status = -1;
-  if (overwrite == Overwrite::no) {
+  // What is replaced stays locked until then: of two that replace it at once one is refused.
+  std::optional<WriteLock> replaced;
+  if (overwrite == Overwrite::yes) replaced.emplace(final_path_);
+  if (!replaced || !replaced->is_held()) {
     // Another process may have made the file meanwhile; not every file system can tell.
-    status = renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, final_path_.c_str(), RENAME_NOREPLACE);
-    if (status != 0 && errno == EEXIST)
-      throw FileError(final_path_, "", "exists; use --force to overwrite it");
+    if (renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, final_path_.c_str(), RENAME_NOREPLACE) == 0) {
+      is_made_ = false;
+      return;
+    }
+    if (errno == EEXIST && overwrite == Overwrite::yes) throw_being_written(final_path_);
+    if (errno == EEXIST) throw FileError(final_path_, "", "exists; use --force to overwrite it");
   }
-  if (status != 0) status = std::rename(path_.c_str(), final_path_.c_str());
-  if (status != 0)
+  replace();
+}
+
+void PartFile::replace() {
+  if (std::rename(path_.c_str(), final_path_.c_str()) != 0)
     throw FileError(final_path_, "", "cannot be given its name: " + errno_text(errno));
   is_made_ = false;
 }

@@ -35,9 +35,12 @@ class PartFile {
   /// Says that there is a file of this name now.
   void made() { is_made_ = true; }
   /// Gives the file its final name.
-  /// @throws FileError if the system refuses, or another process has made a file of that name
-  ///         meanwhile and `overwrite` is no
+  /// @throws FileError if the system refuses, another process has made a file of that name
+  ///         meanwhile and `overwrite` is no, or is writing the one that would be replaced
   void move_to_final(Overwrite overwrite);
+  /// Gives the file its final name in place of one that this process holds locked.
+  /// @throws FileError if the system refuses
+  void replace();
 
  private:
   std::string final_path_;

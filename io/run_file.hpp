@@ -49,6 +49,10 @@ struct RunFileHeader {
 /// @throws FileError as the constructor of RunFileWriter; the file is not touched
 void check_output(const std::string& path, Overwrite overwrite);
 
+/// Checks whether a file of this name may be made where there is one already.
+/// @throws FileError if it exists and `overwrite` is no, or if another process is writing it
+void check_replaceable(const std::string& path, Overwrite overwrite);
+
 /// The present time as "2024-05-17T08:30:00Z".
 std::string utc_now();
 

@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "io/run_file_writer_impl.hpp"
+#include "io/write_lock.hpp"
 
 namespace stridor {
 namespace {
@@ -53,8 +54,7 @@ void check_target(const std::string& path, Overwrite overwrite) {
     if (S_ISDIR(status.st_mode)) throw FileError(path, "", "is a folder");
     if (!S_ISREG(status.st_mode))
       throw FileError(path, "", "is not a regular file and is not replaced");
-    if (overwrite == Overwrite::no)
-      throw FileError(path, "", "exists; use --force to overwrite it");
+    check_replaceable(path, overwrite);
   }
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     throw FileError(path, "",
@@ -104,6 +104,13 @@ void check_object_path(const std::string& path) {
 
 void check_output(const std::string& path, Overwrite overwrite) {
   check_target(path, overwrite);
+}
+
+void check_replaceable(const std::string& path, Overwrite overwrite) {
+  struct stat status = {};
+  if (stat(path.c_str(), &status) != 0) return;
+  if (overwrite == Overwrite::no) throw FileError(path, "", "exists; use --force to overwrite it");
+  const WriteLock none_writes(path);
 }
 
 std::string utc_now() {

@@ -24,6 +24,17 @@ void set_number(const Schema& schema, void* object, const std::string& path, dou
   set_number(key->alternatives[0].schema(), key->open(object, "", 0), path.substr(dot + 1), value);
 }
 
+/// Reads the table of the contact law where the scene names one. The resolved scene names it from
+/// the root, as it may be read again from anywhere.
+void read_table(LoadedSphereScene& loaded) {
+  SphereModelParameters& model = loaded.scene.model;
+  if (!model.has_table()) return;
+  model.contact_law =
+      std::filesystem::absolute(path_of_file(loaded.tree, "contact_law", model.contact_law))
+          .lexically_normal();
+  model.table = std::make_shared<TabulatedLaw>(read_law_table(model.contact_law));
+}
+
 }  // namespace
 
 const Schema& SphereTimeParameters::schema() {
@@ -77,6 +88,8 @@ const Schema& SphereScene::schema() {
                    {.doc = "Version of the scene language: 1.", .range = Range::between(1, 1)})
           .include(&SphereScene::model)
           .section("time", &SphereScene::time, {.doc = "How motions in time are computed."})
+          .section("checkpoint", &SphereScene::checkpoint,
+                   {.doc = "When the state of a run is stored.", .optional = true})
           .section_list(
               "expect", &SphereScene::expect,
               {.doc = "Results that `cycle --verify` checks, e.g. period.", .optional = true});
@@ -110,11 +123,16 @@ LoadedSphereScene load_sphere_scene(const std::string& path, const std::vector<s
                                             path));
   }
   loaded.scene = read_as<SphereScene>(loaded.tree);
-  SphereModelParameters& model = loaded.scene.model;
-  if (model.has_table()) {
-    model.table = std::make_shared<TabulatedLaw>(
-        read_law_table(path_of_file(loaded.tree, "contact_law", model.contact_law)));
-  }
+  read_table(loaded);
+  return loaded;
+}
+
+LoadedSphereScene load_resolved_sphere_scene(const std::string& text, const std::string& source) {
+  LoadedSphereScene loaded;
+  loaded.path = source;
+  loaded.tree = read_scene_text(text, source);
+  loaded.scene = read_as<SphereScene>(loaded.tree);
+  read_table(loaded);
   return loaded;
 }
 

@@ -37,6 +37,7 @@ struct SphereScene {
   int format = 0;
   SphereModelParameters model;
   SphereTimeParameters time;
+  CheckpointParameters checkpoint;
   std::vector<Expectation> expect;
   static const Schema& schema();
 };
@@ -59,6 +60,11 @@ struct LoadedSphereScene {
 /// Reads such a scene and applies `--set key.path=value` settings.
 /// @throws ConfigError with all problems of the file; FileError if it cannot be read
 LoadedSphereScene load_sphere_scene(const std::string& path, const std::vector<std::string>& sets);
+
+/// Reads a resolved scene, as it stands in run files.
+/// @param source for messages
+/// @throws ConfigError if it is not whole; FileError as above
+LoadedSphereScene load_resolved_sphere_scene(const std::string& text, const std::string& source);
 
 /// The scene with some of its numbers set.
 /// @param keys, values of as many numbers

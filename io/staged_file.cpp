@@ -1,7 +1,6 @@
 #include "io/staged_file.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,6 +11,7 @@
 
 #include "core/errors.hpp"
 #include "io/hdf5_output.hpp"
+#include "io/write_lock.hpp"
 
 #if H5_VERSION_GE(1, 13, 0)
 #include <H5FDdevelop.h>
@@ -22,20 +22,6 @@ namespace {
 
 /// A write may be cut off by a kill between two pages of memory, not within one.
 constexpr haddr_t page = 4096;
-
-/// Keeps other processes from writing the file as long as the descriptor is open; readers do not
-/// ask. @return false where another one holds it. Some file systems know no locks: true there.
-bool lock(int descriptor) {
-  return flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
-}
-
-/// Whether the file that is open has this name.
-bool is_named(int descriptor, const std::string& path) {
-  struct stat mine = {};
-  struct stat named = {};
-  return fstat(descriptor, &mine) == 0 && stat(path.c_str(), &named) == 0 &&
-         mine.st_ino == named.st_ino && mine.st_dev == named.st_dev;
-}
 
 int write_all(int descriptor, const unsigned char* bytes, std::size_t size, haddr_t address) {
   while (size > 0) {
@@ -168,7 +154,7 @@ void StagedFile::create(const std::string& path) {
   path_ = path;
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor_ < 0) throw FileError(path, "", "cannot be made: " + errno_text(errno));
-  lock(descriptor_);
+  lock_for_writing(descriptor_);
 }
 
 void StagedFile::open(const std::string& path) {
@@ -177,11 +163,7 @@ void StagedFile::open(const std::string& path) {
   if (descriptor_ < 0)
     throw FileError(path, "", "cannot be opened for writing: " + errno_text(errno));
   // The process that wrote it may have put a copy in its place meanwhile (commit_by_copy).
-  if (!lock(descriptor_) || !is_named(descriptor_, path)) {
-    throw FileError(path, "",
-                    "another process is writing it, a run that goes on; wait for its end or stop "
-                    "it (Ctrl-C leaves a checkpoint)");
-  }
+  if (!lock_for_writing(descriptor_) || !is_named(descriptor_, path)) throw_being_written(path);
   written_end_ = size_of(descriptor_);
 }
 
@@ -346,11 +328,11 @@ int StagedFile::commit_by_copy() {
   const int copy = ::open(part.path().c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (copy < 0) return commit();
   part.made();
-  lock(copy);
+  lock_for_writing(copy);
   bool is_whole = copy_to(copy) == 0;
   if (is_whole) {
     try {
-      part.move_to_final(Overwrite::yes);
+      part.replace();
     } catch (const FileError&) {
       is_whole = false;
     }

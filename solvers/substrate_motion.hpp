@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 
+#include "core/state.hpp"
 #include "solvers/runge_kutta.hpp"
 #include "solvers/substrate_oscillator.hpp"
 
@@ -63,6 +65,11 @@ class SubstrateMotion {
   };
   const Statistics& statistics() const { return statistics_; }
   void restart_statistics();
+
+  /// Everything that a later `load` into a motion of the same oscillator needs to go on bitwise.
+  void save(stridor::State& state, const std::string& prefix) const;
+  /// @throws std::invalid_argument if the state is of another kind
+  void load(const stridor::State& state, const std::string& prefix);
 
  private:
   using Step = RungeKuttaStep<6, 4>;

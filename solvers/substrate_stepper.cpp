@@ -79,4 +79,14 @@ bool SubstrateStepper::advance() {
   return std::isfinite(propagator_->current(0)) && std::isfinite(propagator_->current(1));
 }
 
+void SubstrateStepper::save(State& state, const std::string& prefix) const {
+  propagator_->save(state, prefix + "body/");
+  state.put(prefix + "steps", static_cast<double>(steps_));
+}
+
+void SubstrateStepper::load(const State& state, const std::string& prefix) {
+  propagator_->load(state, prefix + "body/");
+  steps_ = static_cast<std::int64_t>(state.get(prefix + "steps"));
+}
+
 }  // namespace stridor

@@ -4,7 +4,9 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
 
+#include "core/state.hpp"
 #include "solvers/make_propagator.hpp"
 #include "solvers/substrate_motion.hpp"
 #include "solvers/substrate_oscillator.hpp"
@@ -44,6 +46,10 @@ class SubstrateStepper {
 
   /// Largest stable step of the body by itself; infinite for exact propagation.
   double step_limit() const { return step_limit_; }
+
+  /// As SubstrateMotion.
+  void save(State& state, const std::string& prefix) const;
+  void load(const State& state, const std::string& prefix);
 
  private:
   /// w_{n+1} under forces of the contact.

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "io/run_file.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -346,6 +347,32 @@ TEST(DiscProgram, RunsWithRigidContacts) {
   // The brake as it is given decays, in steps too.
   EXPECT_LT(json_of({"run", brake, "-o", file, "--force"})["perturbation"]["growth"].get<double>(),
             0.0);
+}
+
+TEST(DiscProgram, StopsWhereAPadGoesThroughTheDisc) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "run.h5").string();
+  const auto run = [&](const std::string& amplitude) {
+    return Program({"run", scene_path("examples/disc_squeal.yaml"), "-o", file, "--force", "--set",
+                    "time.end=0.02", "--set", "initial.perturbation.amplitude=" + amplitude})
+        .run();
+  };
+  // The disc is 12 mm thick. 5 mm are no small motion, but the pads stay on their sides.
+  EXPECT_EQ(run("5 mm").exit_code, 0);
+  ProgramResult result = run("1");
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("m into the disc at t = "));
+  EXPECT_THAT(result.err, HasSubstr("more than half its thickness; a smaller initial.pert"));
+  EXPECT_THAT(result.err, HasSubstr(file + " holds everything up to then"));
+  EXPECT_EQ(std::get<std::string>(RunFileReader(file).results().at("status")), "failed");
+  // Here the pads begin off the disc; the forces of their landing are beyond what can be solved.
+  result = run("1e160");
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("have not converged at t = 2e-06 s; a shorter time.step"));
+  EXPECT_EQ(std::get<std::string>(RunFileReader(file).results().at("status")), "failed");
+  const ProgramResult resumed = Program({"run", "--resume", file}).run();
+  EXPECT_EQ(resumed.exit_code, 4);
+  EXPECT_THAT(resumed.err, HasSubstr("holds a run that failed"));
 }
 
 double example_limit(const std::string& name, const std::string& key, const std::string& to,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/disc_transient.hpp"
+#include "app/sphere_transient.hpp"
 #include "app/transient.hpp"
 #include "core/stop_token.hpp"
 #include "tests/app/resume_fixture.hpp"
@@ -140,6 +141,53 @@ TEST(ResumeDisc, GoesOnBitwiseAsIfTheRunHadNotStopped) {
   EXPECT_EQ(difference(whole, broken), "");
 }
 
+class ResumeSphere : public ::testing::TestWithParam<const char*> {};
+
+// With stick and slip; every stop is in the half in which cycles are measured, or before it.
+TEST_P(ResumeSphere, GoesOnBitwiseAsIfTheRunHadNotStopped) {
+  const TemporaryFolder folder;
+  const std::string whole = (folder / "whole.h5").string();
+  const std::string broken = (folder / "broken.h5").string();
+  constexpr double end = 300.0;
+  std::vector<std::string> sets{"time.end=300", std::string("time.integrator=") + GetParam()};
+  if (sets[1] != "time.integrator=event_driven") sets.emplace_back("time.step=0.01");
+  const LoadedSphereScene loaded = load_sphere_scene(scene_path("viscoelastic_sphere.yaml"), sets);
+  {
+    SphereTransient transient(loaded, {whole, Overwrite::no, "test"});
+    ASSERT_EQ(transient.run_to_end(), MarchEnd::finished);
+    const auto results = transient.finish();
+    EXPECT_GT(results["stick_fraction"].get<double>(), 0.1);
+    EXPECT_TRUE(results["period"].is_number());
+  }
+  {
+    SphereTransient transient(loaded, {broken, Overwrite::no, "test"});
+    transient.run_until(0.21 * end);
+    transient.write_checkpoint();
+    transient.run_until(0.35 * end);  // more rows than the checkpoint knows
+  }
+  for (const double stop : {0.47, 0.66, 1.0}) {
+    const InterruptedRun interrupted = find_interrupted_run(broken);
+    const LoadedSphereScene again = load_resolved_sphere_scene(interrupted.scene_text, broken);
+    SphereTransient transient(again, interrupted);
+    if (stop == 1.0) {
+      ASSERT_EQ(transient.run_to_end(), MarchEnd::finished);
+      transient.finish();
+      break;
+    }
+    transient.run_until(stop * end);
+    request_stop();
+    EXPECT_EQ(transient.run_to_end(), MarchEnd::stopped);
+    request_stop(false);
+    transient.write_checkpoint();
+    transient.finish();
+  }
+  EXPECT_EQ(difference(whole, broken), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, ResumeSphere,
+                         ::testing::Values("event_driven", "exact", "central_difference"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
 // ---------------------------------------------------------------- the program
 
 TEST(ResumeProgram, ATimeLimitStopsDiscsAndSpheres) {
@@ -157,11 +205,13 @@ TEST(ResumeProgram, ATimeLimitStopsDiscsAndSpheres) {
   result = Program({"run", scene_path("viscoelastic_sphere.yaml"), "-o", sphere, "--set",
                     "time.end=1e7", "--max-wall", "0.3"})
                .run();
-  EXPECT_EQ(result.exit_code, 5) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("it cannot be resumed"));
-  result = Program({"run", "--resume", sphere}).run();
-  EXPECT_EQ(result.exit_code, 4);
-  EXPECT_THAT(result.err, HasSubstr("no whole checkpoint to go on from"));
+  ASSERT_EQ(result.exit_code, 5) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("--resume '" + sphere + "'"));
+  const std::size_t count = RunFileReader(sphere).times().size();
+  result = Program({"run", "--resume", sphere, "--max-wall", "0.3", "--json"}).run();
+  ASSERT_EQ(result.exit_code, 5) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(result.out)["status"], "stopped");
+  EXPECT_GT(RunFileReader(sphere).times().size(), count);
 }
 
 TEST(ResumeProgram, KilledRunsGoOnBitwise) {
@@ -214,6 +264,62 @@ TEST(ResumeProgram, OfTwoAtOnceOneIsRefused) {
   EXPECT_THAT(first.err + second.err,
               HasSubstr(broken + ": another process is writing it, a run that goes on"));
   EXPECT_EQ(difference(whole, broken), "") << "the run that was refused has left it alone";
+}
+
+TEST(ResumeProgram, AFileThatIsBeingWrittenIsNotReplaced) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "run.h5").string();
+  const auto is_refused = HasSubstr(file + ": another process is writing it, a run that goes on");
+  Program running(long_run(file, "100"));
+  running.start();
+  wait_for(file);
+  const std::string sphere = scene_path("viscoelastic_sphere.yaml");
+  const std::vector<std::vector<std::string>> intruders{
+      long_run(file),
+      {"run", scene_path("examples/elastic_pads.yaml"), "-o", file},
+      {"run", sphere, "-o", file},
+      {"locus", scene_path("beam_on_beam.yaml"), "--from", "30mm", "--to", "40mm", "--points", "2",
+       "-o", file},
+      {"sweep", scene_path("beam_on_beam.yaml"), "--from", "30mm", "--to", "40mm", "--points", "2",
+       "-o", file}};
+  for (std::vector<std::string> intruder : intruders) {
+    intruder.emplace_back("--force");
+    const ProgramResult result = Program(intruder).run();
+    EXPECT_EQ(result.exit_code, 4) << intruder[0] << ' ' << intruder[1] << result.err;
+    EXPECT_THAT(result.err, is_refused) << intruder[0] << ' ' << intruder[1];
+  }
+  running.send(SIGTERM);
+  const ProgramResult stopped = running.wait();
+  ASSERT_EQ(stopped.exit_code, 5) << stopped.err;
+  const double reached = RunFileReader(file).times().back();
+
+  // It is whole, and once nobody writes it any more it goes on or may be replaced.
+  const ProgramResult resumed = Program({"run", "--resume", file, "--max-wall", "0.1"}).run();
+  EXPECT_EQ(resumed.exit_code, 5) << resumed.err;
+  EXPECT_GT(RunFileReader(file).times().back(), reached);
+  std::vector<std::string> next = long_run(file, "0.01");
+  next.insert(next.end(), {"--set", "measure.from=0", "--force"});
+  EXPECT_EQ(Program(next).run().exit_code, 0);
+}
+
+TEST(ResumeProgram, OfTwoThatMakeOrReplaceAFileAtOnceOneIsRefused) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "run.h5").string();
+  std::vector<std::string> command = long_run(file, "100");
+  command.insert(command.end(), {"--max-wall", "1", "--force"});
+  for (const char* what : {"made", "replaced", "replaced again"}) {
+    Program one(command);
+    Program other(command);
+    one.start();
+    other.start();
+    const ProgramResult first = one.wait();
+    const ProgramResult second = other.wait();
+    EXPECT_THAT((std::vector<int>{first.exit_code, second.exit_code}),
+                ::testing::UnorderedElementsAre(5, 4))
+        << what << first.err << second.err;
+    EXPECT_THAT(first.err + second.err, HasSubstr(file + ": another process is writing it"));
+    EXPECT_GT(RunFileReader(file).times().size(), 1U);
+  }
 }
 
 class ResumeRefusal : public ::testing::Test {

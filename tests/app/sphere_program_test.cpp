@@ -227,6 +227,36 @@ TEST(SphereProgram, RunFilesAreInSiUnitsAndCanBeDrawn) {
   EXPECT_THAT(resumed.err, HasSubstr("holds a whole run, there is nothing to go on with"));
 }
 
+TEST(SphereProgram, StopsWhereTheMotionGrowsBeyondAllBounds) {
+  const TemporaryFolder folder;
+  const std::string scene = scene_path("viscoelastic_sphere.yaml");
+  const std::string file = folder / "run.h5";
+  const auto run = [&](Settings settings) {
+    std::vector<std::string> arguments{"run", scene, "-o", file, "--force"};
+    for (const std::string& setting : settings)
+      arguments.insert(arguments.end(), {"--set", setting});
+    return Program(arguments).run();
+  };
+  // ω_nx, and with Ω = η = 1 and 45 deg the larger of the two frequencies is below 1.74; damping
+  // does not change 2/ω much.
+  ProgramResult result = run({"time.integrator=central_difference", "time.step=3"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("time.step: 3 is beyond 1."));
+  EXPECT_FALSE(std::filesystem::exists(file));
+  // A law that pushes with the cube of so deep an indentation and steps that do not resolve it.
+  result = run({"time.integrator=exact", "time.step=1", "time.end=200",
+                "time.initial_indentation=1e9", "time.record_interval=1"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("the motion has grown beyond all bounds; a shorter time.step"));
+  EXPECT_THAT(result.err, HasSubstr(file + " holds everything up to then"));
+  const RunFileReader reader(file);
+  EXPECT_GT(reader.times().size(), 2u);
+  EXPECT_EQ(std::get<std::string>(reader.results().at("status")), "failed");
+  result = Program({"run", "--resume", file}).run();
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.err, HasSubstr("holds a run that failed"));
+}
+
 TEST(SphereProgram, PrecisionSetsErrorAgainstRunTime) {
   const Json found = run_verb("precision", {"time.end=20"}, {"--points", "4", "--tune", "1e-4"});
   ASSERT_EQ(found["rows"].size(), 12u);

@@ -184,6 +184,23 @@ TEST_F(RunFile, ExistingFileIsNotOverwrittenUnlessAsked) {
   EXPECT_EQ(check_rows(path()), 3U);
 }
 
+TEST_F(RunFile, AFileThatIsBeingWrittenIsNotOverwritten) {
+  RunFileWriter writer(path(), Overwrite::no, header, two_series());
+  append_rows(writer, 0, 10);
+  writer.flush();
+  const std::string before = contents_of(path());
+  const auto is_refused = HasSubstr("run.h5: another process is writing it, a run that goes on");
+  expect_file_error([&] { check_output(path(), Overwrite::yes); }, is_refused);
+  expect_file_error([&] { check_replaceable(path(), Overwrite::yes); }, is_refused);
+  expect_file_error([&] { RunFileWriter(path(), Overwrite::yes, header, two_series()); },
+                    is_refused);
+  EXPECT_EQ(contents_of(path()), before);
+  EXPECT_THAT(files(), ElementsAre("run.h5"));
+  append_rows(writer, 10, 10);
+  writer.close();
+  EXPECT_EQ(check_rows(path()), 20U) << "the run goes on as if nothing had been";
+}
+
 TEST_F(RunFile, ExistingFileIsKeptWhenSetUpFails) {
   make_file(10);
   const std::string before = contents_of(path());
