@@ -377,7 +377,8 @@ ExitCode locus(const LocusCommandOptions& options) {
     return ExitCode::done;
   }
   print_windows(windows, range.key);
-  fmt::print("{}\n", window_text(verdict_limit(shown, stability.locus_window(), trusted)));
+  const double shown_limit = verdict_limit(shown, stability.locus_window(), trusted);
+  fmt::print("{}{}\n", window_text(shown_limit), limit_text(shown_limit, trusted));
   if (!found.unverified.empty()) {
     fmt::print(
         "at {} value(s) it could not be verified that no eigenvalue is missing, the first "

@@ -231,6 +231,14 @@ std::string window_text(double highest) {
   return fmt::format("the verdict holds between 0 and {:.6g} Hz", highest);
 }
 
+std::string limit_text(double highest, double trusted) {
+  if (!std::isfinite(highest)) return "";
+  return highest < trusted
+             ? " (nothing above was asked for)"
+             : " (what the reduced bodies resolve, by a rule of thumb: half the frequency of the "
+               "highest mode kept)";
+}
+
 double verdict_limit(const Locus& locus, const SpectrumWindow& window, double trusted) {
   double highest = trusted;
   for (const auto& eigenvalues : locus.eigenvalues)
