@@ -345,6 +345,30 @@ TEST(PassedWindows, HaveAGainWhereTheDriveGoesBackwards) {
               0.02 * window["gain"].get<double>());
 }
 
+TEST(MapProgram, HasItsBoundaryUpToWhereThereIsNoEquilibrium) {
+  // Without a load that presses it down, a beam that may lift off is free. The growth changes its
+  // sign at -0.0358 N, with mu 0.3.
+  const Strings sets{"contact.assumption=film", "contact.start=75.2 mm"};
+  const Json map =
+      run_json({"map", scene_path("beam_on_beam.yaml"), "--about", "deformed", "--x", "drive.load",
+                "-0.1", "0.05", "16", "--y", "contact.friction.coefficient", "0.29", "0.3", "2"},
+               sets);
+  EXPECT_FALSE(map["growth"][1][9].is_null());  // -0.01 N
+  EXPECT_TRUE(map["growth"][1][12].is_null());  // 0.02 N
+  const Json threshold =
+      run_json({"threshold", scene_path("beam_on_beam.yaml"), "--about", "deformed", "--parameter",
+                "drive.load", "--from", "-0.1", "--to", "-0.01"},
+               sets);
+  ASSERT_EQ(threshold["roots"].size(), 1u);
+  std::vector<double> at_top;
+  for (const Json& line : map["boundary"]) {
+    for (const Json& point : line)
+      if (point[1] == 0.3) at_top.push_back(point[0]);
+  }
+  ASSERT_THAT(at_top, SizeIs(1));
+  EXPECT_NEAR(at_top[0], threshold["roots"][0]["value"].get<double>(), 1e-8);
+}
+
 TEST(EqualArms, HaveEveryEigenvalueTwiceAllTheWay) {
   const TemporaryFolder folder;
   const std::string scene = (folder / "scene.yaml").string();
