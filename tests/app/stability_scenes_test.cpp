@@ -334,6 +334,48 @@ TEST(PassedWindows, AddUpToTheWholeWhereARunEndsAndAnotherOneStarts) {
   EXPECT_NEAR(number(second, "to_time"), number(whole, "to_time") - 0.09, 1e-6);
 }
 
+TEST(PassedWindows, HaveTheSameTimesAlongTheDriveAsAlongTheMaster) {
+  for (const char* about : {"undeformed", "deformed"}) {
+    const auto windows = [&](const Strings& range) {
+      Strings arguments{"locus", scene_path("beam_on_beam.yaml"), "--about", about, "--points",
+                        "9"};
+      arguments.insert(arguments.end(), range.begin(), range.end());
+      return run_json(arguments)["unstable"];
+    };
+    const Json position = windows({"--from", "90.2 mm", "--to", "96 mm"});
+    const Json drive =
+        windows({"--parameter", "drive.displacement", "--from", "60.3 mm", "--to", "66.1 mm"});
+    ASSERT_EQ(position.size(), drive.size());
+    ASSERT_FALSE(position.empty());
+    for (std::size_t i = 0; i < drive.size(); ++i) {
+      for (const char* key : {"from_time", "to_time", "frequency", "growth_max", "gain"}) {
+        const double expected = position[i][key];
+        EXPECT_NEAR(drive[i][key].get<double>(), expected, 1e-6 * expected) << key;
+      }
+    }
+  }
+}
+
+TEST(SeveralPairs, HaveALocusAlongTheDrive) {
+  const std::string scene = scene_path("examples/two_pairs.yaml");
+  const Json locus = run_json({"locus", scene, "--from", "0", "--to", "30 mm", "--points", "4"});
+  EXPECT_EQ(locus["parameter"], "drive.displacement");
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Json eig =
+        run_json({"eig", scene}, {fmt::format("contacts.front.start={} mm", 50 + 10 * i),
+                                  fmt::format("contacts.rear.start={} mm", 20 + 10 * i)});
+    const std::vector<Complex> a = vibrations(locus["eigenvalues"][i]);
+    const std::vector<Complex> b = vibrations(eig["eigenvalues"]);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t k = 0; k < a.size(); ++k)
+      EXPECT_LT(std::abs(a[k] - b[k]), 1e-9 * std::abs(a[k]));
+  }
+  const ProgramResult beyond = Program({"locus", scene, "--from", "0", "--to", "60 mm"}).run();
+  EXPECT_EQ(beyond.exit_code, 3);
+  EXPECT_THAT(beyond.err, HasSubstr("drive.displacement = 0.06 m: front: the slave point stands "
+                                    "beyond the end of the surface cantilever.top"));
+}
+
 TEST(PassedWindows, HaveAGainWhereTheDriveGoesBackwards) {
   const Json locus = run_json({"locus", scene_path("beam_on_beam_leading.yaml"), "--about",
                                "deformed", "--from", "95 mm", "--to", "97 mm", "--points", "3"},
