@@ -110,6 +110,8 @@ TEST_P(FrozenGrowth, IsTheRealPartOfTheEigenvalue) {
   const Complex early = component(time, signal, of.from, half, s.imag());
   const Complex late = component(time, signal, of.from + half, half, s.imag());
   const Complex rate = std::log(late / early) / half;
+  RecordProperty("growth_of_run", fmt::format("{:.6g}", rate.real()));
+  RecordProperty("real_part", fmt::format("{:.6g}", s.real()));
   EXPECT_NEAR(rate.real(), s.real(), 0.01 * std::abs(s.real()));
   EXPECT_NEAR(rate.imag(), 0.0, 1e-3 * s.imag());
 }
@@ -450,6 +452,13 @@ record: {interval: 1.0e-6, channels: [one.force]}
       for (std::size_t k = 0; k < 6; k += 2)
         EXPECT_LT(std::abs(pairs[k] - pairs[k + 1]), 1e-6 * std::abs(pairs[k]));
     }
+  }
+  // Equal real ones are real by either.
+  for (const char* method : {"secular", "dense"}) {
+    const Json eig =
+        run_json({"eig", scene, "--count", "2", "--method", method}, {"drive.velocity=0.004"});
+    EXPECT_EQ(eig["eigenvalues"].size(), 6u) << method;
+    EXPECT_THAT(vibrations(eig["eigenvalues"]), SizeIs(2)) << method;
   }
   // Friction that falls this steeply drives a real eigenvalue far beyond all frequencies, in both.
   const auto fastest = [&](const char* method) {
