@@ -7,6 +7,7 @@
 #include "app/step_stability_report.hpp"
 #include "core/errors.hpp"
 #include "io/contact_scene.hpp"
+#include "io/initial_state.hpp"
 #include "io/linear_scene.hpp"
 #include "io/scene.hpp"
 #include "io/sphere_scene.hpp"
@@ -53,8 +54,9 @@ Report check_scene(const CheckOptions& options) {
     return {};
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
-  const Model model = build_model(loaded);
+  Model model = build_model(loaded);
   try {
+    set_initial_state(model.system, loaded.scene);
     const Simulation simulation(model.system, loaded.scene.time);
   } catch (const ConfigError& error) {
     throw loaded.located(error);
