@@ -71,13 +71,8 @@ void check(const PencilFamily& family, const std::vector<double>& values,
 
 }  // namespace
 
-PencilFamily undeformed_family(const System& system, double friction, double direction,
-                               double origin) {
-  PencilFamily family;
-  family.place = [&system, friction, direction, origin](double value, Pencil& pencil) {
-    if (pencil.num_modes() == 0) pencil = make_modal_pencil(system);
-    place_undeformed(pencil, system, value - origin, friction, direction);
-  };
+std::vector<double> kinks_along_drive(const System& system) {
+  std::vector<double> kinks;
   for (const ContactPoint& contact : system.contacts) {
     const MasterSurface& surface = system.surfaces[static_cast<std::size_t>(contact.surface)];
     const auto drive_share = [&](int body) {
@@ -88,11 +83,22 @@ PencilFamily undeformed_family(const System& system, double friction, double dir
       const Segment segment = surface.undeformed_segment(i);
       const Eigen::Vector2d along = segment.second - segment.first;
       if (along.x() == 0.0) continue;
-      family.kinks.push_back(origin + along.dot(segment.second - contact.slave_position) /
-                                          (along.x() * share));
+      kinks.push_back(along.dot(segment.second - contact.slave_position) / (along.x() * share));
     }
   }
-  std::sort(family.kinks.begin(), family.kinks.end());
+  std::sort(kinks.begin(), kinks.end());
+  return kinks;
+}
+
+PencilFamily undeformed_family(const System& system, double friction, double direction,
+                               double origin) {
+  PencilFamily family;
+  family.place = [&system, friction, direction, origin](double value, Pencil& pencil) {
+    if (pencil.num_modes() == 0) pencil = make_modal_pencil(system);
+    place_undeformed(pencil, system, value - origin, friction, direction);
+  };
+  family.kinks = kinks_along_drive(system);
+  for (double& kink : family.kinks) kink += origin;
   return family;
 }
 

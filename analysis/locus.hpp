@@ -19,6 +19,10 @@ struct PencilFamily {
   std::vector<double> kinks;
 };
 
+/// Displacements of the drive, m, ascending, at which a contact passes a node of its undeformed
+/// master.
+std::vector<double> kinks_along_drive(const System& system);
+
 /// The contacts of a system sliding on the undeformed master (place_undeformed()).
 ///
 /// @param system    referenced as long as the family is used

@@ -55,8 +55,8 @@ Report check_scene(const CheckOptions& options) {
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   Model model = build_model(loaded);
-  set_initial_state(model.system, loaded);
   try {
+    set_initial_state(model.system, loaded);
     const Simulation simulation(model.system, loaded.scene.time, accounts_of(loaded.scene));
   } catch (const ConfigError& error) {
     throw loaded.located(error);

@@ -100,6 +100,7 @@ std::vector<std::string> write_shapes(const EigOptions& options, const LoadedSce
   }
   for (BodyShape& body : picture.bodies) body.displacement /= largest;
   for (std::size_t i = 0; i < state.equilibrium.contacts.size(); ++i) {
+    if (!state.equilibrium.contacts[i].is_closed) continue;
     // The positions of a contact are as seen from the undeformed first node of its segment.
     const ContactEquilibrium& contact = state.equilibrium.contacts[i];
     const MasterSurface& surface =
@@ -158,6 +159,8 @@ void print_explanation(const Json& explanation) {
 }
 
 ExitCode eig(const EigOptions& options) {
+  if (options.mode && !options.explain && !options.shapes)
+    throw ConfigError("--mode", "names the mode to explain or draw; add --explain or --shapes");
   if (is_linear_scene_file(options.stability.scene)) {
     if (options.at) throw ConfigError("--at", "needs a contact that moves along a master");
     if (options.shapes) throw ConfigError("--shapes", "needs bodies with meshes");
@@ -178,9 +181,9 @@ ExitCode eig(const EigOptions& options) {
   const SceneFamily::Member member = family.at(values);
   const System& system = member.model->system;
   const SlidingState state = sliding_state_of(member, options.stability.geometry(), "");
+  const Pencil pencil = retained(state.pencil, system, loaded.scene.time);
   const std::vector<Eigenvalue> eigenvalues =
-      lowest_eigenvalues(retained(state.pencil, system, loaded.scene.time),
-                         options.stability.eigenvalue_method(), options.stability.window());
+      lowest_eigenvalues(pencil, options.stability.eigenvalue_method(), options.stability.window());
 
   const std::size_t num_real = num_real_of(eigenvalues);
   const double trusted =
@@ -204,7 +207,7 @@ ExitCode eig(const EigOptions& options) {
     const std::size_t chosen = chosen_mode(eigenvalues, num_real, options.mode);
     const std::size_t number_of_mode = chosen - num_real + 1;
     if (options.explain)
-      object["explanation"] = explanation_json(state.pencil, eigenvalues[chosen], number_of_mode);
+      object["explanation"] = explanation_json(pencil, eigenvalues[chosen], number_of_mode);
     if (options.shapes) {
       object["files"] =
           write_shapes(options, loaded, member, state, eigenvalues[chosen], number_of_mode);
@@ -217,8 +220,9 @@ ExitCode eig(const EigOptions& options) {
   }
   print_equilibrium(system, state.equilibrium);
   print_eigenvalues(eigenvalues, trusted);
-  fmt::print("{} between 0 and {:.6g} Hz, about the {} geometry\n",
-             is_stable ? "stable" : "unstable", highest, options.stability.about);
+  fmt::print("{} between 0 and {:.6g} Hz{}, about the {} geometry\n",
+             is_stable ? "stable" : "unstable", highest, limit_text(highest, trusted),
+             options.stability.about);
   if (options.explain) print_explanation(object["explanation"]);
   if (options.shapes) {
     fmt::print("{} and {} files for ParaView\n", object["files"][0].get<std::string>(),
@@ -243,7 +247,7 @@ void add_eig_command(CLI::App& program, Action& action) {
                  "energy comes from, which modes without friction it is made of");
   verb->add_option("--mode", options->mode,
                    "Number of the mode to explain or draw; default: the one that grows fastest")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 100000));
   verb->add_option("--shapes", options->shapes,
                    "Folder for a picture of the mode and its motion for ParaView (VTK)");
   add_force_option(*verb, options->stability.common);

@@ -40,9 +40,9 @@ class PassingTimes {
         end_(scene.time.end),
         family_(&family) {}
 
-  /// @param position of the contact
-  double at(double position) const {
-    const SlidingState state = family_->at(std::array{position});
+  /// @param place position of the contact, or displacement of the drive
+  double at(double place) const {
+    const SlidingState state = family_->at(std::array{place});
     if (!state.is_on_the_way) return never;
     const double wanted = state.equilibrium.state.drive_displacement;
     const auto missing = [&](double time) { return drive_.displacement(time) - wanted; };
@@ -326,7 +326,9 @@ ExitCode locus(const LocusCommandOptions& options) {
   const double highest = verdict_limit(found, stability.locus_window(), trusted);
 
   std::optional<PassingTimes> times;
-  if (loaded->bodies() != nullptr && loaded->default_key() == range.key.path) {
+  const bool is_path =
+      range.key.path == drive_displacement_name || loaded->default_key() == range.key.path;
+  if (loaded->bodies() != nullptr && is_path) {
     times.emplace(loaded->bodies()->scene, dynamic_cast<BodyStabilityFamily&>(*family));
   }
   const Locus shown = in_seconds(found, *loaded, range.key);
@@ -377,7 +379,8 @@ ExitCode locus(const LocusCommandOptions& options) {
     return ExitCode::done;
   }
   print_windows(windows, range.key);
-  fmt::print("{}\n", window_text(verdict_limit(shown, stability.locus_window(), trusted)));
+  const double shown_limit = verdict_limit(shown, stability.locus_window(), trusted);
+  fmt::print("{}{}\n", window_text(shown_limit), limit_text(shown_limit, trusted));
   if (!found.unverified.empty()) {
     fmt::print(
         "at {} value(s) it could not be verified that no eigenvalue is missing, the first "

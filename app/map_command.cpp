@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -79,32 +80,23 @@ std::vector<std::complex<double>> eigenvalues_at(StabilityFamily& family,
   return found;
 }
 
-/// @param varied index of the key along the line: 0 for x
-LineResult trace_line(StabilityFamily& family, const std::array<Axis, 2>& axes, std::size_t varied,
-                      double other, const LocusOptions& options) {
-  const Axis& axis = axes[varied];
-  std::vector<double> values(2, other);
-  values[varied] = axis.values.front();
-  LineResult result;
-  try {
-    const Locus locus = locus_along(family, axis.key, varied, values, axis.values, options);
-    result.highest =
-        verdict_limit(locus, {options.count, options.frequency}, family.trusted_frequency(values));
-    for (const auto& eigenvalues : locus.eigenvalues)
-      result.growth.push_back(largest_growth(eigenvalues));
-    for (const StabilityChange& change : stability_changes(locus)) {
-      double value = change.value;
-      if (axis.key.is_integer) {
-        const auto after = std::find(axis.values.begin(), axis.values.end(), value);
-        value = 0.5 * (*(after - 1) + value);
-      }
-      if (result.changes.empty() || value > result.changes.back()) result.changes.push_back(value);
+/// Appends the values at which the stability changes along one line.
+void add_changes(LineResult& result, const Axis& axis, const Locus& locus) {
+  for (const StabilityChange& change : stability_changes(locus)) {
+    double value = change.value;
+    if (axis.key.is_integer) {
+      const auto after = std::find(axis.values.begin(), axis.values.end(), value);
+      value = 0.5 * (*(after - 1) + value);
     }
-    return result;
-  } catch (const NumericalError&) {
-    // Somewhere on the line there is no equilibrium; what there is remains a result.
-    result = {};
+    if (result.changes.empty() || value > result.changes.back()) result.changes.push_back(value);
   }
+}
+
+/// A line on which there is no equilibrium somewhere: what there is at the single values, and the
+/// changes between neighbours where there is one.
+LineResult trace_broken_line(StabilityFamily& family, const Axis& axis, std::size_t varied,
+                             std::vector<double> values, const LocusOptions& options) {
+  LineResult result;
   for (const double value : axis.values) {
     values[varied] = value;
     double growth = std::numeric_limits<double>::quiet_NaN();
@@ -118,7 +110,42 @@ LineResult trace_line(StabilityFamily& family, const std::array<Axis, 2>& axes, 
     }
     result.growth.push_back(growth);
   }
+  const auto is_known = [](double growth) { return !std::isnan(growth); };
+  auto begin = std::find_if(result.growth.begin(), result.growth.end(), is_known);
+  while (begin != result.growth.end()) {
+    const auto end = std::find_if_not(begin, result.growth.end(), is_known);
+    const std::vector<double> part(axis.values.begin() + (begin - result.growth.begin()),
+                                   axis.values.begin() + (end - result.growth.begin()));
+    values[varied] = part.front();
+    try {
+      if (part.size() > 1)
+        add_changes(result, axis, locus_along(family, axis.key, varied, values, part, options));
+    } catch (const NumericalError&) {
+      // Between two values there may be none either.
+    }
+    begin = std::find_if(end, result.growth.end(), is_known);
+  }
   return result;
+}
+
+/// @param varied index of the key along the line: 0 for x
+LineResult trace_line(StabilityFamily& family, const std::array<Axis, 2>& axes, std::size_t varied,
+                      double other, const LocusOptions& options) {
+  const Axis& axis = axes[varied];
+  std::vector<double> values(2, other);
+  values[varied] = axis.values.front();
+  try {
+    const Locus locus = locus_along(family, axis.key, varied, values, axis.values, options);
+    LineResult result;
+    result.highest =
+        verdict_limit(locus, {options.count, options.frequency}, family.trusted_frequency(values));
+    for (const auto& eigenvalues : locus.eigenvalues)
+      result.growth.push_back(largest_growth(eigenvalues));
+    add_changes(result, axis, locus);
+    return result;
+  } catch (const NumericalError&) {
+    return trace_broken_line(family, axis, varied, values, options);
+  }
 }
 
 /// Traces all rows, then all columns. Every line is a task of its own and begins from nothing, so

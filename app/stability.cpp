@@ -77,8 +77,10 @@ SpectrumWindow StabilityOptions::window() const {
 }
 
 void add_range_options(CLI::App& verb, RangeOptions& options) {
-  verb.add_option("--parameter", options.parameter,
-                  "Key of the scene that varies; default: contact.start");
+  verb.add_option(
+      "--parameter", options.parameter,
+      "Key of the scene that varies, or drive.displacement: how far the drive has moved "
+      "the bodies; default: contact.start, or with several pairs drive.displacement");
   verb.add_option("--from", options.from, "Its first value, SI or with a unit")->required();
   verb.add_option("--to", options.to, "Its last value")->required();
   verb.add_option("--points", options.points, "How many values, the ends included")
@@ -108,6 +110,7 @@ void add_stability_options(CLI::App& verb, StabilityOptions& options) {
 
 NumericKey find_stability_key(const Scene& scene, const std::string& path,
                               const std::string& option) {
+  if (path == drive_displacement_name) return {path, "m", Range::any(), false};
   const NumericKey key = find_numeric_key(scene, path, option);
   const std::string section = path.substr(0, path.find('.'));
   const bool is_mechanical =
@@ -131,7 +134,7 @@ KeyRange make_range(const StabilityScene& scene, const RangeOptions& options) {
   std::string path = options.parameter;
   if (path.empty()) {
     const auto key = scene.default_key();
-    if (!key) throw ConfigError("--parameter", "the scene has no single contact pair; name a key");
+    if (!key) throw ConfigError("--parameter", "the scene has no path; name a key");
     path = *key;
   }
   KeyRange range{scene.find_key(path, "--parameter"), {}};
@@ -163,7 +166,7 @@ SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry
     throw NumericalError(fmt::format("every contact is open in equilibrium{}", where));
   }
   state.pencil = linearise(system, state.equilibrium);
-  state.is_on_the_way = member.position.has_value();
+  state.is_on_the_way = member.is_on_the_way;
   return state;
 }
 
@@ -231,6 +234,14 @@ std::string window_text(double highest) {
   return fmt::format("the verdict holds between 0 and {:.6g} Hz", highest);
 }
 
+std::string limit_text(double highest, double trusted) {
+  if (!std::isfinite(highest)) return "";
+  return highest < trusted
+             ? " (nothing above was asked for)"
+             : " (what the reduced bodies resolve, by a rule of thumb: half the frequency of the "
+               "highest mode kept)";
+}
+
 double verdict_limit(const Locus& locus, const SpectrumWindow& window, double trusted) {
   double highest = trusted;
   for (const auto& eigenvalues : locus.eigenvalues)
@@ -248,7 +259,9 @@ class BodyStabilityScene : public StabilityScene {
   NumericKey find_key(const std::string& path, const std::string& option) const override {
     return find_stability_key(loaded_.scene, path, option);
   }
-  std::optional<std::string> default_key() const override { return start_key(loaded_.scene.model); }
+  std::optional<std::string> default_key() const override {
+    return start_key(loaded_.scene.model).value_or(drive_displacement_name);
+  }
   std::unique_ptr<StabilityFamily> family(std::vector<NumericKey> keys,
                                           ContactGeometry geometry) const override {
     return std::make_unique<BodyStabilityFamily>(loaded_, std::move(keys), geometry);
@@ -334,13 +347,23 @@ SpectrumFamily StabilityFamily::spectra(std::size_t key, std::vector<double> val
   return family;
 }
 
-/// Positions at which the contact passes a master node, if the position is what varies.
+/// Places at which a contact passes a master node, if the place is what varies: positions of the
+/// only contact, displacements of the drive. Of the latter those in the undeformed geometry, which
+/// deformation shifts.
 std::vector<double> BodyStabilityFamily::kinks(std::size_t key, const std::vector<double>& values,
                                                double from, double to) {
   std::vector<double> found;
-  if (!start_key_ || family_.keys()[key].path != *start_key_) return found;
+  const std::string& path = family_.keys()[key].path;
+  const bool is_driven = path == drive_displacement_name;
+  if (!is_driven && (!start_key_ || path != *start_key_)) return found;
   const std::scoped_lock guard(blas_in_use);
   const System& system = family_.at(values).model->system;
+  if (is_driven) {
+    if (geometry_ == ContactGeometry::deformed) return found;
+    found = kinks_along_drive(system);
+    std::erase_if(found, [&](double place) { return place <= from || place >= to; });
+    return found;
+  }
   const MasterSurface& surface =
       system.surfaces[static_cast<std::size_t>(system.contacts.front().surface)];
   std::copy_if(surface.arc_length.begin(), surface.arc_length.end(), std::back_inserter(found),

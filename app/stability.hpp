@@ -233,6 +233,9 @@ double verdict_limit(std::span<const std::complex<double>> eigenvalues,
 double verdict_limit(const Locus& locus, const SpectrumWindow& window, double trusted);
 /// "the verdict holds between 0 and 7494.83 Hz"
 std::string window_text(double highest);
+/// Why a verdict reaches no further, in brackets; empty where it does not end.
+/// @param trusted up to where the model answers, Hz
+std::string limit_text(double highest, double trusted);
 
 /// Whether a motion grows: Re s > 0 by more than rounding, 1e-10 |s|.
 bool is_growing(const Eigenvalue& eigenvalue);

@@ -106,7 +106,7 @@ ExitCode threshold(const ThresholdOptions& options) {
                value_text(range.key, range.values.front()),
                value_text(range.key, range.values.back()));
   }
-  fmt::print("{}\n", window_text(highest));
+  fmt::print("{}{}\n", window_text(highest), limit_text(highest, trusted));
   return ExitCode::done;
 }
 

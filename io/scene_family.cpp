@@ -224,8 +224,10 @@ Model build_model_with(const LoadedScene& scene, const Settings& settings, BodyC
 SceneFamily::SceneFamily(LoadedScene loaded, std::vector<NumericKey> keys)
     : loaded_(std::move(loaded)), keys_(std::move(keys)) {
   const auto start = start_key(loaded_.scene.model);
-  for (std::size_t i = 0; i < keys_.size(); ++i)
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
     if (start && keys_[i].path == *start) start_key_ = i;
+    if (keys_[i].path == drive_displacement_name) drive_key_ = i;
+  }
 }
 
 SceneFamily::Member SceneFamily::at(std::span<const double> values) {
@@ -235,21 +237,27 @@ SceneFamily::Member SceneFamily::at(std::span<const double> values) {
   }
   Settings settings;
   for (std::size_t i = 0; i < keys_.size(); ++i)
-    if (i != start_key_) settings.emplace_back(keys_[i].path, values[i]);
+    if (i != start_key_ && i != drive_key_) settings.emplace_back(keys_[i].path, values[i]);
+  if (drive_key_) {
+    if (start_key_) settings.emplace_back(keys_[*start_key_].path, values[*start_key_]);
+    build(settings);
+    return {&*model_, values[*drive_key_], std::nullopt, true};
+  }
   if (start_key_) {
     // Always from the start in the scene, so that the answer does not depend on what was asked
     // before.
     try {
       build(settings);
       if (const auto displacement = displacement_to(values[*start_key_]))
-        return {&*model_, *displacement, values[*start_key_]};
+        return {&*model_, *displacement, values[*start_key_], true};
     } catch (const ConfigError&) {
       // The start in the scene need not fit the other values.
     }
     settings.emplace_back(keys_[*start_key_].path, values[*start_key_]);
   }
   build(settings);
-  return {&*model_, 0.0, position()};
+  const std::optional<double> start = position();
+  return {&*model_, 0.0, start, start.has_value()};
 }
 
 /// Displacement of the drive from the model to a start; nothing where that is not the same as

@@ -43,6 +43,10 @@ enum class Spacing { linear, logarithmic };
 std::vector<double> spaced_values(const NumericKey& key, double from, double to, int count,
                                   Spacing spacing);
 
+/// Name under which verbs vary how far the drive has moved the bodies since the start, m. It is no
+/// key of scenes, where that is 0.
+inline constexpr const char* drive_displacement_name = "drive.displacement";
+
 /// Values of keys by their paths.
 using Settings = std::vector<std::pair<std::string, double>>;
 
@@ -55,8 +59,8 @@ Model build_model_with(const LoadedScene& scene, const Settings& settings, BodyC
 /// The systems of a scene for any values of some of its keys.
 ///
 /// For the position at which a single pair starts, the drive displaces the slave instead, where
-/// that is the same; else the keys are set, the scene is read again and its model made with the
-/// bodies that did not change.
+/// that is the same, and for `drive.displacement` the drive is where that says; else the keys are
+/// set, the scene is read again and its model made with the bodies that did not change.
 class SceneFamily {
  public:
   /// @param loaded what stays as it is
@@ -69,6 +73,8 @@ class SceneFamily {
     /// Where the only pair of the scene is to be in contact, along the undeformed master, m;
     /// nothing where the drive cannot put it anywhere else than the scene does.
     std::optional<double> position;
+    bool is_on_the_way =
+        false;  ///< whether a run of the scene may come there, as far as the drive goes
   };
 
   /// @param values one per key
@@ -88,6 +94,7 @@ class SceneFamily {
   std::vector<NumericKey> keys_;
   BodyCache cache_;
   std::optional<std::size_t> start_key_;  ///< that of the position of the only pair
+  std::optional<std::size_t> drive_key_;  ///< that of the displacement of the drive
   Settings built_;                        ///< of model_
   double start_ = 0.0;                    ///< of the first pair of model_, m
   std::optional<Model> model_;

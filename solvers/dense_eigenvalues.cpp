@@ -125,12 +125,17 @@ DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work) {
 
   const bool with_vectors = work != DenseWork::eigenvalues;
   const LapackResult found = eigenvalues_of(std::move(matrix), work);
+  // Two equal real ones come out as a pair by rounding.
+  Eigen::VectorXd im = found.im;
+  constexpr double real_ratio = 1e-10;
+  for (Eigen::Index i = 0; i < 2 * size; ++i)
+    if (std::abs(im(i)) <= real_ratio * std::abs(found.re(i))) im(i) = 0.0;
   std::vector<Eigen::Index> order;
   for (Eigen::Index i = 0; i < 2 * size; ++i) {
-    if (found.im(i) >= 0.0) order.push_back(i);
+    if (im(i) >= 0.0) order.push_back(i);
   }
   std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
-    return std::pair(found.im(a), found.re(a)) < std::pair(found.im(b), found.re(b));
+    return std::pair(im(a), found.re(a)) < std::pair(im(b), found.re(b));
   });
 
   DenseSpectrum spectrum;
@@ -138,10 +143,12 @@ DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work) {
     spectrum.right.resize(pencil.num_modes(), static_cast<Eigen::Index>(order.size()));
   }
   for (const Eigen::Index i : order) {
-    Eigenvalue eigenvalue{Complex(found.re(i), found.im(i)), 0.0};
+    Eigenvalue eigenvalue{Complex(found.re(i), im(i)), 0.0};
     if (with_vectors) {
-      Eigen::VectorXcd scaled = found.vectors.col(i).head(size).cast<Complex>();
-      if (found.im(i) > 0.0) scaled.imag() = found.vectors.col(i + 1).head(size);
+      // Of a pair the real part stands in its first column, the imaginary part in its second.
+      const Eigen::Index first = found.im(i) < 0.0 ? i - 1 : i;
+      Eigen::VectorXcd scaled = found.vectors.col(first).head(size).cast<Complex>();
+      if (found.im(i) != 0.0) scaled.imag() = found.vectors.col(first + 1).head(size);
       Eigen::VectorXcd q = inverse_W.asDiagonal() * (L_p * scaled);
       q.normalize();
       eigenvalue.residual = relative_residual(pencil, eigenvalue.s, q);

@@ -96,6 +96,17 @@ TEST(Check, FindsWhatRunFindsBeforeItsFirstStep) {
   }
 }
 
+TEST(Check, SeesTheStateInWhichARunStarts) {
+  // At rest the full load of t = 0 would not hold this contact closed.
+  const ProgramResult good = Program({"check", scene_path("examples/frozen_growth.yaml")}).run();
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  const ProgramResult bad = Program({"check", scene_path("examples/frozen_growth.yaml"), "--set",
+                                     "initial.perturbation.eigenvalue=9999"})
+                                .run();
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_THAT(bad.err, HasSubstr("initial.perturbation.eigenvalue"));
+}
+
 TEST(Check, JsonHoldsPlaceKeyAndMessageAlone) {
   const TemporaryFolder folder;
   const std::string path = folder / "bad.yaml";

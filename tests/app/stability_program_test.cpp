@@ -230,6 +230,24 @@ TEST(EigProgram, ExplanationAddsUpToTheGrowth) {
   for (const Json& mode : modes) EXPECT_NEAR(mode["frequency"].get<double>(), 3500.0, 60.0);
 }
 
+TEST(EigProgram, ExplainsTheModesThatAreKept) {
+  const Json object =
+      run_json({"eig", leading, "--at", "0.091", "--about", "deformed", "--explain", "--set",
+                "time.integrator=exact", "--set", "time.retain={frequency: 20 kHz}"});
+  EXPECT_LT(object["explanation"]["quotients"]["residual"].get<double>(), 1e-9);
+  EXPECT_LT(object["explanation"]["energy"]["residual"].get<double>(), 1e-9);
+}
+
+TEST(EigProgram, SaysWhyTheVerdictReachesNoFurther) {
+  const ProgramResult asked = Program({"eig", leading, "--count", "4"}).run();
+  EXPECT_THAT(asked.out, HasSubstr("Hz (nothing above was asked for)"));
+  const ProgramResult all = Program({"eig", leading, "--count", "300"}).run();
+  EXPECT_THAT(all.out, HasSubstr("a rule of thumb: half the frequency of the highest mode kept"));
+  const ProgramResult locus =
+      Program({"locus", leading, "--from", "0.05", "--to", "0.051", "--points", "2"}).run();
+  EXPECT_THAT(locus.out, HasSubstr("Hz (nothing above was asked for)"));
+}
+
 TEST(EigProgram, ModeCanBeChosen) {
   const Json object = run_json({"eig", leading, "--at", "0.091", "--explain", "--mode", "2"});
   EXPECT_EQ(object["explanation"]["mode"], 2);
@@ -438,6 +456,8 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUse{{"eig", trailing, "--at", "-1 mm"}, 2, "--at: contact.start must be >= 0 m"},
         WrongUse{{"eig", trailing, "--at", "3 kg"}, 2, "--at"},
         WrongUse{{"eig", trailing, "--about", "bent"}, 2, "--about"},
+        WrongUse{{"eig", trailing, "--mode", "2"}, 2, "add --explain or --shapes"},
+        WrongUse{{"eig", trailing, "--explain", "--mode", "0"}, 2, "not in range 1 to 100000"},
         WrongUse{
             locus_of("contact.start", "0.05", "0.2"), 2,
             "0.2 m is off the master 'cantilever.top', which is 0.1 m long; allowed: 0 to 0.1 m"},

@@ -110,6 +110,8 @@ TEST_P(FrozenGrowth, IsTheRealPartOfTheEigenvalue) {
   const Complex early = component(time, signal, of.from, half, s.imag());
   const Complex late = component(time, signal, of.from + half, half, s.imag());
   const Complex rate = std::log(late / early) / half;
+  RecordProperty("growth_of_run", fmt::format("{:.6g}", rate.real()));
+  RecordProperty("real_part", fmt::format("{:.6g}", s.real()));
   EXPECT_NEAR(rate.real(), s.real(), 0.01 * std::abs(s.real()));
   EXPECT_NEAR(rate.imag(), 0.0, 1e-3 * s.imag());
 }
@@ -151,6 +153,16 @@ INSTANTIATE_TEST_SUITE_P(
                   0.0004,
                   false}),
     [](const auto& one) { return one.param.name; });
+
+TEST(UndeformedGeometry, DoesNotKnowTheGrowthOfTheSagged) {
+  // Where runs under Subs-b and Subs-c grow by 90 and 94 1/s, above.
+  for (const char* assumption : {"subs_b", "subs_c"}) {
+    const Json eig = run_json({"eig", scene_path("beam_on_beam.yaml"), "--about", "undeformed"},
+                              with(main_frozen, {std::string("contact.assumption=") + assumption}));
+    EXPECT_TRUE(eig["stable"].get<bool>());
+    for (const Complex s : vibrations(eig["eigenvalues"])) EXPECT_LT(s.real(), 0.0);
+  }
+}
 
 /// Windows that both methods must have in common: those wider and higher than rounding.
 std::vector<std::array<double, 4>> windows_of(const Json& unstable) {
@@ -334,6 +346,48 @@ TEST(PassedWindows, AddUpToTheWholeWhereARunEndsAndAnotherOneStarts) {
   EXPECT_NEAR(number(second, "to_time"), number(whole, "to_time") - 0.09, 1e-6);
 }
 
+TEST(PassedWindows, HaveTheSameTimesAlongTheDriveAsAlongTheMaster) {
+  for (const char* about : {"undeformed", "deformed"}) {
+    const auto windows = [&](const Strings& range) {
+      Strings arguments{"locus", scene_path("beam_on_beam.yaml"), "--about", about, "--points",
+                        "9"};
+      arguments.insert(arguments.end(), range.begin(), range.end());
+      return run_json(arguments)["unstable"];
+    };
+    const Json position = windows({"--from", "90.2 mm", "--to", "96 mm"});
+    const Json drive =
+        windows({"--parameter", "drive.displacement", "--from", "60.3 mm", "--to", "66.1 mm"});
+    ASSERT_EQ(position.size(), drive.size());
+    ASSERT_FALSE(position.empty());
+    for (std::size_t i = 0; i < drive.size(); ++i) {
+      for (const char* key : {"from_time", "to_time", "frequency", "growth_max", "gain"}) {
+        const double expected = position[i][key];
+        EXPECT_NEAR(drive[i][key].get<double>(), expected, 1e-6 * expected) << key;
+      }
+    }
+  }
+}
+
+TEST(SeveralPairs, HaveALocusAlongTheDrive) {
+  const std::string scene = scene_path("examples/two_pairs.yaml");
+  const Json locus = run_json({"locus", scene, "--from", "0", "--to", "30 mm", "--points", "4"});
+  EXPECT_EQ(locus["parameter"], "drive.displacement");
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Json eig =
+        run_json({"eig", scene}, {fmt::format("contacts.front.start={} mm", 50 + 10 * i),
+                                  fmt::format("contacts.rear.start={} mm", 20 + 10 * i)});
+    const std::vector<Complex> a = vibrations(locus["eigenvalues"][i]);
+    const std::vector<Complex> b = vibrations(eig["eigenvalues"]);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t k = 0; k < a.size(); ++k)
+      EXPECT_LT(std::abs(a[k] - b[k]), 1e-9 * std::abs(a[k]));
+  }
+  const ProgramResult beyond = Program({"locus", scene, "--from", "0", "--to", "60 mm"}).run();
+  EXPECT_EQ(beyond.exit_code, 3);
+  EXPECT_THAT(beyond.err, HasSubstr("drive.displacement = 0.06 m: front: the slave point stands "
+                                    "beyond the end of the surface cantilever.top"));
+}
+
 TEST(PassedWindows, HaveAGainWhereTheDriveGoesBackwards) {
   const Json locus = run_json({"locus", scene_path("beam_on_beam_leading.yaml"), "--about",
                                "deformed", "--from", "95 mm", "--to", "97 mm", "--points", "3"},
@@ -343,6 +397,30 @@ TEST(PassedWindows, HaveAGainWhereTheDriveGoesBackwards) {
   EXPECT_LT(window["from_time"].get<double>(), window["to_time"].get<double>());
   EXPECT_NEAR(window["gain"].get<double>(), window["growth_integral"].get<double>() / 0.03,
               0.02 * window["gain"].get<double>());
+}
+
+TEST(MapProgram, HasItsBoundaryUpToWhereThereIsNoEquilibrium) {
+  // Without a load that presses it down, a beam that may lift off is free. The growth changes its
+  // sign at -0.0358 N, with mu 0.3.
+  const Strings sets{"contact.assumption=film", "contact.start=75.2 mm"};
+  const Json map =
+      run_json({"map", scene_path("beam_on_beam.yaml"), "--about", "deformed", "--x", "drive.load",
+                "-0.1", "0.05", "16", "--y", "contact.friction.coefficient", "0.29", "0.3", "2"},
+               sets);
+  EXPECT_FALSE(map["growth"][1][9].is_null());  // -0.01 N
+  EXPECT_TRUE(map["growth"][1][12].is_null());  // 0.02 N
+  const Json threshold =
+      run_json({"threshold", scene_path("beam_on_beam.yaml"), "--about", "deformed", "--parameter",
+                "drive.load", "--from", "-0.1", "--to", "-0.01"},
+               sets);
+  ASSERT_EQ(threshold["roots"].size(), 1u);
+  std::vector<double> at_top;
+  for (const Json& line : map["boundary"]) {
+    for (const Json& point : line)
+      if (point[1] == 0.3) at_top.push_back(point[0]);
+  }
+  ASSERT_THAT(at_top, SizeIs(1));
+  EXPECT_NEAR(at_top[0], threshold["roots"][0]["value"].get<double>(), 1e-8);
 }
 
 TEST(EqualArms, HaveEveryEigenvalueTwiceAllTheWay) {
@@ -384,6 +462,13 @@ record: {interval: 1.0e-6, channels: [one.force]}
       for (std::size_t k = 0; k < 6; k += 2)
         EXPECT_LT(std::abs(pairs[k] - pairs[k + 1]), 1e-6 * std::abs(pairs[k]));
     }
+  }
+  // Equal real ones are real by either.
+  for (const char* method : {"secular", "dense"}) {
+    const Json eig =
+        run_json({"eig", scene, "--count", "2", "--method", method}, {"drive.velocity=0.004"});
+    EXPECT_EQ(eig["eigenvalues"].size(), 6u) << method;
+    EXPECT_THAT(vibrations(eig["eigenvalues"]), SizeIs(2)) << method;
   }
   // Friction that falls this steeply drives a real eigenvalue far beyond all frequencies, in both.
   const auto fastest = [&](const char* method) {
