@@ -109,8 +109,8 @@ QuietLevel find_quiet_level(std::span<const double> samples, double interval,
 /// Limits: T blurs the envelope; an apex between growth a and decay b loses about (a + b) T/16 of
 /// the gain. The growth, a maximum, reads some 1/s too high in noise. A blow later than about T
 /// before the onset counts as growth. Where noise fills the band around f, growth is followed back
-/// to a few times that noise only, and the gain is uncertain by about 1. A blow that rings down is
-/// also a burst, with a growth of the order of 1/T. A vibration that already decays when the
+/// to a few times that noise only, and the gain is uncertain by about 1.5. A blow that rings down
+/// is also a burst, with a growth of the order of 1/T. A vibration that already decays when the
 /// measured window begins has no rise, and is none. Bursts that fill a third of the window raise an
 /// estimated quiet level by up to a fifth where the quiet itself swings; give `quiet` where it is
 /// known. Noise that swings more slowly than T, as that of a lightly damped resonance, passes for a

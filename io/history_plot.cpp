@@ -162,6 +162,8 @@ void plot_histories(const std::vector<Panel>& panels, const std::filesystem::pat
     ValueRange data;
     for (const Curve& curve : panel.curves) data.include(curve.values);
     ranges.push_back(data.widened(0.05));
+    if (!panel.marks.empty())  // room for their labels above the curves
+      ranges.back().upper += 0.15 * (ranges.back().upper - ranges.back().lower);
     scales.push_back(axis_scale(ranges.back().lower, ranges.back().upper, 5));
     widest = std::max(widest, tick_characters(ranges.back(), scales.back()));
     labels.push_back(

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t num_columns = 2000;
 constexpr double caption_font = 10.5;
 constexpr double mark_font = 11.0;
-constexpr int mark_rows = 3;
+constexpr int mark_rows = 6;
 
 // Told apart also in grey and by the colour-blind.
 constexpr std::array<const char*, 6> colours{"#0b5394", "#e07b00", "#38761d",

@@ -549,6 +549,13 @@ struct Simulation::Implementation {
         remedy =
             "end the run earlier (time.end), start elsewhere (contact.start) or slide more slowly "
             "(drive.velocity)";
+        if (contact.violations.before_armed > 0) {
+          remedy += fmt::format(
+              "; if it was thrown there, mind the {} steps without persistent sliding that were "
+              "let "
+              "pass before contact.armed_from: arm earlier, or take contact.assumption: film",
+              contact.violations.before_armed);
+        }
         break;
       case StepOutcome::pulling:
         what = fmt::format(

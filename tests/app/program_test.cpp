@@ -245,6 +245,9 @@ TEST(Program, ContactThatLeavesTheMasterStopsTheRunAndKeepsTheFile) {
           .run();
   EXPECT_EQ(result.exit_code, 3) << result.err;
   EXPECT_THAT(result.err, HasSubstr("has left the end of the surface cantilever.top"));
+  EXPECT_THAT(result.err,
+              ContainsRegex("mind the [0-9]+ steps without persistent sliding that were "
+                            "let pass before contact.armed_from: arm earlier"));
   EXPECT_THAT(result.err, HasSubstr("holds everything up to then"));
   EXPECT_EQ(Json::parse(result.out)["status"], "failed");
   const RunFileReader file((folder / "a.h5").string());

@@ -77,6 +77,20 @@ TEST(PlotSpectra, SaysWhatItShows) {
   EXPECT_THAT(contents_of(folder / "b.svg"), HasSubstr("amplitude (m/s²)"));
 }
 
+TEST(PlotSpectra, EveryBurstOfARunIsNamed) {
+  const TemporaryFolder folder;
+  SpectrumPicture picture = picture_to_8_khz();
+  picture.max_frequency = 12000.0;
+  picture.marks = {{6450.0, "1"}, {5310.0, "2"}, {6540.0, "3"}, {8250.0, "4"}, {5450.0, "5"},
+                   {7450.0, "6"}, {6600.0, "7"}, {7500.0, "8"}, {6630.0, "9"}};
+  plot_spectra({{"m/s^2", 1e-6, {{"beam.a", peak_at(3500.0, 2.0)}}}}, picture, folder / "a.svg");
+  const std::string svg = contents_of(folder / "a.svg");
+  for (const char* text :
+       {"1, 3, 7, 9: 6.45–6.63 kHz", "2, 5: 5.31–5.45 kHz", "4: 8.25 kHz", "6, 8: 7.45–7.5 kHz"}) {
+    EXPECT_THAT(svg, HasSubstr(text));
+  }
+}
+
 TEST(PlotSpectra, SilenceIsDrawn) {
   const TemporaryFolder folder;
   SpectrumPicture picture = picture_to_8_khz();
