@@ -13,13 +13,13 @@ namespace stridor {
 namespace {
 
 // With the margin, a terminal of 80 columns is filled.
-constexpr int kWidest = 72;
+constexpr int widest = 72;
 /// Of a line that is cut on both sides: columns shown before the caret.
-constexpr int kBefore = 44;
+constexpr int most_before = 44;
 /// Bytes looked at on either side of the caret; longer lines cost no more.
-constexpr std::size_t kReach = 1024;
-constexpr int kTab = 4;
-constexpr std::string_view kDots = "...";
+constexpr std::size_t reach = 1024;
+constexpr int tab_width = 4;
+constexpr std::string_view ellipsis = "...";
 
 /// One character as the terminal shows it.
 struct Cell {
@@ -38,7 +38,8 @@ Cell take_cell(std::string_view line, std::size_t& i) {
   const Utf8Character character = utf8_at(line, i);
   const std::size_t begin = i;
   i += std::max<std::size_t>(character.length, 1);
-  if (character.length > 0 && character.code == '\t') return {std::string(kTab, ' '), kTab};
+  if (character.length > 0 && character.code == '\t')
+    return {std::string(tab_width, ' '), tab_width};
   if (character.length == 0 || is_unsafe(character.code)) return {"?", 1};
   return {std::string(line.substr(begin, character.length)), terminal_width(character.code)};
 }
@@ -57,11 +58,11 @@ struct Cells {
 
 /// @param at byte of the character that is marked, or any inside it
 Cells cells_around(std::string_view line, std::size_t at) {
-  std::size_t i = at > kReach ? at - kReach : 0;
+  std::size_t i = at > reach ? at - reach : 0;
   while (i > 0 && i < at && continues_character(line[i])) ++i;
   Cells result;
   result.is_cut_before = i > 0;
-  while (i < line.size() && i < at + kReach) {
+  while (i < line.size() && i < at + reach) {
     result.cells.push_back(take_cell(line, i));
     if (i <= at) result.marked = result.cells.size();
   }
@@ -80,11 +81,11 @@ Cells cut(const Cells& all) {
   const std::span<const Cell> cells(all.cells);
   int before = width_of(cells.first(all.marked));
   int width = before + width_of(cells.subspan(all.marked));
-  if (!all.is_cut_before && !all.is_cut_after && width <= kWidest) return all;
+  if (!all.is_cut_before && !all.is_cut_after && width <= widest) return all;
 
-  const int dots = static_cast<int>(kDots.size());
+  const int dots = static_cast<int>(ellipsis.size());
   const int allowed_before =
-      all.is_cut_after ? kBefore : std::max(kBefore, kWidest - dots - (width - before));
+      all.is_cut_after ? most_before : std::max(most_before, widest - dots - (width - before));
   std::size_t first = 0;
   // A mark without the character that carries it would be put on the dots.
   while (before > allowed_before || (first > 0 && first < all.marked && cells[first].width == 0)) {
@@ -93,7 +94,7 @@ Cells cut(const Cells& all) {
     ++first;
   }
   const bool is_cut_before = all.is_cut_before || first > 0;
-  const int room = kWidest - (is_cut_before ? dots : 0);
+  const int room = widest - (is_cut_before ? dots : 0);
   std::size_t last = cells.size();
   const bool is_cut_after = all.is_cut_after || width > room;
   while (is_cut_after && width > room - dots) width -= cells[--last].width;
@@ -110,11 +111,11 @@ std::string excerpt_of(std::string_view line, int number, int column) {
   const std::size_t at =
       column > 0 ? std::min(static_cast<std::size_t>(column) - 1, line.size()) : 0;
   const Cells shown = cut(cells_around(line, at));
-  const std::string_view dots_before = shown.is_cut_before ? kDots : "";
+  const std::string_view dots_before = shown.is_cut_before ? ellipsis : "";
   const std::string margin = number > 0 ? fmt::format("{:>5}", number) : std::string(5, ' ');
   std::string excerpt = fmt::format("{} | {}", margin, dots_before);
   for (const Cell& cell : shown.cells) excerpt += cell.text;
-  if (shown.is_cut_after) excerpt += kDots;
+  if (shown.is_cut_after) excerpt += ellipsis;
   if (column > 0) {
     const int before = width_of(std::span(shown.cells).first(shown.marked));
     excerpt += fmt::format("\n{:{}} | {:{}}^", "", margin.size(), "",

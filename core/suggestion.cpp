@@ -43,10 +43,10 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 std::string nearest(const std::string& written, const std::vector<std::string>& candidates) {
   // Words beyond this length are not misspelt keys, and the distance costs the product of the
   // lengths.
-  constexpr std::size_t kLongest = 64;
+  constexpr std::size_t longest = 64;
   // One slip in three letters; short words need all but one of theirs right.
   const std::size_t allowed = (written.size() + 1) / 3;
-  if (written.empty() || written.size() > kLongest) return {};
+  if (written.empty() || written.size() > longest) return {};
 
   const std::string word = folded(written);
   std::string best;

@@ -20,7 +20,7 @@
 namespace stridor {
 namespace {
 
-constexpr std::string_view kBlanks = " \t";
+constexpr std::string_view blanks = " \t";
 
 struct FreeSystem {
   void operator()(ut_system* system) const { ut_free_system(system); }
@@ -77,13 +77,13 @@ ut_status see_logarithmic(const ut_unit*, double, const ut_unit*, void* arg) {
   return UT_SUCCESS;
 }
 
-const ut_visitor kVisitor{see_basic, see_product, see_galilean, see_timestamp, see_logarithmic};
+const ut_visitor visitor{see_basic, see_product, see_galilean, see_timestamp, see_logarithmic};
 
 ut_status see_galilean(const ut_unit*, double scale, const ut_unit* underlying, double offset,
                        void* arg) {
   meaning_in(arg).factor *= scale;
   if (offset != 0.0) meaning_in(arg).is_scale = false;
-  return ut_accept_visitor(underlying, &kVisitor, arg);
+  return ut_accept_visitor(underlying, &visitor, arg);
 }
 
 /// The unit database. UDUNITS keeps global state while it parses, hence one lock for all of it.
@@ -94,7 +94,7 @@ class UnitSystem {
     const std::lock_guard<std::mutex> lock(mutex_);
     load();
     const UnitHandle parsed(ut_parse(system_.get(), unit.c_str(), UT_UTF8));
-    return parsed && ut_accept_visitor(parsed.get(), &kVisitor, &meaning) == UT_SUCCESS;
+    return parsed && ut_accept_visitor(parsed.get(), &visitor, &meaning) == UT_SUCCESS;
   }
 
  private:
@@ -130,14 +130,14 @@ bool is_letter(char c) {
 }
 
 std::string trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
+  const std::size_t first = text.find_first_not_of(blanks);
   if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(kBlanks) - first + 1));
+  return std::string(text.substr(first, text.find_last_not_of(blanks) - first + 1));
 }
 
 /// "a length in m", for the units that scenes use most; "a value in N s m-1" for the others.
 std::string expected_text(const std::string& unit) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kQuantities{
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 12> quantities{
       {{"m", "a length"},
        {"s", "a time"},
        {"kg", "a mass"},
@@ -151,7 +151,7 @@ std::string expected_text(const std::string& unit) {
        {"rad/s", "an angular velocity"},
        {"rad s-1", "an angular velocity"}}};
   if (unit.empty()) return "a number without unit";
-  for (const auto& [symbol, quantity] : kQuantities) {
+  for (const auto& [symbol, quantity] : quantities) {
     if (unit == symbol) return fmt::format("{} in {}", quantity, unit);
   }
   return fmt::format("a value in {}", unit);
@@ -181,11 +181,11 @@ bool has_free_number(std::string_view unit) {
 }
 
 std::string suggest_unit(const std::string& written) {
-  static const std::vector<std::string> kCommon{
+  static const std::vector<std::string> common{
       "m",    "mm",    "um", "cm",  "km",  "s",   "ms",   "us",    "min",  "Hz",  "kHz", "MHz",
       "N",    "mN",    "kN", "Pa",  "kPa", "MPa", "GPa",  "kg",    "g",    "rad", "deg", "m/s",
       "mm/s", "rad/s", "J",  "N/m", "%",   "1/s", "m/s2", "kg/m3", "N/m2", "N m", "rpm"};
-  return did_you_mean(written, kCommon);
+  return did_you_mean(written, common);
 }
 
 /// "rad/s" against "Hz" is the mistake that matters: both are 1/s to UDUNITS, apart by 2π.
@@ -209,15 +209,15 @@ double convert(double value, const UnitMeaning& from, const UnitMeaning& to) {
   // 9 mm must be the same double as 0.009: dividing by 1000 rounds once, while the factor 0.001 is
   // itself rounded and the product is then off by one unit in the last place. The tolerance is that
   // of the few products from which the database makes a factor.
-  constexpr double kTolerance = 16.0 * std::numeric_limits<double>::epsilon();
-  constexpr double kLargest = 1e12;
+  constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
+  constexpr double largest = 1e12;
   const double factor = from.factor / to.factor;
   const double multiplier = std::round(factor);
-  if (factor >= 1.0 && factor < kLargest && std::abs(multiplier / factor - 1.0) < kTolerance) {
+  if (factor >= 1.0 && factor < largest && std::abs(multiplier / factor - 1.0) < rounding) {
     return value * multiplier;
   }
   const double divisor = std::round(1.0 / factor);
-  if (factor < 1.0 && divisor < kLargest && std::abs(divisor * factor - 1.0) < kTolerance) {
+  if (factor < 1.0 && divisor < largest && std::abs(divisor * factor - 1.0) < rounding) {
     return value / divisor;
   }
   return value * factor;

@@ -19,24 +19,24 @@ bool is_in(const std::array<CodeRange, N>& ranges, std::uint32_t code) {
 }
 
 /// Combining marks, zero-width spaces and joiners, variation selectors.
-constexpr std::array<CodeRange, 7> kNoWidth{{{0x0300, 0x036F},
-                                             {0x0483, 0x0489},
-                                             {0x1AB0, 0x1AFF},
-                                             {0x1DC0, 0x1DFF},
-                                             {0x200B, 0x200F},
-                                             {0x20D0, 0x20FF},
-                                             {0xFE00, 0xFE0F}}};
+constexpr std::array<CodeRange, 7> without_width{{{0x0300, 0x036F},
+                                                  {0x0483, 0x0489},
+                                                  {0x1AB0, 0x1AFF},
+                                                  {0x1DC0, 0x1DFF},
+                                                  {0x200B, 0x200F},
+                                                  {0x20D0, 0x20FF},
+                                                  {0xFE00, 0xFE0F}}};
 
 /// Hangul, CJK, their punctuation and full-width forms, pictures.
-constexpr std::array<CodeRange, 9> kDoubleWidth{{{0x1100, 0x115F},
-                                                 {0x2E80, 0x303E},
-                                                 {0x3041, 0xA4CF},
-                                                 {0xAC00, 0xD7A3},
-                                                 {0xF900, 0xFAFF},
-                                                 {0xFE30, 0xFE6F},
-                                                 {0xFF00, 0xFF60},
-                                                 {0x1F300, 0x1FAFF},
-                                                 {0x20000, 0x3FFFD}}};
+constexpr std::array<CodeRange, 9> of_double_width{{{0x1100, 0x115F},
+                                                    {0x2E80, 0x303E},
+                                                    {0x3041, 0xA4CF},
+                                                    {0xAC00, 0xD7A3},
+                                                    {0xF900, 0xFAFF},
+                                                    {0xFE30, 0xFE6F},
+                                                    {0xFF00, 0xFF60},
+                                                    {0x1F300, 0x1FAFF},
+                                                    {0x20000, 0x3FFFD}}};
 
 }  // namespace
 
@@ -60,8 +60,8 @@ Utf8Character utf8_at(std::string_view text, std::size_t i) {
 }
 
 int terminal_width(std::uint32_t code) {
-  if (is_in(kNoWidth, code)) return 0;
-  return is_in(kDoubleWidth, code) ? 2 : 1;
+  if (is_in(without_width, code)) return 0;
+  return is_in(of_double_width, code) ? 2 : 1;
 }
 
 }  // namespace stridor

@@ -14,8 +14,8 @@ namespace {
 /// A text as YAML: plain where no reader can take it for something else, else in double quotes.
 std::string yaml_text(const std::string& text) {
   // Words that this or another reader of YAML 1.1 takes for null or a truth value.
-  static constexpr std::array<std::string_view, 10> kWords{"null", "true", "false", "yes", "no",
-                                                           "on",   "off",  "y",     "n",   "nan"};
+  static constexpr std::array<std::string_view, 10> words{"null", "true", "false", "yes", "no",
+                                                          "on",   "off",  "y",     "n",   "nan"};
   const auto is_plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
            c == '-' || c == '.' || c == '/';
@@ -26,7 +26,7 @@ std::string yaml_text(const std::string& text) {
   }
   const bool starts_with_letter = !lower.empty() && lower.front() >= 'a' && lower.front() <= 'z';
   if (starts_with_letter && std::all_of(text.begin(), text.end(), is_plain) &&
-      std::find(kWords.begin(), kWords.end(), lower) == kWords.end()) {
+      std::find(words.begin(), words.end(), lower) == words.end()) {
     return text;
   }
   std::string quoted = "\"";

@@ -31,8 +31,8 @@ std::string joined(const std::vector<std::string>& words) {
 
 /// A text in quotes for a message of one line: shortened, without line breaks.
 std::string quoted(const std::string& text) {
-  constexpr std::size_t kLongest = 60;
-  std::size_t length = std::min(text.size(), kLongest);
+  constexpr std::size_t longest = 60;
+  std::size_t length = std::min(text.size(), longest);
   // Not in the middle of a UTF-8 character.
   while (length < text.size() && (static_cast<unsigned char>(text[length]) & 0xC0u) == 0x80u)
     --length;
@@ -463,10 +463,10 @@ class Reader {
 
   Value read_table(const SceneNode& node, const Key& key, const std::string& path) {
     add_text_problems(node, path);
-    static const std::vector<std::string> kKeys{"times", "values"};
+    static const std::vector<std::string> table_keys{"times", "values"};
     for (const SceneEntry& entry : node.entries) {
-      if (std::find(kKeys.begin(), kKeys.end(), entry.key) != kKeys.end()) continue;
-      const std::string suggestion = did_you_mean(entry.key, kKeys);
+      if (std::find(table_keys.begin(), table_keys.end(), entry.key) != table_keys.end()) continue;
+      const std::string suggestion = did_you_mean(entry.key, table_keys);
       report(entry.place, join_path(path, entry.key),
              fmt::format("unknown key {}{}", quoted(entry.key),
                          suggestion.empty() ? "; known here: times, values" : suggestion));

@@ -27,8 +27,8 @@
 namespace stridor {
 namespace {
 
-const std::string kSet = "--set ";
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+const std::string set_option = "--set ";
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 [[noreturn]] void fail(const Place& place, std::string key, std::string message) {
   throw ConfigError(std::vector<Problem>{problem_at(place, std::move(key), std::move(message))});
@@ -262,7 +262,7 @@ class TreeBuilder : public YAML::EventHandler {
 /// it could not be written as JSON.
 /// @param place of the first character
 void check_characters(const std::string& text, Place place) {
-  for (std::size_t i = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+  for (std::size_t i = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
        i < text.size();) {
     const Utf8Character character = utf8_at(text, i);
     const auto byte = static_cast<unsigned char>(text[i]);
@@ -373,7 +373,7 @@ SceneNode parse_scene(const std::string& text, const std::string& source) {
 }
 
 std::vector<std::string_view> lines_of(std::string_view text) {
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   std::vector<std::string_view> lines;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
@@ -495,19 +495,19 @@ SceneNode read_scene_file(const std::string& path) {
 }
 
 void set_value(SceneNode& root, const std::string& assignment) {
-  const auto column = [](std::size_t i) { return static_cast<int>(kSet.size() + i) + 1; };
+  const auto column = [](std::size_t i) { return static_cast<int>(set_option.size() + i) + 1; };
   if (assignment.size() > SceneLimits::assignment) {
-    fail({kSet + printable(assignment.substr(0, 40)) + "...", 0, 0}, "",
+    fail({set_option + printable(assignment.substr(0, 40)) + "...", 0, 0}, "",
          fmt::format("is longer than {} KiB; write it into the scene",
                      SceneLimits::assignment / 1024));
   }
-  check_characters(assignment, {kSet + printable(assignment), 0, column(0)});
+  check_characters(assignment, {set_option + printable(assignment), 0, column(0)});
   const std::size_t line_break = assignment.find_first_of("\r\n");
   if (line_break != std::string::npos) {
-    fail({kSet + printable(assignment), 0, column(line_break)}, "",
+    fail({set_option + printable(assignment), 0, column(line_break)}, "",
          "has a line break; write --set key.path=value in one line");
   }
-  const auto at = [source = kSet + assignment, &column](std::size_t i) {
+  const auto at = [source = set_option + assignment, &column](std::size_t i) {
     return Place{source, 0, column(i)};
   };
   const std::size_t equals = assignment.find('=');

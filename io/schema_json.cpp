@@ -16,11 +16,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Beyond this, whole numbers are no longer all exact as JSON numbers.
-constexpr double kLargestExact = 9007199254740992.0;
+constexpr double largest_exact = 9007199254740992.0;
 
 /// 0 rather than 0.0, as users write it.
 Json number_json(double value) {
-  if (std::abs(value) < kLargestExact && value == std::trunc(value)) {
+  if (std::abs(value) < largest_exact && value == std::trunc(value)) {
     return static_cast<std::int64_t>(value);
   }
   return value;
@@ -110,11 +110,11 @@ Json real_json(const std::string& unit, const Range& range) {
 Json integer_json(const Key& key) {
   Json json = typed("integer");
   Range range = key.range;
-  if (key.storable.low > range.low && key.storable.low > -kLargestExact) {
+  if (key.storable.low > range.low && key.storable.low > -largest_exact) {
     range.low = key.storable.low;
     range.excludes_low = false;
   }
-  if (key.storable.high < range.high && key.storable.high < kLargestExact) {
+  if (key.storable.high < range.high && key.storable.high < largest_exact) {
     range.high = key.storable.high;
     range.excludes_high = false;
   }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/processor.hpp"
 #include "solvers/slots.hpp"
 
 namespace stridor {
@@ -296,9 +297,9 @@ struct Kernel {
 
 Kernel kernel_of_this_processor() {
 #if defined(__x86_64__)
-  __builtin_cpu_init();
-  if (__builtin_cpu_supports("x86-64-v4")) return {step_v4, 8};
-  if (__builtin_cpu_supports("x86-64-v3")) return {step_v3, 4};
+  const KernelSet set = kernel_set();
+  if (set == KernelSet::v4) return {step_v4, 8};
+  if (set == KernelSet::v3) return {step_v3, 4};
 #endif
   return {step_portable, 2};
 }

@@ -1,5 +1,6 @@
 #include "solvers/modal_kernel.hpp"
 
+#include "core/processor.hpp"
 #include "solvers/slots.hpp"
 
 namespace stridor {
@@ -177,14 +178,9 @@ double gather_v4(const double* blocks, std::size_t num_blocks, ModalField which,
 
 Kernel kernel_of_this_processor() {
 #if defined(__x86_64__)
-  __builtin_cpu_init();
-  const bool has_v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-                      __builtin_cpu_supports("bmi2");
-  const bool has_v4 = has_v3 && __builtin_cpu_supports("avx512f") &&
-                      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
-                      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-  if (has_v4) return {advance_v4, gather_v4};
-  if (has_v3) return {advance_v3, gather_v3};
+  const KernelSet set = kernel_set();
+  if (set == KernelSet::v4) return {advance_v4, gather_v4};
+  if (set == KernelSet::v3) return {advance_v3, gather_v3};
 #endif
   return {advance_portable, gather_portable};
 }

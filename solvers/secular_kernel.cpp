@@ -1,5 +1,7 @@
 #include "solvers/secular_kernel.hpp"
 
+#include "core/processor.hpp"
+
 #define STRIDOR_INLINE inline __attribute__((always_inline))
 
 namespace stridor {
@@ -179,14 +181,9 @@ STRIDOR_SECULAR_KERNEL(v4, __attribute__((target("arch=x86-64-v4,prefer-vector-w
 
 Kernel kernel_of_this_processor() {
 #if defined(__x86_64__)
-  __builtin_cpu_init();
-  const bool has_v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-                      __builtin_cpu_supports("bmi2");
-  const bool has_v4 = has_v3 && __builtin_cpu_supports("avx512f") &&
-                      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
-                      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-  if (has_v4) return kernel_v4;
-  if (has_v3) return kernel_v3;
+  const KernelSet set = kernel_set();
+  if (set == KernelSet::v4) return kernel_v4;
+  if (set == KernelSet::v3) return kernel_v3;
 #endif
   return kernel_portable;
 }

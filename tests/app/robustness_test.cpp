@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -130,6 +131,22 @@ TEST(Robustness, EveryVerbSaysThatAFolderCannotBeWritten) {
     EXPECT_THAT(result.err, HasSubstr("locked")) << arguments[0];
   }
   if (fs::is_directory(locked)) fs::permissions(locked, fs::perms::owner_all);
+}
+
+TEST(Robustness, TheEnvironmentIsReadOrRefused) {
+  const auto with = [](const char* name, const char* value) {
+    setenv(name, value, 1);
+    const ProgramResult result = Program({"check", sphere_scene}).run();
+    unsetenv(name);
+    return result;
+  };
+  ProgramResult result = with("UDUNITS2_XML_PATH", "/nowhere.xml");
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.err, HasSubstr("udunits2.xml: the database of units cannot be read"));
+  EXPECT_EQ(with("STRIDOR_KERNELS", "portable").exit_code, 0);
+  result = with("STRIDOR_KERNELS", "v5");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("STRIDOR_KERNELS is 'v5', but may be portable or v3"));
 }
 
 TEST(Robustness, PathsWithSpacesAndUnicodeWorkEverywhere) {

@@ -20,6 +20,14 @@ SubstrateContact contact_with(RegularisedSign sign, FrictionLoad load) {
   return {law, 5.0, 12.5, 1.0 / 7.5e-4, 0.3, 1.0, load, sign};
 }
 
+TEST(RegularisedSign, NoneIsOneFromZeroOn) {
+  for (const double v : {0.0, 0.1, 1e9}) {
+    const RegularisedSign::Value found = RegularisedSign{Kind::none, 0.2}.at(v);
+    EXPECT_EQ(found.value, 1.0);
+    EXPECT_EQ(found.slope, 0.0);
+  }
+}
+
 TEST(RegularisedSign, FunctionsRiseFromZeroToOne) {
   for (const Kind kind : {Kind::tanh, Kind::linear, Kind::square_root, Kind::atan}) {
     const RegularisedSign sign{kind, 0.2};

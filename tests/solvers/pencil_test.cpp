@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "solvers/dense_eigenvalues.hpp"
+#include "solvers/linear_pencil.hpp"
 #include "solvers/secular_eigenvalues.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/message_of.hpp"
@@ -55,6 +56,28 @@ TEST(Pencil, RefusesWhatDoesNotFitTogether) {
                                           Eigen::Matrix2d::Identity(), Eigen::Matrix2d::Identity());
             }),
             "pencil: 2 constraints leave nothing of 2 modes");
+}
+
+TEST(LinearPencil, RefusesWhatDoesNotFitTogether) {
+  const auto message_after = [](auto&& change) {
+    LinearSystem system;
+    system.mass = system.position = Eigen::Matrix2d::Identity();
+    system.velocity = Eigen::Matrix2d::Zero();
+    system.gaps = system.forces = Eigen::MatrixXd::Ones(1, 2);
+    change(system);
+    return message_of<std::invalid_argument>([&] { make_pencil(system); });
+  };
+  EXPECT_EQ(message_after([](LinearSystem&) {}), "<no exception>");
+  EXPECT_EQ(message_after([](LinearSystem& s) { s.velocity.conservativeResize(2, 1); }),
+            "linear system: the velocity matrix is 2 x 1 instead of 2 x 2");
+  EXPECT_EQ(message_after([](LinearSystem& s) { s.forces.resize(2, 2); }),
+            "linear system: the matrix of forces is 2 x 2 instead of 1 x 2");
+  EXPECT_EQ(message_after([](LinearSystem& s) { s.position(0, 1) = NAN; }),
+            "linear system: the position matrix is not finite");
+  const std::string indefinite =
+      "linear system: the mass matrix is not symmetric positive definite";
+  EXPECT_EQ(message_after([](LinearSystem& s) { s.mass(0, 1) = 0.1; }), indefinite);
+  EXPECT_EQ(message_after([](LinearSystem& s) { s.mass(1, 1) = -1.0; }), indefinite);
 }
 
 TEST(Pencil, EigenvectorsSolveTheRightAndTheLeftProblem) {

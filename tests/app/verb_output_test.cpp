@@ -1,0 +1,95 @@
+// What verbs print and draw without --json: the tables, and a picture of each kind.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/support/program.hpp"
+
+namespace stridor {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+const std::string beams = scene_path("beam_on_beam.yaml");
+const std::string sphere = scene_path("viscoelastic_sphere.yaml");
+
+std::string output_of(const std::vector<std::string>& arguments) {
+  const ProgramResult result = Program(arguments).run();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return result.out;
+}
+
+/// As a viewer knows it, and not empty.
+void expect_picture(const fs::path& file) {
+  ASSERT_TRUE(fs::exists(file)) << file;
+  EXPECT_EQ(contents_of(file).substr(1, 3), "PNG");
+  EXPECT_GT(fs::file_size(file), 10000U) << file;
+}
+
+TEST(VerbOutput, EigDrawsAModeAndItsMotion) {
+  const TemporaryFolder folder;
+  const fs::path shapes = folder / "shapes";
+  const std::vector<std::string> eig{"eig",   beams,    "--count", "2",        "--at",
+                                     "60 mm", "--mode", "1",       "--shapes", shapes.string()};
+  // The first bending mode of the cantilever by itself has 45 Hz; contact and load change it
+  // little.
+  EXPECT_THAT(output_of(eig), AllOf(HasSubstr("damping ratio"), HasSubstr("stable between"),
+                                    HasSubstr("mode_01.png and 25 files for ParaView")));
+  expect_picture(shapes / "mode_01.png");
+  for (const char* name : {"mode_01.vtk", "mode_01_frame_000.vtk", "mode_01_frame_023.vtk"})
+    EXPECT_THAT(contents_of(shapes / name), HasSubstr("DATASET UNSTRUCTURED_GRID")) << name;
+  // Not over what is there, and not where the position is given twice.
+  const ProgramResult again = Program(eig).run();
+  EXPECT_EQ(again.exit_code, 4);
+  EXPECT_THAT(again.err, HasSubstr("exists; use --force"));
+}
+
+TEST(VerbOutput, MapsSweepsAndLociOfSmallSystemsAreDrawn) {
+  const TemporaryFolder folder;
+  const auto figure = [&](const char* name) { return (folder / name).string(); };
+  EXPECT_THAT(output_of({"map", sphere, "--x", "sphere.speed", "1e-3", "1e-1", "5", "--y",
+                         "sphere.shear_strength", "5e-3", "5e-2", "5", "--scale", "log", "--figure",
+                         figure("map.png")}),
+              HasSubstr("points are unstable"));
+  expect_picture(figure("map.png"));
+  // The cycle of the paper, see SphereProgram.
+  EXPECT_THAT(output_of({"sweep", sphere, "--parameter", "sphere.shear_strength", "--from", "8e-3",
+                         "--to", "1e-2", "--points", "2", "--set", "time.settle=50", "--figure",
+                         figure("sweep.png")}),
+              HasSubstr("periodic       6.154451"));
+  expect_picture(figure("sweep.png"));
+  output_of({"locus", scene_path("examples/flutter.yaml"), "--parameter",
+             "substructures.oscillator.load", "--from", "0", "--to", "0.4", "--points", "9",
+             "--figure", figure("locus.png")});
+  expect_picture(figure("locus.png"));
+}
+
+TEST(VerbOutput, ThresholdSaysWhereAndWhichWay) {
+  const std::vector<std::string> scan{"threshold",   scene_path("disc_and_pads.yaml"),
+                                      "--parameter", "contact.friction.coefficient",
+                                      "--from",      "0.1"};
+  const auto to = [&](const char* end, const char* from) {
+    std::vector<std::string> arguments = scan;
+    arguments.back() = from;
+    arguments.insert(arguments.end(), {"--to", end});
+    return output_of(arguments);
+  };
+  EXPECT_THAT(to("0.6", "0.1"), HasSubstr("unstable beyond"));
+  EXPECT_THAT(to("0.15", "0.1"), HasSubstr("stable everywhere between"));
+  EXPECT_THAT(to("0.6", "0.55"), HasSubstr("unstable everywhere between"));
+}
+
+TEST(VerbOutput, FitPrintsItsCoefficients) {
+  const std::string text =
+      output_of({"fit", "--speeds", "1e-2", "1e2", "9", "--indentations", "1e-3", "0.1", "5"});
+  EXPECT_THAT(text, AllOf(HasSubstr("r^2 of the published fits"), HasSubstr("r^2 of the refit"),
+                          HasSubstr("shift of the speed axis, decades")));
+}
+
+}  // namespace
+}  // namespace stridor
