@@ -29,7 +29,7 @@ struct SamplingEffort {
   double tolerance = 1e-13;  ///< of the ends of windows, relative
   int climbing_steps = 40;   ///< of golden sections towards the largest growth
   enum class Ends { halving, secants } ends = Ends::halving;  ///< how ends of windows are found
-  int least_glimpses = 64;  ///< in all, where a family has them
+  int least_glimpses = 64;                                    ///< in all, where a family has them
 };
 /// For spectra that take seconds: all eigenvalues where they are asked for, and few besides.
 inline constexpr SamplingEffort sparing_effort{1, 1e-9, 8, SamplingEffort::Ends::secants};

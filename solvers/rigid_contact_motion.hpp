@@ -25,8 +25,8 @@ class RigidContactMotion final : public FaceContactMotion {
   /// @param step   h, s, > 0
   /// @throws std::invalid_argument with a penalty or without speed; if the step is too long for the
   ///         bodies: contact forces do not close the gaps, about half a period of a mode at the
-  ///         contact, or small motion grows in steps as it does not by itself (by a hundredth of the
-  ///         lowest frequency); as ExponentialPropagator, linearise() and dense_eigenvalues()
+  ///         contact, or small motion grows in steps as it does not by itself (by a hundredth of
+  ///         the lowest frequency); as ExponentialPropagator, linearise() and dense_eigenvalues()
   RigidContactMotion(const LinearSystem& bodies, std::vector<FaceContact> contacts,
                      const FaceContactLaw& law, const FaceSlidingState& state, double step);
 
