@@ -42,6 +42,7 @@ std::vector<Series> recorded(const SphereNumbers& numbers, double radius) {
 
 std::vector<SeriesSpec> specs_of(const std::vector<Series>& series) {
   std::vector<SeriesSpec> specs;
+  specs.reserve(series.size());
   for (const Series& one : series) specs.push_back(one.spec);
   return specs;
 }

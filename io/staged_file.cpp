@@ -120,7 +120,7 @@ struct StagedFileDriver {
       made.name = "stridor staged file";
       made.maxaddr = static_cast<haddr_t>(1) << 62;
       made.fc_degree = H5F_CLOSE_WEAK;
-      made.fapl_size = sizeof(StagedFile*);
+      made.fapl_size = sizeof(void*);
       made.open = open;
       made.close = close;
       made.cmp = compare;
