@@ -126,7 +126,8 @@ void RigidContactMotion::check_growth(const LinearSystem& bodies, const FaceSlid
   double growth = 0.0;
   double lowest = std::numeric_limits<double>::infinity();
   const LinearSystem closed = linearise(bodies, contacts_, law_, state);
-  if (closed.gaps.rows() == closed.size()) return;  // nothing moves
+  const bool nothing_moves = closed.gaps.rows() == closed.size();
+  if (closed.gaps.rows() == 0 || nothing_moves) return;  // free motion is exact
   for (const Eigenvalue& eigenvalue : dense_eigenvalues(make_pencil(closed))) {
     growth = std::max(growth, eigenvalue.growth());
     if (eigenvalue.s.imag() > 0.0) lowest = std::min(lowest, std::abs(eigenvalue.s));

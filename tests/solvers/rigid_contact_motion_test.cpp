@@ -146,6 +146,25 @@ TEST(RigidContactMotion, MassesThatMeetGoOnTogether) {
   EXPECT_NEAR(motion.velocity()(1), (-0.3 + 3.0 * 0.1) / 4.0, 1e-12);
 }
 
+TEST(RigidContactMotion, WithoutAClosedContactIsFreeMotion) {
+  constexpr double m = 2.0, k = 50.0, gap = 0.5;
+  const std::vector<FaceContact> contacts{contact_of(1, -1, 0)};
+  const FaceContactLaw law{0.0, std::nullopt, 1.0, false, false};
+  FaceSlidingState state = prescribed_sliding_state(contacts, law, 0.0);
+  state.contacts[0].is_closed = false;
+  state.contacts[0].gap = gap;
+  RigidContactMotion motion(
+      free_masses(Eigen::VectorXd::Constant(1, m), Eigen::VectorXd::Constant(1, k)), contacts, law,
+      state, 1e-2);
+  motion.start(Eigen::VectorXd::Constant(1, 0.1), Eigen::VectorXd::Zero(1));
+  for (int n = 1; n <= 500; ++n) {
+    ASSERT_TRUE(motion.step());
+    ASSERT_NEAR(motion.displacement()(0), 0.1 * std::cos(5.0 * 1e-2 * n), 1e-12);
+    ASSERT_EQ(motion.contact(0).state, ContactState::open);
+    ASSERT_NEAR(motion.contact(0).gap, gap + motion.displacement()(0), 1e-12);
+  }
+}
+
 TEST(RigidContactMotion, MassOnABeltSticksAndThenSwingsAtItsSpeed) {
   // As SpringContactMotion of this name, whose friction does not depend on what presses.
   constexpr double k = 100.0, N0 = 10.0, mu = 0.3, v = 0.1;
