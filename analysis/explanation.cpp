@@ -59,16 +59,23 @@ ModeEnergy mode_energy(const Pencil& pencil, Complex s, const Eigenvector& vecto
   const double length = vector.right.norm();
   const Eigen::VectorXcd q = vector.right / length;
   const Eigen::VectorXcd velocity = s * q;
-  const Eigen::VectorXcd force =
-      pencil.slots.transpose() * (pencil.equilibrium.transpose() * (vector.force / length)) +
-      through_slots(pencil, pencil.slot_stiffness, q) +
-      through_slots(pencil, pencil.slot_damping, velocity);
+  Eigen::VectorXcd slot_force = pencil.equilibrium.transpose() * (vector.force / length);
+  if (pencil.slot_stiffness.size() > 0) slot_force += pencil.slot_stiffness * (pencil.slots * q);
+  if (pencil.slot_damping.size() > 0) slot_force += pencil.slot_damping * (pencil.slots * velocity);
+  const auto growth_by = [&](Eigen::Index first, Eigen::Index count) {
+    const Eigen::VectorXcd motion = pencil.slots.middleRows(first, count) * velocity;
+    return -0.25 * motion.dot(slot_force.segment(first, count)).real();
+  };
+  const Eigen::Index num_contact_slots = pencil.num_slots() - pencil.num_body_slots;
   const double energy =
       0.25 * (std::norm(s) + pencil.omega.cwiseProduct(q.cwiseAbs()).squaredNorm());
   ModeEnergy result;
-  result.from_contact = -0.25 * velocity.dot(force).real() / energy;
+  result.from_contact = growth_by(0, num_contact_slots) / energy;
+  result.by_coupled = growth_by(num_contact_slots, pencil.num_body_slots) / energy;
   result.by_damping = -0.25 * (pencil.damping.array() * velocity.array().abs2()).sum() / energy;
-  result.residual = std::abs(result.from_contact + result.by_damping - s.real()) / std::abs(s);
+  result.residual =
+      std::abs(result.from_contact + result.by_damping + result.by_coupled - s.real()) /
+      std::abs(s);
   return result;
 }
 

@@ -53,7 +53,8 @@ ModeQuotients mode_quotients(const SparseSystem& system, std::complex<double> s,
 struct ModeEnergy {
   double from_contact = 0.0;  ///< P_contact/2E, part of the growth rate, 1/s
   double by_damping = 0.0;    ///< −P_damping/2E, likewise; negative where damping takes energy
-  double residual = 0.0;      ///< |from_contact + by_damping − Re s|/|s|
+  double by_coupled = 0.0;    ///< likewise of the coupled terms of bodies
+  double residual = 0.0;      ///< |from_contact + by_damping + by_coupled − Re s|/|s|
 
   /// Share of the energy that enters or leaves in one period.
   static double per_cycle(double rate, double frequency) { return 2.0 * rate / frequency; }

@@ -28,8 +28,7 @@ class BodiesInContact {
   std::optional<double> growth_near(double frequency) {
     if (!eigenvalues_) {
       Pencil rows = *contacts_;
-      rows.slot_stiffness.resize(0, 0);
-      rows.slot_damping.resize(0, 0);
+      drop_contact_terms(rows);
       eigenvalues_ = dense_eigenvalues(rows, DenseWork::eigenvalues);
     }
     std::optional<double> growth;

@@ -68,6 +68,7 @@ Json explanation_json(const Pencil& pencil, const Eigenvalue& eigenvalue, std::s
           {"energy",
            {{"growth_from_contact", energy.from_contact},
             {"growth_by_damping", energy.by_damping},
+            {"growth_by_coupled_terms", energy.by_coupled},
             {"contact_per_cycle", ModeEnergy::per_cycle(energy.from_contact, frequency)},
             {"damping_per_cycle", ModeEnergy::per_cycle(energy.by_damping, frequency)},
             {"residual", energy.residual}}},
@@ -91,8 +92,7 @@ std::vector<std::string> write_shapes(const EigOptions& options, const LoadedSce
   const Eigenvector vector = eigenvector(state.pencil, eigenvalue.s);
   BodyCache cache;
   ShapePicture picture;
-  picture.bodies = mode_shape(*member.model, loaded.scene.model.substructures, state.equilibrium,
-                              vector.right, cache);
+  picture.bodies = mode_shape(*member.model, state.equilibrium, vector.right, cache);
   std::complex<double> largest = 0.0;
   for (const BodyShape& body : picture.bodies) {
     for (const std::complex<double>& u : body.displacement.reshaped())
@@ -149,6 +149,8 @@ void print_explanation(const Json& explanation) {
   print_quotients(explanation["quotients"]);
   fmt::print("  growth: {:+.4f} 1/s from the contact, {:+.4f} 1/s by damping\n",
              value(energy, "growth_from_contact"), value(energy, "growth_by_damping"));
+  if (const double coupled = value(energy, "growth_by_coupled_terms"); coupled != 0.0)
+    fmt::print("          {:+.4f} 1/s by coupled terms of bodies\n", coupled);
   fmt::print(
       "  of its energy {:+.4f} % enters at the contact in each cycle, {:+.4f} % by damping\n",
       100.0 * value(energy, "contact_per_cycle"), 100.0 * value(energy, "damping_per_cycle"));

@@ -8,10 +8,9 @@
 
 #include "core/errors.hpp"
 #include "io/disc_recorder.hpp"
-#include "io/matrix_market.hpp"
+#include "io/matrix_reader.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_reader.hpp"
-#include "substructures/sparse_cholesky.hpp"
 
 namespace stridor {
 namespace {
@@ -41,87 +40,6 @@ void check_recording(const DiscScene& scene, std::vector<Problem>& problems) {
   }
 }
 
-/// The matrices of one body, with checks that name their keys.
-class MatrixLoader {
- public:
-  /// @param key  path of the body
-  /// @param tree of the scene; must live longer
-  MatrixLoader(std::string key, const SceneNode& tree) : key_(std::move(key)), tree_(&tree) {}
-
-  SceneMatrices load(const MatrixBodyParameters& body) const {
-    SceneMatrices parts;
-    parts.mass = matrix("mass", body.mass, 0);
-    const Eigen::Index n = parts.mass.rows();
-    expect_symmetry("mass", parts.mass, 1.0);
-    try {
-      SparseCholesky(parts.mass, "the mass");
-    } catch (const NumericalError&) {
-      fail("mass", "must be positive definite");
-    }
-    parts.damping = matrix("damping", body.damping, n);
-    parts.gyroscopic = matrix("gyroscopic", body.gyroscopic, n);
-    expect_symmetry("gyroscopic", parts.gyroscopic, -1.0);
-    parts.stiffness = matrix("stiffness", body.stiffness, n);
-    parts.circulatory = matrix("circulatory", body.circulatory, n);
-    expect_symmetry("circulatory", parts.circulatory, -1.0);
-    parts.load_damping = matrix("load_damping", body.load_damping, n);
-    parts.load_stiffness = matrix("load_stiffness", body.load_stiffness, n);
-    return parts;
-  }
-
- private:
-  [[noreturn]] void fail(const char* name, const std::string& message) const {
-    throw ConfigError(key_ + "." + name, message);
-  }
-
-  /// @param size expected; 0: any
-  SparseMatrix matrix(const char* name, const MatrixText& text, Eigen::Index size) const {
-    if (text.empty() && size == 0) fail(name, "is empty, expected a matrix");
-    if (text.empty()) return SparseMatrix(size, size);
-    SparseMatrix read;
-    const bool is_number =
-        text.front().find_first_not_of("+-.eE0123456789 \t") == std::string::npos;
-    if (text.size() == 1 && !is_number) {
-      read = read_matrix_file(path_of_file(*tree_, key_ + "." + name, text.front()));
-    } else {
-      try {
-        read = parse_matrix_rows(text);
-      } catch (const std::invalid_argument& error) {
-        fail(name, error.what());
-      }
-    }
-    const bool is_square = read.rows() == read.cols();
-    if (!is_square || (size > 0 && read.rows() != size)) {
-      fail(name, fmt::format("is {} x {}, expected {}", read.rows(), read.cols(),
-                             size > 0 ? fmt::format("{} x {} as `mass` is", size, size)
-                                      : std::string("as many rows as columns")));
-    }
-    return read;
-  }
-
-  /// @param sign 1 symmetric, −1 skew-symmetric
-  void expect_symmetry(const char* name, const SparseMatrix& matrix, double sign) const {
-    const SparseMatrix transposed = matrix.transpose();
-    const SparseMatrix difference = matrix - sign * transposed;
-    if (difference.norm() > 1e-12 * matrix.norm())
-      fail(name, sign > 0.0 ? "must be symmetric" : "must be skew-symmetric");
-  }
-
-  std::string key_;
-  const SceneNode* tree_;
-};
-
-SparseSystem sum(const SceneMatrices& parts, const MatrixBodyParameters& body) {
-  const MatrixFactors& factors = body.factors;
-  SparseSystem system;
-  system.mass = parts.mass;
-  system.velocity = factors.damping * parts.damping + factors.gyroscopic * parts.gyroscopic +
-                    body.load * parts.load_damping;
-  system.position = factors.stiffness * parts.stiffness + factors.circulatory * parts.circulatory +
-                    body.load * parts.load_stiffness;
-  return system;
-}
-
 LinearSystem dense_system(const SparseSystem& sparse) {
   LinearSystem dense;
   dense.mass = sparse.mass;
@@ -144,8 +62,8 @@ LinearModel model_of(const MatrixScene& scene, const LoadedLinearScene& loaded) 
   const auto& [name, variant] = *scene.substructures.begin();
   const auto& body = std::get<MatrixBodyParameters>(variant);
   if (!loaded.matrices) {
-    loaded.matrices = std::make_shared<const SceneMatrices>(
-        MatrixLoader("substructures." + name, loaded.tree).load(body));
+    loaded.matrices = std::make_shared<const NamedMatrices>(
+        read_matrices("substructures." + name, loaded.tree, body));
   }
   SparseSystem sparse = sum(*loaded.matrices, body);
   LinearModel model;
@@ -244,6 +162,9 @@ bool is_disc_scene(const SceneNode& tree) {
 bool is_matrix_scene(const SceneNode& tree) {
   const SceneEntry* bodies = tree.entry("substructures");
   if (bodies == nullptr) return false;
+  // What these say makes them bodies that touch others.
+  for (const char* key : {"contact", "contacts", "drive", "time"})
+    if (tree.entry(key) != nullptr) return false;
   for (const SceneEntry& body : bodies->value.entries) {
     const SceneEntry* type = body.value.entry("type");
     if (type != nullptr && type->value.text == "matrices") return true;

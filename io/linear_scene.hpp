@@ -48,7 +48,8 @@ struct DiscScene {
   static const Schema& schema();
 };
 
-/// A scene of this kind is known by a substructure of the type `matrices`; it has no other.
+/// A scene of this kind is known by a substructure of the type `matrices` that nothing touches: it
+/// has no contacts, no drive and no time. It has no other substructure.
 struct MatrixScene {
   int format = 0;
   std::map<std::string, std::variant<MatrixBodyParameters>> substructures;
@@ -77,11 +78,6 @@ struct LinearModel {
   double highest_frequency = 0.0;      ///< up to which the model answers, Hz; may be infinite
 };
 
-/// The matrices of a body as its scene names them, all n x n.
-struct SceneMatrices {
-  SparseMatrix mass, damping, gyroscopic, stiffness, circulatory, load_damping, load_stiffness;
-};
-
 /// Number of unknowns up to which all eigenvalues are computed, at a cost of its third power.
 constexpr Eigen::Index largest_dense_size = 1000;
 
@@ -91,7 +87,7 @@ struct LoadedLinearScene {
   SceneNode tree;
   LinearScene scene;
   /// Read when they are first needed; copies share them.
-  mutable std::shared_ptr<const SceneMatrices> matrices;
+  mutable std::shared_ptr<const NamedMatrices> matrices;
 
   std::string resolved() const;
   std::string hash() const;

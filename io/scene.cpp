@@ -10,6 +10,7 @@
 #include "io/channels.hpp"
 #include "io/contact_scene.hpp"
 #include "io/linear_scene.hpp"
+#include "io/matrix_reader.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_reader.hpp"
 #include "io/sphere_scene.hpp"
@@ -258,6 +259,10 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
                     "map; run takes discs"));
   }
   loaded.scene = read_as<Scene>(loaded.tree);
+  for (auto& [name, substructure] : loaded.scene.model.substructures) {
+    if (auto* given = std::get_if<TouchedMatrixBodyParameters>(&substructure))
+      make_files_absolute("substructures." + name, loaded.tree, given->body);
+  }
   return loaded;
 }
 
@@ -284,7 +289,14 @@ Model build_model(const LoadedScene& loaded, BodyCache& cache) {
     for (const Channel& channel : channels) {
       if (channel.point) observed.emplace_back(*channel.point, channel.key);
     }
-    return make_model(scene.model, observed, cache);
+    ModelParameters parameters = scene.model;
+    for (auto& [name, substructure] : parameters.substructures) {
+      if (auto* given = std::get_if<TouchedMatrixBodyParameters>(&substructure)) {
+        given->matrices = std::make_shared<const NamedMatrices>(
+            read_matrices("substructures." + name, loaded.tree, given->body));
+      }
+    }
+    return make_model(parameters, observed, cache);
   } catch (const ConfigError& error) {
     throw loaded.located(error);
   }

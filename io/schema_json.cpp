@@ -241,13 +241,16 @@ class Writer {
     return json;
   }
 
-  /// One form directly, since messages about `oneOf` name no key.
+  /// By the discriminator, the first form where it names none: messages about `oneOf` name no key.
   Json entry_json(const Key& key) {
-    if (key.alternatives.size() == 1) return reference(key, key.alternatives.front());
-    Json json = Json::object();
-    json["oneOf"] = Json::array();
-    for (const Alternative& alternative : key.alternatives) {
-      json["oneOf"].push_back(reference(key, alternative));
+    Json json = reference(key, key.alternatives.front());
+    for (std::size_t i = key.alternatives.size(); i-- > 1;) {
+      Json choice = Json::object();
+      choice["if"]["properties"][key.discriminator]["const"] = key.alternatives[i].name;
+      choice["if"]["required"] = Json::array({key.discriminator});
+      choice["then"] = reference(key, key.alternatives[i]);
+      choice["else"] = std::move(json);
+      json = std::move(choice);
     }
     return json;
   }
@@ -276,12 +279,14 @@ class Writer {
   std::map<std::tuple<const Schema*, std::string, std::string>, std::string> names_;
 };
 
-/// What a scene satisfies whose substructures are all of one type.
+/// What a scene satisfies whose substructures are all of one type and touch nothing.
 Json all_bodies_of_type(const std::string& type) {
   Json body = {{"required", Json::array({"type"})}};
   body["properties"]["type"]["const"] = type;
   Json scene = {{"required", Json::array({"substructures"})}};
   scene["properties"]["substructures"]["additionalProperties"] = std::move(body);
+  for (const char* key : {"contact", "contacts", "drive", "time"})
+    scene["not"]["anyOf"].push_back({{"required", Json::array({key})}});
   return scene;
 }
 

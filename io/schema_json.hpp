@@ -29,7 +29,8 @@ std::string json_schema_text(const Schema& schema);
 struct SpecialScene {
   const Schema* schema = nullptr;
   std::vector<std::string> signs;      ///< any one of them says that it is of this kind
-  std::string substructure_type = {};  ///< or that every substructure is of this type; may be empty
+  std::string substructure_type = {};  ///< or that every substructure is of this type and there is
+                                       ///< no contact, drive or time; may be empty
 };
 
 /// The schema of scenes of several kinds: the first of `specials` whose sign stands at the top,

@@ -39,25 +39,38 @@ void append_keys(std::string& text, const Schema& schema, const void* object) {
   }
 }
 
-const RayleighDamping& damping_of(const SubstructureParameters& parameters) {
-  return std::visit([](const auto& body) -> const RayleighDamping& { return body.damping; },
-                    parameters);
+/// Proportional damping of a body. What matrices give is not told apart from their other terms.
+struct DampingOf {
+  RayleighDamping operator()(const BeamParameters& beam) const { return beam.damping; }
+  RayleighDamping operator()(const TouchedMatrixBodyParameters&) const { return {}; }
+};
+RayleighDamping damping_of(const SubstructureParameters& parameters) {
+  return std::visit(DampingOf{}, parameters);
 }
+
+struct RemoveDamping {
+  void operator()(BeamParameters& beam) const { beam.damping = {}; }
+  void operator()(TouchedMatrixBodyParameters&) const {}
+};
 
 /// What is the same for two bodies that differ at most in their damping.
 std::string key_of(SubstructureParameters parameters) {
   std::string text = std::to_string(parameters.index()) + ':';
+  std::visit(RemoveDamping{}, parameters);
   std::visit(
-      [&](auto& body) {
-        body.damping = {};
-        append_keys(text, std::decay_t<decltype(body)>::schema(), &body);
-      },
+      [&](const auto& body) { append_keys(text, std::decay_t<decltype(body)>::schema(), &body); },
       parameters);
   return text;
 }
 
+struct MakeBody {
+  BodyMatrices operator()(const BeamParameters& beam) const { return make_beam(beam); }
+  BodyMatrices operator()(const TouchedMatrixBodyParameters& body) const {
+    return make_matrix_body(body);
+  }
+};
 BodyMatrices make_body(const SubstructureParameters& parameters) {
-  return std::visit([](const BeamParameters& beam) { return make_beam(beam); }, parameters);
+  return std::visit(MakeBody{}, parameters);
 }
 
 }  // namespace

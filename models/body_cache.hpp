@@ -22,7 +22,7 @@ class BodyCache {
   explicit BodyCache(std::size_t capacity = 16);
 
   /// Matrices of a body with its supports, by its kind.
-  /// @throws as make_beam()
+  /// @throws as make_beam(), make_matrix_body()
   BodyMatrices matrices(const SubstructureParameters& parameters);
 
   struct Reduction {

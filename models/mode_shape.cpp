@@ -13,13 +13,15 @@ struct ElementsOf {
   std::vector<std::array<int, 8>> operator()(const BeamParameters& beam) const {
     return beam_elements(beam.mesh);
   }
+  std::vector<std::array<int, 8>> operator()(const TouchedMatrixBodyParameters&) const {
+    return {};
+  }
 };
 
 }  // namespace
 
-std::vector<BodyShape> mode_shape(
-    const Model& model, const std::map<std::string, SubstructureParameters>& substructures,
-    const Equilibrium& equilibrium, const Eigen::VectorXcd& mode, BodyCache& cache) {
+std::vector<BodyShape> mode_shape(const Model& model, const Equilibrium& equilibrium,
+                                  const Eigen::VectorXcd& mode, BodyCache& cache) {
   Eigen::Index num_modes = 0;
   for (const SystemBody& body : model.system.bodies) num_modes += body.modal.size();
   if (mode.size() != num_modes) {
@@ -33,8 +35,8 @@ std::vector<BodyShape> mode_shape(
     const Eigen::Index size = body.modal.size();
     const Eigen::VectorXcd part = mode.segment(first, size);
     first += size;
-    const auto parameters = substructures.find(body.name);
-    if (parameters == substructures.end()) continue;
+    const auto parameters = model.substructures.find(body.name);
+    if (parameters == model.substructures.end()) continue;
     const BodyMatrices matrices = cache.matrices(parameters->second);
     const Model::Placement& placement = model.placements[b];
     const Eigen::MatrixXd recovery = recovery_matrix(

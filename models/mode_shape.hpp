@@ -13,14 +13,12 @@ namespace stridor {
 /// A mode about an equilibrium, on the meshes of the bodies. A rigid master has no nodes and is
 /// left out.
 ///
-/// @param substructures that the model was made of
-/// @param equilibrium   of its system; nodes stand where it puts them, the bodies that follow the
-///                      drive displaced by it. In the undeformed geometry they are not deformed
-/// @param mode          q, modal coordinates of all bodies in their order
+/// @param equilibrium of its system; nodes stand where it puts them, the bodies that follow the
+///                    drive displaced by it. In the undeformed geometry they are not deformed
+/// @param mode        q, modal coordinates of all bodies in their order
 /// @throws std::invalid_argument if `mode` is not as long as the bodies have modes
 /// Cost: a reduction of every body.
-std::vector<BodyShape> mode_shape(
-    const Model& model, const std::map<std::string, SubstructureParameters>& substructures,
-    const Equilibrium& equilibrium, const Eigen::VectorXcd& mode, BodyCache& cache);
+std::vector<BodyShape> mode_shape(const Model& model, const Equilibrium& equilibrium,
+                                  const Eigen::VectorXcd& mode, BodyCache& cache);
 
 }  // namespace stridor

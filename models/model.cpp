@@ -92,8 +92,9 @@ double node_distance(const BodyMatrices& body, const std::vector<int>& nodes, st
 
 /// The nodes of a surface that `interface.spacing` keeps.
 std::vector<int> spaced_nodes(const Body& body, const std::vector<int>& nodes) {
-  const auto& spacing = std::get<BeamParameters>(*body.parameters).interface.spacing;
-  if (!spacing) return nodes;
+  const auto* beam = std::get_if<BeamParameters>(body.parameters);
+  if (beam == nullptr || !beam->interface.spacing) return nodes;
+  const std::optional<double>& spacing = beam->interface.spacing;
   const double distance = node_distance(body.matrices, nodes, 0);
   const double ratio = *spacing / distance;
   const auto stride = static_cast<std::size_t>(std::llround(ratio));
@@ -375,8 +376,37 @@ SystemBody make_rigid_body() {
   return body;
 }
 
-std::string type_name(const SubstructureParameters&) {
-  return "beam";
+std::string type_name(const SubstructureParameters& parameters) {
+  return std::holds_alternative<BeamParameters>(parameters) ? "beam" : "body";
+}
+
+/// Number of fixed-interface modes asked for; for a body of which nothing is to be reduced, all
+/// unknowns become interface.
+int modes_of(Body& body, const std::string& key) {
+  if (const auto* beam = std::get_if<BeamParameters>(body.parameters))
+    return beam->reduction.fixed_interface_modes;
+  const auto& given = std::get<TouchedMatrixBodyParameters>(*body.parameters);
+  if (given.reduction) return given.reduction->fixed_interface_modes;
+  constexpr Eigen::Index most_unknowns = 500;
+  if (body.matrices.num_dofs() > most_unknowns) {
+    throw ConfigError(key + ".reduction",
+                      fmt::format("missing: {} unknowns are too many to keep them all (up to {}); "
+                                  "give fixed_interface_modes",
+                                  body.matrices.num_dofs(), most_unknowns));
+  }
+  for (int dof = 0; dof < body.matrices.num_dofs(); ++dof) body.keep(dof);
+  return 0;
+}
+
+/// Terms that couple modes keep no rigid motion apart, so statics know none.
+void check_coupled(const SystemBody& body, const std::string& key) {
+  const CoupledTerms& coupled = body.modal.coupled;
+  if (coupled.is_empty() || coupled.position.isZero(0.0)) return;
+  if ((body.modal.omega.array() > 0.0).all()) return;
+  throw ConfigError(key + ".circulatory",
+                    fmt::format("goes with a stiffness that resists every motion; that of '{}' "
+                                "leaves some free",
+                                body.name));
 }
 
 }  // namespace
@@ -384,8 +414,8 @@ std::string type_name(const SubstructureParameters&) {
 const Schema& ModelParameters::schema() {
   static const Schema keys =
       SchemaOf<ModelParameters>("model")
-          .named_variants("substructures", &ModelParameters::substructures, "type", {"beam"},
-                          {.doc = "The bodies, by name."})
+          .named_variants("substructures", &ModelParameters::substructures, "type",
+                          {"beam", "matrices"}, {.doc = "The bodies, by name."})
           .section("contact", &ModelParameters::contact,
                    {.doc = "The contact pair, where there is one only.", .optional = true})
           .named_sections("contacts", &ModelParameters::contacts,
@@ -447,7 +477,12 @@ Model make_model(const ModelParameters& parameters,
     Body body;
     body.name = name;
     body.parameters = &substructure;
-    body.matrices = cache.matrices(substructure);
+    try {
+      body.matrices = cache.matrices(substructure);
+    } catch (const ConfigError& error) {
+      const Problem& problem = error.problems().front();
+      throw ConfigError("substructures." + name + "." + problem.key, problem.message);
+    }
     bodies.push_back(std::move(body));
   }
   const auto pairs = parameters.pairs();
@@ -467,6 +502,7 @@ Model make_model(const ModelParameters& parameters,
 
   // A body that carries others stands before they are placed on it; chains are placed in order.
   Model model;
+  model.substructures = parameters.substructures;
   System& system = model.system;
   system.drive = make_drive(parameters.drive,
                             pairs.empty() ? SlidingMode::moving : pairs.begin()->second.sliding);
@@ -554,8 +590,7 @@ Model make_model(const ModelParameters& parameters,
       body.keep(body.matrices.load_dof);
       finished.load_row = body.row_of(body.matrices.load_dof);
     }
-    const int num_modes =
-        std::get<BeamParameters>(*body.parameters).reduction.fixed_interface_modes;
+    const int num_modes = modes_of(body, key);
     const auto num_interior =
         body.matrices.num_dofs() - static_cast<Eigen::Index>(body.interface.size());
     if (num_modes > num_interior) {
@@ -574,6 +609,7 @@ Model make_model(const ModelParameters& parameters,
           key, fmt::format("cannot be reduced: {}. Give it supports or more contact points",
                            error.what()));
     }
+    check_coupled(finished, key);
     const auto number = static_cast<int>(system.bodies.size());
     finished.initial_displacement = displacement.of(number, body, finished);
     finished.initial_velocity = velocity.of(number, body, finished);

@@ -10,12 +10,12 @@
 #include "coupling/contact_parameters.hpp"
 #include "coupling/system.hpp"
 #include "models/initial_parameters.hpp"
-#include "substructures/beam.hpp"
+#include "substructures/matrix_body.hpp"
 
 namespace stridor {
 
 /// Every kind of substructure that a scene can hold, by its key `type`.
-using SubstructureParameters = std::variant<BeamParameters>;
+using SubstructureParameters = std::variant<BeamParameters, TouchedMatrixBodyParameters>;
 
 /// The part of a scene that describes the mechanics.
 struct ModelParameters {
@@ -50,7 +50,8 @@ struct Model {
   };
   System system;
   std::map<PointName, Point> points;
-  std::vector<Placement> placements;  ///< of the bodies of the system
+  std::vector<Placement> placements;                            ///< of the bodies of the system
+  std::map<std::string, SubstructureParameters> substructures;  ///< of which it was made
 };
 
 /// Builds, places and reduces the bodies, connects them and sets them moving. The initial state is
@@ -66,7 +67,7 @@ struct Model {
 /// @throws ConfigError (key paths below "substructures", "contact", "contacts") if a name is
 /// unknown,
 ///         a slave starts off its master, a body is left free to move rigidly within its interface,
-///         or a reduction asks for more modes than there are
+///         a reduction asks for more modes than there are, or matrices do not make a body
 Model make_model(const ModelParameters& parameters,
                  const std::vector<std::pair<PointName, std::string>>& observed);
 

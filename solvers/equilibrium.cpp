@@ -367,14 +367,23 @@ class Search {
       rigid_load_(columns) = load.head(body.num_rigid);
       if (body.slots.empty()) continue;
 
-      const auto omega = modal.omega.tail(num_elastic);
       body.rows = modal.rows(watched[b], Eigen::all);
-      const Eigen::MatrixXd scaled =
-          body.rows.rightCols(num_elastic) * omega.cwiseInverse().asDiagonal();
-      flexibility_(body.slots, body.slots) = scaled * scaled.transpose();
       rigid_rows_(body.slots, columns) = body.rows.leftCols(body.num_rigid);
-      loaded_(body.slots) = scaled * load.tail(num_elastic).cwiseQuotient(omega);
+      const auto elastic = body.rows.rightCols(num_elastic);
+      flexibility_(body.slots, body.slots) = elastic * answer_of(modal, elastic.transpose());
+      loaded_(body.slots) = elastic * answer_of(modal, load.tail(num_elastic));
     }
+  }
+
+  /// What constant forces do to the elastic modes of a body: (diag(ω²) + N)⁻¹ f.
+  static Eigen::MatrixXd answer_of(const ModalBody& body, const Eigen::MatrixXd& forces) {
+    const auto squares = body.omega.tail(forces.rows()).array().square();
+    if (body.coupled.is_empty()) return squares.inverse().matrix().asDiagonal() * forces;
+    // Circulatory terms do not act on rigid modes, which come first.
+    Eigen::MatrixXd stiffness =
+        body.coupled.position.bottomRightCorner(forces.rows(), forces.rows());
+    stiffness.diagonal() += squares.matrix();
+    return stiffness.partialPivLu().solve(forces);
   }
 
   /// Positions of a contact for given displacements of its slots.
@@ -670,7 +679,7 @@ class Search {
       if (system_.bodies[b].load_row >= 0)
         modes += answer_.state.load * modal.rows.row(system_.bodies[b].load_row).transpose();
       const Eigen::Index num_elastic = modal.size() - body.num_rigid;
-      modes.tail(num_elastic).array() /= modal.omega.tail(num_elastic).array().square();
+      modes.tail(num_elastic) = answer_of(modal, modes.tail(num_elastic));
       modes.head(body.num_rigid) =
           unknowns_.segment(num_slots_ + num_contacts_ + body.first_rigid, body.num_rigid);
       answer_.displacement.push_back(std::move(modes));

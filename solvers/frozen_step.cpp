@@ -5,8 +5,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "core/errors.hpp"
+#include "solvers/coupled_propagator.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/modal_recurrence.hpp"
 #include "solvers/prompt_surplus.hpp"
@@ -15,40 +17,65 @@
 namespace stridor {
 namespace {
 
-/// The modes that move, as columns of one array each.
+/// The modes that move, from (r, d) at t_n to t_{n+1}; coupled ones have velocities in the place of
+/// increments.
 struct MovingModes {
-  Eigen::VectorXd keep;    ///< s
-  Eigen::VectorXd pull;    ///< k
-  Eigen::VectorXd gain;    ///< e
-  Eigen::MatrixXd gaps;    ///< C
-  Eigen::MatrixXd forces;  ///< E
+  Eigen::MatrixXd free;      ///< without forces, 2n x 2n
+  Eigen::MatrixXd by_force;  ///< per modal force, 2n x n
+  Eigen::MatrixXd gaps;      ///< C
+  Eigen::MatrixXd forces;    ///< E
   Eigen::MatrixXd closed;  ///< what a unit of λ closes of the gaps at once: C g Eᵀ, or C e Eᵀ
+
+  Eigen::Index size() const { return gaps.cols(); }
 };
 
-MovingModes moving_modes(const Pencil& contacts, const TimeParameters& time,
+MovingModes moving_modes(const Pencil& contacts, const System& system, const TimeParameters& time,
                          std::optional<double> surplus, double cutoff) {
   std::vector<Eigen::Index> moving;
-  for (Eigen::Index i = 0; i < contacts.num_modes(); ++i) {
-    if (contacts.omega(i) <= cutoff) moving.push_back(i);
+  std::vector<std::pair<Eigen::Index, const SystemBody*>> coupled;  // first of the moving modes
+  Eigen::Index first = 0;
+  for (const SystemBody& body : system.bodies) {
+    const bool is_coupled = !body.modal.coupled.is_empty();
+    if (is_coupled) coupled.emplace_back(static_cast<Eigen::Index>(moving.size()), &body);
+    for (Eigen::Index i = first; i < first + body.modal.size(); ++i)
+      if (is_coupled || contacts.omega(i) <= cutoff) moving.push_back(i);
+    first += body.modal.size();
   }
   const auto n = static_cast<Eigen::Index>(moving.size());
-  MovingModes modes{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n), {}, {}, {}};
+  MovingModes modes{
+      Eigen::MatrixXd::Zero(2 * n, 2 * n), Eigen::MatrixXd::Zero(2 * n, n), {}, {}, {}};
   const Eigen::MatrixXd slots = contacts.slots(Eigen::all, moving);
   modes.gaps = contacts.compatibility * slots;
   modes.forces = contacts.equilibrium * slots;
-  Eigen::VectorXd prompt(n);
+  Eigen::VectorXd prompt = Eigen::VectorXd::Zero(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::Index mode = moving[static_cast<std::size_t>(i)];
     const StepCoefficients c =
         step_coefficients(time.integrator, contacts.omega(mode), contacts.damping(mode), time.step,
                           surplus.value_or(0.0));
-    modes.keep(i) = c.keep;
-    modes.pull(i) = c.pull;
-    modes.gain(i) = c.gain;
+    modes.free(i, i) = 1.0 - c.pull;
+    modes.free(i, n + i) = modes.free(n + i, n + i) = c.keep;
+    modes.free(n + i, i) = -c.pull;
+    modes.by_force(i, i) = modes.by_force(n + i, i) = c.gain;
     prompt(i) = c.prompt;
   }
-  const Eigen::VectorXd& answer = surplus ? prompt : modes.gain;
-  modes.closed = modes.gaps * answer.asDiagonal() * modes.forces.transpose();
+  for (const auto& [at, body] : coupled) {
+    const Eigen::Index m = body->modal.size();
+    const CoupledStep step =
+        make_coupled_step(body->modal, time.step, surplus, body->modal.damping.alpha, body->name);
+    const Eigen::MatrixXd by_force = step.by_force();
+    for (const Eigen::Index to : {Eigen::Index{0}, Eigen::Index{1}}) {
+      modes.by_force.block(to * n + at, at, m, m) = by_force.middleRows(to * m, m);
+      for (const Eigen::Index from : {Eigen::Index{0}, Eigen::Index{1}}) {
+        modes.free.block(to * n + at, from * n + at, m, m) =
+            step.free.block(to * m, from * m, m, m);
+      }
+    }
+    prompt.segment(at, m) = step.prompt;
+  }
+  modes.closed =
+      surplus ? Eigen::MatrixXd(modes.gaps * prompt.asDiagonal() * modes.forces.transpose())
+              : Eigen::MatrixXd(modes.gaps * modes.by_force.topRows(n) * modes.forces.transpose());
   return modes;
 }
 
@@ -65,7 +92,8 @@ std::vector<LeftOut> left_out_modes(const Pencil& contacts, const System& system
   for (const SystemBody& body : system.bodies) {
     const Eigen::Index size = body.modal.size();
     Eigen::VectorXd flexibility = Eigen::VectorXd::Zero(size);
-    for (Eigen::Index i = 0; i < size; ++i) {
+    const Eigen::Index num_droppable = body.modal.coupled.is_empty() ? size : 0;
+    for (Eigen::Index i = 0; i < num_droppable; ++i) {
       const double omega = contacts.omega(first + i);
       if (omega > cutoff) flexibility(i) = 1.0 / (omega * omega);
     }
@@ -87,13 +115,16 @@ FrozenStep::FrozenStep(const System& system, const TimeParameters& time)
 
 FrozenStep::FrozenStep(const System& system, const TimeParameters& time,
                        std::optional<double> surplus)
-    : system_(&system), time_(time), surplus_(surplus), cutoff_(retained_frequency(system, time)) {}
+    : system_(&system), time_(time), surplus_(surplus), cutoff_(retained_frequency(system, time)) {
+  for (const SystemBody& body : system.bodies)
+    if (!body.modal.coupled.is_empty()) require_exact(body.name, time);
+}
 
 std::vector<std::complex<double>> FrozenStep::factors(const Pencil& contacts) const {
   check_pencil(contacts);
   if (contacts.num_modes() != make_modal_pencil(*system_).num_modes())
     throw std::invalid_argument("FrozenStep: the contacts are on other modes than the system has");
-  const MovingModes modes = moving_modes(contacts, time_, surplus_, cutoff_);
+  const MovingModes modes = moving_modes(contacts, *system_, time_, surplus_, cutoff_);
   const std::vector<LeftOut> left_out = left_out_modes(contacts, *system_, time_.step, cutoff_);
   Eigen::MatrixXd closed = modes.closed;
   for (const LeftOut& body : left_out) closed += body.share * body.closed;
@@ -105,7 +136,7 @@ std::vector<std::complex<double>> FrozenStep::factors(const Pencil& contacts) co
 
   // State: r, d, and λ~ of every body that leaves out modes. λ_n = by_position r + by_increment d +
   // Σ by_lag λ~.
-  const Eigen::Index n = modes.keep.size();
+  const Eigen::Index n = modes.size();
   const Eigen::Index k = closed.rows();
   const Eigen::Index size = 2 * n + k * static_cast<Eigen::Index>(left_out.size());
   Eigen::MatrixXd force = Eigen::MatrixXd::Zero(k, size);
@@ -116,18 +147,13 @@ std::vector<std::complex<double>> FrozenStep::factors(const Pencil& contacts) co
           -(1.0 - left_out[b].share) * left_out[b].closed;
     }
   } else {
-    force.leftCols(n) = modes.gaps * (1.0 - modes.pull.array()).matrix().asDiagonal();
-    force.middleCols(n, n) = modes.gaps * modes.keep.asDiagonal();
+    force.leftCols(2 * n) = modes.gaps * modes.free.topRows(n);
   }
   if (k > 0) force = close.solve(force).eval();
 
   Eigen::MatrixXd map = Eigen::MatrixXd::Zero(size, size);
-  auto increment = map.middleRows(n, n);
-  increment = -(modes.gain.asDiagonal() * modes.forces.transpose() * force);
-  increment.leftCols(n).diagonal() -= modes.pull;
-  increment.middleCols(n, n).diagonal() += modes.keep;
-  map.topRows(n) = increment;
-  map.topLeftCorner(n, n).diagonal().array() += 1.0;
+  map.topRows(2 * n) = -(modes.by_force * (modes.forces.transpose() * force));
+  map.topLeftCorner(2 * n, 2 * n) += modes.free;
   for (std::size_t b = 0; b < left_out.size(); ++b) {
     const Eigen::Index first = 2 * n + k * static_cast<Eigen::Index>(b);
     map.middleRows(first, k) = left_out[b].share * force;

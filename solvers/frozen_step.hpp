@@ -27,6 +27,7 @@ namespace stridor {
 ///   λ~, λ~_n = w λ_n + (1 − w) λ~_{n−1}
 ///
 /// with R_b = B_C R B_Eᵀ of the modes that body b leaves out and λ~ the force as they feel it.
+/// Bodies with coupled terms have the matrices of their CoupledStep in place of s, k, e and g.
 class FrozenStep {
  public:
   /// As a simulation takes it up: with the modes that `time` keeps, and prompt_surplus().

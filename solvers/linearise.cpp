@@ -30,8 +30,13 @@ Pencil linearise(const System& system, const Equilibrium& equilibrium,
   if (equilibrium.status != EquilibriumStatus::converged)
     throw std::invalid_argument("linearise: the equilibrium has not converged");
   Pencil pencil = make_modal_pencil(system);
-  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(pencil.num_slots(), pencil.num_slots());
+  const Eigen::Index num_slots = pencil.num_slots();
+  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(num_slots, num_slots);
   Eigen::MatrixXd damping = stiffness;
+  if (pencil.num_body_slots > 0) {
+    stiffness = pencil.slot_stiffness;
+    damping = pencil.slot_damping;
+  }
   std::vector<Eigen::Index> kept_slots;
   std::vector<Eigen::Index> kept_constraints;
   for (std::size_t i = 0; i < equilibrium.contacts.size(); ++i) {
@@ -70,9 +75,13 @@ Pencil linearise(const System& system, const Equilibrium& equilibrium,
     }
     for (Eigen::Index k = 0; k < size; ++k) kept_slots.push_back(first + k);
   }
+  for (Eigen::Index slot = num_slots - pencil.num_body_slots; slot < num_slots; ++slot)
+    kept_slots.push_back(slot);
   pencil.slots = pencil.slots(kept_slots, Eigen::all).eval();
   pencil.compatibility = pencil.compatibility(kept_constraints, kept_slots).eval();
   pencil.equilibrium = pencil.equilibrium(kept_constraints, kept_slots).eval();
+  pencil.slot_stiffness.resize(0, 0);
+  pencil.slot_damping.resize(0, 0);
   if (!stiffness.isZero(0.0)) pencil.slot_stiffness = stiffness(kept_slots, kept_slots);
   if (!damping.isZero(0.0)) pencil.slot_damping = damping(kept_slots, kept_slots);
   return pencil;

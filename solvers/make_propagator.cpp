@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "solvers/coupled_propagator.hpp"
 #include "solvers/dense_two_step.hpp"
 #include "solvers/modal_recurrence.hpp"
 #include "solvers/retained_modes.hpp"
@@ -60,6 +61,12 @@ std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimePa
     return load_patterns(body, rows, base_inertia);
   };
   std::unique_ptr<Propagator> propagator;
+  if (!body.modal.coupled.is_empty()) {
+    require_exact(body.name, time);
+    return std::make_unique<CoupledPropagator>(
+        body.modal, patterns(body.modal.rows, body.modal.base_inertia), time.step, surplus,
+        num_slots, alpha, loads, body.name);
+  }
   // A body without degrees of freedom is the same in all coordinates, but BLAS takes no empty
   // matrix.
   switch (body.reduced.size() == 0 ? Coordinates::modal : time.coordinates) {

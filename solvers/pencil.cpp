@@ -182,14 +182,43 @@ Pencil make_modal_pencil(const System& system) {
     pencil.omega.segment(first, size) = body.modal.omega;
     pencil.damping.segment(first, size) =
         body.modal.damping.alpha + body.modal.damping.beta * body.modal.omega.array().square();
+    if (!body.modal.coupled.is_empty()) pencil.num_body_slots += size;
     first += size;
   }
   const auto k = static_cast<Eigen::Index>(system.contacts.size());
-  const Eigen::Index m = first_contact_slot(system, static_cast<int>(k));
+  const Eigen::Index num_contact_slots = first_contact_slot(system, static_cast<int>(k));
+  const Eigen::Index m = num_contact_slots + pencil.num_body_slots;
   pencil.slots.setZero(m, n);
   pencil.compatibility.setZero(k, m);
   pencil.equilibrium.setZero(k, m);
+  if (pencil.num_body_slots == 0) return pencil;
+  pencil.slot_stiffness.setZero(m, m);
+  pencil.slot_damping.setZero(m, m);
+  Eigen::Index slot = num_contact_slots;
+  first = 0;
+  for (const SystemBody& body : system.bodies) {
+    const Eigen::Index size = body.modal.size();
+    const CoupledTerms& coupled = body.modal.coupled;
+    if (!coupled.is_empty()) {
+      pencil.slots.block(slot, first, size, size).setIdentity();
+      pencil.slot_stiffness.block(slot, slot, size, size) = coupled.position;
+      pencil.slot_damping.block(slot, slot, size, size) = coupled.velocity;
+      slot += size;
+    }
+    first += size;
+  }
   return pencil;
+}
+
+void drop_contact_terms(Pencil& pencil) {
+  const Eigen::Index num_contact_slots = pencil.num_slots() - pencil.num_body_slots;
+  for (Eigen::MatrixXd* terms : {&pencil.slot_stiffness, &pencil.slot_damping}) {
+    if (pencil.num_body_slots == 0) {
+      terms->resize(0, 0);
+    } else if (terms->size() > 0) {
+      terms->topLeftCorner(num_contact_slots, num_contact_slots).setZero();
+    }
+  }
 }
 
 Eigen::Index first_contact_slot(const System& system, int contact) {

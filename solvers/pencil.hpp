@@ -22,15 +22,18 @@ namespace stridor {
 /// (System::num_contact_slots) and one constraint. Constraints may be added: a sticking contact has
 /// two. G and H hold what the contact forces in equilibrium add where they turn or shift with the
 /// motion or depend on the sliding velocity; about the undeformed geometry there is nothing to add.
+/// The modes of a body with coupled terms are slots too, the last ones, between which G and H hold
+/// these terms.
 struct Pencil {
   Eigen::VectorXd omega;    ///< ω, n, rad/s, >= 0, in any order
   Eigen::VectorXd damping;  ///< c, n, 1/s; negative feeds energy in
   Eigen::MatrixXd slots;    ///< S, m x n, kg^-1/2
 
-  Eigen::MatrixXd compatibility;   ///< B_C on the slots, k x m
-  Eigen::MatrixXd equilibrium;     ///< B_E on the slots, k x m
-  Eigen::MatrixXd slot_stiffness;  ///< G, m x m, N/m; empty where there is none
-  Eigen::MatrixXd slot_damping;    ///< H, m x m, N s/m; empty where there is none
+  Eigen::MatrixXd compatibility;    ///< B_C on the slots, k x m
+  Eigen::MatrixXd equilibrium;      ///< B_E on the slots, k x m
+  Eigen::MatrixXd slot_stiffness;   ///< G, m x m, N/m; empty where there is none
+  Eigen::MatrixXd slot_damping;     ///< H, m x m, N s/m; empty where there is none
+  Eigen::Index num_body_slots = 0;  ///< of bodies with coupled terms
 
   Eigen::Index num_modes() const { return omega.size(); }
   Eigen::Index num_slots() const { return slots.rows(); }
@@ -45,8 +48,13 @@ void check_pencil(const Pencil& pencil);
 
 /// Modes of all bodies in their order, with the damping that lasts (α at the end of its schedule),
 /// and slots and one constraint per contact of the system. The rows are zero until place_contact()
-/// or place_undeformed() fills them; G and H are empty.
+/// or place_undeformed() fills them; G and H hold the coupled terms of the bodies, and are empty
+/// where there are none.
 Pencil make_modal_pencil(const System& system);
+
+/// Takes what the contact forces in equilibrium add out of G and H; what is left are the coupled
+/// terms of bodies.
+void drop_contact_terms(Pencil& pencil);
 
 /// First slot of a contact in the pencil of its system.
 Eigen::Index first_contact_slot(const System& system, int contact);

@@ -30,9 +30,10 @@ struct PointAnswer {
 /// Coefficients of all modes of a body as it is marched without surplus.
 std::vector<StepCoefficients> coefficients_of(const ModalBody& body, const TimeParameters& time) {
   std::vector<StepCoefficients> coefficients;
-  for (const double omega : body.omega) {
-    const double damping = body.damping.alpha + body.damping.beta * omega * omega;
-    coefficients.push_back(step_coefficients(time.integrator, omega, damping, time.step, 0.0));
+  const Eigen::VectorXd damping = body.mode_damping(body.damping.alpha);
+  for (Eigen::Index i = 0; i < body.size(); ++i) {
+    coefficients.push_back(
+        step_coefficients(time.integrator, body.omega(i), damping(i), time.step, 0.0));
   }
   return coefficients;
 }

@@ -115,6 +115,8 @@ System retained(const System& system, const TimeParameters& time) {
   System kept = system;
   const double cutoff = retained_frequency(system, time);
   for (SystemBody& body : kept.bodies) {
+    // Modes that are coupled all move; their step has a limit of its own (CoupledPropagator).
+    if (!body.modal.coupled.is_empty()) continue;
     if (body.modal.size() > 0 && body.modal.omega.maxCoeff() > cutoff)
       body.modal = with_static_residual(body.modal, cutoff);
   }

@@ -24,6 +24,8 @@ struct BodyMatrices {
   SparseMatrix mass;       ///< M, N x N, symmetric positive definite, kg
   SparseMatrix stiffness;  ///< K, N x N, symmetric positive semi-definite, N/m
   RayleighDamping damping;
+  /// Terms beside these (CoupledTerms), N x N; both empty where there are none.
+  SparseMatrix velocity, circulatory;
 
   Eigen::Matrix<double, Eigen::Dynamic, 2> nodes;  ///< undeformed positions in the body's frame, m
   std::vector<std::array<int, 2>> node_dofs;       ///< (x, y) DoF of every node, or `held`

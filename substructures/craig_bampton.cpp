@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 
 #include "substructures/lowest_modes.hpp"
@@ -172,16 +173,27 @@ ReducedBody make_craig_bampton(const BodyMatrices& body, std::span<const int> in
   mirror(reduced.stiffness);
   mirror(reduced.mass);
 
-  reduced.rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(watched.size()), n);
-  for (std::size_t r = 0; r < watched.size(); ++r) {
-    if (watched[r] == BodyMatrices::held) continue;
-    const auto dof = static_cast<std::size_t>(watched[r]);
-    auto row = reduced.rows.row(static_cast<Eigen::Index>(r));
-    if (partition.is_interface[dof]) {
-      row(partition.position[dof]) = 1.0;
-    } else {
-      row << psi.row(partition.position[dof]), phi.row(partition.position[dof]);
+  // Rows of T.
+  const auto rows_of = [&](std::span<const int> dofs) {
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(dofs.size()), n);
+    for (std::size_t r = 0; r < dofs.size(); ++r) {
+      if (dofs[r] == BodyMatrices::held) continue;
+      const auto dof = static_cast<std::size_t>(dofs[r]);
+      auto row = rows.row(static_cast<Eigen::Index>(r));
+      if (partition.is_interface[dof]) {
+        row(partition.position[dof]) = 1.0;
+      } else {
+        row << psi.row(partition.position[dof]), phi.row(partition.position[dof]);
+      }
     }
+    return rows;
+  };
+  reduced.rows = rows_of(watched);
+  if (body.velocity.size() > 0) {
+    std::vector<int> all(static_cast<std::size_t>(body.num_dofs()));
+    std::iota(all.begin(), all.end(), 0);
+    const Eigen::MatrixXd T = rows_of(all);
+    reduced.coupled = {T.transpose() * (body.velocity * T), T.transpose() * (body.circulatory * T)};
   }
 
   if (body.base_inertia.size() > 0) {

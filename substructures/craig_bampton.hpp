@@ -4,6 +4,7 @@
 #include <span>
 
 #include "substructures/body_matrices.hpp"
+#include "substructures/coupled_terms.hpp"
 
 namespace stridor {
 
@@ -18,6 +19,7 @@ struct ReducedBody {
   /// Tᵀ M r of BodyMatrices::base_inertia; empty where the body does not follow the drive.
   Eigen::VectorXd base_inertia;
   Eigen::Index num_interface = 0;  ///< leading coordinates that are interface DoFs
+  CoupledTerms coupled;            ///< empty where there are none
 
   Eigen::Index size() const { return mass.rows(); }
 };

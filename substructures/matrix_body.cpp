@@ -1,6 +1,33 @@
 #include "substructures/matrix_body.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/errors.hpp"
+#include "core/suggestion.hpp"
+
 namespace stridor {
+namespace {
+
+std::string listed(const std::map<std::string, MatrixPointParameters>& points) {
+  std::vector<std::string> names;
+  for (const auto& entry : points) names.push_back(entry.first);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// An unknown counted from 1, or `held`.
+int dof_of(std::int64_t number, Eigen::Index num_dofs, const std::string& key) {
+  if (number > num_dofs) {
+    throw ConfigError(
+        key, fmt::format("there is no unknown {}: the matrices have {}", number, num_dofs));
+  }
+  return static_cast<int>(number) - 1;
+}
+
+}  // namespace
 
 const Schema& MatrixFactors::schema() {
   using P = MatrixFactors;
@@ -43,6 +70,139 @@ const Schema& MatrixBodyParameters::schema() {
           .text_rows("load_stiffness", &P::load_stiffness,
                      matrix("What one unit of load adds to the position matrix.", true));
   return keys;
+}
+
+const Schema& MatrixPointParameters::schema() {
+  using P = MatrixPointParameters;
+  static const Schema keys =
+      SchemaOf<P>("matrix_point")
+          .real_list("at", &P::at, {.doc = "Place in the frame of the body: x and y.", .unit = "m"})
+          .integer("x", &P::x,
+                   {.doc = "Number of the unknown that is its displacement in x, from 1; default "
+                           "0: it is held there.",
+                    .optional = true,
+                    .range = Range::non_negative()})
+          .integer("y", &P::y,
+                   {.doc = "The same in y.", .optional = true, .range = Range::non_negative()})
+          .check([](const P& point, std::vector<Problem>& problems) {
+            if (point.at.size() != 2)
+              problems.push_back({"at", "must be two lengths, x and y", {}, 0, 0});
+          });
+  return keys;
+}
+
+const Schema& MatrixSurfaceParameters::schema() {
+  using P = MatrixSurfaceParameters;
+  static const Schema keys =
+      SchemaOf<P>("matrix_surface")
+          .text_list("points", &P::points,
+                     {.doc = "Names of at least two points, in the order in which the body lies on "
+                             "the right-hand side."})
+          .check([](const P& surface, std::vector<Problem>& problems) {
+            if (surface.points.size() < 2)
+              problems.push_back({"points", "must be at least two points", {}, 0, 0});
+          });
+  return keys;
+}
+
+const Schema& MatrixGuideParameters::schema() {
+  using P = MatrixGuideParameters;
+  static const Schema keys =
+      SchemaOf<P>("matrix_guide")
+          .integer("load", &P::load,
+                   {.doc = "Number of the unknown on which the drive's load acts, from 1.",
+                    .range = {1.0, 1e9, false, false}})
+          .real_list("translation", &P::translation,
+                     {.doc = "Displacement of every unknown as the body moves by one metre in +x: "
+                             "1 for what is a displacement in x, 0 for one in y."});
+  return keys;
+}
+
+const Schema& TouchedMatrixBodyParameters::schema() {
+  using P = TouchedMatrixBodyParameters;
+  static const Schema keys =
+      SchemaOf<P>("touched_matrices")
+          .include(&P::body)
+          .named_sections("points", &P::points,
+                          {.doc = "Points that touch others, carry a surface or are recorded."})
+          .named_sections("surfaces", &P::surfaces,
+                          {.doc = "Outlines on which others slide.", .optional = true})
+          .section("guided", &P::guided,
+                   {.doc = "The drive moves the body: its unknowns are counted from a frame that "
+                           "moves along.",
+                    .optional = true})
+          .section("reduction", &P::reduction,
+                   {.doc = "Craig-Bampton reduction; default: every unknown is kept.",
+                    .optional = true});
+  return keys;
+}
+
+SparseSystem sum(const NamedMatrices& matrices, const MatrixBodyParameters& body) {
+  const MatrixFactors& factors = body.factors;
+  SparseSystem system;
+  system.mass = matrices.mass;
+  system.velocity = factors.damping * matrices.damping + factors.gyroscopic * matrices.gyroscopic +
+                    body.load * matrices.load_damping;
+  system.position = factors.stiffness * matrices.stiffness +
+                    factors.circulatory * matrices.circulatory +
+                    body.load * matrices.load_stiffness;
+  return system;
+}
+
+BodyMatrices make_matrix_body(const TouchedMatrixBodyParameters& parameters) {
+  if (!parameters.matrices)
+    throw std::invalid_argument("make_matrix_body: the matrices have not been read");
+  const SparseSystem system = sum(*parameters.matrices, parameters.body);
+  const Eigen::Index n = system.size();
+  BodyMatrices body;
+  body.mass = system.mass;
+  const SparseMatrix transposed = system.position.transpose();
+  body.stiffness = 0.5 * (system.position + transposed);
+  const SparseMatrix skew = 0.5 * (system.position - transposed);
+  if (system.velocity.norm() > 0.0 || skew.norm() > 0.0) {
+    body.velocity = system.velocity;
+    body.circulatory = skew;
+  }
+
+  body.nodes.resize(static_cast<Eigen::Index>(parameters.points.size()), 2);
+  for (const auto& [name, point] : parameters.points) {
+    const auto node = static_cast<int>(body.node_dofs.size());
+    const std::string key = "points." + name;
+    body.nodes.row(node) << point.at[0], point.at[1];
+    body.node_dofs.push_back({dof_of(point.x, n, key + ".x"), dof_of(point.y, n, key + ".y")});
+    body.points[name] = node;
+  }
+  for (const auto& [name, surface] : parameters.surfaces) {
+    const std::string key = "surfaces." + name + ".points";
+    if (body.points.contains(name))
+      throw ConfigError("surfaces." + name, "a point has this name already; take another");
+    std::vector<int> nodes;
+    for (const std::string& point : surface.points) {
+      const auto found = body.points.find(point);
+      if (found == body.points.end()) {
+        std::vector<std::string> names;
+        for (const auto& entry : body.points) names.push_back(entry.first);
+        throw ConfigError(key, fmt::format("there is no point '{}'{} (there are: {})", point,
+                                           did_you_mean(point, names), listed(parameters.points)));
+      }
+      if (!nodes.empty() &&
+          !((body.nodes.row(nodes.back()) - body.nodes.row(found->second)).norm() > 0.0)) {
+        throw ConfigError(key, fmt::format("'{}' stands where the point before it does", point));
+      }
+      nodes.push_back(found->second);
+    }
+    body.surfaces[name] = nodes;
+  }
+  if (!parameters.guided) return body;
+  const MatrixGuideParameters& guide = *parameters.guided;
+  body.load_dof = dof_of(guide.load, n, "guided.load");
+  if (static_cast<Eigen::Index>(guide.translation.size()) != n) {
+    throw ConfigError("guided.translation",
+                      fmt::format("has {} numbers, expected one for each of the {} unknowns",
+                                  guide.translation.size(), n));
+  }
+  body.base_inertia = body.mass * Eigen::Map<const Eigen::VectorXd>(guide.translation.data(), n);
+  return body;
 }
 
 }  // namespace stridor

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/schema.hpp"
+#include "substructures/beam.hpp"
 #include "substructures/body_matrices.hpp"
 
 namespace stridor {
@@ -42,5 +46,53 @@ struct SparseSystem {
   SparseMatrix mass, velocity, position;
   Eigen::Index size() const { return mass.rows(); }
 };
+
+/// The matrices of a body as its scene names them, all n x n.
+struct NamedMatrices {
+  SparseMatrix mass, damping, gyroscopic, stiffness, circulatory, load_damping, load_stiffness;
+};
+
+/// The matrices with their factors and the load.
+SparseSystem sum(const NamedMatrices& matrices, const MatrixBodyParameters& body);
+
+/// A point of a body given by matrices. Unknowns are counted from 1; 0: it is held there.
+struct MatrixPointParameters {
+  std::vector<double> at;  ///< x and y in the frame of the body, m
+  std::int64_t x = 0;      ///< unknown that is its displacement in x
+  std::int64_t y = 0;      ///< in y
+  static const Schema& schema();
+};
+
+/// An outline of such a body, which lies on the right-hand side of it.
+struct MatrixSurfaceParameters {
+  std::vector<std::string> points;  ///< at least two, in order
+  static const Schema& schema();
+};
+
+/// What makes such a body follow the drive.
+struct MatrixGuideParameters {
+  std::int64_t load = 0;            ///< unknown on which the drive's load acts, from 1
+  std::vector<double> translation;  ///< of every unknown as the body moves by one metre in +x
+  static const Schema& schema();
+};
+
+/// A body given by its matrices with the points and surfaces at which others touch it.
+struct TouchedMatrixBodyParameters {
+  MatrixBodyParameters body;
+  std::map<std::string, MatrixPointParameters> points;
+  std::map<std::string, MatrixSurfaceParameters> surfaces;
+  std::optional<MatrixGuideParameters> guided;
+  std::optional<ReductionParameters> reduction;   ///< absent: every unknown is kept
+  std::shared_ptr<const NamedMatrices> matrices;  ///< what `body` names, read
+  static const Schema& schema();
+};
+
+/// The body, its stiffness the symmetric part of what multiplies q; what is skew, and all that
+/// multiplies q̇, are terms beside it (CoupledTerms).
+/// @throws ConfigError (key paths below the body) if an unknown or a point is not there, or sizes
+/// do
+///         not fit
+/// @throws std::invalid_argument if the matrices have not been read
+BodyMatrices make_matrix_body(const TouchedMatrixBodyParameters& parameters);
 
 }  // namespace stridor

@@ -38,12 +38,21 @@ ModalBody make_modal(const ReducedBody& body) {
   modal.rows = body.rows * modal.shapes;
   if (body.base_inertia.size() > 0)
     modal.base_inertia = modal.shapes.transpose() * body.base_inertia;
+  modal.coupled = body.coupled.in(modal.shapes);
   return modal;
+}
+
+Eigen::VectorXd ModalBody::mode_damping(double alpha) const {
+  Eigen::VectorXd c = alpha + damping.beta * omega.array().square();
+  if (!coupled.is_empty()) c += coupled.velocity.diagonal();
+  return c;
 }
 
 ModalBody with_static_residual(const ModalBody& body, double cutoff) {
   if (body.residual.num_modes > 0)
     throw std::invalid_argument("with_static_residual: the body has a residual already");
+  if (!body.coupled.is_empty())
+    throw std::invalid_argument("with_static_residual: the modes of the body are coupled");
   if (!(cutoff > 0.0)) throw std::invalid_argument("with_static_residual: cutoff must be positive");
   const auto num_kept = (body.omega.array() <= cutoff).count();  // ω ascends
   const Eigen::Index num_dropped = body.size() - num_kept;

@@ -18,7 +18,7 @@ struct ModalResidual {
 };
 
 /// One component as independent modes: q̈_i + c_i q̇_i + ω_i² q_i = p_i, c_i = α(t) + β ω_i²
-/// (docs/theory.md, 1.4).
+/// (docs/theory.md, 1.4), with coupled terms on top where the body has them (1.5).
 struct ModalBody {
   Eigen::VectorXd omega;  ///< ω, ascending, rad/s; exactly 0 for rigid modes
   RayleighDamping damping;
@@ -26,8 +26,11 @@ struct ModalBody {
   Eigen::VectorXd base_inertia;  ///< as ReducedBody::base_inertia, in modal coordinates
   Eigen::MatrixXd shapes;        ///< Φ, reduced coordinates of every mode: q_reduced = Φ q_modal
   ModalResidual residual;        ///< of modes that are not among the above
+  CoupledTerms coupled;          ///< in modal coordinates; empty where there are none
 
   Eigen::Index size() const { return omega.size(); }
+  /// c of every mode for a given α: α + β ω² and the diagonal of what is coupled, 1/s.
+  Eigen::VectorXd mode_damping(double alpha) const;
 };
 
 /// Diagonalises a reduced body: q_reduced = Φ q_modal with ΦᵀMΦ = I, ΦᵀKΦ = diag(ω²).
@@ -39,9 +42,9 @@ ModalBody make_modal(const ReducedBody& body);
 
 /// The body with the modes up to a frequency; those above become its static residual.
 ///
-/// @param body   without a residual
+/// @param body   without a residual and without coupled terms
 /// @param cutoff ω, rad/s, > 0
-/// @throws std::invalid_argument if the body has a residual or `cutoff` is not positive
+/// @throws std::invalid_argument if the body has either or `cutoff` is not positive
 ModalBody with_static_residual(const ModalBody& body, double cutoff);
 
 /// Largest step at which the central difference with backward-difference damping is stable for

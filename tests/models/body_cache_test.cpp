@@ -110,7 +110,7 @@ TEST(ModeShape, AgreesWithTheRowsOfWatchedPoints) {
   Equilibrium equilibrium;
   equilibrium.state.geometry = ContactGeometry::undeformed;
   equilibrium.state.drive_displacement = 0.02;
-  const auto shapes = mode_shape(model, parameters.substructures, equilibrium, mode, cache);
+  const auto shapes = mode_shape(model, equilibrium, mode, cache);
   ASSERT_EQ(shapes.size(), 2u);
   EXPECT_EQ(shapes[0].name, "cantilever");
 
@@ -132,9 +132,8 @@ TEST(ModeShape, LengthMustFitTheBodies) {
   const ModelParameters parameters = small_model();
   BodyCache cache;
   const Model model = cached_model(parameters, cache);
-  EXPECT_THAT(message_of<std::invalid_argument>([&] {
-                mode_shape(model, parameters.substructures, {}, Eigen::VectorXcd::Ones(3), cache);
-              }),
+  EXPECT_THAT(message_of<std::invalid_argument>(
+                  [&] { mode_shape(model, {}, Eigen::VectorXcd::Ones(3), cache); }),
               HasSubstr("mode_shape: the mode has 3 entries"));
 }
 

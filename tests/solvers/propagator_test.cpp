@@ -12,6 +12,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "solvers/coupled_propagator.hpp"
 #include "solvers/dense_two_step.hpp"
 #include "solvers/modal_recurrence.hpp"
 
@@ -83,6 +84,20 @@ struct ResidualForm {
     return make_modal_form<Integrator::exact>(body, patterns, step, slots, loads, 20.0);
   }
 };
+/// All damping as terms that might couple the modes.
+struct CoupledForm {
+  static std::unique_ptr<Propagator> make(const ReducedBody& given, const Eigen::MatrixXd& patterns,
+                                          double step, int slots, std::span<const double> loads) {
+    ReducedBody body = given;
+    const Eigen::MatrixXd damping =
+        given.damping.alpha * given.mass + given.damping.beta * given.stiffness;
+    body.damping = {};
+    body.coupled = {damping, Eigen::MatrixXd::Zero(given.size(), given.size())};
+    const ModalBody modal = make_modal(body);
+    return std::make_unique<CoupledPropagator>(modal, modal.shapes.transpose() * patterns, step,
+                                               surplus, slots, 0.0, loads, "chain");
+  }
+};
 struct PublishedForm {
   static std::unique_ptr<Propagator> make(const ReducedBody& body, const Eigen::MatrixXd& patterns,
                                           double step, int slots, std::span<const double> loads) {
@@ -106,7 +121,8 @@ TYPED_TEST_SUITE(PropagatorTest, Forms);
 /// What holds for every scheme.
 template <class Form>
 class AnyPropagatorTest : public ::testing::Test {};
-using AllForms = ::testing::Types<ModalForm, PublishedForm, FusedForm, ExactForm, ResidualForm>;
+using AllForms =
+    ::testing::Types<ModalForm, PublishedForm, FusedForm, ExactForm, ResidualForm, CoupledForm>;
 TYPED_TEST_SUITE(AnyPropagatorTest, AllForms);
 
 const Eigen::MatrixXd no_patterns = Eigen::MatrixXd(1, 0);

@@ -25,6 +25,14 @@ struct ProgramResult {
 class Program {
  public:
   explicit Program(std::vector<std::string> arguments) : arguments_(std::move(arguments)) {}
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+  /// A test that fails leaves nothing running.
+  ~Program() {
+    if (child_ <= 0) return;
+    kill(child_, SIGKILL);
+    waitpid(child_, nullptr, 0);
+  }
 
   /// Largest file it may write, bytes: a disk that runs full.
   Program& with_file_limit(rlim_t bytes) {
@@ -50,9 +58,10 @@ class Program {
 
   void send(int signal) const { kill(child_, signal); }
 
-  ProgramResult wait() const {
+  ProgramResult wait() {
     int status = 0;
     waitpid(child_, &status, 0);
+    child_ = -1;
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents_of(folder_ / "out"),
             contents_of(folder_ / "err")};
   }

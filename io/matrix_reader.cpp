@@ -1,0 +1,112 @@
+#include "io/matrix_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include "core/errors.hpp"
+#include "io/matrix_market.hpp"
+#include "substructures/sparse_cholesky.hpp"
+
+namespace stridor {
+namespace {
+
+/// Whether a matrix is the name of a file, not rows.
+bool is_file(const MatrixText& text) {
+  return text.size() == 1 &&
+         text.front().find_first_not_of("+-.eE0123456789 \t") != std::string::npos;
+}
+
+/// The matrices of one body, with checks that name their keys.
+class MatrixLoader {
+ public:
+  /// @param key  path of the body
+  /// @param tree of the scene; must live longer
+  MatrixLoader(std::string key, const SceneNode& tree) : key_(std::move(key)), tree_(&tree) {}
+
+  NamedMatrices load(const MatrixBodyParameters& body) const {
+    NamedMatrices parts;
+    parts.mass = matrix("mass", body.mass, 0);
+    const Eigen::Index n = parts.mass.rows();
+    expect_symmetry("mass", parts.mass, 1.0);
+    try {
+      SparseCholesky(parts.mass, "the mass");
+    } catch (const NumericalError&) {
+      fail("mass", "must be positive definite");
+    }
+    parts.damping = matrix("damping", body.damping, n);
+    parts.gyroscopic = matrix("gyroscopic", body.gyroscopic, n);
+    expect_symmetry("gyroscopic", parts.gyroscopic, -1.0);
+    parts.stiffness = matrix("stiffness", body.stiffness, n);
+    parts.circulatory = matrix("circulatory", body.circulatory, n);
+    expect_symmetry("circulatory", parts.circulatory, -1.0);
+    parts.load_damping = matrix("load_damping", body.load_damping, n);
+    parts.load_stiffness = matrix("load_stiffness", body.load_stiffness, n);
+    return parts;
+  }
+
+ private:
+  [[noreturn]] void fail(const char* name, const std::string& message) const {
+    throw ConfigError(key_ + "." + name, message);
+  }
+
+  /// @param size expected; 0: any
+  SparseMatrix matrix(const char* name, const MatrixText& text, Eigen::Index size) const {
+    if (text.empty() && size == 0) fail(name, "is empty, expected a matrix");
+    if (text.empty()) return SparseMatrix(size, size);
+    SparseMatrix read;
+    if (is_file(text)) {
+      read = read_matrix_file(path_of_file(*tree_, key_ + "." + name, text.front()));
+    } else {
+      try {
+        read = parse_matrix_rows(text);
+      } catch (const std::invalid_argument& error) {
+        fail(name, error.what());
+      }
+    }
+    const bool is_square = read.rows() == read.cols();
+    if (!is_square || (size > 0 && read.rows() != size)) {
+      fail(name, fmt::format("is {} x {}, expected {}", read.rows(), read.cols(),
+                             size > 0 ? fmt::format("{} x {} as `mass` is", size, size)
+                                      : std::string("as many rows as columns")));
+    }
+    return read;
+  }
+
+  /// @param sign 1 symmetric, −1 skew-symmetric
+  void expect_symmetry(const char* name, const SparseMatrix& matrix, double sign) const {
+    const SparseMatrix transposed = matrix.transpose();
+    const SparseMatrix difference = matrix - sign * transposed;
+    if (difference.norm() > 1e-12 * matrix.norm())
+      fail(name, sign > 0.0 ? "must be symmetric" : "must be skew-symmetric");
+  }
+
+  std::string key_;
+  const SceneNode* tree_;
+};
+
+}  // namespace
+
+NamedMatrices read_matrices(const std::string& key, const SceneNode& tree,
+                            const MatrixBodyParameters& body) {
+  return MatrixLoader(key, tree).load(body);
+}
+
+void make_files_absolute(const std::string& key, const SceneNode& tree,
+                         MatrixBodyParameters& body) {
+  using P = MatrixBodyParameters;
+  for (const auto& [name, member] :
+       {std::pair{"mass", &P::mass}, std::pair{"damping", &P::damping},
+        std::pair{"gyroscopic", &P::gyroscopic}, std::pair{"stiffness", &P::stiffness},
+        std::pair{"circulatory", &P::circulatory}, std::pair{"load_damping", &P::load_damping},
+        std::pair{"load_stiffness", &P::load_stiffness}}) {
+    MatrixText& text = body.*member;
+    if (!is_file(text)) continue;
+    const std::string path = path_of_file(tree, key + "." + name, text.front());
+    text.front() = std::filesystem::absolute(path).lexically_normal().string();
+  }
+}
+
+}  // namespace stridor

@@ -1,0 +1,22 @@
+// Matrices of bodies out of scenes and the files that these name.
+#pragma once
+
+#include <string>
+
+#include "io/scene_tree.hpp"
+#include "substructures/matrix_body.hpp"
+
+namespace stridor {
+
+/// Reads all matrices of a body.
+/// @param key  path of the body in the scene
+/// @param tree of the scene
+/// @throws ConfigError with the key, or the place in a matrix file; FileError
+NamedMatrices read_matrices(const std::string& key, const SceneNode& tree,
+                            const MatrixBodyParameters& body);
+
+/// Names the files of a body from the root, so that a run file finds them wherever it is.
+/// Parameters as read_matrices().
+void make_files_absolute(const std::string& key, const SceneNode& tree, MatrixBodyParameters& body);
+
+}  // namespace stridor

@@ -1,0 +1,112 @@
+// Exact propagation of a body whose modes are coupled: gyroscopic, circulatory, of any damping.
+#pragma once
+
+#include <Eigen/LU>
+#include <optional>
+#include <string>
+
+#include "solvers/propagator.hpp"
+#include "solvers/time_parameters.hpp"
+#include "substructures/modal_body.hpp"
+
+namespace stridor {
+
+/// One step of a body with coupled terms, x = (r, v): what CoupledPropagator computes with.
+struct CoupledStep {
+  Eigen::VectorXd prompt;       ///< G, diagonal: displacement at once per force
+  Eigen::MatrixXd position;     ///< Q
+  Eigen::MatrixXd free;         ///< e^{Ah}
+  Eigen::MatrixXd by_constant;  ///< r_{n+1} per force that is constant from t_n on
+  Eigen::MatrixXd by_impulse;   ///< x_{n+1} per load: e^{Ah} (0, h K⁻¹)
+
+  /// x_{n+1} per force, of which G has answered a part at once: by_impulse (1 − Q G).
+  Eigen::MatrixXd by_force() const {
+    return by_impulse - by_impulse * position * prompt.asDiagonal();
+  }
+};
+
+/// @param body    with coupled terms
+/// @param step    h, s
+/// @param surplus δ of exact_propagation(); absent: the body does not answer at once, G = 0
+/// @param alpha   α, 1/s
+/// @param name    of the body, for messages
+/// @throws ConfigError (time.step) if a free motion turns by more than
+///         CoupledPropagator::largest_turn in a step
+CoupledStep make_coupled_step(const ModalBody& body, double step, std::optional<double> surplus,
+                              double alpha, const std::string& name);
+
+/// @param body its name
+/// @throws ConfigError (time.integrator) if a body with coupled terms is to be marched otherwise
+void require_exact(const std::string& body, const TimeParameters& time);
+
+/// The exact scheme of ModalRecurrence for a body with coupled terms (docs/theory.md, 3.8), in
+/// modal coordinates, r̈ + V ṙ + Q r = p with V = diag(c) + coupled, Q = diag(ω²) + coupled:
+///
+///   x = (r, v),  x_{n+1} = e^{Ah} (x_n + (0, h K⁻¹ ((1 − Q G) rowᵀ f_n + p_n))),
+///   q_n = r_n + G rowᵀ f_n,   K = V h ψ₁₂ + ψ₂₂,  ψ = Ah/(1 − e^{−Ah})
+///
+/// Free motion is exact and so is the static answer; without coupled terms every number is that of
+/// ModalRecurrence up to rounding. v is the velocity just before the impulse at t_n.
+class CoupledPropagator : public Propagator {
+ public:
+  /// Largest |s| h of the free motions of a body: beyond, impulses once a step stand for forces no
+  /// longer.
+  static constexpr double largest_turn = 2.0;
+
+  /// Parameters as ModalRecurrence.
+  /// @throws ConfigError (time.step) if a free motion turns by more than largest_turn in a step
+  /// Cost: of order 10 (4n)³ operations; a step costs (2n)² and 3n for every slot.
+  CoupledPropagator(const ModalBody& body, const Eigen::MatrixXd& patterns, double step,
+                    std::optional<double> surplus, int num_slots, double alpha,
+                    std::span<const double> loads, const std::string& name);
+
+  Motion motion(const double* forces) const override;
+  void foresee(const double* forces, std::span<double> position,
+               std::span<double> increment) const override;
+  /// Cost: that of the constructor where α changes.
+  void set_mass_damping(double alpha) override;
+
+ private:
+  void advance_body(const double* forces, double* predicted) override;
+  double body_displacement(int row) const override;
+  double predicted_displacement(int row) const override;
+  double row_compliance(int row_a, int row_b) const override;
+  double ahead_displacement(int row) const override;
+  double ahead_compliance(int row_a, int row_b) const override;
+  void slot_changed(int) override {}
+  void set_body_loads(std::span<const double> amplitudes) override;
+  void set_body_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,
+                       const double* forces) override;
+  void foresee_body_start(const Eigen::VectorXd& displacement,
+                          const Eigen::VectorXd& velocity) override;
+  double initial_increment(int row, const Eigen::VectorXd& velocity) const override;
+  void save_body(State& state, const std::string& prefix) const override;
+  void load_body(const State& state, const std::string& prefix) override;
+
+  /// Everything that follows from α.
+  void renew();
+  /// rowᵀ f of all slots.
+  Eigen::VectorXd modal_force(const double* forces) const;
+  /// Velocity just before the impulse less that of the continuous motion under constant forces.
+  Eigen::VectorXd velocity_before(const Eigen::VectorXd& force) const;
+  /// x_{n+1} without forces on the slots.
+  void predict();
+
+  ModalBody body_;
+  std::string name_;
+  Eigen::MatrixXd row_table_;  ///< column r: rows.row(r)ᵀ
+  Eigen::MatrixXd patterns_;
+  double step_;
+  std::optional<double> surplus_;
+  double alpha_;
+
+  CoupledStep by_step_;
+  Eigen::MatrixXd row_gains_;                         ///< column r: x_{n+1} per force on row r
+  Eigen::PartialPivLU<Eigen::MatrixXd> by_velocity_;  ///< r_{n+1} per v_n
+
+  Eigen::VectorXd load_;          ///< p
+  Eigen::VectorXd load_impulse_;  ///< x_{n+1} by p
+  Eigen::VectorXd state_, next_;  ///< x_n; x_{n+1} without forces on the slots
+};
+
+}  // namespace stridor

@@ -1,0 +1,99 @@
+// Bodies given by matrices that rub on others, as a user would run them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/resume_fixture.hpp"
+#include "tests/support/program.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+
+const std::string scene = scene_path("examples/rotating_support.yaml");
+
+/// The scene with its gyroscopic matrix in a file beside it.
+std::string scene_with_file(const std::filesystem::path& folder) {
+  std::string text = contents_of(scene);
+  const std::size_t from = text.find("    gyroscopic:\n");
+  const std::size_t to = text.find("    stiffness:\n");
+  text.replace(from, to - from, "    gyroscopic: G.mtx\n");
+  std::ofstream(folder / "scene.yaml") << text;
+  std::ofstream(folder / "G.mtx") << "%%MatrixMarket matrix coordinate real skew-symmetric\n"
+                                     "6 6 3\n2 1 0.04\n4 3 0.04\n6 5 0.04\n";
+  return (folder / "scene.yaml").string();
+}
+
+TEST(MatrixBodies, OfFilesAreThoseOfRowsAndGoOnBitwise) {
+  const TemporaryFolder folder;
+  const std::string by_rows = (folder / "rows.h5").string();
+  const TemporaryFolder elsewhere;
+  const std::string by_file = (elsewhere / "file.h5").string();
+  ASSERT_EQ(Program({"run", scene, "-o", by_rows, "--set", "time.step=5e-7"}).run().exit_code, 0);
+  ProgramResult result = Program({"run", scene_with_file(folder.path()), "-o", by_file, "--set",
+                                  "time.step=5e-7", "--max-wall", "0.001"})
+                             .run();
+  ASSERT_EQ(result.exit_code, 5) << result.err;
+  result = Program({"run", "--resume", by_file}).run();
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(difference(by_rows, by_file), "");
+}
+
+TEST(MatrixBodies, GrowAsTheirEigenvaluesSay) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "held.h5").string();
+  const std::vector<std::string> held{
+      "--set", "contact.sliding=frozen", "--set", "contact.start=90 mm", "--set", "drive.ramp=0"};
+  std::vector<std::string> command{"eig", scene, "--about", "undeformed", "--explain", "--json"};
+  command.insert(command.end(), held.begin(), held.end());
+  const ProgramResult eig = Program(command).run();
+  ASSERT_EQ(eig.exit_code, 0) << eig.err;
+  const auto explanation = nlohmann::json::parse(eig.out)["explanation"];
+  const auto& energy = explanation["energy"];
+  const double growth = explanation["growth"];
+  EXPECT_GT(growth, 3.0);
+  EXPECT_GT(std::abs(energy["growth_by_coupled_terms"].get<double>()), 1e-3);
+  EXPECT_NEAR(energy["growth_from_contact"].get<double>() +
+                  energy["growth_by_damping"].get<double>() +
+                  energy["growth_by_coupled_terms"].get<double>(),
+              growth, 1e-8 * explanation["frequency"].get<double>());
+}
+
+TEST(MatrixBodies, HaveStepsWhoseStabilityIsChecked) {
+  const ProgramResult result = Program({"check", "--stability", scene}).run();
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+}
+
+TEST(MatrixBodies, AreRefusedWhereTheyDoNotFit) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+      {{"time.integrator=central_difference", "time.step=1e-6"},
+       "time.integrator: must be exact: the modes of 'support' are coupled"},
+      {{"time.step=1e-3", "record.interval=1e-3", "measure.band=[10 Hz, 100 Hz]"},
+       "time.step: the fastest free motion of 'support'"},
+      {{"substructures.support.points.left.x=9"}, "there is no unknown 9: the matrices have 6"},
+      {{"substructures.support.surfaces.top.points=[left, midle]"},
+       "there is no point 'midle', did you mean 'middle'?"},
+      {{"substructures.support.stiffness=[[1, 2], [3, 4]]"},
+       "substructures.support.stiffness: is 2 x 2, expected 6 x 6 as `mass` is"},
+      {{"substructures.support.stiffness=[[1,0,0,0,0,0],[0,1,0,0,0,0],[0,0,1,0,0,0],"
+        "[0,0,0,1,0,0],[0,0,0,0,1,0],[0,0,0,0,0,-1]]"},
+       "substructures.support: cannot be reduced"},
+      {{"record.channels=[support.below.y.acceleration]"}, "'support' has no point 'below'"},
+      {{"contact.master=support.bottom"}, "'support' has no surface 'bottom'"}};
+  for (const auto& [sets, message] : cases) {
+    std::vector<std::string> command{"check", scene};
+    for (const std::string& set : sets) command.insert(command.end(), {"--set", set});
+    const ProgramResult result = Program(command).run();
+    EXPECT_EQ(result.exit_code, 2) << message;
+    EXPECT_THAT(result.err, HasSubstr(message));
+  }
+}
+
+}  // namespace
+}  // namespace stridor
