@@ -204,8 +204,11 @@ ReducedBody make_craig_bampton(const BodyMatrices& body, std::span<const int> in
       (partition.is_interface[d] ? reduced.base_inertia : interior)(partition.position[d]) =
           body.base_inertia(dof);
     }
-    reduced.base_inertia.head(nb) += psi.transpose() * interior;
-    reduced.base_inertia.tail(num_modes) = phi.transpose() * interior;
+    // BLAS takes no empty matrix.
+    if (partition.num_interior > 0) {
+      reduced.base_inertia.head(nb) += psi.transpose() * interior;
+      reduced.base_inertia.tail(num_modes) = phi.transpose() * interior;
+    }
   }
   return reduced;
 }

@@ -145,6 +145,24 @@ TEST(MatrixBody, OfAMeshIsTheBeamOfThatMesh) {
   EXPECT_EQ(found.system.surfaces[0].arc_length, expected.system.surfaces[0].arc_length);
 }
 
+TEST(MatrixBody, KeepsEveryUnknownWhereNoReductionIsGiven) {
+  ModelParameters parameters = paper_model();
+  TouchedMatrixBodyParameters body = small_body();
+  body.guided = {2, {1.0, 0.0, 0.5}};
+  body.points["right"].at = {0.1, 0.0};
+  parameters.substructures["cantilever"] = body;
+  const Model model = make_model(parameters, {});
+  const ReducedBody& reduced = model.system.bodies[0].reduced;
+  EXPECT_EQ(reduced.size(), 3);
+  EXPECT_EQ(reduced.num_interface, 3);
+  EXPECT_TRUE(model.system.bodies[0].follows_drive);
+  // The unknowns of the points on the surface come first, as they are: 1, 2 and 3.
+  EXPECT_EQ(reduced.mass, Eigen::MatrixXd(body.matrices->mass));
+  EXPECT_EQ(reduced.base_inertia, Eigen::Vector3d(2.0, 0.0, 2.0));
+  EXPECT_EQ(reduced.coupled.velocity, (Eigen::MatrixXd{{1, 5, 0}, {-5, 0, 0}, {0, 0, 0}}));
+  EXPECT_EQ(reduced.coupled.position, (Eigen::MatrixXd{{0, 2, 2}, {-2, 0, 0}, {-2, 0, 0}}));
+}
+
 TEST(MatrixBody, RefusesToBeReducedAsItCannotBe) {
   ModelParameters parameters = paper_model_by_matrices(100);
   auto& body = std::get<TouchedMatrixBodyParameters>(parameters.substructures["cantilever"]);
