@@ -7,6 +7,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,7 +57,13 @@ class Program {
     _exit(98);
   }
 
-  void send(int signal) const { kill(child_, signal); }
+  /// A request to stop is sent as soon as the program listens to it: on a busy machine that takes
+  /// its time.
+  void send(int signal) const {
+    const bool is_request = signal == SIGINT || signal == SIGTERM;
+    for (int i = 0; is_request && i < 3000 && !listens_or_is_over(signal); ++i) usleep(10'000);
+    kill(child_, signal);
+  }
 
   ProgramResult wait() {
     int status = 0;
@@ -72,6 +79,19 @@ class Program {
   }
 
  private:
+  /// By the mask of caught signals that the kernel tells.
+  bool listens_or_is_over(int signal) const {
+    std::ifstream status("/proc/" + std::to_string(child_) + "/status");
+    if (!status) return true;
+    for (std::string line; std::getline(status, line);) {
+      if (line.starts_with("State:") && line.find('Z') != std::string::npos) return true;
+      if (!line.starts_with("SigCgt:")) continue;
+      const unsigned long long caught = std::stoull(line.substr(7), nullptr, 16);
+      return ((caught >> (signal - 1)) & 1) != 0;
+    }
+    return false;
+  }
+
   std::vector<std::string> arguments_;
   rlim_t file_limit_ = RLIM_INFINITY;
   TemporaryFolder folder_;
