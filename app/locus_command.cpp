@@ -304,9 +304,9 @@ void check_outputs(const LocusCommandOptions& options) {
   }
 }
 
-ExitCode locus(const LocusCommandOptions& options) {
+ExitCode locus(LocusCommandOptions options) {
   check_outputs(options);
-  const StabilityOptions& stability = options.stability;
+  StabilityOptions& stability = options.stability;
   const auto loaded = load_stability_scene(stability);
   const KeyRange range = make_range(*loaded, options.range);
   const auto family = loaded->family({range.key}, stability.geometry());

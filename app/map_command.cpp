@@ -243,8 +243,8 @@ void draw(const MapOptions& options, const std::array<Axis, 2>& axes, const Stab
   plot_stability_map(picture, *options.figure);
 }
 
-ExitCode map(const MapOptions& options) {
-  const StabilityOptions& stability = options.stability;
+ExitCode map(MapOptions options) {
+  StabilityOptions& stability = options.stability;
   const Overwrite overwrite = stability.common.overwrite();
   if (options.output) check_output(*options.output, overwrite);
   if (options.figure) check_figure(*options.figure, stability.common);

@@ -95,7 +95,7 @@ void add_stability_options(CLI::App& verb, StabilityOptions& options) {
       ->check(CLI::IsMember({"undeformed", "deformed"}));
   verb.add_option("--method", options.method,
                   "secular (default): zeros of the secular function; dense: all eigenvalues of the "
-                  "assembled matrices, as a check")
+                  "assembled matrices, as a check, and the default with bodies given by matrices")
       ->check(CLI::IsMember({"secular", "dense"}));
   options.count_option =
       verb.add_option("--count", options.count,
@@ -280,15 +280,31 @@ std::string StabilityScene::about_text(const StabilityOptions& options) const {
   return bodies() == nullptr ? "" : fmt::format(" about the {} geometry", options.about);
 }
 
-std::unique_ptr<StabilityScene> load_stability_scene(const StabilityOptions& options) {
+void choose_method(StabilityOptions& options, const LoadedScene* bodies) {
+  if (!options.method.empty()) return;
+  const auto is_given_by_matrices = [](const auto& entry) {
+    return std::holds_alternative<TouchedMatrixBodyParameters>(entry.second);
+  };
+  const bool is_coupled =
+      bodies != nullptr &&
+      std::any_of(bodies->scene.model.substructures.begin(),
+                  bodies->scene.model.substructures.end(), is_given_by_matrices);
+  options.method = is_coupled ? "dense" : "secular";
+}
+
+std::unique_ptr<StabilityScene> load_stability_scene(StabilityOptions& options) {
+  std::unique_ptr<StabilityScene> scene;
   if (is_linear_scene_file(options.scene)) {
-    return std::make_unique<LinearStabilityScene>(
+    scene = std::make_unique<LinearStabilityScene>(
         load_linear_scene(options.scene, options.common.sets));
-  }
-  if (is_sphere_scene_file(options.scene))
-    return std::make_unique<SphereStabilityScene>(
+  } else if (is_sphere_scene_file(options.scene)) {
+    scene = std::make_unique<SphereStabilityScene>(
         load_sphere_scene(options.scene, options.common.sets));
-  return std::make_unique<BodyStabilityScene>(load_scene(options.scene, options.common.sets));
+  } else {
+    scene = std::make_unique<BodyStabilityScene>(load_scene(options.scene, options.common.sets));
+  }
+  choose_method(options, scene->bodies());
+  return scene;
 }
 
 BodyStabilityFamily::BodyStabilityFamily(const LoadedScene& loaded, std::vector<NumericKey> keys,

@@ -24,7 +24,7 @@ struct StabilityOptions {
   CommonOptions common;
   std::string scene;
   std::string about = "undeformed";
-  std::string method = "secular";
+  std::string method;  ///< empty until choose_method() where none was asked for
   int count = 20;
   std::optional<std::string> below;           ///< frequency, as written
   const CLI::Option* count_option = nullptr;  ///< tells whether a count was given
@@ -54,6 +54,11 @@ std::vector<double> range_values(const NumericKey& key, const RangeOptions& opti
 
 /// --parameter, --from, --to, --points.
 void add_range_options(CLI::App& verb, RangeOptions& options);
+
+/// Where no method was asked for: the secular function, or the dense one for bodies given by
+/// matrices, whose coupled modes are many slots.
+/// @param bodies null for scenes of other kinds
+void choose_method(StabilityOptions& options, const LoadedScene* bodies);
 
 /// The scene, --about, --method, --count, --set, --threads and --json.
 void add_stability_options(CLI::App& verb, StabilityOptions& options);
@@ -187,9 +192,9 @@ class StabilityScene {
   std::string about_text(const StabilityOptions& options) const;
 };
 
-/// Reads the scene, of whichever kind it is.
+/// Reads the scene, of whichever kind it is, and chooses the method for it.
 /// @throws ConfigError, FileError as the reader of its kind
-std::unique_ptr<StabilityScene> load_stability_scene(const StabilityOptions& options);
+std::unique_ptr<StabilityScene> load_stability_scene(StabilityOptions& options);
 
 /// @throws ConfigError if the key, an end of the range or the number of points is wrong
 KeyRange make_range(const StabilityScene& scene, const RangeOptions& options);

@@ -65,8 +65,8 @@ ExitCode threshold(const ThresholdOptions& options, const KeyRange& range, Growt
   return ExitCode::done;
 }
 
-ExitCode threshold(const ThresholdOptions& options) {
-  const StabilityOptions& stability = options.stability;
+ExitCode threshold(ThresholdOptions options) {
+  StabilityOptions& stability = options.stability;
   const auto scene = load_stability_scene(stability);
   const KeyRange range = make_range(*scene, options.range);
   if (const auto field = scene->growth_field({range.key})) return threshold(options, range, *field);

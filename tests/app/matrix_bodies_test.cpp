@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -63,6 +64,27 @@ TEST(MatrixBodies, GrowAsTheirEigenvaluesSay) {
                   energy["growth_by_damping"].get<double>() +
                   energy["growth_by_coupled_terms"].get<double>(),
               growth, 1e-8 * explanation["frequency"].get<double>());
+}
+
+TEST(MatrixBodies, HaveOneSpectrumByBothMethods) {
+  const auto eigenvalues = [](std::vector<std::string> more) {
+    std::vector<std::string> command{"eig", scene, "--json"};
+    command.insert(command.end(), more.begin(), more.end());
+    const ProgramResult result = Program(command).run();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(result.out);
+  };
+  const auto chosen = eigenvalues({});
+  EXPECT_EQ(chosen["method"], "dense");
+  const auto asked = eigenvalues({"--method", "secular"});
+  EXPECT_EQ(asked["method"], "secular");
+  ASSERT_EQ(asked["eigenvalues"].size(), chosen["eigenvalues"].size());
+  for (std::size_t i = 0; i < chosen["eigenvalues"].size(); ++i) {
+    const auto dense = chosen["eigenvalues"][i].get<std::array<double, 2>>();
+    const auto secular = asked["eigenvalues"][i].get<std::array<double, 2>>();
+    EXPECT_NEAR(secular[0], dense[0], 1e-9 * dense[1]) << i;
+    EXPECT_NEAR(secular[1], dense[1], 1e-9 * dense[1]) << i;
+  }
 }
 
 TEST(MatrixBodies, HaveStepsWhoseStabilityIsChecked) {
