@@ -361,6 +361,7 @@ class Tracker {
     if (open_before.empty() || open_after.empty()) return partner;
 
     std::vector<Eigen::VectorXcd> shapes_after;
+    shapes_after.reserve(open_after.size());
     for (const std::size_t k : open_after) shapes_after.push_back(source_.shape(after[k]));
     source_.move_to(value_);
     std::vector<Candidate> candidates;

@@ -54,7 +54,7 @@ int stable_steps_per_sample(const System& system, const TimeParameters& time, do
 }
 
 int num_moving_modes(const System& system, const TimeParameters& time) {
-  std::size_t count = 0;
+  Eigen::Index count = 0;
   for (const SystemBody& body : retained(system, time).bodies) count += body.modal.omega.size();
   return static_cast<int>(count);
 }

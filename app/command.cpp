@@ -43,6 +43,7 @@ std::vector<double> spaced_values(const char* option, const std::vector<double>&
   if (!(count >= 4.0) || !(count <= 1000.0) || count != std::trunc(count))
     throw ConfigError(option, fmt::format("{:g} points are not a whole number, 4 to 1000", count));
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
   for (int k = 0; k < static_cast<int>(count); ++k)
     values.push_back(range[0] * std::pow(range[1] / range[0], k / (count - 1.0)));
   return values;

@@ -195,6 +195,7 @@ void write_file(const ContactOptions& options, const LoadedContactScene& loaded,
   add("products", [](const Row& row) { return row.result.products; });
   add("residual", [](const Row& row) { return row.result.residual; });
   std::vector<ContactFields> fields;
+  fields.reserve(rows.size());
   for (const Row& row : rows) fields.push_back(row.fields);
   write_contact_file(*options.output, options.common.overwrite(), columns, fields,
                      file_attributes(options, loaded));

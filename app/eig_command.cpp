@@ -195,6 +195,7 @@ ExitCode eig(EigOptions options) {
       std::min(trusted_frequency(system),
                asked_frequency(system, loaded.scene.time) / (2.0 * std::numbers::pi));
   std::vector<std::complex<double>> roots;
+  roots.reserve(eigenvalues.size());
   for (const Eigenvalue& one : eigenvalues) roots.push_back(one.s);
   const double highest = verdict_limit(roots, options.stability.window(), trusted);
   const bool is_stable = std::none_of(

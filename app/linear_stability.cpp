@@ -44,7 +44,7 @@ class SparseSpectra {
   SampledSpectrum at(double value) {
     SparseSpectrum spectrum = whole_spectrum(system_(value), window_);
     spectrum.modes.resize(0, 0);
-    const SampledSpectrum found = sampled(spectrum.eigenvalues);
+    SampledSpectrum found = sampled(spectrum.eigenvalues);
     constexpr Eigen::Index most_kept = Eigen::Index{1} << 26;  // complex numbers: 1 GB
     kept_ += spectrum.right.size();
     known_.insert_or_assign(value, std::move(spectrum));
@@ -122,11 +122,11 @@ class LinearFamily : public StabilityFamily {
   bool is_sparse() const override { return is_sparse_; }
 
  private:
-  SpectrumFamily sparse_spectra(std::size_t key, std::vector<double> values,
+  SpectrumFamily sparse_spectra(std::size_t key, const std::vector<double>& values,
                                 const LocusOptions& options) override {
-    const auto system = [this, key, values](double value) mutable {
-      values[key] = value;
-      return *at(values).sparse;
+    const auto system = [this, key, at_value = values](double value) mutable {
+      at_value[key] = value;
+      return *at(at_value).sparse;
     };
     const auto spectra = std::make_shared<SparseSpectra>(system, options);
     return {[spectra](double value) { return spectra->at(value); },
@@ -174,7 +174,7 @@ Json equilibrium_json(const DiscModel& model) {
 /// The same in two lines: the forces of the contact points of each pad, along the circumference.
 void print_equilibrium(const DiscModel& model) {
   const std::size_t per_pad = model.contacts.size() / 2;
-  for (const std::size_t pad : {0, 1}) {
+  for (std::size_t pad = 0; pad < 2; ++pad) {
     std::string forces;
     double sum = 0.0;
     for (std::size_t i = pad * per_pad; i < (pad + 1) * per_pad; ++i) {

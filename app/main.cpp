@@ -46,12 +46,7 @@ std::string verb_problem(CLI::App& program, int argc, char** argv) {
                      did_you_mean(argv[1], verbs), fmt::join(verbs, ", "));
 }
 
-int run_program(int argc, char** argv) {
-  install_stop_signals();
-  // A reader that goes away, or a file that may not grow, are errors to report, not deaths.
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);
-
+int run_verb(int argc, char** argv) {
   CLI::App program{"stridor: friction-induced vibration of sliding flexible bodies", "stridor"};
   program.set_version_flag("--version", fmt::format("stridor {} ({})", version, commit));
   program.require_subcommand(1);
@@ -86,9 +81,16 @@ int run_program(int argc, char** argv) {
     }
     return program.exit(error);
   }
+  return static_cast<int>(action());
+}
 
+int run_program(int argc, char** argv) {
   try {
-    return static_cast<int>(action());
+    install_stop_signals();
+    // A reader that goes away, or a file that may not grow, are errors to report, not deaths.
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
+    return run_verb(argc, argv);
   } catch (const ConfigError& error) {
     return report("the input is wrong", error.report(), ExitCode::bad_input);
   } catch (const FileError& error) {

@@ -25,7 +25,7 @@ std::vector<PredictedBurst> match_bursts(const std::vector<TimedWindow>& windows
         prediction.burst = one;
       }
     }
-    predictions.push_back(std::move(prediction));
+    predictions.push_back(prediction);
   }
   return predictions;
 }

@@ -57,6 +57,7 @@ void check_size(const SpectrogramParameters& parameters, const RecordedStretch& 
 
 std::vector<SpectrogramMark> burst_marks(const std::vector<NumberedBurst>& bursts) {
   std::vector<SpectrogramMark> marks;
+  marks.reserve(bursts.size());
   for (const auto& [number, burst] : bursts) {
     marks.push_back({burst.start, burst.end, burst.frequency,
                      fmt::format("{}: {}", number, quantity_text(burst.frequency, "Hz")),

@@ -101,7 +101,7 @@ const char* range_text(LawRange range) {
 
 NumericKey find_sphere_key(const SphereScene& scene, const std::string& path,
                            const std::string& option) {
-  const NumericKey key = find_numeric_key(SphereScene::schema(), &scene, path, option);
+  NumericKey key = find_numeric_key(SphereScene::schema(), &scene, path, option);
   if (!path.starts_with("sphere.") && !path.starts_with("regularisation."))
     throw ConfigError(option, fmt::format("'{}' has no influence on the eigenvalues", path));
   return key;
@@ -113,12 +113,12 @@ std::unique_ptr<StabilityFamily> SphereStabilityScene::family(std::vector<Numeri
 }
 
 std::unique_ptr<GrowthField> SphereStabilityScene::growth_field(
-    std::vector<NumericKey> keys) const {
+    const std::vector<NumericKey>& keys) const {
   return std::make_unique<SphereField>(loaded_.scene, keys);
 }
 
 SubstrateEquilibrium sphere_equilibrium(const SubstrateOscillator& oscillator) {
-  const SubstrateEquilibrium found =
+  SubstrateEquilibrium found =
       find_equilibrium(oscillator, 1e-2 * oscillator.contact.indentation_unit);
   if (!found.converged) {
     throw NumericalError(fmt::format(

@@ -20,7 +20,7 @@ class SphereStabilityScene : public StabilityScene {
   }
   std::unique_ptr<StabilityFamily> family(std::vector<NumericKey> keys,
                                           ContactGeometry geometry) const override;
-  std::unique_ptr<GrowthField> growth_field(std::vector<NumericKey> keys) const override;
+  std::unique_ptr<GrowthField> growth_field(const std::vector<NumericKey>& keys) const override;
   /// ω_nx.
   double rate_unit(const std::vector<NumericKey>& keys,
                    std::span<const double> values) const override {

@@ -111,7 +111,7 @@ void add_stability_options(CLI::App& verb, StabilityOptions& options) {
 NumericKey find_stability_key(const Scene& scene, const std::string& path,
                               const std::string& option) {
   if (path == drive_displacement_name) return {path, "m", Range::any(), false};
-  const NumericKey key = find_numeric_key(scene, path, option);
+  NumericKey key = find_numeric_key(scene, path, option);
   const std::string section = path.substr(0, path.find('.'));
   const bool is_mechanical =
       section != "initial" && ModelParameters::schema().find(section) != nullptr;
@@ -349,9 +349,9 @@ PencilFamily StabilityFamily::along(std::size_t key, std::vector<double> values,
   return along;
 }
 
-SpectrumFamily StabilityFamily::spectra(std::size_t key, std::vector<double> values,
+SpectrumFamily StabilityFamily::spectra(std::size_t key, const std::vector<double>& values,
                                         const LocusOptions& options) {
-  SpectrumFamily family = sparse_spectra(key, std::move(values), options);
+  SpectrumFamily family = sparse_spectra(key, values, options);
   for (auto* spectrum : {&family.at, &family.near, &family.glimpse}) {
     *spectrum = [this, found_at = std::move(*spectrum)](double value) {
       if (stop_requested()) throw Interrupted("nothing has been written");
@@ -390,7 +390,8 @@ std::vector<double> BodyStabilityFamily::kinks(std::size_t key, const std::vecto
 namespace {
 
 /// The locus along whole numbers.
-Locus locus_at(PencilFamily family, const std::vector<double>& range, const LocusOptions& options) {
+Locus locus_at(const PencilFamily& family, const std::vector<double>& range,
+               const LocusOptions& options) {
   Locus locus;
   locus.values = range;
   Pencil pencil;

@@ -118,7 +118,8 @@ class StabilityFamily {
   virtual bool is_sparse() const { return false; }
   /// The eigenvalues wanted along one of the keys; arguments as of along(). They throw
   /// NumericalError naming the values if one may be missing.
-  SpectrumFamily spectra(std::size_t key, std::vector<double> values, const LocusOptions& options);
+  SpectrumFamily spectra(std::size_t key, const std::vector<double>& values,
+                         const LocusOptions& options);
 
   /// The pencils along one of the keys.
   /// @param key      its index
@@ -131,7 +132,8 @@ class StabilityFamily {
   void on_value(std::function<void(double)> report) { report_ = std::move(report); }
 
  private:
-  virtual SpectrumFamily sparse_spectra(std::size_t, std::vector<double>, const LocusOptions&) {
+  virtual SpectrumFamily sparse_spectra(std::size_t, const std::vector<double>&,
+                                        const LocusOptions&) {
     return {};
   }
   virtual std::vector<double> kinks(std::size_t, const std::vector<double>&, double, double) {
@@ -174,7 +176,7 @@ class StabilityScene {
   virtual std::unique_ptr<StabilityFamily> family(std::vector<NumericKey> keys,
                                                   ContactGeometry geometry) const = 0;
   /// The fast way to growth rates over two keys, one field per thread; null where there is none.
-  virtual std::unique_ptr<GrowthField> growth_field(std::vector<NumericKey>) const {
+  virtual std::unique_ptr<GrowthField> growth_field(const std::vector<NumericKey>&) const {
     return nullptr;
   }
   /// Whether its lines must be traced by one thread: dense products go to BLAS.

@@ -74,7 +74,6 @@ void load_start(const State& state, System& system) {
 
 Transient::Transient(const LoadedScene& loaded, const RunOutput& output)
     : loaded_(&loaded), file_(output.file), keeper_(loaded.scene.checkpoint.every) {
-  const Scene& scene = loaded.scene;
   check_output(file_, output.overwrite);
   model_ = build_model(loaded);
   set_initial_state(model_.system, loaded);

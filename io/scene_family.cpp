@@ -108,6 +108,7 @@ NumericKey find_numeric_key(const Schema& keys, const void* object, const std::s
       case KeyKind::named_sections: {
         const auto entries = entries_of(*key, object);
         std::vector<std::string> names;
+        names.reserve(entries.size());
         for (const NamedEntry& entry : entries) names.push_back(entry.name);
         const std::size_t stop =
             std::min(path.find('.', std::min(begin, path.size())), path.size());

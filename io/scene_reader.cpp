@@ -89,6 +89,7 @@ bool is_section_name(const std::string& name) {
 
 std::vector<std::string> names_of(const std::vector<Alternative>& alternatives) {
   std::vector<std::string> names;
+  names.reserve(alternatives.size());
   for (const Alternative& alternative : alternatives) names.push_back(alternative.name);
   return names;
 }

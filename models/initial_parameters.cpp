@@ -54,19 +54,19 @@ const Schema& InitialParameters::schema() {
           .section("perturbation", &InitialParameters::perturbation,
                    {.doc = "Eigenvector added to the state.", .optional = true})
           .check([](const InitialParameters& initial, std::vector<Problem>& problems) {
-            const std::string& state = initial.state;
+            const std::string& start = initial.state;
             const bool is_run_file =
-                state.size() > 3 && state.compare(state.size() - 3, 3, ".h5") == 0;
+                start.size() > 3 && start.compare(start.size() - 3, 3, ".h5") == 0;
             if (initial.is_file() && !is_run_file) {
               problems.push_back({"state",
-                                  "'" + state +
+                                  "'" + start +
                                       "' is neither rest nor equilibrium nor a run file "
                                       "(*.h5)",
                                   {},
                                   0,
                                   0});
             }
-            if (initial.perturbation && state != InitialParameters::equilibrium) {
+            if (initial.perturbation && start != InitialParameters::equilibrium) {
               problems.push_back({"perturbation",
                                   "is added to the sliding equilibrium: needs state: equilibrium",
                                   {},
