@@ -1,12 +1,15 @@
 // The built program, run as a user would run it.
 #pragma once
 
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,6 +38,7 @@ class Program {
   void start() {
     child_ = fork();
     if (child_ != 0) return;
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // not to outlive a test that fails or is ended
     if (file_limit_ != RLIM_INFINITY) {
       const rlimit limit{file_limit_, file_limit_};
       setrlimit(RLIMIT_FSIZE, &limit);
@@ -49,6 +53,12 @@ class Program {
   }
 
   void send(int signal) const { kill(child_, signal); }
+
+  /// Threads that it has at the moment.
+  std::ptrdiff_t num_threads() const {
+    const std::filesystem::directory_iterator threads("/proc/" + std::to_string(child_) + "/task");
+    return std::distance(begin(threads), end(threads));
+  }
 
   ProgramResult wait() const {
     int status = 0;
