@@ -319,8 +319,6 @@ ExitCode make_table(const ContactOptions& options, const LoadedContactScene& loa
   SlidingPoints points;
   points.speeds = spaced_values("--speeds", options.table_speeds);
   points.indentations = spaced_values("--indentations", options.table_indentations);
-  if (scene.material.creep_times.empty())
-    throw loaded.problem("material.creep_times", "is empty: without creep there is no friction");
   check_reach(loaded, points);
   const auto num_contacts = static_cast<double>(points.speeds.size() * points.indentations.size());
   Progress progress("contact table");

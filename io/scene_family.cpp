@@ -182,6 +182,10 @@ std::vector<double> spaced_values(const NumericKey& key, double from, double to,
                                               : from * std::pow(to / from, share);
     if (i == 0) value = from;
     if (i == count - 1) value = to;
+    // 0.6·1 + 0.4·6 is not 3 to the last bit.
+    constexpr double rounding = 1e-12;
+    if (key.is_integer && std::abs(value - std::round(value)) <= rounding * std::abs(value))
+      value = std::round(value);
     if (key.is_integer && value != std::round(value)) {
       throw ConfigError("--points",
                         fmt::format("{} points from {:g} to {:g} are not whole numbers, as {} is; "

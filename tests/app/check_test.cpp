@@ -107,6 +107,56 @@ TEST(Check, SeesTheStateInWhichARunStarts) {
   EXPECT_THAT(bad.err, HasSubstr("initial.perturbation.eigenvalue"));
 }
 
+TEST(Check, ConditionsBetweenKeysAreNamed) {
+  const TemporaryFolder folder;
+  const std::string penalty = folder / "penalty.yaml";
+  std::string text = contents_of(scene_path("disc_and_pads.yaml"));
+  text.replace(text.find("formulation: lagrange"), 21, "formulation: penalty");
+  text.replace(text.find("  penalty: 1.0e+10"), 18, "  #");
+  write_file(penalty, text);
+  std::string many = "contact.offsets=[0";
+  for (int i = 0; i < 400; ++i) many += ", 0";
+  many += "]";
+  const std::string disc = scene_path("disc_and_pads.yaml");
+  const std::string beams = scene_path("beam_on_beam.yaml");
+  const struct {
+    std::string scene;
+    std::vector<std::string> settings;
+    const char* message;
+  } cases[] = {
+      {penalty, {}, "contact.penalty: is required with `formulation: penalty`"},
+      {disc, {"disc.speed=0"}, "disc.speed: must be positive with the term friction_damping"},
+      {disc,
+       {"disc.outer_radius=100 mm"},
+       "pads.radius: must lie between the edges of the disc, 0.08 and 0.1 m, got 0.13 m"},
+      {disc,
+       {"disc.outer_radius=70 mm"},
+       "disc.outer_radius: must be larger than inner_radius = 0.08 m, got 0.07 m"},
+      {disc, {"disc.radial_modes=9"}, "disc.radial_modes: must not exceed radial_terms = 8, got 9"},
+      // 6.4e7 N/m is more than √(4e7·1e8) N/m.
+      {disc, {"pads.stiffness.coupling=6.4e7"}, "pads.stiffness.coupling: must be smaller than"},
+      {scene_path("examples/elastic_pads.yaml"),
+       {many},
+       "contact.offsets: a pad may have up to 400 contact points, got 401"},
+      {beams,
+       {"time.coordinates=craig_bampton", "time.integrator=exact"},
+       "time.integrator: exact takes coordinates: modal"},
+      {beams, {"time.step=1e-16"}, "time.step: the run would take more than 1e15 steps"},
+      {scene_path("viscoelastic_sphere.yaml"),
+       {"time.integrator=exact", "time.step=1e-12"},
+       "time.step: takes more than 1e10 steps to `end`"},
+      {scene_path("viscoelastic_contact.yaml"),
+       {"contact_solver.grid=33"},
+       "contact_solver.grid: 33 is not even"}};
+  for (const auto& [scene, settings, message] : cases) {
+    std::vector<std::string> arguments{"check", scene};
+    for (const std::string& one : settings) arguments.insert(arguments.end(), {"--set", one});
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 2) << message;
+    EXPECT_THAT(result.err, HasSubstr(message));
+  }
+}
+
 TEST(Check, JsonHoldsPlaceKeyAndMessageAlone) {
   const TemporaryFolder folder;
   const std::string path = folder / "bad.yaml";

@@ -76,6 +76,34 @@ TEST(CompareProgram, PrintsATableAndKeepsNothingWithoutAFolder) {
   EXPECT_THAT(result.out, ::testing::Not(HasSubstr("craig_bampton")));
 }
 
+TEST(CompareProgram, AnAssumptionThatFailsIsARowAndTheOthersGoOn) {
+  // A load that lifts: contacts that cannot part end, FiLM parts.
+  const ProgramResult result =
+      Program({"compare", main_scene, "--set", "drive.load=+0.2", "--set", "drive.ramp=1e-4",
+               "--set", "contact.armed_from=2e-4", "--set", "time.end=2e-3", "--set",
+               "measure.from=1e-3", "--published-window", "0"})
+          .run();
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string& table = result.out;
+  for (const char* name : {"subs_a ", "subs_b ", "subs_c "}) {
+    const std::string row = table.substr(table.find(name));
+    EXPECT_THAT(row.substr(0, row.find('\n')), HasSubstr("failed: contact at t = 0.0002")) << name;
+  }
+  EXPECT_THAT(table.substr(table.find("film ")), ::testing::EndsWith("  done\n"));
+}
+
+TEST(CompareProgram, NeedsChannelsToCompareBy) {
+  const TemporaryFolder folder;
+  std::string text = contents_of(main_scene);
+  const std::size_t record = text.find("\nrecord:");
+  ASSERT_NE(record, std::string::npos);
+  text.erase(record, text.find("\nmeasure:") - record);
+  write_file(folder / "silent.yaml", text);
+  const ProgramResult result = Program({"compare", folder / "silent.yaml"}).run();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("record: missing: compare needs an acceleration"));
+}
+
 TEST(CompareProgram, RefusesBadInput) {
   const struct {
     std::vector<std::string> more;

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "core/errors.hpp"
@@ -48,14 +50,25 @@ TEST(Tasks, TheFirstFailureInOrderIsThrownWhateverTheThreads) {
 }
 
 TEST(Tasks, AStopEndsThemWithoutAResult) {
-  int num_begun = 0;
-  const auto stop_in_third = [&](std::size_t task, std::size_t) {
-    ++num_begun;
-    if (task == 2) request_stop();
-  };
-  EXPECT_THROW(run_tasks(40, 1, stop_in_third, ignore), Interrupted);
-  request_stop(false);
-  EXPECT_EQ(num_begun, 3);
+  for (const int num_threads : {1, 2, 5}) {
+    std::atomic<int> num_begun = 0;
+    std::atomic<int> num_told = 0;
+    const auto stop_in_third = [&](std::size_t task, std::size_t) {
+      ++num_begun;
+      if (task == 2) request_stop();
+      // Those that others have begun are done, but none is begun after it.
+      while (task > 2 && !stop_requested()) std::this_thread::yield();
+    };
+    EXPECT_THROW(
+        run_tasks(40, num_threads, stop_in_third, [&](std::size_t, std::size_t) { ++num_told; }),
+        Interrupted);
+    request_stop(false);
+    if (num_threads == 1) {
+      EXPECT_EQ(num_begun, 3);
+    }
+    EXPECT_LE(num_begun, 2 + num_threads);
+    EXPECT_EQ(num_told, num_begun);
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "solvers/linearise.hpp"
 #include "tests/support/message_of.hpp"
@@ -93,6 +94,17 @@ TEST(SpacedValues, HoldBothEndsExactly) {
   EXPECT_EQ(spaced_values(start, 0.05, 0.05, 1, Spacing::linear), std::vector<double>{0.05});
   EXPECT_EQ(spaced_values(key_at("substructures.oblique.mesh.along"), 2, 6, 3, Spacing::linear),
             (std::vector<double>{2, 4, 6}));
+}
+
+TEST(SpacedValues, WholeNumbersAreWholeWhateverTheRoundingOfTheirSpacing) {
+  const NumericKey along = key_at("substructures.oblique.mesh.along");
+  for (int last = 3; last <= 60; ++last) {
+    std::vector<double> all(static_cast<std::size_t>(last));
+    std::iota(all.begin(), all.end(), 1.0);
+    EXPECT_EQ(spaced_values(along, 1, last, last, Spacing::linear), all);
+  }
+  EXPECT_EQ(spaced_values(along, 1, 1000, 4, Spacing::logarithmic),
+            (std::vector<double>{1, 10, 100, 1000}));
 }
 
 TEST(SpacedValues, WhatDoesNotFitIsRefused) {

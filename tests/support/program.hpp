@@ -1,13 +1,16 @@
 // The built program, run as a user would run it.
 #pragma once
 
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,6 +47,7 @@ class Program {
   void start() {
     child_ = fork();
     if (child_ != 0) return;
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // not to outlive a test that fails or is ended
     if (file_limit_ != RLIM_INFINITY) {
       const rlimit limit{file_limit_, file_limit_};
       setrlimit(RLIMIT_FSIZE, &limit);
@@ -63,6 +67,12 @@ class Program {
     const bool is_request = signal == SIGINT || signal == SIGTERM;
     for (int i = 0; is_request && i < 3000 && !listens_or_is_over(signal); ++i) usleep(10'000);
     kill(child_, signal);
+  }
+
+  /// Threads that it has at the moment.
+  std::ptrdiff_t num_threads() const {
+    const std::filesystem::directory_iterator threads("/proc/" + std::to_string(child_) + "/task");
+    return std::distance(begin(threads), end(threads));
   }
 
   ProgramResult wait() {
