@@ -243,9 +243,8 @@ bool DiscTransient::is_sound(bool has_converged) {
   return has_converged;
 }
 
-MarchEnd DiscTransient::run_to_end() {
+MarchEnd DiscTransient::run_to_step(std::int64_t last) {
   constexpr std::int64_t steps_between_looks = 256;
-  const std::int64_t last = end_step_ + recorder_->latency();
   const auto start = std::chrono::steady_clock::now();
   const double writing_before = writer_->write_seconds();
   end_ = is_sound(true) ? MarchEnd::finished : MarchEnd::failed;
@@ -270,6 +269,14 @@ MarchEnd DiscTransient::run_to_end() {
   }
   march_seconds_ += seconds_since(start) - (writer_->write_seconds() - writing_before);
   return end_;
+}
+
+MarchEnd DiscTransient::run_until(double time) {
+  return run_to_step(static_cast<std::int64_t>(std::llround(time / scene().time->step)));
+}
+
+MarchEnd DiscTransient::run_to_end() {
+  return run_to_step(end_step_ + recorder_->latency());
 }
 
 Json DiscTransient::finish() {

@@ -46,7 +46,8 @@ class DiscTransient {
   DiscTransient(const DiscTransient&) = delete;
   DiscTransient& operator=(const DiscTransient&) = delete;
 
-  /// Steps until the end of the run (with what its filters look ahead).
+  /// Steps until a time, or until the end of the run (with what its filters look ahead).
+  MarchEnd run_until(double time);
   MarchEnd run_to_end();
 
   /// Progress and the limit of wall time.
@@ -70,6 +71,7 @@ class DiscTransient {
   const DiscScene& scene() const { return std::get<DiscScene>(loaded_->scene); }
   void make_model();
   Perturbation perturbation() const;
+  MarchEnd run_to_step(std::int64_t step);
   bool is_sound(bool has_converged);
   State save() const;
   void load(const State& state);
