@@ -84,9 +84,9 @@ Samples run_steps(const Study& study, const Setting& setting) {
   Samples x;
   (void)stepper.advance();  // its motion is then that at t = 0
   for (std::size_t k = 1; k <= study.num_samples && !stop_requested(); ++k) {
-    bool is_finite = true;
-    for (int i = 0; i < setting.steps_per_sample; ++i) is_finite = stepper.advance();
-    if (!is_finite) break;
+    bool is_sound = true;
+    for (int i = 0; i < setting.steps_per_sample && is_sound; ++i) is_sound = stepper.advance();
+    if (!is_sound) break;
     x.push_back(stepper.displacement().x());
   }
   return x;

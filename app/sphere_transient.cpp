@@ -236,10 +236,7 @@ bool SphereTransient::advance_to_sample() {
     const SubstrateMotion::State& s = motion_->state();
     meter_.note_position(motion_->time(), s[0]);
     if (stop == SubstrateMotion::Stop::failed) {
-      failure_ = fmt::format(
-          "after t = {:.6g} the motion has grown beyond all bounds, or takes steps too small for "
-          "its time; a larger time.tolerance or an initial_indentation nearer to 1 may help",
-          time());
+      failure_ = fmt::format("after t = {:.6g} {}", motion_->time(), motion_->failure());
       return false;
     }
     if (stop == SubstrateMotion::Stop::turn) {
@@ -255,9 +252,7 @@ bool SphereTransient::advance_to_sample() {
 bool SphereTransient::advance_a_step() {
   const double h = *scene().time.step;
   if (!stepper_->advance()) {
-    failure_ = fmt::format(
-        "after t = {:.6g} the motion has grown beyond all bounds; a shorter time.step may help",
-        time());
+    failure_ = fmt::format("after t = {:.6g} {}", time(), stepper_->failure());
     return false;
   }
   const double time = static_cast<double>(unit_) * h;

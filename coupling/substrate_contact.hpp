@@ -60,6 +60,10 @@ struct SubstrateContact {
   /// Largest tangential force that keeps the contact sticking, a Ã(ŷ, 0), by the indentation. Only
   /// the adhesive part has static strength, and none if friction is regularised.
   SubstrateForces::Force static_strength(double indentation) const;
+
+  /// Whether the body has sunk in by more than its radius, ŷ > 1. No law goes that far: they are of
+  /// indentations that are small against the radius.
+  bool is_sunk(double indentation) const { return indentation > indentation_unit; }
 };
 
 }  // namespace stridor

@@ -21,6 +21,7 @@ bool solve_substrate(LocalProblem& contact, const LocalCompliance& w, double sli
   contact.normal = step.normal;
   contact.tangential = -step.tangential;
   contact.state = step.state;
+  contact.stiffness = step.stiffness;
   return !std::isnan(contact.indentation) && !std::isnan(slip);
 }
 

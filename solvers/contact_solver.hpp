@@ -39,6 +39,7 @@ struct LocalProblem {
   double normal = 0.0;      ///< λ_n, N
   double tangential = 0.0;  ///< λ_t, N
   ContactState state = ContactState::open;
+  double stiffness = 0.0;  ///< of the force law, by the indentation, N/m
 };
 
 enum class ContactStatus {

@@ -16,6 +16,7 @@
 #include "core/errors.hpp"
 #include "solvers/make_propagator.hpp"
 #include "solvers/simulation.hpp"
+#include "solvers/substrate_step.hpp"
 
 namespace stridor {
 
@@ -57,9 +58,11 @@ struct RunningContact {
   ViolationCount violations;
 
   // Scratch of one step.
-  bool looks_ahead = false;  ///< its problem is that of t_{n+1}
-  double friction = 0.0;     ///< μ, for messages
-  double stretch = 1.0;      ///< SlidingPoint::stretch()
+  bool looks_ahead = false;        ///< its problem is that of t_{n+1}
+  double friction = 0.0;           ///< μ, for messages
+  double indentation = 0.0;        ///< in a substrate, likewise, m
+  double stiffness_in_step = 0.0;  ///< k W of a substrate, likewise
+  double stretch = 1.0;            ///< SlidingPoint::stretch()
 
   const ContactPoint& point() const { return sliding.point(); }
   double rise_at(double time) const {
@@ -358,6 +361,10 @@ struct Simulation::Implementation {
       contact.state = local[i].state;
       if (!(std::abs(contact.force) < absurd_force)) return fail(contact, StepOutcome::diverged);
       count(contact);
+      if (local[i].substrate != nullptr) {
+        outcome = check_penetration(contact, i);
+        if (outcome != StepOutcome::done) return outcome;
+      }
       if (contact.tracks_slip) move_anchor(contact, i);
       if (local[i].is_unilateral) {
         note_unilateral(contact);
@@ -371,6 +378,18 @@ struct Simulation::Implementation {
       if (!update_slip_velocities()) outcome = StepOutcome::sliding_reversed;
     }
     return outcome;
+  }
+
+  /// A force law, unlike a constraint, lets the slave sink in without end.
+  StepOutcome check_penetration(RunningContact& contact, std::size_t i) {
+    const LocalProblem& problem = local[i];
+    const auto row = static_cast<Eigen::Index>(2 * i);
+    const double compliance = solver.delassus()(row, row);
+    contact.indentation = problem.indentation;
+    contact.stiffness_in_step = problem.stiffness * compliance;
+    if (problem.substrate->is_sunk(problem.indentation)) return fail(contact, StepOutcome::sunk);
+    if (overshoots(problem.stiffness, compliance)) return fail(contact, StepOutcome::overshot);
+    return StepOutcome::done;
   }
 
   static void count(RunningContact& contact) {
@@ -585,6 +604,25 @@ struct Simulation::Implementation {
         what = fmt::format("the contact force is {:.3g} N: the computation has diverged",
                            contact.force);
         remedy = "take a smaller time.step";
+        break;
+      case StepOutcome::sunk:
+        what = fmt::format(
+            "it has sunk {:.4g} m into the substrate, more than its radius of {:.4g} m, where no "
+            "contact law holds",
+            contact.indentation, contact.point().substrate->indentation_unit);
+        remedy =
+            "take a smaller load (drive.load), a larger contact.substrate.modulus or radius, or, "
+            "if "
+            "it did not sink under its load but came to swing so far, a smaller time.step";
+        break;
+      case StepOutcome::overshot:
+        what = fmt::format(
+            "the substrate is too stiff for the step: at an indentation of {:.4g} m its force "
+            "undoes {:.3g} times a change of indentation in one step, and more than 4 times makes "
+            "it grow",
+            contact.indentation, contact.stiffness_in_step);
+        remedy = fmt::format("take a smaller time.step; about {:.1g} s resolves this contact",
+                             step / std::sqrt(contact.stiffness_in_step));
         break;
       case StepOutcome::done:
         break;

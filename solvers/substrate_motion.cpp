@@ -44,6 +44,7 @@ SubstrateMotion::SubstrateMotion(const SubstrateOscillator& oscillator, double t
 void SubstrateMotion::start(const Eigen::Vector2d& displacement, const Eigen::Vector2d& velocity) {
   time_ = 0.0;
   step_ = 0.01;
+  failure_.clear();
   state_ = {displacement.x(), displacement.y(), velocity.x(), velocity.y(), 0.0, 0.0};
   restart_statistics();
   if (state_[Y] > 0.0) {
@@ -352,16 +353,28 @@ bool SubstrateMotion::take_step(double end, bool stops_at_turns, Event& event, b
   return false;
 }
 
+/// @return false where the body runs away
+bool SubstrateMotion::check_motion() {
+  constexpr double largest = 1e12;
+  for (std::size_t k = 0; k <= VY; ++k) {
+    if (std::abs(state_[k]) < largest * (1.0 + size_[0])) continue;
+    failure_ = "the motion has grown beyond all bounds; try an initial_indentation nearer to 1";
+    return false;
+  }
+  return true;
+}
+
 SubstrateMotion::Stop SubstrateMotion::advance(double end, bool stops_at_turns) {
   // Turns are armed by where the motion is now.
   armed_[static_cast<std::size_t>(Event::turn)] = mode_ == SubstrateMode::stick || state_[VX] > 0.0;
   while (time_ < end) {
     Event event{};
     bool has_event = false;
-    if (!take_step(end, stops_at_turns, event, has_event)) return Stop::failed;
-    constexpr double largest = 1e12;
-    for (std::size_t k = 0; k <= VY; ++k)
-      if (!(std::abs(state_[k]) < largest * (1.0 + size_[0]))) return Stop::failed;
+    if (!take_step(end, stops_at_turns, event, has_event)) {
+      failure_ = "the steps have become too small for the time; try a larger time.tolerance";
+      return Stop::failed;
+    }
+    if (!check_motion()) return Stop::failed;
     if (!has_event) continue;
     apply(event);
     if (event == Event::turn) return Stop::turn;

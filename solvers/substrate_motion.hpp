@@ -42,10 +42,13 @@ class SubstrateMotion {
   enum class Stop {
     end,     ///< the time that was asked for
     turn,    ///< ẋ falls through zero: the body is at its largest x
-    failed,  ///< steps became too small or numbers overflowed
+    failed,  ///< see failure()
   };
   /// Marches to a time or, where asked, to the next turn.
   Stop advance(double end, bool stops_at_turns);
+
+  /// What went wrong, and what to try; empty unless `advance` has failed.
+  const std::string& failure() const { return failure_; }
 
   double time() const { return time_; }
   const State& state() const { return state_; }
@@ -91,6 +94,7 @@ class SubstrateMotion {
   void apply(Event event);
   void renew();
   bool take_step(double end, bool stops_at_turns, Event& event, bool& has_event);
+  bool check_motion();
   double locate(Event event, double length, const Value& at_start, const Value& at_end);
   void accept(double length);
 
@@ -106,6 +110,7 @@ class SubstrateMotion {
   Step trial_;
   State end_slope_{};
   Statistics statistics_;
+  std::string failure_;
 };
 
 }  // namespace stridor

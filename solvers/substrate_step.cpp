@@ -10,12 +10,14 @@ SubstrateStep solve_substrate_step(const SubstrateContact& contact, double inden
                                    double last_slip, const SlipAnswer& slip, double speed) {
   SubstrateStep step;
   if (!(indentation > 0.0)) return step;
-  const double sticking_normal = contact.at(indentation, 0.0, 1.0).normal.value;
+  const SubstrateForces::Force at_rest = contact.at(indentation, 0.0, 1.0).normal;
+  const double sticking_normal = at_rest.value;
   const double required = -(slip.free + slip.by_normal * sticking_normal) / slip.by_tangential;
   const double strength = contact.static_strength(indentation).value;
   if (std::abs(required) <= strength) {
     step.state = ContactState::stick;
     step.normal = sticking_normal;
+    step.stiffness = at_rest.by_indentation;
     step.tangential = required;
     return step;
   }
@@ -32,6 +34,7 @@ SubstrateStep solve_substrate_step(const SubstrateContact& contact, double inden
     const double by_w = mean > 0.0 ? 0.5 : 0.0;
     const SubstrateForces forces = contact.at(indentation, direction * mean, direction);
     step.normal = forces.normal.value;
+    step.stiffness = forces.normal.by_indentation;
     step.tangential = forces.tangential.value;
     const double miss = w - direction * (slip.free + slip.by_tangential * step.tangential +
                                          slip.by_normal * step.normal);

@@ -17,6 +17,7 @@ struct SlipAnswer {
 struct SubstrateStep {
   double normal = 0.0;      ///< f_n, pushes the body out
   double tangential = 0.0;  ///< f_t, along the direction of the slip where that is positive
+  double stiffness = 0.0;   ///< ∂f_n/∂y
   ContactState state = ContactState::open;
   double direction = -1.0;  ///< of the slip, ±1
 };
@@ -31,5 +32,13 @@ struct SubstrateStep {
 /// @param speed       by which small changes of w are measured, >= 0
 SubstrateStep solve_substrate_step(const SubstrateContact& contact, double indentation,
                                    double last_slip, const SlipAnswer& slip, double speed);
+
+/// Whether the substrate is too stiff for the step, k W > 4: every small change of the indentation
+/// is followed by a larger one to the other side, whatever the bodies are (docs/theory.md, 9.4).
+/// @param stiffness  k = ∂f_n/∂y
+/// @param compliance W, what a unit of f_n moves the body by in the step
+inline bool overshoots(double stiffness, double compliance) {
+  return stiffness * compliance > 4.0;
+}
 
 }  // namespace stridor

@@ -1,5 +1,7 @@
 #include "solvers/substrate_stepper.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -42,6 +44,7 @@ void SubstrateStepper::start(const Eigen::Vector2d& displacement, const Eigen::V
   body_.initial_velocity = velocity;
   start_motion(*propagator_, body_, time_, at_start.data());
   steps_ = 0;
+  failure_.clear();
   displacement_ = displacement;
   velocity_ = velocity;
 }
@@ -53,6 +56,7 @@ void SubstrateStepper::find_forces() {
                                                    last_slip_, slip, oscillator_->substrate_speed);
   normal_ = found.normal;
   tangential_ = found.tangential;
+  stiffness_ = found.stiffness;
   mode_ = found.state == ContactState::open    ? SubstrateMode::free
           : found.state == ContactState::stick ? SubstrateMode::stick
           : found.direction > 0.0              ? SubstrateMode::slip_forward
@@ -76,7 +80,23 @@ bool SubstrateStepper::advance() {
   ++steps_;
   velocity_ = {(propagator_->current(0) - before_x) / (2.0 * step_),
                (propagator_->current(1) - before_y) / (2.0 * step_)};
-  return std::isfinite(propagator_->current(0)) && std::isfinite(propagator_->current(1));
+  return check_motion();
+}
+
+bool SubstrateStepper::check_motion() {
+  const SubstrateContact& contact = oscillator_->contact;
+  const double y = displacement_.y();
+  const double stiffness_in_step = stiffness_ * propagator_->compliance(1, 1);
+  if (overshoots(stiffness_, propagator_->compliance(1, 1))) {
+    failure_ = fmt::format(
+        "the substrate is too stiff for the step: at an indentation of {:.3g} of the radius its "
+        "force undoes {:.3g} times a change of indentation in one step, and more than 4 times "
+        "makes it grow; try a shorter time.step, about {:.1g}",
+        y / contact.indentation_unit, stiffness_in_step, step_ / std::sqrt(stiffness_in_step));
+  } else if (!std::isfinite(propagator_->current(0)) || !std::isfinite(propagator_->current(1))) {
+    failure_ = "the motion has grown beyond all bounds; try a shorter time.step";
+  }
+  return failure_.empty();
 }
 
 void SubstrateStepper::save(State& state, const std::string& prefix) const {

@@ -32,8 +32,11 @@ class SubstrateStepper {
 
   void start(const Eigen::Vector2d& displacement, const Eigen::Vector2d& velocity);
 
-  /// Goes from t_n to t_{n+1}. @return whether all numbers are finite
+  /// Goes from t_n to t_{n+1}. @return false where that fails, see failure()
   bool advance();
+
+  /// What went wrong in the step made last, and what to try; empty if nothing did.
+  const std::string& failure() const { return failure_; }
 
   std::int64_t steps() const { return steps_; }
   double time() const { return static_cast<double>(steps_) * step_; }
@@ -54,6 +57,8 @@ class SubstrateStepper {
  private:
   /// w_{n+1} under forces of the contact.
   void find_forces();
+  /// @return false where the body runs away
+  bool check_motion();
 
   const SubstrateOscillator* oscillator_;
   SystemBody body_;
@@ -70,6 +75,8 @@ class SubstrateStepper {
   Eigen::Vector2d velocity_ = Eigen::Vector2d::Zero();
   double normal_ = 0.0;
   double tangential_ = 0.0;
+  double stiffness_ = 0.0;  ///< of the contact, by y
+  std::string failure_;
   SubstrateMode mode_ = SubstrateMode::slip_back;
 };
 

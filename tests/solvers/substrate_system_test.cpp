@@ -231,6 +231,74 @@ TEST(SubstrateSystem, TransientOfABeamGrowsAsItsEigenvalueSays) {
   }
 }
 
+/// Step of the central difference without damping for which k W = k h² is this at rest.
+double step_for(const SubstrateOscillator& oscillator, double stiffness_in_step) {
+  const double y = find_equilibrium(oscillator).displacement.y();
+  const auto normal = [&](double at) {
+    return oscillator.contact.at(at, -oscillator.substrate_speed, -1.0).normal.value;
+  };
+  const double stiffness = (normal(1.0001 * y) - normal(0.9999 * y)) / (0.0002 * y);
+  return std::sqrt(stiffness_in_step / stiffness);
+}
+
+TEST(SubstrateSystem, AStepTooLongForTheSubstrateIsAnOutcome) {
+  SubstrateOscillator oscillator = sphere(5e-3, 0.0);
+  oscillator.damping.setZero();
+  const Eigen::Vector2d rest = find_equilibrium(oscillator).displacement;
+  // The bound is k W = 4; k by differences is good to 1e-6.
+  const System still = as_system(oscillator, rest);
+  const Simulation below(still, test::time_of(step_for(oscillator, 3.999)));
+  EXPECT_THAT(message_of<NumericalError>([&] {
+                const Simulation above(still, test::time_of(step_for(oscillator, 4.001)));
+              }),
+              ::testing::AllOf(HasSubstr("contact at t = 0 s (step 0)"),
+                               HasSubstr("the substrate is too stiff for the step")));
+
+  // The springs take their part of the 4. Beyond the rest of it a small motion grows, until the
+  // substrate, which is the stiffer the deeper, says so.
+  const auto last_step = [&](double stiffness_in_step) {
+    const double h = step_for(oscillator, stiffness_in_step);
+    const Eigen::Vector2d start(rest.x(), 1.001 * rest.y());
+    Simulation simulation(as_system(oscillator, start), test::time_of(h));
+    SubstrateStepper stepper(oscillator, Integrator::central_difference, h);
+    stepper.start(start, Eigen::Vector2d::Zero());
+    StepOutcome outcome = StepOutcome::done;
+    while (outcome == StepOutcome::done && simulation.step_index() < 500) {
+      EXPECT_TRUE(stepper.advance()) << stepper.failure();
+      outcome = simulation.step();
+    }
+    if (outcome == StepOutcome::done) return simulation.step_index();
+    EXPECT_EQ(outcome, StepOutcome::overshot);
+    EXPECT_THAT(simulation.failure(), HasSubstr("Remedy: take a smaller time.step; about 0."));
+    EXPECT_FALSE(stepper.advance());
+    EXPECT_THAT(stepper.failure(), HasSubstr("the substrate is too stiff for the step"));
+    return simulation.step_index();
+  };
+  EXPECT_EQ(last_step(3.0), 500);
+  const std::int64_t stopped_at = last_step(3.98);
+  EXPECT_GT(stopped_at, 2);
+  EXPECT_LT(stopped_at, 500);
+}
+
+TEST(SubstrateSystem, ABodyDeeperThanItsRadiusIsAnOutcome) {
+  SubstrateOscillator oscillator = sphere(5e-3, 0.0);
+  const double radius = oscillator.contact.indentation_unit;
+  const Eigen::Vector2d rest = find_equilibrium(oscillator).displacement;
+  oscillator.load.y() *= 1e5;  // under which it falls
+  Simulation simulation(as_system(oscillator, rest), test::time_of(1e-4));
+  double before = 0.0;
+  StepOutcome outcome = StepOutcome::done;
+  while (outcome == StepOutcome::done && simulation.step_index() < 100'000) {
+    before = -simulation.displacement(0, 1);
+    outcome = simulation.step();
+  }
+  EXPECT_EQ(outcome, StepOutcome::sunk);
+  EXPECT_LE(before, radius);
+  EXPECT_GT(-simulation.displacement(0, 1), radius);
+  EXPECT_THAT(simulation.failure(), HasSubstr("m into the substrate, more than its radius of"));
+  EXPECT_THAT(simulation.failure(), HasSubstr("Remedy: take a smaller load (drive.load)"));
+}
+
 TEST(SubstrateSystem, WhatIsNotKnownOfASubstrateIsRefused) {
   const SubstrateOscillator oscillator = sphere(5e-3, 1e-2);
   const System system = as_system(oscillator, Eigen::Vector2d::Zero());
