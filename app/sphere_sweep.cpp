@@ -121,7 +121,9 @@ void draw(const SweepOptions& options, const LoadedSphereScene& loaded, const Nu
 void write_file(const SweepOptions& options, const LoadedSphereScene& loaded, const NumericKey& key,
                 const Branches& branches) {
   std::vector<Column> columns;
-  for (const auto& [name, points] : branches) {
+  for (const auto& branch : branches) {
+    const auto& name = branch.first;
+    const auto& points = branch.second;
     const auto add = [&](const char* column, auto&& of) {
       Column one{"/" + name + "/" + column, "1", {}};
       for (const SweepPoint& point : points) one.values.push_back(static_cast<double>(of(point)));

@@ -37,6 +37,7 @@ void store_bursts(RunFileWriter& writer, const std::vector<Burst>& bursts) {
       {"gain", &Burst::gain, "1"}};
   for (const auto& [name, member, units] : properties) {
     std::vector<double> values;
+    values.reserve(bursts.size());
     for (const Burst& burst : bursts) values.push_back(burst.*member);
     writer.write_static(std::string("/bursts/") + name, values, units);
   }

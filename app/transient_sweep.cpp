@@ -42,6 +42,7 @@ class ChannelMemory : public RowSink {
 };
 
 /// The transient at one value.
+// NOLINTNEXTLINE(bugprone-exception-escape): the moves of Json are declared not to throw.
 struct TransientPoint {
   double value = 0.0;
   Json results;

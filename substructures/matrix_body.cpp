@@ -14,6 +14,7 @@ namespace {
 
 std::string listed(const std::map<std::string, MatrixPointParameters>& points) {
   std::vector<std::string> names;
+  names.reserve(points.size());
   for (const auto& entry : points) names.push_back(entry.first);
   return fmt::format("{}", fmt::join(names, ", "));
 }
