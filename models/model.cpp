@@ -60,6 +60,7 @@ struct Body {
 template <class Map>
 std::vector<std::string> names_of(const Map& map) {
   std::vector<std::string> names;
+  names.reserve(map.size());
   for (const auto& entry : map) names.push_back(entry.first);
   return names;
 }
@@ -495,6 +496,7 @@ Model make_model(const ModelParameters& parameters,
   }
 
   std::vector<ResolvedPair> resolved;
+  resolved.reserve(pairs.size());
   for (const auto& [name, pair] : pairs) {
     resolved.push_back(
         resolve_pair(name, parameters.contact ? name : "contacts." + name, pair, bodies));
@@ -507,6 +509,7 @@ Model make_model(const ModelParameters& parameters,
   system.drive = make_drive(parameters.drive,
                             pairs.empty() ? SlidingMode::moving : pairs.begin()->second.sliding);
   std::vector<ResolvedPair*> waiting;
+  waiting.reserve(resolved.size());
   for (ResolvedPair& pair : resolved) waiting.push_back(&pair);
   const auto is_waiting_slave = [&](int body) {
     return std::any_of(waiting.begin(), waiting.end(), [&](const ResolvedPair* pair) {
