@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <limits>
+#include <algorithm>
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "core/errors.hpp"

@@ -46,9 +46,7 @@ TEST(MatrixBodies, OfFilesAreThoseOfRowsAndGoOnBitwise) {
   EXPECT_EQ(difference(by_rows, by_file), "");
 }
 
-TEST(MatrixBodies, GrowAsTheirEigenvaluesSay) {
-  const TemporaryFolder folder;
-  const std::string file = (folder / "held.h5").string();
+TEST(MatrixBodies, SayWhatTheirCoupledTermsAddToTheGrowth) {
   const std::vector<std::string> held{
       "--set", "contact.sliding=frozen", "--set", "contact.start=90 mm", "--set", "drive.ramp=0"};
   std::vector<std::string> command{"eig", scene, "--about", "undeformed", "--explain", "--json"};
