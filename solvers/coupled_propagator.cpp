@@ -138,7 +138,7 @@ void CoupledPropagator::predict() {
 }
 
 void CoupledPropagator::advance_body(const double* forces, double* predicted) {
-  state_ = next_;
+  state_.swap(next_);  // predict() writes the other anew
   for (int slot = 0; slot < num_slots(); ++slot) state_ += forces[slot] * row_gains_.col(row(slot));
   predict();
   const Eigen::VectorXd& seen = is_prompt() ? state_ : next_;
