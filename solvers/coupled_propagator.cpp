@@ -2,27 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "core/errors.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/two_step_scheme.hpp"
+#include "solvers/vector_views.hpp"
 
 namespace stridor {
 namespace {
-
-Eigen::Map<const Eigen::VectorXd> as_vector(std::span<const double> values) {
-  return {values.data(), static_cast<Eigen::Index>(values.size())};
-}
-
-std::span<const double> as_span(const Eigen::VectorXd& vector) {
-  return {vector.data(), static_cast<std::size_t>(vector.size())};
-}
-
-std::span<double> as_span(Eigen::VectorXd& vector) {
-  return {vector.data(), static_cast<std::size_t>(vector.size())};
-}
 
 /// e^Z, and φ₁(Z) = ∫₀¹ e^{Zs} ds.
 std::pair<Eigen::MatrixXd, Eigen::MatrixXd> exponential_and_mean(const Eigen::MatrixXd& Z) {
@@ -93,7 +83,7 @@ CoupledStep make_coupled_step(const ModalBody& body, double step, std::optional<
   }
 
   const auto [free, mean] = exponential_and_mean(turn);
-  const Eigen::MatrixXd psi = exponential_and_mean(-turn).second.inverse();
+  const Eigen::MatrixXd psi = mean.partialPivLu().solve(free);  // φ₁(−Z)⁻¹, as φ₁(−Z) = e^−Z φ₁(Z)
   const Eigen::MatrixXd K = h * V * psi.topRightCorner(n, n) + psi.bottomRightCorner(n, n);
   const Eigen::MatrixXd impulse = h * K.inverse();
 

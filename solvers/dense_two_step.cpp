@@ -3,25 +3,10 @@
 #include <Eigen/Cholesky>
 
 #include "core/errors.hpp"
+#include "solvers/vector_views.hpp"
 
 namespace stridor {
 namespace {
-
-Eigen::Map<const Eigen::VectorXd> as_vector(std::span<const double> values) {
-  return {values.data(), static_cast<Eigen::Index>(values.size())};
-}
-
-Eigen::Map<Eigen::VectorXd> as_vector(std::span<double> values) {
-  return {values.data(), static_cast<Eigen::Index>(values.size())};
-}
-
-std::span<const double> as_span(const Eigen::VectorXd& vector) {
-  return {vector.data(), static_cast<std::size_t>(vector.size())};
-}
-
-std::span<double> as_span(Eigen::VectorXd& vector) {
-  return {vector.data(), static_cast<std::size_t>(vector.size())};
-}
 
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& mass) {
   const Eigen::LLT<Eigen::MatrixXd> factor(mass);

@@ -7,15 +7,15 @@
 #include <limits>
 #include <numbers>
 #include <random>
-#include <stdexcept>
 #include <vector>
+
+#include "tests/support/rejection.hpp"
 
 namespace stridor {
 namespace {
 
-using ::testing::HasSubstr;
+using test::expect_rejection;
 using ::testing::SizeIs;
-using ::testing::ThrowsMessage;
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double dt = 1.0e-5;
@@ -83,11 +83,6 @@ void expect_found(const Burst& found, const Synthetic& wanted, double level) {
   EXPECT_NEAR(found.peak_time, wanted.peak_time, 1.0e-3);
   const double peak = wanted.amplitude(wanted.peak_time, level);
   EXPECT_NEAR(found.peak, peak, 0.05 * peak + 4.0 * level);
-}
-
-template <class Callable>
-void expect_rejection(Callable&& callable, const char* message) {
-  EXPECT_THAT(callable, ThrowsMessage<std::invalid_argument>(HasSubstr(message)));
 }
 
 TEST(BurstEnvelope, IsTheEffectiveValueOfASineAndMeetsTheEndsSmoothly) {

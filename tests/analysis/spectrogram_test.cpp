@@ -1,20 +1,20 @@
 #include "analysis/spectrogram.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <random>
-#include <stdexcept>
 #include <vector>
+
+#include "tests/support/noise.hpp"
+#include "tests/support/rejection.hpp"
 
 namespace stridor {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using test::expect_rejection;
+using test::noise;
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double dt = 1.0e-4;
@@ -27,19 +27,6 @@ std::vector<double> sine(double amplitude, double frequency, std::size_t count) 
     samples[i] = amplitude * std::sin(two_pi * frequency * static_cast<double>(i) * dt + 0.7);
   }
   return samples;
-}
-
-std::vector<double> noise(std::size_t count) {
-  std::mt19937_64 generator(5);
-  std::normal_distribution<double> normal;
-  std::vector<double> samples(count);
-  for (double& x : samples) x = 0.3 + normal(generator);
-  return samples;
-}
-
-template <class Callable>
-void expect_rejection(Callable&& callable, const char* message) {
-  EXPECT_THAT(callable, ThrowsMessage<std::invalid_argument>(HasSubstr(message)));
 }
 
 TEST(Spectrogram, SineOnALineHasItsAmplitudeThere) {

@@ -1,36 +1,23 @@
 #include "core/fft_plan.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <complex>
 #include <numbers>
-#include <random>
-#include <stdexcept>
 #include <thread>
 #include <vector>
+
+#include "tests/support/noise.hpp"
+#include "tests/support/rejection.hpp"
 
 namespace stridor {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using test::expect_rejection;
+using test::noise;
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
-
-std::vector<double> noise(std::size_t count) {
-  std::mt19937_64 generator(5);
-  std::normal_distribution<double> normal;
-  std::vector<double> samples(count);
-  for (double& x : samples) x = 0.3 + normal(generator);
-  return samples;
-}
-
-template <class Callable>
-void expect_rejection(Callable&& callable, const char* message) {
-  EXPECT_THAT(callable, ThrowsMessage<std::invalid_argument>(HasSubstr(message)));
-}
 
 TEST(Fft, TransformsAsDefinedAndBackForEvenAndOddLengths) {
   for (const std::size_t n : {1U, 2U, 7U, 12U}) {
