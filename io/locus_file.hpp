@@ -2,11 +2,11 @@
 //
 //     /                       attributes: what was computed, of what and how
 //     /values                 of the parameter
-//     /eigenvalues/growth     1/s, [value][eigenvalue], ascending frequency; NaN where there are
-//     fewer /eigenvalues/frequency  Hz, likewise /branches/<k>/          value, growth, frequency
-//     of one eigenvalue that was followed /unstable/              from, to, frequency, growth_max,
-//     growth_integral, value_max, from_time,
-//                             to_time, gain: one entry per window
+//     /eigenvalues/growth     1/s, [value][eigenvalue], ascending frequency; NaN where fewer
+//     /eigenvalues/frequency  Hz, likewise
+//     /branches/<k>/          value, growth, frequency of one eigenvalue that was followed
+//     /unstable/              one entry per window: from, to, frequency, growth_max,
+//                             growth_integral, value_max, from_time, to_time, gain
 #pragma once
 
 #include <limits>

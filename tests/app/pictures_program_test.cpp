@@ -11,6 +11,7 @@
 #include <random>
 
 #include "io/damage_guard.hpp"
+#include "io/locus_file.hpp"
 #include "io/run_file.hpp"
 #include "tests/support/program.hpp"
 
@@ -144,6 +145,45 @@ TEST_F(Pictures, SpectrogramMarksBurstsAndNamesReferenceAndSettings) {
                            "Hann window", "14.4 ms", "75 %", "0123456789abcdef", "Dashed"}) {
     EXPECT_THAT(svg, HasSubstr(text));
   }
+}
+
+TEST_F(Pictures, SpectrogramSetsUnstableWindowsBesideTheBursts) {
+  const std::string run = make_run();
+  const auto window = [](double from, double to, double frequency) {
+    return TimedWindow{{from, to, frequency, 60.0, 0.05, from, 0}, from, to, 4.5};
+  };
+  Locus locus;
+  locus.values = {0.0, 1.0};
+  locus.eigenvalues = {{{-1.0, 990.0}}, {{-1.0, 990.0}}};
+  const std::string file = path("locus.h5");
+  write_locus_file(file, Overwrite::no, locus,
+                   {window(0.19, 0.29, 990.0), window(0.3, 0.38, 1500.0)}, "m", {});
+  const Json object = json_of({"spectrogram", run, "--predict", file, "-o", path("a.svg")});
+  ASSERT_EQ(object["prediction"].size(), 2u);
+  const Json& met = object["prediction"][0];
+  EXPECT_EQ(met["from"], 0.19);
+  EXPECT_EQ(met["frequency"], 990.0);
+  EXPECT_EQ(met["gain"], 4.5);
+  EXPECT_EQ(met["burst"], 1);
+  EXPECT_EQ(met["burst_start"], 0.2);
+  EXPECT_EQ(met["burst_frequency"], tone);
+  EXPECT_EQ(met["burst_gain"], 5.0);
+  EXPECT_EQ(object["prediction"][1]["burst"], nullptr);
+  const std::string svg = contents_of(path("a.svg"));
+  EXPECT_THAT(svg, HasSubstr("Dotted: "));
+  json_of({"spectrogram", run, "-o", path("b.svg")});
+  EXPECT_GT(svg.size(), contents_of(path("b.svg")).size());  // the marks
+
+  const ProgramResult table =
+      Program({"spectrogram", run, "--predict", file, "-o", path("c.png")}).run();
+  EXPECT_EQ(table.exit_code, 0) << table.err;
+  EXPECT_THAT(table.out,
+              AllOf(HasSubstr("predicted, s"),
+                    HasSubstr("0.1900 to  0.2900        990.00    4.500       1    0.2000"),
+                    HasSubstr("0.3000 to  0.3800       1500.00    4.500       -\n")));
+  const ProgramResult refused = Program({"spectrogram", run, "--predict", run}).run();
+  EXPECT_EQ(refused.exit_code, 4);
+  EXPECT_THAT(refused.err, HasSubstr("a file of `stridor locus -o` is needed"));
 }
 
 TEST_F(Pictures, HistoryShadesTheBurstsOfTheAcceleration) {
