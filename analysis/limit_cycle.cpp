@@ -1,8 +1,11 @@
 #include "analysis/limit_cycle.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace stridor {
 namespace {
@@ -67,6 +70,32 @@ void measure(const SubstrateMotion& motion, LimitCycle& cycle) {
   cycle.last_velocity = {motion.state()[2], motion.state()[3]};
 }
 
+/// What is left where a motion has failed.
+LimitCycle failed(const SubstrateMotion& motion) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  LimitCycle cycle;
+  cycle.x_min = cycle.x_max = cycle.x_mean = cycle.x_rms = cycle.y_max = nan;
+  cycle.stick_fraction = cycle.free_fraction = nan;
+  cycle.failure = fmt::format("after t = {:.6g} {}", motion.time(), motion.failure());
+  return cycle;
+}
+
+/// Whether each of the later turns is nearer to x than the one before it, or each farther off. Of
+/// an irregular motion that is next to impossible.
+bool is_settling(const std::vector<Point>& turns, double x) {
+  const std::size_t first = turns.size() / 2;  // faster motions die down before
+  const auto all = static_cast<int>(turns.size() - first) - 1;
+  int shrinking = 0;
+  int growing = 0;
+  for (std::size_t i = first + 1; i < turns.size(); ++i) {
+    const double before = std::abs(turns[i - 1].x() - x);
+    const double after = std::abs(turns[i].x() - x);
+    shrinking += after < before;
+    growing += after > before;
+  }
+  return all > 2 && (shrinking == all || growing == all);
+}
+
 /// Newton's method for P(z) = z. @return whether it came to a fixed point
 bool solve(SubstrateMotion& motion, const Point& scale, double longest, LimitCycle& cycle,
            Point z) {
@@ -125,6 +154,8 @@ std::string cycle_status_text(CycleStatus status) {
       return "diverged";
     case CycleStatus::sticking:
       return "sticking";
+    case CycleStatus::settling:
+      return "settling";
   }
   return "";
 }
@@ -135,7 +166,7 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
   LimitCycle cycle;
   SubstrateMotion motion(oscillator, options.tolerance);
   motion.start(displacement, velocity);
-  if (motion.advance(options.settle, false) != SubstrateMotion::Stop::end) return cycle;
+  if (motion.advance(options.settle, false) != SubstrateMotion::Stop::end) return failed(motion);
 
   // The last turns of the settled motion.
   const double longest = longest_loop(oscillator);
@@ -146,7 +177,7 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
   const auto num_turns = static_cast<std::size_t>(2 * options.most_loops + 1);
   while (turns.size() < num_turns) {
     const SubstrateMotion::Stop stop = motion.advance(motion.time() + longest, true);
-    if (stop == SubstrateMotion::Stop::failed) return cycle;
+    if (stop == SubstrateMotion::Stop::failed) return failed(motion);
     if (stop == SubstrateMotion::Stop::end) break;
     turns.push_back(point_of(motion));
     times.push_back(motion.time());
@@ -166,8 +197,8 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
     return cycle;
   }
   const Point scale{width, std::max(cycle.y_max, 1e-6 * width), width};
-  const Point& last = turns.back();
   for (int loops = 1; loops <= options.most_loops && !is_still; ++loops) {
+    const Point& last = turns.back();
     const auto back = turns.size() - 1 - static_cast<std::size_t>(loops);
     const double apart = (turns[back] - last).cwiseQuotient(scale).norm();
     if (apart > 1e-3) continue;
@@ -178,23 +209,26 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
       cycle.status = CycleStatus::periodic;
       return cycle;
     }
-    if (!solve(motion, scale, longest, cycle, last)) continue;
+    LimitCycle found = cycle;
+    if (!solve(motion, scale, longest, found, last)) continue;
     // A motion settles to a stable cycle: an unstable one beside it has fewer loops.
-    if (std::abs(cycle.multipliers.front()) > 1.0) continue;
-    start_at(motion, {cycle.point.x, cycle.point.y, cycle.point.vertical_velocity});
+    if (std::abs(found.multipliers.front()) > 1.0) continue;
+    start_at(motion, {found.point.x, found.point.y, found.point.vertical_velocity});
     for (int i = 0; i < loops; ++i) (void)motion.advance(motion.time() + longest, true);
-    measure(motion, cycle);
-    cycle.status = CycleStatus::periodic;
-    return cycle;
+    measure(motion, found);
+    // The equilibrium is a fixed point too, to which a slowly decaying motion leads.
+    if (found.x_max - found.x_min < 1e-2 * width) continue;
+    found.status = CycleStatus::periodic;
+    return found;
   }
-  cycle.multipliers.clear();
   cycle.loops = 0;
   // Statistics of irregular motion need more time than a few turns.
   motion.start(cycle.last_displacement, cycle.last_velocity);
   const double enough = std::max(0.1 * options.settle, from > 0.0 ? 100.0 : 200.0);
-  if (motion.advance(enough, false) != SubstrateMotion::Stop::end) return cycle;
+  if (motion.advance(enough, false) != SubstrateMotion::Stop::end) return failed(motion);
   measure(motion, cycle);
-  cycle.status = CycleStatus::irregular;
+  cycle.status =
+      is_settling(turns, rest.displacement.x()) ? CycleStatus::settling : CycleStatus::irregular;
   return cycle;
 }
 

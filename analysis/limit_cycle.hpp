@@ -23,8 +23,9 @@ enum class CycleStatus {
   periodic,   ///< found
   at_rest,    ///< the motion has died down to the equilibrium
   irregular,  ///< it does not repeat itself; the statistics are over the last tenth of the time
-  diverged,   ///< grew without bound, or the integrator failed
+  diverged,   ///< grew without bound, or the integrator failed: all numbers are NaN
   sticking,   ///< it moves with the substrate for longer than is looked for a turn
+  settling,   ///< its turns still shrink or grow, each one of them: more time is needed
 };
 std::string cycle_status_text(CycleStatus status);
 
@@ -37,6 +38,8 @@ struct TurningPoint {
 
 struct LimitCycle {
   CycleStatus status = CycleStatus::diverged;
+  /// What went wrong and when, and what to try; empty unless `diverged`.
+  std::string failure;
   double period = 0.0;  ///< 0 where not periodic
   int loops = 0;        ///< turns per period
   double x_min = 0.0;

@@ -57,8 +57,6 @@ void print_cycle(const LimitCycle& cycle, const SphereNumbers& numbers) {
   fmt::print("{:<24}{:>16.6f}\n", "part of time lifted off", cycle.free_fraction);
   for (const std::complex<double>& m : cycle.multipliers)
     fmt::print("{:<24}{:>16.6g} {:+.6g}i\n", "multiplier", m.real(), m.imag());
-  if (cycle.y_max / numbers.radius_ratio > 0.3)
-    fmt::print("the indentation exceeds what the contact law was made for (y/R > 0.3)\n");
 }
 
 ExitCode cycle(const CycleCommandOptions& options) {
@@ -71,11 +69,7 @@ ExitCode cycle(const CycleCommandOptions& options) {
   const CycleOptions how = cycle_options(loaded.scene);
   const LimitCycle found = find_limit_cycle(
       oscillator, initial_displacement(loaded.scene, oscillator), Eigen::Vector2d::Zero(), how);
-  if (found.status == CycleStatus::diverged) {
-    throw NumericalError(fmt::format(
-        "the motion grows without bound, or its steps became too small, before {:g}/omega_nx",
-        how.settle));
-  }
+  if (found.status == CycleStatus::diverged) throw NumericalError(found.failure);
   const Json results = cycle_json(found, numbers);
   if (options.output || options.figure) {
     const SphereHistory history = history_of(oscillator, found, how);
@@ -99,6 +93,7 @@ ExitCode cycle(const CycleCommandOptions& options) {
     fmt::print("{}\n", results.dump(2));
   } else {
     print_cycle(found, numbers);
+    print_law_exceeded(results);
     for (const auto& file : {options.output, options.figure})
       if (file) fmt::print("{}\n", *file);
   }

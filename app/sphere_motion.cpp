@@ -32,19 +32,29 @@ Json cycle_json(const LimitCycle& cycle, const SphereNumbers& numbers) {
   Json multipliers = Json::array();
   for (const std::complex<double>& m : cycle.multipliers)
     multipliers.push_back({m.real(), m.imag()});
-  return {{"status", cycle_status_text(cycle.status)},
-          {"period", is_periodic ? number(cycle.period) : Json(nullptr)},
-          {"loops", cycle.loops},
-          {"x", x_json(1.0)},
-          {"largest_indentation", number(cycle.y_max / numbers.radius_ratio)},
-          {"stick_fraction", number(cycle.stick_fraction)},
-          {"free_fraction", number(cycle.free_fraction)},
-          {"multipliers", multipliers},
-          {"residual", is_periodic ? number(cycle.residual) : Json(nullptr)},
-          {"law_exceeded", cycle.y_max / numbers.radius_ratio > 0.3},
-          {"dimensional",
-           {{"period", is_periodic ? number(cycle.period * numbers.time_unit) : Json(nullptr)},
-            {"x", x_json(numbers.length_unit)}}}};
+  Json results{{"status", cycle_status_text(cycle.status)},
+               {"period", is_periodic ? number(cycle.period) : Json(nullptr)},
+               {"loops", cycle.loops},
+               {"x", x_json(1.0)},
+               {"stick_fraction", number(cycle.stick_fraction)},
+               {"free_fraction", number(cycle.free_fraction)},
+               {"multipliers", multipliers},
+               {"residual", is_periodic ? number(cycle.residual) : Json(nullptr)},
+               {"dimensional",
+                {{"period", is_periodic ? number(cycle.period * numbers.time_unit) : Json(nullptr)},
+                 {"x", x_json(numbers.length_unit)}}}};
+  results.update(indentation_json(cycle.y_max, numbers));
+  return results;
+}
+
+Json indentation_json(double deepest, const SphereNumbers& numbers) {
+  const double over_radius = deepest / numbers.radius_ratio;
+  return {{"largest_indentation", number(over_radius)}, {"law_exceeded", over_radius > 0.3}};
+}
+
+void print_law_exceeded(const Json& results) {
+  if (!results["law_exceeded"].get<bool>()) return;
+  fmt::print("the indentation exceeds what the contact law was made for (y/R > 0.3)\n");
 }
 
 void SphereHistory::add(const SubstrateOscillator& oscillator, const SubstrateMotion& motion) {

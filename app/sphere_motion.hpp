@@ -18,6 +18,13 @@ CycleOptions cycle_options(const SphereScene& scene);
 /// The results of a limit cycle, in units of the motion; `dimensional` in SI.
 Json cycle_json(const LimitCycle& cycle, const SphereNumbers& numbers);
 
+/// The largest indentation of a motion over the radius, and whether that is deeper than the law of
+/// the contact was made for (PPH: small against the radius; 0.3 of it is taken as the end).
+/// @param deepest in units of the motion
+Json indentation_json(double deepest, const SphereNumbers& numbers);
+/// Says so on standard output where the law is exceeded.
+void print_law_exceeded(const Json& results);
+
 /// A motion sampled at equal distances.
 struct SphereHistory {
   std::vector<double> time, x, y, vx, vy, slip, normal_force, friction_force, area, mode;

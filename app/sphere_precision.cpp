@@ -62,14 +62,18 @@ struct Study {
   double step(const Setting& setting) const { return interval / setting.steps_per_sample; }
 };
 
-Samples run_events(const Study& study, double tolerance) {
+/// @param failure says why the motion failed, where it does
+Samples run_events(const Study& study, double tolerance, std::string* failure = nullptr) {
   SubstrateMotion motion(study.oscillator, tolerance);
   motion.start(study.start, Eigen::Vector2d::Zero());
   Samples x;
   for (std::size_t k = 1; k <= study.num_samples && !stop_requested(); ++k) {
     if (motion.advance(static_cast<double>(k) * study.interval, false) !=
-        SubstrateMotion::Stop::end)
+        SubstrateMotion::Stop::end) {
+      if (failure != nullptr)
+        *failure = fmt::format("after t = {:.6g} {}", motion.time(), motion.failure());
       break;
+    }
     x.push_back(motion.state()[0]);
   }
   return x;
@@ -210,10 +214,11 @@ ExitCode precision_of_sphere(const PrecisionOptions& options) {
     prepare_folder(options.folder, {figure_name, json_name}, options.common.overwrite());
   }
 
-  const Samples reference = run_events(study, reference_tolerance);
+  std::string failure;
+  const Samples reference = run_events(study, reference_tolerance, &failure);
   if (stop_requested()) throw Interrupted("nothing has been written");
   if (reference.size() != study.num_samples)
-    throw NumericalError("the reference motion grows without bound, or its steps became too small");
+    throw NumericalError("the reference motion, event-driven: " + failure);
   const double own_error = relative_error(run_events(study, check_tolerance), reference);
   std::vector<Setting> settings = settings_of(options.points);
   Progress progress("precision");

@@ -6,6 +6,7 @@
 
 #include "app/expectations.hpp"
 #include "app/progress.hpp"
+#include "app/sphere_motion.hpp"
 #include "app/sphere_transient.hpp"
 #include "core/errors.hpp"
 
@@ -32,6 +33,7 @@ void print_results(const Json& results, const SphereNumbers& numbers, const std:
   print("x, largest", results["x"]["max"], numbers.length_unit, "m");
   print("part of time sticking", results["stick_fraction"], 0.0, "");
   print("part of time lifted off", results["free_fraction"], 0.0, "");
+  print_law_exceeded(results);
   fmt::print("{:<24}{}\n", "run file", file);
 }
 

@@ -86,6 +86,7 @@ Json points_json(const std::vector<SweepPoint>& points) {
   for (const SweepPoint& point : points) {
     Json one = {{"value", point.value}, {"equilibrium_stable", point.is_stable}};
     one.update(cycle_json(point.cycle, point.numbers));
+    if (!point.cycle.failure.empty()) one["failure"] = point.cycle.failure;
     list.push_back(std::move(one));
   }
   return list;
@@ -104,6 +105,7 @@ void draw(const SweepOptions& options, const LoadedSphereScene& loaded, const Nu
   for (const auto& [name, points] : branches) {
     PanelCurve curve{branches.size() > 1 ? name : "", {}, {}, Mark::points, colour++};
     for (const SweepPoint& point : points) {
+      if (point.cycle.status == CycleStatus::diverged) continue;
       curve.x.push_back(point.value);
       curve.y.push_back(point.cycle.x_rms);
     }
@@ -112,8 +114,7 @@ void draw(const SweepOptions& options, const LoadedSphereScene& loaded, const Nu
   plot_panels({panel},
               fmt::format("Amplitude of the motion that the sphere settles to, {}. {}, scene {}.",
                           branches.size() > 1 ? "swept up and down"
-                                              : "each value from near its "
-                                                "equilibrium",
+                                              : "each value from near its equilibrium",
                           std::filesystem::path(options.scene).filename().string(), loaded.hash()),
               *options.figure);
 }
@@ -143,8 +144,27 @@ void write_file(const SweepOptions& options, const LoadedSphereScene& loaded, co
   Attributes attributes = sphere_attributes(loaded, options.command_line);
   attributes.push_back({"parameter", key.path});
   attributes.push_back({"units_of_value", printed_units(key)});
+  std::string statuses;
+  for (int status = 0; status <= static_cast<int>(CycleStatus::settling); ++status) {
+    statuses += fmt::format("{}{} {}", status > 0 ? ", " : "", status,
+                            cycle_status_text(static_cast<CycleStatus>(status)));
+  }
+  attributes.push_back({"meaning_of_status", statuses});
   write_column_file(*options.output, options.common.overwrite(), "sweep of limit cycles", columns,
                     attributes);
+}
+
+void print(const Branches& branches) {
+  for (const auto& [name, points] : branches) {
+    fmt::print("{:>5} {:>14} {:>12} {:>14} {:>14} {:>9} {:>9}  {}\n", name, "value", "status",
+               "period", "x r.m.s.", "stick", "free", "equilibrium");
+    for (const SweepPoint& point : points) {
+      fmt::print("{:>5} {:>14.6g} {:>12} {:>14.8g} {:>14.8g} {:>9.5f} {:>9.5f}  {}\n", "",
+                 point.value, cycle_status_text(point.cycle.status), point.cycle.period,
+                 point.cycle.x_rms, point.cycle.stick_fraction, point.cycle.free_fraction,
+                 point.is_stable ? "stable" : "unstable");
+    }
+  }
 }
 
 }  // namespace
@@ -168,24 +188,27 @@ ExitCode sweep_spheres(const SweepOptions& options) {
 
   if (options.output) write_file(options, loaded, key, branches);
   if (options.figure) draw(options, loaded, key, branches);
+  std::vector<std::string> failures;
+  for (const auto& [name, points] : branches) {
+    for (const SweepPoint& point : points) {
+      if (!point.cycle.failure.empty())
+        failures.push_back(value_text(key, point.value) + ": " + point.cycle.failure);
+    }
+  }
   if (options.common.json) {
     Json object = {{"parameter", key.path}, {"values", values}};
     for (const auto& [name, points] : branches) object[name] = points_json(points);
     fmt::print("{}\n", object.dump(2));
-    return ExitCode::done;
+  } else {
+    print(branches);
+    for (const std::string& failure : failures) fmt::print("{}\n", failure);
+    for (const auto& file : {options.output, options.figure})
+      if (file) fmt::print("{}\n", *file);
   }
-  for (const auto& [name, points] : branches) {
-    fmt::print("{:>5} {:>14} {:>12} {:>14} {:>14} {:>9} {:>9}  {}\n", name, "value", "status",
-               "period", "x r.m.s.", "stick", "free", "equilibrium");
-    for (const SweepPoint& point : points) {
-      fmt::print("{:>5} {:>14.6g} {:>12} {:>14.8g} {:>14.8g} {:>9.5f} {:>9.5f}  {}\n", "",
-                 point.value, cycle_status_text(point.cycle.status), point.cycle.period,
-                 point.cycle.x_rms, point.cycle.stick_fraction, point.cycle.free_fraction,
-                 point.is_stable ? "stable" : "unstable");
-    }
+  if (failures.size() == values.size() * branches.size()) {
+    throw NumericalError(
+        fmt::format("none of the {} motions can be followed; {}", failures.size(), failures[0]));
   }
-  for (const auto& file : {options.output, options.figure})
-    if (file) fmt::print("{}\n", *file);
   return ExitCode::done;
 }
 

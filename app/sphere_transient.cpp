@@ -56,10 +56,11 @@ void CycleMeter::note_turn(const Turn& turn) {
   if (turns_.size() > 2 * most_loops + 1) turns_.erase(turns_.begin() + 1);
 }
 
-void CycleMeter::note_position(double time, double x) {
+void CycleMeter::note_position(double time, double x, double y) {
   if (time < from_) return;
   smallest_ = std::min(smallest_, x);
   largest_ = std::max(largest_, x);
+  deepest_ = std::max(deepest_, y);
 }
 
 void CycleMeter::report(Json& results) const {
@@ -97,7 +98,7 @@ std::size_t CycleMeter::repeats_after() const {
 }
 
 void CycleMeter::save(State& state, const std::string& prefix) const {
-  state.put(prefix + "extremes", std::array{smallest_, largest_});
+  state.put(prefix + "extremes", std::array{smallest_, largest_, deepest_});
   state.put(prefix + "num_turns", static_cast<double>(num_turns_));
   std::vector<double> values;
   for (const Turn& turn : turns_)
@@ -106,10 +107,11 @@ void CycleMeter::save(State& state, const std::string& prefix) const {
 }
 
 void CycleMeter::load(const State& state, const std::string& prefix) {
-  std::array<double, 2> extremes{};
+  std::array<double, 3> extremes{};
   state.get(prefix + "extremes", extremes);
   smallest_ = extremes[0];
   largest_ = extremes[1];
+  deepest_ = extremes[2];
   num_turns_ = static_cast<std::size_t>(state.get(prefix + "num_turns"));
   turns_.clear();
   const std::vector<double>& v = state.array(prefix + "turns");
@@ -234,7 +236,7 @@ bool SphereTransient::advance_to_sample() {
   while (motion_->time() < target) {
     const SubstrateMotion::Stop stop = motion_->advance(target, true);
     const SubstrateMotion::State& s = motion_->state();
-    meter_.note_position(motion_->time(), s[0]);
+    meter_.note_position(motion_->time(), s[0], s[1]);
     if (stop == SubstrateMotion::Stop::failed) {
       failure_ = fmt::format("after t = {:.6g} {}", motion_->time(), motion_->failure());
       return false;
@@ -258,7 +260,7 @@ bool SphereTransient::advance_a_step() {
   const double time = static_cast<double>(unit_) * h;
   const double x = stepper_->displacement().x();
   const double velocity = stepper_->velocity().x();
-  meter_.note_position(time, x);
+  meter_.note_position(time, x, stepper_->displacement().y());
   if (last_velocity_ > 0.0 && velocity <= 0.0) {
     // Between the two steps, along straight lines.
     const double share = last_velocity_ / (last_velocity_ - velocity);
@@ -336,6 +338,7 @@ Json SphereTransient::finish() {
                              is_event_driven() ? Json(nullptr) : number(stepper_->step_limit()),
                              {setup_seconds_, march_seconds_, writer_->write_seconds()}));
   meter_.report(results);
+  results.update(indentation_json(meter_.deepest(), numbers_));
   results["length_unit"] = numbers_.length_unit;
   results["time_unit"] = numbers_.time_unit;
   results["file"] = file_;

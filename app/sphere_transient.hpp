@@ -30,7 +30,9 @@ class CycleMeter {
   explicit CycleMeter(double end) : from_(0.5 * end) {}
 
   void note_turn(const Turn& turn);
-  void note_position(double time, double x);
+  void note_position(double time, double x, double y);
+  /// Largest y; minus infinity where no position has been noted.
+  double deepest() const { return deepest_; }
   /// Adds x, period and fractions; null where no cycle is whole.
   void report(Json& results) const;
 
@@ -45,6 +47,7 @@ class CycleMeter {
   std::deque<Turn> turns_;  ///< the first, and as many of the last as are compared
   double smallest_ = std::numeric_limits<double>::infinity();
   double largest_ = -std::numeric_limits<double>::infinity();
+  double deepest_ = -std::numeric_limits<double>::infinity();
 };
 
 /// As Transient, for spheres. Times are multiples of the time unit of the sphere.

@@ -143,12 +143,15 @@ void plot_panels(const std::vector<DiagramPanel>& panels, const std::string& cap
     for (std::size_t c = 0; c < panels[p].curves.size(); ++c) {
       const PanelCurve& curve = panels[p].curves[c];
       std::string data;
+      bool is_empty = true;
       for (std::size_t i = 0; i < curve.x.size(); ++i) {
-        data += x_axes[p].shows(curve.x[i]) && y_axes[p].shows(curve.y[i])
-                    ? fmt::format("{:.8g} {:.8g}\n", x_axes[p].number(curve.x[i]),
-                                  y_axes[p].number(curve.y[i]))
-                    : "\n";
+        const bool is_shown = x_axes[p].shows(curve.x[i]) && y_axes[p].shows(curve.y[i]);
+        data += is_shown ? fmt::format("{:.8g} {:.8g}\n", x_axes[p].number(curve.x[i]),
+                                       y_axes[p].number(curve.y[i]))
+                         : "\n";
+        is_empty &= !is_shown;
       }
+      if (is_empty) data = "NaN NaN\n";  // gnuplot refuses data without a number
       script.append(block_name(p, c) + " << END_OF_DATA\n" + data + "END_OF_DATA\n");
     }
   }

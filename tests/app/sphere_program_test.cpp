@@ -17,7 +17,9 @@ namespace stridor {
 namespace {
 
 using namespace test;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Json = nlohmann::json;
 using Settings = std::vector<std::string>;
 
@@ -277,6 +279,97 @@ TEST(SphereProgram, PrecisionSetsErrorAgainstRunTime) {
   EXPECT_EQ(found["rows"][4]["integrator"], "exact");
   EXPECT_EQ(found["rows"][8]["integrator"], "central_difference");
   EXPECT_LT(found["tuned"]["error"].get<double>(), 1e-4);
+}
+
+TEST(SphereProgram, SaysWhereTheLawIsExceeded) {
+  const TemporaryFolder folder;
+  const std::string scene = scene_path("viscoelastic_sphere.yaml");
+  // Under this load the sphere rests deeper than 0.3 of its radius.
+  const std::vector<std::string> deep{"--set", "sphere.normal_load=0.3", "--set", "time.end=40",
+                                      "--set", "time.settle=20"};
+  const auto output_of = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), deep.begin(), deep.end());
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.out;
+  };
+  EXPECT_THAT(output_of({"run", scene, "-o", folder / "deep.h5"}), HasSubstr("(y/R > 0.3)"));
+  EXPECT_THAT(output_of({"cycle", scene}), HasSubstr("(y/R > 0.3)"));
+  for (const char* verb : {"run", "cycle"}) {
+    const std::string name = std::string(verb) + ".h5";
+    const Json found = run_verb(verb, {"time.end=40", "time.settle=20"}, {"-o", folder / name});
+    EXPECT_EQ(found["law_exceeded"], false);
+    EXPECT_GT(found["largest_indentation"].get<double>(), 0.0);
+  }
+}
+
+TEST(SphereProgram, WhatAMotionFailedOfIsSaid) {
+  const TemporaryFolder folder;
+  const std::string scene = scene_path("viscoelastic_sphere.yaml");
+  const std::string thrown = "time.initial_indentation=1e15";
+  const ProgramResult cycle = Program({"cycle", scene, "--set", thrown}).run();
+  EXPECT_EQ(cycle.exit_code, 3);
+  EXPECT_THAT(cycle.err, HasSubstr("after t = "));
+  EXPECT_THAT(cycle.err, HasSubstr("; try "));
+  // In a sweep they are rows, of which nothing is drawn.
+  const std::string figure = folder / "sweep.png";
+  const std::vector<std::string> arguments{
+      "sweep", scene,  "--set",    thrown, "--parameter", "sphere.speed", "--from", "1e-3",
+      "--to",  "1e-2", "--points", "2",    "--figure",    figure,         "--force"};
+  const ProgramResult table = Program(arguments).run();
+  EXPECT_EQ(table.exit_code, 3);
+  EXPECT_THAT(table.err,
+              HasSubstr("none of the 2 motions can be followed; sphere.speed = 0.001: after t = "));
+  EXPECT_THAT(table.out,
+              AllOf(HasSubstr("diverged"), HasSubstr("sphere.speed = 0.01: after t = ")));
+  EXPECT_TRUE(std::filesystem::exists(figure));
+  std::vector<std::string> with_json = arguments;
+  with_json.emplace_back("--json");
+  const Json sweep = Json::parse(Program(with_json).run().out);
+  for (const Json& row : sweep["rows"]) {
+    EXPECT_EQ(row["status"], "diverged");
+    EXPECT_THAT(row["failure"].get<std::string>(), HasSubstr("after t = "));
+    EXPECT_EQ(row["x"]["rms"], nullptr);
+  }
+}
+
+TEST(SphereProgram, PrintsTables) {
+  const TemporaryFolder folder;
+  const std::string scene = scene_path("viscoelastic_sphere.yaml");
+  const auto output_of = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin() + 1, scene);
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.out;
+  };
+  const std::string picture = folder / "cycle.png";
+  std::string table = output_of({"cycle", "--set", "time.settle=200", "--figure", picture});
+  for (const char* text : {"status                          periodic\n", "6.15445", "multiplier",
+                           "part of time sticking           0.40341", "cycle.png\n"})
+    EXPECT_THAT(table, HasSubstr(text));
+  EXPECT_THAT(table, Not(HasSubstr("y/R > 0.3")));
+  // It dies down, but not by then.
+  table = output_of({"cycle", "--set", "time.settle=50", "--set", "sphere.speed=0.0316", "--set",
+                     "sphere.shear_strength=0.09", "--figure", picture, "--force"});
+  EXPECT_THAT(table, AllOf(HasSubstr("settling\n"), Not(HasSubstr("period  "))));
+
+  const std::string file = folder / "sweep.h5";
+  table = output_of({"sweep", "--set", "time.settle=200", "--parameter", "sphere.shear_strength",
+                     "--from", "1e-3", "--to", "1e-2", "--points", "2", "-o", file});
+  for (const char* text :
+       {"value", "equilibrium\n", "periodic", "6.1544", "unstable\n", "sweep.h5\n"})
+    EXPECT_THAT(table, HasSubstr(text));
+
+  table = output_of({"precision", "--set", "time.end=20", "--points", "2", "--tune", "1e-3", "-o",
+                     folder / "precision"});
+  for (const char* text : {"run time (s)", "event_driven", "1.0e-03", "  cheapest\n",
+                           "differs from the same at 1e-12", "precision.png and precision.json"})
+    EXPECT_THAT(table, HasSubstr(text));
+  const ProgramResult coarse =
+      Program({"precision", scene, "--set", "time.end=20", "--points", "2", "--tune", "1e-15"})
+          .run();
+  EXPECT_EQ(coarse.exit_code, 3);
+  EXPECT_THAT(coarse.err, HasSubstr("no setting measured is within 1e-15"));
 }
 
 TEST(SphereProgram, RefusesWhatDoesNotFit) {

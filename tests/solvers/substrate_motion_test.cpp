@@ -6,7 +6,6 @@
 #include <complex>
 #include <numbers>
 
-#include "analysis/limit_cycle.hpp"
 #include "tests/support/paper_sphere.hpp"
 
 namespace stridor {
@@ -155,38 +154,6 @@ TEST(SubstrateMotion, NothingBreaksAtExtremes) {
       }
     }
   }
-}
-
-TEST(LimitCycle, StickSlipOfThePaperBySolvingForIt) {
-  // Newton's method makes the cycle independent of how long the motion has settled.
-  const SubstrateOscillator oscillator = make_sphere(paper_sphere());
-  const SubstrateEquilibrium rest = find_equilibrium(oscillator);
-  CycleOptions options;
-  options.settle = 200.0;
-  options.tolerance = 1e-11;
-  const LimitCycle cycle = find_limit_cycle(
-      oscillator, {rest.displacement.x(), 1.01 * rest.displacement.y()}, {0.0, 0.0}, options);
-  ASSERT_EQ(cycle.status, CycleStatus::periodic);
-  EXPECT_NEAR(cycle.period, 6.1544510, 1e-7);
-  EXPECT_NEAR(cycle.x_rms, 0.0660501053, 1e-9);
-  EXPECT_NEAR(cycle.stick_fraction, 0.40341, 1e-5);
-  EXPECT_EQ(cycle.free_fraction, 0.0);
-  ASSERT_EQ(cycle.multipliers.size(), 3u);
-  // Sticking takes one dimension away.
-  EXPECT_LT(std::abs(cycle.multipliers[2]), 1e-5);
-  EXPECT_LT(std::abs(cycle.multipliers[0]), 1.0);
-}
-
-TEST(LimitCycle, StableEquilibriumComesToRest) {
-  const SubstrateOscillator oscillator = make_sphere(paper_sphere(4e-4, 1.5e-3));
-  const SubstrateEquilibrium rest = find_equilibrium(oscillator);
-  CycleOptions options;
-  options.settle = 2000.0;
-  options.tolerance = 1e-10;
-  EXPECT_EQ(find_limit_cycle(oscillator, {rest.displacement.x(), 1.01 * rest.displacement.y()},
-                             {0.0, 0.0}, options)
-                .status,
-            CycleStatus::at_rest);
 }
 
 }  // namespace
