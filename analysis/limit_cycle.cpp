@@ -171,7 +171,6 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
   // The last turns of the settled motion.
   const double longest = longest_loop(oscillator);
   std::vector<Point> turns;
-  std::vector<double> times;
   motion.restart_statistics();
   const double from = motion.time();
   const auto num_turns = static_cast<std::size_t>(2 * options.most_loops + 1);
@@ -180,7 +179,6 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
     if (stop == SubstrateMotion::Stop::failed) return failed(motion);
     if (stop == SubstrateMotion::Stop::end) break;
     turns.push_back(point_of(motion));
-    times.push_back(motion.time());
   }
   measure(motion, cycle);
   const double width = cycle.x_max - cycle.x_min;
@@ -200,16 +198,9 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
   for (int loops = 1; loops <= options.most_loops && !is_still; ++loops) {
     const Point& last = turns.back();
     const auto back = turns.size() - 1 - static_cast<std::size_t>(loops);
-    const double apart = (turns[back] - last).cwiseQuotient(scale).norm();
-    if (apart > 1e-3) continue;
-    cycle.loops = loops;
-    if (!options.solves) {
-      cycle.period = times.back() - times[back];
-      cycle.residual = apart;
-      cycle.status = CycleStatus::periodic;
-      return cycle;
-    }
+    if ((turns[back] - last).cwiseQuotient(scale).norm() > 1e-3) continue;
     LimitCycle found = cycle;
+    found.loops = loops;
     if (!solve(motion, scale, longest, found, last)) continue;
     // A motion settles to a stable cycle: an unstable one beside it has fewer loops.
     if (std::abs(found.multipliers.front()) > 1.0) continue;
@@ -221,7 +212,6 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
     found.status = CycleStatus::periodic;
     return found;
   }
-  cycle.loops = 0;
   // Statistics of irregular motion need more time than a few turns.
   motion.start(cycle.last_displacement, cycle.last_velocity);
   const double enough = std::max(0.1 * options.settle, from > 0.0 ? 100.0 : 200.0);

@@ -14,9 +14,6 @@ struct CycleOptions {
   double settle = 2000.0;    ///< time before a cycle is sought
   double tolerance = 1e-12;  ///< of the integrator
   int most_loops = 12;       ///< turns per period
-  /// Whether the cycle is solved for by Newton's method, with its multipliers; else the settled
-  /// motion is measured as it is.
-  bool solves = true;
 };
 
 enum class CycleStatus {

@@ -222,7 +222,7 @@ TEST(RigidContactMotion, ManyContactsThatStickAndLiftOffKeepTheLaws) {
   const FastestMode mode = fastest_of(model.system);
   constexpr double step = 5e-7;
   RigidContactMotion motion = motion_of(model, step);
-  motion.start(1e-5 * mode.q.real(), 1e-5 * (mode.s * mode.q).real());
+  motion.start(3e-5 * mode.q.real(), 3e-5 * (mode.s * mode.q).real());
   const auto gap_of = [&](const FaceContact& contact, const Eigen::VectorXd& q) {
     return contact.gap().dot(q) +
            0.5 * (contact.normal_bending() * q).dot(contact.bending_forces().transpose() * q);

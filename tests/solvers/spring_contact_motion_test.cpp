@@ -148,7 +148,7 @@ TEST(SpringContactMotion, ManyContactsThatStickAndLiftOffKeepTheLaws) {
   const DiscModel model = make_disc_model(brake);
   const FastestMode mode = fastest_of(model.system);
   SpringContactMotion motion(model.bodies, model.contacts, model.law, model.state, 5e-7);
-  motion.start(1e-5 * mode.q.real(), 1e-5 * (mode.s * mode.q).real());
+  motion.start(3e-5 * mode.q.real(), 3e-5 * (mode.s * mode.q).real());
   int seen[3] = {0, 0, 0};
   for (int n = 0; n < 6000; ++n) {
     ASSERT_TRUE(motion.step()) << n;

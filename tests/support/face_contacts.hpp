@@ -48,7 +48,10 @@ inline FastestMode fastest_of(const LinearSystem& system) {
                        [](const auto& a, const auto& b) { return a.growth() < b.growth(); });
   const Eigen::VectorXcd q =
       pencil.slots * spectrum.right.col(fastest - spectrum.eigenvalues.begin());
-  return {fastest->s, q / q.cwiseAbs().maxCoeff()};
+  // Its largest entry is 1: neither size nor phase depend on the eigensolver.
+  Eigen::Index largest = 0;
+  q.cwiseAbs().maxCoeff(&largest);
+  return {fastest->s, q / q(largest)};
 }
 
 /// On a pad alone, with coordinates along (none if negative) and away from the plate, which is
