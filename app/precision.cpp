@@ -8,9 +8,6 @@
 #include "app/pictures.hpp"
 #include "app/turns.hpp"
 #include "core/errors.hpp"
-#include "io/channels.hpp"
-#include "io/initial_state.hpp"
-#include "io/run_summary.hpp"
 
 namespace stridor {
 namespace {
@@ -20,27 +17,6 @@ constexpr int most_turns = 100;
 constexpr std::int64_t least_samples_per_turn = 50;
 /// Beyond this a run has nothing to do with the reference.
 constexpr double absurd_error = 1e3;
-
-/// Window and band: those of the scene, else from the end of the ramp on and 1 to 15 kHz as far as
-/// the samples allow.
-NormParameters norms_of(const PrecisionStudy& study, double end) {
-  const Scene& scene = study.loaded.scene;
-  NormParameters norms;
-  const bool is_given = study.loaded.tree.entry("measure") != nullptr;
-  norms.window.from = is_given ? scene.measure.from : study.model.system.drive.constant_from();
-  norms.window.to = std::min(end, scene.measure.to.value_or(end));
-  const double clean = 0.4 / study.interval;
-  norms.band = scene.measure.band.size() == 2
-                   ? Band{scene.measure.band[0], scene.measure.band[1]}
-                   : Band{std::min(1e3, 0.1 * clean), std::min(15e3, clean)};
-  const double needed = norms.window.from + 10.0 * study.interval;
-  if (!(norms.window.to >= needed)) {
-    throw ConfigError("--until", fmt::format("the run ends at {:.6g} s, but errors are taken from "
-                                             "{:.6g} s on (measure.from, or the end of the ramp)",
-                                             end, norms.window.from));
-  }
-  return norms;
-}
 
 StudyParameters parameters_of(const PrecisionOptions& options, const Band& band) {
   StudyParameters parameters;
@@ -167,36 +143,12 @@ const std::vector<std::pair<std::string, ContactAssumption>>& assumption_names()
 }
 
 PrecisionStudy make_precision_study(const PrecisionOptions& options) {
-  PrecisionStudy study;
-  study.loaded = load_scene(options.scene, options.common.sets);
-  const Scene& scene = study.loaded.scene;
-  const auto channel = scene.record ? acceleration_channel(*scene.record) : std::nullopt;
-  if (!channel) {
-    throw study.loaded.located(ConfigError(
-        "record", "no acceleration among the channels: precision needs one to compare by"));
-  }
-  study.channel = *channel;
-  study.model = build_model(study.loaded);
-  set_initial_state(study.model.system, study.loaded);
-  for (const Channel& one : parse_channels(*scene.record, scene.model)) {
-    if (one.name != study.channel) continue;
-    const Model::Point& point = study.model.points.at(*one.point);
-    study.observed = {point.body, one.is_vertical ? point.rows.y : point.rows.x};
-  }
-  study.interval = scene.record->interval;
-  double end = scene.time.end;
-  if (options.until) {
-    end = option_value("--until", *options.until, "s", Range::positive());
-    if (end > scene.time.end) {
-      throw ConfigError("--until", fmt::format("{:.6g} s is beyond the end of the scene, {:.6g} s",
-                                               end, scene.time.end));
-    }
-  }
-  study.num_samples = static_cast<std::int64_t>(std::floor(end / study.interval + 1e-6));
-  study.norms = norms_of(study, study.end());
+  PrecisionStudy study{
+      study_scene(load_scene(options.scene, options.common.sets), options.until), {}, {}};
   study.parameters = parameters_of(options, study.norms.band);
   try {
-    study.plan = make_plan(study.model.system, scene.time, study.interval, study.parameters);
+    study.plan =
+        make_plan(study.model.system, study.loaded.scene.time, study.interval, study.parameters);
   } catch (const std::invalid_argument& error) {
     throw study.loaded.located(ConfigError("record.interval", error.what()));
   }

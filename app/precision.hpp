@@ -9,11 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/error_norms.hpp"
 #include "analysis/precision_study.hpp"
 #include "app/command.hpp"
-#include "io/scene.hpp"
-#include "models/model.hpp"
+#include "app/studied_scene.hpp"
 
 namespace stridor {
 
@@ -35,19 +33,9 @@ struct PrecisionOptions {
 /// The contact assumptions by their keys.
 const std::vector<std::pair<std::string, ContactAssumption>>& assumption_names();
 
-/// The scene, its system and what is looked at.
-struct PrecisionStudy {
-  LoadedScene loaded;
-  Model model;
-  std::string channel;
-  ObservedRow observed;
-  double interval = 0.0;
-  std::int64_t num_samples = 0;
-  NormParameters norms;
+struct PrecisionStudy : StudiedScene {
   StudyParameters parameters;
   PrecisionPlan plan;
-
-  double end() const { return static_cast<double>(num_samples) * interval; }
 };
 
 /// @throws ConfigError with places in the scene, FileError, NumericalError

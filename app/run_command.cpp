@@ -12,9 +12,11 @@
 #include "app/expectations.hpp"
 #include "app/progress.hpp"
 #include "app/sphere_run.hpp"
+#include "app/studied_scene.hpp"
 #include "app/transient.hpp"
 #include "app/transient_results.hpp"
 #include "core/errors.hpp"
+#include "core/stop_token.hpp"
 #include "io/damage_guard.hpp"
 #include "io/linear_scene.hpp"
 #include "io/sphere_scene.hpp"
@@ -29,6 +31,7 @@ struct RunOptions {
   std::string resumed;
   double max_wall = std::numeric_limits<double>::infinity();  ///< s
   bool verify = false;
+  bool error = false;
   std::string command_line;
 };
 
@@ -94,12 +97,44 @@ void print_summary(const Json& results, const std::string& output) {
     fmt::print("{:<24}largest error {:.2g} of the energy turned over\n", "energy balance",
                results["energy_error"].get<double>());
   }
+  if (!results["error"].is_null()) {
+    const Json& error = results["error"];
+    if (error["failure"].is_null()) {
+      fmt::print(
+          "{:<24}{} of the envelope of the acceleration, {} of the acceleration, {} of the "
+          "force: {} ({:.3g} s)\n",
+          "error", text(error["envelope"]), text(error["acceleration"]), text(error["force"]),
+          error["is"].get<std::string>(), error["wall_s"].get<double>());
+    } else {
+      fmt::print("{:<24}not estimated: {}\n", "error", error["failure"].get<std::string>());
+    }
+  }
   fmt::print("{:<24}{}\n", "run file", output);
 }
 
+Json error_json(const ErrorEstimate& estimate) {
+  const auto value = [&](double error) {
+    return estimate.failure.empty() ? number(error) : nullptr;
+  };
+  return {{"force", value(estimate.errors.force)},
+          {"acceleration", value(estimate.errors.acceleration)},
+          {"envelope", value(estimate.errors.envelope)},
+          {"is", fmt::format("difference from exact propagation of all modes at {:.4g} s",
+                             estimate.step)},
+          {"wall_s", number(estimate.seconds)},
+          {"failure", estimate.failure.empty() ? Json(nullptr) : Json(estimate.failure)}};
+}
+
+/// What cannot be studied is refused before the run.
+std::optional<StudiedScene> studied(const LoadedScene& loaded, const RunOptions& options) {
+  if (!options.error) return std::nullopt;
+  return study_scene(loaded);
+}
+
 /// Runs to the end, or as far as it gets, and says how it ended.
+/// @param study of the scene, where the error is to be estimated
 ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::string& file,
-                    const RunOptions& options) {
+                    const std::optional<StudiedScene>& study, const RunOptions& options) {
   Progress progress("run");
   transient.keeper().on_progress(
       [&](double fraction, const std::string& detail) { progress.report(fraction, detail); });
@@ -107,7 +142,14 @@ ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::
   const MarchEnd end = transient.run_to_end();
   progress.finish();
   if (end == MarchEnd::stopped) transient.write_checkpoint();
-  const Json results = transient.finish();
+  Json error = nullptr;
+  if (study && end == MarchEnd::finished) {
+    Progress second("error");
+    error = error_json(
+        estimate_error(*study, [&](double part) { second.report(part, "a finer run beside it"); }));
+    second.finish();
+  }
+  const Json results = transient.finish(error);
 
   if (options.common.json) {
     fmt::print("{}\n", results.dump(2));
@@ -124,22 +166,33 @@ ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::
     throw NumericalError(
         fmt::format("{}\n{} holds everything up to then", simulation.failure(), file));
   }
-  if (options.verify) {
-    check_expectations(loaded.scene.expect, results);
-  }
+  if (options.verify) check_expectations(loaded.scene.expect, results);
+  if (stop_requested() && !error.is_null() && !error["failure"].is_null())
+    throw Interrupted(file + " holds the whole run; its error was not estimated");
   return ExitCode::done;
+}
+
+/// @throws ConfigError if an error is asked for that cannot be given
+void refuse_error(const RunOptions& options) {
+  if (!options.error) return;
+  throw ConfigError("--error",
+                    "is for scenes of bodies in contact; of spheres `precision` says it, of discs "
+                    "a second run at half the step");
 }
 
 ExitCode begin(const RunOptions& options) {
   const RunOutput output{options.output, options.common.overwrite(), options.command_line};
   const RunEnding ending{options.max_wall, options.common.json, options.verify};
+  if (is_sphere_scene_file(options.scene) || is_linear_scene_file(options.scene))
+    refuse_error(options);
   if (is_sphere_scene_file(options.scene))
     return run_sphere(load_sphere_scene(options.scene, options.common.sets), output, ending);
   if (is_linear_scene_file(options.scene))
     return run_disc(load_linear_scene(options.scene, options.common.sets), output, ending);
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
+  const auto study = studied(loaded, options);
   Transient transient(loaded, output);
-  return run_to_end(transient, loaded, options.output, options);
+  return run_to_end(transient, loaded, options.output, study, options);
 }
 
 ExitCode resume(const RunOptions& options) {
@@ -149,11 +202,13 @@ ExitCode resume(const RunOptions& options) {
   const std::string source = options.resumed + ":/scene/resolved";
   const SceneNode tree = read_scene_text(interrupted.scene_text, source);
   const RunEnding ending{options.max_wall, options.common.json, options.verify};
+  if (is_disc_scene(tree) || is_sphere_scene(tree)) refuse_error(options);
   if (is_disc_scene(tree)) return resume_disc(interrupted, ending);
   if (is_sphere_scene(tree)) return resume_sphere(interrupted, ending);
   const LoadedScene loaded = load_resolved_scene(interrupted.scene_text, source);
+  const auto study = studied(loaded, options);
   Transient transient(loaded, interrupted);
-  return run_to_end(transient, loaded, options.resumed, options);
+  return run_to_end(transient, loaded, options.resumed, study, options);
 }
 
 /// @throws ConfigError where the options do not say what to run, or twice
@@ -188,6 +243,7 @@ void add_run_command(CLI::App& program, Action& action, const std::string& comma
       ->check(CLI::PositiveNumber);
   verb->add_flag("--verify", options->verify,
                  "Compare the results with the scene's `expect` block; exit 3 where they differ");
+  verb->add_flag("--error", options->error, "Estimate the error of the run by a second, finer one");
   add_scene_options(*verb, options->common);
   add_json_option(*verb, options->common);
   add_force_option(*verb, options->common);

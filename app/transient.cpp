@@ -211,7 +211,7 @@ void Transient::write_final_motion() {
   }
 }
 
-Json Transient::finish() {
+Json Transient::finish(const Json& error) {
   const Scene& scene = loaded_->scene;
   writer_->flush();
   const auto acceleration = summarise_acceleration(RunFileReader(file_), scene.measure);
@@ -221,6 +221,7 @@ Json Transient::finish() {
   results.update(
       effort_json(steps, scene.time.step, step_limit_json(model_.system, scene.time),
                   {setup_seconds_, march_seconds_, file_seconds_ + writer_->write_seconds()}));
+  results["error"] = error;
   results["file"] = file_;
   keep_final_motion();
   write_final_motion();

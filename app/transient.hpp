@@ -41,8 +41,9 @@ class Transient {
   RunKeeper& keeper() { return keeper_; }
 
   /// Flushes, reads the statistics off the file, stores them in it and closes it.
+  /// @param error what was found of the error of the run, or null
   /// @return the JSON object of `run`
-  Json finish();
+  Json finish(const Json& error = nullptr);
 
   const Simulation& simulation() const { return *simulation_; }
   const Model& model() const { return model_; }

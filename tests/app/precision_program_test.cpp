@@ -105,6 +105,83 @@ TEST(PrecisionProgram, SaysThatNothingIsGoodEnough) {
   EXPECT_THAT(result.err, HasSubstr("no setting measured is within 1e-12"));
 }
 
+TEST(RunError, IsNearTheErrorAgainstAFineReference) {
+  const TemporaryFolder folder;
+  const ProgramResult study = Program(short_study({"--json", "--published-window", "0"})).run();
+  ASSERT_EQ(study.exit_code, 0) << study.err;
+  const Json precise = Json::parse(study.out);
+  int num_compared = 0;
+  for (const Json& row : precise["rows"]) {
+    if (!row["stable"].get<bool>() || row["assumption"] != "subs_b") continue;
+    std::vector<std::string> run{"run",
+                                 scene,
+                                 "-o",
+                                 (folder / "run.h5").string(),
+                                 "--force",
+                                 "--error",
+                                 "--json",
+                                 "--set",
+                                 "time.end=8 ms",
+                                 "--set",
+                                 "measure.from=4 ms",
+                                 "--set",
+                                 "record.interval=1e-5"};
+    const auto set = [&](const std::string& assignment) {
+      run.insert(run.end(), {"--set", assignment});
+    };
+    set("time.integrator=" + row["integrator"].get<std::string>());
+    set("time.step=" + row["step"].dump());
+    if (row["method"].get<std::string>().ends_with("to 50 kHz")) set("time.retain.frequency=50kHz");
+    const ProgramResult result = Program(run).run();
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const Json error = Json::parse(result.out)["error"];
+    EXPECT_EQ(error["failure"], nullptr);
+    EXPECT_GT(error["wall_s"].get<double>(), 0.0);
+    for (const char* norm : {"force", "acceleration", "envelope"}) {
+      // Of errors of order two in the step, 3/4; less could be the error of the reference.
+      const double expected = row["errors"][norm];
+      if (expected < 20.0 * precise["reference"]["errors"][norm].get<double>()) continue;
+      ++num_compared;
+      EXPECT_GT(error[norm].get<double>(), 0.45 * expected) << row << norm;
+      EXPECT_LT(error[norm].get<double>(), 1.2 * expected) << row << norm;
+    }
+  }
+  EXPECT_GE(num_compared, 12);
+}
+
+TEST(RunError, IsPrintedAndKeptInTheFile) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "run.h5").string();
+  const ProgramResult run =
+      Program({"run", scene, "-o", file, "--error", "--set", "time.end=8 ms", "--set",
+               "measure.from=4 ms", "--set", "time.integrator=exact", "--set", "time.step=5e-6"})
+          .run();
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("of the force: difference from exact propagation of all modes at "
+                                 "2.5e-06 s"));
+  const Json info = Json::parse(Program({"info", file, "--json"}).run().out);
+  EXPECT_GT(info["results"]["error.envelope"].get<double>(), 0.0);
+}
+
+TEST(RunError, IsRefusedBeforeTheRunWhereItCannotBe) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "run.h5").string();
+  const auto refusal = [&](const std::string& what, std::vector<std::string> more) {
+    std::vector<std::string> arguments{"run", what, "-o", file, "--error"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_FALSE(std::filesystem::exists(file));
+    return result.err;
+  };
+  EXPECT_THAT(refusal(scene, {"--set", "record.channels=[contact.force]"}),
+              HasSubstr("no motion of a point among the channels"));
+  EXPECT_THAT(refusal(scene, {"--set", "time.end=0.2"}),
+              HasSubstr("time.end: the run ends at 0.2 s, but errors are taken from 0.4 s on"));
+  for (const char* other : {"viscoelastic_sphere.yaml", "examples/disc_squeal.yaml"})
+    EXPECT_THAT(refusal(scene_path(other), {}), HasSubstr("--error: is for scenes of bodies"));
+}
+
 TEST(PrecisionProgram, RejectsBadInput) {
   const auto refusal = [](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "precision");
@@ -122,7 +199,7 @@ TEST(PrecisionProgram, RejectsBadInput) {
   EXPECT_THAT(refusal({scene, "--assumptions", "subs_d"}), HasSubstr("--assumptions"));
   EXPECT_THAT(refusal({scene, "--points", "1"}), HasSubstr("--points"));
   EXPECT_THAT(refusal({scene, "--set", "record.channels=[contact.force]"}),
-              HasSubstr("no acceleration among the channels"));
+              HasSubstr("no motion of a point among the channels"));
 }
 
 TEST(PrecisionProgram, DoesNotOverwriteUnasked) {
