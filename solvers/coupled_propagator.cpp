@@ -107,13 +107,13 @@ void CoupledPropagator::renew() {
   row_gains_ = by_step_.by_force() * row_table_;
   by_velocity_.compute(by_step_.free.topRightCorner(body_.size(), body_.size()));
   load_impulse_ = by_step_.by_impulse * load_;
+  is_renewal_due_ = false;
 }
 
 void CoupledPropagator::set_mass_damping(double alpha) {
   if (alpha == alpha_) return;
   alpha_ = alpha;
-  renew();
-  renew_compliances();
+  is_renewal_due_ = true;  // the forces at t_n still act as the prediction from t_n supposes
 }
 
 void CoupledPropagator::set_body_loads(std::span<const double> amplitudes) {
@@ -130,6 +130,10 @@ void CoupledPropagator::predict() {
 void CoupledPropagator::advance_body(const double* forces, double* predicted) {
   state_.swap(next_);  // predict() writes the other anew
   for (int slot = 0; slot < num_slots(); ++slot) state_ += forces[slot] * row_gains_.col(row(slot));
+  if (is_renewal_due_) {
+    renew();
+    renew_compliances();
+  }
   predict();
   const Eigen::VectorXd& seen = is_prompt() ? state_ : next_;
   for (int slot = 0; slot < num_slots(); ++slot)
@@ -225,6 +229,7 @@ void CoupledPropagator::save_body(State& state, const std::string& prefix) const
 void CoupledPropagator::load_body(const State& state, const std::string& prefix) {
   state.get(prefix + "x", as_span(state_));
   state.get(prefix + "x_next", as_span(next_));
+  if (is_renewal_due_) renew();
 }
 
 }  // namespace stridor

@@ -99,6 +99,7 @@ class CoupledPropagator : public Propagator {
   double step_;
   std::optional<double> surplus_;
   double alpha_;
+  bool is_renewal_due_ = false;
 
   CoupledStep by_step_;
   Eigen::MatrixXd row_gains_;                         ///< column r: x_{n+1} per force on row r

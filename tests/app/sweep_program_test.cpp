@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/dataset.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {
@@ -93,6 +94,33 @@ TEST(SweepProgram, WritesColumnsAndAPicture) {
   const ProgramResult again = Program(friction_sweep({"-o", file})).run();
   EXPECT_EQ(again.exit_code, 4);
   EXPECT_THAT(again.err, HasSubstr("--force"));
+}
+
+TEST(SweepProgram, ListsAndDrawsBursts) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "sweep.h5").string();
+  const std::string figure = (folder / "sweep.svg").string();
+  const ProgramResult result = Program({"sweep",       scene_path("beam_on_beam.yaml"),
+                                        "--parameter", "contact.friction.coefficient",
+                                        "--from",      "0.25",
+                                        "--to",        "0.3",
+                                        "--points",    "2",
+                                        "--set",       "time.integrator=exact",
+                                        "--set",       "time.step=1e-5",
+                                        "--set",       "time.retain.frequency=30kHz",
+                                        "-o",          file,
+                                        "--figure",    figure})
+                                   .run();
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  // The three bursts of the scene, of which the last is the largest.
+  EXPECT_THAT(result.out, HasSubstr("       3      35"));
+  const std::vector<double> values = dataset(file, "/bursts/value");
+  EXPECT_GE(values.size(), 4U);
+  EXPECT_EQ(values.back(), 0.3);
+  EXPECT_EQ(dataset(file, "/num_bursts").back(), 3.0);
+  for (const double frequency : dataset(file, "/bursts/frequency"))
+    EXPECT_NEAR(frequency, 3500.0, 100.0);
+  EXPECT_THAT(contents_of(figure), HasSubstr("frequency of bursts"));
 }
 
 TEST(SweepProgram, ARunThatFailsIsARowAndTheOthersGoOn) {

@@ -14,6 +14,7 @@ namespace fs = std::filesystem;
 using namespace test;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 const std::string beams = scene_path("beam_on_beam.yaml");
 const std::string sphere = scene_path("viscoelastic_sphere.yaml");
@@ -49,6 +50,64 @@ TEST(VerbOutput, EigDrawsAModeAndItsMotion) {
   EXPECT_THAT(again.err, HasSubstr("exists; use --force"));
 }
 
+TEST(VerbOutput, EigExplainsAMode) {
+  // The first of the bursts of the scene: two modes near 3.5 kHz meet.
+  const std::string text =
+      output_of({"eig", beams, "--set", "contact.start=0.075", "--about", "deformed", "--explain"});
+  EXPECT_THAT(text, AllOf(HasSubstr("at 3521.39 Hz, growth 89.8"), HasSubstr("sees damping d = "),
+                          HasSubstr("growth: +118."), HasSubstr("1/s from the contact, -28."),
+                          HasSubstr("enters at the contact in each cycle"),
+                          HasSubstr("90.5 % of it is the mode of 3522.38 Hz without friction")));
+  EXPECT_THAT(text, Not(HasSubstr("coupled terms")));
+  EXPECT_THAT(output_of({"eig", scene_path("examples/rotating_support.yaml"), "--explain"}),
+              HasSubstr("1/s by coupled terms of bodies"));
+}
+
+TEST(VerbOutput, EigSaysWhichContactsAreOpen) {
+  EXPECT_THAT(output_of({"eig", scene_path("extreme/points_on_one_element.yaml"), "--about",
+                         "deformed", "--count", "2"}),
+              AllOf(HasSubstr("contact[0]          open, gap 2.78"),
+                    HasSubstr("contact[2]          0.0295 m along the master, force 0.1998")));
+  const ProgramResult several =
+      Program({"eig", scene_path("examples/two_pairs.yaml"), "--at", "60mm"}).run();
+  EXPECT_EQ(several.exit_code, 2);
+  EXPECT_THAT(several.err, HasSubstr("--at: the scene has several contact pairs; set the `start`"));
+}
+
+TEST(VerbOutput, RunTellsOfEveryContactAndOfTheEnergy) {
+  const TemporaryFolder folder;
+  const std::string text = output_of({"run", scene_path("examples/two_pairs.yaml"), "-o",
+                                      (folder / "run.h5").string(), "--set", "record.energy=true",
+                                      "--set", "time.end=0.01", "--set", "measure.from=0"});
+  for (const char* part :
+       {"modes of front          13 moving", "contact force, front    ", "contact force, rear     ",
+        "energy balance          largest error", "changes of load and drive from 0.1 s on"})
+    EXPECT_THAT(text, HasSubstr(part));
+}
+
+TEST(VerbOutput, PrecisionNamesTheCheapestAndWhatElseThereIs) {
+  const std::string text = output_of(
+      {"precision", scene_path("beam_on_beam_leading.yaml"), "--until", "8 ms", "--set",
+       "measure.from=4 ms", "--set", "record.interval=1e-5", "--points", "2", "--retain", "50 kHz",
+       "--assumptions", "subs_a", "--published-window", "2e-4", "--tune", "1e-2"});
+  for (const char* part : {"published form", "cheapest within 0.01", "integrator: exact"})
+    EXPECT_THAT(text, HasSubstr(part));
+}
+
+TEST(VerbOutput, ExpectationsOfWhatIsNoNumberAreToldOf) {
+  const TemporaryFolder folder;
+  write_file(folder / "scene.yaml", contents_of(scene_path("examples/stick_slip.yaml")) +
+                                        "  - {result: status, value: 1, tolerance: 1}\n"
+                                        "  - {result: bursts.0.peak, value: 1, tolerance: 1}\n");
+  const ProgramResult result =
+      Program({"run", (folder / "scene.yaml").string(), "-o", (folder / "run.h5").string(), "--set",
+               "time.end=0.3", "--verify"})
+          .run();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("status: expected 1, but the run has no such number"),
+                                HasSubstr("bursts.0.peak: expected 1, but the run has no such")));
+}
+
 TEST(VerbOutput, MapsSweepsAndLociOfSmallSystemsAreDrawn) {
   const TemporaryFolder folder;
   const auto figure = [&](const char* name) { return (folder / name).string(); };
@@ -82,6 +141,9 @@ TEST(VerbOutput, ThresholdSaysWhereAndWhichWay) {
   EXPECT_THAT(to("0.6", "0.1"), HasSubstr("unstable beyond"));
   EXPECT_THAT(to("0.15", "0.1"), HasSubstr("stable everywhere between"));
   EXPECT_THAT(to("0.6", "0.55"), HasSubstr("unstable everywhere between"));
+  EXPECT_THAT(output_of({"threshold", beams, "--parameter", "contact.friction.coefficient",
+                         "--from", "0", "--to", "0.01"}),
+              HasSubstr("stable everywhere between contact.friction.coefficient = 0 and "));
 }
 
 TEST(VerbOutput, FitPrintsItsCoefficients) {

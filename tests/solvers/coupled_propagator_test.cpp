@@ -171,6 +171,36 @@ Eigen::Vector4d free_motion(const ReducedBody& body, double step, int num_steps,
   return modal.shapes * propagator.motion(nullptr).displacement;
 }
 
+TEST(CoupledPropagator, DampingThatChangesActsFromTheNextInstantOn) {
+  ReducedBody body = coupled_chain(3.0, 60.0);
+  const ModalBody modal = make_modal(body);
+  constexpr double step = 0.03;
+  constexpr int before = 20;
+  constexpr int after = 30;
+  CoupledPropagator changing(modal, Eigen::MatrixXd(4, 0), step, std::nullopt, 0, 0.1, {}, "body");
+  CoupledPropagator first(modal, Eigen::MatrixXd(4, 0), step, std::nullopt, 0, 0.1, {}, "body");
+  CoupledPropagator second(modal, Eigen::MatrixXd(4, 0), step, std::nullopt, 0, 2.0, {}, "body");
+  const auto run = [](Propagator& propagator, int num_steps) {
+    for (int n = 0; n < num_steps; ++n) {
+      propagator.settle(nullptr);
+      propagator.advance(nullptr);
+    }
+    propagator.settle(nullptr);
+    return propagator.motion(nullptr);
+  };
+  const Eigen::Vector4d u(0.3, -0.2, 0.1, 0.4), v(1.0, 2.0, -1.0, 0.5);
+  for (CoupledPropagator* one : {&changing, &first}) one->set_motion(u, v, nullptr);
+  run(changing, before - 1);
+  changing.set_mass_damping(2.0);
+  const Propagator::Motion found = run(changing, 1 + after);
+  const Propagator::Motion between = run(first, before);
+  second.set_motion(between.displacement, between.velocity, nullptr);
+  const Propagator::Motion expected = run(second, after);
+  EXPECT_TRUE(found.displacement.isApprox(expected.displacement, 1e-12));
+  EXPECT_TRUE(found.velocity.isApprox(expected.velocity, 1e-12));
+  EXPECT_FALSE(found.displacement.isApprox(run(first, after).displacement, 0.1));
+}
+
 TEST(CoupledPropagator, FreeMotionIsThatOfTheEigenvectors) {
   const ReducedBody body = coupled_chain(3.0, 60.0);
   const FullMatrices matrices(body);
