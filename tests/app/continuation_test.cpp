@@ -133,6 +133,31 @@ void expect_bitwise_resume(const std::string& state) {
     EXPECT_EQ(a.static_array(dataset), b.static_array(dataset));
 }
 
+TEST(Continuation, OtherBodiesAreRefused) {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const std::string& scene, const std::vector<std::string>& options) {
+    const std::string start = (folder / "start.h5").string();
+    std::vector<std::string> first = options;
+    first.emplace_back("--force");
+    expect_run(scene, start, first);
+    std::vector<std::string> rest = continued;
+    rest.insert(rest.end(), {"--set", "initial.state=" + start, "--set", "measure.from=0"});
+    const std::string file = (folder / "second.h5").string();
+    const ProgramResult result = Program(run_of(scene_path(bridge), file, rest)).run();
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_FALSE(std::filesystem::exists(file));
+    EXPECT_THAT(result.err, HasSubstr("initial.state: " + start + " cannot start '"));
+    return result.err;
+  };
+  EXPECT_THAT(refusal(scene_path(bridge), {"--set", "substructures.bridge.thickness=4.1 mm"}),
+              HasSubstr("'bridge': mode 1 of its body has"));
+  EXPECT_THAT(refusal(scene_path(bridge),
+                      {"--set", "substructures.bridge.reduction.fixed_interface_modes=3"}),
+              HasSubstr(" modes, this one "));
+  EXPECT_THAT(refusal(scene_path("examples/stick_slip.yaml"), {"--set", "time.end=0.2"}),
+              HasSubstr("it holds no body of that name"));
+}
+
 TEST(Continuation, IsResumedBitwiseWithoutTheFileItBeganFrom) {
   const TemporaryFolder folder;
   const std::string start = (folder / "start.h5").string();

@@ -458,6 +458,10 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         BadUsage{{"spectrogram", "--channel", "beam.tip.y.acelleration"},
                  "did you mean 'beam.tip.y.acceleration'?"},
+        BadUsage{{"spectrogram", "-o", "both.png", "--data", "both.png"},
+                 "--data: 'both.png' is also the figure"},
+        BadUsage{{"spectrogram", "--band", "2000,1000"},
+                 "must be a lower and an upper frequency below 5000 Hz"},
         BadUsage{{"spectrogram", "--channel", "contact.force", "--channel", "contact.force"},
                  "a spectrogram shows one channel"},
         BadUsage{{"spectrogram", "--window", "han"}, "--window: there is no window 'han', did you"},

@@ -391,6 +391,9 @@ TEST(SphereProgram, RefusesWhatDoesNotFit) {
   EXPECT_THAT(error({"eig", "--explain"}), HasSubstr("is for scenes of bodies"));
   EXPECT_THAT(error({"compare"}), HasSubstr("belongs to an oscillator"));
   EXPECT_THAT(error({"precision", "--retain", "1kHz"}), HasSubstr("is for scenes of bodies"));
+  EXPECT_THAT(error({"precision", "--until", "3"}), HasSubstr("here time.end says how far"));
+  EXPECT_THAT(error({"precision", "--set", "time.end=0.06"}),
+              HasSubstr("time.end: holds less than two samples"));
   EXPECT_THAT(error({"eig", "--set", "regularisation.law=tanh"}),
               HasSubstr("regularisation.speed: missing"));
   EXPECT_THAT(error({"run", "-o", "never.h5", "--set", "time.integrator=exact"}),
