@@ -2,11 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
-
-#include "app/expectations.hpp"
-#include "app/progress.hpp"
-#include "core/errors.hpp"
+#include "app/run_ending.hpp"
 
 namespace stridor {
 namespace {
@@ -36,31 +32,11 @@ void print_results(const Json& results, const std::string& file) {
   fmt::print("{:<24}{}\n", "run file", file);
 }
 
-/// Runs to the end, or as far as it gets, and says how it ended.
 ExitCode run_to_end(DiscTransient& transient, const LoadedLinearScene& loaded,
                     const std::string& file, const RunEnding& ending) {
   const DiscScene& scene = std::get<DiscScene>(loaded.scene);
-  Progress progress("run");
-  transient.keeper().on_progress(
-      [&](double fraction, const std::string& detail) { progress.report(fraction, detail); });
-  transient.keeper().limit_wall_time(ending.max_wall);
-  const MarchEnd end = transient.run_to_end();
-  progress.finish();
-  if (end == MarchEnd::stopped) transient.write_checkpoint();
-  const Json results = transient.finish();
-  if (ending.json) {
-    fmt::print("{}\n", results.dump(2));
-  } else {
-    print_results(results, file);
-  }
-  std::fflush(stdout);
-  if (end == MarchEnd::stopped) throw_interrupted(transient.time(), scene.time->end, file);
-  if (end == MarchEnd::failed) {
-    throw NumericalError(
-        fmt::format("{}\n{} holds everything up to then", transient.failure(), file));
-  }
-  if (ending.verify) check_expectations(scene.expect, results);
-  return ExitCode::done;
+  return run_and_report(transient, scene.time->end, file, ending, scene.expect,
+                        [&](const Json& results) { print_results(results, file); });
 }
 
 }  // namespace

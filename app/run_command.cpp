@@ -9,8 +9,8 @@
 
 #include "app/command.hpp"
 #include "app/disc_run.hpp"
-#include "app/expectations.hpp"
 #include "app/progress.hpp"
+#include "app/run_ending.hpp"
 #include "app/sphere_run.hpp"
 #include "app/studied_scene.hpp"
 #include "app/transient.hpp"
@@ -131,45 +131,47 @@ std::optional<StudiedScene> studied(const LoadedScene& loaded, const RunOptions&
   return study_scene(loaded);
 }
 
-/// Runs to the end, or as far as it gets, and says how it ended.
+/// A transient whose error is estimated once it is whole, where there is a study of its scene.
+class StudiedRun {
+ public:
+  StudiedRun(Transient& transient, const std::optional<StudiedScene>& study)
+      : transient_(&transient), study_(&study) {}
+
+  RunKeeper& keeper() { return transient_->keeper(); }
+  MarchEnd run_to_end() { return end_ = transient_->run_to_end(); }
+  void write_checkpoint() { transient_->write_checkpoint(); }
+  double time() const { return transient_->simulation().time(); }
+  const std::string& failure() const { return transient_->simulation().failure(); }
+
+  Json finish() {
+    if (!*study_ || end_ != MarchEnd::finished) return transient_->finish();
+    Progress progress("error");
+    const ErrorEstimate estimate = estimate_error(
+        **study_, [&](double part) { progress.report(part, "a finer run beside it"); });
+    progress.finish();
+    is_cut_short_ = stop_requested() && !estimate.failure.empty();
+    return transient_->finish(error_json(estimate));
+  }
+  /// Whether a request to stop came before the error was known.
+  bool is_cut_short() const { return is_cut_short_; }
+
+ private:
+  Transient* transient_;
+  const std::optional<StudiedScene>* study_;
+  MarchEnd end_ = MarchEnd::finished;
+  bool is_cut_short_ = false;
+};
+
 /// @param study of the scene, where the error is to be estimated
 ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::string& file,
-                    const std::optional<StudiedScene>& study, const RunOptions& options) {
-  Progress progress("run");
-  transient.keeper().on_progress(
-      [&](double fraction, const std::string& detail) { progress.report(fraction, detail); });
-  transient.keeper().limit_wall_time(options.max_wall);
-  const MarchEnd end = transient.run_to_end();
-  progress.finish();
-  if (end == MarchEnd::stopped) transient.write_checkpoint();
-  Json error = nullptr;
-  if (study && end == MarchEnd::finished) {
-    Progress second("error");
-    error = error_json(
-        estimate_error(*study, [&](double part) { second.report(part, "a finer run beside it"); }));
-    second.finish();
-  }
-  const Json results = transient.finish(error);
-
-  if (options.common.json) {
-    fmt::print("{}\n", results.dump(2));
-  } else {
-    print_summary(results, file);
-  }
-  std::fflush(stdout);
-
-  const Simulation& simulation = transient.simulation();
-  if (end == MarchEnd::stopped) {
-    throw_interrupted(simulation.time(), loaded.scene.time.end, file);
-  }
-  if (end == MarchEnd::failed) {
-    throw NumericalError(
-        fmt::format("{}\n{} holds everything up to then", simulation.failure(), file));
-  }
-  if (options.verify) check_expectations(loaded.scene.expect, results);
-  if (stop_requested() && !error.is_null() && !error["failure"].is_null())
+                    const std::optional<StudiedScene>& study, const RunEnding& ending) {
+  StudiedRun run(transient, study);
+  const ExitCode code =
+      run_and_report(run, loaded.scene.time.end, file, ending, loaded.scene.expect,
+                     [&](const Json& results) { print_summary(results, file); });
+  if (run.is_cut_short())
     throw Interrupted(file + " holds the whole run; its error was not estimated");
-  return ExitCode::done;
+  return code;
 }
 
 /// @throws ConfigError if an error is asked for that cannot be given
@@ -192,7 +194,7 @@ ExitCode begin(const RunOptions& options) {
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   const auto study = studied(loaded, options);
   Transient transient(loaded, output);
-  return run_to_end(transient, loaded, options.output, study, options);
+  return run_to_end(transient, loaded, options.output, study, ending);
 }
 
 ExitCode resume(const RunOptions& options) {
@@ -208,7 +210,7 @@ ExitCode resume(const RunOptions& options) {
   const LoadedScene loaded = load_resolved_scene(interrupted.scene_text, source);
   const auto study = studied(loaded, options);
   Transient transient(loaded, interrupted);
-  return run_to_end(transient, loaded, options.resumed, study, options);
+  return run_to_end(transient, loaded, options.resumed, study, ending);
 }
 
 /// @throws ConfigError where the options do not say what to run, or twice
