@@ -169,7 +169,6 @@ struct Simulation::Implementation {
     problem.sliding_friction =
         rise * sliding_friction(contact.point().friction, contact.slip_velocity);
     problem.direction = contact.slip_velocity < 0.0 ? -1.0 : 1.0;
-    problem.is_unilateral = time(index) >= contact.unilateral_from;
     if (contact.tracks_slip) pose_slip(contact, problem, rise);
     return true;
   }
@@ -177,6 +176,7 @@ struct Simulation::Implementation {
   /// What stick, lift-off and force laws take besides.
   [[gnu::noinline]] void pose_slip(RunningContact& contact, LocalProblem& problem, double rise) {
     const SlidingPoint& sliding = contact.sliding;
+    problem.is_unilateral = time(index) >= contact.unilateral_from;
     contact.looks_ahead = false;
     contact.stretch = sliding.stretch();
     if (const auto& substrate = contact.point().substrate) {
@@ -361,14 +361,12 @@ struct Simulation::Implementation {
       contact.state = local[i].state;
       if (!(std::abs(contact.force) < absurd_force)) return fail(contact, StepOutcome::diverged);
       count(contact);
-      if (local[i].substrate != nullptr) {
-        outcome = check_penetration(contact, i);
-        if (outcome != StepOutcome::done) return outcome;
+      if (contact.tracks_slip) {
+        const StepOutcome followed = follow_slip(contact, i);
+        if (followed != StepOutcome::done) return followed;
       }
-      if (contact.tracks_slip) move_anchor(contact, i);
-      if (local[i].is_unilateral) {
-        note_unilateral(contact);
-      } else if (contact.force < 0.0 && !tolerate(contact, contact.violations.negative_force)) {
+      if (contact.force < 0.0 && !local[i].is_unilateral &&
+          !tolerate(contact, contact.violations.negative_force)) {
         outcome = fail(contact, StepOutcome::pulling);
       }
       apply_forces(contact);
@@ -377,6 +375,15 @@ struct Simulation::Implementation {
       for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b]->settle(forces[b].data());
       if (!update_slip_velocities()) outcome = StepOutcome::sliding_reversed;
     }
+    return outcome;
+  }
+
+  /// What a contact that may stick, part or sink in takes besides, once its forces are known.
+  [[gnu::noinline]] StepOutcome follow_slip(RunningContact& contact, std::size_t i) {
+    const bool has_law = local[i].substrate != nullptr;
+    const StepOutcome outcome = has_law ? check_penetration(contact, i) : StepOutcome::done;
+    if (outcome == StepOutcome::done) move_anchor(contact, i);
+    if (local[i].is_unilateral) note_unilateral(contact);
     return outcome;
   }
 
