@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "app/pictures.hpp"
@@ -50,7 +52,7 @@ NormParameters norms_of(const StudiedScene& study, const char* end_key) {
 }  // namespace
 
 StudiedScene study_scene(LoadedScene loaded, const std::optional<std::string>& until) {
-  StudiedScene study;
+  StudiedScene study{};
   study.loaded = std::move(loaded);
   const Scene& scene = study.loaded.scene;
   const std::optional<Channel> channel =
@@ -100,7 +102,9 @@ ErrorEstimate estimate_error(const StudiedScene& study,
     return std::make_unique<TimedRun>(study.model.system, time, study.observed, study.interval,
                                       study.num_samples);
   };
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   ErrorEstimate estimate;
+  estimate.errors = {unknown, unknown, unknown};
   estimate.step = finer.step;
   const std::array runs{run_of(own), run_of(finer)};
   constexpr int turns = 100;

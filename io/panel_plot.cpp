@@ -159,8 +159,8 @@ void plot_panels(const std::vector<DiagramPanel>& panels, const std::string& cap
   add_caption(script, lines);
   for (std::size_t p = 0; p < panels.size(); ++p) {
     const double left = static_cast<double>(p % num_columns) * panel_width;
-    const double bottom =
-        caption_height + static_cast<double>(num_rows - 1 - p / num_columns) * panel_height;
+    const std::size_t rows_below = num_rows - 1 - p / num_columns;
+    const double bottom = caption_height + static_cast<double>(rows_below) * panel_height;
     script.set_margins(left + 2.7, left + panel_width - 0.6, bottom + gap_below_axis,
                        bottom + panel_height - 1.3);
     add_axis(script, 'x', panels[p].x_label, x_axes[p]);
