@@ -126,18 +126,20 @@ std::vector<TimedWindow> read_locus_windows(const std::string& path) {
   const Handle file = open_hdf5_file(at);
   if (H5Lexists(file.id(), "/unstable", H5P_DEFAULT) <= 0)
     throw FileError(path, "/unstable", "is missing; a file of `stridor locus -o` is needed");
-  std::vector<TimedWindow> windows;
+  // A window takes the memory of all its columns: these are there before it is taken.
+  std::vector<std::vector<double>> values;
   for (const Column& column : columns) {
     const std::string dataset = std::string("/unstable/") + column.name;
-    const std::vector<double> values =
-        read_array(at, open_array(at, file.id(), dataset, 1), dataset);
-    const std::size_t size = values.size();
-    if (&column == &columns.front()) windows.resize(size);
-    if (windows.size() != size) {
+    values.push_back(read_array(at, open_array(at, file.id(), dataset, 1), dataset));
+    if (values.back().size() != values.front().size()) {
       throw FileError(path, dataset,
-                      fmt::format("has {} entries, /unstable/from {}", size, windows.size()));
+                      fmt::format("has {} entries, /unstable/from {}", values.back().size(),
+                                  values.front().size()));
     }
-    for (std::size_t i = 0; i < size; ++i) column.of(windows[i]) = values[i];
+  }
+  std::vector<TimedWindow> windows(values.front().size());
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    for (std::size_t k = 0; k < values.size(); ++k) columns[k].of(windows[i]) = values[k][i];
   }
   return windows;
 }

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
+#include <hdf5_hl.h>
 
 #include <cmath>
 #include <limits>
@@ -75,6 +77,22 @@ TEST(LocusFile, OtherFilesAreRefused) {
   write_file(folder / "text.h5", "no HDF5");
   EXPECT_THAT(message_of<FileError>([&] { read_locus_windows((folder / "text.h5").string()); }),
               HasSubstr("is not an HDF5 file"));
+}
+
+TEST(LocusFile, ColumnsOfDifferentLengthsAreRefused) {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "locus.h5").string();
+  write_locus_file(path, Overwrite::no, small_locus(), {window_at(0.03), window_at(0.035)}, "m",
+                   {});
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(file, 0);
+  ASSERT_GE(H5Ldelete(file, "/unstable/gain", H5P_DEFAULT), 0);
+  const hsize_t shape[] = {3};
+  const double gains[] = {1.0, 2.0, 3.0};
+  ASSERT_GE(H5LTmake_dataset_double(file, "/unstable/gain", 1, shape, gains), 0);
+  H5Fclose(file);
+  EXPECT_THAT(message_of<FileError>([&] { read_locus_windows(path); }),
+              HasSubstr("/unstable/gain: has 3 entries, /unstable/from 2"));
 }
 
 }  // namespace
