@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "io/law_table_file.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_reader.hpp"

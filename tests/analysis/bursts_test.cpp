@@ -257,7 +257,9 @@ TEST(Bursts, WhatGrowsFromASeedInNoiseIsRecovered) {
           ASSERT_THAT(found, SizeIs(1));
           EXPECT_NEAR(found[0].start, wanted.crossing(), wide.smoothing);
           EXPECT_LT(found[0].gain, 1.05 * gain);
-          if (strength >= 4.0) EXPECT_GT(found[0].gain, 0.95 * gain) << growth << ' ' << frequency;
+          if (strength >= 4.0) {
+            EXPECT_GT(found[0].gain, 0.95 * gain) << growth << ' ' << frequency;
+          }
         }
       }
     }

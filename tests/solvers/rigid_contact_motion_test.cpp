@@ -83,7 +83,8 @@ TEST(RigidContactMotion, DampedMotionDecaysUpToTheLongestStep) {
     const double step = share * longest;
     RigidContactMotion motion = motion_of(model, step);
     Eigen::VectorXd kick = Eigen::VectorXd::Zero(model.bodies.size());
-    for (Eigen::Index i = 0; i < kick.size(); ++i) kick(i) = 1e-9 * std::sin(1.0 + i);
+    for (Eigen::Index i = 0; i < kick.size(); ++i)
+      kick(i) = 1e-9 * std::sin(1.0 + static_cast<double>(i));
     motion.start(Eigen::VectorXd::Zero(kick.size()), kick);
     const int num_steps = static_cast<int>(0.5 / step);
     double early = 0.0;
@@ -119,7 +120,9 @@ TEST(RigidContactMotion, MassThatLandsStays) {
     ASSERT_NEAR(motion.displacement()(0), expected, 1e-3 * v0 / w) << n;
     ASSERT_GE(motion.contact(0).gap, -1e-15);
     impulse += step * motion.contact(0).force;
-    if (n < 990) ASSERT_EQ(motion.contact(0).force, 0.0);
+    if (n < 990) {
+      ASSERT_EQ(motion.contact(0).force, 0.0);
+    }
   }
   EXPECT_NEAR(motion.contact(0).force, N0, 1e-9 * N0);
   EXPECT_NEAR(motion.displacement()(0), 0.0, 1e-15);
@@ -244,7 +247,9 @@ TEST(RigidContactMotion, ManyContactsThatStickAndLiftOffKeepTheLaws) {
       // The force is there to close the gap until the next step, and only for that.
       const double gap = gap_of(contact, next);
       ASSERT_GE(gap, -1e-12 * size);
-      if (state.force > 0.0) ASSERT_NEAR(gap, 0.0, 1e-12 * size) << n;
+      if (state.force > 0.0) {
+        ASSERT_NEAR(gap, 0.0, 1e-12 * size) << n;
+      }
       const double limit = 0.6 * state.force;
       const Eigen::Vector2d friction(state.friction_force, state.across_force);
       ASSERT_LE(friction.norm(), limit + 1e-6 * (1000.0 + limit));
@@ -260,8 +265,9 @@ TEST(RigidContactMotion, ManyContactsThatStickAndLiftOffKeepTheLaws) {
       if (state.state != ContactState::slip) continue;
       ASSERT_NEAR(friction.norm(), limit, 1e-6 * (1000.0 + limit)) << n;
       // Turning slowly it is against the velocity between that of this step and of the last.
-      if (n > 0 && jump.norm() < 0.01 * v.norm())
+      if (n > 0 && jump.norm() < 0.01 * v.norm()) {
         ASSERT_GT(friction.dot(v), 0.9 * limit * v.norm() - 1e-3) << n;
+      }
     }
     before = now;
   }
