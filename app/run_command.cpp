@@ -9,10 +9,10 @@
 
 #include "app/command.hpp"
 #include "app/disc_run.hpp"
+#include "app/error_estimate.hpp"
 #include "app/progress.hpp"
 #include "app/run_ending.hpp"
 #include "app/sphere_run.hpp"
-#include "app/studied_scene.hpp"
 #include "app/transient.hpp"
 #include "app/transient_results.hpp"
 #include "core/errors.hpp"

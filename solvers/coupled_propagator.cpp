@@ -229,7 +229,9 @@ void CoupledPropagator::save_body(State& state, const std::string& prefix) const
 void CoupledPropagator::load_body(const State& state, const std::string& prefix) {
   state.get(prefix + "x", as_span(state_));
   state.get(prefix + "x_next", as_span(next_));
-  if (is_renewal_due_) renew();
+  if (!is_renewal_due_) return;
+  renew();
+  renew_compliances();
 }
 
 }  // namespace stridor
