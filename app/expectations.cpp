@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "app/remark.hpp"
 #include "core/errors.hpp"
 
 namespace stridor {
@@ -54,7 +55,7 @@ void check_expectations(const std::vector<Expectation>& expectations, const Json
   }
   if (!failures.empty())
     throw NumericalError(fmt::format("expectations not met:\n{}", fmt::join(failures, "\n")));
-  fmt::print(stderr, "{} expectation(s) met\n", expectations.size());
+  print_remark("{} expectation(s) met\n", expectations.size());
 }
 
 }  // namespace stridor

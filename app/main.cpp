@@ -1,15 +1,22 @@
 // The command line of stridor.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "app/command.hpp"
+#include "app/remark.hpp"
 #include "app/sphere_commands.hpp"
+#include "core/blas_memory.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
 #include "core/suggestion.hpp"
@@ -22,8 +29,31 @@ namespace {
 static_assert(static_cast<int>(ExitCode::file_trouble) == DamageGuard::exit_code);
 
 int report(const char* kind, const std::string& message, ExitCode code) {
-  fmt::print(stderr, "stridor: {}\n{}\n", kind, message);
+  print_remark("stridor: {}\n{}\n", kind, message);
   return static_cast<int>(code);
+}
+
+/// A file that is opened takes the lowest free number: where input or output are closed it would
+/// get theirs, and what is printed would go into it.
+void occupy_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) == -1 && errno == EBADF &&
+        open("/dev/null", stream == STDIN_FILENO ? O_RDONLY : O_WRONLY) != stream)
+      _exit(static_cast<int>(ExitCode::internal));
+  }
+}
+
+/// Brings what was printed out. @return 4, said on stderr, where a command that is done could not
+///         print; else `code`
+int with_output_written(int code) {
+  errno = 0;
+  const bool is_written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (is_written || code != static_cast<int>(ExitCode::done)) return code;
+  return report("file trouble",
+                errno != 0
+                    ? fmt::format("the standard output cannot be written: {}", std::strerror(errno))
+                    : std::string("the standard output cannot be written"),
+                ExitCode::file_trouble);
 }
 
 std::string joined_arguments(int argc, char** argv) {
@@ -75,12 +105,13 @@ int run_verb(int argc, char** argv) {
     const bool is_failure = error.get_exit_code() != 0;
     if (is_failure) {
       const std::string verb = verb_problem(program, argc, argv);
-      fmt::print(stderr, "stridor: {}\nTry 'stridor --help' or 'stridor VERB --help'.\n",
-                 verb.empty() ? error.what() : verb);
+      print_remark("stridor: {}\nTry 'stridor --help' or 'stridor VERB --help'.\n",
+                   verb.empty() ? error.what() : verb);
       return static_cast<int>(ExitCode::bad_input);
     }
     return program.exit(error);
   }
+  reserve_blas_memory();
   return static_cast<int>(action());
 }
 
@@ -99,6 +130,13 @@ int run_program(int argc, char** argv) {
     return report("the computation failed", error.what(), ExitCode::numbers_failed);
   } catch (const Interrupted& error) {
     return report("stopped on request", error.what(), ExitCode::stopped);
+  } catch (const std::system_error& error) {
+    // fmt says like this that a stream took no more.
+    if (std::ferror(stdout) == 0)
+      return report("internal error; please report it", error.what(), ExitCode::internal);
+    return report("file trouble",
+                  fmt::format("the standard output cannot be written: {}", error.code().message()),
+                  ExitCode::file_trouble);
   } catch (const std::bad_alloc& error) {
     return report("out of memory", error.what(), ExitCode::internal);
   } catch (const std::exception& error) {
@@ -110,5 +148,6 @@ int run_program(int argc, char** argv) {
 }  // namespace stridor
 
 int main(int argc, char** argv) {
-  return stridor::run_program(argc, argv);
+  stridor::occupy_closed_streams();
+  return stridor::with_output_written(stridor::run_program(argc, argv));
 }

@@ -8,6 +8,7 @@
 #include "app/output_folder.hpp"
 #include "app/pictures.hpp"
 #include "app/precision.hpp"
+#include "app/remark.hpp"
 #include "app/sphere_precision.hpp"
 #include "io/sphere_scene.hpp"
 
@@ -44,10 +45,10 @@ ExitCode precision(const PrecisionOptions& options) {
     if (is_kept) fmt::print("\n{} and {} in {}\n", figure_name, json_name, options.folder);
   }
   if (wanted && !result.tuned) {
-    fmt::print(stderr,
-               "stridor: no setting measured is within {:g}, with the error of the reference, "
-               "{:.2g}, on top\n",
-               *wanted, result.own_error);
+    print_remark(
+        "stridor: no setting measured is within {:g}, with the error of the reference, "
+        "{:.2g}, on top\n",
+        *wanted, result.own_error);
     return ExitCode::numbers_failed;
   }
   return ExitCode::done;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "app/remark.hpp"
+
 namespace stridor {
 namespace {
 
@@ -42,19 +44,19 @@ void Progress::report(double fraction, const std::string& detail) {
   if (is_terminal_) {
     constexpr int width = 30;
     const int filled = static_cast<int>(std::clamp(fraction, 0.0, 1.0) * width);
-    fmt::print(stderr, "\r{} [{}{}] {:3.0f} %  {}, {}\033[K", what_,
-               std::string(static_cast<std::size_t>(filled), '#'),
-               std::string(static_cast<std::size_t>(width - filled), ' '), 100.0 * fraction, detail,
-               left);
+    print_remark("\r{} [{}{}] {:3.0f} %  {}, {}\033[K", what_,
+                 std::string(static_cast<std::size_t>(filled), '#'),
+                 std::string(static_cast<std::size_t>(width - filled), ' '), 100.0 * fraction,
+                 detail, left);
     std::fflush(stderr);
     is_drawn_ = true;
   } else {
-    fmt::print(stderr, "{}: {:.0f} %, {}, {}\n", what_, 100.0 * fraction, detail, left);
+    print_remark("{}: {:.0f} %, {}, {}\n", what_, 100.0 * fraction, detail, left);
   }
 }
 
 void Progress::finish() {
-  if (is_drawn_) fmt::print(stderr, "\r\033[K");
+  if (is_drawn_) print_remark("\r\033[K");
   is_drawn_ = false;
 }
 

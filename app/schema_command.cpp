@@ -1,8 +1,7 @@
 // stridor schema: what a scene may hold, for editors and for readers.
-#include <cstdio>
+#include <fmt/format.h>
 
 #include "app/command.hpp"
-#include "core/errors.hpp"
 #include "io/contact_scene.hpp"
 
 namespace stridor {
@@ -14,11 +13,7 @@ struct SchemaOptions {
 };
 
 ExitCode print_schema(const SchemaOptions& options) {
-  const std::string text = options.is_reference ? all_scenes_reference() : all_scenes_json_schema();
-  // As a rule this goes into a file, where half a text would pass for the whole.
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    throw FileError("stdout", "", "could not be written to the end");
-  }
+  fmt::print("{}", options.is_reference ? all_scenes_reference() : all_scenes_json_schema());
   return ExitCode::done;
 }
 

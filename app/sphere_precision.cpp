@@ -10,6 +10,7 @@
 #include "app/output_folder.hpp"
 #include "app/pictures.hpp"
 #include "app/progress.hpp"
+#include "app/remark.hpp"
 #include "app/sphere_motion.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
@@ -265,7 +266,7 @@ ExitCode precision_of_sphere(const PrecisionOptions& options) {
     if (is_kept) fmt::print("{} and {} in {}\n", figure_name, json_name, options.folder);
   }
   if (wanted && tuned == nullptr) {
-    fmt::print(stderr, "stridor: no setting measured is within {:g}\n", *wanted);
+    print_remark("stridor: no setting measured is within {:g}\n", *wanted);
     return ExitCode::numbers_failed;
   }
   return ExitCode::done;
