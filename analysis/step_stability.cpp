@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/errors.hpp"
@@ -9,6 +10,7 @@
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/equilibrium.hpp"
 #include "solvers/linearise.hpp"
+#include "solvers/secular_eigenvalues.hpp"
 
 namespace stridor {
 namespace {
@@ -26,23 +28,32 @@ class BodiesInContact {
   /// Largest real part of the eigenvalues that may belong to a motion of the steps; nothing where
   /// there are none. The central difference makes frequencies too high, at its limit by π/2.
   std::optional<double> growth_near(double frequency) {
-    if (!eigenvalues_) {
-      Pencil rows = *contacts_;
-      drop_contact_terms(rows);
-      eigenvalues_ = dense_eigenvalues(rows, DenseWork::eigenvalues);
-    }
+    const double highest = 1.1 * frequency;
+    if (searched_ < highest) search(highest);
     std::optional<double> growth;
-    for (const Eigenvalue& eigenvalue : *eigenvalues_) {
+    for (const Eigenvalue& eigenvalue : eigenvalues_) {
       const double own = eigenvalue.frequency();
-      if (own < frequency / 1.6 || own > 1.1 * frequency) continue;
+      if (own < frequency / 1.6 || own > highest) continue;
       growth = std::max(growth.value_or(eigenvalue.growth()), eigenvalue.growth());
     }
     return growth;
   }
 
  private:
+  /// All eigenvalues up to a frequency.
+  void search(double frequency) {
+    Pencil rows = *contacts_;
+    drop_contact_terms(rows);
+    SecularFunction function(rows);
+    SecularSpectrum found = secular_spectrum(function, SpectrumWindow::below(frequency));
+    eigenvalues_ = found.is_complete ? std::move(found.eigenvalues)
+                                     : dense_eigenvalues(rows, DenseWork::eigenvalues);
+    searched_ = found.is_complete ? frequency : std::numeric_limits<double>::infinity();
+  }
+
   const Pencil* contacts_;
-  std::optional<std::vector<Eigenvalue>> eigenvalues_;
+  std::vector<Eigenvalue> eigenvalues_;
+  double searched_ = -1.0;  ///< Hz, up to which they are known
 };
 
 StepStability stability_of(const FrozenStep& step, const Pencil& contacts,

@@ -13,6 +13,7 @@
 #include "solvers/modal_recurrence.hpp"
 #include "solvers/prompt_surplus.hpp"
 #include "solvers/retained_modes.hpp"
+#include "solvers/step_factors.hpp"
 
 namespace stridor {
 namespace {
@@ -25,6 +26,7 @@ struct MovingModes {
   Eigen::MatrixXd gaps;      ///< C
   Eigen::MatrixXd forces;    ///< E
   Eigen::MatrixXd closed;  ///< what a unit of λ closes of the gaps at once: C g Eᵀ, or C e Eᵀ
+  FrozenModes uncoupled;   ///< the same where no body has coupled terms, without what is left out
 
   Eigen::Index size() const { return gaps.cols(); }
 };
@@ -43,11 +45,13 @@ MovingModes moving_modes(const Pencil& contacts, const System& system, const Tim
   }
   const auto n = static_cast<Eigen::Index>(moving.size());
   MovingModes modes{
-      Eigen::MatrixXd::Zero(2 * n, 2 * n), Eigen::MatrixXd::Zero(2 * n, n), {}, {}, {}};
+      Eigen::MatrixXd::Zero(2 * n, 2 * n), Eigen::MatrixXd::Zero(2 * n, n), {}, {}, {}, {}};
   const Eigen::MatrixXd slots = contacts.slots(Eigen::all, moving);
   modes.gaps = contacts.compatibility * slots;
   modes.forces = contacts.equilibrium * slots;
   Eigen::VectorXd prompt = Eigen::VectorXd::Zero(n);
+  FrozenModes& uncoupled = modes.uncoupled;
+  uncoupled.keep = uncoupled.pull = uncoupled.gain = prompt;
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::Index mode = moving[static_cast<std::size_t>(i)];
     const StepCoefficients c =
@@ -58,7 +62,14 @@ MovingModes moving_modes(const Pencil& contacts, const System& system, const Tim
     modes.free(n + i, i) = -c.pull;
     modes.by_force(i, i) = modes.by_force(n + i, i) = c.gain;
     prompt(i) = c.prompt;
+    uncoupled.keep(i) = c.keep;
+    uncoupled.pull(i) = c.pull;
+    uncoupled.gain(i) = c.gain;
   }
+  uncoupled.prompt = prompt;
+  uncoupled.gaps = modes.gaps;
+  uncoupled.forces = modes.forces;
+  uncoupled.is_instantaneous = surplus.has_value();
   for (const auto& [at, body] : coupled) {
     const Eigen::Index m = body->modal.size();
     const CoupledStep step =
@@ -79,11 +90,8 @@ MovingModes moving_modes(const Pencil& contacts, const System& system, const Tim
   return modes;
 }
 
-/// What the forces on the contacts do through the modes that one body leaves out.
-struct LeftOut {
-  Eigen::MatrixXd closed;  ///< R_b
-  double share;            ///< w
-};
+/// What the forces on the contacts do through the modes that bodies leave out.
+using LeftOut = FrozenModes::LeftOut;
 
 std::vector<LeftOut> left_out_modes(const Pencil& contacts, const System& system, double step,
                                     double cutoff) {
@@ -158,6 +166,18 @@ std::vector<std::complex<double>> FrozenStep::factors(const Pencil& contacts) co
     const Eigen::Index first = 2 * n + k * static_cast<Eigen::Index>(b);
     map.middleRows(first, k) = left_out[b].share * force;
     map.block(first, first, k, k).diagonal().array() += 1.0 - left_out[b].share;
+  }
+  // A dense decomposition of few modes takes less than the search for zeros.
+  constexpr Eigen::Index most_dense = 60;
+  const bool is_uncoupled =
+      std::all_of(system_->bodies.begin(), system_->bodies.end(),
+                  [](const SystemBody& body) { return body.modal.coupled.is_empty(); });
+  if (is_uncoupled && size > most_dense) {
+    FrozenModes uncoupled = modes.uncoupled;
+    uncoupled.left_out = left_out;
+    const double sum_of_squares = map.cwiseProduct(map.transpose()).sum();
+    if (auto found = step_factors(uncoupled, map.trace(), sum_of_squares))
+      return std::move(*found);
   }
   return matrix_eigenvalues(std::move(map));
 }

@@ -44,7 +44,8 @@ class FrozenStep {
   ///                 damping; G and H, which turn the rows with the motion, are left out
   /// @throws std::invalid_argument as check_pencil(), or if it has other modes than the system
   /// @throws NumericalError if no contact forces close the gaps: the contact jams
-  /// Cost: of order 10 (2n)³ operations for n modes that move.
+  /// Cost: of order 20 n² k² operations for n modes that move and k contacts (step_factors()), and
+  /// 10 (2n)³ for few modes, for bodies with coupled terms and where that finds not all of them.
   std::vector<std::complex<double>> factors(const Pencil& contacts) const;
 
  private:
