@@ -40,19 +40,71 @@ double change_between(const StabilityMargin& margin, double a, double fa, double
   return 0.5 * (a + b);
 }
 
+/// A value and the margin there.
+struct Place {
+  double value;
+  double margin;
+};
+
+/// Whether three places of one sign may hide one of the other: the parabola through them comes from
+/// the middle one half of the way to zero.
+bool may_dip(const Place& a, const Place& b, const Place& c) {
+  const double sign = b.margin > 0.0 ? 1.0 : -1.0;
+  const bool is_closest = sign * b.margin < sign * a.margin && sign * b.margin < sign * c.margin;
+  if (!is_closest || (a.margin > 0.0) != (b.margin > 0.0) || (c.margin > 0.0) != (b.margin > 0.0))
+    return false;
+  const double left = (b.margin - a.margin) / (b.value - a.value);
+  const double right = (c.margin - b.margin) / (c.value - b.value);
+  const double curvature = (right - left) / (c.value - a.value);
+  const double slope = left + curvature * (b.value - a.value);
+  return sign * (b.margin - 0.25 * slope * slope / curvature) < 0.5 * sign * b.margin;
+}
+
+/// Golden sections towards zero until the sign changes; the last place where it does not.
+Place dip(const StabilityMargin& margin, Place a, Place b, Place c) {
+  constexpr int most_steps = 50;
+  const double ratio = 0.5 * (3.0 - std::sqrt(5.0));
+  const bool is_positive = b.margin > 0.0;
+  for (int i = 0; i < most_steps; ++i) {
+    const bool is_right = c.value - b.value > b.value - a.value;
+    const double value = b.value + ratio * ((is_right ? c.value : a.value) - b.value);
+    const Place place{value, margin(value)};
+    if (std::isnan(place.margin)) return b;
+    if ((place.margin > 0.0) != is_positive) return place;
+    if (std::abs(place.margin) < std::abs(b.margin)) {
+      (is_right ? a : c) = b;
+      b = place;
+    } else {
+      (is_right ? c : a) = place;
+    }
+  }
+  return b;
+}
+
 }  // namespace
 
 std::vector<double> sign_changes(const StabilityMargin& margin, const std::vector<double>& values) {
+  std::vector<Place> given;
+  for (const double value : values) given.push_back({value, margin(value)});
+  std::vector<Place> places;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    places.push_back(given[i]);
+    if (i == 0 || i + 1 == given.size() || !may_dip(given[i - 1], given[i], given[i + 1])) continue;
+    const Place found = dip(margin, given[i - 1], given[i], given[i + 1]);
+    if (found.value != given[i].value)
+      places.insert(found.value < given[i].value ? places.end() - 1 : places.end(), found);
+  }
   std::vector<double> changes;
-  double before = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double here = margin(values[i]);
-    if (i > 0 && !std::isnan(before) && !std::isnan(here) && (here > 0.0) != (before > 0.0)) {
-      const double change = change_between(margin, values[i - 1], before, values[i], here);
-      if (!std::isnan(change) && (changes.empty() || change > changes.back()))
-        changes.push_back(change);
-    }
-    before = here;
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const Place& before = places[i - 1];
+    const Place& here = places[i];
+    if (std::isnan(before.margin) || std::isnan(here.margin) ||
+        (here.margin > 0.0) == (before.margin > 0.0))
+      continue;
+    const double change =
+        change_between(margin, before.value, before.margin, here.value, here.margin);
+    if (!std::isnan(change) && (changes.empty() || change > changes.back()))
+      changes.push_back(change);
   }
   return changes;
 }

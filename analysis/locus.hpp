@@ -88,6 +88,9 @@ struct Locus {
   std::vector<Crossing> crossings;       ///< their ends within the range, ascending
   /// Values at which it could not be verified that the eigenvalues are all there are.
   std::vector<double> unverified;
+  /// Largest distance of two values between which a window may have been missed: where spectra are
+  /// sampled and could not be told to hold nothing between (search_intervals()); 0 if none.
+  double unresolved = 0.0;
   int num_places = 0;   ///< values at which all eigenvalues were computed and counted
   int num_refined = 0;  ///< values at which one branch was computed for windows and crossings
 };

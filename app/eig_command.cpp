@@ -187,8 +187,9 @@ ExitCode eig(EigOptions options) {
   const System& system = member.model->system;
   const SlidingState state = sliding_state_of(member, options.stability.geometry(), "");
   const Pencil pencil = retained(state.pencil, system, loaded.scene.time);
-  const std::vector<Eigenvalue> eigenvalues =
-      lowest_eigenvalues(pencil, options.stability.eigenvalue_method(), options.stability.window());
+  const LowestEigenvalues lowest =
+      find_lowest(pencil, options.stability.eigenvalue_method(), options.stability.window());
+  const std::vector<Eigenvalue>& eigenvalues = lowest.eigenvalues;
 
   const std::size_t num_real = num_real_of(eigenvalues);
   const double trusted =
@@ -202,12 +203,14 @@ ExitCode eig(EigOptions options) {
       eigenvalues.begin(), eigenvalues.end(),
       [&](const Eigenvalue& one) { return one.frequency() <= highest && is_growing(one); });
   Json object = {{"about", options.stability.about},
-                 {"method", options.stability.method},
+                 {"method", lowest.method_name()},
                  {"equilibrium", equilibrium_json(*member.model, state.equilibrium)},
                  {"eigenvalues", eigenvalues_json(eigenvalues)},
                  {"residuals", Json::array()},
+                 {"doubtful", doubtful_json(eigenvalues)},
                  {"stable", is_stable},
                  {"window", {0.0, number(highest)}}};
+  if (!lowest.remark.empty()) object["remark"] = lowest.remark;
   for (const Eigenvalue& one : eigenvalues) object["residuals"].push_back(number(one.residual));
   if (options.explain || options.shapes) {
     const std::size_t chosen = chosen_mode(eigenvalues, num_real, options.mode);
@@ -225,6 +228,7 @@ ExitCode eig(EigOptions options) {
     return ExitCode::done;
   }
   print_equilibrium(system, state.equilibrium);
+  if (!lowest.remark.empty()) fmt::print("{}\n", lowest.remark);
   print_eigenvalues(eigenvalues, trusted);
   fmt::print("{} between 0 and {:.6g} Hz{}, about the {} geometry\n",
              is_stable ? "stable" : "unstable", highest, limit_text(highest, trusted),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "app/stability.hpp"
 #include "core/errors.hpp"
@@ -34,6 +35,22 @@ std::size_t num_real_of(const std::vector<Eigenvalue>& eigenvalues) {
                     [](const Eigenvalue& one) { return one.s.imag() == 0.0; }));
 }
 
+namespace {
+
+constexpr double largest_residual = 1e-6;
+
+const char* growth_text(const Eigenvalue& one, bool is_real) {
+  if (!is_growing(one)) return "";
+  return is_real ? "  unstable, without oscillation" : "  unstable";
+}
+
+const char* doubt_text(const Eigenvalue& one, double trusted) {
+  if (is_doubtful(one)) return "  (not to be trusted)";
+  return is_resolved(one.s, trusted) ? "" : "  (above what the reduction resolves)";
+}
+
+}  // namespace
+
 void print_eigenvalues(const std::vector<Eigenvalue>& eigenvalues, double trusted) {
   fmt::print("{:>4}  {:>14}  {:>12}  {:>13}\n", "mode", "frequency (Hz)", "growth (1/s)",
              "damping ratio");
@@ -43,9 +60,31 @@ void print_eigenvalues(const std::vector<Eigenvalue>& eigenvalues, double truste
     const double ratio = std::abs(one.s) > 0.0 ? -one.growth() / std::abs(one.s) : 0.0;
     fmt::print("{:>4}  {:>14.3f}  {:>12.4f}  {:>13.6f}{}{}\n",
                is_real ? std::string("-") : std::to_string(++mode), one.frequency(), one.growth(),
-               ratio, is_growing(one) ? "  unstable" : "",
-               one.frequency() > trusted ? "  (above what the reduction resolves)" : "");
+               ratio, growth_text(one, is_real), doubt_text(one, trusted));
   }
+  const auto num_doubtful = std::count_if(eigenvalues.begin(), eigenvalues.end(), is_doubtful);
+  if (num_doubtful > 0)
+    fmt::print(
+        "{} of these eigenvalues cannot be trusted: they leave more of the equations of motion "
+        "than "
+        "{:g} of their terms\n",
+        num_doubtful, largest_residual);
+}
+
+bool is_doubtful(const Eigenvalue& eigenvalue) {
+  return !(eigenvalue.residual <= largest_residual);
+}
+
+Json doubtful_json(const std::vector<Eigenvalue>& eigenvalues) {
+  Json places = Json::array();
+  for (std::size_t i = 0; i < eigenvalues.size(); ++i)
+    if (is_doubtful(eigenvalues[i])) places.push_back(i);
+  return places;
+}
+
+bool is_resolved(std::complex<double> s, double trusted) {
+  const double rate = s.imag() == 0.0 ? std::abs(s) : s.imag();
+  return rate <= 2.0 * std::numbers::pi * trusted;
 }
 
 Json quotients_json(const ModeQuotients& seen) {

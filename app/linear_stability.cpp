@@ -58,10 +58,24 @@ class SparseSpectra {
   }
 
   SampledSpectrum near(double value) {
-    constexpr int num_refined = 3;
+    constexpr int first_refined = 3;
     const SpectrumBasis* basis = basis_at(value);
     if (basis == nullptr) return at(value);
-    return sampled(fastest_near(system_(value), *basis, num_refined).eigenvalues);
+    const SparseSystem system = system_(value);
+    for (int num_refined = first_refined;; num_refined *= 2) {
+      const std::vector<Eigenvalue> found = fastest_near(system, *basis, num_refined).eigenvalues;
+      // Where all that were refined grow, others may.
+      const auto num_growing = std::count_if(found.begin(), found.end(), is_growing);
+      if (num_growing < num_refined || static_cast<int>(found.size()) < num_refined)
+        return sampled(found);
+    }
+  }
+
+  SampledSpectrum around(double value, std::complex<double> place) {
+    constexpr int num_refined = 4;
+    const SpectrumBasis* basis = basis_at(value);
+    if (basis == nullptr) return at(value);
+    return sampled(closest_near(system_(value), *basis, place, num_refined).eigenvalues);
   }
 
   SampledSpectrum glimpse(double value) {
@@ -131,6 +145,9 @@ class LinearFamily : public StabilityFamily {
     const auto spectra = std::make_shared<SparseSpectra>(system, options);
     return {[spectra](double value) { return spectra->at(value); },
             [spectra](double value) { return spectra->near(value); },
+            [spectra](double value, std::complex<double> place) {
+              return spectra->around(value, place);
+            },
             [spectra](double value) { return spectra->glimpse(value); }};
   }
 
@@ -284,9 +301,13 @@ ExitCode eig_of_linear_scene(const StabilityOptions& options, bool explain,
       eigenvalues.begin(), eigenvalues.end(),
       [&](const Eigenvalue& one) { return one.frequency() <= highest && is_growing(one); });
 
-  Json object = {{"about", options.about},          {"method", found.method},
-                 {"equilibrium", Json::object()},   {"eigenvalues", eigenvalues_json(eigenvalues)},
-                 {"residuals", Json::array()},      {"stable", is_stable},
+  Json object = {{"about", options.about},
+                 {"method", found.method},
+                 {"equilibrium", Json::object()},
+                 {"eigenvalues", eigenvalues_json(eigenvalues)},
+                 {"residuals", Json::array()},
+                 {"stable", is_stable},
+                 {"doubtful", doubtful_json(eigenvalues)},
                  {"window", {0.0, number(highest)}}};
   object.update(found.more);
   if (model.disc) object["equilibrium"] = equilibrium_json(*model.disc);

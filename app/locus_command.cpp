@@ -10,6 +10,7 @@
 #include <memory>
 #include <numbers>
 
+#include "app/eigenvalue_report.hpp"
 #include "app/progress.hpp"
 #include "app/stability.hpp"
 #include "core/errors.hpp"
@@ -148,7 +149,13 @@ Json complex_list(const std::vector<std::complex<double>>& eigenvalues) {
   return list;
 }
 
-Json windows_json(const std::vector<TimedWindow>& windows) {
+/// The eigenvalue of a window where it grows most, 1/s.
+std::complex<double> fastest_of(const UnstableWindow& window) {
+  return {window.growth_max, 2.0 * std::numbers::pi * window.frequency};
+}
+
+/// @param trusted up to where the model answers, in the unit of the frequencies
+Json windows_json(const std::vector<TimedWindow>& windows, double trusted) {
   Json list = Json::array();
   for (const TimedWindow& one : windows) {
     list.push_back({{"from", one.window.from},
@@ -159,7 +166,9 @@ Json windows_json(const std::vector<TimedWindow>& windows) {
                     {"value_max", one.window.value_max},
                     {"from_time", number(one.from_time)},
                     {"to_time", number(one.to_time)},
-                    {"gain", number(one.gain)}});
+                    {"gain", number(one.gain)},
+                    {"oscillates", one.window.frequency > 0.0},
+                    {"resolved", is_resolved(fastest_of(one.window), trusted)}});
   }
   return list;
 }
@@ -278,23 +287,40 @@ Locus in_seconds(Locus locus, const StabilityScene& scene, const NumericKey& key
   return locus;
 }
 
-void print_windows(const std::vector<TimedWindow>& windows, const NumericKey& key) {
+/// @param trusted up to where the model answers, in the unit of the frequencies
+void print_windows(const std::vector<TimedWindow>& windows, const NumericKey& key, double trusted) {
   if (windows.empty()) {
     fmt::print("no eigenvalue grows\n");
     return;
   }
+  bool has_real = false, has_unresolved = false;
   fmt::print("{:>12}  {:>12}  {:>14}  {:>12}  {:>8}  {:>19}\n", "from", "to", "frequency (Hz)",
              "growth (1/s)", "gain", "time (s)");
   for (const TimedWindow& one : windows) {
     const UnstableWindow& window = one.window;
-    fmt::print("{:>12.8g}  {:>12.8g}  {:>14.2f}  {:>12.4f}", window.from, window.to,
-               window.frequency, window.growth_max);
+    const bool is_real = window.frequency == 0.0;
+    const bool is_fast = !is_resolved(fastest_of(window), trusted);
+    has_real = has_real || is_real;
+    has_unresolved = has_unresolved || is_fast;
+    fmt::print("{:>12.8g}  {:>12.8g}  {:>14}  {:>12.4f}", window.from, window.to,
+               is_real ? std::string("none") : fmt::format("{:.2f}", window.frequency),
+               window.growth_max);
     if (std::isfinite(one.from_time) && std::isfinite(one.to_time))
-      fmt::print("  {:>8.3f}  {:>8.4f} to {:.4f}", one.gain, one.from_time, one.to_time);
-    fmt::print("\n");
+      fmt::print("  {:>8}  {:>8.4f} to {:.4f}",
+                 is_fast ? std::string("-") : fmt::format("{:.3f}", one.gain), one.from_time,
+                 one.to_time);
+    fmt::print("{}\n", is_fast ? "  (above what the reduction resolves)" : "");
   }
   fmt::print("unstable windows of {}{}\n", key.path,
              key.unit.empty() ? "" : fmt::format(" ({})", printed_units(key)));
+  if (has_real)
+    fmt::print(
+        "frequency none: a real eigenvalue; sliding is left without oscillation, by divergence or "
+        "by "
+        "friction that falls with the sliding velocity\n");
+  if (has_unresolved)
+    fmt::print(
+        "no gain where the reduction does not resolve the growth: more modes change its rate\n");
 }
 
 void check_outputs(const LocusCommandOptions& options) {
@@ -370,23 +396,19 @@ ExitCode locus(LocusCommandOptions options) {
                    {"method", stability.method},
                    {"values", range.values},
                    {"eigenvalues", Json::array()},
-                   {"unstable", windows_json(timed_windows(found, times))},
+                   {"unstable", windows_json(timed_windows(found, times), trusted)},
                    {"window", {0.0, number(highest)}},
                    {"unverified", found.unverified},
+                   {"unresolved", found.unresolved},
                    {"file", options.output ? Json(*options.output) : Json(nullptr)}};
     for (const auto& list : found.eigenvalues) object["eigenvalues"].push_back(complex_list(list));
     fmt::print("{}\n", object.dump(2));
     return ExitCode::done;
   }
-  print_windows(windows, range.key);
+  print_windows(windows, range.key, trusted);
   const double shown_limit = verdict_limit(shown, stability.locus_window(), trusted);
   fmt::print("{}{}\n", window_text(shown_limit), limit_text(shown_limit, trusted));
-  if (!found.unverified.empty()) {
-    fmt::print(
-        "at {} value(s) it could not be verified that no eigenvalue is missing, the first "
-        "is {:.9g}; compare with --method dense\n",
-        found.unverified.size(), found.unverified.front());
-  }
+  print_resolution(found, range.key);
   for (const auto& file : {options.output, options.figure, options.history})
     if (file) fmt::print("{}\n", *file);
   return ExitCode::done;

@@ -200,13 +200,39 @@ std::string value_text(const NumericKey& key, double value) {
                      key.unit.empty() ? "" : " " + printed_units(key));
 }
 
+LowestEigenvalues find_lowest(const Pencil& pencil, EigenvalueMethod method,
+                              const SpectrumWindow& window) {
+  constexpr Eigen::Index most_dense = 2000;  // about a minute
+  const std::scoped_lock guard(blas_in_use);
+  LowestEigenvalues found;
+  if (method == EigenvalueMethod::secular) {
+    try {
+      found.eigenvalues = secular_eigenvalues(pencil, window);
+      return found;
+    } catch (const NumericalError& error) {
+      if (pencil.num_eigenvalues() > most_dense) {
+        throw NumericalError(
+            fmt::format("{} (--method dense; taken without being asked for up to {} eigenvalues, "
+                        "here there are "
+                        "{}), or keep fewer modes (time.retain)",
+                        error.what(), most_dense, pencil.num_eigenvalues()));
+      }
+      found.remark = fmt::format(
+          "the search for zeros of the secular function did not converge: all {} eigenvalues by "
+          "the "
+          "dense method, as for any up to {}",
+          pencil.num_eigenvalues(), most_dense);
+    }
+  }
+  found.method = EigenvalueMethod::dense;
+  found.eigenvalues = dense_eigenvalues(pencil);
+  keep_window(found.eigenvalues, window);
+  return found;
+}
+
 std::vector<Eigenvalue> lowest_eigenvalues(const Pencil& pencil, EigenvalueMethod method,
                                            const SpectrumWindow& window) {
-  const std::scoped_lock guard(blas_in_use);
-  if (method == EigenvalueMethod::secular) return secular_eigenvalues(pencil, window);
-  std::vector<Eigenvalue> all = dense_eigenvalues(pencil);
-  keep_window(all, window);
-  return all;
+  return find_lowest(pencil, method, window).eigenvalues;
 }
 
 void keep_window(std::vector<Eigenvalue>& all, const SpectrumWindow& window) {
@@ -240,6 +266,26 @@ std::string limit_text(double highest, double trusted) {
              ? " (nothing above was asked for)"
              : " (what the reduced bodies resolve, by a rule of thumb: half the frequency of the "
                "highest mode kept)";
+}
+
+std::string reach_text(const Locus& locus) {
+  const bool is_resolved = locus.unresolved == 0.0 && locus.unverified.empty();
+  return is_resolved ? "everywhere" : "at all values looked at";
+}
+
+void print_resolution(const Locus& locus, const NumericKey& key) {
+  if (locus.unresolved > 0.0) {
+    fmt::print(
+        "a window narrower than {:.3g}{} may have been missed: there eigenvalues could not be told "
+        "apart from one value looked at to the next; ask for more --points or a shorter range\n",
+        locus.unresolved, key.unit.empty() ? "" : " " + printed_units(key));
+  }
+  if (!locus.unverified.empty()) {
+    fmt::print(
+        "at {} value(s) it could not be verified that no eigenvalue is missing, the first "
+        "is {:.9g}; compare with --method dense\n",
+        locus.unverified.size(), locus.unverified.front());
+  }
 }
 
 double verdict_limit(const Locus& locus, const SpectrumWindow& window, double trusted) {
@@ -360,6 +406,13 @@ SpectrumFamily StabilityFamily::spectra(std::size_t key, const std::vector<doubl
       return found;
     };
   }
+  family.around = [this, found_around = std::move(family.around)](double value,
+                                                                  std::complex<double> place) {
+    if (stop_requested()) throw Interrupted("nothing has been written");
+    SampledSpectrum found = found_around(value, place);
+    if (report_) report_(value);
+    return found;
+  };
   return family;
 }
 

@@ -228,6 +228,24 @@ std::vector<StabilityChange> stability_changes(const Locus& locus);
 std::vector<Eigenvalue> lowest_eigenvalues(const Pencil& pencil, EigenvalueMethod method,
                                            const SpectrumWindow& window);
 
+/// The same, and by which method they were found.
+struct LowestEigenvalues {
+  std::vector<Eigenvalue> eigenvalues;
+  EigenvalueMethod method = EigenvalueMethod::secular;
+  /// Why it is not the method asked for; empty where it is.
+  std::string remark;
+
+  const char* method_name() const {
+    return method == EigenvalueMethod::dense ? "dense" : "secular";
+  }
+};
+
+/// Where the search for zeros of the secular function does not converge, all eigenvalues are
+/// computed by the dense method, if there are no more than 2,000.
+/// @throws NumericalError if there are more, or as dense_eigenvalues()
+LowestEigenvalues find_lowest(const Pencil& pencil, EigenvalueMethod method,
+                              const SpectrumWindow& window);
+
 /// Leaves real eigenvalues, and those of a window with positive imaginary part.
 /// @param all ascending Im s
 void keep_window(std::vector<Eigenvalue>& all, const SpectrumWindow& window);
@@ -243,6 +261,12 @@ std::string window_text(double highest);
 /// Why a verdict reaches no further, in brackets; empty where it does not end.
 /// @param trusted up to where the model answers, Hz
 std::string limit_text(double highest, double trusted);
+
+/// How far a verdict over a range of values reaches between them: "everywhere", or "at all values
+/// looked at" where something may have been missed.
+std::string reach_text(const Locus& locus);
+/// Prints what may have been missed of a locus, if anything.
+void print_resolution(const Locus& locus, const NumericKey& key);
 
 /// Whether a motion grows: Re s > 0 by more than rounding, 1e-10 |s|.
 bool is_growing(const Eigenvalue& eigenvalue);

@@ -38,7 +38,8 @@ std::vector<double> scan_values(const KeyRange& range) {
 /// Every sign change of a margin that is cheap to compute.
 ExitCode threshold(const ThresholdOptions& options, const KeyRange& range, GrowthField& field) {
   const auto margin = [&](double value) { return field.margin(value, 0.0); };
-  const std::vector<double> roots = sign_changes(margin, scan_values(range));
+  const std::vector<double> values = scan_values(range);
+  const std::vector<double> roots = sign_changes(margin, values);
   const bool starts_unstable = margin(range.values.front()) > 0.0;
   Json object = {{"parameter", range.key.path},
                  {"from", range.values.front()},
@@ -58,9 +59,9 @@ ExitCode threshold(const ThresholdOptions& options, const KeyRange& range, Growt
   if (options.stability.common.json) {
     fmt::print("{}\n", object.dump(2));
   } else if (roots.empty()) {
-    fmt::print("{} everywhere between {} and {}\n", starts_unstable ? "unstable" : "stable",
-               value_text(range.key, range.values.front()),
-               value_text(range.key, range.values.back()));
+    fmt::print("{} everywhere between {} and {}, by {} values and the extrema between them\n",
+               starts_unstable ? "unstable" : "stable", value_text(range.key, range.values.front()),
+               value_text(range.key, range.values.back()), values.size());
   }
   return ExitCode::done;
 }
@@ -79,11 +80,11 @@ ExitCode threshold(ThresholdOptions options) {
   const double highest = verdict_limit(locus, stability.locus_window(), trusted);
 
   if (stability.common.json) {
-    Json object = {{"parameter", range.key.path},   {"about", stability.about},
-                   {"method", stability.method},    {"from", range.values.front()},
-                   {"to", range.values.back()},     {"roots", Json::array()},
-                   {"crossings", Json::array()},    {"window", {0.0, number(highest)}},
-                   {"unverified", locus.unverified}};
+    Json object = {{"parameter", range.key.path},    {"about", stability.about},
+                   {"method", stability.method},     {"from", range.values.front()},
+                   {"to", range.values.back()},      {"roots", Json::array()},
+                   {"crossings", Json::array()},     {"window", {0.0, number(highest)}},
+                   {"unverified", locus.unverified}, {"unresolved", locus.unresolved}};
     for (const StabilityChange& change : changes) {
       object["roots"].push_back({{"value", change.value},
                                  {"frequency", change.frequency},
@@ -102,11 +103,12 @@ ExitCode threshold(ThresholdOptions options) {
                change.frequency, change.is_unstable_beyond ? "unstable" : "stable");
   }
   if (changes.empty()) {
-    fmt::print("{} everywhere between {} and {}\n", locus.unstable.empty() ? "stable" : "unstable",
-               value_text(range.key, range.values.front()),
+    fmt::print("{} {} between {} and {}\n", locus.unstable.empty() ? "stable" : "unstable",
+               reach_text(locus), value_text(range.key, range.values.front()),
                value_text(range.key, range.values.back()));
   }
   fmt::print("{}{}\n", window_text(highest), limit_text(highest, trusted));
+  print_resolution(locus, range.key);
   return ExitCode::done;
 }
 

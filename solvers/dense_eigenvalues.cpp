@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <string>
 
@@ -51,6 +52,7 @@ struct LapackResult {
   Eigen::VectorXd re, im;
   Eigen::MatrixXd vectors;  ///< in LAPACK's packing: a pair holds real and imaginary part
   Eigen::VectorXd reciprocal_condition;
+  double norm = 0.0;  ///< of the balanced matrix
 };
 
 LapackResult eigenvalues_of(Eigen::MatrixXd matrix, DenseWork wanted_work) {
@@ -68,14 +70,13 @@ LapackResult eigenvalues_of(Eigen::MatrixXd matrix, DenseWork wanted_work) {
   result.reciprocal_condition.resize(with_conditions ? n : 1);
   int ilo = 0;
   int ihi = 0;
-  double norm = 0.0;
   double unused = 0.0;
   int unused_integer = 0;
   int info = 0;
   const auto call = [&](double* work, int size) {
     dgeevx_("B", with_conditions ? "V" : "N", with_vectors ? "V" : "N", with_conditions ? "E" : "N",
             &n, matrix.data(), &n, result.re.data(), result.im.data(), left.data(), &ldvl,
-            result.vectors.data(), &ldvr, &ilo, &ihi, scale.data(), &norm,
+            result.vectors.data(), &ldvr, &ilo, &ihi, scale.data(), &result.norm,
             result.reciprocal_condition.data(), &unused, work, &size, &unused_integer, &info);
   };
   double wanted = 0.0;
@@ -87,6 +88,53 @@ LapackResult eigenvalues_of(Eigen::MatrixXd matrix, DenseWork wanted_work) {
         fmt::format("dense eigenvalues: the QR iteration failed at {} of {}", info, n));
   }
   return result;
+}
+
+/// Copies eigenvalue i of one result, with all that belongs to it, to place j of another.
+void copy_eigenvalue(const LapackResult& from, Eigen::Index i, LapackResult& to, Eigen::Index j) {
+  to.re(j) = from.re(i);
+  to.im(j) = from.im(i);
+  if (from.vectors.cols() == from.re.size()) to.vectors.col(j) = from.vectors.col(i);
+  if (from.reciprocal_condition.size() == from.re.size())
+    to.reciprocal_condition(j) = from.reciprocal_condition(i);
+}
+
+/// Those of A from the ones of (A − σ)⁻¹: s = σ + 1/μ. Of a pair the one with Im s > 0 comes first.
+void undo_inversion(LapackResult& result, double shift) {
+  const bool has_vectors = result.vectors.cols() == result.re.size();
+  for (Eigen::Index i = 0; i < result.re.size(); ++i) {
+    const Complex s = shift + 1.0 / Complex(result.re(i), result.im(i));
+    result.re(i) = s.real();
+    result.im(i) = -s.imag();
+    if (has_vectors && result.im(i) < 0.0) result.vectors.col(i) *= -1.0;
+  }
+}
+
+/// All eigenvalues of a matrix; the slow ones, where its norm would drown them, from the inverse.
+/// @param slowest order of the slowest that matter, 1/s
+LapackResult graded_eigenvalues_of(const Eigen::MatrixXd& matrix, double slowest, DenseWork work) {
+  constexpr double wide = 1e10;
+  LapackResult fast = eigenvalues_of(matrix, work);
+  if (!(fast.norm > wide * slowest)) return fast;
+  Eigen::MatrixXd shifted = matrix;
+  shifted.diagonal().array() -= slowest;
+  const Eigen::MatrixXd inverse = shifted.partialPivLu().inverse();
+  if (!inverse.allFinite()) return fast;
+  LapackResult slow = eigenvalues_of(inverse, work);
+  undo_inversion(slow, slowest);
+  LapackResult all = fast;
+  const double border = std::sqrt(slowest) * std::sqrt(fast.norm);
+  Eigen::Index num = 0;
+  const Eigen::Index size = matrix.rows();
+  for (const LapackResult* one : {&slow, &fast}) {
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const bool is_slow = std::hypot(one->re(i), one->im(i)) < border;
+      if (is_slow != (one == &slow)) continue;
+      if (num == size) return fast;
+      copy_eigenvalue(*one, i, all, num++);
+    }
+  }
+  return num == size ? all : fast;
 }
 
 }  // namespace
@@ -124,7 +172,7 @@ DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work) {
   matrix.bottomRightCorner(size, size) = -mass.solve(L_E.transpose() * (C * L_C));
 
   const bool with_vectors = work != DenseWork::eigenvalues;
-  const LapackResult found = eigenvalues_of(std::move(matrix), work);
+  const LapackResult found = graded_eigenvalues_of(matrix, W.minCoeff(), work);
   // Two equal real ones come out as a pair by rounding.
   Eigen::VectorXd im = found.im;
   constexpr double real_ratio = 1e-10;
@@ -139,6 +187,7 @@ DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work) {
   });
 
   DenseSpectrum spectrum;
+  spectrum.norm = found.norm;
   if (with_vectors) {
     spectrum.right.resize(pencil.num_modes(), static_cast<Eigen::Index>(order.size()));
   }

@@ -21,6 +21,9 @@ struct DenseSpectrum {
   /// and right eigenvectors, large where two eigenvalues and their motions are about to coincide.
   /// Empty unless asked for.
   std::vector<double> conditions;
+  /// Norm of the linearised matrix, balanced, 1/s: by ε times it and the condition rounding moves an
+  /// eigenvalue.
+  double norm = 0.0;
 };
 
 /// Primal assembly, linearised and handed to LAPACK (docs/theory.md, 7.2; BDF section 2.4).
@@ -35,9 +38,13 @@ struct DenseSpectrum {
 ///
 ///   s p = W v,   s v = −M⁻¹ (K W⁻¹ p + C v)
 ///
-/// so that no entry is larger than the highest ω and every eigenvalue has an absolute error of the
-/// order of that ω times rounding. With displacements unscaled the entries reach ω², and the slow
-/// eigenvalues of a stiff mesh lose half of their digits.
+/// so that without strong damping no entry is larger than the highest ω and every eigenvalue has an
+/// absolute error of the order of that ω times rounding. With displacements unscaled the entries
+/// reach ω², and the slow eigenvalues of a stiff mesh lose half of their digits.
+///
+/// Where the norm of that matrix A exceeds the slowest ω by 1e10 or more (a damper on hardly any
+/// mass), the slow eigenvalues would be lost in its rounding. Those below the geometric mean of both
+/// are then taken from (A − σ)⁻¹, σ the slowest ω.
 ///
 /// @throws std::invalid_argument as check_pencil()
 /// @throws NumericalError if the constraints are not independent, if L_Eᵀ L_C is singular to

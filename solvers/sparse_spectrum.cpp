@@ -53,6 +53,9 @@ struct Pair {
   Eigen::VectorXcd x;
 };
 
+/// How much an eigenvalue is wanted.
+using Rank = std::function<double(Complex)>;
+
 class SparseSearch {
  public:
   SparseSearch(const SparseSystem& system, const SpectrumWindow& window)
@@ -61,8 +64,9 @@ class SparseSearch {
   }
 
   SparseSpectrum run();
-  /// @param count of the pairs that grow fastest
-  SparseSpectrum run(const SpectrumBasis& basis, int count);
+  /// @param rank  of an eigenvalue: how much it is wanted
+  /// @param count of the pairs that are wanted most
+  SparseSpectrum run(const SpectrumBasis& basis, const Rank& rank, int count);
 
  private:
   Eigen::Index size() const { return pencil_.size(); }
@@ -82,7 +86,8 @@ class SparseSearch {
   SparsePencil pencil_;
   SpectrumWindow window_;
   double height_ = 0.0;  ///< up to where pairs are refined
-  double least_growth_ = -std::numeric_limits<double>::infinity();  ///< of pairs that are refined
+  Rank rank_;            ///< without one all pairs are refined
+  double least_rank_ = -std::numeric_limits<double>::infinity();  ///< of pairs that are refined
   Modes modes_;
   Eigen::MatrixXd basis_;    ///< V with Vᵀ M V = 1
   Eigen::MatrixXd momenta_;  ///< M V
@@ -227,7 +232,7 @@ void SparseSearch::refine() {
     bool have_converged = true;
     std::vector<Pair> improved = pairs_;
     for (std::size_t first = 0; first < pairs_.size();) {
-      if (pairs_[first].s.real() < least_growth_) {
+      if (rank_ && rank_(pairs_[first].s) < least_rank_) {
         ++first;
         continue;
       }
@@ -244,7 +249,7 @@ void SparseSearch::refine() {
         improve(improved[first], vector);
       }
       // What the first space has nothing of would never come in by itself.
-      if (round == 0 && std::isinf(least_growth_)) add_random(factor, shift, 2);
+      if (round == 0 && !rank_) add_random(factor, shift, 2);
     }
     if (have_converged) {
       pairs_ = std::move(improved);
@@ -334,8 +339,9 @@ SparseSpectrum SparseSearch::run() {
   }
 }
 
-SparseSpectrum SparseSearch::run(const SpectrumBasis& basis, int count) {
+SparseSpectrum SparseSearch::run(const SpectrumBasis& basis, const Rank& rank, int count) {
   constexpr int max_attempts = 4;
+  rank_ = rank;
   height_ = basis.height;
   const SparseMatrix& mass = pencil_.system().mass;
   dim_ = basis.vectors.cols();
@@ -345,14 +351,14 @@ SparseSpectrum SparseSearch::run(const SpectrumBasis& basis, int count) {
   momenta_ = mass * basis_;
   project();
   for (int attempt = 1; attempt <= max_attempts; ++attempt) {
-    std::vector<double> growths;
-    for (const Pair& pair : pairs_) growths.push_back(pair.s.real());
-    if (growths.empty()) break;
-    std::sort(growths.begin(), growths.end(), std::greater<>());
-    const auto last = std::min(growths.size(), static_cast<std::size_t>(count)) - 1;
+    std::vector<double> ranks;
+    for (const Pair& pair : pairs_) ranks.push_back(rank_(pair.s));
+    if (ranks.empty()) break;
+    std::sort(ranks.begin(), ranks.end(), std::greater<>());
+    const auto last = std::min(ranks.size(), static_cast<std::size_t>(count)) - 1;
     // Refined they may be others.
-    if (least_growth_ <= growths[last] && attempt > 1) break;
-    least_growth_ = growths[last] - 1e-3 * std::abs(growths[last]);
+    if (least_rank_ <= ranks[last] && attempt > 1) break;
+    least_rank_ = ranks[last] - 1e-3 * std::abs(ranks[last]);
     refine();
   }
   SparseSpectrum spectrum = found_up_to(height_);
@@ -400,7 +406,17 @@ std::vector<std::complex<double>> projected_eigenvalues(const SparseSystem& syst
 
 SparseSpectrum fastest_near(const SparseSystem& system, const SpectrumBasis& basis, int count) {
   if (count < 1) throw std::invalid_argument(fmt::format("sparse eigenvalues: {} are none", count));
-  return SparseSearch(system, {}).run(basis, count);
+  return SparseSearch(system, {})
+      .run(
+          basis, [](Complex s) { return s.real(); }, count);
+}
+
+SparseSpectrum closest_near(const SparseSystem& system, const SpectrumBasis& basis, Complex place,
+                            int count) {
+  if (count < 1) throw std::invalid_argument(fmt::format("sparse eigenvalues: {} are none", count));
+  return SparseSearch(system, {})
+      .run(
+          basis, [place](Complex s) { return -std::abs(s - place); }, count);
 }
 
 SparseSpectrum sparse_spectrum(const SparseSystem& system, const SpectrumWindow& window) {

@@ -83,4 +83,8 @@ std::vector<std::complex<double>> projected_eigenvalues(const SparseSystem& syst
 /// Cost: a few factorisations.
 SparseSpectrum fastest_near(const SparseSystem& system, const SpectrumBasis& basis, int count);
 
+/// Likewise those closest to a place in the complex plane.
+SparseSpectrum closest_near(const SparseSystem& system, const SpectrumBasis& basis,
+                            std::complex<double> place, int count);
+
 }  // namespace stridor

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "analysis/growth_field.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace stridor {
@@ -24,6 +25,23 @@ std::vector<double> circle_cuts(double r, double at) {
   if (std::abs(at) >= r) return {};
   const double half = std::sqrt(r * r - at * at);
   return {-half, half};
+}
+
+TEST(SignChanges, APairWithinOneIntervalIsFound) {
+  // Of one sign within 1e-4 of 0.317, of the other elsewhere: a narrow window.
+  for (const double sign : {1.0, -1.0}) {
+    std::vector<double> values;
+    for (int i = 0; i <= 10; ++i) values.push_back(0.1 * i);
+    const auto margin = [&](double x) {
+      return sign * (1e-8 - (x - 0.317) * (x - 0.317)) * (1.0 + x);
+    };
+    const std::vector<double> changes = sign_changes(margin, values);
+    ASSERT_EQ(changes.size(), 2U);
+    EXPECT_NEAR(changes[0], 0.3169, 1e-12);
+    EXPECT_NEAR(changes[1], 0.3171, 1e-12);
+  }
+  // One that comes close and stays away.
+  EXPECT_TRUE(sign_changes([](double x) { return -1e-3 - x * x; }, {-0.3, 0.1, 0.4}).empty());
 }
 
 TEST(BoundaryLines, CircleIsOneClosedLineOfPointsOnIt) {

@@ -526,6 +526,31 @@ TEST(MatrixProgram, WindowsOfLargeMatricesAreFoundBetweenTheValues) {
   EXPECT_NEAR(locus["unstable"][0]["to"].get<double>(), 0.4001 + half, 1e-8);
 }
 
+TEST(MatrixProgram, NarrowWindowsOfLargeMatricesAreFound) {
+  // The same without damping under a circulatory force 1e-4: flutter within 2e-4 of 0.4237,
+  // where nothing grows or decays elsewhere.
+  const ManyOscillators oscillators;
+  oscillators.write("K",
+                    [](int i) { return std::pair(i, (i / 2 + 1) * (i % 2 == 0 ? 1.0 : 1.4237)); });
+  oscillators.write("N", [](int i) { return ManyOscillators::across(i, 1e-4); });
+  oscillators.write("L", [](int i) { return std::pair(i, i == 1 ? -1.0 : 0.0); });
+  const std::string scene =
+      oscillators.scene("stiffness: K.mtx, circulatory: N.mtx, load: 0, load_stiffness: L.mtx");
+  const Json threshold = json_of({"threshold", scene, "--parameter", "substructures.pairs.load",
+                                  "--from", "0", "--to", "1", "--points", "6", "--below", "0.25"});
+  ASSERT_EQ(threshold["roots"].size(), 2U);
+  EXPECT_NEAR(threshold["roots"][0]["value"].get<double>(), 0.4237 - 2e-4, 1e-8);
+  EXPECT_NEAR(threshold["roots"][1]["value"].get<double>(), 0.4237 + 2e-4, 1e-8);
+  EXPECT_EQ(threshold["unresolved"], 0.0);
+}
+
+TEST(MatrixProgram, ARangeOverManyDecadesHidesNoLimit) {
+  const Json threshold = json_of({"threshold", scene_path("examples/flutter.yaml"), "--parameter",
+                                  "substructures.oscillator.load", "--from", "0", "--to", "1e100"});
+  ASSERT_EQ(threshold["roots"].size(), 1U);
+  EXPECT_NEAR(threshold["roots"][0]["value"].get<double>(), 0.2, 1e-12);
+}
+
 TEST(MatrixProgram, FactorsOfMatricesAreVaried) {
   // Flutter of diag(1, 1.4) under a circulatory force n: from 0.2 on, with damping 0.1 of both from
   // 0.2280350850.

@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/errors.hpp"
+#include "solvers/linear_pencil.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/pencils.hpp"
@@ -54,6 +57,26 @@ TEST(DenseEigenvalues, CirculatoryAndGyroscopicPairsHaveTheirClosedForms) {
   ASSERT_EQ(found.size(), 2);
   EXPECT_NEAR(std::abs(found[0].growth()), 0.0111662740, 1e-10);
   EXPECT_NEAR(found[0].growth() + found[1].growth(), 0.0, 100 * eps);
+}
+
+TEST(DenseEigenvalues, ADamperOnHardlyAnyMassDoesNotDrownSlowOnes) {
+  // 1e-16 s² ± s + 1 = 0 has the roots ∓1 and ∓1e16, to 1e-16; beside it s² + 0.02 s + 4 = 0.
+  for (const double damping : {1.0, -1.0}) {
+    LinearSystem system;
+    system.mass = Eigen::Vector2d(1e-16, 1.0).asDiagonal();
+    system.velocity = Eigen::Vector2d(damping, 0.02).asDiagonal();
+    system.position = Eigen::Vector2d(1.0, 4.0).asDiagonal();
+    system.gaps = system.forces = Eigen::MatrixXd(0, 2);
+    const auto found = dense_eigenvalues(make_pencil(system));
+    ASSERT_EQ(found.size(), 3);
+    std::vector<double> real{found[0].growth(), found[1].growth()};
+    std::sort(real.begin(), real.end(),
+              [](double a, double b) { return std::abs(a) < std::abs(b); });
+    EXPECT_NEAR(real[0], -damping, 1e-12);
+    EXPECT_NEAR(real[1], -1e16 * damping, 1e3);
+    EXPECT_LT(std::abs(found[2].s - Complex(-0.01, std::sqrt(4.0 - 1e-4))), 1e-12);
+    for (const Eigenvalue& one : found) EXPECT_LT(one.residual, 1e-12);
+  }
 }
 
 TEST(DenseEigenvalues, EveryPairHasASmallResidual) {

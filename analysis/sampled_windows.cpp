@@ -1,0 +1,265 @@
+#include "analysis/sampled_windows.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace stridor {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// The number in the middle between two others in the order of all floating-point numbers: between
+/// 0 and 1e98 it needs 64 steps to anywhere, where halves need hundreds.
+double middle_number(double a, double b) {
+  const auto order = [](double x) {
+    const auto bits = std::bit_cast<std::int64_t>(x);
+    return bits < 0 ? std::numeric_limits<std::int64_t>::min() - bits : bits;
+  };
+  const std::int64_t low = order(a);
+  const std::int64_t high = order(b);
+  // Without overflow of the sum.
+  const std::int64_t middle = (low >> 1) + (high >> 1) + (low & high & 1);
+  return std::bit_cast<double>(middle < 0 ? std::numeric_limits<std::int64_t>::min() - middle
+                                          : middle);
+}
+
+/// Where the rank-th largest excess changes its sign.
+class SignChange {
+ public:
+  SignChange(const SpectrumSampler& sampler, const WindowEffort& effort, std::size_t rank)
+      : sampler_(sampler), effort_(effort), rank_(rank) {}
+
+  /// Narrows the interval until nothing lies between.
+  void narrow(Sample& stable, Sample& growing) {
+    constexpr int max_steps = 200;
+    for (int i = 0; i < max_steps; ++i) {
+      const double next = next_value(stable, growing, i);
+      const double width = std::abs(growing.value - stable.value);
+      if (next == stable.value || next == growing.value ||
+          width <= effort_.tolerance * std::abs(next)) {
+        return;
+      }
+      Sample sample = sampler_.near(next);
+      const bool is_growing = sample.ranked_excess(rank_) > 0.0;
+      num_growing_ = is_growing ? num_growing_ + 1 : 0;
+      num_stable_ = is_growing ? 0 : num_stable_ + 1;
+      stable_weight_ = num_growing_ > 1 ? 0.5 * stable_weight_ : 1.0;
+      growing_weight_ = num_stable_ > 1 ? 0.5 * growing_weight_ : 1.0;
+      (is_growing ? growing : stable) = std::move(sample);
+    }
+  }
+
+ private:
+  /// The secant, with the excess halved at an end that stays again (Illinois); now and then the
+  /// middle, as the excess may have a kink.
+  double next_value(const Sample& stable, const Sample& growing, int step) const {
+    constexpr int first_by_order = 12;
+    constexpr double wide = 1024.0;
+    const double halfway = 0.5 * (stable.value + growing.value);
+    const double larger = std::max(std::abs(stable.value), std::abs(growing.value));
+    const double smaller = std::min(std::abs(stable.value), std::abs(growing.value));
+    if (step >= first_by_order && larger > wide * smaller && stable.value * growing.value >= 0.0)
+      return middle_number(stable.value, growing.value);
+    const double below = stable_weight_ * stable.ranked_excess(rank_);
+    const double above = growing_weight_ * growing.ranked_excess(rank_);
+    if (effort_.ends == WindowEffort::Ends::halving || step % 6 == 5 || !std::isfinite(below))
+      return halfway;
+    const double at = stable.value + (growing.value - stable.value) * below / (below - above);
+    const double margin = 0.3 * effort_.tolerance * std::abs(halfway);
+    return std::clamp(at, std::min(stable.value, growing.value) + margin,
+                      std::max(stable.value, growing.value) - margin);
+  }
+
+  const SpectrumSampler& sampler_;
+  const WindowEffort& effort_;
+  std::size_t rank_;
+  double stable_weight_ = 1.0, growing_weight_ = 1.0;
+  int num_growing_ = 0, num_stable_ = 0;  ///< in a row
+};
+
+/// An eigenvalue that grows.
+struct Point {
+  double value;
+  Complex s;
+};
+
+class WindowBuilder {
+ public:
+  WindowBuilder(const SpectrumSampler& sampler, const WindowEffort& effort, Locus& locus)
+      : sampler_(sampler), effort_(effort), locus_(locus) {}
+
+  void build(const std::vector<Sample>& samples);
+
+ private:
+  using Window = std::vector<Point>;
+
+  void close(const Window& points);
+  Point at(const Point& a, const Point& b, double value) const;
+  Point climb(const Point& low, const Point& middle, const Point& high) const;
+
+  const SpectrumSampler& sampler_;
+  const WindowEffort& effort_;
+  Locus& locus_;
+};
+
+void WindowBuilder::build(const std::vector<Sample>& samples) {
+  std::vector<Window> open;
+  const auto add_crossing = [&](const Point& point, int direction) {
+    locus_.crossings.push_back(
+        {point.value, point.s.imag() / (2.0 * std::numbers::pi), direction, 0});
+  };
+  for (const Sample& sample : samples) {
+    std::vector<Complex> last;
+    for (const Window& window : open) last.push_back(window.back().s);
+    const std::vector<Complex> growing = sample.growing();
+    const std::vector<int> partner = continuations(last, growing);
+    std::vector<bool> is_taken(growing.size(), false);
+    std::vector<Window> still_open;
+    for (std::size_t j = 0; j < open.size(); ++j) {
+      if (partner[j] < 0) {
+        add_crossing(open[j].back(), -1);
+        close(open[j]);
+        continue;
+      }
+      const auto k = static_cast<std::size_t>(partner[j]);
+      is_taken[k] = true;
+      open[j].push_back({sample.value, growing[k]});
+      still_open.push_back(std::move(open[j]));
+    }
+    for (std::size_t k = 0; k < growing.size(); ++k) {
+      if (is_taken[k]) continue;
+      still_open.push_back({{sample.value, growing[k]}});
+      if (&sample != &samples.front()) add_crossing(still_open.back().back(), 1);
+    }
+    open = std::move(still_open);
+  }
+  for (const Window& window : open) close(window);
+}
+
+/// The eigenvalue of a window between two of its points; not growing where there is none.
+Point WindowBuilder::at(const Point& a, const Point& b, double value) const {
+  const std::vector<Complex> growing = sampler_.near(value).growing();
+  const double share = (value - a.value) / (b.value - a.value);
+  const Complex expected = (1.0 - share) * a.s + share * b.s;
+  const int found = continuations({expected}, growing)[0];
+  if (found < 0) return {value, {0.0, expected.imag()}};
+  return {value, growing[static_cast<std::size_t>(found)]};
+}
+
+/// Climbs to the largest growth between three points by golden sections.
+Point WindowBuilder::climb(const Point& low, const Point& middle, const Point& high) const {
+  const double ratio = 0.5 * (3.0 - std::sqrt(5.0));
+  Point left = low, best = middle, right = high;
+  const double width = high.value - low.value;
+  for (int i = 0; i < effort_.climbing_steps && right.value - left.value > 1e-6 * width; ++i) {
+    const bool is_right = right.value - best.value > best.value - left.value;
+    const Point& end = is_right ? right : left;
+    const double next = best.value + ratio * (end.value - best.value);
+    const Point point = is_right ? at(best, right, next) : at(left, best, next);
+    if (point.s.real() > best.s.real()) {
+      (is_right ? left : right) = best;
+      best = point;
+    } else {
+      (is_right ? right : left) = point;
+    }
+  }
+  return best;
+}
+
+void WindowBuilder::close(const Window& points) {
+  UnstableWindow window;
+  window.from = points.front().value;
+  window.to = points.back().value;
+  const auto top =
+      std::max_element(points.begin(), points.end(),
+                       [](const Point& a, const Point& b) { return a.s.real() < b.s.real(); });
+  Point peak = *top;
+  if (top != points.begin() && top + 1 != points.end()) peak = climb(*(top - 1), *top, *(top + 1));
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const Point& a = points[i];
+    const Point& b = points[i + 1];
+    const Point middle = at(a, b, 0.5 * (a.value + b.value));
+    if (middle.s.real() > peak.s.real()) peak = middle;
+    // Simpson's rule.
+    window.growth_integral +=
+        (b.value - a.value) / 6.0 * (a.s.real() + 4.0 * middle.s.real() + b.s.real());
+  }
+  window.growth_max = peak.s.real();
+  window.frequency = peak.s.imag() / (2.0 * std::numbers::pi);
+  window.value_max = peak.value;
+  locus_.unstable.push_back(window);
+}
+
+/// Whether one eigenvalue stops growing between two samples and another begins: what continues one
+/// that grows is close, and does not grow.
+bool is_exchange(const Sample& a, const Sample& b) {
+  const std::vector<Complex> growing = a.growing();
+  const std::vector<Complex> after = b.growing();
+  if (growing.empty() || growing.size() != after.size()) return false;
+  const std::vector<int> partner = continuations(growing, after);
+  for (std::size_t j = 0; j < growing.size(); ++j) {
+    const double distance = std::abs(growing[j] - after[static_cast<std::size_t>(partner[j])]);
+    for (std::size_t k = 0; k < b.eigenvalues.size(); ++k) {
+      if (b.is_growing(k)) continue;
+      if (4.0 * std::abs(growing[j] - b.eigenvalues[k]) < distance) return true;
+    }
+  }
+  return false;
+}
+
+/// Halves intervals in which one eigenvalue may stop and another begin.
+void split_exchanges(const SpectrumSampler& sampler, std::vector<Sample>& samples) {
+  constexpr int most_halvings = 24;  // of one interval
+  int num_halvings = 0;
+  for (std::size_t i = 0; i + 1 < samples.size();) {
+    const double middle = 0.5 * (samples[i].value + samples[i + 1].value);
+    const bool is_wide = middle > samples[i].value && middle < samples[i + 1].value;
+    const bool is_one =
+        is_exchange(samples[i], samples[i + 1]) || is_exchange(samples[i + 1], samples[i]);
+    if (!is_one || !is_wide || num_halvings == most_halvings) {
+      ++i;
+      if (!is_one) num_halvings = 0;
+      continue;
+    }
+    ++num_halvings;
+    samples.insert(samples.begin() + static_cast<std::ptrdiff_t>(i) + 1, sampler.near(middle));
+  }
+}
+
+}  // namespace
+
+void find_sampled_windows(const SpectrumSampler& sampler, const WindowEffort& effort,
+                          std::vector<Sample> samples, Locus& locus) {
+  split_exchanges(sampler, samples);
+  std::vector<Sample> ends;
+  for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
+    const std::size_t before = samples[i].num_growing();
+    const std::size_t after = samples[i + 1].num_growing();
+    for (std::size_t rank = std::min(before, after) + 1; rank <= std::max(before, after); ++rank) {
+      Sample stable = before < after ? samples[i] : samples[i + 1];
+      Sample growing = before < after ? samples[i + 1] : samples[i];
+      SignChange(sampler, effort, rank).narrow(stable, growing);
+      ends.push_back(std::move(stable));
+      ends.push_back(std::move(growing));
+    }
+  }
+  std::move(ends.begin(), ends.end(), std::back_inserter(samples));
+  std::stable_sort(samples.begin(), samples.end(),
+                   [](const Sample& a, const Sample& b) { return a.value < b.value; });
+  const auto is_same = [](const Sample& a, const Sample& b) { return a.value == b.value; };
+  samples.erase(std::unique(samples.begin(), samples.end(), is_same), samples.end());
+  WindowBuilder(sampler, effort, locus).build(samples);
+  std::sort(locus.unstable.begin(), locus.unstable.end(),
+            [](const auto& a, const auto& b) { return a.from < b.from; });
+  std::sort(locus.crossings.begin(), locus.crossings.end(),
+            [](const auto& a, const auto& b) { return a.value < b.value; });
+}
+
+}  // namespace stridor

@@ -1,0 +1,82 @@
+// Spectra of a system at single values of a parameter: what grows, and which eigenvalue is which.
+#pragma once
+
+#include <complex>
+#include <functional>
+#include <vector>
+
+#include "analysis/locus.hpp"
+
+namespace stridor {
+
+/// Eigenvalues at one value of a parameter.
+struct SampledSpectrum {
+  std::vector<std::complex<double>> eigenvalues;  ///< Im s >= 0, ascending Im s
+  std::vector<double> rounding;  ///< what rounding may have added to each real part, 1/s
+};
+
+/// Those of a system that depends on one parameter; called in any order.
+struct SpectrumFamily {
+  /// All that are wanted.
+  std::function<SampledSpectrum(double value)> at;
+  /// Where `at` takes long, between values at which all are known: those that grow, others perhaps
+  /// missing; those closest to a place in the complex plane; and a first look, right in none. All
+  /// or none.
+  std::function<SampledSpectrum(double value)> near;
+  std::function<SampledSpectrum(double value, std::complex<double> place)> around;
+  std::function<SampledSpectrum(double value)> glimpse;
+};
+
+/// The spectra of pencils by the dense method.
+/// @param family referenced
+SpectrumFamily dense_spectra(const PencilFamily& family);
+
+/// The eigenvalues wanted at one value, and how fast they grow.
+struct Sample {
+  double value = 0.0;
+  std::vector<std::complex<double>> eigenvalues;  ///< Im s >= 0, ascending Im s
+  /// Of each: its real part less what may be rounding, 1/s; −∞ above the trusted frequency.
+  std::vector<double> excess;
+
+  bool is_growing(std::size_t i) const { return excess[i] > 0.0; }
+  std::size_t num_growing() const;
+  /// The eigenvalues that grow.
+  std::vector<std::complex<double>> growing() const;
+  /// The rank-th largest excess, 1 for the largest; −∞ where there are fewer.
+  double ranked_excess(std::size_t rank) const;
+  /// The eigenvalue of the largest excess; there must be one.
+  std::complex<double> fastest() const;
+};
+
+/// Takes samples of what a locus wants of a family.
+class SpectrumSampler {
+ public:
+  /// @param family, options referenced
+  SpectrumSampler(const SpectrumFamily& family, const LocusOptions& options)
+      : family_(family), options_(options) {}
+
+  bool has_glimpses() const { return family_.glimpse != nullptr; }
+  Sample at(double value) const { return sample_of(value, family_.at(value)); }
+  /// With all that grow.
+  Sample near(double value) const {
+    return family_.near ? sample_of(value, family_.near(value)) : at(value);
+  }
+  /// With those closest to a place.
+  Sample around(double value, std::complex<double> place) const {
+    return family_.around ? sample_of(value, family_.around(value, place)) : at(value);
+  }
+  Sample glimpse(double value) const { return sample_of(value, family_.glimpse(value)); }
+
+ private:
+  Sample sample_of(double value, SampledSpectrum all) const;
+
+  const SpectrumFamily& family_;
+  const LocusOptions& options_;
+};
+
+/// Which of the eigenvalues found continues which of those expected, the closest first.
+/// @return for each expected one the index of the one found, −1 where none is left
+std::vector<int> continuations(const std::vector<std::complex<double>>& expected,
+                               const std::vector<std::complex<double>>& found);
+
+}  // namespace stridor
