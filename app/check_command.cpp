@@ -5,6 +5,7 @@
 
 #include "app/command.hpp"
 #include "app/step_stability_report.hpp"
+#include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "io/contact_scene.hpp"
 #include "io/initial_state.hpp"
@@ -56,6 +57,7 @@ Report check_scene(const CheckOptions& options) {
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   Model model = build_model(loaded);
   try {
+    const Activity preparing("preparing the first step");
     set_initial_state(model.system, loaded);
     const Simulation simulation(model.system, loaded.scene.time, accounts_of(loaded.scene));
   } catch (const ConfigError& error) {

@@ -6,9 +6,11 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/command.hpp"
+#include "app/progress.hpp"
 #include "app/sphere_commands.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
@@ -20,6 +22,7 @@ namespace stridor {
 namespace {
 
 static_assert(static_cast<int>(ExitCode::file_trouble) == DamageGuard::exit_code);
+static_assert(static_cast<int>(ExitCode::stopped) == stopped_exit_code);
 
 int report(const char* kind, const std::string& message, ExitCode code) {
   fmt::print(stderr, "stridor: {}\n{}\n", kind, message);
@@ -81,11 +84,15 @@ int run_verb(int argc, char** argv) {
     }
     return program.exit(error);
   }
+  // Shown while nothing of the verb's own is, as during set-up.
+  const Progress whole(argv[1]);
   return static_cast<int>(action());
 }
 
 int run_program(int argc, char** argv) {
   try {
+    if (std::any_of(argv, argv + argc, [](const char* word) { return std::string_view(word) == "--json"; }))
+      tell_stop_as_json();
     install_stop_signals();
     // A reader that goes away, or a file that may not grow, are errors to report, not deaths.
     std::signal(SIGPIPE, SIG_IGN);

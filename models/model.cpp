@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/activity.hpp"
 #include "core/suggestion.hpp"
 #include "models/body_cache.hpp"
 #include "models/initial_motion.hpp"
@@ -478,6 +479,7 @@ Model make_model(const ModelParameters& parameters,
     Body body;
     body.name = name;
     body.parameters = &substructure;
+    const Activity assembling(fmt::format("assembling '{}'", name));
     try {
       body.matrices = cache.matrices(substructure);
     } catch (const ConfigError& error) {
@@ -602,6 +604,7 @@ Model make_model(const ModelParameters& parameters,
                                     "interface; take at most that",
                                     num_modes, type_name(*body.parameters), num_interior));
     }
+    const Activity reducing(fmt::format("reducing '{}'", body.name));
     try {
       BodyCache::Reduction reduction =
           cache.reduce(*body.parameters, body.matrices, body.interface, num_modes, body.watched);
