@@ -12,6 +12,7 @@
 #include "io/linear_scene.hpp"
 #include "io/scene.hpp"
 #include "io/sphere_scene.hpp"
+#include "io/summary_memory.hpp"
 #include "solvers/simulation.hpp"
 
 namespace stridor {
@@ -55,6 +56,7 @@ Report check_scene(const CheckOptions& options) {
     return {};
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
+  require_summary_memory(loaded);
   Model model = build_model(loaded);
   try {
     const Activity preparing("preparing the first step");

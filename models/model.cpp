@@ -6,9 +6,11 @@
 #include <cmath>
 
 #include "core/activity.hpp"
+#include "core/memory.hpp"
 #include "core/suggestion.hpp"
 #include "models/body_cache.hpp"
 #include "models/initial_motion.hpp"
+#include "models/set_up_estimate.hpp"
 
 namespace stridor {
 namespace {
@@ -470,6 +472,7 @@ Model make_model(const ModelParameters& parameters,
 
 Model make_model(const ModelParameters& parameters,
                  const std::vector<std::pair<PointName, std::string>>& observed, BodyCache& cache) {
+  require_memory(estimate_set_up(parameters), memory_limit());
   std::vector<Body> bodies;
   for (const auto& [name, substructure] : parameters.substructures) {
     if (name == rigid_name) {
