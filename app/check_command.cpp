@@ -5,12 +5,14 @@
 
 #include "app/command.hpp"
 #include "app/step_stability_report.hpp"
+#include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "io/contact_scene.hpp"
 #include "io/initial_state.hpp"
 #include "io/linear_scene.hpp"
 #include "io/scene.hpp"
 #include "io/sphere_scene.hpp"
+#include "io/summary_memory.hpp"
 #include "solvers/simulation.hpp"
 
 namespace stridor {
@@ -54,8 +56,10 @@ Report check_scene(const CheckOptions& options) {
     return {};
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
+  require_summary_memory(loaded);
   Model model = build_model(loaded);
   try {
+    const Activity preparing("preparing the first step");
     set_initial_state(model.system, loaded);
     const Simulation simulation(model.system, loaded.scene.time, accounts_of(loaded.scene));
   } catch (const ConfigError& error) {

@@ -13,6 +13,7 @@
 #include "app/transient.hpp"
 #include "app/turns.hpp"
 #include "core/errors.hpp"
+#include "core/stop_token.hpp"
 #include "io/comparison_plot.hpp"
 
 namespace stridor {
@@ -56,6 +57,7 @@ class ScratchFolder {
   const fs::path& path() const { return path_; }
 
  private:
+  OrderlyStop until_removed_;
   fs::path path_;
 };
 

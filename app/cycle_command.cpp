@@ -7,6 +7,7 @@
 #include "app/expectations.hpp"
 #include "app/sphere_commands.hpp"
 #include "app/sphere_motion.hpp"
+#include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "io/gnuplot.hpp"
 
@@ -67,8 +68,10 @@ ExitCode cycle(const CycleCommandOptions& options) {
   const SphereNumbers numbers = sphere_numbers(loaded.scene.model.sphere);
   const SubstrateOscillator oscillator = make_sphere(loaded.scene.model);
   const CycleOptions how = cycle_options(loaded.scene);
+  std::optional<Activity> following(std::in_place, "following the motion until it repeats");
   const LimitCycle found = find_limit_cycle(
       oscillator, initial_displacement(loaded.scene, oscillator), Eigen::Vector2d::Zero(), how);
+  following.reset();
   if (found.status == CycleStatus::diverged) throw NumericalError(found.failure);
   const Json results = cycle_json(found, numbers);
   if (options.output || options.figure) {

@@ -12,6 +12,7 @@
 #include "app/linear_stability.hpp"
 #include "app/sphere_stability.hpp"
 #include "app/stability.hpp"
+#include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "io/shape_plot.hpp"
 #include "models/mode_shape.hpp"
@@ -185,11 +186,14 @@ ExitCode eig(EigOptions options) {
   SceneFamily family = make_family(loaded, options, values);
   const SceneFamily::Member member = family.at(values);
   const System& system = member.model->system;
+  std::optional<Activity> solving(std::in_place, "equilibrium and eigenvalues");
   const SlidingState state = sliding_state_of(member, options.stability.geometry(), "");
   const Pencil pencil = retained(state.pencil, system, loaded.scene.time);
   const LowestEigenvalues lowest =
       find_lowest(pencil, options.stability.eigenvalue_method(), options.stability.window());
   const std::vector<Eigenvalue>& eigenvalues = lowest.eigenvalues;
+
+  solving.reset();
 
   const std::size_t num_real = num_real_of(eigenvalues);
   const double trusted =

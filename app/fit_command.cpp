@@ -12,6 +12,7 @@
 #include "analysis/law_fit.hpp"
 #include "app/command.hpp"
 #include "app/output_folder.hpp"
+#include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "io/panel_plot.hpp"
 #include "substructures/viscoelastic_material.hpp"
@@ -175,7 +176,9 @@ ExitCode fit(const FitOptions& options) {
   const std::array<const char*, 3> names{"modulus.png", "cuts.png", "scatter.png"};
   if (options.figures)
     prepare_folder(*options.figures, {names.begin(), names.end()}, options.common.overwrite());
+  std::optional<Activity> fitting(std::in_place, "fitting the forms");
   const Comparison comparison = compare(speeds, indentations);
+  fitting.reset();
   if (options.figures) {
     const std::filesystem::path folder = *options.figures;
     draw_modulus(folder / names[0]);

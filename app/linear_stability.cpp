@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "app/eigenvalue_report.hpp"
+#include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/linear_pencil.hpp"
@@ -291,10 +292,12 @@ std::unique_ptr<StabilityFamily> LinearStabilityScene::family(std::vector<Numeri
 ExitCode eig_of_linear_scene(const StabilityOptions& options, bool explain,
                              const std::optional<int>& mode) {
   const LoadedLinearScene loaded = load_linear_scene(options.scene, options.common.sets);
+  std::optional<Activity> solving(std::in_place, "state of sliding and eigenvalues");
   const LinearModel model = loaded.model();
   const SpectrumWindow window = options.window();
   const FoundSpectrum found =
       model.sparse ? find_sparse(*model.sparse, window) : find_dense(model, window);
+  solving.reset();
   const std::vector<Eigenvalue>& eigenvalues = found.eigenvalues;
   const double highest = found.highest;
   const bool is_stable = std::none_of(

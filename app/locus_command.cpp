@@ -11,8 +11,9 @@
 #include <numbers>
 
 #include "app/eigenvalue_report.hpp"
-#include "app/progress.hpp"
+#include "app/locus_progress.hpp"
 #include "app/stability.hpp"
+#include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "core/version.hpp"
 #include "io/gnuplot.hpp"
@@ -137,6 +138,7 @@ TimedWindow timed(const Locus& locus, const UnstableWindow& window, const Passin
 
 std::vector<TimedWindow> timed_windows(const Locus& locus,
                                        const std::optional<PassingTimes>& times) {
+  const Activity timing("times at which the run passes the windows");
   std::vector<TimedWindow> all;
   for (const UnstableWindow& window : locus.unstable)
     all.push_back(times ? timed(locus, window, *times) : TimedWindow{window, never, never, never});
@@ -336,17 +338,11 @@ ExitCode locus(LocusCommandOptions options) {
   const auto loaded = load_stability_scene(stability);
   const KeyRange range = make_range(*loaded, options.range);
   const auto family = loaded->family({range.key}, stability.geometry());
-  Progress progress("locus");
-  double reached = 0.0;
   const double first = range.values.front();
-  const double width = std::max(range.values.back() - first, std::numeric_limits<double>::min());
-  family->on_value([&](double value) {
-    reached = std::max(reached, (value - first) / width);
-    progress.report(reached, value_text(range.key, value));
-  });
+  std::optional<LocusProgress> progress(std::in_place, "locus", *family, range);
   const Locus found =
       locus_along(*family, range.key, 0, {first}, range.values, stability.locus_options());
-  progress.finish();
+  progress.reset();
   const double trusted = std::min(family->trusted_frequency(std::array{range.values.front()}),
                                   family->trusted_frequency(std::array{range.values.back()}));
   const double highest = verdict_limit(found, stability.locus_window(), trusted);

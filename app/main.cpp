@@ -10,10 +10,12 @@
 #include <cstring>
 #include <exception>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "app/command.hpp"
+#include "app/progress.hpp"
 #include "app/remark.hpp"
 #include "app/sphere_commands.hpp"
 #include "core/blas_memory.hpp"
@@ -27,6 +29,7 @@ namespace stridor {
 namespace {
 
 static_assert(static_cast<int>(ExitCode::file_trouble) == DamageGuard::exit_code);
+static_assert(static_cast<int>(ExitCode::stopped) == stopped_exit_code);
 
 int report(const char* kind, const std::string& message, ExitCode code) {
   print_remark("stridor: {}\n{}\n", kind, message);
@@ -112,11 +115,15 @@ int run_verb(int argc, char** argv) {
     return program.exit(error);
   }
   reserve_blas_memory();
+  // Shown while nothing of the verb's own is, as during set-up.
+  const Progress whole(argv[1]);
   return static_cast<int>(action());
 }
 
 int run_program(int argc, char** argv) {
   try {
+    if (std::any_of(argv, argv + argc, [](const char* word) { return std::string_view(word) == "--json"; }))
+      tell_stop_as_json();
     install_stop_signals();
     // A reader that goes away, or a file that may not grow, are errors to report, not deaths.
     std::signal(SIGPIPE, SIG_IGN);

@@ -11,6 +11,7 @@
 #include "analysis/boundary_continuation.hpp"
 #include "app/progress.hpp"
 #include "app/stability.hpp"
+#include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "core/tasks.hpp"
 #include "core/version.hpp"
@@ -184,6 +185,7 @@ StabilityMap make_map(const StabilityScene& loaded, const std::array<Axis, 2>& a
   map.y = axes[1].values;
   const auto make_field = [&] { return loaded.growth_field({axes[0].key, axes[1].key}); };
   if (make_field() != nullptr) {
+    const Activity tracing("growth at every point, then the boundary");
     GrowthMap found = make_growth_map(make_field, map.x, map.y, stability.common.threads);
     map.growth = std::move(found.growth);
     // Between the lines of the grid, on which it is known, the boundary is followed.

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "core/errors.hpp"
+#include "core/stop_token.hpp"
 
 namespace stridor {
 
@@ -17,6 +18,7 @@ void prepare_folder(const fs::path& folder, const std::vector<std::string>& name
 }
 
 void write_json(const fs::path& path, const Json& object) {
+  const OrderlyStop until_whole;
   std::ofstream file(path);
   file << object.dump(2) << '\n';
   file.close();

@@ -4,60 +4,186 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <condition_variable>
+#include <csignal>
 #include <cstdio>
+#include <mutex>
+#include <thread>
+#include <vector>
 
 #include "app/remark.hpp"
+#include "core/activity.hpp"
 
 namespace stridor {
-namespace {
 
-constexpr auto line_interval = std::chrono::seconds(10);
+/// Shows the newest of all Progress that are open, now and then.
+class ProgressDisplay {
+ public:
+  static ProgressDisplay& one() {
+    static ProgressDisplay display;
+    return display;
+  }
+  ~ProgressDisplay() {
+    on_idle(nullptr);
+    {
+      const std::lock_guard lock(changing_);
+      is_over_ = true;
+    }
+    wake_.notify_all();
+    if (ticker_.joinable()) ticker_.join();
+  }
 
-std::string duration_text(double seconds) {
-  if (seconds < 60.0) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 3600.0)
-    return fmt::format("{:.0f} min {:02.0f} s", std::floor(seconds / 60.0),
-                       std::fmod(seconds, 60.0));
-  return fmt::format("{:.0f} h {:02.0f} min", std::floor(seconds / 3600.0),
-                     std::fmod(seconds, 3600.0) / 60.0);
+  void open(Progress& progress) {
+    const std::lock_guard lock(changing_);
+    open_.push_back(&progress);
+    if (!ticker_.joinable()) start_ticker();
+  }
+  void close(Progress& progress) {
+    const std::lock_guard lock(changing_);
+    if (!progress.is_open_) return;
+    progress.is_open_ = false;
+    std::erase(open_, &progress);
+    clear();
+  }
+  template <class Change>
+  void change(Change&& change) {
+    const std::lock_guard lock(changing_);
+    change();
+    const auto now = Clock::now();
+    if (is_terminal_ ? now >= next_drawing_ : now >= next_line_) show(now);
+  }
+
+ private:
+  ProgressDisplay() {
+    on_idle([] {
+      const std::lock_guard lock(one().changing_);
+      one().clear();
+    });
+  }
+
+  void clear() {
+    if (is_drawn_) {
+      std::fputs("\r\033[K", stderr);
+      std::fflush(stderr);
+    }
+    is_drawn_ = false;
+  }
+
+  using Clock = std::chrono::steady_clock;
+  static constexpr auto line_interval = std::chrono::seconds(10);
+  static constexpr auto drawing_interval = std::chrono::milliseconds(100);
+  static constexpr auto tick = std::chrono::milliseconds(500);
+  /// What is over sooner need not be shown.
+  static constexpr auto patience = std::chrono::seconds(1);
+
+  /// Signals are for the main thread.
+  void start_ticker() {
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    ticker_ = std::thread([this] { run_ticker(); });
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  }
+  void run_ticker() {
+    std::unique_lock lock(changing_);
+    while (!wake_.wait_for(lock, tick, [this] { return is_over_; })) {
+      const auto now = Clock::now();
+      if (now >= (is_terminal_ ? start_ + patience : next_line_)) show(now);
+    }
+  }
+
+  void show(Clock::time_point now) {
+    if (open_.empty()) return;
+    next_drawing_ = now + drawing_interval;
+    next_line_ = now + line_interval;
+    const Progress& newest = *open_.back();
+    std::string detail = newest.detail_;
+    const Pace* pace = newest.pace_ ? &*newest.pace_ : nullptr;
+    if (pace == nullptr) {
+      const CurrentActivity activity = current_activity();
+      if (activity.count != activity_count_) {
+        activity_pace_ = Pace(now);
+        activity_count_ = activity.count;
+      }
+      activity_pace_.report(activity.fraction, now);
+      if (activity.what.empty()) return;
+      detail = activity.what;
+      pace = &activity_pace_;
+    }
+    if (!is_terminal_) {
+      print_remark("{}\n", newest.line(*pace, detail, "", now));
+      return;
+    }
+    print_remark("\r{}\033[K", newest.line(*pace, detail, bar(*pace), now));
+    std::fflush(stderr);
+    is_drawn_ = true;
+  }
+
+  static std::string bar(const Pace& pace) {
+    if (!(pace.fraction() > 0.0)) return "";
+    constexpr std::size_t width = 30;
+    const auto filled = static_cast<std::size_t>(pace.fraction() * width);
+    return fmt::format(" [{}{}]", std::string(filled, '#'), std::string(width - filled, ' '));
+  }
+
+  std::mutex changing_;
+  std::condition_variable wake_;
+  std::thread ticker_;
+  std::vector<Progress*> open_;
+  bool is_over_ = false;
+  bool is_drawn_ = false;
+  const bool is_terminal_ = isatty(STDERR_FILENO) == 1;
+  const Clock::time_point start_ = Clock::now();
+  Clock::time_point next_line_ = start_ + line_interval;
+  Clock::time_point next_drawing_ = start_;
+  Pace activity_pace_{start_};
+  std::uint64_t activity_count_ = 0;
+};
+
+Progress::Progress(std::string what) : what_(std::move(what)) {
+  ProgressDisplay::one().open(*this);
 }
-
-}  // namespace
-
-Progress::Progress(std::string what)
-    : what_(std::move(what)),
-      is_terminal_(isatty(STDERR_FILENO) == 1),
-      start_(Clock::now()),
-      next_line_(start_ + line_interval) {}
 
 Progress::~Progress() {
   finish();
 }
 
+std::string Progress::line(const Pace& pace, const std::string& detail, const std::string& bar,
+                           SteadyTime now) const {
+  return fmt::format("{}{}{}:{} {}{}{}", what_, phase_.empty() ? "" : ", ", phase_, bar, detail,
+                     detail.empty() ? "" : ", ", pace_text(pace, now));
+}
+
+std::string Progress::text(SteadyTime now) const {
+  return line(pace_.value_or(Pace(start_)), detail_, "", now);
+}
+
+void Progress::begin(std::string phase) {
+  ProgressDisplay::one().change([&] {
+    phase_ = std::move(phase);
+    detail_.clear();
+    pace_.emplace(std::chrono::steady_clock::now());
+  });
+}
+
 void Progress::report(double fraction, const std::string& detail) {
-  const auto now = Clock::now();
-  if (!is_terminal_ && now < next_line_) return;
-  next_line_ = now + line_interval;
-  const double elapsed = std::chrono::duration<double>(now - start_).count();
-  const std::string left =
-      fraction > 0.0 ? duration_text(elapsed * (1.0 - fraction) / fraction) + " left" : "";
-  if (is_terminal_) {
-    constexpr int width = 30;
-    const int filled = static_cast<int>(std::clamp(fraction, 0.0, 1.0) * width);
-    print_remark("\r{} [{}{}] {:3.0f} %  {}, {}\033[K", what_,
-                 std::string(static_cast<std::size_t>(filled), '#'),
-                 std::string(static_cast<std::size_t>(width - filled), ' '), 100.0 * fraction,
-                 detail, left);
-    std::fflush(stderr);
-    is_drawn_ = true;
-  } else {
-    print_remark("{}: {:.0f} %, {}, {}\n", what_, 100.0 * fraction, detail, left);
-  }
+  ProgressDisplay::one().change([&] {
+    const auto now = std::chrono::steady_clock::now();
+    if (!pace_) pace_.emplace(start_);
+    pace_->report(fraction, now);
+    detail_ = detail;
+  });
+}
+
+void Progress::report(const std::string& detail) {
+  ProgressDisplay::one().change([&] {
+    if (!pace_) pace_.emplace(start_);
+    detail_ = detail;
+  });
 }
 
 void Progress::finish() {
-  if (is_drawn_) print_remark("\r\033[K");
-  is_drawn_ = false;
+  ProgressDisplay::one().close(*this);
 }
 
 }  // namespace stridor

@@ -1,12 +1,18 @@
 // Progress with time left, on stderr.
 #pragma once
 
-#include <chrono>
+#include <optional>
 #include <string>
+
+#include "app/pace.hpp"
 
 namespace stridor {
 
 /// A bar on a terminal, a plain line now and then elsewhere.
+///
+/// What is shown is kept up by a thread of its own, so that it also moves while a library computes.
+/// Of several the newest is shown; where it has not been told anything, what the main thread is at
+/// (core/activity.hpp) stands in its place, if it is at anything.
 class Progress {
  public:
   explicit Progress(std::string what);
@@ -14,19 +20,32 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// @param fraction done so far, 0 to 1
+  /// The next phase begins: what was done before does not count, and the time left is of this
+  /// phase.
+  void begin(std::string phase);
+  /// @param fraction done of the phase, 0 to 1
   /// @param detail   short text behind the bar, e.g. "t = 1.25 of 2.25 s"
   void report(double fraction, const std::string& detail);
+  /// The same where nothing says how much is left.
+  void report(const std::string& detail);
   /// Removes the bar.
   void finish();
 
+  /// What a plain line says of it, with what it has been told.
+  std::string text(SteadyTime now) const;
+
  private:
-  using Clock = std::chrono::steady_clock;
+  friend class ProgressDisplay;
+
+  std::string line(const Pace& pace, const std::string& detail, const std::string& bar,
+                   SteadyTime now) const;
+
   std::string what_;
-  bool is_terminal_;
-  bool is_drawn_ = false;
-  Clock::time_point start_;
-  Clock::time_point next_line_;
+  std::string phase_;
+  std::string detail_;
+  std::optional<Pace> pace_;  ///< once it has been told something
+  SteadyTime start_ = std::chrono::steady_clock::now();
+  bool is_open_ = true;
 };
 
 }  // namespace stridor

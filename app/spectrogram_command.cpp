@@ -6,6 +6,7 @@
 
 #include "app/pictures.hpp"
 #include "app/prediction.hpp"
+#include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "io/axes.hpp"
 #include "io/spectrogram_file.hpp"
@@ -126,9 +127,11 @@ ExitCode draw_spectrogram(const PictureOptions& options) {
                                    fs::path(*options.predict).filename().string());
   }
 
+  std::optional<Activity> transforming(std::in_place, "transforming the pieces");
   const Spectrogram spectrogram =
       make_spectrogram(run.finite_values(series), run.interval, parameters, run.first_time());
   const double highest = highest_amplitude(spectrogram, picture.max_frequency, picture.mean_lines);
+  transforming.reset();
   const Json settings = {{"channel", picture.title},
                          {"units", units},
                          {"window", window_name(parameters.window)},

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/progress.hpp"
+#include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
 #include "solvers/make_propagator.hpp"
@@ -72,6 +73,7 @@ StepStabilityReport check_step_stability(const Model& model, const TimeParameter
                     fmt::format("place {} of {}", place + 1, num_places));
   });
   progress.finish();
+  const Activity seeking("a step that would be stable");
   if (report.steps_grow())
     report.stable_step = stable_step(system, time, worst_of(report.path)->contacts);
   return report;

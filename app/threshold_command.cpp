@@ -5,8 +5,11 @@
 #include <array>
 #include <memory>
 #include <numbers>
+#include <optional>
 
+#include "app/locus_progress.hpp"
 #include "app/stability.hpp"
+#include "core/activity.hpp"
 
 namespace stridor {
 namespace {
@@ -39,7 +42,9 @@ std::vector<double> scan_values(const KeyRange& range) {
 ExitCode threshold(const ThresholdOptions& options, const KeyRange& range, GrowthField& field) {
   const auto margin = [&](double value) { return field.margin(value, 0.0); };
   const std::vector<double> values = scan_values(range);
+  std::optional<Activity> looking(std::in_place, "looking for changes of sign");
   const std::vector<double> roots = sign_changes(margin, values);
+  looking.reset();
   const bool starts_unstable = margin(range.values.front()) > 0.0;
   Json object = {{"parameter", range.key.path},
                  {"from", range.values.front()},
@@ -72,8 +77,10 @@ ExitCode threshold(ThresholdOptions options) {
   const KeyRange range = make_range(*scene, options.range);
   if (const auto field = scene->growth_field({range.key})) return threshold(options, range, *field);
   const auto family = scene->family({range.key}, stability.geometry());
+  std::optional<LocusProgress> progress(std::in_place, "threshold", *family, range);
   const Locus locus = locus_along(*family, range.key, 0, {range.values.front()}, range.values,
                                   stability.locus_options());
+  progress.reset();
   const std::vector<StabilityChange> changes = stability_changes(locus);
   const double trusted = std::min(family->trusted_frequency(std::array{range.values.front()}),
                                   family->trusted_frequency(std::array{range.values.back()}));

@@ -7,8 +7,10 @@
 #include <tuple>
 
 #include "app/transient_results.hpp"
+#include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "io/initial_state.hpp"
+#include "io/summary_memory.hpp"
 
 namespace stridor {
 namespace {
@@ -76,7 +78,9 @@ void load_start(const State& state, System& system) {
 Transient::Transient(const LoadedScene& loaded, const RunOutput& output)
     : loaded_(&loaded), file_(output.file), keeper_(loaded.scene.checkpoint.every) {
   check_output(file_, output.overwrite);
+  require_summary_memory(loaded);
   model_ = build_model(loaded);
+  const Activity preparing("preparing the first step");
   set_initial_state(model_.system, loaded);
   try {
     make_simulation();
@@ -96,6 +100,7 @@ Transient::Transient(const LoadedScene& loaded, const RunOutput& output)
 Transient::Transient(const LoadedScene& loaded, const InterruptedRun& interrupted)
     : loaded_(&loaded), file_(interrupted.file), keeper_(loaded.scene.checkpoint.every) {
   model_ = build_model(loaded);
+  const Activity preparing("preparing the next step");
   try {
     load_start(interrupted.checkpoint.state, model_.system);
     make_simulation();
@@ -212,6 +217,7 @@ void Transient::write_final_motion() {
 }
 
 Json Transient::finish(const Json& error) {
+  const Activity summing("summing up the run");
   const Scene& scene = loaded_->scene;
   writer_->flush();
   const auto acceleration = summarise_acceleration(RunFileReader(file_), scene.measure);

@@ -8,6 +8,7 @@
 #include "io/scene_reference.hpp"
 #include "io/schema_json.hpp"
 #include "io/sphere_scene.hpp"
+#include "models/set_up_estimate.hpp"
 
 namespace stridor {
 
@@ -97,6 +98,13 @@ LoadedContactScene load_contact_scene(const std::string& path,
                          "`profile`");
   }
   loaded.scene = read_as<ContactScene>(loaded.tree);
+  try {
+    require_memory(estimate_set_up(loaded.scene.contact_solver), memory_limit());
+  } catch (const ConfigError& error) {
+    std::vector<Problem> problems = error.problems();
+    locate(problems, loaded.tree);
+    throw ConfigError(std::move(problems));
+  }
   return loaded;
 }
 

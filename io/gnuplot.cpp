@@ -13,12 +13,15 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <deque>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
 
+#include "core/activity.hpp"
 #include "core/errors.hpp"
+#include "core/stop_token.hpp"
 
 extern char** environ;
 
@@ -46,6 +49,8 @@ class PrivateFolder {
           fmt::format("cannot make a temporary folder '{}': {}", pattern, std::strerror(errno)));
     }
     path_ = pattern;
+    for (const fs::path& made : {script(), messages(), path_})
+      unfinished_.emplace_back(made.string());
   }
   PrivateFolder(const PrivateFolder&) = delete;
   PrivateFolder& operator=(const PrivateFolder&) = delete;
@@ -53,10 +58,12 @@ class PrivateFolder {
     std::error_code ignored;
     fs::remove_all(path_, ignored);
   }
-  const fs::path& path() const { return path_; }
+  fs::path script() const { return path_ / "script.gp"; }
+  fs::path messages() const { return path_ / "messages"; }
 
  private:
   fs::path path_;
+  std::deque<UnfinishedFile> unfinished_;
 };
 
 // A file that is removed unless it is moved to its final name.
@@ -71,6 +78,7 @@ class PartFigure {
 
  private:
   std::string path_;
+  UnfinishedFile unfinished_{path_};
 };
 
 struct Outcome {
@@ -93,6 +101,7 @@ Outcome run_gnuplot(const std::string& script, const std::string& messages) {
       posix_spawnp(&child, "gnuplot", &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (outcome.spawn_error != 0) return outcome;
+  const HelperProcess helper(child);
   while (waitpid(child, &outcome.status, 0) < 0 && errno == EINTR) {
   }
   return outcome;
@@ -210,9 +219,10 @@ void draw_figure(const fs::path& figure, const std::string& script, FigureSize s
         fmt::format("cannot write in the folder '{}': {}", folder.string(), std::strerror(errno)));
   }
 
+  const Activity drawing("drawing " + figure.filename().string());
   const PrivateFolder scratch(figure);
   const PartFigure part(figure);
-  const fs::path script_path = scratch.path() / "script.gp";
+  const fs::path script_path = scratch.script();
   {
     std::ofstream file(script_path, std::ios::binary);
     file << "set encoding utf8\n"
@@ -222,7 +232,7 @@ void draw_figure(const fs::path& figure, const std::string& script, FigureSize s
     if (!file)
       throw FileError(figure.string(), "", "cannot write a temporary script; is the disk full?");
   }
-  const fs::path messages_path = scratch.path() / "messages";
+  const fs::path messages_path = scratch.messages();
   const Outcome outcome = run_gnuplot(script_path.string(), messages_path.string());
   if (outcome.spawn_error == ENOENT) {
     throw FileError(figure.string(), "", fmt::format("gnuplot is not installed; {}", packages));
@@ -245,6 +255,7 @@ void draw_figure(const fs::path& figure, const std::string& script, FigureSize s
   if (error || drawn == 0) throw FileError(figure.string(), "", "gnuplot wrote no picture");
   fs::rename(part.path(), figure, error);
   if (error) throw FileError(figure.string(), "", "cannot be given its name: " + error.message());
+  note_written_file();
 }
 
 }  // namespace stridor

@@ -51,6 +51,7 @@ void PartFile::move_to_final(Overwrite overwrite) {
   if (!replaced || !replaced->is_held()) {
     // Another process may have made the file meanwhile; not every file system can tell.
     if (renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, final_path_.c_str(), RENAME_NOREPLACE) == 0) {
+      note_written_file();
       is_made_ = false;
       return;
     }
@@ -63,6 +64,7 @@ void PartFile::move_to_final(Overwrite overwrite) {
 void PartFile::replace() {
   if (std::rename(path_.c_str(), final_path_.c_str()) != 0)
     throw FileError(final_path_, "", "cannot be given its name: " + errno_text(errno));
+  note_written_file();
   is_made_ = false;
 }
 

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/stop_token.hpp"
 #include "io/hdf5_handles.hpp"
 #include "io/run_file.hpp"
 
@@ -45,6 +46,7 @@ class PartFile {
  private:
   std::string final_path_;
   std::string path_;
+  UnfinishedFile unfinished_{path_};
   bool is_made_ = false;
 };
 

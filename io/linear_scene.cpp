@@ -7,10 +7,12 @@
 #include <stdexcept>
 
 #include "core/errors.hpp"
+#include "core/memory.hpp"
 #include "io/disc_recorder.hpp"
 #include "io/matrix_reader.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_reader.hpp"
+#include "models/set_up_estimate.hpp"
 
 namespace stridor {
 namespace {
@@ -50,6 +52,7 @@ LinearSystem dense_system(const SparseSystem& sparse) {
 }
 
 LinearModel model_of(const DiscScene& scene, const LoadedLinearScene&) {
+  require_memory(estimate_set_up(scene.model), memory_limit());
   LinearModel model;
   model.disc = make_disc_model(scene.model);
   model.dense = model.disc->system;

@@ -138,6 +138,7 @@ std::string RunFileWriter::Impl::close_file() {
   note(time_dataset.close());
   for (Handle& checkpoint : checkpoints) note(checkpoint.close());
   note(file.close());
+  orderly.reset();
   return cause;
 }
 

@@ -3,12 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/errors.hpp"
+#include "core/stop_token.hpp"
 #include "io/hdf5_output.hpp"
 #include "io/run_file.hpp"
 #include "io/staged_file.hpp"
@@ -59,6 +61,8 @@ struct RunFileWriter::Impl {
   void commit(const std::string& dataset);
   std::string close_file();
 
+  /// Rows in memory would be lost.
+  std::optional<OrderlyStop> orderly{std::in_place};
   Checker at;
   RunFileOptions options;
   StagedFile staged;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/memory.hpp"
 #include "core/suggestion.hpp"
 #include "io/channels.hpp"
 #include "io/contact_scene.hpp"
@@ -14,6 +15,8 @@
 #include "io/resolved_scene.hpp"
 #include "io/scene_reader.hpp"
 #include "io/sphere_scene.hpp"
+#include "io/summary_memory.hpp"
+#include "models/set_up_estimate.hpp"
 
 namespace stridor {
 namespace {
@@ -273,6 +276,16 @@ LoadedScene load_resolved_scene(const std::string& text, const std::string& sour
   loaded.tree = read_scene_text(text, source);
   loaded.scene = read_as<Scene>(loaded.tree);
   return loaded;
+}
+
+void require_summary_memory(const LoadedScene& loaded) {
+  const Scene& scene = loaded.scene;
+  if (!scene.record) return;
+  try {
+    require_memory(estimate_summary(scene.time.end, scene.record->interval), memory_limit());
+  } catch (const ConfigError& error) {
+    throw loaded.located(error);
+  }
 }
 
 Model build_model(const LoadedScene& loaded) {

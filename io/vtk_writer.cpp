@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "core/errors.hpp"
+#include "core/stop_token.hpp"
 
 namespace stridor {
 namespace {
@@ -69,6 +70,7 @@ void write_vtk(const std::filesystem::path& path, const VtkMesh& mesh) {
     text += fmt::format("VECTORS {} double\n", name);
     append_plane_vectors(text, values);
   }
+  const OrderlyStop until_whole;
   std::ofstream file(path, std::ios::binary);
   file << text;
   file.close();

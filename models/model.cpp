@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/activity.hpp"
+#include "core/memory.hpp"
 #include "core/suggestion.hpp"
 #include "models/body_cache.hpp"
 #include "models/initial_motion.hpp"
+#include "models/set_up_estimate.hpp"
 
 namespace stridor {
 namespace {
@@ -469,6 +472,7 @@ Model make_model(const ModelParameters& parameters,
 
 Model make_model(const ModelParameters& parameters,
                  const std::vector<std::pair<PointName, std::string>>& observed, BodyCache& cache) {
+  require_memory(estimate_set_up(parameters), memory_limit());
   std::vector<Body> bodies;
   for (const auto& [name, substructure] : parameters.substructures) {
     if (name == rigid_name) {
@@ -478,6 +482,7 @@ Model make_model(const ModelParameters& parameters,
     Body body;
     body.name = name;
     body.parameters = &substructure;
+    const Activity assembling(fmt::format("assembling '{}'", name));
     try {
       body.matrices = cache.matrices(substructure);
     } catch (const ConfigError& error) {
@@ -602,6 +607,7 @@ Model make_model(const ModelParameters& parameters,
                                     "interface; take at most that",
                                     num_modes, type_name(*body.parameters), num_interior));
     }
+    const Activity reducing(fmt::format("reducing '{}'", body.name));
     try {
       BodyCache::Reduction reduction =
           cache.reduce(*body.parameters, body.matrices, body.interface, num_modes, body.watched);

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "core/activity.hpp"
+#include "core/stop_token.hpp"
 #include "substructures/lowest_modes.hpp"
 
 namespace stridor {
@@ -150,7 +152,10 @@ ReducedBody make_craig_bampton(const BodyMatrices& body, std::span<const int> in
   reduced.mass.topLeftCorner(nb, nb) = mass.bb;
 
   VectorBlock psi = -stiffness.ib;
+  Activity solving(fmt::format("{} constraint modes of {} unknowns", nb, partition.num_interior));
   for_column_groups(nb, [&](Eigen::Index first, Eigen::Index count) {
+    throw_if_stopped();
+    solving.report(static_cast<double>(first) / static_cast<double>(nb));
     factor.solve_lower_in_place(psi.middleCols(first, count));
     factor.solve_upper_in_place(psi.middleCols(first, count));
   });
@@ -158,8 +163,11 @@ ReducedBody make_craig_bampton(const BodyMatrices& body, std::span<const int> in
   reduced.stiffness.topLeftCorner(nb, nb) += stiffness.ib.transpose() * psi;
   correct_softest(stiffness, psi, reduced.stiffness);
 
+  Activity projecting("mass of the constraint modes");
   VectorBlock inertia_storage(partition.num_interior, std::min(group_width, nb));
   for_column_groups(nb, [&](Eigen::Index first, Eigen::Index count) {
+    throw_if_stopped();
+    projecting.report(static_cast<double>(first) / static_cast<double>(nb));
     const auto psi_group = psi.middleCols(first, count);
     const Eigen::Index num_rest = nb - first;  // from the diagonal on
     auto inertia = inertia_storage.leftCols(count);

@@ -9,7 +9,9 @@
 #include <random>
 #include <stdexcept>
 
+#include "core/activity.hpp"
 #include "core/errors.hpp"
+#include "core/stop_token.hpp"
 
 namespace stridor {
 namespace {
@@ -109,6 +111,7 @@ Modes Lanczos::solve() {
   Eigen::Index next_look = count_;
   VectorBlock block = random_block();
   for (int step = 0; step < max_steps; ++step) {
+    throw_if_stopped();
     append(block);
     apply(block);
     if (!block.allFinite()) break;
@@ -227,6 +230,7 @@ Modes lowest_modes(const SparseCholesky& stiffness, const SparseMatrix& stiffnes
   }
   if (count == 0) return {Eigen::VectorXd(0), Eigen::MatrixXd(size, 0)};
   // A Krylov space needs room beyond the wanted pairs; without it the dense solver is as cheap.
+  const Activity searching(fmt::format("{} modes of {} unknowns", count, size));
   const bool is_small = size <= 2 * count + 20 || size <= 60;
   Modes modes = is_small ? dense_modes(stiffness_matrix, mass, count)
                          : Lanczos(stiffness, mass, count).solve();

@@ -7,11 +7,13 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/activity.hpp"
 #include "core/errors.hpp"
 
 namespace stridor {
 
 ModalBody make_modal(const ReducedBody& body) {
+  const Activity solving(fmt::format("all modes of {} unknowns", body.size()));
   // The eigensolver takes the Cholesky factor of the mass unseen, and the factor takes NaN.
   if (!body.mass.allFinite() || body.mass.llt().info() != Eigen::Success) {
     throw NumericalError("modal form: the reduced mass is not positive definite");

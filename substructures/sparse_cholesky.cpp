@@ -9,6 +9,7 @@
 #include <new>
 #include <span>
 
+#include "core/activity.hpp"
 #include "core/errors.hpp"
 
 namespace stridor {
@@ -118,6 +119,7 @@ SparseCholesky::SparseCholesky(const SparseMatrix& matrix, const std::string& wh
     : factor_(std::make_unique<Factor>()) {
   factor_->size = matrix.rows();
   if (matrix.rows() == 0) return;
+  const Activity factorising(fmt::format("factorising {} x {}", matrix.rows(), matrix.cols()));
   Decomposition& decomposition = factor_->decomposition;
   decomposition.cholmod().print = 0;  // its warnings come back as exceptions here
   const auto refuse = [&] {

@@ -127,7 +127,9 @@ TEST(CompareProgram, StopsOnRequestAndSaysHowFarItCame) {
   program.send(SIGINT);
   const ProgramResult result = program.wait();
   EXPECT_EQ(result.exit_code, 5);
-  EXPECT_THAT(result.err, HasSubstr("nothing was compared"));
+  // During set-up there is no time that it has come to.
+  EXPECT_THAT(result.err,
+              AnyOf(HasSubstr("nothing was compared"), HasSubstr("nothing has been written")));
 }
 
 }  // namespace

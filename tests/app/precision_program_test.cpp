@@ -218,7 +218,7 @@ TEST(PrecisionProgram, StopsOnRequest) {
   program.send(SIGTERM);
   const ProgramResult result = program.wait();
   EXPECT_EQ(result.exit_code, 5);
-  EXPECT_THAT(result.err, HasSubstr("nothing was measured"));
+  EXPECT_THAT(result.err, HasSubstr("stopped on request"));
 }
 
 }  // namespace

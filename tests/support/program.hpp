@@ -44,6 +44,12 @@ class Program {
     return *this;
   }
 
+  /// Address space that it may take, bytes: a small machine.
+  Program& with_memory_limit(rlim_t bytes) {
+    memory_limit_ = bytes;
+    return *this;
+  }
+
   void start() {
     child_ = fork();
     if (child_ != 0) return;
@@ -51,6 +57,10 @@ class Program {
     if (file_limit_ != RLIM_INFINITY) {
       const rlimit limit{file_limit_, file_limit_};
       setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    if (memory_limit_ != RLIM_INFINITY) {
+      const rlimit limit{memory_limit_, memory_limit_};
+      setrlimit(RLIMIT_AS, &limit);
     }
     if (std::freopen((folder_ / "out").c_str(), "w", stdout) == nullptr) _exit(99);
     if (std::freopen((folder_ / "err").c_str(), "w", stderr) == nullptr) _exit(99);
@@ -104,6 +114,7 @@ class Program {
 
   std::vector<std::string> arguments_;
   rlim_t file_limit_ = RLIM_INFINITY;
+  rlim_t memory_limit_ = RLIM_INFINITY;
   TemporaryFolder folder_;
   pid_t child_ = -1;
 };

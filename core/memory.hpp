@@ -1,0 +1,28 @@
+// How much memory there is.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <string>
+
+namespace stridor {
+
+/// The most that this process may hold, and what sets it.
+struct MemoryLimit {
+  double bytes = std::numeric_limits<double>::infinity();
+  std::string source;  ///< "physical memory", ...
+};
+
+/// The least of: the memory of the machine, that of the control groups the process is in, and the
+/// limit of its address space (`ulimit -v`). Infinite where nothing says.
+MemoryLimit memory_limit();
+
+/// The same from other files than those of this machine.
+/// @param root          in the place of "/", for /proc and /sys
+/// @param address_space limit of it, bytes; may be infinite
+MemoryLimit memory_limit(const std::filesystem::path& root, double address_space);
+
+/// "18.9 GB", in powers of 1000.
+std::string memory_text(double bytes);
+
+}  // namespace stridor

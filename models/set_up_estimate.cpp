@@ -1,0 +1,266 @@
+#include "models/set_up_estimate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.hpp"
+
+namespace stridor {
+namespace {
+
+constexpr double number = 8.0;         ///< bytes of a real number
+constexpr double sparse_entry = 12.0;  ///< with its row
+constexpr const char* beam_remedy =
+    "take fewer elements, or keep fewer master nodes (interface.spacing)";
+
+/// "3.2e+06", "1,200": numbers of things, short.
+std::string count_text(double count) {
+  return count < 1e5 ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
+}
+
+std::string duration_text(double seconds) {
+  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  if (seconds < 172800.0) return fmt::format("{:.0f} h", seconds / 3600.0);
+  return fmt::format("{:.0f} days", seconds / 86400.0);
+}
+
+void append(SetUpEstimate& whole, const SetUpEstimate& part) {
+  whole.parts.insert(whole.parts.end(), part.parts.begin(), part.parts.end());
+  whole.operations += part.operations;
+}
+
+/// Nodes of a surface or point of a beam; 0 for a name that it does not have.
+double num_nodes_of(const BeamParameters& beam, const std::string& name) {
+  if (name == "top" || name == "bottom") return 2.0 * beam.mesh.along + 1.0;
+  if (name == "start_face" || name == "end_face") return 2.0 * beam.mesh.through + 1.0;
+  return 1.0;
+}
+
+double num_master_nodes_of(const BeamParameters& beam, const std::string& name) {
+  const double nodes = num_nodes_of(beam, name);
+  const std::optional<double>& spacing = beam.interface.spacing;
+  return spacing ? std::min(nodes, 1.0 + std::ceil(beam.length / *spacing)) : nodes;
+}
+
+/// The same of a body by matrices.
+double num_nodes_of(const TouchedMatrixBodyParameters& body, const std::string& name) {
+  const auto surface = body.surfaces.find(name);
+  return surface == body.surfaces.end() ? 1.0 : static_cast<double>(surface->second.points.size());
+}
+double num_master_nodes_of(const TouchedMatrixBodyParameters& body, const std::string& name) {
+  return num_nodes_of(body, name);
+}
+
+/// Nodes of a body that the contacts of a scene keep.
+template <class Body>
+double num_interface_nodes(const ModelParameters& model, const std::string& name,
+                           const Body& body) {
+  const std::string prefix = name + ".";
+  double nodes = 0.0;
+  for (const auto& [pair_name, pair] : model.pairs()) {
+    if (pair.master.starts_with(prefix))
+      nodes += num_master_nodes_of(body, pair.master.substr(prefix.size()));
+    for (const std::string& slave : pair.slave)
+      if (slave.starts_with(prefix)) nodes += num_nodes_of(body, slave.substr(prefix.size()));
+  }
+  return nodes;
+}
+
+ReductionSize size_of(const TouchedMatrixBodyParameters& body, double interface_nodes) {
+  ReductionSize size;
+  if (!body.matrices || !body.reduction) return size;
+  const auto n = static_cast<double>(body.matrices->mass.rows());
+  const auto stiffness = static_cast<double>(body.matrices->stiffness.nonZeros());
+  size.interface = size.watched = std::min(2.0 * interface_nodes, n);
+  size.unknowns = n - size.interface;
+  size.modes = body.reduction->fixed_interface_modes;
+  size.matrix_entries = static_cast<double>(body.matrices->mass.nonZeros()) + stiffness;
+  // As of a solid body under nested dissection.
+  size.factor_entries = std::max(0.5 * stiffness, std::min(0.5 * n * n, 4.0 * std::pow(n, 4.0 / 3.0)));
+  return size;
+}
+
+}  // namespace
+
+double SetUpEstimate::bytes() const {
+  double sum = 0.0;
+  for (const MemoryPart& part : parts) sum += part.bytes;
+  return sum;
+}
+
+double SetUpEstimate::seconds() const {
+  constexpr double operations_per_second = 4e9;
+  return operations / operations_per_second;
+}
+
+ReductionSize size_of(const MeshParameters& mesh, const ReductionParameters& reduction,
+                      double interface_nodes) {
+  const double a = mesh.along;
+  const double t = mesh.through;
+  const double nodes = (a + 1.0) * (2.0 * t + 1.0) + a * (t + 1.0);
+  // Pairs of nodes that share an element: 64 of each element; those of a shared edge (9) count
+  // twice, that of an inner corner four times less four edges.
+  const double pairs =
+      64.0 * a * t - 9.0 * ((a - 1.0) * t + a * (t - 1.0)) + (a - 1.0) * (t - 1.0);
+  ReductionSize size;
+  size.interface = 2.0 * interface_nodes;
+  size.watched = size.interface;
+  size.unknowns = std::max(2.0 * nodes - size.interface, 0.0);
+  size.modes = reduction.fixed_interface_modes;
+  size.matrix_entries = (4.0 + 2.0) * pairs;  // the mass does not couple x and y
+  // A row of a band matrix reaches over an element; of broad meshes nested dissection leaves less.
+  const double shorter = std::min(a, t);
+  const double band = 6.0 * shorter + 12.0;
+  const double dissected = 12.0 * std::log2(size.unknowns + 2.0);
+  size.factor_entries = size.unknowns * std::min(band, dissected);
+  // Triplets of all element matrices, and the same sorted into columns.
+  size.assembly_bytes = 256.0 * a * t * (16.0 + sparse_entry);
+  return size;
+}
+
+SetUpEstimate estimate_reduction(const ReductionSize& size, const std::string& key,
+                                 const SizeKey& of_size) {
+  const double n = size.unknowns;
+  const double nb = size.interface;
+  const double m = size.modes;
+  const double reduced = nb + m;
+  SetUpEstimate estimate;
+  const SizeKey of_modes{".reduction.fixed_interface_modes", "keep fewer modes"};
+  const auto add = [&](const SizeKey& cause, std::string what, double bytes) {
+    estimate.parts.push_back({key + cause.key, std::move(what), cause.remedy, bytes});
+  };
+  // Kept by the cache, by the body, and split into inside and interface.
+  constexpr double copies = 3.0;
+  add(of_size, fmt::format("mass and stiffness of {} unknowns", count_text(n + nb)),
+      copies * sparse_entry * size.matrix_entries);
+  // While the matrices are assembled nothing else is there; after that the factor, and either the
+  // Krylov space of the modes, or the modes with the constraint modes.
+  constexpr double krylov_room = 240.0;  // see Lanczos in lowest_modes.cpp
+  const double krylov_width = m > 0.0 ? std::min(n, 3.0 * m + krylov_room) : 0.0;
+  const double krylov = number * n * (krylov_width + 2.0 * m + 24.0);
+  const double constraint = number * n * (nb + std::min(nb, 40.0) + 2.0 * m);
+  const double factor = 1.3 * number * size.factor_entries;
+  if (size.assembly_bytes > factor + std::max(krylov, constraint)) {
+    add(of_size, "the element matrices before they are summed", size.assembly_bytes);
+  } else {
+    add(of_size,
+        fmt::format("the factor of the stiffness, {} entries", count_text(size.factor_entries)),
+        factor);
+    if (krylov > constraint) {
+      add(3.0 * m > krylov_room ? of_modes : of_size,
+          fmt::format("a Krylov space of {} vectors of {} unknowns for {} modes",
+                      count_text(krylov_width), count_text(n), count_text(m)),
+          krylov);
+    } else {
+      add(of_size,
+          fmt::format("constraint modes of {} interface unknowns, each of {} unknowns",
+                      count_text(nb), count_text(n)),
+          constraint);
+    }
+  }
+  // Mass, stiffness, shapes and rows, in the cache and in the system; the eigensolver takes as much
+  // again as they are.
+  add(nb >= m ? of_size : of_modes,
+      fmt::format("dense matrices of the {} reduced unknowns", count_text(reduced)),
+      number * reduced * (9.0 * reduced + 4.0 * size.watched));
+
+  const double per_solve = 4.0 * size.factor_entries;
+  const double num_solves = nb + (m > 0.0 ? 2.0 * m + 40.0 : 0.0);
+  const double entries_per_column = n > 0.0 ? size.factor_entries / n : 0.0;
+  estimate.operations = n * entries_per_column * entries_per_column + num_solves * per_solve +
+                        4.0 * n * krylov_width * krylov_width + n * nb * (nb + 2.0 * m) +
+                        25.0 * reduced * reduced * reduced;
+  return estimate;
+}
+
+SetUpEstimate estimate_set_up(const ModelParameters& model) {
+  SetUpEstimate whole;
+  for (const auto& [name, parameters] : model.substructures) {
+    const std::string key = "substructures." + name;
+    if (const auto* beam = std::get_if<BeamParameters>(&parameters)) {
+      const double nodes = num_interface_nodes(model, name, *beam);
+      append(whole, estimate_reduction(size_of(beam->mesh, beam->reduction, nodes), key,
+                                       {".mesh.along", beam_remedy}));
+    } else {
+      const auto& body = std::get<TouchedMatrixBodyParameters>(parameters);
+      append(whole, estimate_reduction(size_of(body, num_interface_nodes(model, name, body)), key,
+                                       {".mass", "give smaller matrices, or fewer points"}));
+    }
+  }
+  return whole;
+}
+
+SetUpEstimate estimate_set_up(const DiscModelParameters& model) {
+  SetUpEstimate whole;
+  double size = (2.0 * model.disc.plate.nodal_diameters + 1.0) * model.disc.plate.radial_modes;
+  const double num_points =
+      model.contact.offsets.empty()
+          ? (model.pads.elastic ? 2.0 * model.pads.elastic->mesh.along + 1.0 : 1.0)
+          : static_cast<double>(model.contact.offsets.size());
+  if (model.pads.elastic) {
+    const ElasticPadParameters& pad = *model.pads.elastic;
+    // A point between nodes is held by those of an edge.
+    const double nodes = std::min(2.0 * pad.mesh.along + 1.0,
+                                  model.contact.offsets.empty() ? num_points : 3.0 * num_points);
+    ReductionSize reduction = size_of(pad.mesh, pad.reduction, nodes);
+    reduction.watched = 2.0 * (2.0 * pad.mesh.along + 1.0);
+    append(whole, estimate_reduction(reduction, "pads.elastic",
+                                     {".mesh.along", "take fewer elements, or name fewer contact points (contact.offsets)"}));
+    size += 2.0 * (reduction.interface + reduction.modes + 1.0);
+  } else {
+    size += 6.0;
+  }
+  // Mass, velocity and position of the bodies and of their small motion, spin and products of it;
+  // each contact has eight rows of both pads.
+  whole.parts.push_back(
+      {"disc.nodal_diameters",
+       fmt::format("dense matrices of {} unknowns of disc and pads", count_text(size)),
+       "keep fewer nodal diameters or radial modes",
+       number * size * (14.0 * size + 32.0 * num_points)});
+  whole.operations += 20.0 * size * size * size;
+  return whole;
+}
+
+SetUpEstimate estimate_set_up(const SlidingContactParameters& contact) {
+  const auto cells = static_cast<double>(contact.grid);
+  SetUpEstimate estimate;
+  constexpr double numbers_per_cell = 60.0;
+  estimate.parts.push_back(
+      {"contact_solver.grid",
+       fmt::format("fields and influence coefficients of {0:.0f} x {0:.0f} cells", cells),
+       "take a coarser grid", number * numbers_per_cell * cells * cells});
+  return estimate;
+}
+
+SetUpEstimate estimate_summary(double end, double interval) {
+  // Time and acceleration, its transform and envelope in the band.
+  constexpr double numbers_per_sample = 12.0;
+  const double samples = end / interval;
+  SetUpEstimate estimate;
+  estimate.parts.push_back({"record.interval",
+                            fmt::format("the series of {} samples, {:g} s apart over {:g} s",
+                                        count_text(samples), interval, end),
+                            "record at a longer interval, or end earlier",
+                            number * numbers_per_sample * samples});
+  return estimate;
+}
+
+void require_memory(const SetUpEstimate& estimate, const MemoryLimit& limit) {
+  const double needed = estimate.bytes();
+  if (estimate.parts.empty() || needed <= limit.bytes) return;
+  const auto largest =
+      std::max_element(estimate.parts.begin(), estimate.parts.end(),
+                       [](const MemoryPart& a, const MemoryPart& b) { return a.bytes < b.bytes; });
+  throw ConfigError(
+      largest->key,
+      fmt::format("the set-up would take about {} of memory and {} of time, but {} is {}; the most "
+                  "of it, {}, is for {}; {}",
+                  memory_text(needed), duration_text(estimate.seconds()), limit.source,
+                  memory_text(limit.bytes), memory_text(largest->bytes), largest->what,
+                  largest->remedy));
+}
+
+}  // namespace stridor

@@ -1,0 +1,71 @@
+// What the set-up of a scene takes, before anything is allocated for it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/memory.hpp"
+#include "models/disc_parameters.hpp"
+#include "models/model.hpp"
+#include "solvers/sliding_contact.hpp"
+
+namespace stridor {
+
+/// A part of the memory that is held at the same time as the others.
+struct MemoryPart {
+  std::string key;     ///< that makes it large
+  std::string what;    ///< with the numbers it comes from
+  std::string remedy;  ///< what to change
+  double bytes = 0.0;
+};
+
+/// Memory and work of a set-up. Formulas count the large arrays; see set_up_estimate.cpp for what
+/// was measured.
+struct SetUpEstimate {
+  std::vector<MemoryPart> parts;
+  double operations = 0.0;  ///< multiplications and additions
+
+  double bytes() const;
+  /// Time by the operations of one thread, s; good to a factor of about three.
+  double seconds() const;
+};
+
+/// A body that Craig-Bampton reduces.
+struct ReductionSize {
+  double unknowns = 0.0;          ///< inside, without those of the interface
+  double interface = 0.0;         ///< unknowns kept
+  double watched = 0.0;           ///< rows of displacements that are wanted
+  double modes = 0.0;             ///< fixed-interface modes
+  double matrix_entries = 0.0;    ///< of mass and stiffness
+  double factor_entries = 0.0;    ///< of the Cholesky factor of the stiffness inside
+  double assembly_bytes = 0.0;    ///< while the matrices are assembled
+};
+
+/// That of a beam or an elastic pad.
+/// @param interface_nodes kept, with two unknowns each
+ReductionSize size_of(const MeshParameters& mesh, const ReductionParameters& reduction,
+                      double interface_nodes);
+
+/// The key of a body that makes it large, and what to do about it.
+struct SizeKey {
+  std::string key;  ///< below that of the body, e.g. ".mesh.along"
+  std::string remedy;
+};
+/// @param key of the body, e.g. "substructures.plate"
+SetUpEstimate estimate_reduction(const ReductionSize& size, const std::string& key,
+                                 const SizeKey& of_size);
+
+/// Of beams; of bodies by matrices only once these are read. Names that lead nowhere count nothing.
+SetUpEstimate estimate_set_up(const ModelParameters& model);
+SetUpEstimate estimate_set_up(const DiscModelParameters& model);
+/// Of boundary elements.
+SetUpEstimate estimate_set_up(const SlidingContactParameters& contact);
+
+/// Of the series of a run as they are read back to be summed up.
+/// @param end, interval of the samples, s
+SetUpEstimate estimate_summary(double end, double interval);
+
+/// @throws ConfigError naming the largest part, if all of them do not fit
+void require_memory(const SetUpEstimate& estimate, const MemoryLimit& limit);
+
+}  // namespace stridor

@@ -1,0 +1,104 @@
+// Set-up: what does not fit into memory is refused before it begins, and a signal ends the rest.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/support/program.hpp"
+
+namespace stridor::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using Strings = std::vector<std::string>;
+
+constexpr rlim_t gigabyte = 1'000'000'000;
+
+/// A mesh that fits into memory and whose set-up takes a minute or more.
+Strings with_long_set_up(Strings command) {
+  command.insert(command.end(), {"--set", "substructures.cantilever.mesh.along=4000", "--set",
+                                 "substructures.cantilever.mesh.through=8", "--set",
+                                 "substructures.cantilever.reduction.fixed_interface_modes=200"});
+  return command;
+}
+
+TEST(SetUpProgram, WhatDoesNotFitIntoMemoryIsRefusedBeforeItBegins) {
+  const std::string scene = scene_path("beam_on_beam.yaml");
+  for (const Strings& verb : {Strings{"check", scene}, {"eig", scene}, {"run", scene, "-o", "x"}}) {
+    Strings command = verb;
+    command.insert(command.end(), {"--set", "substructures.cantilever.mesh.along=900000"});
+    const auto start = std::chrono::steady_clock::now();
+    const ProgramResult result = Program(command).with_memory_limit(20 * gigabyte).run();
+    EXPECT_EQ(result.exit_code, 2) << verb[0];
+    EXPECT_THAT(result.err,
+                AllOf(HasSubstr("substructures.cantilever.mesh.along"),
+                      HasSubstr("the limit of its address space (ulimit -v) is 20 GB"),
+                      HasSubstr("of 9e+06 unknowns"), HasSubstr("take fewer elements")));
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+  }
+}
+
+TEST(SetUpProgram, DiscsContactsAndRecordsAreRefusedLikewise) {
+  const auto refusal = [](Strings command) {
+    const ProgramResult result = Program(std::move(command)).with_memory_limit(3 * gigabyte).run();
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(refusal({"eig", scene_path("disc_and_pads.yaml"), "--set",
+                       "disc.nodal_diameters=200", "--set", "disc.radial_modes=40", "--set",
+                       "disc.radial_terms=40"}),
+              HasSubstr("disc.nodal_diameters"));
+  EXPECT_THAT(refusal({"check", scene_path("examples/elastic_pads.yaml"), "--set",
+                       "pads.elastic.mesh.along=900000"}),
+              HasSubstr("pads.elastic.mesh.along"));
+  EXPECT_THAT(refusal({"contact", scene_path("viscoelastic_contact.yaml"), "--set",
+                       "contact_solver.grid=4096"}),
+              HasSubstr("contact_solver.grid"));
+  EXPECT_THAT(refusal({"check", scene_path("beam_on_beam.yaml"), "--set", "time.end=10000", "--set",
+                       "record.interval=2e-7", "--set", "measure.band=[]"}),
+              HasSubstr("record.interval"));
+}
+
+TEST(SetUpProgram, HearsASignalWhateverItIsAt) {
+  const TemporaryFolder folder;
+  const std::string scene = scene_path("beam_on_beam.yaml");
+  const std::string file = (folder / "run.h5").string();
+  // At several moments: while matrices are assembled, factorised, reduced.
+  int delay_ms = 50;
+  for (const Strings& verb :
+       {Strings{"check", scene}, {"run", scene, "-o", file}, {"eig", scene},
+        {"threshold", scene, "--from", "30mm", "--to", "31mm"}, {"compare", scene}}) {
+    Program program(with_long_set_up(verb));
+    program.start();
+    std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
+    delay_ms += 400;
+    const auto asked = std::chrono::steady_clock::now();
+    program.send(SIGTERM);
+    const ProgramResult result = program.wait();
+    EXPECT_EQ(result.exit_code, 5) << verb[0] << result.err;
+    EXPECT_THAT(result.err, HasSubstr("stopped on request")) << verb[0];
+    // At once or nearly so, but a busy machine takes its time.
+    EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(20)) << verb[0];
+    EXPECT_TRUE(folder.files().empty()) << verb[0];
+  }
+}
+
+TEST(SetUpProgram, ASignalIsToldAsJsonWhereThatIsAskedFor) {
+  Program program(with_long_set_up({"eig", scene_path("beam_on_beam.yaml"), "--json"}));
+  program.start();
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  program.send(SIGINT);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.exit_code, 5) << result.err;
+  EXPECT_THAT(nlohmann::json::parse(result.out)["errors"][0]["message"].get<std::string>(),
+              HasSubstr("stopped on request"));
+}
+
+}  // namespace
+}  // namespace stridor::test
