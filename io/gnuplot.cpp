@@ -19,6 +19,7 @@
 #include <stdexcept>
 
 #include "core/errors.hpp"
+#include "io/part_file.hpp"
 
 extern char** environ;
 
@@ -57,20 +58,6 @@ class PrivateFolder {
 
  private:
   fs::path path_;
-};
-
-// A file that is removed unless it is moved to its final name.
-class PartFigure {
- public:
-  explicit PartFigure(const fs::path& figure)
-      : path_(fmt::format("{}.part-{}", figure.string(), getpid())) {}
-  PartFigure(const PartFigure&) = delete;
-  PartFigure& operator=(const PartFigure&) = delete;
-  ~PartFigure() { unlink(path_.c_str()); }
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
 };
 
 struct Outcome {
@@ -211,7 +198,8 @@ void draw_figure(const fs::path& figure, const std::string& script, FigureSize s
   }
 
   const PrivateFolder scratch(figure);
-  const PartFigure part(figure);
+  PartFile part(figure.string());
+  part.made();
   const fs::path script_path = scratch.path() / "script.gp";
   {
     std::ofstream file(script_path, std::ios::binary);
@@ -243,8 +231,7 @@ void draw_figure(const fs::path& figure, const std::string& script, FigureSize s
   }
   const auto drawn = fs::file_size(part.path(), error);
   if (error || drawn == 0) throw FileError(figure.string(), "", "gnuplot wrote no picture");
-  fs::rename(part.path(), figure, error);
-  if (error) throw FileError(figure.string(), "", "cannot be given its name: " + error.message());
+  part.replace();
 }
 
 }  // namespace stridor

@@ -10,6 +10,7 @@
 #include "io/disc_recorder.hpp"
 #include "io/matrix_reader.hpp"
 #include "io/resolved_scene.hpp"
+#include "io/scene_files.hpp"
 #include "io/scene_reader.hpp"
 
 namespace stridor {
@@ -196,7 +197,7 @@ std::string LoadedLinearScene::resolved() const {
 }
 
 std::string LoadedLinearScene::hash() const {
-  return scene_hash(resolved());
+  return scene_hash(resolved(), scene_files(*this));
 }
 
 LinearModel LoadedLinearScene::model() const {
