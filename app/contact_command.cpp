@@ -20,6 +20,7 @@
 #include "io/gnuplot.hpp"
 #include "io/law_table_file.hpp"
 #include "io/panel_plot.hpp"
+#include "io/part_file.hpp"
 #include "solvers/contact_table.hpp"
 #include "solvers/master_curve.hpp"
 
@@ -296,11 +297,7 @@ ExitCode make_master_curve(const ContactOptions& options, const LoadedContactSce
   }
   if (!computed.converged())
     throw NumericalError("a point of the master curve did not converge; nothing has been written");
-  std::FILE* file = std::fopen(path.c_str(), "w");
-  const bool is_written =
-      file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  if (file == nullptr || std::fclose(file) != 0 || !is_written)
-    throw FileError(path, "", "cannot be written");
+  write_text_file(path, text);
   if (options.common.json) {
     fmt::print("{}\n",
                Json{{"modulus_ratio", computed.curve.modulus_ratio}, {"points", points}}.dump(2));

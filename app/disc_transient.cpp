@@ -118,9 +118,10 @@ DiscTransient::DiscTransient(const LoadedLinearScene& loaded, const RunOutput& o
   const Perturbation start = perturbation();
   eigenvalue_ = start.s;
   motion_->start(start.displacement, start.velocity);
-  writer_.emplace(file_, output.overwrite,
-                  run_header(output.command_line, loaded.tree.document, loaded.resolved()),
-                  recorder_->series());
+  writer_.emplace(
+      file_, output.overwrite,
+      run_header(output.command_line, loaded.tree.document, loaded.resolved(), scene_files(loaded)),
+      recorder_->series());
   recorder_->sample(*motion_, *writer_, last_sample_);
   write_checkpoint();
   setup_seconds_ = keeper_.seconds();

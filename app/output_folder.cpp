@@ -1,9 +1,7 @@
 #include "app/output_folder.hpp"
 
-#include <fstream>
-
 #include "core/errors.hpp"
-#include "core/stop_token.hpp"
+#include "io/part_file.hpp"
 
 namespace stridor {
 
@@ -18,11 +16,7 @@ void prepare_folder(const fs::path& folder, const std::vector<std::string>& name
 }
 
 void write_json(const fs::path& path, const Json& object) {
-  const OrderlyStop until_whole;
-  std::ofstream file(path);
-  file << object.dump(2) << '\n';
-  file.close();
-  if (!file) throw FileError(path.string(), "", "cannot be written");
+  write_text_file(path.string(), object.dump(2) + "\n");
 }
 
 }  // namespace stridor

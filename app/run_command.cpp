@@ -194,8 +194,42 @@ ExitCode begin(const RunOptions& options) {
   return run_to_end(transient, loaded, options.output, study, ending);
 }
 
+std::vector<Expectation> expectations_of(const SceneNode& tree, const std::string& text,
+                                         const std::string& source) {
+  if (is_sphere_scene(tree)) return load_resolved_sphere_scene(text, source).scene.expect;
+  if (is_disc_scene(tree))
+    return std::get<DiscScene>(load_resolved_linear_scene(text, source).scene).expect;
+  return load_resolved_scene(text, source).scene.expect;
+}
+
+/// Says what a run gave that is done already.
+ExitCode report_done(const RunOptions& options, const RunFileReader& reader) {
+  if (options.error) {
+    throw ConfigError("--error", options.resumed +
+                                     " holds a whole run; an error is estimated with the run, "
+                                     "so begin it anew");
+  }
+  const Json results = stored_results(reader);
+  if (options.common.json) {
+    fmt::print("{}\n", results.dump(2));
+  } else {
+    fmt::print("{:<24}done; {} holds the whole run, there is nothing left to do\n", "status",
+               options.resumed);
+  }
+  if (options.verify) {
+    const std::string& text = reader.header().scene_resolved;
+    const std::string source = options.resumed + ":/scene/resolved";
+    check_expectations(expectations_of(read_scene_text(text, source), text, source), results);
+  }
+  return ExitCode::done;
+}
+
 ExitCode resume(const RunOptions& options) {
   std::optional<DamageGuard> guard(options.resumed);
+  {
+    const RunFileReader reader(options.resumed);
+    if (is_done(reader)) return report_done(options, reader);
+  }
   const InterruptedRun interrupted = find_interrupted_run(options.resumed);
   guard.reset();
   const std::string source = options.resumed + ":/scene/resolved";

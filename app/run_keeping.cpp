@@ -5,7 +5,6 @@
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
 #include "core/version.hpp"
-#include "io/scene.hpp"
 
 namespace stridor {
 namespace {
@@ -22,6 +21,27 @@ void store(RunFileWriter& writer, const std::string& prefix, const Json& object)
 
 }  // namespace
 
+bool is_done(const RunFileReader& reader) {
+  const auto results = reader.results();
+  const auto status = results.find("status");
+  return status != results.end() && status->second == std::variant<std::string, double>("done");
+}
+
+Json stored_results(const RunFileReader& reader) {
+  Json results = Json::object();
+  for (const auto& [name, value] : reader.results()) {
+    Json* place = &results;
+    std::size_t begin = 0;
+    for (std::size_t dot = name.find('.'); dot != std::string::npos; dot = name.find('.', begin)) {
+      place = &(*place)[name.substr(begin, dot - begin)];
+      begin = dot + 1;
+    }
+    const std::string last = name.substr(begin);
+    std::visit([&](const auto& one) { (*place)[last] = one; }, value);
+  }
+  return results;
+}
+
 InterruptedRun find_interrupted_run(const std::string& file) {
   const RunFileReader reader(file);
   const RunFileHeader& header = reader.header();
@@ -35,7 +55,7 @@ InterruptedRun find_interrupted_run(const std::string& file) {
   const auto status = results.find("status");
   const std::string* text =
       status == results.end() ? nullptr : std::get_if<std::string>(&status->second);
-  if (text != nullptr && *text == "done")
+  if (is_done(reader))
     throw FileError(file, "", "holds a whole run, there is nothing to go on with");
   if (text != nullptr && *text == "failed") {
     throw FileError(file, "",
@@ -46,6 +66,7 @@ InterruptedRun find_interrupted_run(const std::string& file) {
     throw FileError(file, checkpoint_group,
                     "there is no whole checkpoint to go on from; run the scene anew");
   }
+  check_unchanged(header, file);
   return {file, header.scene_resolved, *std::move(checkpoint)};
 }
 
@@ -55,14 +76,15 @@ void throw_unfit_checkpoint(const std::string& file, const std::string& what) {
 }
 
 RunFileHeader run_header(const std::string& command_line, const std::string& text,
-                         const std::string& resolved) {
+                         const std::string& resolved, const std::vector<SceneFile>& files) {
   return {std::string(version),
           std::string(commit),
           command_line,
-          scene_hash(resolved),
+          scene_hash(resolved, files),
           utc_now(),
           text,
-          resolved};
+          resolved,
+          scene_digests(text, files)};
 }
 
 void store_results(RunFileWriter& writer, const Json& results) {

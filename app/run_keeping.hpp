@@ -8,6 +8,7 @@
 
 #include "app/command.hpp"
 #include "io/run_file.hpp"
+#include "io/scene_files.hpp"
 
 namespace stridor {
 
@@ -32,17 +33,23 @@ struct InterruptedRun {
   Checkpoint checkpoint;
 };
 
+/// Whether a run file holds a run that is done.
+bool is_done(const RunFileReader& reader);
+/// The results that a run file keeps, as `run` nests them: numbers and texts, no lists.
+Json stored_results(const RunFileReader& reader);
+
 /// Finds out whether and from where a run can go on.
-/// @throws FileError if the file is no run file, was written by another program, holds a whole run
-///         or no checkpoint
+/// @throws FileError if the file is no run file, was written by another program or of a scene that
+///         is not what it was, holds a whole run or no checkpoint
 InterruptedRun find_interrupted_run(const std::string& file);
 /// That its checkpoint is of another scene or program.
 [[noreturn]] void throw_unfit_checkpoint(const std::string& file, const std::string& what);
 
 /// @param text     of the scene as given
 /// @param resolved with all defaults and --set
+/// @param files    that it names
 RunFileHeader run_header(const std::string& command_line, const std::string& text,
-                         const std::string& resolved);
+                         const std::string& resolved, const std::vector<SceneFile>& files);
 
 /// Writes the numbers and texts of a JSON object under dotted names.
 void store_results(RunFileWriter& writer, const Json& results);

@@ -130,9 +130,10 @@ SphereTransient::SphereTransient(const LoadedSphereScene& loaded, const RunOutpu
   } else {
     stepper_->start(start, Eigen::Vector2d::Zero());
   }
-  writer_.emplace(file_, output.overwrite,
-                  run_header(output.command_line, loaded.tree.document, loaded.resolved()),
-                  specs_of(recorded(numbers_, scene().model.sphere.radius)));
+  writer_.emplace(
+      file_, output.overwrite,
+      run_header(output.command_line, loaded.tree.document, loaded.resolved(), scene_files(loaded)),
+      specs_of(recorded(numbers_, scene().model.sphere.radius)));
   write_checkpoint();
   setup_seconds_ = keeper_.seconds();
 }

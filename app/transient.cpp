@@ -88,8 +88,10 @@ Transient::Transient(const LoadedScene& loaded, const RunOutput& output)
     throw loaded.located(error);
   }
   const auto file_start = Clock::now();
-  writer_.emplace(file_, output.overwrite,
-                  run_header(output.command_line, loaded.text, loaded.resolved()), series());
+  writer_.emplace(
+      file_, output.overwrite,
+      run_header(output.command_line, loaded.text, loaded.resolved(), scene_files(loaded)),
+      series());
   for (const SystemBody& body : model_.system.bodies) write_modes(*writer_, body);
   make_march();
   write_checkpoint();

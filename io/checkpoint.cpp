@@ -6,19 +6,14 @@
 #include <string>
 #include <type_traits>
 
+#include "core/checksum.hpp"
+
 namespace stridor {
 namespace {
 
 constexpr std::array<unsigned char, 8> mark{'s', 't', 'r', 'i', 'd', 'o', 'r', 'C'};
 /// mark, number of bytes that follow the head, their checksum
 constexpr std::size_t head_size = mark.size() + 2 * sizeof(std::uint64_t);
-
-/// FNV-1a.
-std::uint64_t checksum(std::span<const unsigned char> bytes) {
-  std::uint64_t sum = 14695981039346656037ULL;
-  for (const unsigned char byte : bytes) sum = (sum ^ byte) * 1099511628211ULL;
-  return sum;
-}
 
 class Packer {
  public:
@@ -75,7 +70,7 @@ std::vector<unsigned char> encode(const Checkpoint& checkpoint) {
   Packer whole;
   whole.add(mark.data(), mark.size());
   whole.add(content.bytes().size());
-  whole.add(checksum(content.bytes()));
+  whole.add(fnv1a(content.bytes()));
   whole.add(content.bytes().data(), content.bytes().size());
   return whole.bytes();
 }
@@ -87,7 +82,7 @@ std::optional<Checkpoint> decode(std::span<const unsigned char> bytes) {
   std::uint64_t sum = 0;
   if (!head.take(size) || !head.take(sum) || size > head.rest().size()) return {};
   const auto payload = head.rest().first(size);
-  if (checksum(payload) != sum) return {};
+  if (fnv1a(payload) != sum) return {};
 
   Unpacker content(payload);
   Checkpoint checkpoint;

@@ -22,6 +22,7 @@
 #include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
+#include "io/part_file.hpp"
 
 extern char** environ;
 
@@ -64,21 +65,6 @@ class PrivateFolder {
  private:
   fs::path path_;
   std::deque<UnfinishedFile> unfinished_;
-};
-
-// A file that is removed unless it is moved to its final name.
-class PartFigure {
- public:
-  explicit PartFigure(const fs::path& figure)
-      : path_(fmt::format("{}.part-{}", figure.string(), getpid())) {}
-  PartFigure(const PartFigure&) = delete;
-  PartFigure& operator=(const PartFigure&) = delete;
-  ~PartFigure() { unlink(path_.c_str()); }
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-  UnfinishedFile unfinished_{path_};
 };
 
 struct Outcome {
@@ -221,7 +207,8 @@ void draw_figure(const fs::path& figure, const std::string& script, FigureSize s
 
   const Activity drawing("drawing " + figure.filename().string());
   const PrivateFolder scratch(figure);
-  const PartFigure part(figure);
+  PartFile part(figure.string());
+  part.made();
   const fs::path script_path = scratch.script();
   {
     std::ofstream file(script_path, std::ios::binary);
@@ -253,9 +240,7 @@ void draw_figure(const fs::path& figure, const std::string& script, FigureSize s
   }
   const auto drawn = fs::file_size(part.path(), error);
   if (error || drawn == 0) throw FileError(figure.string(), "", "gnuplot wrote no picture");
-  fs::rename(part.path(), figure, error);
-  if (error) throw FileError(figure.string(), "", "cannot be given its name: " + error.message());
-  note_written_file();
+  part.replace();
 }
 
 }  // namespace stridor

@@ -8,6 +8,7 @@
 #include <cerrno>
 
 #include "core/errors.hpp"
+#include "io/regular_file.hpp"
 
 namespace stridor {
 
@@ -17,7 +18,8 @@ Handle open_hdf5_file(const Checker& at) {
   if (stat(path.c_str(), &status) != 0 || ::access(path.c_str(), R_OK) != 0) {
     throw FileError(path, "", "cannot be opened: " + errno_text(errno));
   }
-  if (S_ISDIR(status.st_mode)) throw FileError(path, "", "is a folder");
+  const std::string irregular = irregular_kind(path);
+  if (!irregular.empty()) throw FileError(path, "", "is " + irregular + ", not an HDF5 file");
   const htri_t is_hdf5 = H5Fis_hdf5(path.c_str());
   if (is_hdf5 == 0) throw FileError(path, "", "is not an HDF5 file");
   const Handle access = file_access(at);

@@ -1,15 +1,9 @@
 #include "io/hdf5_output.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstdio>
-#include <optional>
 
 #include "core/errors.hpp"
-#include "io/write_lock.hpp"
+#include "io/part_file.hpp"
 
 namespace stridor {
 
@@ -35,37 +29,6 @@ void write_attribute(const Checker& at, hid_t object, const std::string& dataset
       text != nullptr ? H5Awrite(attribute.id(), type.id(), text->c_str())
                       : H5Awrite(attribute.id(), H5T_NATIVE_DOUBLE, std::get_if<double>(&value));
   at.check(status, dataset, what.c_str());
-}
-
-PartFile::PartFile(std::string final_path)
-    : final_path_(std::move(final_path)), path_(fmt::format("{}.part-{}", final_path_, getpid())) {}
-
-PartFile::~PartFile() {
-  if (is_made_) unlink(path_.c_str());
-}
-
-void PartFile::move_to_final(Overwrite overwrite) {
-  // What is replaced stays locked until then: of two that replace it at once one is refused.
-  std::optional<WriteLock> replaced;
-  if (overwrite == Overwrite::yes) replaced.emplace(final_path_);
-  if (!replaced || !replaced->is_held()) {
-    // Another process may have made the file meanwhile; not every file system can tell.
-    if (renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, final_path_.c_str(), RENAME_NOREPLACE) == 0) {
-      note_written_file();
-      is_made_ = false;
-      return;
-    }
-    if (errno == EEXIST && overwrite == Overwrite::yes) throw_being_written(final_path_);
-    if (errno == EEXIST) throw FileError(final_path_, "", "exists; use --force to overwrite it");
-  }
-  replace();
-}
-
-void PartFile::replace() {
-  if (std::rename(path_.c_str(), final_path_.c_str()) != 0)
-    throw FileError(final_path_, "", "cannot be given its name: " + errno_text(errno));
-  note_written_file();
-  is_made_ = false;
 }
 
 void Hdf5Writer::make_group(const std::string& path) const {
@@ -102,6 +65,8 @@ void write_hdf5_file(const std::string& path, Overwrite overwrite, const Attribu
   Handle file = at.own(H5Fcreate(part.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()),
                        H5Fclose, "", "cannot be made");
   part.made();
+  // The file then begins as one of HDF5: should the process die, the next one knows it.
+  at.check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "", "cannot be written");
   for (const auto& [name, value] : attributes) write_attribute(at, file.id(), "", name, value);
   fill(Hdf5Writer(at, file.id()));
   at.check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "", "cannot be written");

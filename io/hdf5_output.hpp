@@ -1,5 +1,5 @@
-// What writers of HDF5 files share: attributes, and a file that appears under its name only when it
-// is whole. Only for the sources of io, whose users need no HDF5.
+// What writers of HDF5 files share: attributes, and files that are filled at once. Only for the
+// sources of io, whose users need no HDF5.
 #pragma once
 
 #include <functional>
@@ -7,7 +7,6 @@
 #include <variant>
 #include <vector>
 
-#include "core/stop_token.hpp"
 #include "io/hdf5_handles.hpp"
 #include "io/run_file.hpp"
 
@@ -22,33 +21,6 @@ Handle text_type(const Checker& at, std::size_t length, const std::string& datas
 /// @throws FileError if HDF5 refuses
 void write_attribute(const Checker& at, hid_t object, const std::string& dataset,
                      const std::string& name, const std::variant<std::string, double>& value);
-
-/// The temporary name of a file, in the same folder; what has been made under it is removed unless
-/// it takes its final name.
-class PartFile {
- public:
-  explicit PartFile(std::string final_path);
-  PartFile(const PartFile&) = delete;
-  PartFile& operator=(const PartFile&) = delete;
-  ~PartFile();
-
-  const std::string& path() const { return path_; }
-  /// Says that there is a file of this name now.
-  void made() { is_made_ = true; }
-  /// Gives the file its final name.
-  /// @throws FileError if the system refuses, another process has made a file of that name
-  ///         meanwhile and `overwrite` is no, or is writing the one that would be replaced
-  void move_to_final(Overwrite overwrite);
-  /// Gives the file its final name in place of one that this process holds locked.
-  /// @throws FileError if the system refuses
-  void replace();
-
- private:
-  std::string final_path_;
-  std::string path_;
-  UnfinishedFile unfinished_{path_};
-  bool is_made_ = false;
-};
 
 /// Fills a file that is being made.
 class Hdf5Writer {

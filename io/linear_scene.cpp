@@ -11,6 +11,7 @@
 #include "io/disc_recorder.hpp"
 #include "io/matrix_reader.hpp"
 #include "io/resolved_scene.hpp"
+#include "io/scene_files.hpp"
 #include "io/scene_reader.hpp"
 #include "models/set_up_estimate.hpp"
 
@@ -199,7 +200,7 @@ std::string LoadedLinearScene::resolved() const {
 }
 
 std::string LoadedLinearScene::hash() const {
-  return scene_hash(resolved());
+  return scene_hash(resolved(), scene_files(*this));
 }
 
 LinearModel LoadedLinearScene::model() const {

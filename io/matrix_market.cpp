@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "core/errors.hpp"
+#include "io/regular_file.hpp"
 
 namespace stridor {
 namespace {
@@ -196,6 +197,7 @@ SparseMatrix read_matrix_market(std::istream& text, const std::string& source) {
 }
 
 SparseMatrix read_matrix_file(const std::string& path) {
+  refuse_irregular_file(path);
   std::ifstream file(path);
   if (!file) throw FileError(path, "", "cannot be opened; expected a Matrix Market file");
   return read_matrix_market(file, path);

@@ -13,6 +13,16 @@
 namespace stridor {
 namespace {
 
+using P = MatrixBodyParameters;
+constexpr std::pair<const char*, MatrixText P::*> matrices_of_body[] = {
+    {"mass", &P::mass},
+    {"damping", &P::damping},
+    {"gyroscopic", &P::gyroscopic},
+    {"stiffness", &P::stiffness},
+    {"circulatory", &P::circulatory},
+    {"load_damping", &P::load_damping},
+    {"load_stiffness", &P::load_stiffness}};
+
 /// Whether a matrix is the name of a file, not rows.
 bool is_file(const MatrixText& text) {
   return text.size() == 1 &&
@@ -94,14 +104,19 @@ NamedMatrices read_matrices(const std::string& key, const SceneNode& tree,
   return MatrixLoader(key, tree).load(body);
 }
 
+std::vector<std::pair<std::string, std::string>> matrix_files(const std::string& key,
+                                                              const MatrixBodyParameters& body) {
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const auto& [name, member] : matrices_of_body) {
+    const MatrixText& text = body.*member;
+    if (is_file(text)) files.emplace_back(key + "." + name, text.front());
+  }
+  return files;
+}
+
 void make_files_absolute(const std::string& key, const SceneNode& tree,
                          MatrixBodyParameters& body) {
-  using P = MatrixBodyParameters;
-  for (const auto& [name, member] :
-       {std::pair{"mass", &P::mass}, std::pair{"damping", &P::damping},
-        std::pair{"gyroscopic", &P::gyroscopic}, std::pair{"stiffness", &P::stiffness},
-        std::pair{"circulatory", &P::circulatory}, std::pair{"load_damping", &P::load_damping},
-        std::pair{"load_stiffness", &P::load_stiffness}}) {
+  for (const auto& [name, member] : matrices_of_body) {
     MatrixText& text = body.*member;
     if (!is_file(text)) continue;
     const std::string path = path_of_file(tree, key + "." + name, text.front());

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "io/scene_tree.hpp"
 #include "substructures/matrix_body.hpp"
@@ -14,6 +16,11 @@ namespace stridor {
 /// @throws ConfigError with the key, or the place in a matrix file; FileError
 NamedMatrices read_matrices(const std::string& key, const SceneNode& tree,
                             const MatrixBodyParameters& body);
+
+/// The files that the matrices of a body come from: keys and names as written.
+/// @param key path of the body in the scene
+std::vector<std::pair<std::string, std::string>> matrix_files(const std::string& key,
+                                                              const MatrixBodyParameters& body);
 
 /// Names the files of a body from the root, so that a run file finds them wherever it is.
 /// Parameters as read_matrices().

@@ -2,6 +2,7 @@
 //
 //     /                      format, version, commit, command, scene_hash, date
 //     /scene/text, resolved  the scene as given and as resolved
+//     /scene/digests         of the text and of the files that the scene names, a line each
 //     /time                  s; dimension scale of every series
 //     /channels/<name>       recorded quantities, thinned
 //     /contact/<name>/…      force, gap, slip_velocity, position, state
@@ -36,13 +37,14 @@ enum class Overwrite { no, yes };
 
 /// Where a run comes from. Text is UTF-8 without zero bytes.
 struct RunFileHeader {
-  std::string version;         ///< of the program
-  std::string commit;          ///< of the source
-  std::string command;         ///< the command line
-  std::string scene_hash;      ///< of the resolved scene
-  std::string date;            ///< start of the run, ISO 8601 UTC; see utc_now()
-  std::string scene_text;      ///< the scene as given
-  std::string scene_resolved;  ///< the scene with all defaults and --set
+  std::string version;          ///< of the program
+  std::string commit;           ///< of the source
+  std::string command;          ///< the command line
+  std::string scene_hash;       ///< of the resolved scene and the files that it names
+  std::string date;             ///< start of the run, ISO 8601 UTC; see utc_now()
+  std::string scene_text;       ///< the scene as given
+  std::string scene_resolved;   ///< the scene with all defaults and --set
+  std::string scene_digests{};  ///< of the text and the files it names (io/scene_files.hpp)
 };
 
 /// Checks whether a run file can be made, before anything expensive is computed for it.
@@ -100,9 +102,10 @@ class RowSink {
 /// name when header, datasets and a first flush have succeeded: an existing file is replaced only
 /// by a readable one, and a set-up that fails leaves nothing behind. Every block is written
 /// channels first, then /time, in an order in which the file is readable after every single write;
-/// statics and results go into a copy that then takes the name of the file. So a process that is
-/// killed at any moment leaves a file that holds the blocks flushed before. A crash of the machine
-/// may leave less, as nothing waits for the disk.
+/// statics and results go into a copy that then takes the name of the file, after all rows that
+/// were appended before them. So a process that is killed at any moment leaves a file that holds
+/// the blocks flushed before, and one whose results say how the run ended holds all its rows. A
+/// crash of the machine may leave less rows: only what takes a name waits for the disk.
 ///
 /// If a write fails, the rows up to the present len(/time) stay readable. With a failed reservation
 /// (disk full) nothing is lost: the rows stay in memory and a later flush() may succeed. After any
@@ -151,7 +154,8 @@ class RunFileWriter : public RowSink {
   /// one checkpoint: there is a whole one at any moment. @throws FileError as append()
   void write_checkpoint(const State& state);
 
-  /// Writes an array that does not depend on time, e.g. "/modal/plate/frequency", units "Hz".
+  /// Writes an array that does not depend on time, e.g. "/modal/plate/frequency", units "Hz". Rows
+  /// in memory are written before, like for results.
   /// @throws FileError, std::invalid_argument as the constructor
   void write_static(const std::string& path, std::span<const double> values,
                     const std::string& units);

@@ -12,6 +12,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "io/part_file.hpp"
 #include "io/run_file_writer_impl.hpp"
 #include "io/write_lock.hpp"
 
@@ -50,12 +51,7 @@ void check_target(const std::string& path, Overwrite overwrite) {
   }
   if (!S_ISDIR(status.st_mode))
     throw FileError(path, "", fmt::format("'{}' is not a folder", folder));
-  if (stat(path.c_str(), &status) == 0) {
-    if (S_ISDIR(status.st_mode)) throw FileError(path, "", "is a folder");
-    if (!S_ISREG(status.st_mode))
-      throw FileError(path, "", "is not a regular file and is not replaced");
-    check_replaceable(path, overwrite);
-  }
+  check_replaceable(path, overwrite);
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     throw FileError(path, "",
                     fmt::format("cannot write in the folder '{}': {}", folder, errno_text(errno)));
@@ -109,6 +105,9 @@ void check_output(const std::string& path, Overwrite overwrite) {
 void check_replaceable(const std::string& path, Overwrite overwrite) {
   struct stat status = {};
   if (stat(path.c_str(), &status) != 0) return;
+  if (S_ISDIR(status.st_mode)) throw FileError(path, "", "is a folder");
+  if (!S_ISREG(status.st_mode))
+    throw FileError(path, "", "is not a regular file and is not replaced");
   if (overwrite == Overwrite::no) throw FileError(path, "", "exists; use --force to overwrite it");
   const WriteLock none_writes(path);
 }
@@ -181,6 +180,7 @@ void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& heade
     }
     write_text(at, file.id(), links, "/scene/text", header.scene_text);
     write_text(at, file.id(), links, "/scene/resolved", header.scene_resolved);
+    write_text(at, file.id(), links, "/scene/digests", header.scene_digests);
 
     time_dataset = create_series("/time", SeriesKind::real, "s");
     at.check(H5DSset_scale(time_dataset.id(), "time"), "/time", "cannot be made a dimension scale");
@@ -224,6 +224,7 @@ void RunFileWriter::Impl::create_checkpoints() {
 }
 
 void RunFileWriter::Impl::reopen(const Checkpoint& checkpoint) {
+  remove_leftovers(at.path());
   remove_results(at);
   staged.open(at.path());
   file = at.own(H5Fopen(at.path().c_str(), H5F_ACC_RDWR, access.id()), H5Fclose, "",

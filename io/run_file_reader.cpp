@@ -107,6 +107,9 @@ void RunFileReader::Impl::read_header() {
   }
   header.scene_text = text("/scene/text");
   header.scene_resolved = text("/scene/resolved");
+  // Files of earlier versions have none.
+  if (H5LTpath_valid(file.id(), "/scene/digests", true) > 0)
+    header.scene_digests = text("/scene/digests");
   times = read_rows("/time", nullptr);
 }
 

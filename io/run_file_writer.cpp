@@ -105,10 +105,8 @@ void RunFileWriter::Impl::write_rows(const Handle& dataset, const std::string& p
 void RunFileWriter::Impl::flush() {
   require_usable();
   const QuietErrors quiet;
-  if (times.empty()) {
-    if (restructured) modify([this] { commit(""); });
-    return;
-  }
+  if (restructured) modify([this] { commit(""); });
+  if (times.empty()) return;
   const auto start = std::chrono::steady_clock::now();
   if (options.reservation == RunFileOptions::Reservation::on) reserve(times.size());
   modify([this] {
@@ -123,6 +121,13 @@ void RunFileWriter::Impl::flush() {
   times.clear();
   for (Column& column : columns) column.rows.clear();
   write_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Rows and what is not rows reach the file one after the other, never together: results that say a
+// run is done must not be in a file whose last rows are missing.
+void RunFileWriter::Impl::settle() {
+  require_usable();
+  if (!times.empty()) flush();
 }
 
 // @return what went wrong, empty if nothing
@@ -196,6 +201,7 @@ void RunFileWriter::append(std::span<const double> time,
           fmt::format("run file: states of '{}' must be integers 0 to 255", spec.path));
     }
   }
+  if (impl.restructured) impl.flush();
   for (std::size_t begin = 0; begin < time.size();) {
     // Not less than one row, so that a block left over by a failed flush is tried again.
     const std::size_t room =
@@ -233,7 +239,7 @@ void RunFileWriter::write_checkpoint(const State& state) {
 void RunFileWriter::write_static(const std::string& path, std::span<const double> values,
                                  const std::string& units) {
   Impl& impl = *impl_;
-  impl.require_usable();
+  impl.settle();
   check_object_path(path);
   const QuietErrors quiet;
   if (H5LTpath_valid(impl.file.id(), path.c_str(), true) > 0) {
@@ -274,13 +280,13 @@ void write_result_attribute(const Checker& at, const Handle& file, const Handle&
 }  // namespace
 
 void RunFileWriter::write_result(const std::string& name, double value) {
-  impl_->require_usable();
+  impl_->settle();
   impl_->modify([&] { write_result_attribute(impl_->at, impl_->file, impl_->links, name, value); });
   impl_->restructured = true;
 }
 
 void RunFileWriter::write_result(const std::string& name, const std::string& value) {
-  impl_->require_usable();
+  impl_->settle();
   impl_->modify([&] { write_result_attribute(impl_->at, impl_->file, impl_->links, name, value); });
   impl_->restructured = true;
 }

@@ -54,6 +54,7 @@ struct RunFileWriter::Impl {
   void write_rows(const Handle& dataset, const std::string& path, SeriesKind kind,
                   std::span<const double> rows);
   void flush();
+  void settle();
   void require_usable() const;
   template <typename Action>
   void modify(const Action& action);
@@ -77,7 +78,7 @@ struct RunFileWriter::Impl {
   std::vector<std::uint8_t> states;
   std::uint64_t num_written = 0;
   double write_seconds = 0.0;
-  bool restructured = false;  // changed otherwise than by rows
+  bool restructured = false;  // changed otherwise than by rows; no rows are in memory then
   bool closed = false;
   bool broken = false;
 };

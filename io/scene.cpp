@@ -13,6 +13,7 @@
 #include "io/linear_scene.hpp"
 #include "io/matrix_reader.hpp"
 #include "io/resolved_scene.hpp"
+#include "io/scene_files.hpp"
 #include "io/scene_reader.hpp"
 #include "io/sphere_scene.hpp"
 #include "io/summary_memory.hpp"
@@ -218,16 +219,11 @@ std::string LoadedScene::resolved() const {
 }
 
 std::string scene_hash(const std::string& resolved) {
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const char character : resolved) {
-    hash ^= static_cast<unsigned char>(character);
-    hash *= 1099511628211ULL;
-  }
-  return fmt::format("{:016x}", hash);
+  return scene_hash(resolved, std::vector<SceneFile>());
 }
 
 std::string LoadedScene::hash() const {
-  return scene_hash(resolved());
+  return scene_hash(resolved(), scene_files(*this));
 }
 
 ConfigError LoadedScene::located(const ConfigError& error) const {

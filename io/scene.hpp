@@ -78,7 +78,7 @@ struct LoadedScene {
 
   /// The scene with every key and default written out.
   std::string resolved() const;
-  /// 16 hexadecimal digits that change with any key of the resolved scene (FNV-1a).
+  /// 16 hexadecimal digits of the resolved scene and the files that it names (FNV-1a).
   std::string hash() const;
   /// The same error with the places of its keys in this scene.
   ConfigError located(const ConfigError& error) const;

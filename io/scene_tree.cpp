@@ -23,6 +23,7 @@
 
 #include "core/excerpt.hpp"
 #include "core/utf8.hpp"
+#include "io/regular_file.hpp"
 
 namespace stridor {
 namespace {
@@ -474,10 +475,13 @@ SceneNode read_scene_file(const std::string& path) {
   if (status.type() == std::filesystem::file_type::directory) {
     throw FileError(path, "", "is a directory; give the path of a scene file");
   }
+  const std::string irregular = irregular_kind(path);
+  if (!irregular.empty())
+    throw FileError(path, "", "is " + irregular + "; give the path of a scene file");
   const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
   if (!file) throw FileError(path, "", fmt::format("cannot be opened: {}", std::strerror(errno)));
 
-  // Read up to the limit rather than ask for the size: pipes have none.
+  // Read up to the limit rather than trust the size: files of /proc tell none.
   std::string text(SceneLimits::bytes + 1, '\0');
   const std::size_t size = std::fread(text.data(), 1, text.size(), file.get());
   if (std::ferror(file.get()) != 0) {

@@ -6,6 +6,7 @@
 
 #include "io/law_table_file.hpp"
 #include "io/resolved_scene.hpp"
+#include "io/scene_files.hpp"
 #include "io/scene_reader.hpp"
 
 namespace stridor {
@@ -111,7 +112,7 @@ std::string LoadedSphereScene::resolved() const {
 }
 
 std::string LoadedSphereScene::hash() const {
-  return scene_hash(resolved());
+  return scene_hash(resolved(), scene_files(*this));
 }
 
 LoadedSphereScene load_sphere_scene(const std::string& path, const std::vector<std::string>& sets) {

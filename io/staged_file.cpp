@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "core/errors.hpp"
-#include "io/hdf5_output.hpp"
+#include "io/part_file.hpp"
 #include "io/write_lock.hpp"
 
 #if H5_VERSION_GE(1, 13, 0)

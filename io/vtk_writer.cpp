@@ -3,15 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <iterator>
 #include <span>
 #include <stdexcept>
 
-#include "core/errors.hpp"
-#include "core/stop_token.hpp"
+#include "io/part_file.hpp"
 
 namespace stridor {
 namespace {
@@ -70,12 +66,7 @@ void write_vtk(const std::filesystem::path& path, const VtkMesh& mesh) {
     text += fmt::format("VECTORS {} double\n", name);
     append_plane_vectors(text, values);
   }
-  const OrderlyStop until_whole;
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file)
-    throw FileError(path.string(), "", fmt::format("cannot be written: {}", std::strerror(errno)));
+  write_text_file(path.string(), text);
 }
 
 }  // namespace stridor

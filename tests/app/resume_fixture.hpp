@@ -65,9 +65,9 @@ inline void wait_for(const std::filesystem::path& file) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
 }
 
-/// Whether a run was refused as there is nothing left to do: it was over before it was killed.
+/// Whether there was nothing left to do: it was over before it was killed.
 inline bool was_over(const ProgramResult& result) {
-  return result.exit_code == 4 && result.err.find("holds a whole run") != std::string::npos;
+  return result.exit_code == 0 && result.out.find("holds the whole run") != std::string::npos;
 }
 
 /// Kills a run again and again, resumes it each time, and compares what comes out in the end.

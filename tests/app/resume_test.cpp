@@ -244,10 +244,17 @@ TEST(ResumeProgram, ARequestToStopAndATimeLimitLeaveARunThatGoesOn) {
   EXPECT_EQ(nlohmann::json::parse(result.out)["status"], "done");
   EXPECT_EQ(difference(whole, broken), "");
 
-  // A whole run is left alone.
+  // A whole run is left alone, and a loop that resumes until all is done ends.
+  const std::string bytes = contents_of(broken);
   result = Program({"run", "--resume", broken}).run();
-  EXPECT_EQ(result.exit_code, 4);
-  EXPECT_THAT(result.err, HasSubstr("holds a whole run, there is nothing to go on with"));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("holds the whole run, there is nothing left to do"));
+  result = Program({"run", "--resume", broken, "--json"}).run();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const auto stored = nlohmann::json::parse(result.out);
+  EXPECT_EQ(stored["status"], "done");
+  EXPECT_TRUE(stored["contact_force"]["max"].is_number());
+  EXPECT_EQ(contents_of(broken), bytes);
 }
 
 TEST(ResumeProgram, OfTwoAtOnceOneIsRefused) {

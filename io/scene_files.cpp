@@ -1,0 +1,180 @@
+#include "io/scene_files.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <sstream>
+
+#include "core/checksum.hpp"
+#include "core/errors.hpp"
+#include "io/matrix_reader.hpp"
+#include "io/regular_file.hpp"
+
+namespace stridor {
+namespace {
+
+constexpr const char* initial_state_key = "initial.state";
+constexpr const char* contact_law_key = "contact_law";
+/// Stands for the scene itself in the list of digests; no file is named by a key like this.
+constexpr const char* text_key = "/scene/text";
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+std::string digits(std::uint64_t sum) {
+  return fmt::format("{:016x}", sum);
+}
+
+std::string digest_of_file(const std::string& path) {
+  refuse_irregular_file(path);
+  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rbe"));
+  if (!file) throw FileError(path, "", fmt::format("cannot be opened: {}", std::strerror(errno)));
+  std::vector<char> buffer(std::size_t{1} << 18);
+  std::uint64_t sum = fnv1a(std::string_view());
+  for (std::size_t count = buffer.size(); count == buffer.size();) {
+    count = std::fread(buffer.data(), 1, buffer.size(), file.get());
+    sum = fnv1a(std::string_view(buffer.data(), count), sum);
+  }
+  if (std::ferror(file.get()) != 0)
+    throw FileError(path, "", fmt::format("cannot be read: {}", std::strerror(errno)));
+  return digits(sum);
+}
+
+void add_file(std::vector<SceneFile>& files, const SceneNode& tree, const std::string& key,
+              const std::string& name) {
+  const std::string path =
+      std::filesystem::absolute(path_of_file(tree, key, name)).lexically_normal().string();
+  files.push_back({key, path, digest_of_file(path)});
+}
+
+void add_matrices(std::vector<SceneFile>& files, const SceneNode& tree, const std::string& body,
+                  const MatrixBodyParameters& parameters) {
+  for (const auto& [key, name] : matrix_files("substructures." + body, parameters))
+    add_file(files, tree, key, name);
+}
+
+/// A path in one line.
+std::string escaped(const std::string& path) {
+  std::string text;
+  for (const char c : path) {
+    if (c == '\n') {
+      text += "\\n";
+    } else if (c == '\\') {
+      text += "\\\\";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+std::string unescaped(const std::string& text) {
+  std::string path;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\\' && i + 1 < text.size()) {
+      ++i;
+      path += text[i] == 'n' ? '\n' : text[i];
+    } else {
+      path += text[i];
+    }
+  }
+  return path;
+}
+
+std::string digest_line(const SceneFile& file) {
+  return fmt::format("{} {} {}\n", file.digest, file.key, escaped(file.path));
+}
+
+/// The lines of scene_digests(), that of the text first.
+std::vector<SceneFile> read_digests(const std::string& digests) {
+  std::vector<SceneFile> files;
+  std::istringstream lines(digests);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    SceneFile file;
+    words >> file.digest >> file.key;
+    words.get();
+    std::getline(words, file.path);
+    file.path = unescaped(file.path);
+    files.push_back(std::move(file));
+  }
+  return files;
+}
+
+}  // namespace
+
+std::vector<SceneFile> scene_files(const LoadedScene& loaded) {
+  std::vector<SceneFile> files;
+  for (const auto& [name, substructure] : loaded.scene.model.substructures) {
+    if (const auto* given = std::get_if<TouchedMatrixBodyParameters>(&substructure))
+      add_matrices(files, loaded.tree, name, given->body);
+  }
+  const InitialParameters& initial = loaded.scene.model.initial;
+  if (initial.is_file()) add_file(files, loaded.tree, initial_state_key, initial.state);
+  return files;
+}
+
+std::vector<SceneFile> scene_files(const LoadedLinearScene& loaded) {
+  std::vector<SceneFile> files;
+  if (const auto* scene = std::get_if<MatrixScene>(&loaded.scene)) {
+    for (const auto& [name, substructure] : scene->substructures)
+      add_matrices(files, loaded.tree, name, std::get<MatrixBodyParameters>(substructure));
+  }
+  return files;
+}
+
+std::vector<SceneFile> scene_files(const LoadedSphereScene& loaded) {
+  std::vector<SceneFile> files;
+  const SphereModelParameters& model = loaded.scene.model;
+  if (model.has_table()) add_file(files, loaded.tree, contact_law_key, model.contact_law);
+  return files;
+}
+
+std::string scene_hash(const std::string& resolved, const std::vector<SceneFile>& files) {
+  std::uint64_t sum = fnv1a(resolved);
+  for (const SceneFile& file : files) sum = fnv1a(digest_line({file.key, "", file.digest}), sum);
+  return digits(sum);
+}
+
+std::string scene_digests(const std::string& text, const std::vector<SceneFile>& files) {
+  std::string lines = digest_line({text_key, "", digits(fnv1a(text))});
+  for (const SceneFile& file : files) lines += digest_line(file);
+  return lines;
+}
+
+void check_unchanged(const RunFileHeader& header, const std::string& run_file) {
+  std::vector<SceneFile> files = read_digests(header.scene_digests);
+  const bool has_text = !files.empty() && files.front().key == text_key;
+  if (!has_text || files.front().digest != digits(fnv1a(header.scene_text))) {
+    throw FileError(run_file, "/scene/text",
+                    "is not the scene with which the run began: the text or its digest "
+                    "(/scene/digests) has been changed or damaged since; run the scene anew");
+  }
+  files.erase(files.begin());
+  if (scene_hash(header.scene_resolved, files) != header.scene_hash) {
+    throw FileError(run_file, "/scene/resolved",
+                    "is not the scene with which the run began: it, the digests of the files that "
+                    "it names (/scene/digests) or the attribute scene_hash has been changed or "
+                    "damaged since; run the scene anew");
+  }
+  std::string changed;
+  for (const SceneFile& file : files) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file.path, ignored) || digest_of_file(file.path) == file.digest)
+      continue;
+    changed += fmt::format("{}{} ({})", changed.empty() ? "" : ", ", file.path, file.key);
+  }
+  if (changed.empty()) return;
+  throw FileError(
+      run_file, "",
+      fmt::format("files that its scene names have changed since the run began: {}; put "
+                  "the former ones back, or run the scene anew",
+                  changed));
+}
+
+}  // namespace stridor

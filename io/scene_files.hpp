@@ -1,0 +1,43 @@
+// The files that a scene names, and whether they are still what they were when a run began.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/linear_scene.hpp"
+#include "io/run_file.hpp"
+#include "io/scene.hpp"
+#include "io/sphere_scene.hpp"
+
+namespace stridor {
+
+/// A file that a scene names, with a digest of what is in it.
+struct SceneFile {
+  std::string key;     ///< that names it, e.g. "substructures.plate.mass"
+  std::string path;    ///< from the root
+  std::string digest;  ///< 16 hexadecimal digits (FNV-1a)
+};
+
+/// Matrices, and the run file of the initial state. @throws FileError if one cannot be read
+std::vector<SceneFile> scene_files(const LoadedScene& loaded);
+/// Matrices. @throws as above
+std::vector<SceneFile> scene_files(const LoadedLinearScene& loaded);
+/// The table of the contact law. @throws as above
+std::vector<SceneFile> scene_files(const LoadedSphereScene& loaded);
+
+/// 16 hexadecimal digits that change with any key of the resolved scene and with anything in the
+/// files that it names (FNV-1a).
+std::string scene_hash(const std::string& resolved, const std::vector<SceneFile>& files);
+
+/// The digests that a run file keeps: a line for the text of the scene as given, and one for every
+/// file.
+std::string scene_digests(const std::string& text, const std::vector<SceneFile>& files);
+
+/// Checks that a run would go on with the scene with which it began: the scene in its file by its
+/// hash and digests, and the files that the scene names where they still exist. (One that is gone
+/// is refused by what needs it; the initial state is in the checkpoints, too.)
+/// @param run_file which has this header
+/// @throws FileError with all that differs
+void check_unchanged(const RunFileHeader& header, const std::string& run_file);
+
+}  // namespace stridor
