@@ -9,7 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "core/fft_plan.hpp"
+#include "core/clones.hpp"
 
 namespace stridor {
 namespace {
@@ -26,6 +26,12 @@ void check(double interval, Band band) {
         "band_pass: the band {:g} to {:g} Hz does not satisfy 0 < lower < upper < {:g} Hz "
         "(half the sampling rate)",
         band.lower, band.upper, nyquist));
+  }
+}
+
+void check(std::span<const double> samples) {
+  if (!std::all_of(samples.begin(), samples.end(), [](double x) { return std::isfinite(x); })) {
+    throw std::invalid_argument("band_pass: the samples must be finite");
   }
 }
 
@@ -53,6 +59,74 @@ double decay_samples(double interval, Band band) {
   return 1.33 * 12.0 * std::numbers::ln10 / -std::log(largest);
 }
 
+/// Samples by which a signal of `count` is continued at each end; more than memory holds is
+/// refused.
+double padding(std::size_t count, double interval, Band band) {
+  const double wanted = std::ceil(decay_samples(interval, band));
+  const double length = static_cast<double>(count) + 2.0 * wanted;
+  if (!(length <= std::numeric_limits<int>::max())) {
+    throw std::invalid_argument(
+        fmt::format("band_pass: the band {:g} to {:g} Hz needs {:g} samples, too many", band.lower,
+                    band.upper, length));
+  }
+  return wanted;
+}
+
+/// What band_pass_gain() computes from the tangent: with s and c the sine and cosine of π f dt, the
+/// root of (distance²) is (s² − w₁w₂ c²)/(s c (w₂ − w₁)).
+struct Gain {
+  double product;  ///< w₁w₂
+  double width;    ///< w₂ − w₁
+
+  double operator()(double s, double c) const {
+    const double distance = (s * s - product * c * c) / (s * c * width);
+    const double second = distance * distance;
+    const double fourth = second * second;
+    return 1.0 / (1.0 + fourth * fourth);
+  }
+};
+
+/// Multiplies lines 0 … n/2 of a transform of even length n by the gains of a band.
+///
+/// Sines and cosines of the angles π k/n come from those of two coarser sets, by the addition
+/// theorems, for k up to n/4; beyond that they are those of n/2 − k exchanged, so that both keep
+/// their relative accuracy to the ends. There distance is infinite, and the gain 0.
+STRIDOR_CLONES
+void multiply_by_gains(double interval, Band band, std::vector<double>& gains) {
+  constexpr std::size_t block = 256;
+  static_assert(order == 4, "Gain");
+  const double w1 = warped(band.lower, interval);
+  const double w2 = warped(band.upper, interval);
+  const Gain gain{w1 * w2, w2 - w1};
+  const std::size_t half = gains.size() - 1;
+  const double angle = std::numbers::pi / (2.0 * static_cast<double>(half));
+  double fine_sine[block];
+  double fine_cosine[block];
+  for (std::size_t j = 0; j < block; ++j) {
+    fine_sine[j] = std::sin(angle * static_cast<double>(j));
+    fine_cosine[j] = std::cos(angle * static_cast<double>(j));
+  }
+  double* const lines = gains.data();
+  for (std::size_t first = 0; 2 * first <= half; first += block) {
+    const double sine = std::sin(angle * static_cast<double>(first));
+    const double cosine = std::cos(angle * static_cast<double>(first));
+    const std::size_t count = std::min(block, half / 2 + 1 - first);
+    double here[block];
+    double there[block];
+    for (std::size_t j = 0; j < count; ++j) {
+      const double s = sine * fine_cosine[j] + cosine * fine_sine[j];
+      const double c = cosine * fine_cosine[j] - sine * fine_sine[j];
+      here[j] = gain(s, c);
+      there[j] = gain(c, s);
+    }
+    for (std::size_t j = 0; j < count; ++j) lines[first + j] *= here[j];
+    for (std::size_t j = 0; j < count; ++j) {
+      const std::size_t mirrored = half - first - j;
+      if (mirrored != first + j) lines[mirrored] *= there[j];
+    }
+  }
+}
+
 }  // namespace
 
 double band_pass_gain(double frequency, double interval, Band band) {
@@ -71,50 +145,85 @@ double band_pass_gain(double frequency, double interval, Band band) {
 
 std::vector<double> band_pass(std::span<const double> samples, double interval, Band band) {
   check(interval, band);
-  if (!std::all_of(samples.begin(), samples.end(), [](double x) { return std::isfinite(x); })) {
-    throw std::invalid_argument("band_pass: the samples must be finite");
-  }
+  check(samples);
   if (samples.empty()) return {};
+  return BandSpectrum(samples, interval, band).in(band);
+}
 
-  const auto count = static_cast<double>(samples.size());
-  const double wanted_pad = std::ceil(decay_samples(interval, band));
-  const double wanted_length = count + 2.0 * wanted_pad;
-  if (!(wanted_length <= std::numeric_limits<int>::max())) {
-    throw std::invalid_argument(
-        fmt::format("band_pass: the band {:g} to {:g} Hz needs {:g} samples, too many", band.lower,
-                    band.upper, wanted_length));
-  }
-  const std::size_t n = fast_fft_length(static_cast<std::size_t>(wanted_length));
-  RealFft forward(n);
-  InverseRealFft backward(n);
+BandSpectrum::BandSpectrum(std::span<const double> samples, double interval, Band band)
+    : samples_(samples), interval_(interval) {
+  check(interval, band);
+  check(samples);
+  if (samples.empty()) throw std::invalid_argument("BandSpectrum: there are no samples");
+  continue_for(padding(samples.size(), interval, band));
+}
+
+/// Takes the spectrum of the signal, continued by `pad` samples or more to both sides.
+void BandSpectrum::continue_for(double pad) {
+  pad_ = pad;
+  const auto wanted = static_cast<std::size_t>(static_cast<double>(samples_.size()) + 2.0 * pad);
+  const std::size_t n = fast_fft_length(wanted);
+  forward_.emplace(n);
+  backward_.emplace(n);
 
   // The signal from the start of the buffer, then its continuation to the right, then that to the
   // left: the spectrum is periodic, so the left one ends where the signal begins.
-  const std::span<double> buffer = forward.input();
-  const std::size_t last = samples.size() - 1;
-  std::copy(samples.begin(), samples.end(), buffer.begin());
-  const std::size_t right = (n - samples.size()) / 2;
-  const std::size_t left = n - samples.size() - right;
+  const std::span<double> buffer = forward_->input();
+  const std::size_t last = samples_.size() - 1;
+  std::copy(samples_.begin(), samples_.end(), buffer.begin());
+  const std::size_t right = (n - samples_.size()) / 2;
+  const std::size_t left = n - samples_.size() - right;
   for (std::size_t i = 1; i <= right; ++i) {
-    buffer[last + i] = 2.0 * samples[last] - samples[last - std::min(i, last)];
+    buffer[last + i] = 2.0 * samples_[last] - samples_[last - std::min(i, last)];
   }
   for (std::size_t i = 1; i <= left; ++i)
-    buffer[n - i] = 2.0 * samples[0] - samples[std::min(i, last)];
+    buffer[n - i] = 2.0 * samples_[0] - samples_[std::min(i, last)];
+  forward_->execute();
+}
 
-  forward.execute();
-  const auto length = static_cast<double>(n);
-  const std::size_t num_lines = n / 2 + 1;
-  for (std::size_t k = 0; k < num_lines; ++k) {
-    // n is even: the last line is the Nyquist frequency, where rounding must not step beyond it.
-    const double gain =
-        k + 1 == num_lines
-            ? 0.0
-            : band_pass_gain(static_cast<double>(k) / (length * interval), interval, band);
-    backward.input()[k] = gain / length * forward.output()[k];
+/// Gains of some bands together, over the length of the transform.
+void BandSpectrum::prepare(std::initializer_list<Band> bands) {
+  for (const Band& band : bands) {
+    check(interval_, band);
+    const double pad = padding(samples_.size(), interval_, band);
+    if (pad > pad_) continue_for(pad);
   }
-  backward.execute();
-  const std::span<const double> filtered = backward.output().first(samples.size());
+  const std::size_t n = forward_->length();
+  gains_.assign(n / 2 + 1, 1.0 / static_cast<double>(n));
+  for (const Band& band : bands) multiply_by_gains(interval_, band, gains_);
+}
+
+/// The signal of all lines times their gains, or its Hilbert transform.
+void BandSpectrum::invert(Part part) {
+  const auto lines = forward_->output();
+  const auto passed = backward_->input();
+  for (std::size_t k = 0; k < passed.size(); ++k) {
+    const std::complex<double> line = gains_[k] * lines[k];
+    passed[k] = part == Part::itself ? line : std::complex<double>(line.imag(), -line.real());
+  }
+  backward_->execute();
+}
+
+std::vector<double> BandSpectrum::in(Band band) {
+  prepare({band});
+  invert(Part::itself);
+  const std::span<const double> filtered = backward_->output().first(samples_.size());
   return {filtered.begin(), filtered.end()};
+}
+
+PassedSignal BandSpectrum::pass(std::initializer_list<Band> bands) {
+  prepare(bands);
+  PassedSignal passed;
+  invert(Part::itself);
+  const auto values = backward_->output().first(samples_.size());
+  passed.samples.assign(values.begin(), values.end());
+  invert(Part::hilbert);
+  passed.squared_amplitude.resize(samples_.size());
+  for (std::size_t i = 0; i < passed.samples.size(); ++i) {
+    const double x = passed.samples[i];
+    passed.squared_amplitude[i] = 0.5 * (x * x + values[i] * values[i]);
+  }
+  return passed;
 }
 
 }  // namespace stridor

@@ -1,8 +1,12 @@
 // Zero-phase Butterworth band-pass.
 #pragma once
 
+#include <initializer_list>
+#include <optional>
 #include <span>
 #include <vector>
+
+#include "core/fft_plan.hpp"
 
 namespace stridor {
 
@@ -41,5 +45,46 @@ double band_pass_gain(double frequency, double interval, Band band);
 ///
 /// Cost: two FFTs of the padded length, about 32 bytes of memory per padded sample.
 std::vector<double> band_pass(std::span<const double> samples, double interval, Band band);
+
+/// What bands let through of a signal.
+struct PassedSignal {
+  std::vector<double> samples;            ///< x
+  std::vector<double> squared_amplitude;  ///< |x + i H x|²/2 with H the Hilbert transform
+};
+
+/// The spectrum of a signal, for what several bands let through of it.
+class BandSpectrum {
+ public:
+  /// @param samples  equidistant, finite, not empty; must live as long
+  /// @param interval dt in s
+  /// @param band     the first to be asked for
+  /// @throws std::invalid_argument as band_pass(), or if there are no samples
+  BandSpectrum(std::span<const double> samples, double interval, Band band);
+
+  /// As band_pass().
+  std::vector<double> in(Band band);
+  /// What some bands, one after the other, let through, with its amplitude.
+  ///
+  /// H x comes from the same spectrum as x, with the same continuation at the ends. The gain
+  /// vanishes at frequency 0 with its first seven derivatives, so that H x decays as x does: one
+  /// end leaks into the other by no more.
+  ///
+  /// Cost: two Fourier transforms, and another one for the first band that takes longer to decay
+  /// than those before.
+  PassedSignal pass(std::initializer_list<Band> bands);
+
+ private:
+  void prepare(std::initializer_list<Band> bands);
+  void continue_for(double pad);
+  enum class Part { itself, hilbert };
+  void invert(Part part);
+
+  std::span<const double> samples_;
+  double interval_;
+  double pad_ = 0.0;  ///< samples at each end, at least
+  std::optional<RealFft> forward_;
+  std::optional<InverseRealFft> backward_;
+  std::vector<double> gains_;  ///< of every line
+};
 
 }  // namespace stridor

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "analysis/spectrogram.hpp"
 #include "core/fft_plan.hpp"
@@ -150,39 +151,6 @@ double noise_bandwidth(double interval, Band band) {
   return second * second / fourth;
 }
 
-// |x + i H x|²/2 of a band-passed signal.
-std::vector<double> squared_envelope(std::span<const double> x, double interval, Band band) {
-  // The band-passed signal is odd about its ends, so reflection continues it. Faded out over 20
-  // periods of the lowest frequency, by a weight with all derivatives continuous, it has next to
-  // nothing at zero frequency, where the Hilbert transform has its jump.
-  const std::size_t count = x.size();
-  const auto fade = static_cast<std::size_t>(std::ceil(20.0 / (band.lower * interval)));
-  RealFft forward(fast_fft_length(count + 2 * fade));
-  const std::size_t n = forward.length();
-  const auto buffer = forward.input();
-  std::copy(x.begin(), x.end(), buffer.begin());
-  for (std::size_t i = 1; i < fade; ++i) {
-    const double u = static_cast<double>(i) / static_cast<double>(fade);
-    const double weight = 1.0 / (1.0 + std::exp(1.0 / (1.0 - u) - 1.0 / u));
-    const std::size_t mirror = std::min(i, count - 1);
-    buffer[count - 1 + i] = weight * (2.0 * x[count - 1] - x[count - 1 - mirror]);
-    buffer[n - i] = weight * (2.0 * x[0] - x[mirror]);
-  }
-  forward.execute();
-  InverseRealFft backward(n);
-  const auto lines = forward.output();
-  const std::complex<double> turn(0.0, -1.0 / static_cast<double>(n));
-  for (std::size_t k = 1; k + 1 < lines.size(); ++k) backward.input()[k] = turn * lines[k];
-  backward.execute();
-
-  std::vector<double> result(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const double conjugate = backward.output()[i];
-    result[i] = 0.5 * (x[i] * x[i] + conjugate * conjugate);
-  }
-  return result;
-}
-
 std::size_t half_width(double interval, double smoothing) {
   return static_cast<std::size_t>(std::llround(0.5 * smoothing / interval));
 }
@@ -221,11 +189,9 @@ std::vector<double> running_mean(std::span<const double> values, std::size_t hal
   return means;
 }
 
-std::vector<double> smoothed_envelope(std::span<const double> filtered, double interval, Band band,
+std::vector<double> smoothed_envelope(std::span<const double> squared_amplitude, double interval,
                                       double smoothing) {
-  if (filtered.empty()) return {};
-  std::vector<double> envelope =
-      running_mean(squared_envelope(filtered, interval, band), half_width(interval, smoothing));
+  std::vector<double> envelope = running_mean(squared_amplitude, half_width(interval, smoothing));
   for (double& e : envelope) e = std::sqrt(e);
   return envelope;
 }
@@ -411,7 +377,9 @@ double dominant_frequency(std::span<const double> filtered, double interval,
 std::vector<double> burst_envelope(std::span<const double> samples, double interval, Band band,
                                    double smoothing) {
   check_smoothing(interval, band, smoothing);
-  return smoothed_envelope(band_pass(samples, interval, band), interval, band, smoothing);
+  if (samples.empty()) return {};
+  const PassedSignal passed = BandSpectrum(samples, interval, band).pass({band});
+  return smoothed_envelope(passed.squared_amplitude, interval, smoothing);
 }
 
 QuietLevel find_quiet_level(std::span<const double> samples, double interval,
@@ -428,22 +396,32 @@ QuietLevel find_quiet_level(std::span<const double> samples, double interval,
 
 std::vector<Burst> find_bursts(std::span<const double> samples, double interval,
                                const BurstParameters& parameters, double first) {
+  return find_vibration(samples, interval, parameters, first).bursts;
+}
+
+Vibration find_vibration(std::span<const double> samples, double interval,
+                         const BurstParameters& parameters, double first) {
   check(interval, parameters, first);
-  const std::vector<double> filtered = band_pass(samples, interval, parameters.band);
+  if (samples.empty()) return {};
+  const Band band = parameters.band;
+  const double smoothing = parameters.smoothing;
+  BandSpectrum spectrum(samples, interval, band);
+  PassedSignal passed = spectrum.pass({band});
+  Vibration vibration{std::move(passed.samples), {}};
+  const std::span<const double> filtered = vibration.filtered;
   const IndexRange measured = samples_in(parameters.measured, first, interval, samples.size());
-  if (measured.is_empty()) return {};
+  if (measured.is_empty()) return vibration;
   const std::vector<double> whole =
-      smoothed_envelope(filtered, interval, parameters.band, parameters.smoothing);
+      smoothed_envelope(passed.squared_amplitude, interval, smoothing);
   const QuietLevel level = quiet_level(samples, whole, interval, parameters, first, measured);
-  if (!(level.rms > 0.0) || !std::isfinite(level.threshold)) return {};
+  if (!(level.rms > 0.0) || !std::isfinite(level.threshold)) return vibration;
 
   const auto envelope = measured.of(whole);
-  const std::size_t half = half_width(interval, parameters.smoothing);
+  const std::size_t half = half_width(interval, smoothing);
   const auto time_at = [&](std::size_t i) {
     return first + static_cast<double>(measured.begin + i) * interval;
   };
   const std::vector<Swell> swells = find_swells(envelope, level.rms, level.threshold / level.rms);
-  std::vector<Burst> bursts;
   for (std::size_t j = 0; j < swells.size(); ++j) {
     const Swell& swell = swells[j];
     const double before = std::max(envelope[swell.low], level.rms);
@@ -466,16 +444,16 @@ std::vector<Burst> find_bursts(std::span<const double> samples, double interval,
     const Rise rise =
         steepest_rise(envelope, swell.crossing, swell.high, 2 * half, interval, level.rms);
     burst.frequency = dominant_frequency(filtered, interval, parameters, measured.begin + rise.at);
-    const Band own = own_band(burst.frequency, interval, parameters.smoothing);
-    const std::vector<double> own_envelope = smoothed_envelope(
-        band_pass(filtered, interval, own), interval, parameters.band, 0.5 * parameters.smoothing);
+    const Band own = own_band(burst.frequency, interval, smoothing);
+    const std::vector<double> own_envelope =
+        smoothed_envelope(spectrum.pass({band, own}).squared_amplitude, interval, 0.5 * smoothing);
     const Growth growth = growth_of(measured.of(own_envelope), swell.crossing, swell.high, end,
                                     half, interval, rounding * peak(samples));
     burst.growth = growth.steepest;
     burst.gain = growth.gain;
-    bursts.push_back(burst);
+    vibration.bursts.push_back(burst);
   }
-  return bursts;
+  return vibration;
 }
 
 }  // namespace stridor

@@ -45,9 +45,9 @@ struct QuietLevel {
 ///     e(t)² = mean over [t − T/2, t + T/2] of |z|²/2,   z = x + i H x
 ///
 /// with x the band-passed signal (band_pass()) and H x its Hilbert transform: |z| is the amplitude
-/// of the vibration, e is that over √2. At the ends the mean is over what there is. For the Hilbert
-/// transform the signal is continued by odd reflection and faded out, so that one end does not leak
-/// into the other.
+/// of the vibration, e is that over √2. At the ends the mean is over what there is; both x and H x
+/// are those of the signal continued as band_pass() does (BandSpectrum), so
+/// that one end does not leak into the other.
 ///
 /// @param smoothing T in s, at least one period of band.lower
 /// @return as many values as samples
@@ -125,5 +125,15 @@ QuietLevel find_quiet_level(std::span<const double> samples, double interval,
 ///         the given quiet window
 std::vector<Burst> find_bursts(std::span<const double> samples, double interval,
                                const BurstParameters& parameters, double first = 0.0);
+
+/// A signal in the band of its bursts, and these.
+struct Vibration {
+  std::vector<double> filtered;  ///< band_pass()
+  std::vector<Burst> bursts;
+};
+
+/// find_bursts() with what it filters on the way.
+Vibration find_vibration(std::span<const double> samples, double interval,
+                         const BurstParameters& parameters, double first = 0.0);
 
 }  // namespace stridor

@@ -7,6 +7,7 @@
 #include <limits>
 #include <new>
 #include <stdexcept>
+#include <vector>
 
 namespace stridor {
 namespace {
@@ -40,6 +41,60 @@ fftw_complex* as_fftw(const detail::FftwComplexes& memory) {
   return reinterpret_cast<fftw_complex*>(memory.get());
 }
 
+enum class Direction { forward, backward };
+
+/// The plans used last, by direction and length. They hold tables as long as what they transform.
+///
+/// FFTW executes a plan on any arrays of the same alignment, in several threads at once.
+class Plans {
+ public:
+  static Plans& of_process() {
+    static Plans plans;
+    return plans;
+  }
+
+  /// @throws std::bad_alloc
+  detail::SharedFftwPlan find(Direction direction, int n, double* reals, fftw_complex* complexes) {
+    // What goes at the end, or where something is thrown, takes the lock when it is free again.
+    detail::FftwPlan made;
+    detail::SharedFftwPlan plan;
+    detail::SharedFftwPlan forgotten;
+    const std::scoped_lock lock(fftw_planner_mutex());
+    const auto known = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+      return entry.direction == direction && entry.length == n;
+    });
+    if (known != entries_.end()) {
+      std::rotate(entries_.begin(), known, known + 1);
+      return entries_.front().plan;
+    }
+    made.reset(direction == Direction::forward
+                   ? fftw_plan_dft_r2c_1d(n, reals, complexes, FFTW_ESTIMATE | FFTW_PRESERVE_INPUT)
+                   : fftw_plan_dft_c2r_1d(n, complexes, reals, FFTW_ESTIMATE));
+    if (!made) throw std::bad_alloc();
+    plan = std::move(made);
+    if (n > longest_kept) return plan;
+    if (entries_.size() == most_kept) {
+      forgotten = std::move(entries_.back().plan);
+      entries_.pop_back();
+    }
+    entries_.insert(entries_.begin(), {direction, n, plan});
+    return plan;
+  }
+
+ private:
+  struct Entry {
+    Direction direction;
+    int length;
+    detail::SharedFftwPlan plan;
+  };
+  static constexpr std::size_t most_kept = 32;
+  static constexpr int longest_kept = 1 << 22;
+
+  Plans() { fftw_planner_mutex(); }  // which is to outlive it
+
+  std::vector<Entry> entries_;  ///< last used first
+};
+
 }  // namespace
 
 std::mutex& fftw_planner_mutex() {
@@ -60,31 +115,22 @@ RealFft::RealFft(std::size_t length) : length_(length) {
   const int n = checked(length);
   input_ = make_reals(length);
   output_ = make_complexes(length / 2 + 1);
-  {
-    const std::scoped_lock lock(fftw_planner_mutex());
-    plan_.reset(fftw_plan_dft_r2c_1d(n, input_.get(), as_fftw(output_),
-                                     FFTW_ESTIMATE | FFTW_PRESERVE_INPUT));
-  }
-  if (!plan_) throw std::bad_alloc();
+  plan_ = Plans::of_process().find(Direction::forward, n, input_.get(), as_fftw(output_));
 }
 
 void RealFft::execute() {
-  fftw_execute(plan_.get());
+  fftw_execute_dft_r2c(plan_.get(), input_.get(), as_fftw(output_));
 }
 
 InverseRealFft::InverseRealFft(std::size_t length) : length_(length) {
   const int n = checked(length);
   input_ = make_complexes(length / 2 + 1);
   output_ = make_reals(length);
-  {
-    const std::scoped_lock lock(fftw_planner_mutex());
-    plan_.reset(fftw_plan_dft_c2r_1d(n, as_fftw(input_), output_.get(), FFTW_ESTIMATE));
-  }
-  if (!plan_) throw std::bad_alloc();
+  plan_ = Plans::of_process().find(Direction::backward, n, output_.get(), as_fftw(input_));
 }
 
 void InverseRealFft::execute() {
-  fftw_execute(plan_.get());
+  fftw_execute_dft_c2r(plan_.get(), as_fftw(input_), output_.get());
 }
 
 std::size_t fast_fft_length(std::size_t n) {

@@ -28,6 +28,7 @@ struct FftwDestroy {
 using FftwReals = std::unique_ptr<double[], FftwFree>;
 using FftwComplexes = std::unique_ptr<std::complex<double>[], FftwFree>;
 using FftwPlan = std::unique_ptr<fftw_plan_s, FftwDestroy>;
+using SharedFftwPlan = std::shared_ptr<fftw_plan_s>;
 }  // namespace detail
 
 /// Fourier transform of real samples.
@@ -37,7 +38,9 @@ using FftwPlan = std::unique_ptr<fftw_plan_s, FftwDestroy>;
 /// Write the samples into input(), call execute(), read output(). The input survives. The buffers
 /// are aligned for SIMD and belong to the object, which may be moved and then keeps them in place.
 ///
-/// Plans are made by FFTW_ESTIMATE, hence the same on every run.
+/// Plans are made by FFTW_ESTIMATE, hence the same on every run. What was planned last is kept for
+/// the next transform of the same length: a plan costs as much as several
+/// transforms.
 class RealFft {
  public:
   /// @param length n, 1 to 2³¹ − 1; the input starts as zeros
@@ -55,7 +58,7 @@ class RealFft {
   std::size_t length_;
   detail::FftwReals input_;
   detail::FftwComplexes output_;
-  detail::FftwPlan plan_;
+  detail::SharedFftwPlan plan_;
 };
 
 /// Inverse of RealFft but for the factor n.
@@ -81,7 +84,7 @@ class InverseRealFft {
   std::size_t length_;
   detail::FftwComplexes input_;
   detail::FftwReals output_;
-  detail::FftwPlan plan_;
+  detail::SharedFftwPlan plan_;
 };
 
 /// The smallest even length ≥ n without prime factors above 7, for which FFTW is fast.

@@ -168,7 +168,24 @@ void Recorder::sample(const Simulation& simulation) {
   next_step_ += stride_;
   bool is_due = false;
   for (Stream& stream : streams_) is_due = stream.decimator.push(stream.value(simulation));
-  if (!is_due) return;
+  if (is_due) write_row();
+}
+
+std::optional<DisplacementSink::Row> Recorder::sole_row() const {
+  if (streams_.size() != 1) return std::nullopt;
+  const Stream& stream = streams_.front();
+  if (!stream.point || stream.follows_drive) return std::nullopt;
+  const PointRows& rows = stream.point->rows;
+  return Row{stream.point->body, stream.is_vertical ? rows.y : rows.x};
+}
+
+void Recorder::sample_displacement(double displacement) {
+  next_step_ += stride_;
+  if (streams_.front().decimator.push(displacement)) write_row();
+}
+
+/// The row that is due.
+void Recorder::write_row() {
   const std::int64_t number = streams_.front().decimator.num_outputs() - 1;
   if (number >= max_samples_) return;
   for (std::size_t i = 0; i < columns_.size(); ++i) {

@@ -8,7 +8,7 @@
 #include "analysis/low_pass.hpp"
 #include "io/channels.hpp"
 #include "io/run_file.hpp"
-#include "solvers/simulation.hpp"
+#include "solvers/displacement_sink.hpp"
 
 namespace stridor {
 
@@ -29,7 +29,7 @@ int sampling_stride(const System& system, double step, int ratio);
 ///
 /// Every series is low-passed with linear phase, so that sample k is the value at k·interval;
 /// states and energies are taken at that instant as they are.
-class Recorder : public SampleSink {
+class Recorder : public DisplacementSink {
  public:
   /// @param rows receives the rows; must live longer
   Recorder(const Model& model, std::vector<Channel> channels, double step, double interval,
@@ -43,6 +43,8 @@ class Recorder : public SampleSink {
   /// @throws FileError if a row cannot be written
   /// @throws std::invalid_argument if an energy is to be recorded that the simulation does not keep
   void sample(const Simulation& simulation) override;
+  std::optional<Row> sole_row() const override;
+  void sample_displacement(double displacement) override;
 
   /// Steps that must follow the last wanted sample before it is written.
   std::int64_t latency() const;
@@ -71,6 +73,8 @@ class Recorder : public SampleSink {
     std::size_t stream;
     std::optional<Derivative> derivative;  ///< of the low-passed stream; none: the sample itself
   };
+
+  void write_row();
 
   int stride_;
   double interval_;

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "analysis/band_pass.hpp"
+#include "analysis/bursts.hpp"
 #include "analysis/statistics.hpp"
 #include "core/errors.hpp"
 #include "io/scene_reader.hpp"
@@ -62,12 +62,13 @@ std::optional<AccelerationSummary> summarise_acceleration(const std::string& cha
     summary.rms = rms(range.of(values));
   } else {
     const Band band{measure.band[0], measure.band[1]};
-    summary.rms = rms(range.of(band_pass(values, interval, band)));
     BurstParameters parameters;
     parameters.band = band;
     parameters.measured = window;
     parameters.smoothing = std::max(parameters.smoothing, 1.0 / band.lower);
-    summary.bursts = find_bursts(values, interval, parameters, times.front());
+    Vibration vibration = find_vibration(values, interval, parameters, times.front());
+    summary.rms = rms(range.of(vibration.filtered));
+    summary.bursts = std::move(vibration.bursts);
   }
   return summary;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "solvers/aligned_array.hpp"
@@ -94,6 +95,25 @@ struct LaneAccess {
     copy(lanes.lag, body.slot_lag_);
     copy(lanes.load, body.slot_load_);
     copy(lanes.share, 0, body.share_);
+  }
+
+  /// What the displacement of a row is made of; of no row, zeros.
+  static void copy_watched(const Into& copy, const BodyLanes& lanes, ModalRecurrence& body,
+                           std::optional<int> row) {
+    const auto set = [&](double* entries, std::size_t i, double number) {
+      copy(entries, i, number);
+    };
+    for (std::size_t m = 0; m < lanes.num_modes; ++m)
+      set(lanes.watched_row, m, row ? body.row_data(*row)[m] : 0.0);
+    // Of bodies that answer later than they are pushed, forces are in the modes already.
+    const Propagator::Influence* const influence =
+        row && body.is_prompt() ? &body.influence_on(*row) : nullptr;
+    const bool has_lagging = influence != nullptr && body.has_residual();
+    for (std::size_t s = 0; s < lanes.num_slots; ++s) {
+      set(lanes.watched_forces, s, influence != nullptr ? influence->modes[s] : 0.0);
+      set(lanes.watched_lagging, s, has_lagging ? influence->residual[s] : 0.0);
+    }
+    set(lanes.watched_load, 0, has_lagging ? body.load_residual(*row) : 0.0);
   }
 
   static void copy_constants(const Into& copy, const Lanes& lanes, Run& run) {
@@ -230,6 +250,21 @@ class LaneGroup {
   }
   StepOutcome outcome(std::size_t lane) const { return members_[lane].outcome; }
 
+  void watch(std::size_t lane, DisplacementSink& sink, DisplacementSink::Row row) {
+    Member& member = members_[lane];
+    if (sink.next_step() <= member.run->index)
+      throw std::invalid_argument("Batch: a sample is due before the next step");
+    put_back(lane);
+    member.is_resident = false;
+    const RunningContact& contact = member.run->contacts.front();
+    const bool is_slave = row.body == contact.point().slave_body;
+    (is_slave ? member.slave_row : member.master_row) = row.row;
+    (is_slave ? lanes_.slave : lanes_.master).is_watched = true;
+    member.sink = &sink;
+    member.row = row;
+    member.next_sample = sink.next_step();
+  }
+
   void step_until(std::int64_t target) {
     for (std::size_t lane = 0; lane < members_.size(); ++lane) {
       if (members_[lane].is_resident)
@@ -284,6 +319,22 @@ class LaneGroup {
     StepOutcome outcome = StepOutcome::done;
     bool is_resident = false;  ///< its state is in the lanes
 
+    DisplacementSink* sink = nullptr;
+    DisplacementSink::Row row{};
+    std::optional<int> slave_row{};  ///< what is watched
+    std::optional<int> master_row{};
+    std::int64_t next_sample = std::numeric_limits<std::int64_t>::max();
+
+    void sample(double displacement) {
+      sink->sample_displacement(displacement);
+      next_sample = sink->next_step();
+    }
+    /// Where the last step was done by itself.
+    void sample_where_due() {
+      if (outcome == StepOutcome::done && run->index == next_sample)
+        sample(simulation->displacement(row.body, row.row));
+    }
+
     bool is_running(std::int64_t target) const {
       return outcome == StepOutcome::done && run->index < target;
     }
@@ -304,8 +355,11 @@ class LaneGroup {
         take(*matrix, body->num_slots * body->num_slots);
       take(body->share, 1);
       for (double** entries : {&body->load, &body->predicted, &body->expected, &body->current,
-                               &body->increment, &body->answer, &body->lagging, &body->forces})
+                               &body->increment, &body->answer, &body->lagging, &body->forces,
+                               &body->watched_forces, &body->watched_lagging})
         take(*entries, body->num_slots);
+      take(body->watched_row, body->num_modes);
+      take(body->watched_load, 1);
     }
     ContactLanes& contact = lanes_.contact;
     for (double** entries :
@@ -317,6 +371,7 @@ class LaneGroup {
           &contact.drive_displacement, &contact.drive_velocity, &contact.drive_from,
           &contact.sliding_velocity, &lanes_.step, &lanes_.index, &lanes_.is_used, &flagged_})
       take(*entries, 1);
+    take(lanes_.trace, max_traced);
     return used;
   }
 
@@ -333,6 +388,7 @@ class LaneGroup {
       put_back(lane);
       member.is_resident = false;
       member.outcome = member.simulation->step();
+      member.sample_where_due();
     }
   }
 
@@ -354,6 +410,10 @@ class LaneGroup {
     LaneAccess::copy_constants(copy, lanes_.slave, *member.slave);
     LaneAccess::copy_constants(copy, lanes_.master, *member.master);
     LaneAccess::copy_constants(copy, lanes_, *member.run);
+    if (lanes_.slave.is_watched)
+      LaneAccess::copy_watched(copy, lanes_.slave, *member.slave, member.slave_row);
+    if (lanes_.master.is_watched)
+      LaneAccess::copy_watched(copy, lanes_.master, *member.master, member.master_row);
     copy_place(copy, member);
     copy_rest(copy, member);
     lanes_.index[lane] = static_cast<double>(member.run->index);
@@ -372,20 +432,37 @@ class LaneGroup {
   /// All lanes in use; those that it takes more for than the kernel does end the last step by
   /// themselves.
   void step(std::int64_t num_steps) {
+    if (lanes_.slave.is_watched || lanes_.master.is_watched)
+      num_steps = std::min(num_steps, static_cast<std::int64_t>(max_traced));
     const std::int64_t done = step_lanes(lanes_, num_steps, flagged_);
     for (std::size_t lane = 0; lane < members_.size(); ++lane) {
       if (lanes_.is_used[lane] == 0.0) continue;
       Member& member = members_[lane];
       Run& run = *member.run;
-      run.index += done;
       const bool is_flagged = flagged_[lane] != 0.0;
+      hand_out(lane, is_flagged ? done - 1 : done);
+      run.index += done;
       run.contacts.front().statistics.steps += is_flagged ? done - 1 : done;
       if (!is_flagged) continue;
       put_back(lane);
       member.is_resident = false;
       member.outcome = run.finish_step();
+      member.sample_where_due();
     }
   }
+
+  /// The samples that are due in the next steps, which the kernel has done.
+  void hand_out(std::size_t lane, std::int64_t num_steps) {
+    Member& member = members_[lane];
+    const std::int64_t first = member.run->index + 1;
+    while (member.next_sample < first + num_steps) {
+      const auto entry = static_cast<std::size_t>(member.next_sample - first);
+      member.sample(lanes_.trace[entry * width_ + lane]);
+    }
+  }
+
+  /// Steps that the kernel does at once where rows are watched; what they fill stays in the cache.
+  static constexpr std::size_t max_traced = 256;
 
   std::size_t width_;
   Lanes lanes_;
@@ -438,6 +515,14 @@ Batch::Batch(std::vector<Simulation*> runs) : implementation_(std::make_unique<I
 Batch::~Batch() = default;
 Batch::Batch(Batch&&) noexcept = default;
 Batch& Batch::operator=(Batch&&) noexcept = default;
+
+void Batch::watch(std::size_t run, DisplacementSink& sink) {
+  const Implementation::Place& place = implementation_->places.at(run);
+  const std::optional<DisplacementSink::Row> row = sink.sole_row();
+  if (!place.group || !row)
+    throw std::invalid_argument("Batch: only a sole row of what steps in lanes can be watched");
+  implementation_->groups[*place.group].watch(place.lane, sink, *row);
+}
 
 void Batch::step_until(std::int64_t target) {
   for (LaneGroup& group : implementation_->groups) group.step_until(target);

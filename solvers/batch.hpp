@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "solvers/displacement_sink.hpp"
 #include "solvers/simulation.hpp"
 
 namespace stridor {
@@ -26,6 +27,13 @@ class Batch {
   ~Batch();
   Batch(Batch&&) noexcept;
   Batch& operator=(Batch&&) noexcept;
+
+  /// From now on hands the displacement of its sole row to a sink, after every step that it asks
+  /// for; stepping on need not be interrupted for that.
+  /// @param run  one that steps in lanes
+  /// @param sink with a sole row; must live longer
+  /// @throws std::invalid_argument if `run` or `sink` is another, or a sample is due already
+  void watch(std::size_t run, DisplacementSink& sink);
 
   /// Steps every simulation that has not failed until it stands at `target`, as
   /// Simulation::step_until(). What may be asked of them then is displacements, contacts and

@@ -240,6 +240,35 @@ STRIDOR_INLINE V update_slip(const Lanes& lanes) {
   return (slip * driven < zero) & (at<V>(lanes.is_used, 0) > zero) ? zero + 1.0 : zero;
 }
 
+/// Propagator::displacement() of the row that is watched.
+template <class V, std::size_t num_slots, bool is_prompt>
+STRIDOR_INLINE V watched_displacement(const BodyLanes& body) {
+  V sum = {};
+  if (!body.is_watched) return sum;
+  double* const positions = body.fields[static_cast<std::size_t>(ModalField::position)];
+  for (std::size_t m = 0; m < body.num_modes; ++m)
+    sum += at<V>(body.watched_row, m) * at<V>(positions, m);
+  if constexpr (is_prompt) {
+    for (std::size_t s = 0; s < num_slots; ++s)
+      sum += at<V>(body.watched_forces, s) * at<V>(body.forces, s);
+    if (body.has_residual) {
+      sum += at<V>(body.watched_load, 0);
+      for (std::size_t s = 0; s < num_slots; ++s)
+        sum += at<V>(body.watched_lagging, s) * at<V>(body.lagging, s);
+    }
+  }
+  return sum;
+}
+
+/// Notes the rows that are watched after step number `done`.
+template <class V, bool is_prompt>
+STRIDOR_INLINE void watch(const Lanes& lanes, std::int64_t done) {
+  if (!lanes.slave.is_watched && !lanes.master.is_watched) return;
+  at<V>(lanes.trace, static_cast<std::size_t>(done - 1)) =
+      watched_displacement<V, 2, is_prompt>(lanes.slave) +
+      watched_displacement<V, 4, is_prompt>(lanes.master);
+}
+
 template <class V, bool is_prompt>
 STRIDOR_INLINE std::int64_t step(const Lanes& lanes, std::int64_t max_steps, double* flagged) {
   V needs_more = {};
@@ -257,10 +286,12 @@ STRIDOR_INLINE std::int64_t step(const Lanes& lanes, std::int64_t max_steps, dou
         at<V>(lanes.is_used, 0) = reverses > 0.0 ? V{} : used;
         needs_more = solve_contact<V, is_prompt>(lanes) + reverses;
         at<V>(lanes.is_used, 0) = used;
+        watch<V, is_prompt>(lanes, done);
         break;
       }
     }
     needs_more = solve_contact<V, is_prompt>(lanes);
+    watch<V, is_prompt>(lanes, done);
     if (has_any(needs_more)) break;
   }
   at<V>(flagged, 0) = needs_more;

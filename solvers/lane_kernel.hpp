@@ -34,6 +34,14 @@ struct BodyLanes {
   double* answer = nullptr;
   double* lagging = nullptr;
   double* forces = nullptr;
+
+  // A row of the body that is watched: its displacement is Σ watched_row·position, and with prompt
+  // bodies what forces, lagging forces and loads add. All 0 in lanes that watch none.
+  bool is_watched = false;            ///< in any lane
+  double* watched_row = nullptr;      ///< an entry per mode
+  double* watched_forces = nullptr;   ///< an entry per slot: of the forces
+  double* watched_lagging = nullptr;  ///< likewise, of the lagging ones
+  double* watched_load = nullptr;
 };
 
 /// One contact in all lanes: a slave point on a straight segment of another body, sliding for good.
@@ -71,6 +79,7 @@ struct Lanes {
   double* step = nullptr;     ///< h
   double* index = nullptr;    ///< n
   double* is_used = nullptr;  ///< 1 or 0; what is not used holds no state
+  double* trace = nullptr;    ///< an entry per step: the sum of the rows watched
 };
 
 /// Steps all lanes until `max_steps` are done or a lane needs what is not done here: another
@@ -79,7 +88,10 @@ struct Lanes {
 /// predicted.
 ///
 /// What a lane computes depends on no other lane, nor on which it is.
-/// @param flagged 1 for such lanes, else 0
+/// Where a row is watched, `trace` gets its displacement after every step; what it holds for a lane
+/// after its flagged step means nothing.
+/// @param max_steps at most the entries of `trace`, where a row is watched
+/// @param flagged   1 for such lanes, else 0
 /// @return steps done, the last one included
 std::int64_t step_lanes(const Lanes& lanes, std::int64_t max_steps, double* flagged);
 

@@ -93,6 +93,14 @@ std::vector<MarchEnd> march_together(const std::vector<March*>& marches) {
   std::vector<Simulation*> simulations;
   for (const March* march : marches) simulations.push_back(march->simulation_);
   Batch batch(simulations);
+  for (std::size_t i = 0; i < marches.size(); ++i) {
+    auto* const sink = dynamic_cast<DisplacementSink*>(marches[i]->sink_);
+    if (sink == nullptr || !sink->sole_row() || !batch.steps_in_lanes(i)) continue;
+    // The first sample may be due now; what follows goes from the batch to the sink.
+    marches[i]->attend();
+    marches[i]->sink_next_ = std::numeric_limits<std::int64_t>::max();
+    batch.watch(i, *sink);
+  }
   std::vector<std::optional<MarchEnd>> ends(marches.size());
   std::int64_t next_look = 0;
   while (true) {
@@ -120,6 +128,8 @@ std::vector<MarchEnd> march_together(const std::vector<March*>& marches) {
     batch.step_until(std::min(event, next_look));
   }
   batch.synchronise();
+  for (March* march : marches)
+    if (march->sink_ != nullptr) march->sink_next_ = march->sink_->next_step();
   std::vector<MarchEnd> all;
   for (const auto& end : ends) all.push_back(end.value_or(MarchEnd::stopped));
   return all;

@@ -99,6 +99,57 @@ TEST(BandPass, ResponseToAnImpulseIsSymmetricAndHasTheGainAsSpectrum) {
   }
 }
 
+TEST(BandPass, BandsNearTheEndsOfTheSpectrumHaveTheirGain) {
+  // Within 1 s, 10⁵ samples, the responses decay to rounding.
+  for (const Band& extreme : {Band{60.0, 120.0}, Band{49.90e3, 49.98e3}}) {
+    const std::size_t middle = 100000;
+    std::vector<double> impulse(2 * middle + 1, 0.0);
+    impulse[middle] = 1.0;
+    const auto response = band_pass(impulse, dt, extreme);
+    const double width = extreme.upper - extreme.lower;
+    for (const double place : {-0.2, 0.0, 0.4, 1.0, 1.2}) {
+      const double frequency = extreme.lower + place * width;
+      double sum = response[middle];
+      for (std::size_t i = 1; i <= middle; ++i) {
+        sum +=
+            2.0 * response[middle + i] * std::cos(two_pi * frequency * static_cast<double>(i) * dt);
+      }
+      EXPECT_NEAR(sum, band_pass_gain(frequency, dt, extreme), 1e-10) << frequency;
+    }
+  }
+}
+
+TEST(BandSpectrum, GivesWhatTheBandPassGivesWhateverIsAskedBefore) {
+  const auto input = sine(6.0e3, 3000);
+  BandSpectrum spectrum(input, dt, band);
+  const Band narrow{5.9e3, 6.1e3};  // takes longer to decay
+  for (const Band& one : {band, narrow, band}) {
+    const auto output = spectrum.in(one);
+    const auto expected = band_pass(input, dt, one);
+    ASSERT_EQ(output.size(), expected.size());
+    for (std::size_t i = 0; i < output.size(); ++i) EXPECT_NEAR(output[i], expected[i], 1e-11);
+  }
+}
+
+TEST(BandSpectrum, TellsTheAmplitudeOfASineAfterAllBands) {
+  constexpr double frequency = 6.0e3;
+  const Band narrow{5.8e3, 6.0e3};  // the gain at its edge is 1/2
+  // The ends are felt for 1/(2π·100·sin π/8) = 4 ms, here 40 times that ago.
+  const auto input = sine(frequency, 40000);
+  BandSpectrum spectrum(input, dt, band);
+  const PassedSignal passed = spectrum.pass({band, narrow});
+  const double gain = 0.5 * band_pass_gain(frequency, dt, band);
+  for (std::size_t i = 17000; i < 23000; ++i) {
+    EXPECT_NEAR(passed.samples[i], gain * input[i], 1e-9);
+    EXPECT_NEAR(passed.squared_amplitude[i], 0.5 * gain * gain, 1e-9);
+  }
+}
+
+TEST(BandSpectrum, NoSamplesAreRejected) {
+  EXPECT_THAT([] { BandSpectrum({}, dt, band); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("there are no samples")));
+}
+
 TEST(BandPass, ShortSignalsWork) {
   EXPECT_TRUE(band_pass({}, dt, band).empty());
   // One or a few samples, continued oddly about both ends; a single sample is a constant.

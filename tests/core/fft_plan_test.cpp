@@ -70,6 +70,32 @@ TEST(Fft, PlansAreMadeInSeveralThreadsAtOnce) {
   for (const double sum : sums) EXPECT_EQ(sum, 59.0 * 60.0 / 2.0 - 1.0);
 }
 
+TEST(Fft, TransformsOfOneLengthDoNotDisturbEachOther) {
+  // They share a plan; each has buffers of its own, and several run at once.
+  constexpr std::size_t n = 1000;
+  std::vector<std::thread> threads;
+  std::vector<double> errors(4, 1.0);
+  for (std::size_t t = 0; t < errors.size(); ++t) {
+    threads.emplace_back([&errors, t] {
+      double largest = 0.0;
+      for (int round = 0; round < 50; ++round) {
+        RealFft forward(n);
+        InverseRealFft backward(n);
+        const double level = static_cast<double>(t + 1);
+        for (double& x : forward.input()) x = level;
+        forward.execute();
+        std::copy(forward.output().begin(), forward.output().end(), backward.input().begin());
+        backward.execute();
+        for (const double x : backward.output())
+          largest = std::max(largest, std::abs(x - level * static_cast<double>(n)));
+      }
+      errors[t] = largest;
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const double error : errors) EXPECT_LT(error, 1e-9);
+}
+
 TEST(Fft, RejectsLengthsOutOfRange) {
   expect_rejection([] { RealFft fft(0); }, "the length 0 is not 1 to 2147483647");
   expect_rejection([] { RealFft fft(std::size_t{1} << 31); }, "the length 2147483648 is not");

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -114,6 +116,77 @@ TEST_P(BatchTest, DependsNeitherOnTheOthersNorOnItsLane) {
   EXPECT_NE(many[0].state, one[0].state);
 }
 
+/// Takes the displacement of the free end after every third step.
+class TipSink : public DisplacementSink {
+ public:
+  explicit TipSink(const Model& model) : tip_(model.points.at(free_end)) {}
+  std::int64_t next_step() const override {
+    return 3 * static_cast<std::int64_t>(displacements.size());
+  }
+  std::optional<Row> sole_row() const override { return Row{tip_.body, tip_.rows.y}; }
+  void sample(const Simulation& simulation) override {
+    sample_displacement(simulation.displacement(tip_.body, tip_.rows.y));
+  }
+  void sample_displacement(double displacement) override { displacements.push_back(displacement); }
+  std::vector<double> displacements;
+
+ private:
+  Model::Point tip_;
+};
+
+/// What is seen of these kinds on the way, in one batch.
+std::vector<std::vector<double>> tips(const std::vector<int>& kinds, const TimeParameters& time,
+                                      int num_parts) {
+  std::vector<Model> models;
+  std::vector<std::unique_ptr<Simulation>> simulations;
+  std::vector<TipSink> sinks;
+  std::vector<Simulation*> runs;
+  for (const int kind : kinds) {
+    models.push_back(model_of_kind(kind));
+    sinks.emplace_back(models.back());
+    simulations.push_back(std::make_unique<Simulation>(models.back().system, time));
+    sinks.back().sample(*simulations.back());
+    runs.push_back(simulations.back().get());
+  }
+  Batch batch(runs);
+  for (std::size_t i = 0; i < runs.size(); ++i) batch.watch(i, sinks[i]);
+  const auto num_steps = static_cast<std::int64_t>(std::llround(end / time.step));
+  for (int part = 1; part <= num_parts; ++part) batch.step_until(num_steps * part / num_parts);
+  std::vector<std::vector<double>> all;
+  for (TipSink& sink : sinks) all.push_back(std::move(sink.displacements));
+  return all;
+}
+
+TEST_P(BatchTest, ShowsARowOnTheWayAsTheSimulationWould) {
+  const TimeParameters time = time_of_scheme(GetParam());
+  const std::vector<std::vector<double>> together = tips({0, 1, 2, 3, 4}, time, 3);
+  for (const int kind : {0, 3}) {
+    const Model model = model_of_kind(kind);
+    Simulation alone(model.system, time);
+    TipSink sink(model);
+    const auto num_steps = static_cast<std::int64_t>(std::llround(end / time.step));
+    sink.sample(alone);
+    while (sink.next_step() <= num_steps) {
+      ASSERT_EQ(alone.step_until(sink.next_step()), StepOutcome::done);
+      sink.sample(alone);
+    }
+    const std::vector<double>& seen = together[static_cast<std::size_t>(kind)];
+    ASSERT_EQ(seen.size(), sink.displacements.size());
+    double largest = 0.0;
+    for (const double one : sink.displacements) largest = std::max(largest, std::abs(one));
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      ASSERT_NEAR(seen[i], sink.displacements[i], 1e-11 * largest) << i;
+  }
+}
+
+TEST_P(BatchTest, WhatItShowsDependsNeitherOnTheOthersNorOnWhereItStops) {
+  const TimeParameters time = time_of_scheme(GetParam());
+  const std::vector<std::vector<double>> one = tips({3}, time, 1);
+  const std::vector<std::vector<double>> many = tips({7, 0, 5, 3, 1, 2, 3, 6, 4, 3}, time, 17);
+  for (const std::size_t place : {3u, 6u, 9u}) EXPECT_EQ(many[place], one[0]) << place;
+  EXPECT_NE(many[0], one[0]);
+}
+
 INSTANTIATE_TEST_SUITE_P(Schemes, BatchTest,
                          ::testing::Values(Scheme::exact_with_residual, Scheme::exact,
                                            Scheme::central_difference,
@@ -151,6 +224,8 @@ TEST(Batch, WhatCannotBeInALaneStepsByItself) {
   ASSERT_EQ(same.step_until(3000), StepOutcome::done);
   EXPECT_EQ(by_itself.save().arrays(), same.save().arrays());
   EXPECT_EQ(in_lane.step_index(), 3000);
+  TipSink sink(sticking);
+  EXPECT_THROW(batch.watch(1, sink), std::invalid_argument);
 }
 
 TEST(Batch, ARunThatFailsStopsWhereItFailsAndTheOthersGoOn) {
