@@ -15,8 +15,9 @@ using StabilityMargin = std::function<double(double)>;
 
 /// All sign changes of a margin between neighbours of a list of values.
 ///
-/// Within an interval the change is found by regula falsi with bisection, to 1e-14 of the value. Two
-/// in one interval are found where the values come close to zero, by the parabola through three.
+/// Within an interval the change is found by regula falsi with bisection, to 1e-14 of the value.
+/// Two in one interval are found where the values come close to zero, by the parabola through
+/// three.
 /// @param values ascending
 std::vector<double> sign_changes(const StabilityMargin& margin, const std::vector<double>& values);
 

@@ -16,7 +16,7 @@ struct SamplingEffort {
   int least_glimpses = 64;  ///< in all, where a family has them
 };
 /// For spectra that take seconds: all eigenvalues where they are asked for, and few besides.
-inline constexpr SamplingEffort sparing_effort{1, 16, {1e-9, 8, WindowEffort::Ends::secants}};
+inline constexpr SamplingEffort sparing_effort{1, 16, {1e-9, 8}};
 
 /// Eigenvalues and unstable windows along a parameter, for systems whose eigenvalues coincide or
 /// lie on the imaginary axis over whole intervals: without damping, with bodies that are alike.
@@ -26,10 +26,10 @@ inline constexpr SamplingEffort sparing_effort{1, 16, {1e-9, 8, WindowEffort::En
 ///
 ///   Re s > min(20 ε ‖A‖ κ, 1e-6 |s|),
 ///
-/// A the linearised matrix and κ its condition number. Every one that grows has a window of its own, whose ends are bisected:
-/// where two eigenvalues meet on the axis their real part grows like a square root, and the error
-/// of the end is of order ε all the same. Besides the values asked for at least 64 are looked at;
-/// what may lie between two of them is searched by search_intervals().
+/// A the linearised matrix and κ its condition number. Every one that grows has a window of its
+/// own, whose ends are bisected: where two eigenvalues meet on the axis their real part grows like
+/// a square root, and the error of the end is of order ε all the same. Besides the values asked for
+/// at least 64 are looked at; what may lie between two of them is searched by search_intervals().
 ///
 /// @return no branches; `branch` of windows and crossings is 0
 /// @throws as trace_locus()

@@ -21,8 +21,8 @@ struct DenseSpectrum {
   /// and right eigenvectors, large where two eigenvalues and their motions are about to coincide.
   /// Empty unless asked for.
   std::vector<double> conditions;
-  /// Norm of the linearised matrix, balanced, 1/s: by ε times it and the condition rounding moves an
-  /// eigenvalue.
+  /// Norm of the linearised matrix, balanced, 1/s: by ε times it and the condition rounding moves
+  /// an eigenvalue.
   double norm = 0.0;
 };
 
@@ -43,8 +43,8 @@ struct DenseSpectrum {
 /// reach ω², and the slow eigenvalues of a stiff mesh lose half of their digits.
 ///
 /// Where the norm of that matrix A exceeds the slowest ω by 1e10 or more (a damper on hardly any
-/// mass), the slow eigenvalues would be lost in its rounding. Those below the geometric mean of both
-/// are then taken from (A − σ)⁻¹, σ the slowest ω.
+/// mass), the slow eigenvalues would be lost in its rounding. Those below the geometric mean of
+/// both are then taken from (A − σ)⁻¹, σ the slowest ω.
 ///
 /// @throws std::invalid_argument as check_pencil()
 /// @throws NumericalError if the constraints are not independent, if L_Eᵀ L_C is singular to
