@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
@@ -10,6 +9,7 @@
 #include "core/activity.hpp"
 #include "core/stop_token.hpp"
 #include "substructures/lowest_modes.hpp"
+#include "substructures/symmetric_eigenpairs.hpp"
 
 namespace stridor {
 namespace {
@@ -102,8 +102,8 @@ void correct_softest(const Blocks& stiffness, const VectorBlock& psi, Eigen::Mat
   auto interface = reduced.topLeftCorner(nb, nb);
   const Eigen::MatrixXd symmetric = 0.5 * (interface + interface.transpose());
   const Eigen::MatrixXd motions =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric).eigenvectors().leftCols(
-          num_motions);
+      symmetric_eigenpairs(symmetric, "softest motions of the interface")
+          .vectors.leftCols(num_motions);
   const VectorBlock interior = psi * motions;
   VectorBlock residual = stiffness.ii * interior;
   residual += stiffness.ib * motions;

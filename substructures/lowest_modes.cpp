@@ -12,6 +12,7 @@
 #include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
+#include "substructures/symmetric_eigenpairs.hpp"
 
 namespace stridor {
 namespace {
@@ -23,11 +24,9 @@ using SymmetricEigen = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 constexpr Eigen::Index block_width = 8;
 
 Modes dense_modes(const SparseMatrix& stiffness, const SparseMatrix& mass, Eigen::Index count) {
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver{Eigen::MatrixXd(stiffness),
-                                                                         Eigen::MatrixXd(mass)};
-  if (solver.info() != Eigen::Success)
-    throw NumericalError("fixed-interface modes: the dense eigenproblem failed");
-  return {solver.eigenvalues().head(count), solver.eigenvectors().leftCols(count)};
+  const SymmetricEigenpairs all = generalised_eigenpairs(
+      Eigen::MatrixXd(stiffness), Eigen::MatrixXd(mass), "fixed-interface modes");
+  return {all.values.head(count), all.vectors.leftCols(count)};
 }
 
 /// Replaces W by orthonormal columns Q with W = Q R, and returns R.
@@ -108,7 +107,7 @@ Modes Lanczos::solve() {
   constexpr double tolerance = 1e-12;
   constexpr int max_steps = 1000;
   Eigen::Index num_converged = 0;
-  Eigen::Index next_look = count_;
+  Eigen::Index next_look = 2 * count_;  // earlier, only what exhausts the space has converged
   VectorBlock block = random_block();
   for (int step = 0; step < max_steps; ++step) {
     throw_if_stopped();
@@ -122,10 +121,12 @@ Modes Lanczos::solve() {
     const bool is_exhausted = block.cols() == 0;
     const bool is_full = dim_ + block.cols() > basis_.cols();
     if (dim_ < next_look && !is_exhausted && !is_full) continue;
-    next_look = dim_ + std::max(block_width, dim_ / 16);
-    const SymmetricEigen ritz(projection_.topLeftCorner(dim_, dim_));
-    const Eigen::VectorXd values = ritz.eigenvalues().reverse();
-    const Eigen::MatrixXd vectors = ritz.eigenvectors().rowwise().reverse();
+    // A look costs as much as some steps.
+    next_look = dim_ + std::max(block_width, dim_ / 5);
+    const SymmetricEigenpairs ritz =
+        symmetric_eigenpairs(projection_.topLeftCorner(dim_, dim_), "fixed-interface modes");
+    const Eigen::VectorXd values = ritz.values.reverse();
+    const Eigen::MatrixXd vectors = ritz.vectors.rowwise().reverse();
     num_converged = 0;
     for (Eigen::Index i = 0; i < std::min(count_, dim_); ++i) {
       const double residual = (parts.outside * vectors.col(i).tail(newest_width)).norm();

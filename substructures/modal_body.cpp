@@ -2,27 +2,20 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <limits>
 #include <stdexcept>
 
 #include "core/activity.hpp"
 #include "core/errors.hpp"
+#include "substructures/symmetric_eigenpairs.hpp"
 
 namespace stridor {
 
 ModalBody make_modal(const ReducedBody& body) {
   const Activity solving(fmt::format("all modes of {} unknowns", body.size()));
-  // The eigensolver takes the Cholesky factor of the mass unseen, and the factor takes NaN.
-  if (!body.mass.allFinite() || body.mass.llt().info() != Eigen::Success) {
-    throw NumericalError("modal form: the reduced mass is not positive definite");
-  }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(body.stiffness, body.mass);
-  if (solver.info() != Eigen::Success)
-    throw NumericalError("modal form: the eigensolver did not converge");
+  const SymmetricEigenpairs pairs = generalised_eigenpairs(body.stiffness, body.mass, "modal form");
   constexpr double rigid_ratio = 1e-6;
-  const Eigen::VectorXd& squares = solver.eigenvalues();
+  const Eigen::VectorXd& squares = pairs.values;
   const double largest = squares.size() > 0 ? squares(squares.size() - 1) : 0.0;
   const double rigid_below = rigid_ratio * rigid_ratio * largest;
 
@@ -36,7 +29,7 @@ ModalBody make_modal(const ReducedBody& body) {
     }
     modal.omega(i) = squares(i) <= rigid_below ? 0.0 : std::sqrt(squares(i));
   }
-  modal.shapes = solver.eigenvectors();
+  modal.shapes = pairs.vectors;
   modal.rows = body.rows * modal.shapes;
   if (body.base_inertia.size() > 0)
     modal.base_inertia = modal.shapes.transpose() * body.base_inertia;

@@ -189,7 +189,7 @@ TEST(ModalBody, MassThatIsNotPositiveDefiniteThrows) {
     ReducedBody body = two_masses(1.0, 2.0);
     body.mass(1, 1) = bad;
     EXPECT_EQ(message_of<NumericalError>([&] { make_modal(body); }),
-              "modal form: the reduced mass is not positive definite")
+              "modal form: the mass is not positive definite")
         << bad;
   }
 }
