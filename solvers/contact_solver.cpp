@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "solvers/substrate_step.hpp"
 
@@ -38,6 +39,8 @@ bool solve_local(LocalProblem& contact, const LocalCompliance& w, double penetra
   if (contact.substrate != nullptr) return solve_substrate(contact, w, slip);
   if (!contact.is_unilateral) return slide(contact.direction);
 
+  // Without penetration no force is a solution, and the one that is taken even where friction makes
+  // others possible, in which contacts that part would press each other.
   contact.normal = 0.0;
   contact.tangential = 0.0;
   contact.state = ContactState::open;
@@ -63,7 +66,8 @@ ContactSolver::ContactSolver(int num_contacts, ContactSolverParameters parameter
       sliding_(Eigen::MatrixXd::Zero(num_contacts, num_contacts)),
       right_side_(Eigen::VectorXd::Zero(num_contacts)),
       forces_(Eigen::VectorXd::Zero(num_contacts)),
-      factor_(num_contacts) {}
+      factor_(num_contacts),
+      jamming_(num_contacts) {}
 
 ContactAnswer ContactSolver::solve(std::span<LocalProblem> contacts) {
   if (contacts.size() == 1) {
@@ -86,15 +90,10 @@ ContactAnswer ContactSolver::solve_bilateral(std::span<LocalProblem> contacts) {
                        other.direction * other.sliding_friction * delassus_(2 * i, 2 * j + 1);
     }
     right_side_(i) = contacts[static_cast<std::size_t>(i)].penetration;
-    if (!(sliding_(i, i) > 0.0)) return {ContactStatus::jammed, static_cast<int>(i), 1};
   }
+  if (const std::optional<int> jammed = jamming_(sliding_))
+    return {ContactStatus::jammed, *jammed, 1};
   factor_.compute(sliding_);
-  // Without friction the operator is positive definite; where its determinant has changed sign on
-  // the way to the present friction, the contacts jam together. Signs only: the product of many
-  // compliances would underflow.
-  double sign = static_cast<double>(factor_.permutationP().determinant());
-  for (Eigen::Index i = 0; i < n; ++i) sign *= factor_.matrixLU()(i, i) > 0.0 ? 1.0 : -1.0;
-  if (!(sign > 0.0)) return {ContactStatus::jammed, 0, 1};
   forces_ = factor_.solve(right_side_);
   for (Eigen::Index i = 0; i < n; ++i) {
     LocalProblem& contact = contacts[static_cast<std::size_t>(i)];

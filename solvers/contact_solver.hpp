@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coupling/substrate_contact.hpp"
+#include "solvers/contact_jamming.hpp"
 
 namespace stridor {
 
@@ -81,7 +82,7 @@ class ContactSolver {
   Eigen::MatrixXd& delassus() { return delassus_; }
 
   /// @param contacts problems in, answers out
-  /// No allocation.
+  /// No allocation but where strong friction makes bilateral contacts nearly jam.
   ContactAnswer solve(std::span<LocalProblem> contacts);
 
  private:
@@ -94,6 +95,7 @@ class ContactSolver {
   Eigen::VectorXd right_side_;
   Eigen::VectorXd forces_;
   Eigen::PartialPivLU<Eigen::MatrixXd> factor_;
+  JammingTest jamming_;
 };
 
 }  // namespace stridor

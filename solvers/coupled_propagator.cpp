@@ -2,30 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <algorithm>
-#include <unsupported/Eigen/MatrixFunctions>
-
 #include "core/errors.hpp"
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/two_step_scheme.hpp"
 #include "solvers/vector_views.hpp"
 
 namespace stridor {
-namespace {
-
-/// e^Z, and φ₁(Z) = ∫₀¹ e^{Zs} ds.
-std::pair<Eigen::MatrixXd, Eigen::MatrixXd> exponential_and_mean(const Eigen::MatrixXd& Z) {
-  const Eigen::Index n = Z.rows();
-  Eigen::MatrixXd both = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-  both.topLeftCorner(n, n) = Z;
-  both.topRightCorner(n, n).setIdentity();
-  const Eigen::MatrixXd exponential = both.exp();
-  return {exponential.topLeftCorner(n, n), exponential.topRightCorner(n, n)};
-}
-
-}  // namespace
-
 void require_exact(const std::string& body, const TimeParameters& time) {
   if (time.integrator == Integrator::exact) return;
   throw ConfigError("time.integrator",
@@ -54,57 +34,9 @@ CoupledPropagator::CoupledPropagator(const ModalBody& body, const Eigen::MatrixX
   start();
 }
 
-CoupledStep make_coupled_step(const ModalBody& body, double step, std::optional<double> surplus,
-                              double alpha, const std::string& name) {
-  const Eigen::Index n = body.size();
-  const double h = step;
-  CoupledStep made;
-  Eigen::MatrixXd V = body.coupled.velocity;
-  V.diagonal().array() += alpha + body.damping.beta * body.omega.array().square();
-  made.position = body.coupled.position;
-  made.position.diagonal() += body.omega.array().square().matrix();
-
-  // Velocities are multiplied by h, so that they and displacements are of one size.
-  Eigen::MatrixXd turn = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-  turn.topRightCorner(n, n).setIdentity();
-  turn.bottomLeftCorner(n, n) = -h * h * made.position;
-  turn.bottomRightCorner(n, n) = -h * V;
-  double fastest = 0.0;
-  for (const std::complex<double>& root : matrix_eigenvalues(turn))
-    fastest = std::max(fastest, std::abs(root));
-  constexpr double largest = CoupledPropagator::largest_turn;
-  if (!(fastest <= largest)) {
-    throw ConfigError(
-        "time.step",
-        fmt::format("the fastest free motion of '{}', whose modes are coupled, has |s| = {:.4g} "
-                    "1/s; with a step of {:.4g} s |s| h is {:.3g}, and {:g} is the most that exact "
-                    "propagation takes; take a step of {:.3g} s or less",
-                    name, fastest / h, h, fastest, largest, largest * h / fastest));
-  }
-
-  const auto [free, mean] = exponential_and_mean(turn);
-  const Eigen::MatrixXd psi = mean.partialPivLu().solve(free);  // φ₁(−Z)⁻¹, as φ₁(−Z) = e^−Z φ₁(Z)
-  const Eigen::MatrixXd K = h * V * psi.topRightCorner(n, n) + psi.bottomRightCorner(n, n);
-  const Eigen::MatrixXd impulse = h * K.inverse();
-
-  Eigen::VectorXd scale = Eigen::VectorXd::Ones(2 * n);
-  scale.tail(n).setConstant(1.0 / h);
-  made.free = scale.asDiagonal() * free * scale.cwiseInverse().asDiagonal();
-  made.by_constant = h * h * mean.topRightCorner(n, n);
-  made.by_impulse = made.free.rightCols(n) * impulse;
-
-  made.prompt = Eigen::VectorXd::Zero(n);
-  if (surplus) {
-    const Eigen::VectorXd damping = body.mode_damping(alpha);
-    for (Eigen::Index i = 0; i < n; ++i)
-      made.prompt(i) = exact_propagation(body.omega(i), damping(i), h, *surplus).prompt;
-  }
-  return made;
-}
-
 void CoupledPropagator::renew() {
   by_step_ = make_coupled_step(body_, step_, surplus_, alpha_, name_);
-  row_gains_ = by_step_.by_force() * row_table_;
+  row_gains_ = by_step_.by_force * row_table_;
   by_velocity_.compute(by_step_.free.topRightCorner(body_.size(), body_.size()));
   load_impulse_ = by_step_.by_impulse * load_;
   is_renewal_due_ = false;
@@ -155,14 +87,14 @@ double CoupledPropagator::predicted_displacement(int row) const {
 double CoupledPropagator::row_compliance(int row_a, int row_b) const {
   const auto a = row_table_.col(row_a);
   if (is_starting()) return a.dot(by_step_.by_constant * row_table_.col(row_b));
-  if (is_prompt()) return a.dot(by_step_.prompt.asDiagonal() * row_table_.col(row_b));
+  if (is_prompt()) return a.dot(by_step_.prompt * row_table_.col(row_b));
   return a.dot(row_gains_.col(row_b).head(body_.size()));
 }
 
 double CoupledPropagator::ahead_compliance(int row_a, int row_b) const {
   const auto a = row_table_.col(row_a);
   return a.dot(row_gains_.col(row_b).head(body_.size())) +
-         a.dot(by_step_.prompt.asDiagonal() * row_table_.col(row_b));
+         a.dot(by_step_.prompt * row_table_.col(row_b));
 }
 
 Eigen::VectorXd CoupledPropagator::modal_force(const double* forces) const {
@@ -174,18 +106,17 @@ Eigen::VectorXd CoupledPropagator::modal_force(const double* forces) const {
 /// Both motions are to be at the same place at t_{n+1}, where the forces still are what they were.
 Eigen::VectorXd CoupledPropagator::velocity_before(const Eigen::VectorXd& force) const {
   const Eigen::Index n = body_.size();
-  const Eigen::VectorXd at_once = by_step_.prompt.cwiseProduct(force);
-  const Eigen::VectorXd acting = force - by_step_.position * at_once;
+  const Eigen::VectorXd at_once = by_step_.prompt * force;
   Eigen::VectorXd ahead = by_step_.by_constant * (load_ + force) - load_impulse_.head(n);
   ahead += by_step_.free.topLeftCorner(n, n) * at_once - at_once;
-  ahead -= by_step_.by_impulse.topRows(n) * acting;
+  ahead -= by_step_.by_force.topRows(n) * force;
   return by_velocity_.solve(ahead);
 }
 
 Propagator::Motion CoupledPropagator::motion(const double* forces) const {
   const Eigen::Index n = body_.size();
   const Eigen::VectorXd force = modal_force(forces);
-  return {state_.head(n) + by_step_.prompt.cwiseProduct(force),
+  return {state_.head(n) + by_step_.prompt * force,
           state_.tail(n) - velocity_before(force)};
 }
 
@@ -204,7 +135,7 @@ void CoupledPropagator::set_body_motion(const Eigen::VectorXd& displacement,
                                         const Eigen::VectorXd& velocity, const double* forces) {
   const Eigen::Index n = body_.size();
   const Eigen::VectorXd force = modal_force(forces);
-  state_.head(n) = displacement - by_step_.prompt.cwiseProduct(force);
+  state_.head(n) = displacement - by_step_.prompt * force;
   state_.tail(n) = velocity + velocity_before(force);
   predict();
 }

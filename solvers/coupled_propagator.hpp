@@ -5,35 +5,12 @@
 #include <optional>
 #include <string>
 
+#include "solvers/coupled_step.hpp"
 #include "solvers/propagator.hpp"
 #include "solvers/time_parameters.hpp"
 #include "substructures/modal_body.hpp"
 
 namespace stridor {
-
-/// One step of a body with coupled terms, x = (r, v): what CoupledPropagator computes with.
-struct CoupledStep {
-  Eigen::VectorXd prompt;       ///< G, diagonal: displacement at once per force
-  Eigen::MatrixXd position;     ///< Q
-  Eigen::MatrixXd free;         ///< e^{Ah}
-  Eigen::MatrixXd by_constant;  ///< r_{n+1} per force that is constant from t_n on
-  Eigen::MatrixXd by_impulse;   ///< x_{n+1} per load: e^{Ah} (0, h K⁻¹)
-
-  /// x_{n+1} per force, of which G has answered a part at once: by_impulse (1 − Q G).
-  Eigen::MatrixXd by_force() const {
-    return by_impulse - by_impulse * position * prompt.asDiagonal();
-  }
-};
-
-/// @param body    with coupled terms
-/// @param step    h, s
-/// @param surplus δ of exact_propagation(); absent: the body does not answer at once, G = 0
-/// @param alpha   α, 1/s
-/// @param name    of the body, for messages
-/// @throws ConfigError (time.step) if a free motion turns by more than
-///         CoupledPropagator::largest_turn in a step
-CoupledStep make_coupled_step(const ModalBody& body, double step, std::optional<double> surplus,
-                              double alpha, const std::string& name);
 
 /// @param body its name
 /// @throws ConfigError (time.integrator) if a body with coupled terms is to be marched otherwise
@@ -42,20 +19,16 @@ void require_exact(const std::string& body, const TimeParameters& time);
 /// The exact scheme of ModalRecurrence for a body with coupled terms (docs/theory.md, 3.8), in
 /// modal coordinates, r̈ + V ṙ + Q r = p with V = diag(c) + coupled, Q = diag(ω²) + coupled:
 ///
-///   x = (r, v),  x_{n+1} = e^{Ah} (x_n + (0, h K⁻¹ ((1 − Q G) rowᵀ f_n + p_n))),
-///   q_n = r_n + G rowᵀ f_n,   K = V h ψ₁₂ + ψ₂₂,  ψ = Ah/(1 − e^{−Ah})
+///   x = (r, v),  x_{n+1} = e^{Ah} (x_n + J rowᵀ f_n + (0, h K⁻¹ p_n)),   q_n = r_n + G rowᵀ f_n
 ///
-/// Free motion is exact and so is the static answer; without coupled terms every number is that of
-/// ModalRecurrence up to rounding. v is the velocity just before the impulse at t_n.
+/// with the matrices of CoupledStep. Free motion is exact and so is the static answer; without
+/// coupled terms every number is that of ModalRecurrence up to rounding. x is the state just before
+/// the impulses at t_n.
 class CoupledPropagator : public Propagator {
  public:
-  /// Largest |s| h of the free motions of a body: beyond, impulses once a step stand for forces no
-  /// longer.
-  static constexpr double largest_turn = 2.0;
-
   /// Parameters as ModalRecurrence.
-  /// @throws ConfigError (time.step) if a free motion turns by more than largest_turn in a step
-  /// Cost: of order 10 (4n)³ operations; a step costs (2n)² and 3n for every slot.
+  /// @throws ConfigError (time.step) as make_coupled_step()
+  /// Cost: that of make_coupled_step(); a step costs (2n)² and 3n for every slot.
   CoupledPropagator(const ModalBody& body, const Eigen::MatrixXd& patterns, double step,
                     std::optional<double> surplus, int num_slots, double alpha,
                     std::span<const double> loads, const std::string& name);
@@ -87,7 +60,7 @@ class CoupledPropagator : public Propagator {
   void renew();
   /// rowᵀ f of all slots.
   Eigen::VectorXd modal_force(const double* forces) const;
-  /// Velocity just before the impulse less that of the continuous motion under constant forces.
+  /// Velocity just before the impulses less that of the continuous motion under constant forces.
   Eigen::VectorXd velocity_before(const Eigen::VectorXd& force) const;
   /// x_{n+1} without forces on the slots.
   void predict();

@@ -9,6 +9,7 @@
 
 #include "core/errors.hpp"
 #include "solvers/coupled_propagator.hpp"
+#include "solvers/coupled_step.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/modal_recurrence.hpp"
 #include "solvers/prompt_surplus.hpp"
@@ -49,9 +50,9 @@ MovingModes moving_modes(const Pencil& contacts, const System& system, const Tim
   const Eigen::MatrixXd slots = contacts.slots(Eigen::all, moving);
   modes.gaps = contacts.compatibility * slots;
   modes.forces = contacts.equilibrium * slots;
-  Eigen::VectorXd prompt = Eigen::VectorXd::Zero(n);
+  Eigen::MatrixXd prompt = Eigen::MatrixXd::Zero(n, n);
   FrozenModes& uncoupled = modes.uncoupled;
-  uncoupled.keep = uncoupled.pull = uncoupled.gain = prompt;
+  uncoupled.keep = uncoupled.pull = uncoupled.gain = Eigen::VectorXd::Zero(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::Index mode = moving[static_cast<std::size_t>(i)];
     const StepCoefficients c =
@@ -61,12 +62,12 @@ MovingModes moving_modes(const Pencil& contacts, const System& system, const Tim
     modes.free(i, n + i) = modes.free(n + i, n + i) = c.keep;
     modes.free(n + i, i) = -c.pull;
     modes.by_force(i, i) = modes.by_force(n + i, i) = c.gain;
-    prompt(i) = c.prompt;
+    prompt(i, i) = c.prompt;
     uncoupled.keep(i) = c.keep;
     uncoupled.pull(i) = c.pull;
     uncoupled.gain(i) = c.gain;
   }
-  uncoupled.prompt = prompt;
+  uncoupled.prompt = prompt.diagonal();
   uncoupled.gaps = modes.gaps;
   uncoupled.forces = modes.forces;
   uncoupled.is_instantaneous = surplus.has_value();
@@ -74,18 +75,17 @@ MovingModes moving_modes(const Pencil& contacts, const System& system, const Tim
     const Eigen::Index m = body->modal.size();
     const CoupledStep step =
         make_coupled_step(body->modal, time.step, surplus, body->modal.damping.alpha, body->name);
-    const Eigen::MatrixXd by_force = step.by_force();
     for (const Eigen::Index to : {Eigen::Index{0}, Eigen::Index{1}}) {
-      modes.by_force.block(to * n + at, at, m, m) = by_force.middleRows(to * m, m);
+      modes.by_force.block(to * n + at, at, m, m) = step.by_force.middleRows(to * m, m);
       for (const Eigen::Index from : {Eigen::Index{0}, Eigen::Index{1}}) {
         modes.free.block(to * n + at, from * n + at, m, m) =
             step.free.block(to * m, from * m, m, m);
       }
     }
-    prompt.segment(at, m) = step.prompt;
+    prompt.block(at, at, m, m) = step.prompt;
   }
   modes.closed =
-      surplus ? Eigen::MatrixXd(modes.gaps * prompt.asDiagonal() * modes.forces.transpose())
+      surplus ? Eigen::MatrixXd(modes.gaps * prompt * modes.forces.transpose())
               : Eigen::MatrixXd(modes.gaps * modes.by_force.topRows(n) * modes.forces.transpose());
   return modes;
 }

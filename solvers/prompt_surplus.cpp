@@ -2,57 +2,119 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
 #include "solvers/contact_path.hpp"
+#include "solvers/coupled_step.hpp"
 #include "solvers/modal_recurrence.hpp"
 
 namespace stridor {
 namespace {
 
-/// What a point of a body does per force on it: at once, in the next step, and at once by surplus.
-struct PointAnswer {
-  Eigen::Matrix2d prompt = Eigen::Matrix2d::Zero();
-  Eigen::Matrix2d next = Eigen::Matrix2d::Zero();
-  Eigen::Matrix2d surplus = Eigen::Matrix2d::Zero();       ///< per δ, to `prompt`
-  Eigen::Matrix2d surplus_next = Eigen::Matrix2d::Zero();  ///< likewise, taken from `next`
+/// Stable are ratios of the next answer to that at once up to 4. Friction, damping and what changes
+/// along the path want some room.
+constexpr double limit = 3.6;
 
-  PointAnswer& operator+=(const PointAnswer& other) {
-    prompt += other.prompt;
-    next += other.next;
-    surplus += other.surplus;
-    surplus_next += other.surplus_next;
-    return *this;
-  }
+/// What forces on modes or on a point do: at once, in the next step, and at once by surplus.
+template <class Matrix>
+struct Answers {
+  Matrix prompt;
+  Matrix next;
+  Matrix surplus;       ///< per δ, to `prompt`
+  Matrix surplus_next;  ///< likewise, taken from `next`
 };
 
-/// Coefficients of all modes of a body as it is marched without surplus.
-std::vector<StepCoefficients> coefficients_of(const ModalBody& body, const TimeParameters& time) {
-  std::vector<StepCoefficients> coefficients;
-  const Eigen::VectorXd damping = body.mode_damping(body.damping.alpha);
-  for (Eigen::Index i = 0; i < body.size(); ++i) {
-    coefficients.push_back(
-        step_coefficients(time.integrator, body.omega(i), damping(i), time.step, 0.0));
-  }
-  return coefficients;
-}
+/// Of all modes of a body. Diagonals as columns where nothing is coupled.
+struct BodyAnswers : Answers<Eigen::MatrixXd> {
+  /// δ up to which the answers are linear in it: no mode answers at once by all of its flexibility.
+  double most = std::numeric_limits<double>::infinity();
+};
 
-PointAnswer answer_of(const ModalBody& body, const std::vector<StepCoefficients>& coefficients,
-                      const WeightedRows& point, double step) {
-  const Eigen::MatrixXd entries = rows_of(body.rows, point);
-  PointAnswer sum;
-  for (Eigen::Index i = 0; i < body.size(); ++i) {
-    const StepCoefficients& c = coefficients[static_cast<std::size_t>(i)];
-    const Eigen::Matrix2d square = entries.col(i) * entries.col(i).transpose();
+BodyAnswers answers_of_modes(const ModalBody& body, const TimeParameters& time, double alpha) {
+  const Eigen::Index n = body.size();
+  BodyAnswers found;
+  for (Eigen::MatrixXd* one :
+       {&found.prompt, &found.next, &found.surplus, &found.surplus_next})
+    one->resize(n, 1);
+  const Eigen::VectorXd damping = body.mode_damping(alpha);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const StepCoefficients c =
+        step_coefficients(time.integrator, body.omega(i), damping(i), time.step, 0.0);
     // Of an oscillation that changes sign with every step, e/((1 + r₁)(1 + r₂)) per force; a
     // quarter of e for a free mass without damping.
     const double alternating = 4.0 / (2.0 + 2.0 * c.keep - c.pull);
-    sum.prompt += c.prompt * square;
-    sum.next += alternating * c.gain * square;
-    sum.surplus += c.answer() * square;
-    sum.surplus_next += alternating * c.pull * c.answer() * square;
+    found.prompt(i) = c.prompt;
+    found.next(i) = alternating * c.gain;
+    found.surplus(i) = c.answer();
+    found.surplus_next(i) = alternating * c.pull * c.answer();
+    if (c.pull > 0.0) found.most = std::min(found.most, c.gain / (c.pull * c.answer()));
   }
+  return found;
+}
+
+BodyAnswers answers_of_coupled(const SystemBody& body, const TimeParameters& time, double alpha) {
+  // All of it is linear in δ up to the largest.
+  constexpr double some = CoupledStep::largest_surplus;
+  const auto symmetric = [](const Eigen::MatrixXd& a) -> Eigen::MatrixXd {
+    return 0.5 * (a + a.transpose());
+  };
+  const CoupledStep without = make_coupled_step(body.modal, time.step, 0.0, alpha, body.name);
+  const CoupledStep with = make_coupled_step(body.modal, time.step, some, alpha, body.name);
+  BodyAnswers found;
+  found.prompt = symmetric(without.prompt);
+  found.next = 4.0 * symmetric(without.alternating());
+  found.surplus = (symmetric(with.prompt) - found.prompt) / some;
+  found.surplus_next = (found.next - 4.0 * symmetric(with.alternating())) / some;
+  found.most = some;
+  return found;
+}
+
+BodyAnswers answers_of(const SystemBody& body, const TimeParameters& time, double alpha) {
+  return body.modal.coupled.is_empty() ? answers_of_modes(body.modal, time, alpha)
+                                       : answers_of_coupled(body, time, alpha);
+}
+
+/// Least δ with which q (P + δ S) − (W − δ V) is positive semidefinite, of symmetric matrices.
+template <class Matrix>
+double least_surplus(const Answers<Matrix>& at) {
+  const Matrix lacking = at.next - limit * at.prompt;
+  Matrix gained = limit * at.surplus + at.surplus_next;
+  if (!(gained.trace() > 0.0)) return 0.0;
+  // A point that cannot move in one direction gains nothing there, and lacks nothing.
+  gained.diagonal().array() += 1e-12 * gained.trace();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> pair(
+      0.5 * (lacking + lacking.transpose()), 0.5 * (gained + gained.transpose()),
+      Eigen::EigenvaluesOnly);
+  return std::max(0.0, pair.eigenvalues().maxCoeff());
+}
+
+/// Least δ with which a body by itself is stable under the forces of any contacts.
+double surplus_of_body(const BodyAnswers& body) {
+  if (body.prompt.cols() > 1) return std::min(least_surplus(body), body.most);
+  double surplus = 0.0;
+  for (Eigen::Index i = 0; i < body.prompt.rows(); ++i) {
+    const double gained = limit * body.surplus(i) + body.surplus_next(i);
+    const double lacking = body.next(i) - limit * body.prompt(i);
+    if (gained > 0.0) surplus = std::max(surplus, lacking / gained);
+  }
+  return surplus;
+}
+
+/// Of a point of a body, x and y.
+using PointAnswers = Answers<Eigen::Matrix2d>;
+
+PointAnswers answers_at(const ModalBody& body, const BodyAnswers& modes, const WeightedRows& point,
+                        double step) {
+  const Eigen::MatrixXd entries = rows_of(body.rows, point);
+  const auto seen = [&](const Eigen::MatrixXd& of_modes) -> Eigen::Matrix2d {
+    if (of_modes.cols() == 1)
+      return entries * of_modes.col(0).asDiagonal() * entries.transpose();
+    return entries * of_modes * entries.transpose();
+  };
+  PointAnswers sum{seen(modes.prompt), seen(modes.next), seen(modes.surplus),
+                   seen(modes.surplus_next)};
   const Eigen::MatrixXd& residual = body.residual.flexibility;
   if (residual.size() > 0) {
     // Of a force that changes its sign with every step, w/(2 − w).
@@ -62,32 +124,40 @@ PointAnswer answer_of(const ModalBody& body, const std::vector<StepCoefficients>
   return sum;
 }
 
-/// Least δ with which q (P + δ S) − (W − δ V) is positive semidefinite.
-double least_surplus(const PointAnswer& at, double limit) {
-  const Eigen::Matrix2d lacking = at.next - limit * at.prompt;
-  Eigen::Matrix2d gained = limit * at.surplus + at.surplus_next;
-  // A point that cannot move in one direction gains nothing there, and lacks nothing.
-  gained += 1e-12 * gained.trace() * Eigen::Matrix2d::Identity();
-  if (!(gained.trace() > 0.0)) return 0.0;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> pair(
-      0.5 * (lacking + lacking.transpose()), 0.5 * (gained + gained.transpose()),
-      Eigen::EigenvaluesOnly);
-  return std::max(0.0, pair.eigenvalues().maxCoeff());
+PointAnswers operator+(const PointAnswers& a, const PointAnswers& b) {
+  return {a.prompt + b.prompt, a.next + b.next, a.surplus + b.surplus,
+          a.surplus_next + b.surplus_next};
 }
 
-/// Least δ with which every mode by itself has q g ≥ e/(1 + r₁)(1 + r₂), which no contact can ask
-/// more than. With exact propagation at most 1/q − 1/12.
-double surplus_of_every_mode(const System& system, const TimeParameters& time, double limit) {
+/// Least δ along the path of the only contact; infinite where some mode cannot take as much.
+double surplus_on_path(const System& system, const std::vector<BodyAnswers>& answers,
+                       const TimeParameters& time) {
+  const ContactPoint& contact = system.contacts.front();
+  const auto slave = static_cast<std::size_t>(contact.slave_body);
+  const auto master = static_cast<std::size_t>(system.surface_of(contact).body);
+  const PointAnswers of_slave = answers_at(system.bodies[slave].modal, answers[slave],
+                                           {{contact.slave_rows}, {1.0}}, time.step);
   double surplus = 0.0;
-  for (const SystemBody& body : system.bodies) {
-    for (const StepCoefficients& c : coefficients_of(body.modal, time)) {
-      const double alternating = 0.25 * (2.0 + 2.0 * c.keep - c.pull);
-      const double lacking = c.gain - limit * c.prompt * alternating;
-      const double gained = c.answer() * (limit * alternating + c.pull);
-      if (gained > 0.0) surplus = std::max(surplus, lacking / gained);
-    }
+  for (const WeightedRows& place : path_of(system, contact, time.end)) {
+    surplus = std::max(surplus, least_surplus(of_slave + answers_at(system.bodies[master].modal,
+                                                                    answers[master], place,
+                                                                    time.step)));
   }
-  return surplus;
+  return surplus <= std::min(answers[slave].most, answers[master].most)
+             ? surplus
+             : std::numeric_limits<double>::infinity();
+}
+
+/// With the damping of one instant.
+double surplus_at(const System& system, const TimeParameters& time, double instant) {
+  std::vector<BodyAnswers> answers;
+  double enough = 0.0;
+  for (const SystemBody& body : system.bodies) {
+    answers.push_back(answers_of(body, time, body.modal.damping.alpha_at(instant)));
+    enough = std::max(enough, surplus_of_body(answers.back()));
+  }
+  if (system.contacts.size() != 1) return enough;
+  return std::min(enough, surplus_on_path(system, answers, time));
 }
 
 }  // namespace
@@ -99,26 +169,13 @@ std::optional<double> prompt_surplus(const System& system, const TimeParameters&
                   [](const ContactPoint& contact) { return contact.substrate.has_value(); })) {
     return std::nullopt;
   }
-  // Stable are ratios up to 4. Friction, damping and what changes along the path want some room.
-  constexpr double limit = 3.6;
-  const double enough = surplus_of_every_mode(system, time, limit);
-  if (system.contacts.size() != 1) return system.contacts.empty() ? 0.0 : enough;
-  const ContactPoint& contact = system.contacts.front();
-  const auto body = [&](int index) -> const ModalBody& {
-    return system.bodies[static_cast<std::size_t>(index)].modal;
-  };
-  const ModalBody& slave = body(contact.slave_body);
-  const ModalBody& master = body(system.surface_of(contact).body);
-  const PointAnswer of_slave =
-      answer_of(slave, coefficients_of(slave, time), {{contact.slave_rows}, {1.0}}, time.step);
-  const std::vector<StepCoefficients> coefficients = coefficients_of(master, time);
-  double surplus = 0.0;
-  for (const WeightedRows& place : path_of(system, contact, time.end)) {
-    PointAnswer both = of_slave;
-    both += answer_of(master, coefficients, place, time.step);
-    surplus = std::max(surplus, least_surplus(both, limit));
-  }
-  return std::min(surplus, enough);
+  if (system.contacts.empty()) return 0.0;
+  const double at_end = surplus_at(system, time, std::numeric_limits<double>::infinity());
+  const bool is_faded =
+      std::any_of(system.bodies.begin(), system.bodies.end(), [](const SystemBody& body) {
+        return body.modal.damping.alpha_at(0.0) != body.modal.damping.alpha;
+      });
+  return is_faded ? std::max(at_end, surplus_at(system, time, 0.0)) : at_end;
 }
 
 }  // namespace stridor

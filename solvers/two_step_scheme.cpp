@@ -44,8 +44,10 @@ double prompt_share(double pull, double x, double lag) {
   return (1.0 / std::expm1(lag) - 1.0 / lag + 0.5) / lag;
 }
 
-/// Takes an answer at once out of that of the step.
+/// Takes an answer at once out of that of the step. It is at most the whole flexibility 1/ω²; with
+/// more the impulses would change their sign, e < 0, and the mode would feed the contacts.
 StepCoefficients with_prompt(StepCoefficients c, double prompt) {
+  if (c.pull * prompt >= c.gain) return {c.keep, c.pull, 0.0, c.gain / c.pull};
   return {c.keep, c.pull, c.gain - c.pull * prompt, prompt};
 }
 

@@ -8,7 +8,7 @@ namespace stridor {
 ///   d_{n+1} = s d_n − k r_n + e p_n,  r_{n+1} = r_n + d_{n+1},  q_n = r_n + g p_n
 ///
 /// All schemes have this form, most of them with g = 0. The static answer is e + k g = k/ω² in
-/// each.
+/// each, and e ≥ 0: g is at most 1/ω².
 struct StepCoefficients {
   double keep;          ///< s: part of the increment that the next step keeps
   double pull;          ///< k: restoring increment per unit position
@@ -26,7 +26,7 @@ struct StepCoefficients {
 /// @param omega   ω ≥ 0, rad/s
 /// @param damping c, 1/s
 /// @param step    h > 0, s; stable up to 4/(c + √(c² + 4 ω²))
-/// @param surplus δ: with g = δ h² in place of 0
+/// @param surplus δ: with g = min(δ h², 1/ω²) in place of 0
 StepCoefficients central_difference(double omega, double damping, double step,
                                     double surplus = 0.0);
 
@@ -42,7 +42,7 @@ StepCoefficients central_difference(double omega, double damping, double step,
 /// Written so that nothing cancels, however small ω h; any damping, negative too; stable at every
 /// step where c ≥ 0. Parameters as central_difference().
 /// @param surplus δ ≥ 0 of prompt answer: costs accuracy of second order, for the stability of
-///                contacts
+///                contacts; g is not made larger than 1/ω²
 StepCoefficients exact_propagation(double omega, double damping, double step, double surplus = 0.0);
 
 /// The first step of a mode from a displacement and a velocity at t = 0. The force f of the

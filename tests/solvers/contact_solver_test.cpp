@@ -361,6 +361,110 @@ TEST(ContactSolver, ContactsThatJamTogetherAreFound) {
   EXPECT_EQ(coupled(1.01).solve().status, ContactStatus::jammed);
 }
 
+/// n bilateral contacts whose sliding operator is S: unit compliances, friction makes the rest.
+Case with_sliding_operator(const Eigen::MatrixXd& S) {
+  const Eigen::Index n = S.rows();
+  Case problem{Eigen::MatrixXd::Zero(2 * n, 2 * n), std::vector<LocalProblem>(static_cast<std::size_t>(n))};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    problem.delassus(2 * i, 2 * i) = 1.0;
+    problem.delassus(2 * i + 1, 2 * i + 1) = 100.0;
+    for (Eigen::Index j = 0; j < n; ++j)
+      problem.delassus(2 * i, 2 * j + 1) = S(i, j) - (i == j ? 1.0 : 0.0);
+  }
+  for (LocalProblem& contact : problem.contacts) {
+    contact.penetration = 1.0;
+    contact.sliding_friction = 1.0;
+  }
+  return problem;
+}
+
+/// All principal minors by determinants.
+bool is_free_of_jamming(const Eigen::MatrixXd& S) {
+  for (unsigned set = 1; set < (1u << S.rows()); ++set) {
+    std::vector<Eigen::Index> members;
+    for (Eigen::Index i = 0; i < S.rows(); ++i)
+      if ((set >> i) & 1u) members.push_back(i);
+    if (!(Eigen::MatrixXd(S(members, members)).determinant() > 0.0)) return false;
+  }
+  return true;
+}
+
+TEST(ContactSolver, PairsThatJamApartFromEachOtherAreFound) {
+  // Two pairs without a common body, each [[1, 1.2], [1.2, 1]]: their determinants cancel in sign.
+  const Eigen::Matrix2d pair{{1.0, 1.2}, {1.2, 1.0}};
+  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(4, 4);
+  for (const Eigen::Index i : {Eigen::Index{0}, Eigen::Index{1}}) {
+    S.setZero();
+    // Side by side, and interleaved.
+    const std::vector<Eigen::Index> first = i == 0 ? std::vector<Eigen::Index>{0, 1}
+                                                   : std::vector<Eigen::Index>{0, 2};
+    const std::vector<Eigen::Index> second = i == 0 ? std::vector<Eigen::Index>{2, 3}
+                                                    : std::vector<Eigen::Index>{1, 3};
+    S(first, first) = pair;
+    S(second, second) = pair;
+    ASSERT_GT(S.determinant(), 0.0);
+    EXPECT_EQ(with_sliding_operator(S).solve().status, ContactStatus::jammed);
+    S(second, second) = 0.5 * pair + 0.5 * Eigen::Matrix2d::Identity();
+    EXPECT_EQ(with_sliding_operator(S).solve().status, ContactStatus::jammed);
+    S(first, first) = S(second, second);
+    EXPECT_EQ(with_sliding_operator(S).solve().status, ContactStatus::converged);
+  }
+}
+
+TEST(ContactSolver, BilateralContactsJamExactlyWhereAPrincipalMinorIsNotPositive) {
+  Draw draw(41);
+  int num_jammed = 0;
+  int missed_by_determinant = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Eigen::Index n = 2 + trial % 6;
+    Eigen::MatrixXd S(n, n);
+    for (double& entry : S.reshaped()) entry = 1.2 * draw.normal() / std::sqrt(static_cast<double>(n));
+    S.diagonal().setOnes();
+    // Some act on few others only.
+    if (trial % 3 == 0) S.topRightCorner(n / 2, n - n / 2).setZero();
+    if (trial % 3 == 0) S.bottomLeftCorner(n - n / 2, n / 2).setZero();
+    const bool is_free = is_free_of_jamming(S);
+    num_jammed += is_free ? 0 : 1;
+    missed_by_determinant += !is_free && S.determinant() > 0.0 ? 1 : 0;
+    ASSERT_EQ(with_sliding_operator(S).solve().status,
+              is_free ? ContactStatus::converged : ContactStatus::jammed)
+        << trial << '\n'
+        << S;
+  }
+  EXPECT_GT(num_jammed, 300);
+  EXPECT_LT(num_jammed, 1700);
+  EXPECT_GT(missed_by_determinant, 100);
+}
+
+TEST(ContactSolver, GroupsOfManyContactsAreTestedInPart) {
+  // Thirteen in a row: one pair jams, and the last entry with a leading minor.
+  Eigen::MatrixXd S = Eigen::MatrixXd::Identity(13, 13);
+  S.diagonal(1).setConstant(0.1);
+  S.diagonal(-1).setConstant(0.1);
+  EXPECT_EQ(with_sliding_operator(S).solve().status, ContactStatus::converged);
+  Eigen::MatrixXd pair = S;
+  pair(7, 8) = pair(8, 7) = 1.1;
+  EXPECT_EQ(with_sliding_operator(pair).solve().status, ContactStatus::jammed);
+  // Three that jam by turns, no two of them: the determinant is 1 − 2³ and a little.
+  Eigen::MatrixXd three = S;
+  three(0, 1) = three(1, 2) = three(2, 0) = -2.0;
+  three(1, 0) = three(2, 1) = three(0, 2) = 0.0;
+  EXPECT_EQ(with_sliding_operator(three).solve().status, ContactStatus::jammed);
+}
+
+TEST(ContactSolver, WithoutPenetrationNoForceIsTakenWhereOthersWouldDo) {
+  // Sticking would do as well: λ = W⁻¹ (−0.1, 10) = (19.5, 9.8), within the cone.
+  Case problem = painleve(10.0, 0.6);
+  problem[0].penetration = -0.1;
+  const Eigen::Vector2d stick = problem.delassus.inverse() * Eigen::Vector2d(-0.1, 10.0);
+  ASSERT_GT(stick(0), 0.0);
+  ASSERT_LT(std::abs(stick(1)), 0.6 * stick(0));
+  ASSERT_EQ(problem.solve().status, ContactStatus::converged);
+  EXPECT_EQ(problem[0].state, ContactState::open);
+  EXPECT_EQ(problem[0].normal, 0.0);
+  EXPECT_EQ(problem[0].tangential, 0.0);
+}
+
 TEST(ContactSolver, ManyStiffContactsNeitherUnderflowNorJam) {
   // The determinant of 200 compliances of 1e-12 m/N is 1e-2400.
   Draw draw(19);

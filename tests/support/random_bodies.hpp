@@ -1,7 +1,9 @@
 // Two bodies of a few random degrees of freedom, one sliding on the other.
 #pragma once
 
+#include <Eigen/Eigenvalues>
 #include <random>
+#include <utility>
 
 #include "tests/support/small_systems.hpp"
 
@@ -67,6 +69,63 @@ inline System random_sliding_bodies(unsigned seed, double friction, bool is_damp
   system.drive.load = TimeCurve(0.0);
   system.drive.is_frozen = true;
   return system;
+}
+
+/// What is added to the modes of bodies, as shares of their frequencies.
+struct RandomCoupling {
+  double gyroscopic = 0.0;   ///< of the largest ω, 1/s
+  double damper = 0.0;       ///< likewise, of one damper that all modes move
+  double circulatory = 0.0;  ///< of the least ω², 1/s²
+};
+
+/// Terms between the modes of every body.
+inline System with_coupling(System system, unsigned seed, const RandomCoupling& coupling) {
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> normal;
+  for (SystemBody& body : system.bodies) {
+    const Eigen::Index n = body.modal.size();
+    const auto skew = [&] {
+      const Eigen::MatrixXd a = Eigen::MatrixXd::NullaryExpr(n, n, [&] { return normal(engine); });
+      return Eigen::MatrixXd(0.5 * (a - a.transpose()));
+    };
+    const Eigen::VectorXd moved =
+        Eigen::VectorXd::NullaryExpr(n, [&] { return normal(engine); });
+    const double fastest = body.modal.omega.maxCoeff();
+    const double slowest = body.modal.omega.minCoeff();
+    const Eigen::MatrixXd to_modal = body.modal.shapes.transpose() * body.reduced.mass;
+    const Eigen::MatrixXd velocity =
+        coupling.gyroscopic * fastest * skew() +
+        coupling.damper * fastest / moved.squaredNorm() * moved * moved.transpose();
+    const Eigen::MatrixXd position = coupling.circulatory * slowest * slowest * skew();
+    body.reduced.coupled = {to_modal.transpose() * velocity * to_modal,
+                            to_modal.transpose() * position * to_modal};
+    body.modal.coupled = {velocity, position};
+  }
+  return system;
+}
+
+/// Largest |s| of the bodies by themselves, with their coupled terms and without damping and
+/// circulatory ones, 1/s.
+inline double fastest_motion(const System& system) {
+  double fastest = 0.0;
+  for (const SystemBody& body : system.bodies) {
+    const Eigen::Index n = body.modal.size();
+    const Eigen::MatrixXd K = body.modal.omega.array().square().matrix().asDiagonal();
+    const Eigen::MatrixXd& V = body.modal.coupled.velocity;
+    Eigen::MatrixXd damped = V;
+    damped.diagonal().array() +=
+        body.modal.damping.alpha + body.modal.damping.beta * K.diagonal().array();
+    for (const auto& [velocity, position] :
+         {std::pair<Eigen::MatrixXd, Eigen::MatrixXd>(0.5 * (V - V.transpose()), K),
+          {damped, K + body.modal.coupled.position}}) {
+      Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+      companion.topRightCorner(n, n).setIdentity();
+      companion.bottomLeftCorner(n, n) = -position;
+      companion.bottomRightCorner(n, n) = -velocity;
+      fastest = std::max(fastest, companion.eigenvalues().cwiseAbs().maxCoeff());
+    }
+  }
+  return fastest;
 }
 
 }  // namespace stridor::test

@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "core/errors.hpp"
 #include "io/scene.hpp"
+#include "solvers/dense_eigenvalues.hpp"
 #include "solvers/equilibrium.hpp"
 #include "solvers/linearise.hpp"
 #include "solvers/make_propagator.hpp"
@@ -45,10 +47,10 @@ Pencil rows_of_contact(const System& system, double friction) {
 Pencil sticking(const System& system) {
   Pencil pencil = rows_of_contact(system, 0.0);
   const Eigen::Index slots = pencil.num_slots();
-  Eigen::MatrixXd both(2, slots);
+  Eigen::MatrixXd both = Eigen::MatrixXd::Zero(2, slots);
   both.row(0) = pencil.compatibility;
   // B_C = −n on the slave, +w n on the master; the same along t = (n_y, −n_x).
-  for (Eigen::Index slot = 0; slot < slots; slot += 2) {
+  for (Eigen::Index slot = 0; slot < slots - pencil.num_body_slots; slot += 2) {
     both(1, slot) = pencil.compatibility(0, slot + 1);
     both(1, slot + 1) = -pencil.compatibility(0, slot);
   }
@@ -80,6 +82,21 @@ double recurrence_error(const std::vector<std::complex<double>>& factors,
   return worst;
 }
 
+/// What is seen of forty steps from a displacement.
+std::vector<double> motion_from(System system, const TimeParameters& time, double displacement) {
+  for (SystemBody& body : system.bodies) {
+    body.initial_displacement =
+        Eigen::VectorXd::LinSpaced(body.reduced.size(), displacement, -2.0 * displacement);
+  }
+  std::vector<double> seen;
+  Simulation simulation(system, time);
+  for (int n = 0; n < 40; ++n) {
+    EXPECT_EQ(simulation.step(), StepOutcome::done) << simulation.failure();
+    seen.push_back(simulation.displacement(0, 0));
+  }
+  return seen;
+}
+
 TEST(FrozenStep, FactorsAreThoseOfTheSimulation) {
   // Cayley and Hamilton: what is seen of a linear step repeats its characteristic polynomial. The
   // difference of two runs is free of loads.
@@ -100,29 +117,15 @@ TEST(FrozenStep, FactorsAreThoseOfTheSimulation) {
         SCOPED_TRACE(testing::Message() << "seed " << seed << ", damped " << is_damped << ", "
                                         << (integrator == Integrator::exact ? "exact " : "central ")
                                         << step / limit << " cutoff " << cutoff);
-        const auto run = [&](double displacement) {
-          System moved = system;
-          for (SystemBody& body : moved.bodies) {
-            body.initial_displacement =
-                Eigen::VectorXd::LinSpaced(body.reduced.size(), displacement, -2.0 * displacement);
-          }
-          std::vector<double> seen;
-          Simulation simulation(moved, time);
-          for (int n = 0; n < 40; ++n) {
-            EXPECT_EQ(simulation.step(), StepOutcome::done) << simulation.failure();
-            seen.push_back(simulation.displacement(0, 0));
-          }
-          return seen;
-        };
         std::vector<std::complex<double>> factors;
         std::vector<double> seen;
         try {
           factors = FrozenStep(system, time).factors(rows_of_contact(system, 0.3));
-          seen = run(1e-3);
+          seen = motion_from(system, time, 1e-3);
         } catch (const NumericalError&) {
           continue;  // it jams
         }
-        const std::vector<double> rest = run(0.0);
+        const std::vector<double> rest = motion_from(system, time, 0.0);
         for (std::size_t n = 0; n < seen.size(); ++n) seen[n] -= rest[n];
         EXPECT_LT(recurrence_error(factors, seen), 1e-12);
         // Without friction it is another step; where all motions are slow, little tells.
@@ -134,6 +137,94 @@ TEST(FrozenStep, FactorsAreThoseOfTheSimulation) {
   }
   EXPECT_GT(runs, 60);
   EXPECT_GT(told_apart, runs / 2);
+}
+
+TEST(FrozenStep, FactorsOfCoupledBodiesAreThoseOfTheSimulation) {
+  int runs = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const System system = with_coupling(random_sliding_bodies(seed, 0.3, true), seed,
+                                        {.gyroscopic = 0.5, .damper = 0.1, .circulatory = 0.1});
+    for (const double turn : {0.3, 1.5}) {
+      const TimeParameters time = time_of(Integrator::exact, turn / fastest_motion(system));
+      std::vector<double> seen;
+      std::vector<std::complex<double>> factors;
+      try {
+        factors = FrozenStep(system, time).factors(rows_of_contact(system, 0.3));
+        seen = motion_from(system, time, 1e-3);
+      } catch (const NumericalError&) {
+        continue;  // it jams
+      }
+      const std::vector<double> rest = motion_from(system, time, 0.0);
+      for (std::size_t n = 0; n < seen.size(); ++n) seen[n] -= rest[n];
+      EXPECT_LT(recurrence_error(factors, seen), 1e-11) << "seed " << seed << ", turn " << turn;
+      ++runs;
+    }
+  }
+  EXPECT_GT(runs, 20);
+}
+
+TEST(StepStability, GyroscopicBodiesWithoutDampingAreStableWithoutFriction) {
+  // Up to the largest turn: they conserve energy, and so do contacts that slide without friction or
+  // stick.
+  for (unsigned seed = 1; seed <= 150; ++seed) {
+    const System system = with_coupling(random_sliding_bodies(seed, 0.0, false), seed,
+                                        {.gyroscopic = 0.05 * (seed % 20)});
+    for (const double turn : {0.05, 0.2, 0.5, 1.0, 1.5, 1.999}) {
+      const TimeParameters time = time_of(Integrator::exact, turn / fastest_motion(system));
+      const FrozenStep step(system, time);
+      for (const Pencil& contacts : {rows_of_contact(system, 0.0), sticking(system)}) {
+        EXPECT_LT(spectral_radius(step.factors(contacts)), 1.0 + 1e-9)
+            << "seed " << seed << ", turn " << turn;
+      }
+    }
+  }
+}
+
+/// Whether the bodies in contact are stable, by their eigenvalues.
+bool is_stable(const Pencil& contacts) {
+  const std::vector<Eigenvalue> eigenvalues = dense_eigenvalues(contacts);
+  return std::all_of(eigenvalues.begin(), eigenvalues.end(),
+                     [](const Eigenvalue& one) { return one.growth() < 0.0; });
+}
+
+/// Cases of damped bodies with coupled terms that are stable in contact, and how many of the steps
+/// grow.
+struct CoupledCases {
+  int cases = 0;
+  int growing = 0;
+
+  CoupledCases(const RandomCoupling& coupling, double friction, double least_turn,
+               double largest_turn) {
+    for (unsigned seed = 1; seed <= 300; ++seed) {
+      const System system =
+          with_coupling(random_sliding_bodies(seed, friction, true), seed, coupling);
+      const double turn = least_turn + (largest_turn - least_turn) * (seed % 10) / 9.0;
+      const TimeParameters time = time_of(Integrator::exact, turn / fastest_motion(system));
+      std::vector<Pencil> places{rows_of_contact(system, friction)};
+      if (friction == 0.0) places.push_back(sticking(system));
+      for (const Pencil& contacts : places) {
+        try {
+          if (!is_stable(contacts)) continue;
+          growing += spectral_radius(FrozenStep(system, time).factors(contacts)) > 1.0 + 1e-9;
+          ++cases;
+        } catch (const NumericalError&) {
+          continue;  // it jams
+        }
+      }
+    }
+  }
+};
+
+TEST(StepStability, DampedGyroscopicBodiesAreStableWithoutFriction) {
+  const CoupledCases found({.gyroscopic = 0.5, .damper = 0.1}, 0.0, 0.05, 1.0);
+  EXPECT_EQ(found.growing, 0);
+  EXPECT_GT(found.cases, 500);
+}
+
+TEST(StepStability, CirculatoryBodiesAreStableWhereTheyAreInContact) {
+  const CoupledCases found({.gyroscopic = 0.2, .damper = 0.1, .circulatory = 0.2}, 0.0, 0.05, 1.0);
+  EXPECT_EQ(found.growing, 0);
+  EXPECT_GT(found.cases, 200);
 }
 
 TEST(StepStability, WithoutFrictionCouplingDoesNotLowerTheLimit) {
@@ -164,6 +255,21 @@ TEST(StepStability, WithoutFrictionCouplingDoesNotLowerTheLimit) {
   }
 }
 
+TEST(StepStability, HeavilyDampedBodiesBesideUndampedOnesAreStableWithoutFriction) {
+  // The feedthrough that a slow mode with c h = 2.14 needs is more than the flexibility of undamped
+  // modes near ω h = 2.
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    System system = random_sliding_bodies(seed, 0.0, false);
+    const TimeParameters time =
+        time_of(Integrator::exact, 1.99 / system.bodies[1].modal.omega.maxCoeff());
+    system.bodies[0].reduced.damping.alpha = 2.14 / time.step;
+    system.bodies[0].modal = make_modal(system.bodies[0].reduced);
+    const FrozenStep step(system, time, 0.309);
+    for (const Pencil& contacts : {rows_of_contact(system, 0.0), sticking(system)})
+      EXPECT_LT(spectral_radius(step.factors(contacts)), 1.0 + 1e-9) << "seed " << seed;
+  }
+}
+
 TEST(StepStability, BodiesApartAreUnstableBeyondTheLimit) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     for (const bool is_damped : {false, true}) {
@@ -183,7 +289,7 @@ TEST(StepStability, BodiesApartAreUnstableBeyondTheLimit) {
   }
 }
 
-/// One body on rigid ground: with λ = −(k_xy x) N it moves along x as
+/// One body on rigid ground: with λ = k_xy x it moves along x as
 /// m ẍ + (k_xx + μ k_xy) x = 0, whatever the limit of the body by itself.
 System body_on_ground(double friction) {
   MassOnGround mass;
