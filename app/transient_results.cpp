@@ -133,6 +133,17 @@ Json violations_json(const Simulation& simulation) {
             {"last_time", sum.total() > 0 ? number(sum.last_time) : Json(nullptr)}}}};
 }
 
+/// Energy that contacts have given to the bodies, which none can.
+Json contact_gain_json(const EnergyLedger* energy) {
+  if (energy == nullptr) return nullptr;
+  const ContactGain& gain = energy->contact_gain();
+  const double turned_over = energy->turned_over();
+  return {{"energy", number(gain.energy)},
+          {"share", number(turned_over > 0.0 ? gain.energy / turned_over : 0.0)},
+          {"last_time", gain.energy > 0.0 ? number(gain.last_time) : Json(nullptr)},
+          {"violated", energy->contacts_feed()}};
+}
+
 }  // namespace
 
 Json bursts_json(const std::vector<Burst>& bursts) {
@@ -185,6 +196,7 @@ Json transient_results(const Simulation& simulation, const System& system,
   results.update(violations_json(simulation));
   const EnergyLedger* energy = simulation.energy();
   results["energy_error"] = energy != nullptr ? number(energy->relative_error()) : Json(nullptr);
+  results["contact_gain"] = contact_gain_json(energy);
   return results;
 }
 

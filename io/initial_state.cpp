@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/equilibrium.hpp"
 #include "solvers/linearise.hpp"
+#include "solvers/starting_gap.hpp"
 
 namespace stridor {
 namespace {
@@ -110,9 +112,63 @@ Eigen::VectorXd sum(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return a + b;
 }
 
-}  // namespace
+/// The key that is to blame for a gap at the start.
+std::string key_of_start(const LoadedScene& loaded, const ContactPoint& contact) {
+  const ModelParameters& model = loaded.scene.model;
+  if (!model.initial.displacement.empty()) return "initial.displacement";
+  if (model.initial.perturbation) return "initial.perturbation.amplitude";
+  if (model.initial.is_file()) return state_key;
+  const std::string pair = contact.name.substr(0, contact.name.find('['));
+  return (model.contact ? pair : "contacts." + pair) + ".slave";
+}
 
-void set_initial_state(System& system, const LoadedScene& loaded) {
+std::string gap_message(const System& system, const StartingGap& start) {
+  const ContactPoint& contact = system.contacts[static_cast<std::size_t>(start.contact)];
+  const Eigen::Vector2d lift = -start.gap * start.normal + Eigen::Vector2d::Zero();  // no -0
+  const std::string move = fmt::format(
+      "move '{}' by x: {:.12g} m, y: {:.12g} m (initial.displacement)",
+      system.bodies[static_cast<std::size_t>(contact.slave_body)].name, lift.x(), lift.y());
+  if (may_start_open(contact)) {
+    return fmt::format(
+        "'{}' starts {:.6g} m inside its master '{}', which the first step would turn into energy "
+        "from nothing; the smallest lift that removes it: {}",
+        contact.name, -start.gap, system.surface_of(contact).name, move);
+  }
+  return fmt::format(
+      "'{}' starts {:.6g} m {} its master '{}', and a contact that slides persistently closes any "
+      "gap in the first step, with energy from nothing; {}, or take assumption: film, in which a "
+      "contact may start open",
+      contact.name, std::abs(start.gap), start.gap < 0.0 ? "inside" : "away from",
+      system.surface_of(contact).name, move);
+}
+
+/// Refuses gaps that the contact forces would close in the first step. An overlap in a substrate is
+/// the indentation of its law, which stores the energy that it gives back.
+void check_gaps(const System& system, const LoadedScene& loaded) {
+  // An eigenvector closes the contacts to first order in its amplitude: the normal turns as well.
+  constexpr double turning = 1e-3;
+  const InitialParameters& initial = loaded.scene.model.initial;
+  const double amplitude = initial.perturbation ? initial.perturbation->amplitude : 0.0;
+  std::map<int, StartingGap> worst;  // by slave body: one motion of it removes all
+  for (const StartingGap& start : starting_gaps(system)) {
+    const ContactPoint& contact = system.contacts[static_cast<std::size_t>(start.contact)];
+    if (contact.substrate) continue;
+    if (may_start_open(contact) && start.gap >= 0.0) continue;
+    const double allowed = negligible_gap(system.surface_of(contact)) + turning * amplitude;
+    if (std::abs(start.gap) <= allowed) continue;
+    const auto [known, is_new] = worst.try_emplace(contact.slave_body, start);
+    if (!is_new && std::abs(start.gap) > std::abs(known->second.gap)) known->second = start;
+  }
+  if (worst.empty()) return;
+  std::vector<Problem> problems;
+  for (const auto& [body, start] : worst) {
+    const ContactPoint& contact = system.contacts[static_cast<std::size_t>(start.contact)];
+    problems.push_back({key_of_start(loaded, contact), gap_message(system, start), {}, 0, 0});
+  }
+  throw loaded.located(ConfigError(std::move(problems)));
+}
+
+void add_state(System& system, const LoadedScene& loaded) {
   const InitialParameters& initial = loaded.scene.model.initial;
   if (initial.state == InitialParameters::rest) return;
   const std::vector<SystemBody> prescribed = system.bodies;
@@ -132,6 +188,13 @@ void set_initial_state(System& system, const LoadedScene& loaded) {
     body.initial_displacement = sum(body.initial_displacement, prescribed[b].initial_displacement);
     body.initial_velocity = sum(body.initial_velocity, prescribed[b].initial_velocity);
   }
+}
+
+}  // namespace
+
+void set_initial_state(System& system, const LoadedScene& loaded) {
+  add_state(system, loaded);
+  check_gaps(system, loaded);
 }
 
 }  // namespace stridor

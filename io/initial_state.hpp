@@ -10,8 +10,8 @@ namespace stridor {
 ///
 /// @param system of the scene's model
 /// @throws ConfigError with the place in the scene if there is no such equilibrium or eigenvalue,
-/// or
-///         the run file is of other bodies
+///         the run file is of other bodies, or a contact starts with a gap that its forces would
+///         close in the first step: an overlap, or any gap of a bilateral contact
 /// @throws FileError naming file and dataset if the run file cannot be read
 void set_initial_state(System& system, const LoadedScene& loaded);
 

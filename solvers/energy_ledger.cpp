@@ -11,6 +11,9 @@
 namespace stridor {
 namespace {
 
+/// A height of the rough surface that no step has told yet.
+constexpr double not_yet = std::numeric_limits<double>::infinity();
+
 /// Numbers that are worked on together; split by the compiler where the instruction set has shorter
 /// vectors. Arrays are padded with zeros to whole blocks.
 using Block = double __attribute__((vector_size(64)));
@@ -154,7 +157,8 @@ EnergyLedger::EnergyLedger(const System& system, const TimeParameters& time)
       return system.bodies[static_cast<std::size_t>(body)].follows_drive ? 1.0 : 0.0;
     };
     contacts_.push_back({point.slave_body, surface.body, point.slave_rows, surface.rows,
-                         surface.kind, follows(point.slave_body) - follows(surface.body)});
+                         surface.kind, follows(point.slave_body) - follows(surface.body),
+                         not_yet, not_yet});
   }
   initial_ = kinetic + strain;
   enter_stored(kinetic, strain);
@@ -240,10 +244,13 @@ void EnergyLedger::add(double time, std::span<const ContactAction> contacts,
     }
   }
   const double driven = step_ * drive_.velocity.value(time);
+  double given = 0.0;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const ContactAction& action = contacts[i];
+    const double raised = roughness_increment(contacts_[i], action.roughness);
     if (action.state == ContactState::open) continue;
-    enter_contact(contacts_[i], action, contacts_[i].driven * driven);
+    given +=
+        enter_contact(contacts_[i], action, contacts_[i].driven * driven) - action.force * raised;
     const double power = -action.friction_force * slip_velocities[i];
     if (action.state == ContactState::slip && power > 0.0) {
       ++friction_gain_.steps;
@@ -251,23 +258,48 @@ void EnergyLedger::add(double time, std::span<const ContactAction> contacts,
       friction_gain_.last_time = time;
     }
   }
+  enter_gain(given, time);
   enter_stored(kinetic, strain);
 }
 
+/// Mean increment of the height of the rough surface under a contact, m.
+/// @param roughness at t_{n+1}
+double EnergyLedger::roughness_increment(Contact& contact, double roughness) {
+  if (contact.last_roughness == not_yet) contact.last_roughness = roughness;
+  if (contact.roughness_before_last == not_yet)
+    contact.roughness_before_last = contact.last_roughness;
+  const double raised = 0.5 * (roughness - contact.roughness_before_last);
+  contact.roughness_before_last = contact.last_roughness;
+  contact.last_roughness = roughness;
+  return raised;
+}
+
+/// @param given by the contacts in the step that begins at `time`, J
+void EnergyLedger::enter_gain(double given, double time) {
+  given_.add(given);
+  least_given_ = std::min(least_given_, given_.value());
+  const double gain = given_.value() - least_given_;
+  if (gain > contact_gain_.energy) contact_gain_ = {gain, time};
+}
+
 /// @param driven by how much the drive moves the slave against the master in +x, m
-void EnergyLedger::enter_contact(const Contact& contact, const ContactAction& action,
+/// @return contact work of the step, J
+double EnergyLedger::enter_contact(const Contact& contact, const ContactAction& action,
                                  double driven) {
   const Projection& p = action.projection;
   const Eigen::Vector2d relative = mean_increment(contact, action);
   friction_loss_.add(action.friction_force * (p.tangent.dot(relative) + p.tangent.x() * driven));
+  const double opening =
+      p.normal.dot(relative) + (drive_.is_frozen ? 0.0 : p.normal.x() * driven);
+  const double work = action.force * opening;
+  contact_work_.add(work);
   if (drive_.is_frozen) {
-    contact_work_.add(action.force * p.normal.dot(relative));
     drive_work_.add(action.friction_force * p.tangent.x() * driven);
   } else {
-    contact_work_.add(action.force * (p.normal.dot(relative) + p.normal.x() * driven));
     drive_work_.add(-(action.force * p.normal.x() - action.friction_force * p.tangent.x()) *
                     driven);
   }
+  return work;
 }
 
 /// Closes the books of a step.
@@ -308,6 +340,11 @@ void EnergyLedger::save(State& state, const std::string& prefix) const {
   contact_work_.save(state, prefix + "contact_work");
   drive_work_.save(state, prefix + "drive_work");
   load_work_.save(state, prefix + "load_work");
+  given_.save(state, prefix + "given");
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const double roughness[] = {contacts_[i].roughness_before_last, contacts_[i].last_roughness};
+    state.put(fmt::format("{}contacts/{}/roughness", prefix, i), roughness);
+  }
   const double values[] = {initial_,
                            balance_.kinetic,
                            balance_.strain,
@@ -315,7 +352,10 @@ void EnergyLedger::save(State& state, const std::string& prefix) const {
                            largest_error_,
                            static_cast<double>(friction_gain_.steps),
                            friction_gain_.largest_power,
-                           friction_gain_.last_time};
+                           friction_gain_.last_time,
+                           least_given_,
+                           contact_gain_.energy,
+                           contact_gain_.last_time};
   state.put(prefix + "scalars", values);
 }
 
@@ -329,10 +369,19 @@ void EnergyLedger::load(const State& state, const std::string& prefix) {
   contact_work_.load(state, prefix + "contact_work");
   drive_work_.load(state, prefix + "drive_work");
   load_work_.load(state, prefix + "load_work");
-  double values[8];
+  given_.load(state, prefix + "given");
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    double roughness[2];
+    state.get(fmt::format("{}contacts/{}/roughness", prefix, i), roughness);
+    contacts_[i].roughness_before_last = roughness[0];
+    contacts_[i].last_roughness = roughness[1];
+  }
+  double values[11];
   state.get(prefix + "scalars", values);
   initial_ = values[0];
   friction_gain_ = {static_cast<std::int64_t>(values[5]), values[6], values[7]};
+  least_given_ = values[8];
+  contact_gain_ = {values[9], values[10]};
   largest_stored_ = values[3];
   largest_error_ = values[4];
   enter_stored(values[1], values[2]);

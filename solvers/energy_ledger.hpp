@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -42,6 +43,7 @@ struct ContactAction {
   double force = 0.0;           ///< λ_n, N, compression positive
   double friction_force = 0.0;  ///< λ_t, N, positive against sliding of the slave along +t
   ContactState state = ContactState::open;
+  double roughness = 0.0;  ///< how far the rough surface stands out at t_{n+1}, m
 };
 
 /// The entries of the ledger, J (docs/theory.md, 3.4). Losses and works are sums since the start.
@@ -64,6 +66,14 @@ struct FrictionGain {
   std::int64_t steps = 0;
   double largest_power = 0.0;  ///< W
   double last_time = 0.0;      ///< of the latest such step, s
+};
+
+/// Contacts that have given energy to the bodies: a normal force works on a gap that it holds closed
+/// not at all, in an impact it only takes, and a rough surface moved by the drive works on its own
+/// account. What is left of the contact work may therefore not rise.
+struct ContactGain {
+  double energy = 0.0;     ///< largest rise of it over any stretch of time, J
+  double last_time = 0.0;  ///< at the end of that stretch, s
 };
 
 /// The energy of a system in motion, entry by entry, each from its own definition and none as the
@@ -118,6 +128,10 @@ class EnergyLedger {
   /// largest_error() / turned_over(); 0 where nothing has moved.
   double relative_error() const;
   const FrictionGain& friction_gain() const { return friction_gain_; }
+  const ContactGain& contact_gain() const { return contact_gain_; }
+  /// Whether the contacts have given more than what the turning of the normal within a step makes of
+  /// their work, a hundredth of the energy turned over (docs/theory.md, 3.4).
+  bool contacts_feed() const { return contact_gain_.energy > 0.01 * turned_over(); }
 
   void save(State& state, const std::string& prefix) const;
   /// @throws std::invalid_argument if the state is of another system; the ledger must not be used
@@ -154,13 +168,18 @@ class EnergyLedger {
     std::vector<PointRows> master_rows;
     SurfaceKind surface_kind;
     double driven;  ///< +1, −1 or 0: how the drive moves the slave against the master
+    /// Of the last two steps, t_{n−1} and t_n, m.
+    double roughness_before_last = std::numeric_limits<double>::quiet_NaN();
+    double last_roughness = std::numeric_limits<double>::quiet_NaN();
   };
 
   static Body make_body(const SystemBody& body, const TimeParameters& time);
   static Forms forms_of_step(Body& body);
   double mean_increment(const Body& body, int row) const;
   Eigen::Vector2d mean_increment(const Contact& contact, const ContactAction& action) const;
-  void enter_contact(const Contact& contact, const ContactAction& action, double driven);
+  double enter_contact(const Contact& contact, const ContactAction& action, double driven);
+  static double roughness_increment(Contact& contact, double roughness);
+  void enter_gain(double given, double time);
   void enter_stored(double kinetic, double strain);
 
   double step_;
@@ -178,6 +197,9 @@ class EnergyLedger {
   double largest_stored_ = 0.0;
   double largest_error_ = 0.0;
   FrictionGain friction_gain_;
+  CompensatedSum given_;  ///< by the contacts, without the work of roughness
+  double least_given_ = 0.0;
+  ContactGain contact_gain_;
 };
 
 }  // namespace stridor

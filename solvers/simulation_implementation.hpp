@@ -523,7 +523,7 @@ struct Simulation::Implementation {
 
   static ContactAction action_of(const RunningContact& contact) {
     return {contact.sliding.segment(), contact.sliding.projection(), contact.force,
-            contact.friction_force, contact.state};
+            contact.friction_force, contact.state, contact.sliding.roughness()};
   }
 
   /// t·(v_C − v_M) from the increments of the last step. @returns the drive's part of it

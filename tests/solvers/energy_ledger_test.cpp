@@ -9,6 +9,7 @@
 #include "solvers/make_propagator.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
+#include "tests/support/small_systems.hpp"
 
 namespace stridor {
 namespace {
@@ -36,13 +37,6 @@ SystemBody chain(double alpha, double beta) {
   body.initial_displacement = Eigen::Vector3d(0.01, -0.02, 0.03);
   body.initial_velocity = Eigen::Vector3d(0.5, 0.1, -0.3);
   return body;
-}
-
-TimeParameters time_of(double step, Coordinates coordinates) {
-  TimeParameters time;
-  time.step = step;
-  time.coordinates = coordinates;
-  return time;
 }
 
 /// A free body marched beside its ledger.
@@ -447,6 +441,66 @@ TEST(EnergyLedger, ContactThatSticksAndLiftsOffNeverFeedsEnergy) {
   EXPECT_LT(rise, drift);
   // Rounding of the sliding velocity, ε u/h = 1e-12 m/s, times a force of 0.1 N.
   EXPECT_LT(ledger.friction_gain().largest_power, 1e-13);
+  EXPECT_NEAR(ledger.contact_gain().energy, rise, 1e-9 * ledger.turned_over());
+  EXPECT_FALSE(ledger.contacts_feed());
+}
+
+// ---------------------------------------------------------------- contacts that feed
+
+TEST(EnergyLedger, ContactsThatCloseAnOverlapFeedEnergyToItsFullAmount) {
+  // A mass m starts an overlap g inside the ground. The first force λ = m g/h² closes it in a step
+  // and so does the work λ g/2: the mass leaves with g/h.
+  constexpr double overlap = 1e-3;
+  constexpr double step = 1e-3;
+  MassOnGround ground;
+  ground.load = 0.0;
+  System system = ground.system();
+  system.bodies[0].initial_displacement = Eigen::Vector2d(0.0, -overlap);
+  Simulation simulation(system, time_of(step, Coordinates::modal), Accounts::energy);
+  ASSERT_EQ(simulation.step_until(100), StepOutcome::done) << simulation.failure();
+  const EnergyLedger& ledger = *simulation.energy();
+  EXPECT_LT(ledger.relative_error(), rounding);
+  EXPECT_NEAR(ledger.contact_gain().energy, 0.5 * ground.mass * std::pow(overlap / step, 2),
+              1e-9);
+  EXPECT_EQ(ledger.contact_gain().last_time, 0.0);
+  EXPECT_TRUE(ledger.contacts_feed());
+}
+
+TEST(EnergyLedger, ContactsThatBounceOrSlideDoNotFeed) {
+  MassOnGround ground;
+  System falling = ground.system();
+  falling.bodies[0].initial_displacement = Eigen::Vector2d(0.0, 1e-3);
+  falling.bodies[0].initial_velocity = Eigen::Vector2d(0.0, -0.1);
+  Simulation landed(falling, time_of(1e-4, Coordinates::modal), Accounts::energy);
+  ASSERT_EQ(landed.step_until(2000), StepOutcome::done) << landed.failure();
+  EXPECT_LT(landed.energy()->balance().contact_work, -1e-3);
+  EXPECT_LT(landed.energy()->contact_gain().energy, 1e-12);
+  for (const auto assumption : {ContactAssumption::subs_a, ContactAssumption::subs_b,
+                                ContactAssumption::subs_c, ContactAssumption::film}) {
+    const Simulation sliding = marched(lively_system(assumption), 20'000, paper_time());
+    EXPECT_FALSE(sliding.energy()->contacts_feed()) << static_cast<int>(assumption);
+  }
+}
+
+TEST(EnergyLedger, TheWorkOfAMovingRoughSurfaceIsNotFedByTheContact) {
+  // A contact force of 3 N on a slave that a rough surface lifts by 0.5 m a step.
+  EnergyLedger ledger(driven_system(true), time_of(0.5, Coordinates::modal));
+  const auto lift_by = [&](double time, double roughness, double moved) {
+    ContactAction action = inclined_action(3.0, 0.0);
+    action.roughness = roughness;
+    const double slip = 0.1;
+    const EnergyBalance before = ledger.balance();
+    ledger.add(time, {&action, 1}, {&slip, 1});
+    EXPECT_NEAR(ledger.balance().contact_work - before.contact_work, 3.0 * moved, 1e-12);
+  };
+  // The drive moves the slave along −x, out of the inclined surface at 0.6 of its way.
+  lift_by(0.0, 0.0, -0.6 * 0.5 * 0.2);
+  const double loss = ledger.balance().contact_work;
+  EXPECT_EQ(ledger.contact_gain().energy, 0.0);
+  lift_by(0.5, -0.4, -0.6 * 0.5 * 0.4);
+  // A surface that sinks by 0.2 m in the mean lets the same motion give 3 · (0.2 − 0.12) J.
+  EXPECT_NEAR(ledger.contact_gain().energy, 3.0 * (0.2 - 0.12), 1e-12);
+  EXPECT_LT(ledger.balance().contact_work, loss);
 }
 
 TEST(EnergyLedger, SeveralContactsBalanceAsOneDoes) {
