@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <numbers>
 #include <utility>
 
-#include "core/tasks.hpp"
+#include "core/blas.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/secular_eigenvalues.hpp"
 
@@ -19,7 +18,7 @@ using Complex = std::complex<double>;
 constexpr double inf = std::numeric_limits<double>::infinity();
 
 Eigen::VectorXcd shape_of(const Pencil& pencil, Complex s) {
-  const std::scoped_lock guard(blas_in_use);
+  const BlasGuard guard;
   return eigenvector(pencil, s).right;
 }
 

@@ -5,15 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <numbers>
 
 #include "analysis/sampled_locus.hpp"
 #include "app/linear_stability.hpp"
 #include "app/sphere_stability.hpp"
+#include "core/blas.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
-#include "core/tasks.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/retained_modes.hpp"
 #include "solvers/secular_eigenvalues.hpp"
@@ -203,7 +202,7 @@ std::string value_text(const NumericKey& key, double value) {
 LowestEigenvalues find_lowest(const Pencil& pencil, EigenvalueMethod method,
                               const SpectrumWindow& window) {
   constexpr Eigen::Index most_dense = 2000;  // about a minute
-  const std::scoped_lock guard(blas_in_use);
+  const BlasGuard guard;
   LowestEigenvalues found;
   if (method == EigenvalueMethod::secular) {
     try {
@@ -361,7 +360,7 @@ BodyStabilityFamily::BodyStabilityFamily(const LoadedScene& loaded, std::vector<
       start_key_(start_key(loaded.scene.model)) {}
 
 SlidingState BodyStabilityFamily::at(std::span<const double> values) {
-  const std::scoped_lock guard(blas_in_use);
+  const BlasGuard guard;
   std::string what;
   for (std::size_t i = 0; i < values.size(); ++i)
     what += (i > 0 ? ", " : "") + value_text(family_.keys()[i], values[i]);
@@ -375,7 +374,7 @@ SlidingState BodyStabilityFamily::at(std::span<const double> values) {
 }
 
 double BodyStabilityFamily::trusted_frequency(std::span<const double> values) {
-  const std::scoped_lock guard(blas_in_use);
+  const BlasGuard guard;
   const System& system = family_.at(values).model->system;
   if (!asked_) asked_ = asked_frequency(system, time_);
   return std::min(*asked_ / (2.0 * std::numbers::pi), stridor::trusted_frequency(system));
@@ -425,7 +424,7 @@ std::vector<double> BodyStabilityFamily::kinks(std::size_t key, const std::vecto
   const std::string& path = family_.keys()[key].path;
   const bool is_driven = path == drive_displacement_name;
   if (!is_driven && (!start_key_ || path != *start_key_)) return found;
-  const std::scoped_lock guard(blas_in_use);
+  const BlasGuard guard;
   const System& system = family_.at(values).model->system;
   if (is_driven) {
     if (geometry_ == ContactGeometry::deformed) return found;

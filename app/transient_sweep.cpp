@@ -15,6 +15,7 @@
 #include "app/run_keeping.hpp"
 #include "app/sweep.hpp"
 #include "app/transient_results.hpp"
+#include "core/blas.hpp"
 #include "core/errors.hpp"
 #include "core/tasks.hpp"
 #include "core/version.hpp"
@@ -139,9 +140,9 @@ std::vector<TransientPoint> points_at(const LoadedScene& scene, const NumericKey
   std::vector<std::unique_ptr<Transit>> transits(values.size());
   std::vector<March*> marches;
   {
-    // Set-up and summary use BLAS, LAPACK and plans of FFTW; the steps in between do not, but for
-    // many contacts (see num_threads()).
-    const std::lock_guard lock(blas_in_use);
+    // Set-up uses BLAS and LAPACK; what follows does not, but for many contacts (see
+    // num_threads()).
+    const BlasGuard guard;
     for (std::size_t i = 0; i < values.size(); ++i) {
       const Settings settings{{key.path, values[i]}};
       try {
@@ -159,7 +160,6 @@ std::vector<TransientPoint> points_at(const LoadedScene& scene, const NumericKey
   const std::vector<MarchEnd> ends = march_together(marches);
   const double seconds =
       seconds_since(start) / static_cast<double>(std::max<std::size_t>(marches.size(), 1));
-  const std::lock_guard lock(blas_in_use);
   std::size_t next = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (transits[i]) points[i] = transits[i]->point(values[i], ends[next++], seconds);
@@ -171,10 +171,9 @@ using Points = std::vector<TransientPoint>;
 
 /// Threads that the steps of a scene can use: where many contacts slide, their forces are solved
 /// for by BLAS.
-int num_threads(const LoadedScene& loaded, int wanted) {
+int num_threads(const Model& model, int wanted) {
   constexpr std::size_t most_without_blas = 8;
-  BodyCache cache;
-  return build_model(loaded, cache).system.contacts.size() > most_without_blas ? 1 : wanted;
+  return is_blas_reentrant() || model.system.contacts.size() <= most_without_blas ? wanted : 1;
 }
 
 /// What is written and drawn of every transient.
@@ -333,26 +332,30 @@ ExitCode sweep_transients(const SweepOptions& options) {
     with_settings(loaded, {{key.path, value}});
 
   Points points(values.size());
-  const int threads = num_threads(loaded, options.common.threads);
-  std::vector<BodyCache> caches(static_cast<std::size_t>(threads));
-  // As many together as vectors hold, but work for every thread.
+  // Every thread begins with the bodies of the scene: most keys leave most of them as they are.
+  BodyCache cache;
+  const int threads = static_cast<int>(std::min(
+      static_cast<std::size_t>(num_threads(build_model(loaded, cache), options.common.threads)),
+      values.size()));
+  std::vector<BodyCache> caches(static_cast<std::size_t>(threads), cache);
+  // As many together as vectors hold, and as much work for every thread.
   constexpr std::size_t largest_batch = 8;
-  const std::size_t share = (values.size() + caches.size() - 1) / caches.size();
-  const std::size_t batch = std::min(share, largest_batch);
-  const std::size_t num_batches = (values.size() + batch - 1) / batch;
+  const std::size_t for_each =
+      (values.size() + largest_batch * caches.size() - 1) / (largest_batch * caches.size());
+  const std::size_t num_batches = std::min(values.size(), for_each * caches.size());
+  const auto first_of = [&](std::size_t batch) { return batch * values.size() / num_batches; };
   Progress progress("sweep");
   run_tasks(
       num_batches, threads,
       [&](std::size_t task, std::size_t thread) {
-        const std::size_t first = task * batch;
-        const std::span<const double> here(values.data() + first,
-                                           std::min(batch, values.size() - first));
+        const std::size_t first = first_of(task);
+        const std::span<const double> here(values.data() + first, first_of(task + 1) - first);
         Points done = points_at(loaded, key, here, caches[thread]);
         std::move(done.begin(), done.end(), points.begin() + static_cast<std::ptrdiff_t>(first));
       },
       [&](std::size_t num_done, std::size_t task) {
         progress.report(static_cast<double>(num_done) / static_cast<double>(num_batches),
-                        value_text(key, values[task * batch]));
+                        value_text(key, values[first_of(task)]));
       });
   progress.finish();
 

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <mutex>
 #include <thread>
 #include <vector>
 
+#include "core/blas.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
 
 namespace stridor {
-
-std::mutex blas_in_use;
 
 void run_tasks(std::size_t count, int num_threads,
                const std::function<void(std::size_t task, std::size_t thread)>& work,
@@ -40,7 +40,12 @@ void run_tasks(std::size_t count, int num_threads,
   };
   std::vector<std::thread> threads;
   const std::size_t num_used = std::min(count, static_cast<std::size_t>(std::max(num_threads, 1)));
-  for (std::size_t i = 1; i < num_used; ++i) threads.emplace_back(take_tasks, i);
+  for (std::size_t i = 1; i < num_used; ++i) {
+    threads.emplace_back([&take_tasks, i] {
+      keep_blas_in_this_thread();
+      take_tasks(i);
+    });
+  }
   take_tasks(0);
   for (std::thread& thread : threads) thread.join();
   if (failure) std::rethrow_exception(failure);

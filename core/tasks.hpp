@@ -3,14 +3,8 @@
 
 #include <cstddef>
 #include <functional>
-#include <mutex>
 
 namespace stridor {
-
-/// Held while dense products may go to BLAS: a build of OpenBLAS without threads of its own hands
-/// the same work space to callers from two threads, and their results are rarely, and slightly,
-/// wrong.
-extern std::mutex blas_in_use;
 
 /// Does tasks 0 … count − 1, each once, on several threads. Which thread does a task must not
 /// matter to what it does.

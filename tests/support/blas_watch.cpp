@@ -1,9 +1,12 @@
 // Lets the thread sanitizer see who calls BLAS. It does not look into libraries that are not built
 // with it, and an OpenBLAS without threads of its own hands one work space to all callers
-// (core/tasks.hpp). Linked into the program, the functions here come before those of the library,
-// for CHOLMOD and UMFPACK too, and write to a plain variable: two calls that no lock keeps apart
-// are a race. Operations on vectors alone use no work space and are not here.
+// (core/blas.hpp). Linked into the program, the functions here come before those of the library,
+// for CHOLMOD and UMFPACK too, and write to a plain variable where that is the BLAS at hand: two
+// calls that no lock keeps apart are a race. Operations on vectors alone use no work space and are
+// not here.
 #include <dlfcn.h>
+
+#include "core/blas.hpp"
 
 namespace {
 
@@ -30,7 +33,7 @@ using P = const void*;  // Fortran's arguments are pointers, all of them
 /// A function of so many arguments that counts and goes on to the library's of the same name.
 #define STRIDOR_WATCH(name, count)                                                       \
   extern "C" void name(STRIDOR_P##count) {                                               \
-    ++num_calls;                                                                         \
+    if (!stridor::is_blas_reentrant()) ++num_calls;                                      \
     static const auto next = reinterpret_cast<decltype(&name)>(dlsym(RTLD_NEXT, #name)); \
     next(STRIDOR_A##count);                                                              \
   }

@@ -1,0 +1,56 @@
+#include "core/blas.hpp"
+
+#include <dlfcn.h>
+
+namespace stridor {
+namespace {
+
+/// What openblas_get_parallel() returns.
+enum class Threads { none = 0, posix = 1, openmp = 2, unknown = -1 };
+
+template <class Function>
+Function* library_function(const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
+}
+
+/// How the BLAS at hand makes threads; it is chosen when the program starts.
+Threads threads_of_blas() {
+  static const Threads threads = [] {
+    const auto parallel = library_function<int()>("openblas_get_parallel");
+    return parallel == nullptr ? Threads::unknown : static_cast<Threads>(parallel());
+  }();
+  return threads;
+}
+
+std::mutex blas_in_use;
+
+}  // namespace
+
+bool is_blas_reentrant() {
+  const Threads threads = threads_of_blas();
+  return threads == Threads::posix || threads == Threads::openmp;
+}
+
+void keep_blas_in_this_thread() {
+  // That of OpenMP is for the calling thread, that of OpenBLAS for all.
+  const bool is_openmp = threads_of_blas() == Threads::openmp;
+  if (!is_openmp && threads_of_blas() != Threads::posix) return;
+  const auto set_number =
+      library_function<void(int)>(is_openmp ? "omp_set_num_threads" : "openblas_set_num_threads");
+  if (set_number != nullptr) set_number(1);
+}
+
+BlasGuard::BlasGuard() {
+  if (!is_blas_reentrant()) lock_ = std::unique_lock(blas_in_use);
+}
+
+}  // namespace stridor
+
+extern "C" {
+/// Linked into every program, by this name.
+extern const bool stridor_blas_is_kept;
+const bool stridor_blas_is_kept = [] {
+  stridor::keep_blas_in_this_thread();
+  return true;
+}();
+}
