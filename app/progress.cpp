@@ -1,6 +1,7 @@
 #include "app/progress.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -57,7 +58,7 @@ class ProgressDisplay {
   ProgressDisplay() {
     on_idle([] {
       const std::lock_guard lock(one().changing_);
-      one().clear();
+      if (one().is_activity_drawn_) one().clear();
     });
   }
 
@@ -66,7 +67,7 @@ class ProgressDisplay {
       std::fputs("\r\033[K", stderr);
       std::fflush(stderr);
     }
-    is_drawn_ = false;
+    is_drawn_ = is_activity_drawn_ = false;
   }
 
   using Clock = std::chrono::steady_clock;
@@ -94,29 +95,36 @@ class ProgressDisplay {
 
   void show(Clock::time_point now) {
     if (open_.empty()) return;
-    next_drawing_ = now + drawing_interval;
-    next_line_ = now + line_interval;
     const Progress& newest = *open_.back();
     std::string detail = newest.detail_;
-    const Pace* pace = newest.pace_ ? &*newest.pace_ : nullptr;
-    if (pace == nullptr) {
-      const CurrentActivity activity = current_activity();
+    Pace pace = newest.pace_.value_or(Pace(newest.start_));
+    const CurrentActivity activity = current_activity();
+    const bool is_activity = !newest.pace_ && !activity.what.empty();
+    // The first one lasts as long as the program, which may be printing.
+    if (!newest.pace_ && !is_activity && open_.size() == 1) return;
+    next_drawing_ = now + drawing_interval;
+    next_line_ = now + line_interval;
+    if (is_activity) {
       if (activity.count != activity_count_) {
         activity_pace_ = Pace(now);
         activity_count_ = activity.count;
       }
       activity_pace_.report(activity.fraction, now);
-      if (activity.what.empty()) return;
       detail = activity.what;
-      pace = &activity_pace_;
+      pace = activity_pace_;
     }
     if (!is_terminal_) {
-      print_remark("{}\n", newest.line(*pace, detail, "", now));
+      print_remark("{}\n", newest.line(pace, detail, "", now));
       return;
     }
-    print_remark("\r{}\033[K", newest.line(*pace, detail, bar(*pace), now));
+    // A line that wraps could not be taken back.
+    winsize size{};
+    const bool has_size = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+    const std::string line = newest.line(pace, detail, bar(pace), now);
+    print_remark("\r{}\033[K", line.substr(0, has_size ? size.ws_col - 1u : 79u));
     std::fflush(stderr);
     is_drawn_ = true;
+    is_activity_drawn_ = is_activity;
   }
 
   static std::string bar(const Pace& pace) {
@@ -132,6 +140,7 @@ class ProgressDisplay {
   std::vector<Progress*> open_;
   bool is_over_ = false;
   bool is_drawn_ = false;
+  bool is_activity_drawn_ = false;
   const bool is_terminal_ = isatty(STDERR_FILENO) == 1;
   const Clock::time_point start_ = Clock::now();
   Clock::time_point next_line_ = start_ + line_interval;

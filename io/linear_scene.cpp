@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "core/memory.hpp"
 #include "io/disc_recorder.hpp"
@@ -54,6 +55,7 @@ LinearSystem dense_system(const SparseSystem& sparse) {
 
 LinearModel model_of(const DiscScene& scene, const LoadedLinearScene&) {
   require_memory(estimate_set_up(scene.model), memory_limit());
+  const Activity assembling("disc and pads and their steady sliding");
   LinearModel model;
   model.disc = make_disc_model(scene.model);
   model.dense = model.disc->system;
