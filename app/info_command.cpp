@@ -7,6 +7,7 @@
 #include "app/transient_results.hpp"
 #include "io/damage_guard.hpp"
 #include "io/run_file.hpp"
+#include "io/run_panels.hpp"
 #include "io/run_summary.hpp"
 
 namespace stridor {
@@ -36,7 +37,12 @@ ExitCode info(const InfoOptions& options) {
       times.empty() ? Json(nullptr) : Json{{"from", times.front()}, {"to", times.back()}};
   object["series"] = Json::array();
   for (const std::string& name : file.series_names()) {
-    object["series"].push_back({{"path", name}, {"units", file.units(name)}});
+    const auto attributes = file.attributes(name);
+    const auto filter = attributes.find("filter");
+    object["series"].push_back(
+        {{"path", name},
+         {"units", file.units(name)},
+         {"filter", filter == attributes.end() ? Json(nullptr) : attribute_json(filter->second)}});
   }
   object["results"] = Json::object();
   for (const auto& [name, value] : file.results()) object["results"][name] = attribute_json(value);
@@ -56,7 +62,10 @@ ExitCode info(const InfoOptions& options) {
                                 : fmt::format("{} from {:g} to {:g} s", times.size(), times.front(),
                                               times.back()));
   fmt::print("series\n");
-  for (const std::string& name : file.series_names()) line("  " + name, file.units(name));
+  for (const std::string& name : file.series_names()) {
+    const std::string note = filter_note(file, name);
+    line("  " + name, file.units(name) + (note.empty() ? "" : ", " + note));
+  }
   if (object["bursts"].empty()) line("bursts", "none");
   for (const Json& burst : object["bursts"]) line("burst", burst_text(burst));
   fmt::print("results\n");

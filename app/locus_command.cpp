@@ -10,6 +10,7 @@
 #include <memory>
 #include <numbers>
 
+#include "app/axis_units.hpp"
 #include "app/eigenvalue_report.hpp"
 #include "app/locus_progress.hpp"
 #include "app/stability.hpp"
@@ -372,14 +373,23 @@ ExitCode locus(LocusCommandOptions options) {
   }
   if (options.figure || options.history) {
     LocusPicture picture;
+    const LoadedScene* bodies = loaded->bodies();
+    const AxisUnit unit = axis_unit(range.key, {options.range.from, options.range.to},
+                                    bodies == nullptr ? nullptr : &bodies->tree);
     picture.parameter = range.key.path;
-    picture.units = units;
+    picture.units = unit.name;
     picture.curves = curves_of(shown, highest_frequency(shown));
-    for (const UnstableWindow& window : shown.unstable)
-      picture.windows.push_back({window.from, window.to, window.frequency, window.growth_max});
+    for (LocusCurve& curve : picture.curves) curve.parameter = unit.numbers(curve.parameter);
+    for (const UnstableWindow& window : shown.unstable) {
+      picture.windows.push_back({unit.number(window.from), unit.number(window.to),
+                                 window.frequency, window.growth_max});
+    }
     picture.caption = fmt::format(
         "The lowest {} eigenvalues{}, {} from {} to {}; {}, scene {}.", most_eigenvalues(found),
-        loaded->about_text(stability), range.key.path, range.values.front(), range.values.back(),
+        loaded->about_text(stability), range.key.path,
+        unit.number(range.values.front()),
+        fmt::format("{:g}{}", unit.number(range.values.back()),
+                    unit.name == "1" ? "" : " " + unit.name),
         std::filesystem::path(stability.scene).filename().string(), loaded->hash());
     if (options.figure) plot_locus(picture, *options.figure);
     if (options.history) plot_locus_histories(picture, *options.history);

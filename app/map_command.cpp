@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "analysis/boundary_continuation.hpp"
+#include "app/axis_units.hpp"
 #include "app/progress.hpp"
 #include "app/stability.hpp"
 #include "core/activity.hpp"
@@ -224,15 +225,19 @@ StabilityMap in_seconds(StabilityMap map, const StabilityScene& scene,
 void draw(const MapOptions& options, const std::array<Axis, 2>& axes, const StabilityMap& map,
           const StabilityScene& loaded) {
   StabilityMapPicture picture;
-  const auto axis_of = [](const Axis& axis) {
-    return MapAxis{axis.key.path, printed_units(axis.key), axis.values, axis.is_logarithmic};
+  const SceneNode* tree = loaded.bodies() == nullptr ? nullptr : &loaded.bodies()->tree;
+  const AxisUnit x_unit = axis_unit(axes[0].key, {options.x[1], options.x[2]}, tree);
+  const AxisUnit y_unit = axis_unit(axes[1].key, {options.y[1], options.y[2]}, tree);
+  const auto axis_of = [](const Axis& axis, const AxisUnit& unit) {
+    return MapAxis{axis.key.path, unit.name, unit.numbers(axis.values), axis.is_logarithmic};
   };
-  picture.x = axis_of(axes[0]);
-  picture.y = axis_of(axes[1]);
+  picture.x = axis_of(axes[0], x_unit);
+  picture.y = axis_of(axes[1], y_unit);
   picture.growth = map.growth;
   for (const BoundaryLine& line : map.boundary) {
     picture.boundary.emplace_back();
-    for (const auto& point : line) picture.boundary.back().push_back({point[0], point[1]});
+    for (const auto& point : line) picture.boundary.back().push_back(
+          {x_unit.number(point[0]), y_unit.number(point[1])});
   }
   picture.caption = fmt::format(
       "Largest growth rate{}, {} by {} values; line: boundary of stability. {}, scene {}.",

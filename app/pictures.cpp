@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <stdexcept>
 
 #include "core/errors.hpp"
@@ -186,13 +187,6 @@ RecordedStretch open_stretch(const PictureOptions& options) {
   return run;
 }
 
-std::string channel_name(const std::string& series) {
-  if (series.rfind("/channels/", 0) == 0) return series.substr(10);
-  std::string name = series.substr(series.find('/', 1) + 1);
-  std::replace(name.begin(), name.end(), '/', '.');
-  return name;
-}
-
 std::string find_series(const RecordedStretch& run, const std::string& channel, const char* key) {
   std::vector<std::string> names;
   for (const std::string& series : run.file.series_names()) {
@@ -257,6 +251,24 @@ std::string pieces_text(const SpectrogramParameters& parameters, double interval
                      unbroken(quantity_text(duration, "s")),
                      unbroken(fmt::format("{:g} %", 100.0 * parameters.overlap)),
                      unbroken(quantity_text(1.0 / duration, "Hz")));
+}
+
+std::string filters_text(const RunFileReader& file, const std::vector<std::string>& series) {
+  std::map<std::string, std::vector<std::string>> filtered;  // by what the filter does
+  std::vector<std::string> unfiltered;
+  for (const std::string& one : series) {
+    const std::string note = filter_note(file, one);
+    (note.empty() ? unfiltered : filtered[note]).push_back(channel_name(one));
+  }
+  std::string text;
+  for (const auto& [note, names] : filtered) {
+    const std::string which =
+        names.size() == series.size() ? "" : fmt::format(": {}", fmt::join(names, ", "));
+    text += fmt::format("L{} before thinning{}. ", note.substr(1), which);
+  }
+  if (!filtered.empty() && !unfiltered.empty())
+    text += fmt::format("Not filtered: {}. ", fmt::join(unfiltered, ", "));
+  return text;
 }
 
 std::string source_text(const RecordedStretch& run) {

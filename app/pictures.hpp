@@ -12,6 +12,7 @@
 #include "core/schema.hpp"
 #include "io/damage_guard.hpp"
 #include "io/run_file.hpp"
+#include "io/run_panels.hpp"
 #include "io/run_summary.hpp"
 
 namespace stridor {
@@ -81,10 +82,6 @@ struct RecordedStretch {
 /// @throws ConfigError if there are none; FileError if the file is not what it should be
 RecordedStretch open_stretch(const PictureOptions& options);
 
-/// The name of a series as users write it: "cantilever.free_end.y.acceleration" for
-/// "/channels/cantilever.free_end.y.acceleration", "contact.force" for "/contact/contact/force".
-std::string channel_name(const std::string& series);
-
 /// The series with this name.
 /// @param key where the name was written, for messages
 /// @throws ConfigError with a suggestion and all names if there is none
@@ -110,6 +107,10 @@ PieceSettings settle_pieces(const PictureOptions& options, const RecordedStretch
 
 /// "Hann window of 12.3 ms, overlap 75 %, lines 81.6 Hz apart".
 std::string pieces_text(const SpectrogramParameters& parameters, double interval);
+
+/// "Low-passed to 40 kHz before thinning: contact.gap, contact.slip_velocity. Not filtered:
+/// contact.force. "; empty where none is filtered.
+std::string filters_text(const RunFileReader& file, const std::vector<std::string>& series);
 
 /// "beam.h5, scene d46029402be1a948".
 std::string source_text(const RecordedStretch& run);

@@ -25,29 +25,46 @@ void refuse_option(const PlotOptions& options, const char* name,
   if (value) throw ConfigError(name, fmt::format("means nothing for --kind {}", options.kind));
 }
 
-/// The series asked for, all of them where none was.
-std::vector<std::string> wanted_series(const PlotOptions& options, const RecordedStretch& run) {
-  std::vector<std::string> wanted;
+/// Channels of a picture where the user names none.
+constexpr std::size_t most_default_channels = 8;
+
+/// What a picture shows, and what it leaves out because nobody asked for it.
+struct Wanted {
+  std::vector<std::string> series;
+  std::vector<std::string> left_out;  ///< names of channels
+
+  /// What a caption says of the rest.
+  std::string rest_text() const {
+    if (left_out.empty()) return "";
+    return fmt::format("{} of {} channels; the others with --channel NAME (stridor info lists them). ",
+                       series.size(), series.size() + left_out.size());
+  }
+};
+
+/// The series asked for; where none was, the most useful ones.
+Wanted wanted_series(const PlotOptions& options, const RecordedStretch& run, SeriesUse use) {
+  Wanted wanted;
   for (const std::string& channel : options.channels)
-    wanted.push_back(find_series(run, channel, "--channel"));
-  if (wanted.empty()) wanted = run.file.series_names();
-  if (wanted.empty()) {
-    throw ConfigError(
-        "", run.path + " holds no series to plot; name channels under `record` in the scene");
+    wanted.series.push_back(find_series(run, channel, "--channel"));
+  if (wanted.series.size() > most_panels) {
+    throw ConfigError("--channel",
+                      fmt::format("{} channels, but one picture holds at most {}; draw several",
+                                  wanted.series.size(), most_panels));
+  }
+  if (!wanted.series.empty()) return wanted;
+  wanted.series = chosen_series(run.file, use, most_default_channels);
+  if (wanted.series.empty()) {
+    throw ConfigError("", run.path + (run.file.series_names().empty()
+                                          ? " holds no series to plot; name channels under `record` "
+                                            "in the scene"
+                                          : " holds no series that has a spectrum; name one with "
+                                            "--channel"));
+  }
+  for (const std::string& series : series_by_use(run.file, use)) {
+    if (std::find(wanted.series.begin(), wanted.series.end(), series) == wanted.series.end())
+      wanted.left_out.push_back(channel_name(series));
   }
   return wanted;
-}
-
-/// The point or contact of a channel, and its quantity: "cantilever.free_end.y", "acceleration".
-std::pair<std::string, std::string> split_name(const std::string& name) {
-  const std::size_t dot = name.rfind('.');
-  return {name.substr(0, dot), name.substr(dot + 1)};
-}
-
-std::string quantity_words(const std::string& name) {
-  std::string words = split_name(name).second;
-  std::replace(words.begin(), words.end(), '_', ' ');
-  return words;
 }
 
 /// What a kind of picture adds to the JSON object.
@@ -56,20 +73,19 @@ using Drawn = Json;
 Drawn draw_history(const PlotOptions& options, const RecordedStretch& run) {
   const auto acceleration = acceleration_channel(run.file);
   const std::vector<NumberedBurst> bursts = bursts_in(run, options);
+  const Wanted wanted = wanted_series(options, run, SeriesUse::history);
   std::vector<Panel> panels;
-  for (const std::string& series : wanted_series(options, run)) {
-    const std::string name = channel_name(series);
-    panels.push_back({split_name(name).first,
-                      quantity_words(name),
-                      typeset_units(run.file.units(series)),
-                      {{run.times(), run.values(series), ""}}});
+  for (const std::string& series : wanted.series) {
+    panels.push_back(panel_of(run.file, series, run.samples));
     if (series != acceleration || bursts.empty()) continue;
     panels.back().title += "  (shaded: bursts)";
     for (const auto& [number, burst] : bursts)
       panels.back().marks.push_back({burst.start, burst.end, std::to_string(number)});
   }
-  plot_histories(panels, options.output, "");
-  return {{"panels", panels.size()}, {"bursts", bursts.size()}};
+  plot_histories(panels, options.output, "",
+                 wanted.rest_text() + filters_text(run.file, wanted.series) + source_text(run) +
+                     ".");
+  return {{"panels", panels.size()}, {"bursts", bursts.size()}, {"left_out", wanted.left_out}};
 }
 
 // ---------------------------------------------------------------- one channel against another
@@ -154,14 +170,26 @@ std::pair<std::string, std::string> phase_series(const PlotOptions& options,
                                     : std::pair{series, series_of(partner)};
 }
 
+/// A word about a path that is too coarse to be smooth; empty where it is fine.
+std::string resolution_text(const PhaseAxis& axis, double interval) {
+  constexpr double enough = 12.0;
+  const auto samples = samples_per_period(axis.values);
+  if (!samples || *samples >= enough) return "";
+  return fmt::format(
+      "Only {:.2g} samples per period: corners are those of the sampling, every {}; record at a "
+      "shorter interval (record.interval of the scene) for a smooth path. ",
+      *samples, quantity_text(interval, "s"));
+}
+
 Drawn draw_phase(const PlotOptions& options, const RecordedStretch& run) {
   const auto [across, up] = phase_series(options, run);
   const auto axis = [&](const std::string& series) {
     return PhaseAxis{channel_name(series), run.file.units(series), run.values(series)};
   };
   plot_phase(axis(across), axis(up),
-             fmt::format("From {:.6g} s (ring) to {:.6g} s (dot). {}.", run.first_time(),
-                         run.last_time(), source_text(run)),
+             fmt::format("From {:.6g} s (ring) to {:.6g} s (dot). {}{}{}.", run.first_time(),
+                         run.last_time(), resolution_text(axis(up), run.interval),
+                         filters_text(run.file, {across, up}), source_text(run)),
              options.output);
   return {{"across", channel_name(across)},
           {"up", channel_name(up)},
@@ -188,9 +216,11 @@ Drawn draw_spectrum(const PlotOptions& options, const RecordedStretch& run) {
   if (options.range) picture.range = option_value("--range", *options.range, "", Range::positive());
   picture.mean_lines = main_lobe_lines(parameters.window);
 
+  Wanted wanted = wanted_series(options, run, SeriesUse::spectrum);
   std::vector<SpectrumPanel> panels;
   Json channels = Json::array();
-  for (const std::string& series : wanted_series(options, run)) {
+  for (std::string& series : wanted.series) {
+    series = spectral_series(run.file, series);
     const std::string units = run.file.units(series);
     auto panel = std::find_if(panels.begin(), panels.end(),
                               [&](const SpectrumPanel& other) { return other.units == units; });
@@ -219,6 +249,7 @@ Drawn draw_spectrum(const PlotOptions& options, const RecordedStretch& run) {
   if (!bursts.empty())
     picture.caption += fmt::format(" Dashed: frequencies of the bursts{}.",
                                    options.band ? " in the band " + *options.band : "");
+  picture.caption += " " + filters_text(run.file, wanted.series) + wanted.rest_text();
   plot_spectra(panels, picture, options.output);
   return {{"channels", channels},
           {"window", window_name(parameters.window)},
@@ -230,7 +261,8 @@ Drawn draw_spectrum(const PlotOptions& options, const RecordedStretch& run) {
           {"to", run.last_time()},
           {"max_frequency", max_frequency},
           {"scale", picture.scale == AmplitudeScale::level ? "db" : "linear"},
-          {"bursts", bursts.size()}};
+          {"bursts", bursts.size()},
+          {"left_out", wanted.left_out}};
 }
 
 // ---------------------------------------------------------------- the verb
@@ -264,6 +296,10 @@ ExitCode plot(const PlotOptions& options) {
     fmt::print("{}\n", object.dump(2));
   } else {
     fmt::print("{}\n", options.output);
+    if (const auto rest = drawn.find("left_out"); rest != drawn.end() && !rest->empty())
+      fmt::print("{} more channels are not drawn; name those wanted with --channel (stridor info "
+                 "lists them)\n",
+                 rest->size());
   }
   return ExitCode::done;
 }
@@ -281,8 +317,8 @@ void add_plot_command(CLI::App& program, Action& action) {
   verb->add_option("-o,--output", options->output, "Figure to write: .png, .svg or .pdf")
       ->required();
   verb->add_option("--channel", options->channels,
-                   "Channel to draw (repeatable); default: all, for a phase plot the first pair of "
-                   "displacement and velocity")
+                   "Channel to draw (repeatable); default: the eight of most use, for a phase plot "
+                   "the first pair of displacement and velocity")
       ->take_all()
       ->allow_extra_args(false);
   add_spectrum_options(*verb, *options);

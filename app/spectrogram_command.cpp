@@ -31,8 +31,8 @@ void check_data_file(const PictureOptions& options) {
   check_output(*options.data, options.common.overwrite());
 }
 
-std::string chosen_series(const PictureOptions& options, const RecordedStretch& run,
-                          const std::optional<SpectrogramSection>& section) {
+std::string shown_series(const PictureOptions& options, const RecordedStretch& run,
+                         const std::optional<SpectrogramSection>& section) {
   if (options.channels.size() > 1)
     throw ConfigError("--channel", "a spectrogram shows one channel; give the option once");
   if (!options.channels.empty()) return find_series(run, options.channels.front(), "--channel");
@@ -95,7 +95,8 @@ ExitCode draw_spectrogram(const PictureOptions& options) {
   check_data_file(options);
   const RecordedStretch run = open_stretch(options);
   const RecordedSettings scene = recorded_settings(run.file, run.path);
-  const std::string series = chosen_series(options, run, scene.spectrogram);
+  const std::string series =
+      spectral_series(run.file, shown_series(options, run, scene.spectrogram));
   const std::string units = run.file.units(series);
   const auto [parameters, max_frequency] = settle_pieces(
       options, run, scene, scene.spectrogram,
@@ -110,8 +111,9 @@ ExitCode draw_spectrogram(const PictureOptions& options) {
   picture.mean_lines = main_lobe_lines(parameters.window);
   const std::vector<NumberedBurst> bursts = bursts_in(run, options);
   picture.marks = burst_marks(bursts);
-  picture.caption = fmt::format("Peak amplitudes: {}. {}.", pieces_text(parameters, run.interval),
-                                source_text(run));
+  picture.caption =
+      fmt::format("Peak amplitudes: {}. {}{}.", pieces_text(parameters, run.interval),
+                  filters_text(run.file, {series}), source_text(run));
   if (!bursts.empty()) {
     picture.caption +=
         fmt::format(" Dashed: bursts in {}{}, frequency at the steepest rise.",

@@ -27,17 +27,23 @@ std::vector<Series> recorded(const SphereNumbers& numbers, double radius) {
   const double length = numbers.length_unit;
   const double velocity = length / numbers.time_unit;
   const double force = numbers.force_unit;
-  const Attributes meaning{{"meaning", std::string("0 slower than the substrate, 1 faster, "
-                                                   "2 stick, 3 off it")}};
-  return {{{"/channels/sphere.x.displacement", "m"}, &SphereHistory::x, length},
-          {{"/channels/sphere.y.displacement", "m"}, &SphereHistory::y, length},
-          {{"/channels/sphere.x.velocity", "m/s"}, &SphereHistory::vx, velocity},
-          {{"/channels/sphere.y.velocity", "m/s"}, &SphereHistory::vy, velocity},
-          {{"/contact/contact/force", "N"}, &SphereHistory::normal_force, force},
-          {{"/contact/contact/friction_force", "N"}, &SphereHistory::friction_force, force},
-          {{"/contact/contact/slip_velocity", "m/s"}, &SphereHistory::slip, velocity},
-          {{"/contact/contact/area", "m^2"}, &SphereHistory::area, radius * radius},
-          {{"/contact/contact/state", "1", SeriesKind::state, meaning}, &SphereHistory::mode, 1.0}};
+  // Values at the times of the rows, as the integrator has them.
+  const auto series = [](const char* path, const char* units) {
+    return SeriesSpec{path, units, SeriesKind::real, {{"filter", "none"}}};
+  };
+  SeriesSpec state = series("/contact/contact/state", "1");
+  state.kind = SeriesKind::state;
+  state.attributes.emplace_back("meaning",
+                                "0 slower than the substrate, 1 faster, 2 stick, 3 off it");
+  return {{series("/channels/sphere.x.displacement", "m"), &SphereHistory::x, length},
+          {series("/channels/sphere.y.displacement", "m"), &SphereHistory::y, length},
+          {series("/channels/sphere.x.velocity", "m/s"), &SphereHistory::vx, velocity},
+          {series("/channels/sphere.y.velocity", "m/s"), &SphereHistory::vy, velocity},
+          {series("/contact/contact/force", "N"), &SphereHistory::normal_force, force},
+          {series("/contact/contact/friction_force", "N"), &SphereHistory::friction_force, force},
+          {series("/contact/contact/slip_velocity", "m/s"), &SphereHistory::slip, velocity},
+          {series("/contact/contact/area", "m^2"), &SphereHistory::area, radius * radius},
+          {state, &SphereHistory::mode, 1.0}};
 }
 
 std::vector<SeriesSpec> specs_of(const std::vector<Series>& series) {

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "app/axis_units.hpp"
 #include "app/progress.hpp"
 #include "app/run_keeping.hpp"
 #include "app/sweep.hpp"
@@ -251,8 +252,9 @@ void write_file(const SweepOptions& options, const LoadedScene& loaded, const Nu
 
 void draw(const SweepOptions& options, const LoadedScene& loaded, const NumericKey& key,
           const Points& points) {
+  const AxisUnit unit = axis_unit(key, {options.range.from, options.range.to}, &loaded.tree);
   const std::string x_label =
-      key.unit.empty() ? key.path : fmt::format("{}, {}", key.path, printed_units(key));
+      key.unit.empty() ? key.path : fmt::format("{} ({})", key.path, unit.name);
   const auto panel = [&](const char* y_label) {
     DiagramPanel one;
     one.x_label = x_label;
@@ -260,11 +262,11 @@ void draw(const SweepOptions& options, const LoadedScene& loaded, const NumericK
     if (options.scale == "log") one.x_kind = AxisKind::logarithmic;
     return one;
   };
-  const std::vector<double> values = values_of(points);
+  const std::vector<double> values = unit.numbers(values_of(points));
   std::vector<DiagramPanel> panels;
   const std::vector<double> rms = column(points, "/free_end_acceleration/rms");
   if (std::any_of(rms.begin(), rms.end(), [](double one) { return std::isfinite(one); })) {
-    panels.push_back(panel("acceleration, m/s²"));
+    panels.push_back(panel("acceleration (m/s²)"));
     panels.back().y_kind = AxisKind::logarithmic;
     panels.back().curves = {
         {"r.m.s. in the band", values, rms, Mark::line, 0},
@@ -274,16 +276,16 @@ void draw(const SweepOptions& options, const LoadedScene& loaded, const NumericK
   for (const TransientPoint& point : points) {
     if (!point.results.contains("bursts") || !point.results["bursts"].is_array()) continue;
     for (const Json& burst : point.results["bursts"]) {
-      bursts.x.push_back(point.value);
+      bursts.x.push_back(unit.number(point.value));
       bursts.y.push_back(1e-3 * burst["frequency"].get<double>());
     }
   }
   if (!bursts.x.empty()) {
-    panels.push_back(panel("frequency of bursts, kHz"));
+    panels.push_back(panel("frequency of bursts (kHz)"));
     panels.back().curves = {bursts};
   }
   if (points.front().results.contains("contact_force")) {
-    panels.push_back(panel("contact force, N"));
+    panels.push_back(panel("contact force (N)"));
     panels.back().curves = {
         {"largest", values, column(points, "/contact_force/max"), Mark::line, 0},
         {"smallest", values, column(points, "/contact_force/min"), Mark::line, 1}};

@@ -34,14 +34,15 @@ std::string prefix_of(int exponent) {
 
 // Whether a prefix before the unit multiplies it as a whole: not so in "m²" or "1/s".
 bool takes_prefix(const std::string& units) {
-  static const std::array<const char*, 6> takers{"m", "m/s", "m/s^2", "N", "s", "Hz"};
+  static const std::array<const char*, 9> takers{"m",  "m/s", "m/s^2", "m/s²", "N",
+                                                 "Pa", "J",   "s",     "Hz"};
   return std::find(takers.begin(), takers.end(), units) != takers.end();
 }
 
 std::string scaled_units(const std::string& units, const AxisScale& scale) {
   if (scale.exponent == 0) return units;
   const std::string prefix = prefix_of(scale.exponent);
-  if (!prefix.empty() && (units == "s" || units == "Hz")) return prefix + units;
+  if (!prefix.empty() && takes_prefix(units)) return prefix + units;
   return "10" + superscript(scale.exponent) + (units.empty() ? "" : " " + units);
 }
 

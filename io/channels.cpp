@@ -104,7 +104,9 @@ std::string Channel::units() const {
 }
 
 bool Channel::is_filtered() const {
-  return energy == nullptr && (point || quantity != ContactQuantity::state);
+  if (energy != nullptr) return false;
+  return point || (quantity != ContactQuantity::state && quantity != ContactQuantity::force &&
+                   quantity != ContactQuantity::friction_force);
 }
 
 std::vector<Channel> parse_channels(const RecordParameters& record, const ModelParameters& model) {

@@ -37,8 +37,9 @@ struct Channel {
   const EnergyEntry* energy = nullptr;  ///< of the ledger
 
   std::string units() const;
-  /// False for states, which mean nothing between their values, and for energies, whose sums must
-  /// hold in every row.
+  /// Whether the series of its own name is low-passed. Not so states, which mean nothing between
+  /// their values, energies, whose sums must hold in every row, and contact forces, which would
+  /// lose their zeros and impacts.
   bool is_filtered() const;
 };
 

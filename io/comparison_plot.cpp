@@ -6,6 +6,7 @@
 
 #include "io/axes.hpp"
 #include "io/history_plot.hpp"
+#include "io/run_panels.hpp"
 #include "io/run_summary.hpp"
 #include "io/spectrogram_plot.hpp"
 
@@ -18,13 +19,49 @@ Curve curve_of(const RunFileReader& file, const std::string& series, const std::
   return {file.times(), file.series(series), name};
 }
 
-/// What lies before `start` dropped: the start-up would set the scale.
-Curve from(double start, Curve curve) {
-  const auto first = std::lower_bound(curve.times.begin(), curve.times.end(), start);
-  const auto dropped = std::distance(curve.times.begin(), first);
-  curve.times.erase(curve.times.begin(), first);
-  curve.values.erase(curve.values.begin(), curve.values.begin() + dropped);
-  return curve;
+/// The rows from `start` on: the start-up would set the scale.
+IndexRange rows_from(double start, const RunFileReader& file) {
+  const std::vector<double>& times = file.times();
+  const auto first = std::lower_bound(times.begin(), times.end(), start);
+  return {static_cast<std::size_t>(std::distance(times.begin(), first)), times.size()};
+}
+
+/// a − b at the times that both have.
+Curve difference(const Curve& a, const Curve& b) {
+  Curve result;
+  const std::size_t size = std::min(a.times.size(), b.times.size());
+  for (std::size_t i = 0; i < size; ++i) {
+    result.times.push_back(a.times[i]);
+    result.values.push_back(a.values[i] - b.values[i]);
+  }
+  return result;
+}
+
+/// Every run over the reference, which may hide it or be hidden by it, and below that the
+/// difference of the two.
+std::vector<Panel> over_reference(const std::vector<ComparisonRun>& runs,
+                                  const std::vector<RunFileReader>& files,
+                                  const std::string& series) {
+  const std::string units = typeset_units(files.back().units(series));
+  const std::string note = filter_note(files.back(), series);
+  const std::string filtered = note.empty() ? "" : " (" + note + ")";
+  const ComparisonRun& reference = runs.back();
+  const Curve expected = curve_of(files.back(), series, reference.title);
+  std::vector<Panel> panels;
+  for (std::size_t i = 0; i + 1 < runs.size(); ++i) {
+    const Curve curve = curve_of(files[i], series, runs[i].title);
+    panels.push_back({runs[i].title + " over " + reference.title + filtered,
+                      "acceleration",
+                      units,
+                      {expected, curve}});
+    panels.push_back({runs[i].title + " minus " + reference.title,
+                      "difference",
+                      units,
+                      {difference(curve, expected)}});
+  }
+  if (panels.empty())
+    panels.push_back({reference.title + filtered, "acceleration", units, {{expected.times, expected.values, ""}}});
+  return panels;
 }
 
 /// Spectrograms of one series of all runs; a run that ended before a piece was full has none.
@@ -61,24 +98,11 @@ std::vector<std::filesystem::path> plot_comparison(const std::vector<ComparisonR
   std::vector<RunFileReader> files;
   files.reserve(runs.size());
   for (const ComparisonRun& run : runs) files.emplace_back(run.file);
-  const ComparisonRun& reference = runs.back();
   std::vector<std::filesystem::path> figures;
 
   if (const auto acceleration = acceleration_channel(files.back())) {
-    const std::string units = files.back().units(*acceleration);
-    std::vector<Panel> panels;
-    for (std::size_t i = 0; i + 1 < runs.size(); ++i) {
-      panels.push_back({runs[i].title + " over " + reference.title,
-                        "acceleration",
-                        units,
-                        {curve_of(files.back(), *acceleration, reference.title),
-                         curve_of(files[i], *acceleration, runs[i].title)}});
-    }
-    if (panels.empty())
-      panels.push_back(
-          {reference.title, "acceleration", units, {curve_of(files.back(), *acceleration, "")}});
     figures.push_back(folder / "accelerations.png");
-    plot_histories(panels, figures.back(), acceleration->substr(acceleration->rfind('/') + 1));
+    plot_histories(over_reference(runs, files, *acceleration), figures.back(), acceleration->substr(acceleration->rfind('/') + 1));
   }
 
   const std::string pair = scene.model.pairs().begin()->first;
@@ -89,10 +113,9 @@ std::vector<std::filesystem::path> plot_comparison(const std::vector<ComparisonR
     std::vector<Panel> panels;
     for (std::size_t i = 0; i < runs.size(); ++i) {
       if (!files[i].has(series)) continue;
-      panels.push_back({runs[i].title,
-                        label,
-                        files[i].units(series),
-                        {from(scene.measure.from, curve_of(files[i], series, ""))}});
+      panels.push_back(panel_of(files[i], series, rows_from(scene.measure.from, files[i])));
+      panels.back().title.replace(0, pair.size(), runs[i].title);
+      panels.back().label = label;
     }
     if (panels.empty()) continue;
     figures.push_back(folder / name);

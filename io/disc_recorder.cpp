@@ -101,7 +101,9 @@ DiscRecorder::DiscRecorder(const DiscModel& model, const std::vector<std::string
                            double step, double interval)
     : interval_(interval),
       filter_(std::make_shared<const DecimationFilter>(
-          step, static_cast<int>(std::lround(interval / step)))) {
+          step, static_cast<int>(std::lround(interval / step)))),
+      intervals_(model.contacts.size(), filter_->ratio()),
+      of_step_(model.contacts.size()) {
   const std::size_t per_pad = model.contacts.size() / 2;
   std::vector<Problem> problems = channel_problems(channels, per_pad);
   if (!problems.empty()) throw ConfigError(std::move(problems));
@@ -123,25 +125,19 @@ DiscRecorder::DiscRecorder(const DiscModel& model, const std::vector<std::string
                        motion_units[derivative],
                        SeriesKind::real,
                        {{"filter", filter_->description()}}});
-    columns_.push_back({place_of_stream, static_cast<Derivative>(derivative)});
+    columns_.push_back({place_of_stream, static_cast<Derivative>(derivative), nullptr, 0});
   };
   const auto on_quantity = [&](std::size_t contact, const Quantity& quantity,
                                const std::string& name) {
     if (!is_wanted(name)) return;
     streams_.push_back({name, {}, static_cast<int>(contact), quantity.member, Decimator(filter_)});
-    std::string path = "/contact/" + name;
-    path[path.rfind('.')] = '/';
-    SeriesSpec spec{path, quantity.units, SeriesKind::real, {}};
-    if (quantity.member != nullptr) {
-      spec.attributes = {{"filter", filter_->description()}};
-      columns_.push_back({streams_.size() - 1, Derivative::none});
-    } else {
-      spec.kind = SeriesKind::state;
-      spec.attributes = {{"filter", std::string("none")},
-                         {"meaning", std::string("0 open, 1 stick, 2 slip")}};
-      columns_.push_back({streams_.size() - 1, std::nullopt});
+    for (const ContactColumn& column :
+         contact_columns(name.substr(0, name.rfind('.')), quantity.name, quantity.units,
+                         filter_->description())) {
+      series_.push_back(column.spec);
+      columns_.push_back({streams_.size() - 1, std::nullopt, column.of_interval, contact});
+      if (column.is_low_passed) columns_.back().derivative = Derivative::none;
     }
-    series_.push_back(spec);
   };
   for_every_channel(per_pad, on_motion, on_quantity);
   row_.resize(columns_.size());
@@ -149,27 +145,39 @@ DiscRecorder::DiscRecorder(const DiscModel& model, const std::vector<std::string
 
 void DiscRecorder::sample(const FaceContactMotion& motion, RunFileWriter& writer,
                           std::int64_t last) {
+  for (std::size_t i = 0; i < of_step_.size(); ++i) {
+    const FaceContactState contact = motion.contact(static_cast<int>(i));
+    of_step_[i] = {contact.force, contact.force, 1, contact.state == ContactState::stick ? 1 : 0,
+                   contact.state == ContactState::open ? 1 : 0};
+  }
+  intervals_.add(of_step_);
   bool is_due = false;
   for (Stream& stream : streams_) is_due = stream.decimator.push(value(stream, motion));
   if (!is_due) return;
   const std::int64_t number = streams_.front().decimator.num_outputs() - 1;
-  if (number > last) return;
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
-    const Decimator& decimator = streams_[columns_[i].stream].decimator;
-    row_[i] =
-        columns_[i].derivative ? decimator.value(*columns_[i].derivative) : decimator.sample();
+  if (number <= last) {
+    for (std::size_t i = 0; i < columns_.size(); ++i) row_[i] = value(columns_[i]);
+    writer.append(static_cast<double>(number) * interval_, row_);
   }
-  writer.append(static_cast<double>(number) * interval_, row_);
+  intervals_.drop_oldest();
+}
+
+double DiscRecorder::value(const Column& column) const {
+  if (column.of_interval != nullptr) return column.of_interval(intervals_.oldest()[column.contact]);
+  const Decimator& decimator = streams_[column.stream].decimator;
+  return column.derivative ? decimator.value(*column.derivative) : decimator.sample();
 }
 
 void DiscRecorder::save(State& state, const std::string& prefix) const {
   for (std::size_t i = 0; i < streams_.size(); ++i)
     streams_[i].decimator.save(state, fmt::format("{}streams/{}/", prefix, i));
+  intervals_.save(state, prefix);
 }
 
 void DiscRecorder::load(const State& state, const std::string& prefix) {
   for (std::size_t i = 0; i < streams_.size(); ++i)
     streams_[i].decimator.load(state, fmt::format("{}streams/{}/", prefix, i));
+  intervals_.load(state, prefix);
 }
 
 double DiscRecorder::value(const Stream& stream, const FaceContactMotion& motion) {

@@ -9,6 +9,7 @@
 
 #include "analysis/low_pass.hpp"
 #include "core/errors.hpp"
+#include "io/contact_intervals.hpp"
 #include "io/run_file.hpp"
 #include "models/disc_model.hpp"
 #include "solvers/face_contact_motion.hpp"
@@ -29,7 +30,8 @@ std::vector<std::string> disc_channels(std::size_t per_pad);
 std::vector<Problem> channel_problems(const std::vector<std::string>& channels,
                                       std::size_t per_pad);
 
-/// Low-passes, thins and writes the channels of a disc, as Recorder does for beams.
+/// Low-passes, thins and writes the channels of a disc, as Recorder does for beams: contact forces
+/// and states as they are, with what their contacts do between the rows.
 class DiscRecorder {
  public:
   /// @param channels by name; empty: all
@@ -58,17 +60,22 @@ class DiscRecorder {
     Decimator decimator;
   };
   struct Column {
-    std::size_t stream;
-    std::optional<Derivative> derivative;
+    std::size_t stream = 0;
+    std::optional<Derivative> derivative{};
+    double (*of_interval)(const ContactStatistics&) = nullptr;
+    std::size_t contact = 0;
   };
 
   static double value(const Stream& stream, const FaceContactMotion& motion);
+  double value(const Column& column) const;
 
   double interval_;
   std::shared_ptr<const DecimationFilter> filter_;
   std::vector<Stream> streams_;
   std::vector<Column> columns_;
   std::vector<SeriesSpec> series_;
+  ContactIntervals intervals_;
+  std::vector<ContactStatistics> of_step_;  ///< of every contact
   std::vector<double> row_;
 };
 

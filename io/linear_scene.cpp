@@ -128,8 +128,8 @@ const Schema& DiscRecordParameters::schema() {
   static const Schema keys =
       SchemaOf<DiscRecordParameters>("disc_record")
           .real("interval", &DiscRecordParameters::interval,
-                {.doc = "Time between samples, a multiple of time.step; motions and forces are "
-                        "low-passed before they are thinned to it.",
+                {.doc = "Time between samples, a multiple of time.step; motions are low-passed "
+                        "before they are thinned to it; contact forces and states are not.",
                  .unit = "s",
                  .range = Range::positive()})
           .text_list("channels", &DiscRecordParameters::channels,

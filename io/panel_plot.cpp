@@ -87,10 +87,20 @@ PanelAxis make_axis(const DiagramPanel& panel, std::vector<double> PanelCurve::*
   return axis;
 }
 
+/// "frequency" and "Hz" of "frequency (Hz)".
+std::string unit_of(const std::string& label) {
+  const std::size_t open = label.rfind(" (");
+  if (open == std::string::npos || label.back() != ')') return "";
+  return label.substr(open + 2, label.size() - open - 3);
+}
+std::string words_of(const std::string& label) {
+  return unit_of(label).empty() ? label : label.substr(0, label.rfind(" ("));
+}
+
 void add_axis(FigureScript& script, char name, const std::string& label, const PanelAxis& axis) {
   if (axis.kind == AxisKind::linear) {
     script.add("unset logscale {0}\nset {0}label {1}", name,
-               gnuplot_string(axis_label(label, "", axis.scale)));
+               gnuplot_string(axis_label(words_of(label), unit_of(label), axis.scale)));
     script.set_axis(name, axis.range, axis.scale);
     return;
   }

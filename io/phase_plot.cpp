@@ -133,6 +133,29 @@ PlanePath visible_path(std::span<const double> x, std::span<const double> y, std
   return path;
 }
 
+std::optional<double> samples_per_period(std::span<const double> values) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    sum += value;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  const double mean = sum / static_cast<double>(count);
+  std::size_t passes = 0;
+  std::size_t first = 0;
+  std::size_t last = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if ((values[i - 1] - mean) * (values[i] - mean) >= 0.0) continue;
+    if (passes++ == 0) first = i;
+    last = i;
+  }
+  constexpr std::size_t fewest = 4;
+  if (passes < fewest) return std::nullopt;
+  return 2.0 * static_cast<double>(last - first) / static_cast<double>(passes - 1);
+}
+
 void plot_phase(const PhaseAxis& across, const PhaseAxis& up, const std::string& caption,
                 const std::filesystem::path& figure) {
   check_figure_name(figure);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +34,10 @@ struct PlanePath {
 /// @throws std::invalid_argument if x and y differ in length, or columns or rows is 0
 PlanePath visible_path(std::span<const double> x, std::span<const double> y, std::size_t columns,
                        std::size_t rows);
+
+/// Samples to a period of what a series swings with, from how often it passes its mean value.
+/// @return nothing where it passes that less than four times
+std::optional<double> samples_per_period(std::span<const double> values);
 
 /// Draws one quantity against another as a path in the plane, 16 cm wide; a ring marks its
 /// beginning, a dot its end.

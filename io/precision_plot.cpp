@@ -76,7 +76,7 @@ void plot_precision(const PrecisionPicture& picture, const std::filesystem::path
   constexpr double caption_font = 10.5;
   const double legend_line = line_height(legend_font);
   const double left = 3.2;
-  double legend_width = 0.0;
+  double legend_width = text_width("none is better in both", legend_font) + 1.0;
   for (const PrecisionCurve& curve : curves)
     legend_width = std::max(legend_width, text_width(legend_of(curve), legend_font) + 1.0);
   const double right = size.width - legend_width - 0.8;
@@ -103,16 +103,19 @@ void plot_precision(const PrecisionPicture& picture, const std::filesystem::path
         caption_font);
   }
   int next_label = 1000;  // beyond those of add_text()
+  // Named in the legend, where their names cover no curve.
+  double next_row = static_cast<double>(curves.size()) + 1.9;
   const auto across = [&](double error, const char* text, const char* colour) {
     if (!(error > 0.0)) return;
+    const double height = below + plane_height - next_row * legend_line * 1.15;
+    next_row += 1.0;
     script.add(
-        "set arrow from graph 0, first {:.6g} to graph 1, first {:.6g} nohead dashtype 2 "
-        "linecolor '{}' linewidth 1.2",
-        error, error, colour);
-    script.add(
-        "set label {} {} at graph 0.99, first {:.6g} right offset 0, 0.5 font ',{:g}' "
-        "textcolor '{}'",
-        next_label++, gnuplot_string(text), error, legend_font, colour);
+        "set arrow from graph 0, first {0:.6g} to graph 1, first {0:.6g} nohead dashtype 2 "
+        "linecolor '{1}' linewidth 1.2\n"
+        "set arrow from screen {2:.6f}, screen {4:.6f} to screen {3:.6f}, screen {4:.6f} nohead "
+        "dashtype 2 linecolor '{1}' linewidth 1.2",
+        error, colour, script.across(right + 0.35), script.across(right + 0.85), script.up(height));
+    script.add_text(text, right + 0.9, height, "left", legend_font);
   };
   across(picture.reference_error, "reference itself", "#707070");
   across(picture.wanted.value_or(0.0), "asked for", "#cc0000");

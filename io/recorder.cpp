@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -89,41 +90,59 @@ Recorder::Recorder(const Model& model, std::vector<Channel> channels, double ste
   stride_ = steps_per_sample(step, interval) / filter->ratio();
   for (const Channel& channel : channels) {
     if (channel.point) {
-      const Model::Point& point = model.points.at(*channel.point);
-      // Displacement, velocity and acceleration of one point share one stream of samples.
-      std::size_t stream = 0;
-      while (stream < streams_.size() &&
-             !(streams_[stream].point && streams_[stream].point->body == point.body &&
-               streams_[stream].point->rows.x == point.rows.x &&
-               streams_[stream].point->rows.y == point.rows.y &&
-               streams_[stream].is_vertical == channel.is_vertical)) {
-        ++stream;
-      }
-      if (stream == streams_.size()) {
-        const bool follows =
-            !channel.is_vertical &&
-            model.system.bodies[static_cast<std::size_t>(point.body)].follows_drive;
-        streams_.push_back({point, channel.is_vertical, follows, 0, ContactQuantity::force, nullptr,
-                            Decimator(filter)});
-      }
-      columns_.push_back({stream, channel.derivative});
-      continue;
-    }
-    const std::optional<Derivative> taken =
-        channel.is_filtered() ? std::optional(Derivative::none) : std::nullopt;
-    const auto add = [&](int contact) {
-      columns_.push_back({streams_.size(), taken});
-      streams_.push_back({std::nullopt, false, false, contact, channel.quantity, channel.energy,
+      add_motion(model, channel, filter);
+    } else if (channel.energy != nullptr) {
+      columns_.push_back({streams_.size()});
+      streams_.push_back({std::nullopt, false, false, 0, channel.quantity, channel.energy,
                           Decimator(filter)});
-    };
-    if (channel.energy != nullptr) {
-      add(0);
     } else {
-      for (const int contact : contacts_of(model.system, channel.pair)) add(contact);
+      for (const int contact : contacts_of(model.system, channel.pair))
+        add_contact(channel, contact, filter);
     }
   }
   row_.resize(columns_.size());
+  if (std::any_of(columns_.begin(), columns_.end(),
+                  [](const Column& column) { return column.of_interval != nullptr; })) {
+    since_last_look_.resize(model.system.contacts.size());
+    intervals_.emplace(since_last_look_.size(), filter->ratio());
+  }
   if (streams_.empty()) next_step_ = std::numeric_limits<std::int64_t>::max();
+}
+
+void Recorder::add_motion(const Model& model, const Channel& channel,
+                          const std::shared_ptr<const DecimationFilter>& filter) {
+  const Model::Point& point = model.points.at(*channel.point);
+  // Displacement, velocity and acceleration of one point share one stream of samples.
+  std::size_t stream = 0;
+  while (stream < streams_.size() &&
+         !(streams_[stream].point && streams_[stream].point->body == point.body &&
+           streams_[stream].point->rows.x == point.rows.x &&
+           streams_[stream].point->rows.y == point.rows.y &&
+           streams_[stream].is_vertical == channel.is_vertical)) {
+    ++stream;
+  }
+  if (stream == streams_.size()) {
+    const bool follows = !channel.is_vertical &&
+                         model.system.bodies[static_cast<std::size_t>(point.body)].follows_drive;
+    streams_.push_back({point, channel.is_vertical, follows, 0, ContactQuantity::force, nullptr,
+                        Decimator(filter)});
+  }
+  columns_.push_back({stream, channel.derivative});
+}
+
+void Recorder::add_contact(const Channel& channel, int contact,
+                           const std::shared_ptr<const DecimationFilter>& filter) {
+  // Names and filters are for series().
+  for (const ContactColumn& column :
+       contact_columns("", name_of(channel.quantity), channel.units(), "")) {
+    Column added{streams_.size()};
+    if (column.is_low_passed) added.derivative = Derivative::none;
+    added.of_interval = column.of_interval;
+    added.contact = static_cast<std::size_t>(contact);
+    columns_.push_back(added);
+  }
+  streams_.push_back({std::nullopt, false, false, contact, channel.quantity, nullptr,
+                      Decimator(filter)});
 }
 
 std::vector<SeriesSpec> Recorder::series(const Model& model, const std::vector<Channel>& channels,
@@ -145,20 +164,10 @@ std::vector<SeriesSpec> Recorder::series(const Model& model, const std::vector<C
       continue;
     }
     for (const int contact : contacts_of(model.system, channel.pair)) {
-      SeriesSpec of_contact = spec;
-      of_contact.path = fmt::format("/contact/{}/{}",
-                                    model.system.contacts[static_cast<std::size_t>(contact)].name,
-                                    name_of(channel.quantity));
-      const bool is_state = channel.quantity == ContactQuantity::state;
-      if (is_state || channel.quantity == ContactQuantity::force ||
-          channel.quantity == ContactQuantity::friction_force) {
-        of_contact.attributes.emplace_back("acts_at", "the time of the same row of /time");
-      }
-      if (is_state) {
-        of_contact.kind = SeriesKind::state;
-        of_contact.attributes.emplace_back("meaning", "0 open, 1 stick, 2 slip");
-      }
-      series.push_back(of_contact);
+      const std::string& name = model.system.contacts[static_cast<std::size_t>(contact)].name;
+      for (const ContactColumn& column :
+           contact_columns(name, name_of(channel.quantity), channel.units(), low_pass))
+        series.push_back(column.spec);
     }
   }
   return series;
@@ -166,6 +175,11 @@ std::vector<SeriesSpec> Recorder::series(const Model& model, const std::vector<C
 
 void Recorder::sample(const Simulation& simulation) {
   next_step_ += stride_;
+  if (intervals_) {
+    for (std::size_t i = 0; i < since_last_look_.size(); ++i)
+      since_last_look_[i] = simulation.interval_statistics(static_cast<int>(i));
+    intervals_->add(since_last_look_);
+  }
   bool is_due = false;
   for (Stream& stream : streams_) is_due = stream.decimator.push(stream.value(simulation));
   if (is_due) write_row();
@@ -187,13 +201,18 @@ void Recorder::sample_displacement(double displacement) {
 /// The row that is due.
 void Recorder::write_row() {
   const std::int64_t number = streams_.front().decimator.num_outputs() - 1;
-  if (number >= max_samples_) return;
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
-    const Decimator& decimator = streams_[columns_[i].stream].decimator;
-    const std::optional<Derivative> derivative = columns_[i].derivative;
-    row_[i] = derivative ? decimator.value(*derivative) : decimator.sample();
+  if (number < max_samples_) {
+    for (std::size_t i = 0; i < columns_.size(); ++i) row_[i] = value(columns_[i]);
+    rows_->append(static_cast<double>(number) * interval_, row_);
   }
-  rows_->append(static_cast<double>(number) * interval_, row_);
+  if (intervals_) intervals_->drop_oldest();
+}
+
+double Recorder::value(const Column& column) const {
+  if (column.of_interval != nullptr)
+    return column.of_interval(intervals_->oldest()[column.contact]);
+  const Decimator& decimator = streams_[column.stream].decimator;
+  return column.derivative ? decimator.value(*column.derivative) : decimator.sample();
 }
 
 std::int64_t Recorder::latency() const {
@@ -207,6 +226,7 @@ void Recorder::save(State& state, const std::string& prefix) const {
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     streams_[i].decimator.save(state, fmt::format("{}streams/{}/", prefix, i));
   }
+  if (intervals_) intervals_->save(state, prefix);
 }
 
 void Recorder::load(const State& state, const std::string& prefix) {
@@ -214,6 +234,7 @@ void Recorder::load(const State& state, const std::string& prefix) {
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     streams_[i].decimator.load(state, fmt::format("{}streams/{}/", prefix, i));
   }
+  if (intervals_) intervals_->load(state, prefix);
 }
 
 }  // namespace stridor

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "analysis/low_pass.hpp"
 #include "io/channels.hpp"
+#include "io/contact_intervals.hpp"
 #include "io/run_file.hpp"
 #include "solvers/displacement_sink.hpp"
 
@@ -27,8 +29,10 @@ int sampling_stride(const System& system, double step, int ratio);
 
 /// Low-passes, thins and writes the channels of a scene.
 ///
-/// Every series is low-passed with linear phase, so that sample k is the value at k·interval;
-/// states and energies are taken at that instant as they are.
+/// Motions are low-passed with linear phase, so that sample k is the value at k·interval; contact
+/// forces, states and energies are taken at that instant as they are. Beside a contact force stand
+/// its extremes over every step since the row before and its low-passed series, beside a state the
+/// shares of those steps (ContactIntervals).
 class Recorder : public DisplacementSink {
  public:
   /// @param rows receives the rows; must live longer
@@ -70,11 +74,19 @@ class Recorder : public DisplacementSink {
   };
   /// One column of the run file.
   struct Column {
-    std::size_t stream;
-    std::optional<Derivative> derivative;  ///< of the low-passed stream; none: the sample itself
+    std::size_t stream = 0;
+    std::optional<Derivative> derivative{};  ///< of the low-passed stream; none: the sample itself
+    /// Instead of a stream: a number of the contact's interval.
+    double (*of_interval)(const ContactStatistics&) = nullptr;
+    std::size_t contact = 0;
   };
 
   void write_row();
+  double value(const Column& column) const;
+  void add_motion(const Model& model, const Channel& channel,
+                  const std::shared_ptr<const DecimationFilter>& filter);
+  void add_contact(const Channel& channel, int contact,
+                   const std::shared_ptr<const DecimationFilter>& filter);
 
   int stride_;
   double interval_;
@@ -82,6 +94,8 @@ class Recorder : public DisplacementSink {
   std::int64_t max_samples_;
   std::vector<Stream> streams_;
   std::vector<Column> columns_;
+  std::optional<ContactIntervals> intervals_;      ///< where a column shows them
+  std::vector<ContactStatistics> since_last_look_;  ///< of every contact
   std::vector<double> row_;
   RowSink* rows_;
 };

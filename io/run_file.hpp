@@ -5,7 +5,9 @@
 //     /scene/digests         of the text and of the files that the scene names, a line each
 //     /time                  s; dimension scale of every series
 //     /channels/<name>       recorded quantities, thinned
-//     /contact/<name>/…      force, gap, slip_velocity, position, state
+//     /contact/<name>/…      force, gap, slip_velocity, position, state; force_min, force_max,
+//                            stick_fraction, open_fraction: over every step since the row before;
+//                            the attribute `filter` says what is low-passed
 //     /energy/…              energy ledger
 //     /modal/<body>/…        static arrays
 //     /results               numbers read off the run, as attributes

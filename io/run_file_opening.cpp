@@ -21,15 +21,19 @@ namespace {
 
 // ---------------------------------------------------------------- text and numbers as attributes
 
+// Marked as ASCII though it may hold UTF-8: Octave reads texts of no other kind, and stops at the
+// first that it cannot read.
 void write_text(const Checker& at, hid_t file, const Handle& links, const std::string& path,
                 const std::string& text) {
   const Handle space = at.own(H5Screate(H5S_SCALAR), H5Sclose, path, "cannot make the dataset");
   const Handle type = text_type(at, text.size(), path);
+  at.check(H5Tset_cset(type.id(), H5T_CSET_ASCII), path, "cannot make a text type");
   const Handle dataset = at.own(
       H5Dcreate2(file, path.c_str(), type.id(), space.id(), links.id(), H5P_DEFAULT, H5P_DEFAULT),
       H5Dclose, path, "cannot make the dataset");
   at.check(H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()), path,
            "cannot write");
+  write_attribute(at, dataset.id(), path, "encoding", std::string("UTF-8"));
 }
 
 // ---------------------------------------------------------------- the temporary file

@@ -63,7 +63,9 @@ const Schema& RecordParameters::schema() {
   static const Schema keys =
       SchemaOf<RecordParameters>("record")
           .real("interval", &RecordParameters::interval,
-                {.doc = "Time between recorded samples; a whole multiple of time.step.",
+                {.doc = "Time between recorded samples; a whole multiple of time.step. Motions are "
+                        "low-passed before they are thinned to it; contact forces and states are "
+                        "not.",
                  .unit = "s",
                  .range = Range::positive()})
           .text_list(

@@ -34,6 +34,28 @@ bool is_positive(double value) {
   return value > 0.0 && std::isfinite(value);
 }
 
+// From the beginning of the first piece to the end of the last one.
+ValueRange times_of(const Spectrogram& spectrogram) {
+  if (spectrogram.times.empty() || spectrogram.frequencies.size() < 2)
+    refuse("a spectrogram without a column or with a single line");
+  const double half_piece = 0.5 / spectrogram.frequencies[1];
+  return {spectrogram.times.front() - half_piece, spectrogram.times.back() + half_piece};
+}
+
+// " Without room for a label: 3: 3.5 kHz."; empty where every mark has its label or its number.
+std::string unlabelled_text(const std::vector<SpectrogramPanel>& panels,
+                            const std::vector<MapArea>& maps) {
+  std::string names;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    for (const MarkPlace& place : place_marks(panels[i].marks, maps[i])) {
+      const std::string& label = panels[i].marks[place.mark].label;
+      // A number alone does not say the frequency.
+      if (!label.empty() && place.text != label) names += (names.empty() ? "" : ", ") + label;
+    }
+  }
+  return names.empty() ? "" : " Without room for the whole label: " + names + ".";
+}
+
 // The sources that each cell of an axis touches. Source k reaches from edges[k] to edges[k+1].
 std::vector<IndexRange> touched(const std::vector<double>& edges, double from, double to,
                                 Eigen::Index cells) {
@@ -193,12 +215,12 @@ AmplitudeRaster rasterise(const Spectrogram& spectrogram, double max_frequency, 
   if (rows < 1 || columns < 1) refuse("a raster without cells");
   if (!is_positive(max_frequency)) refuse("the highest frequency must be positive");
   const double spacing = spectrogram.frequencies[1];
-  const double half_piece = 0.5 / spacing;
+  const ValueRange times = times_of(spectrogram);
   const double highest = spectrogram.frequencies.back() + 0.5 * spacing;
 
   AmplitudeRaster raster;
-  raster.from = spectrogram.times.front() - half_piece;
-  raster.to = spectrogram.times.back() + half_piece;
+  raster.from = times.lower;
+  raster.to = times.upper;
   raster.max_frequency = std::min(max_frequency, highest);
   const std::vector<IndexRange> lines =
       touched(edges_between(spectrogram.frequencies, -0.5 * spacing, highest), 0.0,
@@ -305,8 +327,19 @@ void plot_spectrograms(const std::vector<SpectrogramPanel>& panels,
   const bool has_titles = std::any_of(panels.begin(), panels.end(),
                                       [](const auto& panel) { return !panel.title.empty(); });
   const double above = has_titles ? 1.6 * line : 0.5 * line;
-  const std::vector<std::string> caption =
-      wrapped(picture.caption, caption_font, size.width - left - 0.3);
+  std::vector<MapArea> maps;
+  for (const SpectrogramPanel& panel : panels) {
+    const ValueRange times = times_of(*panel.spectrogram);
+    MapArea map;
+    map.width = right - left;
+    map.height = map_height;
+    map.from = times.lower;
+    map.to = times.upper;
+    map.max_frequency = picture.max_frequency;
+    maps.push_back(map);
+  }
+  const std::vector<std::string> caption = wrapped(
+      picture.caption + unlabelled_text(panels, maps), caption_font, size.width - left - 0.3);
   const double below = 2.7 * line +
                        static_cast<double>(caption.size()) * line_height(caption_font) +
                        (caption.empty() ? 0.0 : 0.2);
@@ -369,13 +402,7 @@ void plot_spectrograms(const std::vector<SpectrogramPanel>& panels,
             "left", caption_font);
       }
     }
-    MapArea map;
-    map.width = right - left;
-    map.height = map_height;
-    map.from = raster.from;
-    map.to = raster.to;
-    map.max_frequency = picture.max_frequency;
-    add_marks(script, panel.marks, map, left, bottom);
+    add_marks(script, panel.marks, maps[i], left, bottom);
     const double cell_time = (raster.to - raster.from) /
                              static_cast<double>(raster.amplitude.cols()) /
                              std::pow(10.0, time.exponent);

@@ -18,7 +18,6 @@ namespace {
 constexpr std::size_t num_columns = 2000;
 constexpr double caption_font = 10.5;
 constexpr double mark_font = 11.0;
-constexpr int mark_rows = 6;
 
 // Told apart also in grey and by the colour-blind.
 constexpr std::array<const char*, 6> colours{"#0b5394", "#e07b00", "#38761d",
@@ -177,7 +176,9 @@ void plot_spectra(const std::vector<SpectrumPanel>& panels, const SpectrumPictur
                    std::max(left, right - width));
     extents.emplace_back(begin, begin + width);
   }
-  const std::vector<int> rows = rows_without_overlap(extents, mark_rows);
+  // As many rows as it takes: none is left out.
+  const std::vector<int> rows =
+      rows_without_overlap(extents, static_cast<int>(std::max<std::size_t>(1, extents.size())));
   const int num_rows = rows.empty() ? 0 : *std::max_element(rows.begin(), rows.end()) + 1;
 
   const std::vector<std::string> caption =

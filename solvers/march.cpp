@@ -74,7 +74,11 @@ void March::load(const State& state, const std::string& prefix) {
 void March::attend() {
   const std::int64_t now = simulation_->step_index();
   note_window(now);
-  if (sink_next_ != now) return;
+  if (sink_next_ == now) take_sample();
+}
+
+void March::take_sample() {
+  simulation_->end_interval();
   sink_->sample(*simulation_);
   sink_next_ = sink_->next_step();
 }
@@ -160,10 +164,7 @@ MarchEnd March::run_until(std::int64_t step) {
     StepOutcome outcome = StepOutcome::done;
     while (sink_next_ < event && outcome == StepOutcome::done) {
       outcome = simulation_->step_until(sink_next_);
-      if (outcome == StepOutcome::done) {
-        sink_->sample(*simulation_);
-        sink_next_ = sink_->next_step();
-      }
+      if (outcome == StepOutcome::done) take_sample();
     }
     if (outcome == StepOutcome::done) outcome = simulation_->step_until(event);
     if (outcome != StepOutcome::done) return MarchEnd::failed;

@@ -68,6 +68,7 @@ class March {
   enum class Window { ahead, open, closed };
 
   void note_window(std::int64_t now);
+  void take_sample();
 
   Simulation* simulation_;
   SampleSink* sink_;

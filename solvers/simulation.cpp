@@ -1,13 +1,31 @@
 #include "solvers/simulation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <utility>
 
 #include "solvers/prompt_surplus.hpp"
 #include "solvers/retained_modes.hpp"
 #include "solvers/simulation_implementation.hpp"
 
 namespace stridor {
+namespace {
+
+using StatisticsNumbers = std::array<double, 5>;
+
+StatisticsNumbers numbers_of(const ContactStatistics& one) {
+  return {one.force_min, one.force_max, static_cast<double>(one.steps),
+          static_cast<double>(one.sticking), static_cast<double>(one.open)};
+}
+
+ContactStatistics statistics_from(const StatisticsNumbers& numbers) {
+  const auto count = [&](std::size_t k) { return static_cast<std::int64_t>(numbers[k]); };
+  return {numbers[0], numbers[1], count(2), count(3), count(4)};
+}
+
+}  // namespace
+
 Simulation::Simulation(const System& given, const TimeParameters& time, Accounts accounts)
     : implementation_(std::make_unique<Implementation>()) {
   if (time.coordinates != Coordinates::modal &&
@@ -182,15 +200,32 @@ const ViolationCount& Simulation::violations(int contact) const {
   return implementation_->contacts[static_cast<std::size_t>(contact)].violations;
 }
 
-const ContactStatistics& Simulation::statistics(int contact) const {
-  return implementation_->contacts[static_cast<std::size_t>(contact)].statistics;
+ContactStatistics Simulation::statistics(int contact) const {
+  const RunningContact& of = implementation_->contacts[static_cast<std::size_t>(contact)];
+  ContactStatistics all = of.earlier;
+  all.add(of.statistics);
+  return all;
 }
 
 void Simulation::reset_statistics() {
   for (RunningContact& contact : implementation_->contacts) {
+    contact.open_interval.add(contact.statistics);
     contact.statistics = {};
     Implementation::count(contact);
+    contact.earlier = std::exchange(contact.statistics, {});
   }
+}
+
+void Simulation::end_interval() {
+  for (RunningContact& contact : implementation_->contacts) {
+    contact.earlier.add(contact.statistics);
+    contact.interval = std::exchange(contact.open_interval, {});
+    contact.interval.add(std::exchange(contact.statistics, {}));
+  }
+}
+
+const ContactStatistics& Simulation::interval_statistics(int contact) const {
+  return implementation_->contacts[static_cast<std::size_t>(contact)].interval;
 }
 
 const EnergyLedger* Simulation::energy() const {
@@ -234,6 +269,8 @@ State Simulation::save() const {
                              static_cast<double>(c.violations.before_armed),
                              c.violations.last_time};
     state.put(fmt::format("contacts/{}", i), values);
+    state.put(fmt::format("contacts/{}/earlier", i), numbers_of(c.earlier));
+    state.put(fmt::format("contacts/{}/open_interval", i), numbers_of(c.open_interval));
   }
   if (run.ledger) run.ledger->save(state, "energy/");
   return state;
@@ -266,6 +303,14 @@ void Simulation::load(const State& state) {
     c.steady_steps = static_cast<int>(values[9]);
     c.statistics = {values[10], values[11], count(12), count(13), count(14)};
     c.violations = {count(15), count(16), count(17), values[18]};
+    const auto statistics_of = [&](const char* name) {
+      StatisticsNumbers numbers;
+      state.get(fmt::format("contacts/{}/{}", i, name), numbers);
+      return statistics_from(numbers);
+    };
+    c.earlier = statistics_of("earlier");
+    c.open_interval = statistics_of("open_interval");
+    c.interval = {};
     // The guess that the next step starts from.
     run.local[i].normal = c.force;
     run.local[i].tangential = c.friction_force;

@@ -1,6 +1,7 @@
 // The coupled system in time.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -50,6 +51,15 @@ struct ContactStatistics {
   std::int64_t steps = 0;
   std::int64_t sticking = 0;  ///< steps that ended in stick
   std::int64_t open = 0;      ///< steps without contact
+
+  /// Takes in what it did over another stretch.
+  void add(const ContactStatistics& other) {
+    force_min = std::min(force_min, other.force_min);
+    force_max = std::max(force_max, other.force_max);
+    steps += other.steps;
+    sticking += other.sticking;
+    open += other.open;
+  }
 };
 
 /// What a simulation keeps account of from its start.
@@ -105,8 +115,13 @@ class Simulation {
   ContactPlace contact_place(int contact) const;
   const ViolationCount& violations(int contact) const;
   /// Since the start or the last reset, the present step included.
-  const ContactStatistics& statistics(int contact) const;
+  ContactStatistics statistics(int contact) const;
   void reset_statistics();
+  /// Ends an interval at the present step, which is its last; the next one begins after it. Resets
+  /// of the statistics do not touch intervals.
+  void end_interval();
+  /// Over all steps of the interval that ended last.
+  const ContactStatistics& interval_statistics(int contact) const;
 
   /// Up to t_n; null unless Accounts::energy was asked for.
   const EnergyLedger* energy() const;
@@ -128,7 +143,8 @@ class Simulation {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Where the samples of a run go. Called between steps, never inside one.
+/// Where the samples of a run go. Called between steps, never inside one, after
+/// Simulation::end_interval().
 class SampleSink {
  public:
   virtual ~SampleSink() = default;

@@ -54,7 +54,10 @@ struct RunningContact {
   /// last step; the material point that a sticking contact keeps.
   double anchor = 0.0;
   int steady_steps = 0;  ///< closed without a change of state, up to steady_after
-  ContactStatistics statistics;
+  ContactStatistics statistics;     ///< since the last reset or the end of the last interval
+  ContactStatistics earlier;        ///< from the last reset up to there
+  ContactStatistics open_interval;  ///< of the present interval, up to the last reset
+  ContactStatistics interval;       ///< the one that ended last
   ViolationCount violations;
 
   // Scratch of one step.
@@ -284,7 +287,7 @@ struct Simulation::Implementation {
   void start(const System& system, const TimeParameters& time_parameters) {
     const auto stand_and_solve = [&] {
       for (RunningContact& contact : contacts) {
-        contact.statistics = {};
+        contact.statistics = contact.earlier = contact.open_interval = contact.interval = {};
         contact.violations = {};
         contact.state = ContactState::open;
         contact.steady_steps = 0;

@@ -42,13 +42,13 @@ struct RunContents {
 std::string units_of(const std::string& path) {
   if (path.ends_with("acceleration")) return "m/s^2";
   if (path.ends_with("velocity")) return "m/s";
-  if (path.ends_with("force")) return "N";
+  if (path.find("force") != std::string::npos) return "N";
   return "m";
 }
 
 /// A tone of amplitude 2 in the acceleration, and its integrals; a constant force.
 double value_at(const std::string& path, double time) {
-  if (path.ends_with("force")) return 0.2;
+  if (path.find("force") != std::string::npos) return 0.2;
   if (time < 0.2 || time > 0.3) return 0.0;
   const double omega = 2.0 * std::numbers::pi * tone;
   if (path.ends_with("acceleration")) return 2.0 * std::sin(omega * time);
@@ -375,8 +375,9 @@ TEST_F(Pictures, PhaseShowsDisplacementAgainstVelocityOfOnePoint) {
   const Json pair = json_of({"plot", run, "--kind", "phase", "-o", path("a.svg")});
   EXPECT_EQ(pair["across"], "beam.tip.y.displacement");
   EXPECT_EQ(pair["up"], "beam.tip.y.velocity");
-  EXPECT_THAT(contents_of(path("a.svg")), AllOf(HasSubstr("beam.tip.y.displacement (10⁻⁹ m)"),
-                                                HasSubstr("beam.tip.y.velocity (10⁻⁶ m/s)")));
+  EXPECT_THAT(contents_of(path("a.svg")), AllOf(HasSubstr("beam.tip.y.displacement (nm)"),
+                                                HasSubstr("beam.tip.y.velocity (µm/s)"),
+                                                HasSubstr("Only 10 samples per period")));
   const Json one = json_of(
       {"plot", run, "--kind", "phase", "-o", path("b.svg"), "--channel", "beam.tip.y.velocity"});
   EXPECT_EQ(one["across"], "beam.tip.y.displacement");
@@ -384,6 +385,84 @@ TEST_F(Pictures, PhaseShowsDisplacementAgainstVelocityOfOnePoint) {
                             "contact.force", "--channel", "beam.tip.y.velocity"});
   EXPECT_EQ(two["across"], "contact.force");
   EXPECT_EQ(two["up"], "beam.tip.y.velocity");
+}
+
+/// Width and height of a PNG in dots.
+std::pair<unsigned, unsigned> size_of_png(const std::string& file) {
+  const std::string bytes = contents_of(file);
+  const auto number = [&](std::size_t at) {
+    unsigned value = 0;
+    for (std::size_t i = at; i < at + 4; ++i)
+      value = value * 256 + static_cast<unsigned char>(bytes.at(i));
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
+TEST_F(Pictures, HistoryOfTenContactsShowsTheEightChannelsOfMostUse) {
+  RunContents contents;
+  contents.rows = 200;
+  contents.has_bursts = false;
+  for (int i = 0; i < 10; ++i) {
+    for (const char* quantity : {"force", "gap", "slip_velocity"})
+      contents.channels.push_back("/contact/pad[" + std::to_string(i) + "]/" + quantity);
+  }
+  const std::string run = make_run(contents);
+  const Json object = json_of({"plot", run, "--kind", "history", "-o", path("a.svg")});
+  EXPECT_EQ(object["panels"], 8);
+  EXPECT_EQ(object["left_out"].size(), 34u - 8u);
+  const std::string svg = contents_of(path("a.svg"));
+  // One of every quantity, the acceleration first, then the second of those that have one.
+  EXPECT_THAT(svg, AllOf(HasSubstr("acceleration"), HasSubstr("slip velocity"), HasSubstr("gap"),
+                         HasSubstr("pad[0]"), HasSubstr("pad[1]"), Not(HasSubstr("pad[9]"))));
+  EXPECT_THAT(svg, HasSubstr("8 of 34 channels"));
+  const ProgramResult plain =
+      Program({"plot", run, "--kind", "history", "-o", path("a.png")}).run();
+  EXPECT_THAT(plain.out, HasSubstr("26 more channels are not drawn"));
+  EXPECT_LE(size_of_png(path("a.png")).second, 5000u);
+  // Whoever names channels gets them, in that order.
+  const Json named = json_of({"plot", run, "--kind", "history", "-o", path("b.svg"), "--channel",
+                              "pad[9].gap", "--channel", "pad[2].force"});
+  EXPECT_EQ(named["panels"], 2);
+  EXPECT_TRUE(named["left_out"].empty());
+  EXPECT_THAT(contents_of(path("b.svg")), HasSubstr("pad[9]"));
+  const Json spectrum = json_of({"plot", run, "--kind", "spectrum", "-o", path("c.svg")});
+  EXPECT_EQ(spectrum["channels"].size(), 8u);
+}
+
+TEST_F(Pictures, MorePanelsThanAPictureHoldsAreRefused) {
+  RunContents contents;
+  contents.rows = 10;
+  contents.has_bursts = false;
+  contents.channels.clear();
+  std::vector<std::string> arguments{"plot", path("run.h5"), "--kind", "history",
+                                     "-o",   path("a.png")};
+  for (int i = 0; i < 41; ++i) {
+    contents.channels.push_back("/contact/pad[" + std::to_string(i) + "]/force");
+    arguments.insert(arguments.end(), {"--channel", "pad[" + std::to_string(i) + "].force"});
+  }
+  make_run(contents);
+  const ProgramResult result = Program(arguments).run();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("41 channels, but one picture holds at most 40"));
+}
+
+TEST_F(Pictures, ForcesAreDrawnWithTheirExtremesAndTheirSpectraFromTheLowPassedSeries) {
+  RunContents contents;
+  contents.has_bursts = false;
+  contents.channels = {"/contact/contact/force", "/contact/contact/force_low_passed",
+                       "/contact/contact/force_max", "/contact/contact/force_min",
+                       "/contact/contact/gap"};
+  const std::string run = make_run(contents);
+  const Json history = json_of({"plot", run, "--kind", "history", "-o", path("a.svg")});
+  EXPECT_EQ(history["panels"], 2);
+  EXPECT_THAT(contents_of(path("a.svg")),
+              HasSubstr("band: extremes of all steps"));
+  const Json spectrum = json_of({"plot", run, "--kind", "spectrum", "-o", path("b.svg")});
+  ASSERT_EQ(spectrum["channels"].size(), 2u);
+  EXPECT_EQ(spectrum["channels"][0]["channel"], "contact.force_low_passed");
+  const Json spectrogram = json_of({"spectrogram", run, "--channel", "contact.force"});
+  EXPECT_EQ(spectrogram["channel"], "contact.force_low_passed");
 }
 
 TEST_F(Pictures, PhaseTakesTheSlipOfAContactFirst) {

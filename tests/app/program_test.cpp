@@ -76,7 +76,9 @@ TEST(Program, RunFileHoldsTheChannelsAskedForUpToTheEnd) {
   const RunFileReader file((folder / "a.h5").string());
   EXPECT_EQ(file.series_names(),
             (std::vector<std::string>{"/channels/cantilever.free_end.y.acceleration",
-                                      "/contact/contact/force", "/contact/contact/slip_velocity"}));
+                                      "/contact/contact/force", "/contact/contact/force_low_passed",
+                                      "/contact/contact/force_max", "/contact/contact/force_min",
+                                      "/contact/contact/slip_velocity"}));
   ASSERT_EQ(file.times().size(), 101u);
   EXPECT_EQ(file.times().front(), 0.0);
   EXPECT_NEAR(file.times().back(), 1e-3, 1e-15);

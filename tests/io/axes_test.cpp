@@ -33,7 +33,7 @@ TEST(AxisLabel, NamesTheUnitOfTheNumbers) {
   EXPECT_EQ(axis_label("force", "N", scale), "force (N)");
   EXPECT_EQ(axis_label("ratio", "", scale), "ratio");
   scale.exponent = -6;
-  EXPECT_EQ(axis_label("force", "N", scale), "force (10⁻⁶ N)");
+  EXPECT_EQ(axis_label("force", "N", scale), "force (µN)");
   EXPECT_EQ(axis_label("time", "s", scale), "time (µs)");
   scale.offset = 0.2;
   EXPECT_EQ(offset_text("N", scale), "minus 0.2 N");

@@ -29,7 +29,8 @@ TEST(Channels, MotionsAndContactQuantitiesAreRead) {
   EXPECT_EQ(channels[2].quantity, ContactQuantity::slip_velocity);
   EXPECT_EQ(channels[3].quantity, ContactQuantity::friction_force);
   EXPECT_EQ(channels[3].units(), "N");
-  EXPECT_TRUE(channels[3].is_filtered());
+  EXPECT_TRUE(channels[2].is_filtered());
+  EXPECT_FALSE(channels[3].is_filtered());
   EXPECT_EQ(channels[4].quantity, ContactQuantity::state);
   EXPECT_EQ(channels[4].units(), "1");
   EXPECT_FALSE(channels[4].is_filtered());

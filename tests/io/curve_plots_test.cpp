@@ -219,7 +219,7 @@ TEST(PlotPhase, SaysWhatItShows) {
              "From 0 to 1 s", folder / "a.svg");
   const std::string svg = contents_of(folder / "a.svg");
   for (const char* text :
-       {"beam.x.displacement (10⁻⁹ m), minus 0.2 m", "beam.x.velocity (m/s)", "From 0 to 1 s"}) {
+       {"beam.x.displacement (nm), minus 0.2 m", "beam.x.velocity (m/s)", "From 0 to 1 s"}) {
     EXPECT_THAT(svg, HasSubstr(text));
   }
 }

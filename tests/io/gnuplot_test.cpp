@@ -288,6 +288,33 @@ TEST_F(HistoryPlot, LongSeriesMakeSmallFiles) {
   }
 }
 
+TEST_F(HistoryPlot, BandsNamesOfValuesAndCaptionsAreDrawn) {
+  Panel force{"contact", "force", "N", {{{0.0, 1.0, 2.0}, {0.0, 1.0, 0.5}, ""}}};
+  force.band = {{0.0, 1.0, 2.0}, {0.0, 0.0, 0.0}, {0.0, 16.8, 2.0}};
+  Panel state{"contact", "state", "1", {{{0.0, 1.0, 2.0}, {0.0, 2.0, 1.0}, ""}}};
+  state.named_values = {{0.0, "open"}, {1.0, "stick"}, {2.0, "slip"}};
+  plot_histories({force, state}, folder_ / "a.svg", "", "Low-passed to 40 kHz before thinning.");
+  const std::string svg = contents_of(folder_ / "a.svg");
+  for (const char* text : {"open", "stick", "slip", "Low-passed to 40 kHz", ">15<"})
+    EXPECT_THAT(svg, HasSubstr(text));  // the axis reaches to the peak of the band
+}
+
+TEST(TimeLabels, NeitherOverlapNorVanish) {
+  std::vector<TimeMark> marks;
+  for (int i = 1; i <= 9; ++i) marks.push_back({0.1 * i, 0.1 * i, std::to_string(i)});
+  const auto apart = place_time_labels(marks, 0.0, 1.0, 10.0, 13.0);
+  ASSERT_EQ(apart.size(), 9u);
+  EXPECT_NEAR(apart[0].middle, 1.0, 1e-12);
+  EXPECT_EQ(apart[8].text, "9");
+  marks.push_back({0.405, 0.405, "10"});
+  const auto joined = place_time_labels(marks, 0.0, 1.0, 10.0, 13.0);
+  ASSERT_EQ(joined.size(), 9u);
+  EXPECT_EQ(joined[3].text, "4–10");
+  const auto crowded = place_time_labels(marks, 0.0, 1.0, 1.0, 13.0);
+  ASSERT_EQ(crowded.size(), 1u);
+  EXPECT_EQ(crowded[0].text, "1–9");
+}
+
 TEST_F(HistoryPlot, DegenerateDataAreDrawn) {
   const double nan = std::nan("");
   const std::vector<Panel> panels{
@@ -300,7 +327,7 @@ TEST_F(HistoryPlot, DegenerateDataAreDrawn) {
   };
   for (const char* name : {"a.svg", "a.png", "a.pdf"}) plot_histories(panels, folder_ / name, "");
   EXPECT_THAT(contents_of(folder_ / "a.svg"),
-              AllOf(HasSubstr("force (10⁻⁹ N)"), HasSubstr("minus 0.2 N")));
+              AllOf(HasSubstr("force (nN)"), HasSubstr("minus 0.2 N")));
   plot_histories({{"", "x", "", {{{}, {}, ""}}}}, folder_ / "empty.svg", "");
   plot_histories({{"", "x", "", {{{0.0, 2e-6}, {1.0, 2.0}, ""}}}}, folder_ / "short.svg", "");
   EXPECT_THAT(contents_of(folder_ / "short.svg"), HasSubstr("time (µs)"));

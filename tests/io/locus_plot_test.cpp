@@ -1,5 +1,6 @@
 #include "io/locus_plot.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,6 +15,7 @@ namespace {
 
 using namespace test;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 LocusPicture small_picture() {
   LocusPicture picture;
@@ -107,6 +109,57 @@ TEST(StabilityMapPlot, IsDrawnOnLinearAndLogarithmicAxes) {
   const std::string svg = contents_of(folder / "map.svg");
   for (const char* text : {"contact.friction.coefficient", "largest growth rate", "0.02"})
     EXPECT_THAT(svg, HasSubstr(text));
+}
+
+TEST(StabilityMapPlot, DecayHasHalfOfTheColoursHoweverFastTheGrowthIs) {
+  const TemporaryFolder folder;
+  StabilityMapPicture picture;
+  picture.x = {"x", "1", {0.0, 1.0}, false};
+  picture.y = {"y", "1", {0.0, 1.0}, false};
+  picture.growth = {{-1.0, -2.0}, {-1.0, 4000.0}};
+  picture.boundary = {{{0.5, 1.0}, {1.0, 0.5}}};
+  plot_stability_map(picture, folder / "map.svg");
+  const std::string svg = contents_of(folder / "map.svg");
+  for (const char* tick : {"-2", "-1", "2000", "4000"}) EXPECT_THAT(svg, HasSubstr(tick)) << tick;
+  // A corner that decays fast does not bleach the rest, and is told.
+  picture.growth = {{-1.0, -2.0}, {-1e6, 4000.0}};
+  plot_stability_map(picture, folder / "corner.svg");
+  EXPECT_THAT(contents_of(folder / "corner.svg"), HasSubstr("up to 1e+06 1/s"));
+}
+
+TEST(LocusPlot, GrowthAxisIsCutAtStronglyDampedRealRootsAndSaysSo) {
+  const TemporaryFolder folder;
+  LocusPicture picture;
+  picture.parameter = "mu";
+  picture.units = "1";
+  picture.curves = {{{0.0, 1.0}, {-5.0, 3.0}, {100.0, 101.0}},
+                    {{0.0, 1.0}, {-1.9e6, -1.8e6}, {0.0, 0.0}}};
+  picture.windows = {{0.6, 1.0, 101.0, 3.0}};
+  for (const auto& [draw, name] :
+       {std::pair{&plot_locus, "a.svg"}, std::pair{&plot_locus_histories, "b.svg"}}) {
+    draw(picture, folder / name);
+    const std::string svg = contents_of(folder / name);
+    EXPECT_THAT(svg, HasSubstr("2 values of strongly damped motions"));
+    EXPECT_THAT(svg, Not(HasSubstr("10⁶")));  // the axis is that of the others
+  }
+}
+
+TEST(LocusPlot, EveryWindowHasALabelBesideThePlaneOrInTheCaption) {
+  const TemporaryFolder folder;
+  LocusPicture picture;
+  picture.parameter = "mu";
+  picture.units = "1";
+  picture.curves = {{{0.0, 1.0}, {-5.0, 40.0}, {100.0, 10000.0}}};
+  for (int i = 1; i <= 40; ++i)
+    picture.windows.push_back({0.1, 0.2, 1000.0 + 10.0 * i, static_cast<double>(i)});
+  plot_locus(picture, folder / "a.svg");
+  const std::string svg = contents_of(folder / "a.svg");
+  // The strongest beside the plane, the others by name.
+  EXPECT_THAT(svg, HasSubstr("Without room for a label"));
+  for (int i = 1; i <= 40; ++i) {
+    const std::string text = fmt::format("{:.3g}", 1.0 + 0.01 * i);
+    EXPECT_THAT(svg, HasSubstr(text)) << i;
+  }
 }
 
 TEST(StabilityMapPlot, RowsMustFitTheAxes) {

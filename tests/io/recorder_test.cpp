@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -93,8 +94,8 @@ TEST(Recorder, LooksOftenEnoughThatNothingFoldsIntoTheRecord) {
   const RunFileReader full = record_run(model, channels, 2e-7, 25'000, (folder / "b.h5").string());
   for (const std::string name :
        {"/channels/cantilever.free_end.y.displacement", "/channels/cantilever.free_end.y.velocity",
-        "/contact/contact/force", "/contact/contact/slip_velocity",
-        "/contact/contact/friction_force"}) {
+        "/contact/contact/force_low_passed", "/contact/contact/slip_velocity",
+        "/contact/contact/friction_force_low_passed"}) {
     const auto from_some = thinned.series(name);
     const auto all = full.series(name);
     Decimator decimator(std::make_shared<const DecimationFilter>(2e-7, 50));
@@ -112,7 +113,7 @@ TEST(Recorder, LooksOftenEnoughThatNothingFoldsIntoTheRecord) {
   }
 }
 
-TEST(Recorder, StatesAndEnergiesStandUnfilteredBesideFilteredRows) {
+TEST(Recorder, ForcesStatesAndEnergiesStandUnfilteredBesideFilteredRows) {
   // FiLM sticks, slips and lifts off here. Every row of a state or an energy is what the simulation
   // holds at the time of that row, whatever the low-pass of the other columns has seen before.
   const TemporaryFolder folder;
@@ -124,6 +125,8 @@ TEST(Recorder, StatesAndEnergiesStandUnfilteredBesideFilteredRows) {
       record_run(model, channels, 1e-5, 25'000, (folder / "film.h5").string());
   ASSERT_GE(file.times().size(), 501u);
   const auto state = file.series("/contact/contact/state");
+  const auto force = file.series("/contact/contact/force");
+  const auto friction = file.series("/contact/contact/friction_force");
   const auto friction_loss = file.series("/energy/friction_loss");
   const auto strain = file.series("/energy/strain");
   Simulation simulation(model.system, paper_time(), Accounts::energy);
@@ -131,6 +134,8 @@ TEST(Recorder, StatesAndEnergiesStandUnfilteredBesideFilteredRows) {
   for (std::size_t k = 0; k <= 500; ++k) {
     ASSERT_EQ(simulation.step_until(static_cast<std::int64_t>(50 * k)), StepOutcome::done);
     ASSERT_EQ(state[k], static_cast<double>(simulation.contact_state(0))) << k;
+    ASSERT_EQ(force[k], simulation.contact_force(0)) << k;
+    ASSERT_EQ(friction[k], simulation.friction_force(0)) << k;
     ASSERT_EQ(friction_loss[k], simulation.energy()->balance().friction_loss) << k;
     ASSERT_EQ(strain[k], simulation.energy()->balance().strain) << k;
     ++seen[static_cast<std::size_t>(state[k])];
@@ -145,9 +150,65 @@ TEST(Recorder, StatesAndEnergiesStandUnfilteredBesideFilteredRows) {
   EXPECT_EQ(text("/energy/strain", "filter"), "none");
   EXPECT_EQ(text("/energy/strain", "definition"), "strain energy, half a time step before the row");
   EXPECT_EQ(file.units("/energy/strain"), "J");
-  EXPECT_NE(text("/contact/contact/friction_force", "filter"), "none");
+  EXPECT_EQ(text("/contact/contact/force", "filter"), "none");
+  EXPECT_EQ(text("/contact/contact/friction_force", "filter"), "none");
+  EXPECT_NE(text("/contact/contact/force_low_passed", "filter"), "none");
+  EXPECT_NE(text("/contact/contact/friction_force_low_passed", "filter"), "none");
+  EXPECT_EQ(text("/contact/contact/force_max", "long_name"),
+            "largest contact force of all steps since the row before");
   EXPECT_EQ(text("/contact/contact/friction_force", "acts_at"),
             "the time of the same row of /time");
+}
+
+TEST(Recorder, IntervalsHoldEveryStepBetweenTheRows) {
+  // A FiLM contact that lifts off and lands between rows, recorded every 50 steps.
+  const TemporaryFolder folder;
+  ModelParameters parameters = paper_model(trailing_angle, ContactAssumption::film);
+  parameters.drive.ramp = 1e-3;
+  const Model model = make_paper_model(parameters);
+  const auto channels = all_channels(parameters);
+  const RunFileReader file =
+      record_run(model, channels, 1e-5, 25'000, (folder / "film.h5").string());
+  const auto least = file.series("/contact/contact/force_min");
+  const auto largest = file.series("/contact/contact/force_max");
+  const auto sticking = file.series("/contact/contact/stick_fraction");
+  const auto open = file.series("/contact/contact/open_fraction");
+  Simulation simulation(model.system, paper_time(), Accounts::energy);
+  int num_hidden_peaks = 0;
+  for (std::size_t k = 0; k <= 500; ++k) {
+    ContactStatistics expected;
+    do {
+      if (k > 0) ASSERT_EQ(simulation.step(), StepOutcome::done);
+      const double force = simulation.contact_force(0);
+      const ContactState state = simulation.contact_state(0);
+      expected.add({force, force, 1, state == ContactState::stick ? 1 : 0,
+                    state == ContactState::open ? 1 : 0});
+    } while (simulation.step_index() % 50 != 0);
+    ASSERT_EQ(least[k], expected.force_min) << k;
+    ASSERT_EQ(largest[k], expected.force_max) << k;
+    const auto steps = static_cast<double>(expected.steps);
+    ASSERT_EQ(sticking[k], static_cast<double>(expected.sticking) / steps) << k;
+    ASSERT_EQ(open[k], static_cast<double>(expected.open) / steps) << k;
+    if (expected.force_min == 0.0 && simulation.contact_force(0) > 0.0) ++num_hidden_peaks;
+  }
+  EXPECT_GT(num_hidden_peaks, 0) << "the test needs openings that no row shows";
+}
+
+TEST(Recorder, UnilateralForcesAreNeverNegativeInAnySeriesButTheLowPassedOne) {
+  const TemporaryFolder folder;
+  ModelParameters parameters = paper_model(trailing_angle, ContactAssumption::film);
+  parameters.drive.ramp = 1e-3;
+  const Model model = make_paper_model(parameters);
+  const auto channels = all_channels(parameters);
+  const RunFileReader file =
+      record_run(model, channels, 1e-5, 25'000, (folder / "film.h5").string());
+  const auto least_of = [&](const char* name) {
+    const auto values = file.series(name);
+    return *std::min_element(values.begin(), values.end());
+  };
+  EXPECT_EQ(least_of("/contact/contact/force"), 0.0);
+  EXPECT_EQ(least_of("/contact/contact/force_min"), 0.0);
+  EXPECT_LT(least_of("/contact/contact/force_low_passed"), 0.0);
 }
 
 TEST(Recorder, RefusesEnergiesThatTheSimulationDoesNotKeep) {

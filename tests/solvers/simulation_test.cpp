@@ -392,6 +392,33 @@ TEST(Simulation, StatisticsStartAnewFromThePresentForce) {
   EXPECT_EQ(simulation.statistics(0).sticking, 0);
 }
 
+TEST(Simulation, IntervalsHoldEveryStepOnceWhateverResetsTheStatistics) {
+  const Model model = make_paper_model(paper_model());
+  Simulation simulation(model.system, paper_time());
+  ASSERT_EQ(simulation.step_until(100), StepOutcome::done);
+  simulation.end_interval();
+  EXPECT_EQ(simulation.interval_statistics(0).steps, 101);  // the start included
+  EXPECT_EQ(simulation.statistics(0).steps, 101);
+  ContactStatistics expected;
+  for (int n = 0; n < 50; ++n) {
+    ASSERT_EQ(simulation.step(), StepOutcome::done);
+    const double force = simulation.contact_force(0);
+    expected.add({force, force, 1, 0, 0});
+    if (n == 20) simulation.reset_statistics();
+  }
+  const State state = simulation.save();
+  simulation.end_interval();
+  Simulation resumed(model.system, paper_time());
+  resumed.load(state);
+  resumed.end_interval();
+  for (const Simulation* one : {&simulation, &resumed}) {
+    EXPECT_EQ(one->interval_statistics(0).steps, 50);
+    EXPECT_EQ(one->interval_statistics(0).force_min, expected.force_min);
+    EXPECT_EQ(one->interval_statistics(0).force_max, expected.force_max);
+    EXPECT_EQ(one->statistics(0).steps, 30);
+  }
+}
+
 // --- exact propagation and static residual
 // --------------------------------------------------------
 

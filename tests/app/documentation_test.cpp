@@ -1,0 +1,211 @@
+// What the documents print is run as it stands there.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+#include <regex>
+#include <sstream>
+
+#include "tests/support/program.hpp"
+
+namespace stridor {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+
+const fs::path source = STRIDOR_SOURCE_DIR;
+
+/// The texts of the fenced blocks of a language, in the order of the document.
+std::vector<std::string> blocks_of(const fs::path& document, const std::string& language) {
+  std::vector<std::string> blocks;
+  std::ifstream file(document);
+  bool is_inside = false;
+  for (std::string line; std::getline(file, line);) {
+    if (is_inside && line == "```") {
+      is_inside = false;
+    } else if (is_inside) {
+      blocks.back() += line + "\n";
+    } else if (line == "```" + language) {
+      is_inside = true;
+      blocks.emplace_back();
+    }
+  }
+  return blocks;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+/// A folder as a user has it: the scenes beside it, the program on the path, nothing else.
+class UserFolder {
+ public:
+  UserFolder() {
+    fs::create_directory(folder_ / "bin");
+    fs::create_directory(folder_ / "work");
+    fs::create_symlink(STRIDOR_PROGRAM, folder_ / "bin" / "stridor");
+    fs::create_directory_symlink(source / "scenes", folder_ / "work" / "scenes");
+  }
+  fs::path operator/(const std::string& name) const { return folder_ / "work" / name; }
+
+  struct Outcome {
+    int exit_code;
+    std::string output;
+  };
+  /// Runs a line of a shell in the folder.
+  Outcome run(const std::string& line) const {
+    write_file(folder_ / "line.sh", line + "\n");
+    const std::string command = "cd '" + (folder_ / "work").string() + "' && PATH='" +
+                                (folder_ / "bin").string() + "':\"$PATH\" bash ../line.sh" +
+                                " >../output 2>&1 </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents_of(folder_ / "output")};
+  }
+  bool has_command(const std::string& line) const { return run(line).exit_code == 0; }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+std::string python_with_h5py(const UserFolder& folder) {
+  for (const char* python : {"python3", "/usr/bin/python3"})
+    if (folder.has_command(std::string(python) + " -c 'import h5py'")) return python;
+  return "";
+}
+
+/// A run file of every name that a snippet opens.
+void make_files(const UserFolder& folder, const std::string& snippet) {
+  const std::regex name("\"([a-z_]+)\\.h5\"");
+  for (std::sregex_iterator it(snippet.begin(), snippet.end(), name), end; it != end; ++it) {
+    const std::string stem = (*it)[1];
+    if (fs::exists(folder / (stem + ".h5"))) continue;
+    const std::string scene = stem == "beam" ? "beam_on_beam" : "examples/" + stem;
+    const auto made = folder.run("stridor run scenes/" + scene + ".yaml -o " + stem +
+                                 ".h5 --set time.end=0.02");
+    ASSERT_EQ(made.exit_code, 0) << made.output;
+  }
+}
+
+std::vector<fs::path> documents() {
+  std::vector<fs::path> all{source / "README.md"};
+  for (const auto& entry : fs::directory_iterator(source / "docs"))
+    if (entry.path().extension() == ".md") all.push_back(entry.path());
+  return all;
+}
+
+TEST(Readme, CommandsWorkAsPrintedOneAfterTheOther) {
+  const UserFolder folder;
+  std::string block;
+  for (const std::string& one : blocks_of(source / "README.md", "sh"))
+    if (one.starts_with("stridor ")) block = one;
+  ASSERT_FALSE(block.empty());
+  // Shorter runs, whose results are not those expected of the whole.
+  const std::string shorter = " --set time.end=0.45";
+  int num_run = 0;
+  for (const std::string& line : lines_of(block)) {
+    std::string command = line.substr(0, line.find("  #"));
+    if (command.starts_with("stridor run scenes/")) command += shorter + " --set 'expect=[]'";
+    if (command.starts_with("stridor compare")) command += shorter + " --published-window 1e-3";
+    if (command.starts_with("stridor precision") || command.starts_with("stridor sweep"))
+      command += shorter;
+    const auto outcome = folder.run(command);
+    EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.output;
+    if (command.starts_with("stridor threshold")) {
+      EXPECT_TRUE(std::regex_search(outcome.output, std::regex("[0-9]+(\\.[0-9]+)? *k?Hz")))
+          << "finds nothing: " << outcome.output;
+    }
+    ++num_run;
+  }
+  EXPECT_GE(num_run, 15);
+}
+
+TEST(Snippets, OfPythonRun) {
+  const UserFolder folder;
+  const std::string python = python_with_h5py(folder);
+  if (python.empty()) GTEST_SKIP() << "needs python3 with h5py";
+  int num_run = 0;
+  for (const fs::path& document : documents()) {
+    for (const std::string& snippet : blocks_of(document, "python")) {
+      make_files(folder, snippet);
+      write_file(folder / "snippet.py", snippet);
+      const auto outcome = folder.run(python + " snippet.py");
+      EXPECT_EQ(outcome.exit_code, 0) << document << "\n" << snippet << outcome.output;
+      ++num_run;
+    }
+  }
+  EXPECT_GE(num_run, 2);
+}
+
+TEST(Snippets, OfOctaveRun) {
+  const UserFolder folder;
+  if (!folder.has_command("octave-cli --version")) GTEST_SKIP() << "needs octave";
+  int num_run = 0;
+  for (const fs::path& document : documents()) {
+    for (const std::string& snippet : blocks_of(document, "octave")) {
+      make_files(folder, snippet);
+      // Drawing takes fonts and a display of Octave's own; the data are what counts.
+      write_file(folder / "snippet.m",
+                 "plot = @(x, y) assert(numel(x), numel(y));\n" + snippet);
+      const auto outcome = folder.run("octave-cli --no-init-file --no-history snippet.m");
+      EXPECT_EQ(outcome.exit_code, 0) << document << "\n" << snippet << outcome.output;
+      EXPECT_EQ(outcome.output.find("HDF5"), std::string::npos) << outcome.output;
+      ++num_run;
+    }
+  }
+  EXPECT_GE(num_run, 1);
+}
+
+/// A file, how it is made, and what Octave must find in it.
+struct MadeFile {
+  const char* name;
+  const char* command;
+  const char* holds;  ///< a condition of Octave on `file`
+};
+
+TEST(Octave, LoadsTheFilesOfEveryVerb) {
+  const UserFolder folder;
+  if (!folder.has_command("octave-cli --version")) GTEST_SKIP() << "needs octave";
+  constexpr std::array files{
+      MadeFile{"ruler.h5", "run scenes/examples/ruler.yaml --set time.end=0.02 -o ruler.h5",
+               "numel(file.time) > 1 && numel(file.contact.contact.force) == numel(file.time) && "
+               "ischar(file.scene.text) && ischar(file.scene.resolved)"},
+      MadeFile{"disc.h5", "run scenes/examples/disc_squeal.yaml --set time.end=1e-3 -o disc.h5",
+               "numel(file.time) > 1 && isfield(file.contact, 'upper')"},
+      MadeFile{"sphere.h5", "run scenes/viscoelastic_sphere.yaml --set time.end=1 -o sphere.h5",
+               "numel(file.time) > 1 && isfield(file.contact.contact, 'area')"},
+      MadeFile{"two.h5", "run scenes/examples/two_feet.yaml --set time.end=1e-3 -o two.h5",
+               "numel(file.time) > 1"},
+      MadeFile{"amplitudes.h5",
+               "spectrogram ruler.h5 --channel contact.force --data amplitudes.h5 -o a.png",
+               "numel(fieldnames(file)) >= 3"},
+      MadeFile{"locus.h5",
+               "locus scenes/beam_on_beam.yaml --from 30mm --to 98mm --points 3 -o locus.h5",
+               "numel(fieldnames(file)) >= 2"},
+      MadeFile{"map.h5",
+               "map scenes/beam_on_beam.yaml --x contact.friction.coefficient 0.1 0.3 2 "
+               "--y contact.start 0.03 0.05 2 -o map.h5",
+               "numel(fieldnames(file)) >= 2"},
+      MadeFile{"sweep.h5",
+               "sweep scenes/examples/ruler.yaml --parameter contact.friction.coefficient "
+               "--from 0.1 --to 0.2 --points 2 --set time.end=0.02 -o sweep.h5",
+               "numel(fieldnames(file)) >= 2"},
+      MadeFile{"contact.h5", "contact scenes/viscoelastic_contact.yaml -o contact.h5",
+               "numel(fieldnames(file)) >= 2"},
+      MadeFile{"cycle.h5", "cycle scenes/viscoelastic_sphere.yaml -o cycle.h5",
+               "numel(file.time) > 1"}};
+  for (const MadeFile& made : files) {
+    const auto outcome = folder.run(std::string("stridor ") + made.command);
+    ASSERT_EQ(outcome.exit_code, 0) << made.command << "\n" << outcome.output;
+    const auto loaded = folder.run(std::string("octave-cli --no-init-file --no-history --eval \"file = load('") +
+                                   made.name + "'); if !(" + made.holds + ") disp(file); exit(1); end\"");
+    EXPECT_EQ(loaded.exit_code, 0) << made.name << "\n" << loaded.output;
+    EXPECT_EQ(loaded.output, "") << made.name;
+  }
+}
+
+}  // namespace
+}  // namespace stridor
