@@ -529,6 +529,21 @@ TEST(ExactPropagation, PromptAnswerHasNoJumpsWhereItsFormulaChanges) {
   EXPECT_NEAR(exact_propagation(0.0, 0.0, 1e-3).prompt, 1e-6 / 12.0, 1e-20);
 }
 
+TEST(ExactPropagation, NoModeAnswersAtOnceByMoreThanItsFlexibility) {
+  // δ = 0.309, as a free mode with c h = 2.14 needs it, where 1 − δ (ω h)² would be negative.
+  for (const double turn : {1.9, 2.0}) {
+    for (const double damping : {0.0, 0.01}) {
+      const StepCoefficients c = exact_propagation(turn, damping, 1.0, 0.309);
+      EXPECT_NEAR(c.prompt, 1.0 / (turn * turn), 1e-15);
+      EXPECT_EQ(c.gain, 0.0);
+    }
+  }
+  EXPECT_GT(exact_propagation(1.7, 0.0, 1.0, 0.309).gain, 0.0);
+  const StepCoefficients central = central_difference(1.9, 0.0, 1.0, 0.4);
+  EXPECT_NEAR(central.prompt, 1.0 / (1.9 * 1.9), 1e-15);
+  EXPECT_EQ(central.gain, 0.0);
+}
+
 TEST(ExactPropagation, AChangedDampingChangesNoForceOnTheWay) {
   // u = u* + W f of the step that the forces were found for, whatever damping follows.
   const auto body = ExactForm::make(chain(40.0, 1e-3), Eigen::MatrixXd(3, 0), 0.05, 1, {});
