@@ -16,7 +16,7 @@ struct SamplingEffort {
   int least_glimpses = 64;  ///< in all, where a family has them
 };
 /// For spectra that take seconds: all eigenvalues where they are asked for, and few besides.
-inline constexpr SamplingEffort sparing_effort{1, 16, {1e-9, 8}};
+inline constexpr SamplingEffort sparing_effort{1, 16, {1e-9, 8, WindowEffort::Ends::secants}};
 
 /// Eigenvalues and unstable windows along a parameter, for systems whose eigenvalues coincide or
 /// lie on the imaginary axis over whole intervals: without damping, with bodies that are alike.

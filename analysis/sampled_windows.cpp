@@ -57,14 +57,11 @@ class SignChange {
   }
 
  private:
-  /// The secant, with the excess halved at an end that stays again (Illinois). Now and then the
-  /// middle, as the excess may have a kink; always where it is next to nothing on the stable side:
-  /// without damping it rises from rounding like a root.
+  /// The secant, with the excess halved at an end that stays again (Illinois); now and then the
+  /// middle, as the excess may have a kink.
   double next_value(const Sample& stable, const Sample& growing, int step) const {
     constexpr int first_by_order = 12;
     constexpr double wide = 1024.0;
-    constexpr double negligible = 1e-6;
-    constexpr int most_secants = 12;  // those that have not converged are kept from it by rounding
     const double halfway = 0.5 * (stable.value + growing.value);
     const double larger = std::max(std::abs(stable.value), std::abs(growing.value));
     const double smaller = std::min(std::abs(stable.value), std::abs(growing.value));
@@ -72,8 +69,7 @@ class SignChange {
       return middle_number(stable.value, growing.value);
     const double below = stable_weight_ * stable.ranked_excess(rank_);
     const double above = growing_weight_ * growing.ranked_excess(rank_);
-    if (step % 6 == 5 || step >= most_secants || !std::isfinite(below) ||
-        -below < negligible * above)
+    if (effort_.ends == WindowEffort::Ends::halving || step % 6 == 5 || !std::isfinite(below))
       return halfway;
     const double at = stable.value + (growing.value - stable.value) * below / (below - above);
     const double margin = 0.3 * effort_.tolerance * std::abs(halfway);
@@ -162,7 +158,7 @@ Point WindowBuilder::climb(const Point& low, const Point& middle, const Point& h
   const double ratio = 0.5 * (3.0 - std::sqrt(5.0));
   Point left = low, best = middle, right = high;
   const double width = high.value - low.value;
-  for (int i = 0; i < effort_.climbing_steps && right.value - left.value > 1e-4 * width; ++i) {
+  for (int i = 0; i < effort_.climbing_steps && right.value - left.value > 1e-6 * width; ++i) {
     const bool is_right = right.value - best.value > best.value - left.value;
     const Point& end = is_right ? right : left;
     const double next = best.value + ratio * (end.value - best.value);

@@ -11,6 +11,7 @@ namespace stridor {
 struct WindowEffort {
   double tolerance = 1e-13;  ///< of the ends, relative
   int climbing_steps = 40;   ///< of golden sections towards the largest growth
+  enum class Ends { halving, secants } ends = Ends::halving;
 };
 
 /// Solves for all changes in the number of eigenvalues that grow, and appends a window for each
