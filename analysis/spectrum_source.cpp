@@ -25,7 +25,7 @@ Eigen::VectorXcd shape_of(const Pencil& pencil, Complex s) {
 class SecularSource : public SpectrumSource {
  public:
   SecularSource(const PencilFamily& family, double value, const LocusOptions& options)
-      : family_(family), function_(first_pencil(value)) {
+      : family_(family), function_(first_function(value)) {
     // Two more than wanted: what comes down from above is then known before it counts.
     window_.count = options.count + 2;
     window_.frequency = options.frequency;
@@ -33,6 +33,7 @@ class SecularSource : public SpectrumSource {
 
   void move_to(double value) override {
     family_.place(value, pencil_);
+    const auto guard = guard_of(pencil_);
     function_.assign(pencil_);
   }
 
@@ -67,9 +68,16 @@ class SecularSource : public SpectrumSource {
   double magnitude(Complex s) const override { return std::abs(s); }
 
  private:
-  const Pencil& first_pencil(double value) {
+  SecularFunction first_function(double value) {
     family_.place(value, pencil_);
-    return pencil_;
+    const auto guard = guard_of(pencil_);
+    return SecularFunction(pencil_);
+  }
+
+  /// Where bodies have coupled terms, BLAS diagonalises them.
+  static std::unique_lock<std::mutex> guard_of(const Pencil& pencil) {
+    if (pencil.num_body_slots == 0) return {};
+    return std::unique_lock(blas_in_use);
   }
 
   /// Where no line was of use, the search had to find all eigenvalues. Those far above the window

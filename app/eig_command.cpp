@@ -167,7 +167,7 @@ ExitCode eig(EigOptions options) {
   if (is_linear_scene_file(options.stability.scene)) {
     if (options.at) throw ConfigError("--at", "needs a contact that moves along a master");
     if (options.shapes) throw ConfigError("--shapes", "needs bodies with meshes");
-    choose_method(options.stability, nullptr);
+    choose_method(options.stability);
     return eig_of_linear_scene(options.stability, options.explain, options.mode);
   }
   if (is_sphere_scene_file(options.stability.scene)) {
@@ -177,11 +177,11 @@ ExitCode eig(EigOptions options) {
                                          : "--explain",
                         "is for scenes of bodies");
     }
-    choose_method(options.stability, nullptr);
+    choose_method(options.stability);
     return eig_of_sphere(options.stability);
   }
   const LoadedScene loaded = load_scene(options.stability.scene, options.stability.common.sets);
-  choose_method(options.stability, &loaded);
+  choose_method(options.stability);
   std::vector<double> values;
   SceneFamily family = make_family(loaded, options, values);
   const SceneFamily::Member member = family.at(values);

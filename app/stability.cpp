@@ -94,7 +94,7 @@ void add_stability_options(CLI::App& verb, StabilityOptions& options) {
       ->check(CLI::IsMember({"undeformed", "deformed"}));
   verb.add_option("--method", options.method,
                   "secular (default): zeros of the secular function; dense: all eigenvalues of the "
-                  "assembled matrices, as a check, and the default with bodies given by matrices")
+                  "assembled matrices, as a check")
       ->check(CLI::IsMember({"secular", "dense"}));
   options.count_option =
       verb.add_option("--count", options.count,
@@ -325,16 +325,8 @@ std::string StabilityScene::about_text(const StabilityOptions& options) const {
   return bodies() == nullptr ? "" : fmt::format(" about the {} geometry", options.about);
 }
 
-void choose_method(StabilityOptions& options, const LoadedScene* bodies) {
-  if (!options.method.empty()) return;
-  const auto is_given_by_matrices = [](const auto& entry) {
-    return std::holds_alternative<TouchedMatrixBodyParameters>(entry.second);
-  };
-  const bool is_coupled =
-      bodies != nullptr &&
-      std::any_of(bodies->scene.model.substructures.begin(),
-                  bodies->scene.model.substructures.end(), is_given_by_matrices);
-  options.method = is_coupled ? "dense" : "secular";
+void choose_method(StabilityOptions& options) {
+  if (options.method.empty()) options.method = "secular";
 }
 
 std::unique_ptr<StabilityScene> load_stability_scene(StabilityOptions& options) {
@@ -348,7 +340,7 @@ std::unique_ptr<StabilityScene> load_stability_scene(StabilityOptions& options) 
   } else {
     scene = std::make_unique<BodyStabilityScene>(load_scene(options.scene, options.common.sets));
   }
-  choose_method(options, scene->bodies());
+  choose_method(options);
   return scene;
 }
 

@@ -55,10 +55,8 @@ std::vector<double> range_values(const NumericKey& key, const RangeOptions& opti
 /// --parameter, --from, --to, --points.
 void add_range_options(CLI::App& verb, RangeOptions& options);
 
-/// Where no method was asked for: the secular function, or the dense one for bodies given by
-/// matrices, whose coupled modes are many slots.
-/// @param bodies null for scenes of other kinds
-void choose_method(StabilityOptions& options, const LoadedScene* bodies);
+/// Where no method was asked for: the secular function.
+void choose_method(StabilityOptions& options);
 
 /// The scene, --about, --method, --count, --set, --threads and --json.
 void add_stability_options(CLI::App& verb, StabilityOptions& options);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "app/body_report.hpp"
 #include "app/progress.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
@@ -66,6 +67,7 @@ StepStabilityReport check_step_stability(const Model& model, const TimeParameter
   StepStabilityReport report;
   report.time = time;
   report.limit = step_limit(system, time).step;
+  report.matrix_bodies = matrix_bodies_json(model);
   Progress progress("check");
   report.path = stability_along_path(system, time, num_places, [&](int place) {
     if (stop_requested()) throw Interrupted("the check is not complete");
@@ -84,6 +86,7 @@ Json step_stability_json(const StepStabilityReport& report) {
                  {"step_limit", number(report.limit)},
                  {"steps_grow", report.steps_grow()},
                  {"stable_step", report.stable_step ? Json(*report.stable_step) : Json()},
+                 {"matrix_bodies", report.matrix_bodies},
                  {"places", Json::array()}};
   for (const PathStability& place : report.path) {
     const StepStability& stability = place.stability;
@@ -105,6 +108,7 @@ Json step_stability_json(const StepStabilityReport& report) {
 }
 
 void print_step_stability(const StepStabilityReport& report) {
+  print_matrix_bodies(report.matrix_bodies);
   if (report.time.integrator == Integrator::central_difference) {
     fmt::print("step {:.6g} s, largest stable step of the bodies {:.6g} s\n", report.time.step,
                report.limit);

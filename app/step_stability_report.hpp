@@ -13,6 +13,7 @@ namespace stridor {
 struct StepStabilityReport {
   TimeParameters time;
   double limit = 0.0;  ///< step_limit(), s
+  Json matrix_bodies;  ///< matrix_bodies_json()
   std::vector<PathStability> path;
   /// stable_step() where the steps grow most by themselves; empty where they do not, or where none
   /// was found.

@@ -39,14 +39,13 @@ void append_keys(std::string& text, const Schema& schema, const void* object) {
   }
 }
 
-/// Proportional damping of a body. What matrices give is not told apart from their other terms.
+/// Proportional damping of a body that is among its keys; that of matrices comes with them.
 struct DampingOf {
-  RayleighDamping operator()(const BeamParameters& beam) const { return beam.damping; }
-  RayleighDamping operator()(const TouchedMatrixBodyParameters&) const { return {}; }
+  std::optional<RayleighDamping> operator()(const BeamParameters& beam) const {
+    return beam.damping;
+  }
+  std::optional<RayleighDamping> operator()(const TouchedMatrixBodyParameters&) const { return {}; }
 };
-RayleighDamping damping_of(const SubstructureParameters& parameters) {
-  return std::visit(DampingOf{}, parameters);
-}
 
 struct RemoveDamping {
   void operator()(BeamParameters& beam) const { beam.damping = {}; }
@@ -105,7 +104,7 @@ BodyMatrices BodyCache::matrices(const SubstructureParameters& parameters) {
   const BodyMatrices* found = find(bodies_, key);
   if (found == nullptr) found = &keep(bodies_, key, make_body(parameters));
   BodyMatrices body = *found;
-  body.damping = damping_of(parameters);
+  if (const auto damping = std::visit(DampingOf{}, parameters)) body.damping = *damping;
   return body;
 }
 
@@ -123,8 +122,8 @@ BodyCache::Reduction BodyCache::reduce(const SubstructureParameters& parameters,
     found = &keep(reductions_, key, std::move(reduction));
   }
   Reduction reduction = *found;
-  reduction.reduced.damping = damping_of(parameters);
-  reduction.modal.damping = damping_of(parameters);
+  reduction.reduced.damping = body.damping;
+  reduction.modal.damping = body.damping;
   return reduction;
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/errors.hpp"
+#include "solvers/matrix_modes.hpp"
 
 extern "C" void dgeevx_(const char* balance, const char* left, const char* right, const char* sense,
                         const int* n, double* a, const int* lda, double* wr, double* wi, double* vl,
@@ -212,6 +213,24 @@ DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work) {
 
 std::vector<Eigenvalue> dense_eigenvalues(const Pencil& pencil, DenseWork work) {
   return dense_spectrum(pencil, work).eigenvalues;
+}
+
+MatrixModes matrix_modes(Eigen::MatrixXd matrix) {
+  const Eigen::Index n = matrix.rows();
+  const LapackResult found = eigenvalues_of(std::move(matrix), DenseWork::residuals);
+  MatrixModes modes{Eigen::VectorXcd(n), Eigen::MatrixXcd(n, n)};
+  modes.values.real() = found.re;
+  modes.values.imag() = found.im;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (found.im(i) == 0.0) {
+      modes.vectors.col(i) = found.vectors.col(i).cast<Complex>();
+    } else if (found.im(i) > 0.0) {
+      modes.vectors.col(i).real() = found.vectors.col(i);
+      modes.vectors.col(i).imag() = found.vectors.col(i + 1);
+      modes.vectors.col(i + 1) = modes.vectors.col(i).conjugate();
+    }
+  }
+  return modes;
 }
 
 std::vector<Complex> matrix_eigenvalues(Eigen::MatrixXd matrix) {

@@ -27,7 +27,6 @@ struct MovingModes {
   Eigen::MatrixXd gaps;      ///< C
   Eigen::MatrixXd forces;    ///< E
   Eigen::MatrixXd closed;  ///< what a unit of λ closes of the gaps at once: C g Eᵀ, or C e Eᵀ
-  FrozenModes uncoupled;   ///< the same where no body has coupled terms, without what is left out
 
   Eigen::Index size() const { return gaps.cols(); }
 };
@@ -46,13 +45,11 @@ MovingModes moving_modes(const Pencil& contacts, const System& system, const Tim
   }
   const auto n = static_cast<Eigen::Index>(moving.size());
   MovingModes modes{
-      Eigen::MatrixXd::Zero(2 * n, 2 * n), Eigen::MatrixXd::Zero(2 * n, n), {}, {}, {}, {}};
+      Eigen::MatrixXd::Zero(2 * n, 2 * n), Eigen::MatrixXd::Zero(2 * n, n), {}, {}, {}};
   const Eigen::MatrixXd slots = contacts.slots(Eigen::all, moving);
   modes.gaps = contacts.compatibility * slots;
   modes.forces = contacts.equilibrium * slots;
   Eigen::MatrixXd prompt = Eigen::MatrixXd::Zero(n, n);
-  FrozenModes& uncoupled = modes.uncoupled;
-  uncoupled.keep = uncoupled.pull = uncoupled.gain = Eigen::VectorXd::Zero(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::Index mode = moving[static_cast<std::size_t>(i)];
     const StepCoefficients c =
@@ -63,14 +60,7 @@ MovingModes moving_modes(const Pencil& contacts, const System& system, const Tim
     modes.free(n + i, i) = -c.pull;
     modes.by_force(i, i) = modes.by_force(n + i, i) = c.gain;
     prompt(i, i) = c.prompt;
-    uncoupled.keep(i) = c.keep;
-    uncoupled.pull(i) = c.pull;
-    uncoupled.gain(i) = c.gain;
   }
-  uncoupled.prompt = prompt.diagonal();
-  uncoupled.gaps = modes.gaps;
-  uncoupled.forces = modes.forces;
-  uncoupled.is_instantaneous = surplus.has_value();
   for (const auto& [at, body] : coupled) {
     const Eigen::Index m = body->modal.size();
     const CoupledStep step =
@@ -88,6 +78,41 @@ MovingModes moving_modes(const Pencil& contacts, const System& system, const Tim
       surplus ? Eigen::MatrixXd(modes.gaps * prompt * modes.forces.transpose())
               : Eigen::MatrixXd(modes.gaps * modes.by_force.topRows(n) * modes.forces.transpose());
   return modes;
+}
+
+/// The same of modes that no terms couple.
+FrozenModes frozen_modes(const Pencil& contacts, const TimeParameters& time,
+                         std::optional<double> surplus, double cutoff) {
+  std::vector<Eigen::Index> moving;
+  for (Eigen::Index i = 0; i < contacts.num_modes(); ++i)
+    if (contacts.omega(i) <= cutoff) moving.push_back(i);
+  const auto n = static_cast<Eigen::Index>(moving.size());
+  FrozenModes modes;
+  for (Eigen::VectorXd* values : {&modes.keep, &modes.pull, &modes.gain, &modes.prompt})
+    values->resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Index mode = moving[static_cast<std::size_t>(i)];
+    const StepCoefficients c =
+        step_coefficients(time.integrator, contacts.omega(mode), contacts.damping(mode), time.step,
+                          surplus.value_or(0.0));
+    modes.keep(i) = c.keep;
+    modes.pull(i) = c.pull;
+    modes.gain(i) = c.gain;
+    modes.prompt(i) = c.prompt;
+  }
+  const Eigen::MatrixXd slots = contacts.slots(Eigen::all, moving);
+  modes.gaps = contacts.compatibility * slots;
+  modes.forces = contacts.equilibrium * slots;
+  modes.is_instantaneous = surplus.has_value();
+  return modes;
+}
+
+/// @throws NumericalError where a contact jams
+void check_closed(const Eigen::MatrixXd& closed) {
+  for (Eigen::Index i = 0; i < closed.rows(); ++i) {
+    if (!(closed(i, i) > 0.0))
+      throw NumericalError(fmt::format("no force of contact {} closes its gap: it jams", i));
+  }
 }
 
 /// What the forces on the contacts do through the modes that bodies leave out.
@@ -132,14 +157,24 @@ std::vector<std::complex<double>> FrozenStep::factors(const Pencil& contacts) co
   check_pencil(contacts);
   if (contacts.num_modes() != make_modal_pencil(*system_).num_modes())
     throw std::invalid_argument("FrozenStep: the contacts are on other modes than the system has");
-  const MovingModes modes = moving_modes(contacts, *system_, time_, surplus_, cutoff_);
   const std::vector<LeftOut> left_out = left_out_modes(contacts, *system_, time_.step, cutoff_);
+  const bool is_uncoupled =
+      std::all_of(system_->bodies.begin(), system_->bodies.end(),
+                  [](const SystemBody& body) { return body.modal.coupled.is_empty(); });
+  if (is_uncoupled) {
+    FrozenModes uncoupled = frozen_modes(contacts, time_, surplus_, cutoff_);
+    uncoupled.left_out = left_out;
+    // A dense decomposition of few modes takes less than the search for zeros.
+    constexpr Eigen::Index most_dense = 30;
+    if (uncoupled.gaps.cols() > most_dense) {
+      check_closed(uncoupled.closed());
+      if (auto found = step_factors(uncoupled)) return std::move(*found);
+    }
+  }
+  const MovingModes modes = moving_modes(contacts, *system_, time_, surplus_, cutoff_);
   Eigen::MatrixXd closed = modes.closed;
   for (const LeftOut& body : left_out) closed += body.share * body.closed;
-  for (Eigen::Index i = 0; i < closed.rows(); ++i) {
-    if (!(closed(i, i) > 0.0))
-      throw NumericalError(fmt::format("no force of contact {} closes its gap: it jams", i));
-  }
+  check_closed(closed);
   const Eigen::PartialPivLU<Eigen::MatrixXd> close(closed);
 
   // State: r, d, and λ~ of every body that leaves out modes. λ_n = by_position r + by_increment d +
@@ -160,24 +195,12 @@ std::vector<std::complex<double>> FrozenStep::factors(const Pencil& contacts) co
   if (k > 0) force = close.solve(force).eval();
 
   Eigen::MatrixXd map = Eigen::MatrixXd::Zero(size, size);
-  map.topRows(2 * n) = -(modes.by_force * (modes.forces.transpose() * force));
+  map.topRows(2 * n) = -((modes.by_force * modes.forces.transpose()) * force);
   map.topLeftCorner(2 * n, 2 * n) += modes.free;
   for (std::size_t b = 0; b < left_out.size(); ++b) {
     const Eigen::Index first = 2 * n + k * static_cast<Eigen::Index>(b);
     map.middleRows(first, k) = left_out[b].share * force;
     map.block(first, first, k, k).diagonal().array() += 1.0 - left_out[b].share;
-  }
-  // A dense decomposition of few modes takes less than the search for zeros.
-  constexpr Eigen::Index most_dense = 60;
-  const bool is_uncoupled =
-      std::all_of(system_->bodies.begin(), system_->bodies.end(),
-                  [](const SystemBody& body) { return body.modal.coupled.is_empty(); });
-  if (is_uncoupled && size > most_dense) {
-    FrozenModes uncoupled = modes.uncoupled;
-    uncoupled.left_out = left_out;
-    const double sum_of_squares = map.cwiseProduct(map.transpose()).sum();
-    if (auto found = step_factors(uncoupled, map.trace(), sum_of_squares))
-      return std::move(*found);
   }
   return matrix_eigenvalues(std::move(map));
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -144,6 +145,17 @@ Eigen::VectorXcd null_vector(Eigen::MatrixXcd matrix) {
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
     const double largest = matrix.row(i).cwiseAbs().maxCoeff();
     if (largest > 0.0) matrix.row(i) /= largest;
+  }
+  // Many rows, those of bodies with coupled terms: the decomposition would take too long.
+  constexpr Eigen::Index most_decomposed = 24;
+  if (matrix.rows() > most_decomposed) {
+    const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(matrix);
+    Eigen::VectorXcd vector = Eigen::VectorXcd::NullaryExpr(matrix.rows(), [](Eigen::Index i) {
+      return std::polar(1.0, static_cast<double>(i));
+    });
+    constexpr int num_iterations = 3;
+    for (int i = 0; i < num_iterations; ++i) vector = lu.solve(vector).normalized().eval();
+    if (vector.allFinite()) return column_scale.asDiagonal() * vector;
   }
   const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(matrix, Eigen::ComputeFullV);
   return column_scale.asDiagonal() * svd.matrixV().col(matrix.cols() - 1);
@@ -299,12 +311,17 @@ Pencil with_residual_modes(const Pencil& pencil, double cutoff) {
   if (!(cutoff > 0.0)) reject(fmt::format("the cut-off must be positive, is {:g} rad/s", cutoff));
   std::vector<Eigen::Index> kept;
   std::vector<Eigen::Index> dropped;
+  const auto is_coupled = [&](Eigen::Index i) {
+    return !pencil.slots.col(i).tail(pencil.num_body_slots).isZero(0.0);
+  };
   for (Eigen::Index i = 0; i < pencil.num_modes(); ++i) {
-    (pencil.omega(i) > cutoff ? dropped : kept).push_back(i);
+    (pencil.omega(i) > cutoff && !is_coupled(i) ? dropped : kept).push_back(i);
   }
   if (dropped.empty()) return pencil;
-  const ResidualModes residual = residual_modes(pencil.omega(dropped), pencil.damping(dropped),
-                                                columns_of(pencil.slots, dropped));
+  const Eigen::Index num_contact_slots = pencil.num_slots() - pencil.num_body_slots;
+  const ResidualModes residual =
+      residual_modes(pencil.omega(dropped), pencil.damping(dropped),
+                     columns_of(pencil.slots.topRows(num_contact_slots), dropped));
   const auto num_kept = static_cast<Eigen::Index>(kept.size());
   const Eigen::Index n = num_kept + residual.omega.size();
   Pencil reduced = pencil;
@@ -313,7 +330,9 @@ Pencil with_residual_modes(const Pencil& pencil, double cutoff) {
   reduced.slots.resize(pencil.num_slots(), n);
   reduced.omega << pencil.omega(kept), residual.omega;
   reduced.damping << pencil.damping(kept), residual.damping;
-  reduced.slots << columns_of(pencil.slots, kept), residual.slots;
+  reduced.slots.setZero();
+  reduced.slots.leftCols(num_kept) = columns_of(pencil.slots, kept);
+  reduced.slots.topRightCorner(num_contact_slots, residual.omega.size()) = residual.slots;
   check_pencil(reduced);
   return reduced;
 }

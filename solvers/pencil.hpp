@@ -94,7 +94,7 @@ void place_undeformed(Pencil& pencil, const System& system, double drive_displac
 /// frequencies ω_r and damping c_r = ω_r² xᵀ R₁ x reproduce R₀ and R₂ exactly, and R₁ as well where
 /// the damping of every body is proportional.
 ///
-/// @param cutoff ω, rad/s, > 0: modes with a larger ω are replaced
+/// @param cutoff ω, rad/s, > 0: modes with a larger ω are replaced, but for those with coupled terms
 /// @return the modes up to `cutoff`, in their order, then the residual modes, all above it; the
 ///         rest as in `pencil`
 /// @throws std::invalid_argument if `cutoff` is not positive, or as check_pencil() for either

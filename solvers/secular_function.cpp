@@ -8,6 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "solvers/small_matrices.hpp"
+
 namespace stridor {
 namespace {
 
@@ -17,10 +19,7 @@ std::size_t padded_size(Eigen::Index size) {
   return (static_cast<std::size_t>(size) + secular_block - 1) / secular_block * secular_block;
 }
 
-/// 1/z and |z| without the care for overflow that the library takes: no number here is near it.
-Complex reciprocal(Complex z) {
-  return std::conj(z) / std::norm(z);
-}
+/// |z| without the care for overflow that the library takes: no number here is near it.
 double magnitude(Complex z) {
   return std::sqrt(std::norm(z));
 }
@@ -28,81 +27,6 @@ double magnitude(Complex z) {
 /// Angle from a to b, −π … π.
 double turn(Complex a, Complex b) {
   return std::arg(b * std::conj(a));
-}
-
-/// Scales columns and then rows of B, and B′ likewise, to largest entries of 1; false where one of
-/// B is zero.
-bool equilibrate(Eigen::MatrixXcd& B, Eigen::MatrixXcd& slope) {
-  const Eigen::Index size = B.rows();
-  for (Eigen::Index j = 0; j < size; ++j) {
-    const double largest = std::sqrt(B.col(j).cwiseAbs2().maxCoeff());
-    if (largest == 0.0) return false;
-    for (Eigen::Index i = 0; i < size; ++i) {
-      B(i, j) *= 1.0 / largest;
-      slope(i, j) *= 1.0 / largest;
-    }
-  }
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const double largest = std::sqrt(B.row(i).cwiseAbs2().maxCoeff());
-    if (largest == 0.0) return false;
-    for (Eigen::Index j = 0; j < size; ++j) {
-      B(i, j) *= 1.0 / largest;
-      slope(i, j) *= 1.0 / largest;
-    }
-  }
-  return true;
-}
-
-/// det B by elimination with row pivoting, B destroyed. By hand as below, and because BLAS may
-/// serve one thread at a time (core/tasks.hpp).
-Complex determinant_of(Eigen::MatrixXcd& B) {
-  const Eigen::Index size = B.rows();
-  Complex product = 1.0;
-  for (Eigen::Index k = 0; k < size; ++k) {
-    Eigen::Index pivot = k;
-    for (Eigen::Index i = k + 1; i < size; ++i) {
-      if (std::norm(B(i, k)) > std::norm(B(pivot, k))) pivot = i;
-    }
-    if (B(pivot, k) == 0.0) return 0.0;
-    if (pivot != k) {
-      B.row(k).swap(B.row(pivot));
-      product = -product;
-    }
-    product *= B(k, k);
-    const Complex scale = reciprocal(B(k, k));
-    for (Eigen::Index i = k + 1; i < size; ++i) {
-      const Complex factor = B(i, k) * scale;
-      for (Eigen::Index j = k + 1; j < size; ++j) B(i, j) -= factor * B(k, j);
-    }
-  }
-  return product;
-}
-
-/// tr(B⁻¹ C) by elimination with row pivoting, both destroyed; nothing where B is singular. For
-/// matrices of a few rows, where a call of LAPACK would take longer than the work.
-std::optional<Complex> trace_of_solution(Eigen::MatrixXcd& B, Eigen::MatrixXcd& C) {
-  const Eigen::Index size = B.rows();
-  for (Eigen::Index k = 0; k < size; ++k) {
-    Eigen::Index pivot = k;
-    for (Eigen::Index i = k + 1; i < size; ++i) {
-      if (std::norm(B(i, k)) > std::norm(B(pivot, k))) pivot = i;
-    }
-    if (B(pivot, k) == 0.0) return std::nullopt;
-    if (pivot != k) {
-      B.row(k).swap(B.row(pivot));
-      C.row(k).swap(C.row(pivot));
-    }
-    const Complex scale = reciprocal(B(k, k));
-    for (Eigen::Index j = k + 1; j < size; ++j) B(k, j) *= scale;
-    for (Eigen::Index j = 0; j < size; ++j) C(k, j) *= scale;
-    for (Eigen::Index i = 0; i < size; ++i) {
-      if (i == k) continue;
-      const Complex factor = B(i, k);
-      for (Eigen::Index j = k + 1; j < size; ++j) B(i, j) -= factor * B(k, j);
-      for (Eigen::Index j = 0; j < size; ++j) C(i, j) -= factor * C(k, j);
-    }
-  }
-  return C.trace();
 }
 
 }  // namespace
@@ -114,22 +38,64 @@ SecularFunction::SecularFunction(const Pencil& pencil) {
 void SecularFunction::assign(const Pencil& pencil) {
   check_pencil(pencil);
   const bool has_same_modes = pencil.num_modes() == num_modes_ && pencil.omega == given_omega_ &&
-                              pencil.damping == given_damping_;
+                              pencil.damping == given_damping_ &&
+                              body_terms(pencil) == given_terms_;
   if (!has_same_modes) assign_modes(pencil);
   assign_rows(pencil);
+}
+
+bool SecularFunction::BodyTerms::operator==(const BodyTerms& other) const {
+  const auto is_same = [](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+    return a.rows() == b.rows() && a.cols() == b.cols() && a == b;
+  };
+  return is_same(slots, other.slots) && is_same(stiffness, other.stiffness) &&
+         is_same(damping, other.damping);
+}
+
+SecularFunction::BodyTerms SecularFunction::body_terms(const Pencil& pencil) {
+  const Eigen::Index size = pencil.num_body_slots;
+  if (size == 0) return {};
+  const auto between = [&](const Eigen::MatrixXd& terms) -> Eigen::MatrixXd {
+    if (terms.size() == 0) return {};
+    return terms.bottomRightCorner(size, size);
+  };
+  return {pencil.slots.bottomRows(size), between(pencil.slot_stiffness),
+          between(pencil.slot_damping)};
 }
 
 void SecularFunction::assign_modes(const Pencil& pencil) {
   num_modes_ = pencil.num_modes();
   given_omega_ = pencil.omega;
   given_damping_ = pencil.damping;
-  order_.resize(static_cast<std::size_t>(num_modes_));
-  std::iota(order_.begin(), order_.end(), 0);
-  std::sort(order_.begin(), order_.end(), [&](Eigen::Index a, Eigen::Index b) {
-    return std::pair(pencil.omega(a), pencil.damping(a)) <
-           std::pair(pencil.omega(b), pencil.damping(b));
-  });
+  given_terms_ = body_terms(pencil);
+  // Terms that have no eigenvectors stay between slots, where they cost more.
+  coupled_ = coupled_modes(pencil).value_or(CoupledModes{});
 
+  // Pairs of coupled modes come after the modes of the pencil.
+  const Eigen::Index num_pairs = coupled_.num_pairs();
+  Eigen::VectorXd omega(num_modes_ + num_pairs);
+  Eigen::VectorXd damping(num_modes_ + num_pairs);
+  omega.head(num_modes_) = pencil.omega;
+  damping.head(num_modes_) = pencil.damping;
+  for (Eigen::Index j = 0; j < num_pairs; ++j) {
+    const Complex first = coupled_.poles(2 * j);
+    const Complex second = coupled_.poles(2 * j + 1);
+    omega(num_modes_ + j) = std::sqrt(std::abs(first) * std::abs(second));
+    damping(num_modes_ + j) = -(first + second).real();
+  }
+  std::vector<bool> is_coupled(static_cast<std::size_t>(num_modes_ + num_pairs), false);
+  for (const Eigen::Index mode : coupled_.modes) is_coupled[static_cast<std::size_t>(mode)] = true;
+  order_.clear();
+  for (Eigen::Index i = 0; i < num_modes_ + num_pairs; ++i)
+    if (!is_coupled[static_cast<std::size_t>(i)]) order_.push_back(i);
+  std::sort(order_.begin(), order_.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return std::pair(omega(a), damping(a)) < std::pair(omega(b), damping(b));
+  });
+  sort_modes(omega, damping);
+}
+
+/// Sets up what depends on the poles, in the order of order_.
+void SecularFunction::sort_modes(const Eigen::VectorXd& omega, const Eigen::VectorXd& damping) {
   padded_ = padded_size(num_modes_);
   omega_ = AlignedArray(padded_);
   damping_ = AlignedArray(padded_);
@@ -141,8 +107,8 @@ void SecularFunction::assign_modes(const Pencil& pencil) {
   smallest_pole_ = std::numeric_limits<double>::infinity();
   height_of_.clear();
   for (std::size_t i = 0; i < order_.size(); ++i) {
-    omega_[i] = pencil.omega(order_[i]);
-    damping_[i] = pencil.damping(order_[i]);
+    omega_[i] = omega(order_[i]);
+    damping_[i] = damping(order_[i]);
     height_of_.push_back(std::max(0.0, height_of(poles(static_cast<Eigen::Index>(i)).front())));
     extent_ = std::max({extent_, omega_[i], std::abs(damping_[i])});
     for (const Complex pole : poles(static_cast<Eigen::Index>(i)))
@@ -169,25 +135,75 @@ void SecularFunction::assign_modes(const Pencil& pencil) {
 }
 
 void SecularFunction::assign_rows(const Pencil& pencil) {
-  rows_ = modal_rows(pencil);
-  const auto num_outputs = static_cast<std::size_t>(rows_.outputs.rows());
-  const auto num_inputs = static_cast<std::size_t>(rows_.inputs.rows());
-  if (num_outputs * num_inputs != weights_.size()) {
-    weights_.clear();
-    for (std::size_t pair = 0; pair < num_outputs * num_inputs; ++pair) {
-      weights_.emplace_back(padded_);
+  if (has_coupled()) {
+    const Eigen::Index num_slots = pencil.num_slots() - pencil.num_body_slots;
+    Pencil contacts;
+    contacts.omega = pencil.omega;
+    contacts.slots = pencil.slots.topRows(num_slots);
+    contacts.compatibility = pencil.compatibility.leftCols(num_slots);
+    contacts.equilibrium = pencil.equilibrium.leftCols(num_slots);
+    for (const auto terms : {&Pencil::slot_stiffness, &Pencil::slot_damping}) {
+      if ((pencil.*terms).size() > 0)
+        contacts.*terms = (pencil.*terms).topLeftCorner(num_slots, num_slots);
+    }
+    rows_ = modal_rows(contacts);
+    coupled_outputs_ =
+        rows_.outputs(Eigen::all, coupled_.modes).cast<Complex>().lazyProduct(coupled_.shapes);
+    coupled_inputs_ =
+        rows_.inputs(Eigen::all, coupled_.modes).cast<Complex>().lazyProduct(coupled_.adjoint);
+  } else {
+    rows_ = modal_rows(pencil);
+  }
+  constexpr Eigen::Index most_powers = 3;
+  const Eigen::Index size = num_rows();
+  weights_.resize(static_cast<std::size_t>(size * size * most_powers));
+  for (Eigen::Index b = 0; b < size; ++b) {
+    for (Eigen::Index power = 0; power < num_powers(b); ++power) {
+      for (Eigen::Index a = 0; a < size; ++a) {
+        AlignedArray& weights = weights_of(a, b, power);
+        if (weights.size() != padded_) {
+          weights = AlignedArray(padded_);
+        } else if (has_coupled()) {
+          std::fill_n(weights.data(), padded_, 0.0);
+        }
+      }
     }
   }
-  for (AlignedArray& weights : weights_) {
-    if (weights.size() != padded_) weights = AlignedArray(padded_);
+  for (std::size_t i = 0; i < order_.size(); ++i)
+    order_[i] < num_modes_ ? add_weights(i) : add_coupled_weights(i);
+}
+
+void SecularFunction::add_weights(std::size_t i) {
+  const Eigen::Index k = rows_.num_constraints;
+  const Eigen::Index size = num_rows();
+  const Eigen::Index mode = order_[i];
+  for (Eigen::Index b = 0; b < size; ++b) {
+    for (Eigen::Index a = 0; a < size; ++a) {
+      weights_of(a, b, 0)[i] = rows_.outputs(a, mode) * rows_.inputs(b, mode);
+      if (b >= k)
+        weights_of(a, b, 1)[i] = rows_.outputs(a, mode) * rows_.inputs(b + rows_.rank, mode);
+    }
   }
-  for (std::size_t b = 0; b < num_inputs; ++b) {
-    for (std::size_t a = 0; a < num_outputs; ++a) {
-      AlignedArray& weights = weights_[a + num_outputs * b];
-      for (std::size_t i = 0; i < order_.size(); ++i) {
-        weights[i] = rows_.outputs(static_cast<Eigen::Index>(a), order_[i]) *
-                     rows_.inputs(static_cast<Eigen::Index>(b), order_[i]);
-      }
+}
+
+/// a/(s − p) + a'/(s − p') = ((a + a') s − (a p' + a' p))/d of the two poles of a pair, where a and
+/// a' are conjugates if p and p' are.
+void SecularFunction::add_coupled_weights(std::size_t i) {
+  const Eigen::Index k = rows_.num_constraints;
+  const Eigen::Index size = num_rows();
+  const Eigen::Index at = 2 * (order_[i] - num_modes_);
+  const Complex p = coupled_.poles(at);
+  const Complex other = coupled_.poles(at + 1);
+  for (Eigen::Index b = 0; b < size; ++b) {
+    for (Eigen::Index a = 0; a < size; ++a) {
+      const auto add = [&](Eigen::Index input, Eigen::Index power) {
+        const Complex residue = coupled_outputs_(a, at) * coupled_inputs_(input, at);
+        const Complex other_residue = coupled_outputs_(a, at + 1) * coupled_inputs_(input, at + 1);
+        weights_of(a, b, power)[i] -= (residue * other + other_residue * p).real();
+        weights_of(a, b, power + 1)[i] += (residue + other_residue).real();
+      };
+      add(b, 0);
+      if (b >= k) add(b + rows_.rank, 1);
     }
   }
 }
@@ -271,53 +287,72 @@ SecularFunction::LogSlope SecularFunction::scalar_log_slope(Complex s, int& hint
 }
 
 void SecularFunction::form_bordered(Complex s) {
-  const Eigen::Index k = rows_.num_constraints;
-  const Eigen::Index r = rows_.rank;
-  const Eigen::Index size = k + r;
-  const auto num_near = static_cast<Eigen::Index>(near_.size());
+  const Eigen::Index size = num_rows();
+  Eigen::Index num_borders = 0;
   for (const int i : near_) {
     const auto mode = static_cast<std::size_t>(i);
     for (AlignedArray* array : {&value_re_, &value_im_, &slope_re_, &slope_im_}) {
       (*array)[mode] = 0.0;
     }
+    num_borders += order_[mode] < num_modes_ ? 1 : 2;
   }
-  bordered_.setZero(size + num_near, size + num_near);
-  bordered_slope_.setZero(size + num_near, size + num_near);
-  const auto sums = [&](Eigen::Index a, Eigen::Index b, Complex& value, Complex& slope) {
-    const double* weights = weights_[static_cast<std::size_t>(a + size * b)].data();
-    double re = 0.0;
-    double im = 0.0;
-    weigh(weights, value_re_.data(), value_im_.data(), padded_, &re, &im);
-    value = {re, im};
-    weigh(weights, slope_re_.data(), slope_im_.data(), padded_, &re, &im);
-    slope = {-re, -im};
-  };
-  Complex value;
-  Complex slope;
+  bordered_.setZero(size + num_borders, size + num_borders);
+  bordered_slope_.setZero(size + num_borders, size + num_borders);
   for (Eigen::Index a = 0; a < size; ++a) {
     for (Eigen::Index b = 0; b < size; ++b) {
-      sums(a, b, bordered_(a, b), bordered_slope_(a, b));
-      if (b < k) continue;
-      sums(a, b + r, value, slope);
-      bordered_(a, b) += s * value;
-      bordered_slope_(a, b) += value + s * slope;
-      if (a == b) bordered_(a, b) += 1.0;
+      // Σ over powers p of s^p T_p, and its derivative.
+      Complex factor = 1.0;
+      Complex factor_slope = 0.0;
+      for (Eigen::Index power = 0; power < num_powers(b); ++power) {
+        const double* weights = weights_of(a, b, power).data();
+        double re = 0.0;
+        double im = 0.0;
+        weigh(weights, value_re_.data(), value_im_.data(), padded_, &re, &im);
+        bordered_(a, b) += factor * Complex(re, im);
+        bordered_slope_(a, b) += factor_slope * Complex(re, im);
+        weigh(weights, slope_re_.data(), slope_im_.data(), padded_, &re, &im);
+        bordered_slope_(a, b) -= factor * Complex(re, im);
+        factor_slope = static_cast<double>(power + 1) * factor;
+        factor *= s;
+      }
+      if (b >= rows_.num_constraints && a == b) bordered_(a, b) += 1.0;
     }
   }
-  for (Eigen::Index j = 0; j < num_near; ++j) {
-    const auto i = static_cast<std::size_t>(near_[static_cast<std::size_t>(j)]);
-    const Eigen::Index mode = order_[i];
-    const Eigen::Index border = size + j;
-    for (Eigen::Index a = 0; a < size; ++a) {
-      bordered_(a, border) = rows_.outputs(a, mode);
-      bordered_(border, a) = -rows_.inputs(a, mode);
-      if (a < k) continue;
-      bordered_(border, a) -= s * rows_.inputs(a + r, mode);
-      bordered_slope_(border, a) = -rows_.inputs(a + r, mode);
+  Eigen::Index border = size;
+  for (const int i : near_) {
+    const Eigen::Index mode = order_[static_cast<std::size_t>(i)];
+    if (mode < num_modes_) {
+      border_mode(s, mode, static_cast<std::size_t>(i), border++);
+    } else {
+      border_pole(s, 2 * (mode - num_modes_), border++);
+      border_pole(s, 2 * (mode - num_modes_) + 1, border++);
     }
-    bordered_(border, border) = denominator(i, s);
-    bordered_slope_(border, border) = denominator_slope(i, s);
   }
+}
+
+void SecularFunction::border_mode(Complex s, Eigen::Index mode, std::size_t i,
+                                  Eigen::Index border) {
+  for (Eigen::Index a = 0; a < num_rows(); ++a) {
+    bordered_(a, border) = rows_.outputs(a, mode);
+    bordered_(border, a) = -rows_.inputs(a, mode);
+    if (a < rows_.num_constraints) continue;
+    bordered_(border, a) -= s * rows_.inputs(a + rows_.rank, mode);
+    bordered_slope_(border, a) = -rows_.inputs(a + rows_.rank, mode);
+  }
+  bordered_(border, border) = denominator(i, s);
+  bordered_slope_(border, border) = denominator_slope(i, s);
+}
+
+void SecularFunction::border_pole(Complex s, Eigen::Index pole, Eigen::Index border) {
+  for (Eigen::Index a = 0; a < num_rows(); ++a) {
+    bordered_(a, border) = coupled_outputs_(a, pole);
+    bordered_(border, a) = -coupled_inputs_(a, pole);
+    if (a < rows_.num_constraints) continue;
+    bordered_(border, a) -= s * coupled_inputs_(a + rows_.rank, pole);
+    bordered_slope_(border, a) = -coupled_inputs_(a + rows_.rank, pole);
+  }
+  bordered_(border, border) = s - coupled_.poles(pole);
+  bordered_slope_(border, border) = 1.0;
 }
 
 SecularFunction::LogSlope SecularFunction::matrix_log_slope(Complex s, int& hint) {
@@ -403,24 +438,23 @@ SecularFunction::Zero SecularFunction::find_zero(Complex guess, double spacing, 
 
 Complex SecularFunction::determinant(const double* inverse_re, const double* inverse_im,
                                      Complex s) {
-  const Eigen::Index k = rows_.num_constraints;
-  const Eigen::Index r = rows_.rank;
-  const Eigen::Index size = k + r;
-  const auto sum = [&](Eigen::Index a, Eigen::Index b) {
+  const Eigen::Index size = num_rows();
+  const auto sum = [&](Eigen::Index a, Eigen::Index b, Eigen::Index power) {
     double re = 0.0;
     double im = 0.0;
-    weigh(weights_[static_cast<std::size_t>(a + size * b)].data(), inverse_re, inverse_im, padded_,
-          &re, &im);
+    weigh(weights_of(a, b, power).data(), inverse_re, inverse_im, padded_, &re, &im);
     return Complex(re, im);
   };
-  if (is_scalar()) return sum(0, 0);
+  if (is_scalar()) return sum(0, 0, 0);
   if (size == 0) return 1.0;
   Eigen::MatrixXcd matrix(size, size);
   for (Eigen::Index a = 0; a < size; ++a) {
     for (Eigen::Index b = 0; b < size; ++b) {
-      matrix(a, b) = sum(a, b);
-      if (b >= k) matrix(a, b) += s * sum(a, b + r);
-      if (b >= k && a == b) matrix(a, b) += 1.0;
+      matrix(a, b) = sum(a, b, 0);
+      Complex factor = s;
+      for (Eigen::Index power = 1; power < num_powers(b); ++power, factor *= s)
+        matrix(a, b) += factor * sum(a, b, power);
+      if (b >= rows_.num_constraints && a == b) matrix(a, b) += 1.0;
     }
     // A positive factor; without it the determinant of many rows leaves the range of a double.
     const double largest = matrix.row(a).cwiseAbs2().maxCoeff();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "solvers/aligned_array.hpp"
+#include "solvers/coupled_modes.hpp"
 #include "solvers/pencil.hpp"
 #include "solvers/secular_kernel.hpp"
 
@@ -22,7 +23,9 @@ namespace stridor {
 ///
 /// P is the characteristic polynomial. With one contact and without G and H, A is the number
 /// f(s) = Σ b_C,i b_E,i/(s² + c_i s + ω_i²). Modes whose residue vanishes are zeros of P like the
-/// others.
+/// others. Modes that coupled terms of their body join are replaced by pairs of its complex modes
+/// (CoupledModes), whose weights are polynomials of s; ω² is then the product of the two poles of a
+/// pair, and −c their sum.
 ///
 /// P overflows, and f has poles next to its zeros. What is evaluated is the logarithmic derivative
 /// of F(s) = det A Π_near d_i, in which the pole nearest to s is multiplied out; F is smooth where
@@ -32,7 +35,8 @@ class SecularFunction {
   /// @throws std::invalid_argument as check_pencil()
   explicit SecularFunction(const Pencil& pencil);
 
-  /// Takes over another pencil; the cost is much lower where its ω and c are the same as before.
+  /// Takes over another pencil; the cost is much lower where its ω, c and coupled terms are the same
+  /// as before.
   /// @throws std::invalid_argument as check_pencil(); the function is then unchanged
   void assign(const Pencil& pencil);
 
@@ -107,9 +111,31 @@ class SecularFunction {
     bool meets_pole = false;
   };
 
+  /// Coupled terms of bodies as in a pencil, to see whether they change.
+  struct BodyTerms {
+    Eigen::MatrixXd slots, stiffness, damping;
+    bool operator==(const BodyTerms& other) const;
+  };
+  static BodyTerms body_terms(const Pencil& pencil);
   void assign_modes(const Pencil& pencil);
+  void sort_modes(const Eigen::VectorXd& omega, const Eigen::VectorXd& damping);
   void assign_rows(const Pencil& pencil);
-  bool is_scalar() const { return rows_.num_constraints == 1 && rows_.rank == 0; }
+  void add_weights(std::size_t i);
+  void add_coupled_weights(std::size_t i);
+  bool has_coupled() const { return coupled_.num_pairs() > 0; }
+  bool is_scalar() const {
+    return rows_.num_constraints == 1 && rows_.rank == 0 && !has_coupled();
+  }
+  Eigen::Index num_rows() const { return rows_.num_constraints + rows_.rank; }
+  /// Powers of s in the weights of an input, from 0.
+  Eigen::Index num_powers(Eigen::Index input) const {
+    return (input < rows_.num_constraints ? 1 : 2) + (has_coupled() ? 1 : 0);
+  }
+  AlignedArray& weights_of(Eigen::Index output, Eigen::Index input, Eigen::Index power) {
+    return weights_[static_cast<std::size_t>(output + num_rows() * (input + num_rows() * power))];
+  }
+  void border_mode(Complex s, Eigen::Index mode, std::size_t i, Eigen::Index border);
+  void border_pole(Complex s, Eigen::Index pole, Eigen::Index border);
   Complex denominator(std::size_t i, Complex s) const;
   Complex denominator_slope(std::size_t i, Complex s) const;
   /// Mode with the smallest |d|.
@@ -126,7 +152,10 @@ class SecularFunction {
   Line& line_at(double height);
 
   Eigen::VectorXd given_omega_, given_damping_;  ///< as in the pencil, to see whether they change
-  std::vector<Eigen::Index> order_;              ///< modes of the pencil in ascending ω
+  BodyTerms given_terms_;
+  CoupledModes coupled_;  ///< of the bodies with coupled terms
+  /// In ascending ω: modes of the pencil, and n + j for pair j of the coupled modes.
+  std::vector<Eigen::Index> order_;
   Eigen::Index num_modes_ = 0;
   std::size_t padded_ = 0;
   AlignedArray omega_, damping_;
@@ -137,8 +166,9 @@ class SecularFunction {
   double smallest_pole_ = 0.0;  ///< of those that are not zero; extent_ where all are
   std::map<double, Line> lines_;
 
-  ModalRows rows_;                     ///< in ascending ω
-  std::vector<AlignedArray> weights_;  ///< of each pair of an output and an input, outputs fastest
+  ModalRows rows_;  ///< of the contacts, and of coupled terms that could not be diagonalised
+  Eigen::MatrixXcd coupled_outputs_, coupled_inputs_;  ///< rows_ on the coupled modes
+  std::vector<AlignedArray> weights_;                  ///< weights_of(); empty where there is none
 
   AlignedArray mask_;
   double mask_height_ = -1.0;

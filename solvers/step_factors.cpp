@@ -1,5 +1,6 @@
 #include "solvers/step_factors.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -232,10 +233,54 @@ bool improve(StepFunction& function, std::vector<Complex>& zeros) {
   return false;
 }
 
+struct Traces {
+  double of_step = 0.0;
+  double of_square = 0.0;
+};
+
+/// Of the matrix of the step of (r, d, λ~_b), F₀ + U V with λ_n = V (r, d, λ~_b).
+Traces traces_of(const FrozenModes& modes) {
+  const Eigen::ArrayXd& s = modes.keep.array();
+  const Eigen::ArrayXd& k = modes.pull.array();
+  const Eigen::Index num_contacts = modes.gaps.rows();
+  Eigen::MatrixXd from_r = modes.gaps;
+  Eigen::MatrixXd from_d = Eigen::MatrixXd::Zero(num_contacts, modes.gaps.cols());
+  if (!modes.is_instantaneous) {
+    from_r = modes.gaps * (1.0 - k).matrix().asDiagonal();
+    from_d = modes.gaps * modes.keep.asDiagonal();
+  }
+  const Eigen::MatrixXd pushed = -(modes.gain.asDiagonal() * modes.forces.transpose());
+  // V U and V F₀ U, before λ_n is solved for.
+  Eigen::MatrixXd once = (from_r + from_d) * pushed;
+  Eigen::MatrixXd twice = from_r * ((1.0 - k + s).matrix().asDiagonal() * pushed) +
+                          from_d * ((s - k).matrix().asDiagonal() * pushed);
+  Traces traces;
+  traces.of_step = (1.0 - k + s).sum();
+  traces.of_square = ((1.0 - k).square() - 2.0 * s * k + s.square()).sum();
+  for (const FrozenModes::LeftOut& body : modes.left_out) {
+    const double kept = 1.0 - body.share;
+    once -= kept * body.share * body.closed;
+    twice -= kept * kept * body.share * body.closed;
+    traces.of_step += static_cast<double>(num_contacts) * kept;
+    traces.of_square += static_cast<double>(num_contacts) * kept * kept;
+  }
+  const Eigen::PartialPivLU<Eigen::MatrixXd> close(modes.closed());
+  once = close.solve(once).eval();
+  traces.of_step += once.trace();
+  traces.of_square += 2.0 * close.solve(twice).trace() + (once * once).trace();
+  return traces;
+}
+
 }  // namespace
 
-std::optional<std::vector<Complex>> step_factors(const FrozenModes& modes, double sum,
-                                                 double sum_of_squares) {
+Eigen::MatrixXd FrozenModes::closed() const {
+  Eigen::MatrixXd sum =
+      gaps * (is_instantaneous ? prompt : gain).asDiagonal() * forces.transpose();
+  for (const LeftOut& body : left_out) sum += body.share * body.closed;
+  return sum;
+}
+
+std::optional<std::vector<Complex>> step_factors(const FrozenModes& modes) {
   if (modes.gaps.rows() == 0 || modes.keep.size() <= modes.gaps.rows()) return std::nullopt;
   if (!modes.is_instantaneous && !modes.left_out.empty()) return std::nullopt;
   if ((modes.pull.array() < 0.0).any()) return std::nullopt;
@@ -250,9 +295,10 @@ std::optional<std::vector<Complex>> step_factors(const FrozenModes& modes, doubl
     found_squares += factor * factor;
   }
   constexpr double largest_error = 1e-9;
-  const double size = static_cast<double>(factors.size());
-  if (std::abs(found - sum) > largest_error * size ||
-      std::abs(found_squares - sum_of_squares) > largest_error * size)
+  const double largest = largest_error * static_cast<double>(factors.size());
+  const Traces traces = traces_of(modes);
+  if (!(std::abs(found - traces.of_step) <= largest &&
+        std::abs(found_squares - traces.of_square) <= largest))
     return std::nullopt;
   if (!modes.is_instantaneous)
     factors.insert(factors.end(), 2 * static_cast<std::size_t>(modes.gaps.rows()), 0.0);

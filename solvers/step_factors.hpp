@@ -19,6 +19,9 @@ struct FrozenModes {
     double share;
   };
   std::vector<LeftOut> left_out;
+
+  /// What forces λ_n close of the gaps at once: C e Eᵀ, or C g Eᵀ + Σ w R_b.
+  Eigen::MatrixXd closed() const;
 };
 
 /// All factors z, as zeros of the characteristic function of the step (docs/theory.md, 3.7):
@@ -29,11 +32,11 @@ struct FrozenModes {
 /// where forces close gaps at t_{n+1}, or at t_n. In w slow motions keep their relative accuracy.
 /// The factors of the gaps, which one step closes, are 0.
 ///
-/// @param sum, sum_of_squares of all factors: traces of the matrix of the step and of its square
-/// @return nothing where the zeros found do not have these sums, or for a scheme whose forces close
-///         gaps at t_{n+1} while modes are left out
+/// @param modes of which closed() is regular
+/// @return nothing where the sum of the zeros found and that of their squares are not the traces of
+///         the matrix of the step and of its square, or for a scheme whose forces close gaps at
+///         t_{n+1} while modes are left out
 /// Cost: of order 10 N n k² for N factors, n modes and k contacts.
-std::optional<std::vector<std::complex<double>>> step_factors(const FrozenModes& modes, double sum,
-                                                              double sum_of_squares);
+std::optional<std::vector<std::complex<double>>> step_factors(const FrozenModes& modes);
 
 }  // namespace stridor

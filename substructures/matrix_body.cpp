@@ -8,6 +8,7 @@
 
 #include "core/errors.hpp"
 #include "core/suggestion.hpp"
+#include "substructures/proportional_damping.hpp"
 
 namespace stridor {
 namespace {
@@ -160,8 +161,11 @@ BodyMatrices make_matrix_body(const TouchedMatrixBodyParameters& parameters) {
   const SparseMatrix transposed = system.position.transpose();
   body.stiffness = 0.5 * (system.position + transposed);
   const SparseMatrix skew = 0.5 * (system.position - transposed);
-  if (system.velocity.norm() > 0.0 || skew.norm() > 0.0) {
-    body.velocity = system.velocity;
+  const std::optional<RayleighDamping> damping =
+      proportional_damping(system.velocity, body.mass, body.stiffness);
+  if (damping) body.damping = *damping;
+  if (!damping || skew.norm() > 0.0) {
+    body.velocity = damping ? SparseMatrix(n, n) : system.velocity;
     body.circulatory = skew;
   }
 

@@ -87,11 +87,11 @@ struct TouchedMatrixBodyParameters {
   static const Schema& schema();
 };
 
-/// The body, its stiffness the symmetric part of what multiplies q; what is skew, and all that
-/// multiplies q̇, are terms beside it (CoupledTerms).
+/// The body, its stiffness the symmetric part of what multiplies q. What multiplies q̇ is its damping
+/// where that is proportional (proportional_damping()); otherwise it is a term beside it, as what is
+/// skew in the stiffness (CoupledTerms).
 /// @throws ConfigError (key paths below the body) if an unknown or a point is not there, or sizes
-/// do
-///         not fit
+///         do not fit
 /// @throws std::invalid_argument if the matrices have not been read
 BodyMatrices make_matrix_body(const TouchedMatrixBodyParameters& parameters);
 
