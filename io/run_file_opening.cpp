@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <ctime>
+#include <filesystem>
 #include <set>
 #include <stdexcept>
 
@@ -54,8 +55,8 @@ void check_target(const std::string& path, Overwrite overwrite) {
     if (S_ISDIR(status.st_mode)) throw FileError(path, "", "is a folder");
     if (!S_ISREG(status.st_mode))
       throw FileError(path, "", "is not a regular file and is not replaced");
-    check_replaceable(path, overwrite);
   }
+  check_replaceable(path, overwrite);
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     throw FileError(path, "",
                     fmt::format("cannot write in the folder '{}': {}", folder, errno_text(errno)));
@@ -108,7 +109,13 @@ void check_output(const std::string& path, Overwrite overwrite) {
 
 void check_replaceable(const std::string& path, Overwrite overwrite) {
   struct stat status = {};
-  if (stat(path.c_str(), &status) != 0) return;
+  if (stat(path.c_str(), &status) != 0) {
+    if (lstat(path.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) return;
+    std::error_code unknown;
+    throw FileError(path, "",
+                    fmt::format("is a broken link, to '{}'; remove it, or name another file",
+                                std::filesystem::read_symlink(path, unknown).string()));
+  }
   if (overwrite == Overwrite::no) throw FileError(path, "", "exists; use --force to overwrite it");
   const WriteLock none_writes(path);
 }
