@@ -62,7 +62,7 @@ Drawn draw_history(const PlotOptions& options, const RecordedStretch& run) {
     panels.push_back({split_name(name).first,
                       quantity_words(name),
                       typeset_units(run.file.units(series)),
-                      {{run.times(), run.values(series), ""}}});
+                      {{run.times(), run.finite_values(series), ""}}});
     if (series != acceleration || bursts.empty()) continue;
     panels.back().title += "  (shaded: bursts)";
     for (const auto& [number, burst] : bursts)
@@ -157,7 +157,7 @@ std::pair<std::string, std::string> phase_series(const PlotOptions& options,
 Drawn draw_phase(const PlotOptions& options, const RecordedStretch& run) {
   const auto [across, up] = phase_series(options, run);
   const auto axis = [&](const std::string& series) {
-    return PhaseAxis{channel_name(series), run.file.units(series), run.values(series)};
+    return PhaseAxis{channel_name(series), run.file.units(series), run.finite_values(series)};
   };
   plot_phase(axis(across), axis(up),
              fmt::format("From {:.6g} s (ring) to {:.6g} s (dot). {}.", run.first_time(),
@@ -261,7 +261,7 @@ ExitCode plot(const PlotOptions& options) {
   if (options.common.json) {
     Json object = {{"figure", options.output}};
     object.update(drawn);
-    fmt::print("{}\n", object.dump(2));
+    print_json(object);
   } else {
     fmt::print("{}\n", options.output);
   }
