@@ -11,6 +11,7 @@
 #include "io/initial_state.hpp"
 #include "io/linear_scene.hpp"
 #include "io/scene.hpp"
+#include "io/scene_warnings.hpp"
 #include "io/sphere_scene.hpp"
 #include "io/summary_memory.hpp"
 #include "solvers/simulation.hpp"
@@ -25,7 +26,11 @@ struct CheckOptions {
   int places = 101;
 };
 
-using Report = std::optional<StepStabilityReport>;
+/// What is told of a scene without errors.
+struct Report {
+  std::vector<Problem> warnings;
+  std::optional<StepStabilityReport> stability;
+};
 
 /// Of a scene of another kind. @throws ConfigError
 void refuse_stability(const CheckOptions& options) {
@@ -41,19 +46,20 @@ Report check_scene(const CheckOptions& options) {
   SceneNode tree = read_scene_file(options.scene);
   for (const std::string& assignment : options.common.sets) set_value(tree, assignment);
   if (is_contact_scene(tree)) {
-    (void)load_contact_scene(options.scene, options.common.sets);
+    const LoadedContactScene loaded = load_contact_scene(options.scene, options.common.sets);
     refuse_stability(options);
-    return {};
+    return {unit_warnings(ContactScene::schema(), &loaded.scene, tree), {}};
   }
   if (is_linear_scene(tree)) {
-    (void)load_linear_scene(options.scene, options.common.sets).model();
+    const LoadedLinearScene loaded = load_linear_scene(options.scene, options.common.sets);
+    (void)loaded.model();
     refuse_stability(options);
-    return {};
+    return {unit_warnings(schema_of(loaded.scene), object_of(loaded.scene), tree), {}};
   }
   if (is_sphere_scene(tree)) {
-    (void)load_sphere_scene(options.scene, options.common.sets);
+    const LoadedSphereScene loaded = load_sphere_scene(options.scene, options.common.sets);
     refuse_stability(options);
-    return {};
+    return {unit_warnings(SphereScene::schema(), &loaded.scene, tree), {}};
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   require_summary_memory(loaded);
@@ -65,16 +71,10 @@ Report check_scene(const CheckOptions& options) {
   } catch (const ConfigError& error) {
     throw loaded.located(error);
   }
-  if (!options.stability) return {};
-  return check_step_stability(model, loaded.scene.time, options.places);
-}
-
-Json problem_json(const Problem& problem) {
-  return {{"file", problem.source},
-          {"line", problem.line},
-          {"column", problem.column},
-          {"key", problem.key},
-          {"message", problem.message}};
+  Report report{scene_warnings(loaded, model), {}};
+  if (options.stability)
+    report.stability = check_step_stability(model, loaded.scene.time, options.places);
+  return report;
 }
 
 ExitCode check(const CheckOptions& options) {
@@ -86,25 +86,31 @@ ExitCode check(const CheckOptions& options) {
     if (!options.common.json) throw;
     problems = error.problems();
   }
+  const std::size_t num_warnings = report.warnings.size();
   if (options.common.json) {
-    Json errors = Json::array();
-    for (const Problem& problem : problems) errors.push_back(problem_json(problem));
-    Json object = {{"errors", errors}};
-    if (report) object["stability"] = step_stability_json(*report);
-    fmt::print("{}\n", object.dump(2));
+    Json object = {{"errors", Json::array()}, {"warnings", Json::array()}};
+    for (const Problem& problem : problems) object["errors"].push_back(problem_json(problem));
+    for (const Problem& one : report.warnings) object["warnings"].push_back(problem_json(one));
+    if (report.stability) object["stability"] = step_stability_json(*report.stability);
+    print_json(object);
   } else {
-    fmt::print("{}: no errors\n", options.scene);
-    if (report) print_step_stability(*report);
+    print_warnings(report.warnings);
+    fmt::print("{}: no errors{}\n", options.scene,
+               num_warnings == 0   ? ""
+               : num_warnings == 1 ? ", 1 warning"
+                                   : fmt::format(", {} warnings", num_warnings));
+    if (report.stability) print_step_stability(*report.stability);
   }
   if (!problems.empty()) return ExitCode::bad_input;
-  return report && report->steps_grow() ? ExitCode::numbers_failed : ExitCode::done;
+  const bool steps_grow = report.stability && report.stability->steps_grow();
+  return steps_grow ? ExitCode::numbers_failed : ExitCode::done;
 }
 
 }  // namespace
 
 void add_check_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* verb = program.add_subcommand("check", "All errors of a scene at once");
+  CLI::App* verb = program.add_subcommand("check", "All errors of a scene at once, and what is hardly meant");
   verb->add_option("scene", options->scene, "Scene file (YAML)")->required();
   add_scene_options(*verb, options->common);
   add_json_option(*verb, options->common);

@@ -3,11 +3,19 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdio>
+#include <optional>
+#include <utility>
 
 #include "core/errors.hpp"
 #include "io/gnuplot.hpp"
 
 namespace stridor {
+namespace {
+
+std::optional<Json> json_to_print;
+
+}  // namespace
 
 void add_scene_options(CLI::App& verb, CommonOptions& options) {
   verb.add_option("--set", options.sets,
@@ -30,6 +38,38 @@ void add_force_option(CLI::App& verb, CommonOptions& options) {
 void check_figure(const std::filesystem::path& figure, const CommonOptions& options) {
   check_figure_name(figure);
   check_replaceable(figure.string(), options.overwrite());
+}
+
+Json problem_json(const Problem& problem) {
+  return {{"file", problem.source},
+          {"line", problem.line},
+          {"column", problem.column},
+          {"key", problem.key},
+          {"message", problem.message}};
+}
+
+void print_warnings(const std::vector<Problem>& warnings) {
+  for (const Problem& warning : warnings)
+    fmt::print(stderr, "stridor: warning\n{}\n", ConfigError({warning}).report());
+}
+
+void print_json(Json object) {
+  json_to_print = std::move(object);
+}
+
+void finish_json(const std::vector<Problem>& errors) {
+  if (!errors.empty()) {
+    Json list = Json::array();
+    for (const Problem& error : errors) list.push_back(problem_json(error));
+    if (!json_to_print) json_to_print.emplace(Json::object());
+    (*json_to_print)["errors"] = std::move(list);
+  }
+  if (!json_to_print) return;
+  // Names of files need not be UTF-8.
+  const std::string text = json_to_print->dump(2, ' ', false, Json::error_handler_t::replace);
+  // Where nothing can be printed this does not throw; main() looks at stdout at the end.
+  std::fputs((text + "\n").c_str(), stdout);
+  json_to_print.reset();
 }
 
 Json number(double value) {

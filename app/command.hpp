@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/errors.hpp"
 #include "io/run_file.hpp"
 
 namespace stridor {
@@ -43,6 +44,20 @@ void add_force_option(CLI::App& verb, CommonOptions& options);
 /// @throws ConfigError for a name without a known ending
 /// @throws FileError   for one that exists and may not be overwritten
 void check_figure(const std::filesystem::path& figure, const CommonOptions& options);
+
+/// Place, key and message of a problem; of a failure without a place the message alone.
+Json problem_json(const Problem& problem);
+
+/// Tells on stderr of what is hardly meant but does not stop a verb.
+void print_warnings(const std::vector<Problem>& warnings);
+
+/// Takes the one JSON object that a verb prints. It is printed when the verb has ended, since a
+/// failure that comes after it belongs into it.
+void print_json(Json object);
+
+/// Ends a verb that was asked for JSON: prints what print_json() took, with a list `errors` where
+/// there are any, and of a verb that failed before it {"errors": [...]} alone.
+void finish_json(const std::vector<Problem>& errors);
 
 /// A number for JSON; null where it is not finite.
 Json number(double value);

@@ -25,7 +25,7 @@ struct CompareOptions {
   CommonOptions common;
   std::string scene;
   std::string folder;
-  double window = 0.05;
+  double window = 0.0;  ///< s of the run in the published form; 0: none
   std::string command_line;
 };
 
@@ -91,6 +91,16 @@ struct Candidate {
 
 using Candidates = std::vector<Candidate>;
 
+/// Of the transients that have begun: nobody asked for these files without the comparison.
+void remove_files(Candidates& candidates) {
+  for (Candidate& candidate : candidates) {
+    if (!candidate.transient) continue;
+    candidate.transient.reset();
+    std::error_code ignored;
+    fs::remove(candidate.file, ignored);
+  }
+}
+
 /// Runs the transients in turns, a hundredth of the run at a time, so that whatever else the
 /// machine does weighs on all of them alike.
 Candidates run_interleaved(const LoadedScene& loaded, Coordinates coordinates, double end,
@@ -103,9 +113,14 @@ Candidates run_interleaved(const LoadedScene& loaded, Coordinates coordinates, d
     candidate.scene.scene.time.coordinates = coordinates;
     candidate.scene.scene.time.end = end;
     candidate.file = (folder / fmt::format("{}{}.h5", assumptions[i].name, suffix)).string();
-    candidate.transient = std::make_unique<Transient>(
-        candidate.scene,
-        RunOutput{candidate.file, options.common.overwrite(), options.command_line});
+    try {
+      candidate.transient = std::make_unique<Transient>(
+          candidate.scene,
+          RunOutput{candidate.file, options.common.overwrite(), options.command_line});
+    } catch (...) {
+      remove_files(candidates);
+      throw;
+    }
   }
   constexpr int turns = 100;
   run_in_turns(coordinates == Coordinates::modal ? "modal" : "published form",
@@ -207,6 +222,17 @@ void print_rows(const Json& rows) {
   }
 }
 
+/// The published form is that of one integrator with all modes.
+void check_published_form(const CompareOptions& options, const TimeParameters& time) {
+  if (!(options.window > 0.0)) return;
+  if (time.integrator == Integrator::central_difference && !time.retain) return;
+  throw ConfigError(
+      "--published-window",
+      fmt::format("the published form takes time.integrator: central_difference with all modes, "
+                  "but the scene has {}; leave the option away, or set it",
+                  time.retain ? "time.retain" : "integrator: exact"));
+}
+
 ComparisonRun drawn(const Candidate& candidate, const char* title) {
   return {title, candidate.file};
 }
@@ -217,6 +243,7 @@ ExitCode compare(const CompareOptions& options) {
     throw loaded.located(
         ConfigError("record", "missing: compare needs an acceleration to compare by"));
   }
+  check_published_form(options, loaded.scene.time);
   record_contact(loaded.scene);
   const bool is_kept = !options.folder.empty();
   std::optional<ScratchFolder> scratch;
@@ -250,7 +277,7 @@ ExitCode compare(const CompareOptions& options) {
   }
 
   if (options.common.json) {
-    fmt::print("{}\n", comparison.dump(2));
+    print_json(comparison);
   } else {
     print_rows(comparison["rows"]);
     if (is_kept) fmt::print("\nrun files, figures and comparison.json in {}\n", folder.string());
@@ -269,9 +296,8 @@ void add_compare_command(CLI::App& program, Action& action, const std::string& c
   verb->add_option("-o,--output", options->folder,
                    "Folder for run files, figures and comparison.json; without it none is kept");
   verb->add_option("--published-window", options->window,
-                   "Seconds of the run that the published dense form is timed over; 0: not at all")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+                   "Time the published dense form as well, over this many seconds of the run")
+      ->check(CLI::NonNegativeNumber);
   add_scene_options(*verb, options->common);
   add_json_option(*verb, options->common);
   add_force_option(*verb, options->common);

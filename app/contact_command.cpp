@@ -299,8 +299,7 @@ ExitCode make_master_curve(const ContactOptions& options, const LoadedContactSce
     throw NumericalError("a point of the master curve did not converge; nothing has been written");
   write_text_file(path, text);
   if (options.common.json) {
-    fmt::print("{}\n",
-               Json{{"modulus_ratio", computed.curve.modulus_ratio}, {"points", points}}.dump(2));
+    print_json(Json{{"modulus_ratio", computed.curve.modulus_ratio}, {"points", points}});
   } else {
     fmt::print("{} points\n{}\n", computed.results.size(), path);
   }
@@ -351,14 +350,13 @@ ExitCode make_table(const ContactOptions& options, const LoadedContactScene& loa
   const auto num_touching =
       count([](const SlidingContactResult& result) { return result.touches_window; });
   if (options.common.json) {
-    fmt::print("{}\n", Json{{"speeds", points.speeds},
+    print_json(Json{{"speeds", points.speeds},
                             {"indentations", points.indentations},
                             {"force", computed.table.force},
                             {"area", computed.table.area},
                             {"friction", computed.table.friction},
                             {"num_unresolved", num_unresolved},
-                            {"num_touching_window", num_touching}}
-                           .dump(2));
+                            {"num_touching_window", num_touching}});
   } else {
     fmt::print("{} speeds, {} indentations\n", points.speeds.size(), points.indentations.size());
     if (num_unresolved > 0) {
@@ -393,7 +391,7 @@ ExitCode contact(const ContactOptions& options) {
   Json results = {{"rows", Json::array()}};
   for (const Row& row : rows) results["rows"].push_back(row_json(row));
   if (options.common.json) {
-    fmt::print("{}\n", results.dump(2));
+    print_json(results);
   } else {
     fmt::print("{:>12} {:>12} {:>14} {:>14} {:>14}\n", "speed", "indentation", "force", "area",
                "friction");

@@ -93,7 +93,7 @@ ExitCode cycle(const CycleCommandOptions& options) {
     }
   }
   if (options.common.json) {
-    fmt::print("{}\n", results.dump(2));
+    print_json(results);
   } else {
     print_cycle(found, numbers);
     print_law_exceeded(results);

@@ -228,7 +228,7 @@ ExitCode eig(EigOptions options) {
   }
 
   if (options.stability.common.json) {
-    fmt::print("{}\n", object.dump(2));
+    print_json(object);
     return ExitCode::done;
   }
   print_equilibrium(system, state.equilibrium);

@@ -201,7 +201,7 @@ ExitCode fit(const FitOptions& options) {
                           {{"published", quantities_json(printed)},
                            {"published_at_v_over_100", quantities_json(moved)},
                            {"refit", quantities_json(refitted)}}}};
-    fmt::print("{}\n", object.dump(2));
+    print_json(object);
   } else {
     fmt::print("{:<36}{:>10}{:>10}{:>10}\n", "", "force", "area", "friction");
     const auto print_row = [](const char* name, const PerQuantity& values) {

@@ -49,7 +49,7 @@ ExitCode info(const InfoOptions& options) {
   object["bursts"] = bursts_json(bursts_of(file, options.file, options.band));
 
   if (options.common.json) {
-    fmt::print("{}\n", object.dump(2));
+    print_json(object);
     return ExitCode::done;
   }
   const auto line = [](const std::string& name, const std::string& value) {

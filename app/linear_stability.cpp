@@ -327,7 +327,7 @@ ExitCode eig_of_linear_scene(const StabilityOptions& options, bool explain,
     object["explanation"].update(found.explain(chosen));
   }
   if (options.common.json) {
-    fmt::print("{}\n", object.dump(2));
+    print_json(object);
     return ExitCode::done;
   }
   if (model.disc) print_equilibrium(*model.disc);

@@ -408,7 +408,7 @@ ExitCode locus(LocusCommandOptions options) {
                    {"unresolved", found.unresolved},
                    {"file", options.output ? Json(*options.output) : Json(nullptr)}};
     for (const auto& list : found.eigenvalues) object["eigenvalues"].push_back(complex_list(list));
-    fmt::print("{}\n", object.dump(2));
+    print_json(object);
     return ExitCode::done;
   }
   print_windows(windows, range.key, trusted);

@@ -31,9 +31,18 @@ namespace {
 static_assert(static_cast<int>(ExitCode::file_trouble) == DamageGuard::exit_code);
 static_assert(static_cast<int>(ExitCode::stopped) == stopped_exit_code);
 
-int report(const char* kind, const std::string& message, ExitCode code) {
+bool wants_json = false;
+
+/// Tells of a failure on stderr, and with --json as the one object on stdout.
+int report(const char* kind, const std::string& message, ExitCode code,
+           const std::vector<Problem>& problems) {
   print_remark("stridor: {}\n{}\n", kind, message);
+  if (wants_json) finish_json(problems);
   return static_cast<int>(code);
+}
+
+int report(const char* kind, const std::string& message, ExitCode code) {
+  return report(kind, message, code, {{"", message, {}, 0, 0}});
 }
 
 /// A file that is opened takes the lowest free number: where input or output are closed it would
@@ -79,6 +88,25 @@ std::string verb_problem(CLI::App& program, int argc, char** argv) {
                      did_you_mean(argv[1], verbs), fmt::join(verbs, ", "));
 }
 
+/// What is wrong with an option that the verb does not have, or "".
+std::string option_problem(CLI::App& program, int argc, char** argv) {
+  const auto verbs = program.get_subcommands(
+      [&](const CLI::App* verb) { return argc > 1 && verb->get_name() == argv[1]; });
+  if (verbs.empty()) return "";
+  std::vector<std::string> known;
+  for (const CLI::Option* option : verbs.front()->get_options()) {
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  }
+  for (int i = 2; i < argc; ++i) {
+    const std::string written(argv[i]);
+    const std::string name = written.substr(0, written.find('='));
+    if (!name.starts_with("--") || std::find(known.begin(), known.end(), name) != known.end())
+      continue;
+    return fmt::format("{} has no option '{}'{}", argv[1], name, did_you_mean(name, known));
+  }
+  return "";
+}
+
 int run_verb(int argc, char** argv) {
   CLI::App program{"stridor: friction-induced vibration of sliding flexible bodies", "stridor"};
   program.set_version_flag("--version", fmt::format("stridor {} ({})", version, commit));
@@ -107,9 +135,11 @@ int run_verb(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const bool is_failure = error.get_exit_code() != 0;
     if (is_failure) {
-      const std::string verb = verb_problem(program, argc, argv);
-      print_remark("stridor: {}\nTry 'stridor --help' or 'stridor VERB --help'.\n",
-                   verb.empty() ? error.what() : verb);
+      std::string problem = verb_problem(program, argc, argv);
+      if (problem.empty()) problem = option_problem(program, argc, argv);
+      if (problem.empty()) problem = error.what();
+      print_remark("stridor: {}\nTry 'stridor --help' or 'stridor VERB --help'.\n", problem);
+      if (wants_json) finish_json({{"", problem, {}, 0, 0}});
       return static_cast<int>(ExitCode::bad_input);
     }
     return program.exit(error);
@@ -117,20 +147,23 @@ int run_verb(int argc, char** argv) {
   reserve_blas_memory();
   // Shown while nothing of the verb's own is, as during set-up.
   const Progress whole(argv[1]);
-  return static_cast<int>(action());
+  const ExitCode code = action();
+  finish_json({});
+  return static_cast<int>(code);
 }
 
 int run_program(int argc, char** argv) {
+  wants_json = std::any_of(argv, argv + argc,
+                           [](const char* argument) { return std::string_view(argument) == "--json"; });
   try {
-    if (std::any_of(argv, argv + argc, [](const char* word) { return std::string_view(word) == "--json"; }))
-      tell_stop_as_json();
+    if (wants_json) tell_stop_as_json();
     install_stop_signals();
     // A reader that goes away, or a file that may not grow, are errors to report, not deaths.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
     return run_verb(argc, argv);
   } catch (const ConfigError& error) {
-    return report("the input is wrong", error.report(), ExitCode::bad_input);
+    return report("the input is wrong", error.report(), ExitCode::bad_input, error.problems());
   } catch (const FileError& error) {
     return report("file trouble", error.what(), ExitCode::file_trouble);
   } catch (const NumericalError& error) {

@@ -297,7 +297,7 @@ ExitCode map(MapOptions options) {
       for (const double value : row) numbers.push_back(number(value));
       object["growth"].push_back(std::move(numbers));
     }
-    fmt::print("{}\n", object.dump(2));
+    print_json(object);
     return ExitCode::done;
   }
   std::size_t num_unstable = 0;

@@ -77,6 +77,7 @@ Drawn draw_history(const PlotOptions& options, const RecordedStretch& run) {
   std::vector<Panel> panels;
   for (const std::string& series : wanted.series) {
     panels.push_back(panel_of(run.file, series, run.samples));
+    panels.back().curves.front().values = run.finite_values(series);
     if (series != acceleration || bursts.empty()) continue;
     panels.back().title += "  (shaded: bursts)";
     for (const auto& [number, burst] : bursts)
@@ -184,7 +185,7 @@ std::string resolution_text(const PhaseAxis& axis, double interval) {
 Drawn draw_phase(const PlotOptions& options, const RecordedStretch& run) {
   const auto [across, up] = phase_series(options, run);
   const auto axis = [&](const std::string& series) {
-    return PhaseAxis{channel_name(series), run.file.units(series), run.values(series)};
+    return PhaseAxis{channel_name(series), run.file.units(series), run.finite_values(series)};
   };
   plot_phase(axis(across), axis(up),
              fmt::format("From {:.6g} s (ring) to {:.6g} s (dot). {}{}{}.", run.first_time(),
@@ -293,7 +294,7 @@ ExitCode plot(const PlotOptions& options) {
   if (options.common.json) {
     Json object = {{"figure", options.output}};
     object.update(drawn);
-    fmt::print("{}\n", object.dump(2));
+    print_json(object);
   } else {
     fmt::print("{}\n", options.output);
     if (const auto rest = drawn.find("left_out"); rest != drawn.end() && !rest->empty())

@@ -39,7 +39,7 @@ ExitCode precision(const PrecisionOptions& options) {
     write_json(fs::path(options.folder) / json_name, object);
   }
   if (options.common.json) {
-    fmt::print("{}\n", object.dump(2));
+    print_json(object);
   } else {
     print_precision(study, options, result, wanted);
     if (is_kept) fmt::print("\n{} and {} in {}\n", figure_name, json_name, options.folder);

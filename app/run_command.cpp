@@ -19,6 +19,7 @@
 #include "core/stop_token.hpp"
 #include "io/damage_guard.hpp"
 #include "io/linear_scene.hpp"
+#include "io/scene_warnings.hpp"
 #include "io/sphere_scene.hpp"
 
 namespace stridor {
@@ -34,6 +35,15 @@ struct RunOptions {
   bool error = false;
   std::string command_line;
 };
+
+/// Only where it is a violation.
+void print_contact_gain(const Json& gain) {
+  if (gain.is_null() || !gain["violated"].get<bool>()) return;
+  fmt::print("{:<24}contacts gave {:.4g} J to the bodies until {:.4g} s, {:.3g} of the energy "
+             "turned over; none can\n",
+             "CONTACT WORK VIOLATED", gain["energy"].get<double>(), gain["last_time"].get<double>(),
+             gain["share"].get<double>());
+}
 
 void print_summary(const Json& results, const std::string& output) {
   const auto text = [](const Json& value) {
@@ -97,6 +107,7 @@ void print_summary(const Json& results, const std::string& output) {
     fmt::print("{:<24}largest error {:.2g} of the energy turned over\n", "energy balance",
                results["energy_error"].get<double>());
   }
+  print_contact_gain(results["contact_gain"]);
   if (!results["error"].is_null()) {
     const Json& error = results["error"];
     if (error["failure"].is_null()) {
@@ -184,13 +195,20 @@ ExitCode begin(const RunOptions& options) {
   const RunEnding ending{options.max_wall, options.common.json, options.verify};
   if (is_sphere_scene_file(options.scene) || is_linear_scene_file(options.scene))
     refuse_error(options);
-  if (is_sphere_scene_file(options.scene))
-    return run_sphere(load_sphere_scene(options.scene, options.common.sets), output, ending);
-  if (is_linear_scene_file(options.scene))
-    return run_disc(load_linear_scene(options.scene, options.common.sets), output, ending);
+  if (is_sphere_scene_file(options.scene)) {
+    const LoadedSphereScene loaded = load_sphere_scene(options.scene, options.common.sets);
+    print_warnings(unit_warnings(SphereScene::schema(), &loaded.scene, loaded.tree));
+    return run_sphere(loaded, output, ending);
+  }
+  if (is_linear_scene_file(options.scene)) {
+    const LoadedLinearScene loaded = load_linear_scene(options.scene, options.common.sets);
+    print_warnings(unit_warnings(schema_of(loaded.scene), object_of(loaded.scene), loaded.tree));
+    return run_disc(loaded, output, ending);
+  }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   const auto study = studied(loaded, options);
   Transient transient(loaded, output);
+  print_warnings(scene_warnings(loaded, transient.model()));
   return run_to_end(transient, loaded, options.output, study, ending);
 }
 
@@ -211,7 +229,7 @@ ExitCode report_done(const RunOptions& options, const RunFileReader& reader) {
   }
   const Json results = stored_results(reader);
   if (options.common.json) {
-    fmt::print("{}\n", results.dump(2));
+    print_json(results);
   } else {
     fmt::print("{:<24}done; {} holds the whole run, there is nothing left to do\n", "status",
                options.resumed);

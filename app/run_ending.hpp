@@ -34,7 +34,7 @@ ExitCode run_and_report(Run& run, double end, const std::string& file, const Run
   if (how == MarchEnd::stopped) run.write_checkpoint();
   const Json results = run.finish();
   if (ending.json) {
-    fmt::print("{}\n", results.dump(2));
+    print_json(results);
   } else {
     print(results);
   }

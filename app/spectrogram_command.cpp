@@ -9,6 +9,8 @@
 #include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "io/axes.hpp"
+#include "io/locus_file.hpp"
+#include "io/scene_family.hpp"
 #include "io/spectrogram_file.hpp"
 #include "io/spectrogram_plot.hpp"
 
@@ -73,6 +75,28 @@ std::string acceleration_name(const RunFileReader& file) {
   return series ? channel_name(*series) : "the run";
 }
 
+/// Windows of a locus belong to times of a run only where it is one over the path.
+void check_prediction(const PictureOptions& options) {
+  if (!options.predict) return;
+  const std::string parameter = read_locus_parameter(*options.predict);
+  if (parameter.empty() || parameter.ends_with(".start") || parameter == drive_displacement_name)
+    return;
+  throw ConfigError("--predict",
+                    fmt::format("'{}' is a locus over {}, which a run does not pass through; give "
+                                "one over the contact position (`locus` without --parameter)",
+                                *options.predict, parameter));
+}
+
+/// Bursts are sought in one channel, whichever is shown.
+void check_band(const PictureOptions& options, const RecordedStretch& run,
+                const std::string& series) {
+  const auto searched = acceleration_channel(run.file);
+  if (!options.band || !searched || searched == series) return;
+  throw ConfigError("--band", fmt::format("seeks bursts in {}, but the spectrogram is that of {}; "
+                                          "leave one of --band and --channel away",
+                                          acceleration_name(run.file), channel_name(series)));
+}
+
 Attributes data_attributes(const Json& settings, const RecordedStretch& run) {
   const RunFileHeader& header = run.file.header();
   Attributes attributes{{"run_file", run.path},
@@ -97,6 +121,8 @@ ExitCode draw_spectrogram(const PictureOptions& options) {
   const RecordedSettings scene = recorded_settings(run.file, run.path);
   const std::string series =
       spectral_series(run.file, shown_series(options, run, scene.spectrogram));
+  check_prediction(options);
+  check_band(options, run, series);
   const std::string units = run.file.units(series);
   const auto [parameters, max_frequency] = settle_pieces(
       options, run, scene, scene.spectrogram,
@@ -162,10 +188,12 @@ ExitCode draw_spectrogram(const PictureOptions& options) {
         highest > 0.0 ? number(decibels(highest, picture.reference)) : Json(nullptr);
     object["bursts"] = bursts.size();
     if (options.predict) object["prediction"] = prediction_json(predictions);
-    fmt::print("{}\n", object.dump(2));
+    print_json(object);
   } else {
     fmt::print("{}\n", options.output);
     if (options.data) fmt::print("{}\n", *options.data);
+    if (options.band && bursts.empty())
+      fmt::print("no bursts of {} in the band {}\n", acceleration_name(run.file), *options.band);
     if (options.predict) print_prediction(predictions);
   }
   return ExitCode::done;

@@ -250,7 +250,7 @@ ExitCode precision_of_sphere(const PrecisionOptions& options) {
     write_json(std::filesystem::path(options.folder) / json_name, object);
   }
   if (options.common.json) {
-    fmt::print("{}\n", object.dump(2));
+    print_json(object);
   } else {
     fmt::print("{:<20}{:>12}{:>12}{:>14}{:>12}\n", "integrator", "step", "tolerance",
                "run time (s)", "error");

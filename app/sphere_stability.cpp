@@ -191,7 +191,7 @@ ExitCode eig_of_sphere(const StabilityOptions& options) {
                    {"stable", is_stable},
                    {"window", {0.0, nullptr}}};
     for (const Eigenvalue& one : found) object["residuals"].push_back(number(one.residual));
-    fmt::print("{}\n", object.dump(2));
+    print_json(object);
     return ExitCode::done;
   }
   const auto print = [&](const char* name, double value, double unit, const char* units) {

@@ -198,7 +198,7 @@ ExitCode sweep_spheres(const SweepOptions& options) {
   if (options.common.json) {
     Json object = {{"parameter", key.path}, {"values", values}};
     for (const auto& [name, points] : branches) object[name] = points_json(points);
-    fmt::print("{}\n", object.dump(2));
+    print_json(object);
   } else {
     print(branches);
     for (const std::string& failure : failures) fmt::print("{}\n", failure);

@@ -62,7 +62,7 @@ ExitCode threshold(const ThresholdOptions& options, const KeyRange& range, Growt
                  value_text(range.key, root), frequency, beyond);
   }
   if (options.stability.common.json) {
-    fmt::print("{}\n", object.dump(2));
+    print_json(object);
   } else if (roots.empty()) {
     fmt::print("{} everywhere between {} and {}, by {} values and the extrema between them\n",
                starts_unstable ? "unstable" : "stable", value_text(range.key, range.values.front()),
@@ -102,7 +102,7 @@ ExitCode threshold(ThresholdOptions options) {
                                      {"frequency", crossing.frequency},
                                      {"direction", crossing.direction}});
     }
-    fmt::print("{}\n", object.dump(2));
+    print_json(object);
     return ExitCode::done;
   }
   for (const StabilityChange& change : changes) {

@@ -371,7 +371,7 @@ ExitCode sweep_transients(const SweepOptions& options) {
       if (!point.failure.empty()) row["failure"] = point.failure;
       rows.push_back(std::move(row));
     }
-    fmt::print("{}\n", Json{{"parameter", key.path}, {"values", values}, {"rows", rows}}.dump(2));
+    print_json(Json{{"parameter", key.path}, {"values", values}, {"rows", rows}});
   } else {
     print(key, points);
     for (const auto& file : {options.output, options.figure})

@@ -4,6 +4,19 @@
 
 namespace stridor {
 
+void check_coefficient(const char* key, const std::optional<double>& coefficient,
+                       std::vector<Problem>& problems) {
+  constexpr double most = 100.0;
+  if (!coefficient || *coefficient <= most) return;
+  problems.push_back({key,
+                      fmt::format("must be at most {:g}, got {:g}: solids in contact have "
+                                  "coefficients of friction below about 10",
+                                  most, *coefficient),
+                      {},
+                      0,
+                      0});
+}
+
 const Schema& FrictionParameters::schema() {
   using Kind = FrictionLaw::Kind;
   static const Schema keys =
@@ -17,15 +30,15 @@ const Schema& FrictionParameters::schema() {
                       "sliding; stribeck: from `static` to `dynamic` as exp(-|v|/decay_velocity).",
                .optional = true})
           .real("coefficient", &FrictionParameters::coefficient,
-                {.doc = "Coulomb friction coefficient of the constant law; rises with drive.ramp.",
+                {.doc = "Coulomb friction coefficient of the constant law, at most 100; rises with drive.ramp.",
                  .range = Range::non_negative(),
                  .optional = true})
           .real("static", &FrictionParameters::static_coefficient,
-                {.doc = "Coefficient at rest; rises with drive.ramp.",
+                {.doc = "Coefficient at rest, at most 100; rises with drive.ramp.",
                  .range = Range::non_negative(),
                  .optional = true})
           .real("dynamic", &FrictionParameters::dynamic_coefficient,
-                {.doc = "Coefficient in (fast) sliding; rises with drive.ramp.",
+                {.doc = "Coefficient in (fast) sliding, at most 100; rises with drive.ramp.",
                  .range = Range::non_negative(),
                  .optional = true})
           .real("decay_velocity", &FrictionParameters::decay_velocity,
@@ -52,6 +65,9 @@ const Schema& FrictionParameters::schema() {
             demand("dynamic", friction.dynamic_coefficient.has_value(), !is_constant);
             demand("decay_velocity", friction.decay_velocity.has_value(),
                    friction.law == Kind::stribeck);
+            check_coefficient("coefficient", friction.coefficient, problems);
+            check_coefficient("static", friction.static_coefficient, problems);
+            check_coefficient("dynamic", friction.dynamic_coefficient, problems);
             if (friction.static_coefficient && friction.dynamic_coefficient &&
                 friction.law == Kind::static_dynamic &&
                 *friction.static_coefficient < *friction.dynamic_coefficient) {

@@ -22,6 +22,10 @@ struct FrictionParameters {
   static const Schema& schema();
 };
 
+/// Adds a problem for a coefficient of friction that no pair of solids has, above 100.
+void check_coefficient(const char* key, const std::optional<double>& coefficient,
+                       std::vector<Problem>& problems);
+
 FrictionLaw make_friction_law(const FrictionParameters& parameters);
 
 enum class SlidingMode {

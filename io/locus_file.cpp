@@ -144,4 +144,24 @@ std::vector<TimedWindow> read_locus_windows(const std::string& path) {
   return windows;
 }
 
+std::string read_locus_parameter(const std::string& path) {
+  constexpr const char* name = "parameter";
+  const DamageGuard guard(path);
+  const QuietErrors quiet;
+  const Checker at(path);
+  const Handle file = open_hdf5_file(at);
+  if (H5Aexists(file.id(), name) <= 0) return "";
+  const Handle attribute = at.own(H5Aopen(file.id(), name, H5P_DEFAULT), H5Aclose, "/",
+                                  "cannot read an attribute");
+  const Handle type =
+      at.own(H5Aget_type(attribute.id()), H5Tclose, "/", "cannot read an attribute");
+  const Handle space =
+      at.own(H5Aget_space(attribute.id()), H5Sclose, "/", "cannot read an attribute");
+  if (H5Tget_class(type.id()) != H5T_STRING || H5Sget_simple_extent_npoints(space.id()) != 1)
+    return "";
+  return read_text(at, file.id(), type.id(), "/", [&](hid_t memory, void* target) {
+    return H5Aread(attribute.id(), memory, target);
+  });
+}
+
 }  // namespace stridor

@@ -42,6 +42,10 @@ void write_locus_file(const std::string& path, Overwrite overwrite, const Locus&
 /// @throws FileError if it cannot be read or is no such file
 std::vector<TimedWindow> read_locus_windows(const std::string& path);
 
+/// Over which key a locus was taken: attribute `parameter`; "" where the file does not say.
+/// @throws FileError if the file cannot be read
+std::string read_locus_parameter(const std::string& path);
+
 /// Growth rates over two parameters, and where stability changes.
 struct StabilityMap {
   std::vector<double> x;

@@ -51,6 +51,9 @@ std::string lower_case(std::string text) {
   return text;
 }
 
+/// Products of three entries must not overflow.
+constexpr double largest_entry = 1e100;
+
 enum class Symmetry { general, symmetric, skew };
 
 class MarketReader {
@@ -108,6 +111,7 @@ class MarketReader {
     if (symmetry != "general" && symmetry != "symmetric" && symmetry != "skew-symmetric")
       fail(form, words_[4].column);
     is_array_ = layout == "array";
+    is_integer_ = field == "integer";
     symmetry_ = symmetry == "general"     ? Symmetry::general
                 : symmetry == "symmetric" ? Symmetry::symmetric
                                           : Symmetry::skew;
@@ -126,7 +130,21 @@ class MarketReader {
     const auto value = number_of<double>(word.text);
     if (!value || !std::isfinite(*value))
       fail(fmt::format("expected a finite number, got '{}'", word.text), word.column);
+    if (is_integer_ && *value != std::trunc(*value)) {
+      fail(fmt::format("expected a whole number, got '{}': the head of the file says 'integer'; "
+                       "write 'real' there if it is meant",
+                       word.text),
+           word.column);
+    }
+    check_magnitude(*value, word);
     return *value;
+  }
+
+  void check_magnitude(double value, const Word& word) const {
+    if (std::abs(value) <= largest_entry) return;
+    fail(fmt::format("'{}' is beyond what can be computed with, up to {:g} in magnitude", word.text,
+                     largest_entry),
+         word.column);
   }
 
   void expect_words(std::size_t count, const char* what) {
@@ -186,6 +204,7 @@ class MarketReader {
   int line_ = 0;
   std::vector<Word> words_;
   bool is_array_ = false;
+  bool is_integer_ = false;
   Symmetry symmetry_ = Symmetry::general;
   long long rows_ = 0, columns_ = 0, entries_ = 0;
 };
@@ -218,6 +237,11 @@ SparseMatrix parse_matrix_rows(const std::vector<std::string>& rows) {
       if (!value || !std::isfinite(*value)) {
         throw std::invalid_argument(
             fmt::format("row {}: expected a finite number, got '{}'", i + 1, word));
+      }
+      if (!(std::abs(*value) <= largest_entry)) {
+        throw std::invalid_argument(
+            fmt::format("row {}: '{}' is beyond what can be computed with, up to {:g} in magnitude",
+                        i + 1, word, largest_entry));
       }
       if (*value != 0.0) entries.emplace_back(i, j, *value);
     }

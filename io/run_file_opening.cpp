@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <ctime>
+#include <filesystem>
 #include <set>
 #include <stdexcept>
 
@@ -108,7 +109,13 @@ void check_output(const std::string& path, Overwrite overwrite) {
 
 void check_replaceable(const std::string& path, Overwrite overwrite) {
   struct stat status = {};
-  if (stat(path.c_str(), &status) != 0) return;
+  if (stat(path.c_str(), &status) != 0) {
+    if (lstat(path.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) return;
+    std::error_code unknown;
+    throw FileError(path, "",
+                    fmt::format("is a broken link, to '{}'; remove it, or name another file",
+                                std::filesystem::read_symlink(path, unknown).string()));
+  }
   if (S_ISDIR(status.st_mode)) throw FileError(path, "", "is a folder");
   if (!S_ISREG(status.st_mode))
     throw FileError(path, "", "is not a regular file and is not replaced");

@@ -73,6 +73,24 @@ std::string range_message(const Range& range, double value, const std::string& u
                      number_text(value, range), suffix);
 }
 
+/// Why a number cannot be computed with, though its key allows it, or "". Products of a few numbers
+/// of a scene must neither overflow nor vanish.
+std::string magnitude_message(double value, const std::string& unit) {
+  constexpr double largest = 1e30;
+  constexpr double largest_pure = 1e100;
+  const double size = std::abs(value);
+  if (unit.empty()) {
+    return size <= largest_pure ? ""
+                                : fmt::format("is beyond what can be computed with, up to {:g} in "
+                                              "magnitude; got {:g}",
+                                              largest_pure, value);
+  }
+  if (size == 0.0 || (size <= largest && size >= 1.0 / largest)) return "";
+  return fmt::format("is beyond what can be computed with, 0 or {:g} to {:g} {} in magnitude; got "
+                     "{:g} {}",
+                     1.0 / largest, largest, unit, value, unit);
+}
+
 bool is_bare_number(const std::string& text) {
   return text.find_first_not_of("+-.0123456789eE") == std::string::npos;
 }
@@ -400,6 +418,10 @@ class Reader {
       const std::string written =
           is_bare_number(node.text) ? "" : fmt::format(" (written {})", quoted(node.text));
       report(node.place, path, range_message(range, value, unit) + written);
+      return std::nullopt;
+    }
+    if (const std::string message = magnitude_message(value, unit); !message.empty()) {
+      report(node.place, path, message);
       return std::nullopt;
     }
     return value;

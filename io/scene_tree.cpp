@@ -322,8 +322,25 @@ Place end_of(const std::string& text, const Place& start) {
           static_cast<int>(end - line_begin) + 1};
 }
 
-[[noreturn]] void fail_to_parse(const YAML::Exception& error, const TreeBuilder& builder) {
+/// The first tab in the indentation of a line or of the one before it: yaml-cpp reports what the tab
+/// makes of the text, as a rule one line late.
+std::optional<Place> tab_before(const std::string& text, const Place& place) {
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; number <= place.line && std::getline(lines, line); ++number) {
+    if (number + 1 < place.line) continue;
+    const std::size_t tab = line.find('\t');
+    if (tab != std::string::npos && tab < line.find_first_not_of(" \t"))
+      return Place{place.source, number, static_cast<int>(tab) + 1};
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void fail_to_parse(const YAML::Exception& error, const TreeBuilder& builder,
+                                const std::string& text) {
   using namespace YAML;
+  if (const auto tab = tab_before(text, builder.place_at(error.mark)))
+    fail(*tab, "", explain(ErrorMsg::TAB_IN_INDENTATION));
   if (error.msg == ErrorMsg::DOC_IN_SCALAR || error.msg == ErrorMsg::EOF_IN_SCALAR) {
     fail(builder.last_place(), "", "a quote opened after here is never closed");
   }
@@ -355,7 +372,7 @@ SceneNode parse(const std::string& text, const Place& start) {
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const YAML::Exception& error) {
-    fail_to_parse(error, builder);
+    fail_to_parse(error, builder, text);
   }
   return builder.take_root();
 }
@@ -486,6 +503,11 @@ SceneNode read_scene_file(const std::string& path) {
   const std::size_t size = std::fread(text.data(), 1, text.size(), file.get());
   if (std::ferror(file.get()) != 0) {
     throw FileError(path, "", fmt::format("cannot be read: {}", std::strerror(errno)));
+  }
+  if (text.starts_with("\x89HDF\r\n\x1a\n")) {
+    fail({path, 0, 0}, "",
+         "is an HDF5 file, not a scene (YAML); `stridor info` says what a run file holds, and its "
+         "scene is the text in /scene/text");
   }
   if (size > SceneLimits::bytes) {
     throw FileError(

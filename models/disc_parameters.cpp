@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/suggestion.hpp"
+#include "coupling/contact_parameters.hpp"
 
 namespace stridor {
 
@@ -188,7 +189,11 @@ const Schema& FaceFrictionParameters::schema() {
   static const Schema keys =
       SchemaOf<FaceFrictionParameters>("face_friction")
           .real("coefficient", &FaceFrictionParameters::coefficient,
-                {.doc = "Coefficient of sliding friction.", .range = Range::non_negative()});
+                {.doc = "Coefficient of sliding friction, at most 100.",
+                 .range = Range::non_negative()})
+          .check([](const FaceFrictionParameters& friction, std::vector<Problem>& problems) {
+            check_coefficient("coefficient", friction.coefficient, problems);
+          });
   return keys;
 }
 

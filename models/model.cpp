@@ -116,6 +116,20 @@ std::vector<int> spaced_nodes(const Body& body, const std::vector<int>& nodes) {
   return kept;
 }
 
+/// A node can carry one contact force only.
+void refuse_second_contact(const ResolvedPair& pair, const std::string& name) {
+  const std::vector<int>& nodes = pair.slave_nodes;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const auto first = std::find(nodes.begin(), nodes.end(), nodes[k]);
+    if (first == nodes.begin() + static_cast<std::ptrdiff_t>(k)) continue;
+    throw ConfigError(
+        pair.key + ".slave",
+        fmt::format("'{}' names a node that is slave point {} already, and two contacts at one node "
+                    "leave their forces undetermined; name every node once",
+                    name, first - nodes.begin() + 1));
+  }
+}
+
 /// The slave points of a pair, edges node by node.
 void resolve_slaves(ResolvedPair& pair, const std::vector<Body>& bodies) {
   const std::string& key = pair.key;
@@ -142,6 +156,7 @@ void resolve_slaves(ResolvedPair& pair, const std::vector<Body>& bodies) {
                         fmt::format("'{}' has no point or surface '{}'{} (it has: {})", body.name,
                                     point, did_you_mean(point, known), listed(known)));
     }
+    refuse_second_contact(pair, names[k]);
   }
 }
 
@@ -179,6 +194,28 @@ ResolvedPair resolve_pair(const std::string& name, const std::string& key,
     throw ConfigError(key + ".slave", "slave and master must be different bodies");
   }
   return pair;
+}
+
+/// Two pairs with one slave node on one master.
+void refuse_shared_nodes(const std::vector<ResolvedPair>& pairs) {
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (pairs[i].slave_body != pairs[j].slave_body ||
+          pairs[i].master_name != pairs[j].master_name)
+        continue;
+      const std::vector<int>& others = pairs[j].slave_nodes;
+      const bool shares = std::any_of(
+          pairs[i].slave_nodes.begin(), pairs[i].slave_nodes.end(), [&](int node) {
+            return std::find(others.begin(), others.end(), node) != others.end();
+          });
+      if (!shares) continue;
+      throw ConfigError(
+          pairs[i].key + ".slave",
+          fmt::format("shares a node with the pair '{}' on the same master, and two contacts at "
+                      "one node leave their forces undetermined; remove it from one of them",
+                      pairs[j].name));
+    }
+  }
 }
 
 /// By how much two slave points of one body may stand apart in height, m.
@@ -277,6 +314,27 @@ void place_slave(const ResolvedPair& pair, const MasterSurface& surface, Body& s
                                   "placed by one pair only",
                                   slave.name, shift.norm(), start));
   }
+}
+
+/// Refuses a slave beam of which the part over the master lies on the inner side of its surface.
+void check_side(const ResolvedPair& pair, const MasterSurface& surface, const Body& slave) {
+  if (!std::holds_alternative<BeamParameters>(*slave.parameters)) return;
+  double height = 0.0;
+  int num_over = 0;
+  for (int node = 0; node < static_cast<int>(slave.matrices.nodes.rows()); ++node) {
+    const Eigen::Vector2d position = slave.position(node);
+    const auto [segment, projection] = locate_on(surface, position);
+    if (!surface.is_endless && (projection.xi < 0.0 || projection.xi > 1.0)) continue;
+    height += projection.normal.dot(position -
+                                    surface.positions[static_cast<std::size_t>(segment)]);
+    ++num_over;
+  }
+  if (num_over == 0 || height >= 0.0) return;
+  throw ConfigError(
+      pair.key + ".slave",
+      fmt::format("'{}' starts on the inner side of its master '{}', on average {:.3g} m deep; "
+                  "turn it (substructures.{}.angle), or take a point or edge of its other side",
+                  slave.name, surface.name, -height / num_over, slave.name));
 }
 
 /// A node of a body by the name of its point.
@@ -534,6 +592,7 @@ Model make_model(const ModelParameters& parameters,
     Body& master = bodies[static_cast<std::size_t>(pair.master_body)];
     MasterSurface surface = make_surface(pair, master);
     place_slave(pair, surface, slave);
+    check_side(pair, surface, slave);
     for (const int node : pair.master_nodes) master.keep_node(node);
 
     for (std::size_t k = 0; k < pair.slave_nodes.size(); ++k) {
@@ -575,6 +634,7 @@ Model make_model(const ModelParameters& parameters,
     system.surfaces.push_back(std::move(surface));
     waiting.erase(ready);
   }
+  refuse_shared_nodes(resolved);
 
   for (const auto& [name, key] : observed) {
     const auto [b, point] = split_name(name.body + "." + name.point, bodies, key);

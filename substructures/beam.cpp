@@ -1,5 +1,7 @@
 #include "substructures/beam.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <stdexcept>
 
@@ -189,7 +191,21 @@ const Schema& BeamParameters::schema() {
                    {.doc = "What holds the ends.", .optional = true})
           .section("interface", &BeamParameters::interface,
                    {.doc = "Surface nodes kept for contact.", .optional = true})
-          .section("reduction", &BeamParameters::reduction, {.doc = "Craig-Bampton reduction."});
+          .section("reduction", &BeamParameters::reduction, {.doc = "Craig-Bampton reduction."})
+          .check([](const BeamParameters& beam, std::vector<Problem>& problems) {
+            constexpr double flattest = 1e10;
+            const double ratio =
+                beam.length / beam.mesh.along / (beam.thickness / beam.mesh.through);
+            if (ratio <= flattest && ratio >= 1.0 / flattest) return;
+            problems.push_back({"thickness",
+                                fmt::format("{:g} m on a length of {:g} m makes elements {:.3g} "
+                                            "times as long as high, of which no stiffness can be "
+                                            "computed; check the units of both",
+                                            beam.thickness, beam.length, ratio),
+                                {},
+                                0,
+                                0});
+          });
   return keys;
 }
 

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@ namespace stridor {
 namespace {
 
 using namespace test;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
@@ -175,6 +177,160 @@ TEST(Check, JsonHoldsPlaceKeyAndMessageAlone) {
   EXPECT_EQ(errors[1]["file"], "--set time.step=x");
   EXPECT_EQ(errors[1]["line"], 0);
   EXPECT_EQ(errors[1]["column"], 0);
+}
+
+// ---------------------------------------------------------------- gaps at the start
+
+/// Both of `check` and `run`, which must agree.
+ProgramResult refused_start(const std::string& scene, const std::vector<std::string>& settings) {
+  const TemporaryFolder folder;
+  std::vector<std::string> check{"check", scene};
+  for (const std::string& one : settings) check.insert(check.end(), {"--set", one});
+  std::vector<std::string> run = check;
+  run[0] = "run";
+  run.insert(run.end(), {"-o", (folder / "x.h5").string()});
+  const ProgramResult result = Program(check).run();
+  EXPECT_EQ(result.exit_code, 2) << scene;
+  const ProgramResult of_run = Program(run).run();
+  EXPECT_EQ(of_run.exit_code, 2) << scene;
+  EXPECT_EQ(of_run.err, result.err);
+  EXPECT_FALSE(std::filesystem::exists(folder / "x.h5"));
+  return result;
+}
+
+TEST(CheckStart, OverlapIsRefusedWithTheSmallestLiftThatRemovesIt) {
+  const std::string landing = scene_path("examples/landing.yaml");
+  EXPECT_THAT(refused_start(landing, {"initial.displacement=[{at: arm, y: -1 um}]"}).err,
+              AllOf(HasSubstr("initial.displacement: 'contact' starts 1e-06 m inside its master "
+                              "'rigid'"),
+                    HasSubstr("move 'arm' by x: 0 m, y: 1e-06 m")));
+  // On a master that is inclined against the axes the lift is along its normal.
+  const std::vector<std::string> inclined{
+      "contact.assumption=film", "substructures.cantilever.angle=20 deg",
+      "initial={state: rest, displacement: [{at: oblique, y: -1 mm}]}"};
+  EXPECT_THAT(refused_start(scene_path("extreme/plain.yaml"), inclined).err,
+              HasSubstr("starts 0.000939693 m inside its master 'cantilever.top'"));
+}
+
+TEST(CheckStart, TheLiftThatIsNamedIsEnough) {
+  const auto check = [](const char* displacement) {
+    return Program({"check", scene_path("extreme/plain.yaml"), "--set", "contact.assumption=film",
+                    "--set", std::string("initial={state: rest, displacement: ") + displacement})
+        .run();
+  };
+  const ProgramResult refused = check("[{at: oblique, y: -1.2345678 um}]}");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("y: 1.2345678e-06 m"));
+  const ProgramResult lifted =
+      check("[{at: oblique, y: -1.2345678 um}, {at: oblique, y: 1.2345678e-06}]}");
+  EXPECT_EQ(lifted.exit_code, 0) << lifted.err;
+}
+
+TEST(CheckStart, ABilateralContactStartsWithoutAnyGap) {
+  const std::string plain = scene_path("extreme/plain.yaml");
+  for (const char* assumption : {"subs_a", "subs_b", "subs_c"}) {
+    const std::string set = std::string("contact.assumption=") + assumption;
+    EXPECT_THAT(
+        refused_start(plain, {set, "initial={displacement: [{at: oblique, y: 1 um}]}"}).err,
+        AllOf(HasSubstr("starts 1e-06 m away from its master"), HasSubstr("y: -1e-06 m")));
+    EXPECT_THAT(
+        refused_start(plain, {set, "initial={displacement: [{at: oblique, y: -1 um}]}"}).err,
+        HasSubstr("starts 1e-06 m inside its master"));
+  }
+  // Where a contact can open, the load closes the gap in time.
+  const ProgramResult open = Program({"check", plain, "--set", "contact.assumption=film", "--set",
+                                      "initial={displacement: [{at: oblique, y: 1 um}]}"})
+                                 .run();
+  EXPECT_EQ(open.exit_code, 0) << open.err;
+}
+
+// ---------------------------------------------------------------- what had been accepted silently
+
+TEST(Check, RefusesWhatCannotBeMeant) {
+  const struct {
+    const char* scene;
+    std::vector<std::string> settings;
+    const char* message;
+  } cases[] = {
+      {"beam_on_beam.yaml",
+       {"contact.friction.coefficient=1e300"},
+       "contact.friction.coefficient: is beyond what can be computed with"},
+      {"beam_on_beam.yaml",
+       {"contact.friction.coefficient=1e60"},
+       "contact.friction.coefficient: must be at most 100, got 1e+60: solids in contact have"},
+      {"disc_and_pads.yaml",
+       {"contact.friction.coefficient=101"},
+       "contact.friction.coefficient: must be at most 100, got 101"},
+      {"beam_on_beam.yaml",
+       {"contact.slave=[oblique.tip, oblique.tip]"},
+       "contact.slave: 'oblique.tip' names a node that is slave point 1 already"},
+      {"examples/slave_edge.yaml",
+       {"contact.slave=[post.start_face, post.start_top]"},
+       "names a node that is slave point"},
+      {"examples/two_pairs.yaml",
+       {"contacts.rear.slave=front.tip", "contacts.rear.start=50 mm"},
+       "contacts.rear.slave: shares a node with the pair 'front' on the same master"},
+      {"beam_on_beam.yaml",
+       {"substructures.oblique.angle=-30 deg", "contact.slave=oblique.start_top"},
+       "contact.slave: 'oblique' starts on the inner side of its master 'cantilever.top'"}};
+  for (const auto& [scene, settings, message] : cases)
+    EXPECT_THAT(refused_start(scene_path(scene), settings).err, HasSubstr(message));
+}
+
+TEST(Check, WarnsOfWhatIsHardlyMeantWithoutRefusing) {
+  const struct {
+    const char* scene;
+    std::vector<std::string> settings;
+    const char* message;
+  } cases[] = {
+      {"beam_on_beam.yaml",
+       {"measure.from=3"},
+       "measure.from: 3 s is not before time.end = 2.25 s: the window of the statistics is empty"},
+      {"extreme/runs_off.yaml", {}, "time.end: the drive carries 'contact' off the end of its"},
+      {"beam_on_beam.yaml",
+       {"substructures.oblique.width=50"},
+       "substructures.oblique.width: is 50 m, since bare numbers are in SI units"},
+      {"beam_on_beam.yaml",
+       {"substructures.oblique.material.youngs_modulus=71"},
+       "substructures.oblique.material.youngs_modulus: is 71 Pa"},
+      {"disc_and_pads.yaml",
+       {"disc.outer_radius=160"},
+       "disc.outer_radius: is 160 m, since bare numbers are in SI units"},
+      {"beam_on_beam.yaml",
+       {"substructures.cantilever.thickness=0.2"},
+       "substructures.cantilever.thickness: is 0.2 m on a length of 0.1 m: thicker than long"}};
+  for (const auto& [scene, settings, message] : cases) {
+    std::vector<std::string> arguments{"check", scene_path(scene)};
+    for (const std::string& one : settings) arguments.insert(arguments.end(), {"--set", one});
+    const ProgramResult text = Program(arguments).run();
+    EXPECT_EQ(text.exit_code, 0) << text.err;
+    EXPECT_THAT(text.err, AllOf(HasSubstr("stridor: warning\n"), HasSubstr(message)));
+    EXPECT_THAT(text.out, HasSubstr("no errors, 1 warning\n"));
+    arguments.emplace_back("--json");
+    const Json json = Json::parse(Program(arguments).run().out);
+    EXPECT_EQ(json["errors"].size(), 0u);
+    ASSERT_EQ(json["warnings"].size(), 1u);
+    EXPECT_THAT(json["warnings"][0]["key"].get<std::string>() + ": " +
+                    json["warnings"][0]["message"].get<std::string>(),
+                HasSubstr(message));
+  }
+  // A unit that is written is meant.
+  const ProgramResult meant = Program({"check", scene_path("disc_and_pads.yaml"), "--set",
+                                       "disc.outer_radius=160 m"})
+                                  .run();
+  EXPECT_THAT(meant.err, ::testing::Not(HasSubstr("warning")));
+}
+
+TEST(Check, ScenesOfTheProgramRaiseNoWarning) {
+  for (const char* scene :
+       {"beam_on_beam_leading.yaml", "disc_and_pads.yaml", "viscoelastic_contact.yaml",
+        "viscoelastic_sphere.yaml", "examples/beam_on_substrate.yaml", "examples/flutter.yaml",
+        "examples/landing.yaml", "examples/rough_surface.yaml", "examples/slave_edge.yaml",
+        "examples/thrown_bar.yaml", "examples/two_feet.yaml", "examples/two_pairs.yaml"}) {
+    const ProgramResult result = Program({"check", scene_path(scene)}).run();
+    EXPECT_EQ(result.exit_code, 0) << scene;
+    EXPECT_EQ(result.err, "") << scene;
+  }
 }
 
 TEST(CheckStability, SaysWhereTheSlidingItselfGrows) {

@@ -68,12 +68,30 @@ TEST(CompareProgram, HasARowForEveryAssumptionInBothForms) {
 }
 
 TEST(CompareProgram, PrintsATableAndKeepsNothingWithoutAFolder) {
-  const ProgramResult result = Program(short_comparison({"--published-window", "0"})).run();
+  // The published form is timed only where it is asked for.
+  const ProgramResult result = Program(short_comparison({})).run();
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("assumption"));
   for (const char* name : {"subs_a ", "subs_b ", "subs_c ", "film "})
     EXPECT_THAT(result.out, HasSubstr(name));
   EXPECT_THAT(result.out, ::testing::Not(HasSubstr("craig_bampton")));
+}
+
+TEST(CompareProgram, TakesExactPropagationWhereThePublishedFormIsNotAskedFor) {
+  const TemporaryFolder folder;
+  const std::filesystem::path kept = folder / "comparison";
+  std::vector<std::string> exact =
+      short_comparison({"--set", "time.integrator=exact", "-o", kept.string()});
+  std::vector<std::string> timed = exact;
+  timed.insert(timed.end(), {"--published-window", "1e-4"});
+  const ProgramResult refused = Program(timed).run();
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--published-window: the published form takes "
+                                     "time.integrator: central_difference with all modes, but the "
+                                     "scene has integrator: exact"));
+  EXPECT_FALSE(std::filesystem::exists(kept));
+  const ProgramResult result = Program(exact).run();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
 }
 
 TEST(CompareProgram, AnAssumptionThatFailsIsARowAndTheOthersGoOn) {

@@ -195,6 +195,24 @@ TEST_F(Pictures, HistoryShadesTheBurstsOfTheAcceleration) {
   EXPECT_THAT(contents_of(path("b.svg")), Not(HasSubstr("shaded")));
 }
 
+TEST_F(Pictures, ALocusOverAnotherKeyThanThePathPredictsNothing) {
+  Locus locus;
+  locus.values = {0.0, 1.0};
+  locus.eigenvalues = {{{-1.0, 990.0}}, {{-1.0, 990.0}}};
+  const std::string run = make_run();
+  const auto spectrogram = [&](const std::string& key) {
+    write_locus_file(path("locus.h5"), Overwrite::yes, locus, {}, "1", {{"parameter", key}});
+    return Program(
+               {"spectrogram", run, "--predict", path("locus.h5"), "-o", path("a.svg"), "--force"})
+        .run();
+  };
+  const ProgramResult refused = spectrogram("contact.friction.coefficient");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("is a locus over contact.friction.coefficient, which a run "
+                                     "does not pass through"));
+  EXPECT_EQ(spectrogram("contact.start").exit_code, 0);
+}
+
 TEST_F(Pictures, BurstsAreSoughtInAnotherBand) {
   const std::string file = make_run({.has_bursts = false});
   EXPECT_EQ(json_of({"info", file})["bursts"], Json::array());
@@ -543,6 +561,9 @@ INSTANTIATE_TEST_SUITE_P(
                  "must be a lower and an upper frequency below 5000 Hz"},
         BadUsage{{"spectrogram", "--channel", "contact.force", "--channel", "contact.force"},
                  "a spectrogram shows one channel"},
+        BadUsage{{"spectrogram", "--channel", "contact.force", "--band", "800,1200"},
+                 "--band: seeks bursts in beam.tip.y.acceleration, but the spectrogram is that of "
+                 "contact.force"},
         BadUsage{{"spectrogram", "--window", "han"}, "--window: there is no window 'han', did you"},
         BadUsage{{"spectrogram", "--length", "1 s"}, "a piece of 1 s is longer than the 0.4 s of"},
         BadUsage{{"spectrogram", "--length", "1 s"}, "give at most --length 0.4"},
@@ -687,7 +708,7 @@ TEST_F(Pictures, DamagedDatasetsAreNamed) {
        },
        named + ": has no attribute 'units'"},
       {"not finite", [&](hid_t f) { set_value(f, acceleration, 2000, HUGE_VAL); },
-       named + ": is not finite at 0.2 s", false, false},
+       named + ": is not finite at 0.2 s", false},
       {"bursts without an end", [](hid_t f) { H5Ldelete(f, "/bursts/end", H5P_DEFAULT); },
        "dataset /bursts/end: is missing", true, false},
       {"burst that ends first", [&](hid_t f) { set_value(f, "/bursts/end", 0, 0.1); },

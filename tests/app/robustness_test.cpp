@@ -2,6 +2,8 @@
 // with an exit code that says so, and never otherwise.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
 #include <sys/mount.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -131,6 +133,138 @@ TEST(Robustness, EveryVerbSaysThatAFolderCannotBeWritten) {
     EXPECT_THAT(result.err, HasSubstr("locked")) << arguments[0];
   }
   if (fs::is_directory(locked)) fs::permissions(locked, fs::perms::owner_all);
+}
+
+TEST(Robustness, NumbersBeyondComputationAreRefusedWithTheirPlace) {
+  const TemporaryFolder folder;
+  write_file(folder / "huge.yaml",
+             "format: 1\nsubstructures:\n  m: {type: matrices, mass: [[1, 0], [0, 1]],\n"
+             "      stiffness: [[1e308, 0], [0, 1e308]]}\n");
+  const std::string contact = scene_path("viscoelastic_contact.yaml");
+  const struct {
+    std::string scene;
+    std::string set;
+    const char* message;
+  } cases[] = {
+      {scene_path("beam_on_beam.yaml"), "substructures.oblique.thickness=1e-100 mm",
+       "substructures.oblique.thickness: is beyond what can be computed with, 0 or 1e-30 to 1e+30 "
+       "m in magnitude; got 1e-103 m"},
+      {folder / "huge.yaml", "format=1",
+       "substructures.m.stiffness.0.0: is beyond what can be computed with, up to 1e+100 in "
+       "magnitude; got 1e+308"},
+      {scene_path("disc_and_pads.yaml"), "disc.speed=1e-308",
+       "disc.speed: is beyond what can be computed with"},
+      {contact, "material.glassy_modulus=1e60",
+       "material.glassy_modulus: is beyond what can be computed with"},
+      {scene_path("examples/frozen_growth.yaml"), "substructures.cantilever.damping.alpha=1e200",
+       "substructures.cantilever.damping.alpha: is beyond what can be computed with"}};
+  for (const auto& [scene, set, message] : cases) {
+    const ProgramResult result = Program({"check", scene, "--set", set}).run();
+    EXPECT_EQ(result.exit_code, 2) << set;
+    EXPECT_THAT(result.err, HasSubstr(message));
+  }
+}
+
+TEST(Robustness, NoNumberOfASceneIsAnInternalError) {
+  const struct {
+    const char* verb;
+    const char* scene;
+    std::vector<const char*> keys;
+  } cases[] = {
+      {"check",
+       "examples/stick_slip.yaml",
+       {"substructures.reed.thickness", "substructures.reed.length",
+        "substructures.reed.material.density", "drive.load"}},
+      {"eig", "disc_and_pads.yaml", {"disc.speed", "disc.thickness"}},
+      {"eig", "examples/flutter.yaml", {"substructures.oscillator.factors.stiffness"}}};
+  for (const auto& [verb, scene, keys] : cases) {
+    for (const char* key : keys) {
+      for (const char* value : {"1e-300", "1e-29", "1e29", "1e99"}) {
+        const ProgramResult result =
+            Program({verb, scene_path(scene), "--set", std::string(key) + "=" + value}).run();
+        EXPECT_THAT(result.exit_code, AnyOf(0, 2, 3)) << key << "=" << value << ": " << result.err;
+      }
+    }
+  }
+}
+
+TEST(Robustness, ABrokenLinkIsCalledThat) {
+  const TemporaryFolder folder;
+  fs::create_symlink("nowhere/at_all.h5", folder / "link.h5");
+  for (const char* force : {"--force", "--json"}) {
+    const ProgramResult result = Program({"run", scene_path("examples/landing.yaml"), "-o",
+                                          folder / "link.h5", force})
+                                     .run();
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_THAT(result.err, HasSubstr("link.h5: is a broken link, to 'nowhere/at_all.h5'; remove"));
+  }
+}
+
+TEST(Robustness, AnHdf5FileAsASceneIsCalledThat) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "run.h5", "\x89HDF\r\n\x1a\n" + std::string(100, '\0'));
+  for (const char* verb : {"check", "eig", "compare"}) {
+    const ProgramResult result = Program({verb, folder / "run.h5"}).run();
+    EXPECT_EQ(result.exit_code, 2) << verb;
+    EXPECT_THAT(result.err, HasSubstr("is an HDF5 file, not a scene (YAML); `stridor info` says"));
+  }
+}
+
+TEST(Robustness, UnknownOptionsGetASuggestion) {
+  const ProgramResult result = Program({"eig", sphere_scene, "--coutn=3", "--json"}).run();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("eig has no option '--coutn', did you mean '--count'?"));
+}
+
+TEST(Robustness, EveryFailureWithJsonIsOneObject) {
+  const TemporaryFolder folder;
+  const std::string beams = scene_path("beam_on_beam.yaml");
+  const std::string runs_off = scene_path("extreme/runs_off.yaml");
+  const std::string missing = folder / "missing";
+  const struct {
+    Arguments arguments;
+    int exit_code;
+    const char* key;
+    const char* message;
+  } cases[] = {
+      {{"eig", beams, "--set", "time.stepp=1"}, 2, "time.stepp", "did you mean 'step'"},
+      {{"run", beams, "-o", missing + "/x.h5"}, 4, "", "missing"},
+      {{"run", beams}, 2, "", "--output is required"},
+      {{"locus", beams, "--nope"}, 2, "", "locus has no option '--nope'"},
+      {{"infoo", missing}, 2, "", "there is no verb 'infoo', did you mean 'info'"},
+      {{"info", missing}, 4, "", "missing"},
+      {{"check", missing}, 4, "", "missing"},
+      {{"compare", missing}, 4, "", "missing"},
+      {{"spectrogram", missing}, 4, "", "missing"},
+      {{"plot", missing, "--kind", "history", "-o", folder / "a.png"}, 4, "", "missing"},
+      {{"threshold", sphere_scene, "--parameter", "sphere.sped", "--from", "0", "--to", "1"},
+       2, "", "sped"},
+      {{"map", missing, "--x", "a", "0", "1", "3", "--y", "b", "0", "1", "3"}, 4, "", "missing"},
+      {{"cycle", missing}, 4, "", "missing"},
+      {{"sweep", missing, "--parameter", "a", "--from", "0", "--to", "1"}, 4, "", "missing"},
+      {{"precision", missing}, 4, "", "missing"},
+      {{"contact", missing}, 4, "", "missing"}};
+  for (const auto& [arguments, exit_code, key, message] : cases) {
+    Arguments with_json = arguments;
+    with_json.emplace_back("--json");
+    const ProgramResult result = Program(with_json).run();
+    EXPECT_EQ(result.exit_code, exit_code) << arguments[0] << ": " << result.err;
+    const auto object = nlohmann::json::parse(result.out, nullptr, false);
+    ASSERT_TRUE(object.is_object()) << arguments[0] << ": " << result.out;
+    ASSERT_EQ(object["errors"].size(), 1u) << result.out;
+    const auto& error = object["errors"][0];
+    EXPECT_EQ(error["key"], *key != '\0' ? key : error["key"]);
+    EXPECT_THAT(error["key"].get<std::string>() + error["message"].get<std::string>(),
+                HasSubstr(message));
+  }
+  // Where there are results, they stand beside the errors.
+  const ProgramResult result =
+      Program({"run", runs_off, "-o", folder / "off.h5", "--json"}).run();
+  EXPECT_EQ(result.exit_code, 3);
+  const auto object = nlohmann::json::parse(result.out);
+  EXPECT_EQ(object["status"], "failed");
+  EXPECT_THAT(object["errors"][0]["message"].get<std::string>(),
+              HasSubstr("has left the end of the surface"));
 }
 
 TEST(Robustness, TheEnvironmentIsReadOrRefused) {

@@ -85,6 +85,14 @@ TEST(VerbOutput, RunTellsOfEveryContactAndOfTheEnergy) {
     EXPECT_THAT(text, HasSubstr(part));
 }
 
+TEST(VerbOutput, RunsWhoseContactsOnlyTakeEnergySayNothingOfIt) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> run{
+      "run",   scene_path("examples/landing.yaml"), "-o", (folder / "run.h5").string(),
+      "--set", "record.energy=true"};
+  EXPECT_THAT(output_of(run), Not(HasSubstr("CONTACT WORK")));
+}
+
 TEST(VerbOutput, PrecisionNamesTheCheapestAndWhatElseThereIs) {
   const std::string text = output_of(
       {"precision", scene_path("beam_on_beam_leading.yaml"), "--until", "8 ms", "--set",

@@ -38,6 +38,19 @@ TEST(MatrixMarket, ReadsEveryLayout) {
   EXPECT_EQ(read("%%MatrixMarket matrix array real skew-symmetric\n2 2\n7\n"), skew);
 }
 
+TEST(MatrixMarket, IntegersAreWhole) {
+  const std::string text = "%%MatrixMarket matrix coordinate integer general\n1 1 1\n1 1 1.5\n";
+  EXPECT_EQ(failure(text),
+            "m.mtx:3:5: expected a whole number, got '1.5': the head of the file says 'integer'; "
+            "write 'real' there if it is meant");
+}
+
+TEST(MatrixMarket, EntriesBeyondComputationAreRefused) {
+  const std::string text = "%%MatrixMarket matrix coordinate real general\n1 1 1\n1 1 -1e308\n";
+  EXPECT_EQ(failure(text),
+            "m.mtx:3:5: '-1e308' is beyond what can be computed with, up to 1e+100 in magnitude");
+}
+
 TEST(MatrixMarket, SaysWhereItIsWrong) {
   const std::string header = "%%MatrixMarket matrix coordinate real general\n";
   EXPECT_EQ(failure("1 2 3\n"),

@@ -206,6 +206,9 @@ TEST(SceneTree, SecondDocumentIsRefused) {
 TEST(SceneTree, TabInTheIndentationIsRefused) {
   const Problem problem = fatal("a:\n  b: 1\n\tc: 2\n");
   expect_at(problem, 3, 1, "", "tab");
+  // Also where yaml-cpp stumbles over what the tab makes of the text.
+  expect_at(fatal("a:\n\tm: {b: 1}\n"), 2, 1, "", "a tab in the indentation");
+  expect_at(fatal("a:\n  m:\n  \tb: 1\n"), 3, 3, "", "a tab in the indentation");
 }
 
 TEST(SceneTree, SyntaxErrorsCarryTheirPlace) {

@@ -1,0 +1,164 @@
+#include "io/scene_warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+namespace stridor {
+namespace {
+
+/// Magnitudes that bodies have which vibrate in sliding contact.
+struct Usual {
+  const char* unit;
+  const char* word;  ///< that the name of the key holds; empty: any
+  double low;
+  double high;
+  const char* remedy;
+};
+constexpr Usual usual_magnitudes[] = {
+    {"m", "", 0.0, 10.0, "write a unit, as in '75 mm'"},
+    {"Pa", "modulus", 1e3, 1e15, "write a unit, as in '71 GPa'"},
+    {"kg m-3", "", 1.0, 1e5, "write a unit, as in '2.7 g/cm^3', or the number in kg m-3"},
+    {"m s-1", "", 0.0, 1000.0, "write a unit, as in '30 mm/s'"},
+};
+
+bool is_written_bare(const SceneNode& tree, const std::string& path) {
+  const SceneNode* node = find(tree, path);
+  return node != nullptr && node->kind == SceneNode::Kind::scalar &&
+         node->text.find_first_not_of("+-.0123456789eE") == std::string::npos;
+}
+
+void look_at_number(const Key& key, double value, const std::string& path, const SceneNode& tree,
+                    std::vector<Problem>& warnings) {
+  const double size = std::abs(value);
+  if (size == 0.0) return;
+  for (const Usual& usual : usual_magnitudes) {
+    if (key.unit != usual.unit || key.name.find(usual.word) == std::string::npos) continue;
+    if (size >= usual.low && size <= usual.high) continue;
+    if (!is_written_bare(tree, path)) continue;
+    warnings.push_back({path,
+                        fmt::format("is {:g} {}, since bare numbers are in SI units: {} if another "
+                                    "one is meant",
+                                    value, key.unit, usual.remedy),
+                        {},
+                        0,
+                        0});
+  }
+}
+
+/// Calls back for every number with a single value, at its key path.
+template <class Look>
+void visit_numbers(const Schema& schema, const void* object, const std::string& path,
+                   const Look& look) {
+  for (const Key& key : schema.keys) {
+    const std::string key_path = join_path(path, key.name);
+    if (key.read) {
+      const Value value = key.read(object);
+      if (const double* number = std::get_if<double>(&value)) look(key, *number, key_path);
+    }
+    if (!key.visit) continue;
+    std::size_t index = 0;
+    key.visit(object, [&](const std::string& name, std::size_t alternative, const void* nested) {
+      const std::string entry =
+          key.kind == KeyKind::section_list ? std::to_string(index++) : name;
+      visit_numbers(key.alternatives[alternative].schema(), nested, join_path(key_path, entry),
+                    look);
+    });
+  }
+}
+
+/// A beam thicker than long, or so slender that one of both has lost its unit.
+void look_at_aspect(const std::string& name, const BeamParameters& beam,
+                    std::vector<Problem>& warnings) {
+  constexpr double most_slender = 1e4;
+  const double ratio = beam.length / beam.thickness;
+  if (ratio >= 1.0 && ratio <= most_slender) return;
+  warnings.push_back({"substructures." + name + ".thickness",
+                      fmt::format("is {:g} m on a length of {:g} m: {}; check the units of both",
+                                  beam.thickness, beam.length,
+                                  ratio < 1.0 ? "thicker than long"
+                                              : fmt::format("{:.3g} times slender", ratio)),
+                      {},
+                      0,
+                      0});
+}
+
+/// When the drive has carried a slave off the end of its master, s.
+std::optional<double> leaving_time(const System& system, const ContactPoint& contact, double end) {
+  const MasterSurface& surface = system.surface_of(contact);
+  if (surface.is_endless || system.drive.is_frozen) return std::nullopt;
+  const auto driven = [&](int body) {
+    return system.bodies[static_cast<std::size_t>(body)].follows_drive ? 1.0 : 0.0;
+  };
+  const Projection start =
+      surface.project_undeformed(contact.first_segment, contact.slave_position);
+  const double rate =
+      (driven(contact.slave_body) - driven(surface.body)) * start.tangent.x();
+  const double begin = surface.arc_at(contact.first_segment, start.weights);
+  const double length = surface.arc_length.back();
+  const double rounding = 1e-9 * length;
+  constexpr int num_instants = 1000;
+  for (int i = 0; i <= num_instants; ++i) {
+    const double time = end * i / num_instants;
+    const double place = begin + rate * system.drive.displacement(time);
+    if (place < -rounding || place > length + rounding) return time;
+  }
+  return std::nullopt;
+}
+
+void look_at_paths(const LoadedScene& loaded, const System& system,
+                   std::vector<Problem>& warnings) {
+  for (const ContactPoint& contact : system.contacts) {
+    const auto time = leaving_time(system, contact, loaded.scene.time.end);
+    if (!time) continue;
+    warnings.push_back(
+        {"time.end",
+         fmt::format("the drive carries '{}' off the end of its master '{}' at about {:.3g} s (of "
+                     "the undeformed bodies), where the run will fail; end it earlier, start "
+                     "elsewhere (contact.start) or slide more slowly (drive.velocity)",
+                     contact.name, system.surface_of(contact).name, *time),
+         {},
+         0,
+         0});
+  }
+}
+
+}  // namespace
+
+std::vector<Problem> unit_warnings(const Schema& schema, const void* object,
+                                   const SceneNode& tree) {
+  std::vector<Problem> warnings;
+  visit_numbers(schema, object, "",
+                [&](const Key& key, double value, const std::string& path) {
+                  look_at_number(key, value, path, tree, warnings);
+                });
+  locate(warnings, tree);
+  return warnings;
+}
+
+std::vector<Problem> scene_warnings(const LoadedScene& loaded, const Model& model) {
+  const Scene& scene = loaded.scene;
+  std::vector<Problem> warnings = unit_warnings(Scene::schema(), &scene, loaded.tree);
+  for (const auto& [name, substructure] : scene.model.substructures) {
+    if (const auto* beam = std::get_if<BeamParameters>(&substructure))
+      look_at_aspect(name, *beam, warnings);
+  }
+  if (scene.measure.from >= scene.time.end) {
+    warnings.push_back({"measure.from",
+                        fmt::format("{:g} s is not before time.end = {:g} s: the window of the "
+                                    "statistics is empty",
+                                    scene.measure.from, scene.time.end),
+                        {},
+                        0,
+                        0});
+  }
+  look_at_paths(loaded, model.system, warnings);
+  locate(warnings, loaded.tree);
+  sort_by_place(warnings);
+  return warnings;
+}
+
+}  // namespace stridor

@@ -1,0 +1,21 @@
+// What of a scene can be computed but is hardly meant.
+#pragma once
+
+#include <vector>
+
+#include "core/schema.hpp"
+#include "io/scene.hpp"
+
+namespace stridor {
+
+/// Numbers written without a unit that are of another order of magnitude than vibrating bodies
+/// have: a unit was probably left out.
+/// @param tree as it was read into the object
+std::vector<Problem> unit_warnings(const Schema& schema, const void* object, const SceneNode& tree);
+
+/// unit_warnings() of a scene of bodies in contact, a window of the statistics that begins after
+/// the end of the run, and paths that lead off the end of a master within the run (of the
+/// undeformed bodies).
+std::vector<Problem> scene_warnings(const LoadedScene& loaded, const Model& model);
+
+}  // namespace stridor
