@@ -91,7 +91,8 @@ int run_verb(int argc, char** argv) {
 
 int run_program(int argc, char** argv) {
   try {
-    if (std::any_of(argv, argv + argc, [](const char* word) { return std::string_view(word) == "--json"; }))
+    if (std::any_of(argv, argv + argc,
+                    [](const char* word) { return std::string_view(word) == "--json"; }))
       tell_stop_as_json();
     install_stop_signals();
     // A reader that goes away, or a file that may not grow, are errors to report, not deaths.
