@@ -46,8 +46,7 @@ std::string duration_text(double seconds) {
   if (whole < 3600.0)
     return fmt::format("{:.0f} min {:02.0f} s", std::floor(whole / 60.0), std::fmod(whole, 60.0));
   const double minutes = std::round(seconds / 60.0);
-  return fmt::format("{:.0f} h {:02.0f} min", std::floor(minutes / 60.0),
-                     std::fmod(minutes, 60.0));
+  return fmt::format("{:.0f} h {:02.0f} min", std::floor(minutes / 60.0), std::fmod(minutes, 60.0));
 }
 
 std::string pace_text(const Pace& pace, SteadyTime now) {

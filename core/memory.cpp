@@ -67,8 +67,7 @@ MemoryLimit memory_limit(const fs::path& root, double address_space) {
 
 MemoryLimit memory_limit() {
   rlimit space{};
-  const bool is_limited =
-      getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY;
+  const bool is_limited = getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY;
   return memory_limit("/", is_limited ? static_cast<double>(space.rlim_cur)
                                       : std::numeric_limits<double>::infinity());
 }

@@ -32,13 +32,13 @@ struct SetUpEstimate {
 
 /// A body that Craig-Bampton reduces.
 struct ReductionSize {
-  double unknowns = 0.0;          ///< inside, without those of the interface
-  double interface = 0.0;         ///< unknowns kept
-  double watched = 0.0;           ///< rows of displacements that are wanted
-  double modes = 0.0;             ///< fixed-interface modes
-  double matrix_entries = 0.0;    ///< of mass and stiffness
-  double factor_entries = 0.0;    ///< of the Cholesky factor of the stiffness inside
-  double assembly_bytes = 0.0;    ///< while the matrices are assembled
+  double unknowns = 0.0;        ///< inside, without those of the interface
+  double interface = 0.0;       ///< unknowns kept
+  double watched = 0.0;         ///< rows of displacements that are wanted
+  double modes = 0.0;           ///< fixed-interface modes
+  double matrix_entries = 0.0;  ///< of mass and stiffness
+  double factor_entries = 0.0;  ///< of the Cholesky factor of the stiffness inside
+  double assembly_bytes = 0.0;  ///< while the matrices are assembled
 };
 
 /// That of a beam or an elastic pad.

@@ -38,7 +38,8 @@ TEST_F(LocusProgressTest, TellsHowFarAlongTheRangeItHasCome) {
 TEST_F(LocusProgressTest, PromisesNoEndWhileWindowsAreRefined) {
   EXPECT_THAT(text_after({0.5, 1.0}), HasSubstr("100 %"));
   const std::string refining = text_after({0.3, 0.31, 0.305});
-  EXPECT_THAT(refining, HasSubstr("locus, refining windows: 3 values, contact.start = 0.305 m, 0 s so far"));
+  EXPECT_THAT(refining,
+              HasSubstr("locus, refining windows: 3 values, contact.start = 0.305 m, 0 s so far"));
   EXPECT_THAT(refining, Not(HasSubstr("%")));
   EXPECT_THAT(refining, Not(HasSubstr("left")));
 }

@@ -7,8 +7,8 @@ namespace {
 
 /// A clock that goes as the test wants.
 SteadyTime at(double seconds) {
-  return SteadyTime(std::chrono::duration_cast<SteadyTime::duration>(
-      std::chrono::duration<double>(seconds)));
+  return SteadyTime(
+      std::chrono::duration_cast<SteadyTime::duration>(std::chrono::duration<double>(seconds)));
 }
 
 TEST(Pace, OfAConstantSpeedLeavesTheRestOfTheTime) {

@@ -50,9 +50,8 @@ TEST(SetUpProgram, DiscsContactsAndRecordsAreRefusedLikewise) {
     EXPECT_EQ(result.exit_code, 2) << result.err;
     return result.err;
   };
-  EXPECT_THAT(refusal({"eig", scene_path("disc_and_pads.yaml"), "--set",
-                       "disc.nodal_diameters=200", "--set", "disc.radial_modes=40", "--set",
-                       "disc.radial_terms=40"}),
+  EXPECT_THAT(refusal({"eig", scene_path("disc_and_pads.yaml"), "--set", "disc.nodal_diameters=200",
+                       "--set", "disc.radial_modes=40", "--set", "disc.radial_terms=40"}),
               HasSubstr("disc.nodal_diameters"));
   EXPECT_THAT(refusal({"check", scene_path("examples/elastic_pads.yaml"), "--set",
                        "pads.elastic.mesh.along=900000"}),
@@ -71,9 +70,11 @@ TEST(SetUpProgram, HearsASignalWhateverItIsAt) {
   const std::string file = (folder / "run.h5").string();
   // At several moments: while matrices are assembled, factorised, reduced.
   int delay_ms = 50;
-  for (const Strings& verb :
-       {Strings{"check", scene}, {"run", scene, "-o", file}, {"eig", scene},
-        {"threshold", scene, "--from", "30mm", "--to", "31mm"}, {"compare", scene}}) {
+  for (const Strings& verb : {Strings{"check", scene},
+                              {"run", scene, "-o", file},
+                              {"eig", scene},
+                              {"threshold", scene, "--from", "30mm", "--to", "31mm"},
+                              {"compare", scene}}) {
     Program program(with_long_set_up(verb));
     program.start();
     std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
