@@ -121,8 +121,7 @@ Modes Lanczos::solve() {
     const bool is_exhausted = block.cols() == 0;
     const bool is_full = dim_ + block.cols() > basis_.cols();
     if (dim_ < next_look && !is_exhausted && !is_full) continue;
-    // A look costs as much as some steps.
-    next_look = dim_ + std::max(block_width, dim_ / 5);
+    next_look = dim_ + std::max(block_width, dim_ / 16);
     const SymmetricEigenpairs ritz =
         symmetric_eigenpairs(projection_.topLeftCorner(dim_, dim_), "fixed-interface modes");
     const Eigen::VectorXd values = ritz.values.reverse();
