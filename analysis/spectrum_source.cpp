@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "core/blas.hpp"
@@ -75,9 +76,10 @@ class SecularSource : public SpectrumSource {
   }
 
   /// Where bodies have coupled terms, BLAS diagonalises them.
-  static std::unique_lock<std::mutex> guard_of(const Pencil& pencil) {
-    if (pencil.num_body_slots == 0) return {};
-    return std::unique_lock(blas_in_use);
+  static std::optional<BlasGuard> guard_of(const Pencil& pencil) {
+    std::optional<BlasGuard> guard;
+    if (pencil.num_body_slots > 0) guard.emplace();
+    return guard;
   }
 
   /// Where no line was of use, the search had to find all eigenvalues. Those far above the window

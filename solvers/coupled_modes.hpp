@@ -29,7 +29,7 @@ struct CoupledModes {
 /// @return no modes where none are coupled. Nothing where they have no basis of eigenvectors to
 ///         working precision (rigid motions with gyroscopic terms, a pair at its critical damping):
 ///         where the matrix put together again is off by more than 1e-12 of its norm.
-/// Cost: of order 25 (2q)³ operations for each set of modes that are joined, in BLAS (core/tasks.hpp).
+/// Cost: of order 25 (2q)³ operations for each set of modes that are joined, in BLAS (core/blas.hpp).
 std::optional<CoupledModes> coupled_modes(const Pencil& pencil);
 
 }  // namespace stridor

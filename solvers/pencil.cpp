@@ -94,7 +94,7 @@ void multiply(const Eigen::Ref<const Eigen::MatrixXd>& rows, const Eigen::Matrix
 ///
 /// By the modified Gram-Schmidt process, the longest row that is left first, each direction taken
 /// out twice. By hand, since loci call it in several threads, and BLAS may serve one at a time
-/// (core/tasks.hpp).
+/// (core/blas.hpp).
 Eigen::MatrixXd common_row_space(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second) {
   constexpr double negligible = 1e-14;
   const Eigen::Index m = std::max(first.cols(), second.cols());

@@ -8,7 +8,7 @@
 namespace stridor {
 
 // By hand: a call of LAPACK would take longer than the work, and BLAS may serve one thread at a time
-// (core/tasks.hpp).
+// (core/blas.hpp).
 
 /// 1/z without the care for overflow that the library takes.
 inline std::complex<double> reciprocal(std::complex<double> z) {
