@@ -42,7 +42,7 @@ ValueRange times_of(const Spectrogram& spectrogram) {
   return {spectrogram.times.front() - half_piece, spectrogram.times.back() + half_piece};
 }
 
-// " Without room for a label: 3: 3.5 kHz."; empty where every mark has its label or its number.
+// " Without room for the whole label: 3: 3.5 kHz."; empty where every mark has its whole label.
 std::string unlabelled_text(const std::vector<SpectrogramPanel>& panels,
                             const std::vector<MapArea>& maps) {
   std::string names;

@@ -172,8 +172,8 @@ TEST_F(FileSafety, PartFilesOfDeadProcessesAreRemoved) {
 }
 
 TEST_F(FileSafety, ResumingRemovesWhatAKilledCommandLeft) {
-  ASSERT_EQ(shell(short_run_ + " --set time.end=2e4 --set drive.velocity=1e-9 --max-wall 0.05 -o "
-                               "run.h5 > out"),
+  ASSERT_EQ(shell(short_run_ + " --set time.end=2e4 --set drive.velocity=1e-9 "
+                               "--set record.interval=0.01 --max-wall 0.05 -o run.h5 > out"),
             5)
       << said_;
   const std::string left = fmt::format("run.h5.part-{}", dead_process());

@@ -605,7 +605,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadUsage{{"plot", "--kind", "spectrum", "--scale", "log"},
                  "'log' is neither db nor linear"},
         BadUsage{{"plot", "--kind", "spectrum", "--reference", "1e-6"},
-                 "the channels have several units (m/s^2, m)"},
+                 "the channels have several units (m/s^2, N)"},
         BadUsage{{"plot", "--kind", "history", "--overlap", "0.5"},
                  "--overlap: means nothing for --kind history"},
         BadUsage{{"plot", "--kind", "phase", "--scale", "db"},
@@ -803,7 +803,7 @@ TEST_F(Pictures, SettingsOfASceneReachThePictureOfItsRun) {
   const ProgramResult made = Program(arguments).run();
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const Json object = json_of({"spectrogram", run, "-o", path("a.svg")});
-  EXPECT_EQ(object["channel"], "contact.force");
+  EXPECT_EQ(object["channel"], "contact.force_low_passed");  // what a spectrum is made of
   EXPECT_EQ(object["length_samples"], 100);
   EXPECT_EQ(object["overlap"], 0.5);
   EXPECT_EQ(object["window"], "rectangular");

@@ -56,7 +56,9 @@ inline std::vector<std::string> long_run(const std::string& output,
 inline std::vector<std::string> endless_run(const std::string& output) {
   std::vector<std::string> command = long_run(output, "1e5");
   command.insert(command.end(),
-                 {"--set", "drive.velocity=1e-7", "--set", "contact.armed_from=2e5"});
+                 {"--set", "drive.velocity=1e-7", "--set", "contact.armed_from=2e5",
+                  // What is recorded is summed up in memory.
+                  "--set", "record.interval=0.01"});
   return command;
 }
 

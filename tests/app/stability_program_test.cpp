@@ -258,7 +258,8 @@ TEST(LocusProgram, GrowthWithoutOscillationIsCalledThat) {
   const std::vector<std::string> arguments{"locus", reeds.path(), "--from",   "0",
                                            "--to",  "1 mm",       "--points", "2"};
   int num_fast = 0, num_slow = 0;
-  for (const Json& window : run_json(arguments)["unstable"]) {
+  const Json locus = run_json(arguments);
+  for (const Json& window : locus["unstable"]) {
     if (window["frequency"] != 0.0) {
       EXPECT_TRUE(window["oscillates"]);
       continue;

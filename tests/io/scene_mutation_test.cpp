@@ -97,6 +97,16 @@ struct NumberCase {
   bool is_bound = false;  ///< an end of the range that belongs to it
 };
 
+constexpr const char* beyond_computation = "is beyond what can be computed with";
+
+/// Whether products of a few such numbers neither overflow nor vanish.
+bool is_computable(const NumberRules& rules, double value) {
+  if (rules.is_integer) return true;
+  const double size = std::abs(value);
+  if (rules.unit.empty()) return size <= 1e100;
+  return size == 0.0 || (size >= 1e-30 && size <= 1e30);
+}
+
 /// Numbers at, just below and just above the bounds of the range, and further away.
 void add_range_cases(const NumberRules& rules, std::vector<NumberCase>& cases) {
   const Range& range = rules.range;
@@ -108,9 +118,10 @@ void add_range_cases(const NumberRules& rules, std::vector<NumberCase>& cases) {
     if (!std::isfinite(bound)) continue;
     for (const double value :
          {next(bound, -HUGE_VAL), bound, next(bound, HUGE_VAL), bound - 10.0, bound + 10.0}) {
-      const bool is_allowed = range.contains(value);
+      const bool is_allowed = range.contains(value) && is_computable(rules, value);
+      const std::string message = range.contains(value) ? beyond_computation : refusal;
       cases.push_back(
-          {number_text(value), is_allowed ? "" : refusal, is_allowed && value == bound});
+          {number_text(value), is_allowed ? "" : message, is_allowed && value == bound});
     }
     if (rules.is_integer || rules.unit.empty()) continue;
     const double outside = bound == range.low ? bound - 1.0 : bound + 1.0;

@@ -74,6 +74,7 @@ class Program {
   /// A request to stop is sent as soon as the program listens to it: on a busy machine that takes
   /// its time.
   void send(int signal) const {
+    if (child_ <= 0) return;  // -1 would be every process there is
     const bool is_request = signal == SIGINT || signal == SIGTERM;
     for (int i = 0; is_request && i < 3000 && !listens_or_is_over(signal); ++i) usleep(10'000);
     kill(child_, signal);
