@@ -97,7 +97,7 @@ std::vector<StartingGap> starting_gaps(const System& system) {
 }
 
 double negligible_gap(const MasterSurface& surface) {
-  return 1e-12 * surface.arc_length.back();
+  return 1e-9 * surface.arc_length.back();
 }
 
 }  // namespace stridor

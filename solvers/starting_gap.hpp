@@ -23,7 +23,8 @@ std::vector<StartingGap> starting_gaps(const System& system);
 /// load in time. A bilateral contact closes any gap in the first step.
 inline bool may_start_open(const ContactPoint& contact) { return contact.unilateral_from() <= 0.0; }
 
-/// Largest gap that is rounding, m: a change of one in 1e12 of the length of the master.
+/// Largest gap that is rounding, m: 1e-9 of the length of the master. An equilibrium that is found
+/// iteratively leaves up to some 1e-11 of it.
 double negligible_gap(const MasterSurface& surface);
 
 }  // namespace stridor
