@@ -16,7 +16,9 @@ class JammingTest {
   /// formed. Of larger groups those of one and of two contacts, the leading ones and the whole.
   static constexpr Eigen::Index largest_group = 12;
 
-  explicit JammingTest(Eigen::Index num_contacts) : factor_(num_contacts) {}
+  /// With a factor of something, as one of nothing must not be moved.
+  explicit JammingTest(Eigen::Index num_contacts)
+      : factor_(Eigen::MatrixXd::Identity(num_contacts, num_contacts)) {}
 
   /// @param D num_contacts x num_contacts
   /// @return the first contact of those that jam

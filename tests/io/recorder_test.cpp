@@ -178,7 +178,9 @@ TEST(Recorder, IntervalsHoldEveryStepBetweenTheRows) {
   for (std::size_t k = 0; k <= 500; ++k) {
     ContactStatistics expected;
     do {
-      if (k > 0) ASSERT_EQ(simulation.step(), StepOutcome::done);
+      if (k > 0) {
+        ASSERT_EQ(simulation.step(), StepOutcome::done);
+      }
       const double force = simulation.contact_force(0);
       const ContactState state = simulation.contact_state(0);
       expected.add({force, force, 1, state == ContactState::stick ? 1 : 0,
