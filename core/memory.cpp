@@ -66,10 +66,14 @@ MemoryLimit memory_limit(const fs::path& root, double address_space) {
 }
 
 MemoryLimit memory_limit() {
-  rlimit space{};
-  const bool is_limited = getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY;
-  return memory_limit("/", is_limited ? static_cast<double>(space.rlim_cur)
-                                      : std::numeric_limits<double>::infinity());
+  // Read once: every system of a family asks, thousands of times in a locus.
+  static const MemoryLimit limit = [] {
+    rlimit space{};
+    const bool is_limited = getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY;
+    return memory_limit("/", is_limited ? static_cast<double>(space.rlim_cur)
+                                        : std::numeric_limits<double>::infinity());
+  }();
+  return limit;
 }
 
 std::string memory_text(double bytes) {

@@ -124,9 +124,10 @@ void refuse_second_contact(const ResolvedPair& pair, const std::string& name) {
     if (first == nodes.begin() + static_cast<std::ptrdiff_t>(k)) continue;
     throw ConfigError(
         pair.key + ".slave",
-        fmt::format("'{}' names a node that is slave point {} already, and two contacts at one node "
-                    "leave their forces undetermined; name every node once",
-                    name, first - nodes.begin() + 1));
+        fmt::format(
+            "'{}' names a node that is slave point {} already, and two contacts at one node "
+            "leave their forces undetermined; name every node once",
+            name, first - nodes.begin() + 1));
   }
 }
 
@@ -205,9 +206,8 @@ void refuse_shared_nodes(const std::vector<ResolvedPair>& pairs) {
         continue;
       const std::vector<int>& others = pairs[j].slave_nodes;
       const bool shares = std::any_of(
-          pairs[i].slave_nodes.begin(), pairs[i].slave_nodes.end(), [&](int node) {
-            return std::find(others.begin(), others.end(), node) != others.end();
-          });
+          pairs[i].slave_nodes.begin(), pairs[i].slave_nodes.end(),
+          [&](int node) { return std::find(others.begin(), others.end(), node) != others.end(); });
       if (!shares) continue;
       throw ConfigError(
           pairs[i].key + ".slave",
@@ -278,14 +278,27 @@ Eigen::Vector2d point_at(const MasterSurface& surface, double arc) {
   return (1.0 - xi) * surface.positions[s] + xi * surface.positions[s + 1];
 }
 
+/// Straight segment under a point of the undeformed configuration, from a first guess on: the first
+/// one whose end the point has not passed.
+int chord_under(const MasterSurface& surface, const Eigen::Vector2d& point, int segment) {
+  const auto is_past = [&](int s) {
+    return project(surface.undeformed_segment(s), point).xi > 1.0;
+  };
+  while (segment > 0 && !is_past(segment - 1)) --segment;
+  while (segment + 1 < surface.num_segments() && is_past(segment)) ++segment;
+  return segment;
+}
+
 /// Segment under a point of the undeformed configuration, and the projection; xi outside [0, 1]
 /// where the point is off the surface.
 std::pair<int, Projection> locate_on(const MasterSurface& surface, const Eigen::Vector2d& point) {
-  int segment = 0;
-  Projection projection = surface.project_undeformed(0, point);
-  while (projection.xi > 1.0 && segment + 1 < surface.num_segments()) {
+  // A projection on a smooth segment is solved for, so the chords say where to begin.
+  int segment = chord_under(surface, point, 0);
+  Projection projection = surface.project_undeformed(segment, point);
+  while (projection.xi < 0.0 && segment > 0)
+    projection = surface.project_undeformed(--segment, point);
+  while (projection.xi > 1.0 && segment + 1 < surface.num_segments())
     projection = surface.project_undeformed(++segment, point);
-  }
   return {segment, projection};
 }
 
@@ -321,12 +334,15 @@ void check_side(const ResolvedPair& pair, const MasterSurface& surface, const Bo
   if (!std::holds_alternative<BeamParameters>(*slave.parameters)) return;
   double height = 0.0;
   int num_over = 0;
+  int segment = 0;
   for (int node = 0; node < static_cast<int>(slave.matrices.nodes.rows()); ++node) {
     const Eigen::Vector2d position = slave.position(node);
-    const auto [segment, projection] = locate_on(surface, position);
+    // Neighbouring nodes are over neighbouring chords, and chords suffice to tell the sides apart.
+    segment = chord_under(surface, position, segment);
+    const Segment chord = surface.undeformed_segment(segment);
+    const Projection projection = project(chord, position);
     if (!surface.is_endless && (projection.xi < 0.0 || projection.xi > 1.0)) continue;
-    height += projection.normal.dot(position -
-                                    surface.positions[static_cast<std::size_t>(segment)]);
+    height += projection.normal.dot(position - chord.first);
     ++num_over;
   }
   if (num_over == 0 || height >= 0.0) return;
