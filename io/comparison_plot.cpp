@@ -1,5 +1,8 @@
 #include "io/comparison_plot.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -60,7 +63,10 @@ std::vector<Panel> over_reference(const std::vector<ComparisonRun>& runs,
                       {difference(curve, expected)}});
   }
   if (panels.empty())
-    panels.push_back({reference.title + filtered, "acceleration", units, {{expected.times, expected.values, ""}}});
+    panels.push_back({reference.title + filtered,
+                      "acceleration",
+                      units,
+                      {{expected.times, expected.values, ""}}});
   return panels;
 }
 
@@ -102,7 +108,8 @@ std::vector<std::filesystem::path> plot_comparison(const std::vector<ComparisonR
 
   if (const auto acceleration = acceleration_channel(files.back())) {
     figures.push_back(folder / "accelerations.png");
-    plot_histories(over_reference(runs, files, *acceleration), figures.back(), acceleration->substr(acceleration->rfind('/') + 1));
+    plot_histories(over_reference(runs, files, *acceleration), figures.back(),
+                   acceleration->substr(acceleration->rfind('/') + 1));
   }
 
   const std::string pair = scene.model.pairs().begin()->first;
@@ -111,15 +118,25 @@ std::vector<std::filesystem::path> plot_comparison(const std::vector<ComparisonR
         std::tuple{"force", "contact force", "contact_forces.png"}}) {
     const std::string series = "/contact/" + pair + "/" + quantity;
     std::vector<Panel> panels;
+    std::vector<std::string> missing;
     for (std::size_t i = 0; i < runs.size(); ++i) {
       if (!files[i].has(series)) continue;
-      panels.push_back(panel_of(files[i], series, rows_from(scene.measure.from, files[i])));
+      const IndexRange rows = rows_from(scene.measure.from, files[i]);
+      if (rows.begin == rows.end) {
+        missing.push_back(runs[i].title);
+        continue;
+      }
+      panels.push_back(panel_of(files[i], series, rows));
       panels.back().title.replace(0, pair.size(), runs[i].title);
       panels.back().label = label;
     }
     if (panels.empty()) continue;
     figures.push_back(folder / name);
-    plot_histories(panels, figures.back(), pair);
+    const std::string note = missing.empty()
+                                 ? ""
+                                 : fmt::format("Without {}: ended before measure.from, {:g} s.",
+                                               fmt::join(missing, ", "), scene.measure.from);
+    plot_histories(panels, figures.back(), pair, note);
   }
   if (const auto acceleration = acceleration_channel(files.back())) {
     figures.push_back(folder / "spectrograms.png");

@@ -19,7 +19,7 @@ struct ComparisonRun {
 ///
 ///   accelerations       the acceleration of every run over that of the last one, the reference
 ///   sliding_velocities  of the first pair, over the window of `measure`
-///   contact_forces      likewise
+///   contact_forces      likewise; runs that ended before the window are named below
 ///   spectrograms        of the accelerations, on one scale of colours
 ///
 /// @param runs at least one, with the series of `scene`

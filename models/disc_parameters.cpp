@@ -291,6 +291,18 @@ const Schema& DiscModelParameters::schema() {
                    0});
             }
           })
+          .check([](const P& model, std::vector<Problem>& problems) {
+            const bool is_rigid = model.contact.formulation == ContactFormulation::lagrange;
+            if (!model.pads.mass || !is_rigid || model.contact.offsets.size() < 2) return;
+            problems.push_back(
+                {"contact.offsets",
+                 "pads that are rigid masses do not tilt, so that two rigid contacts "
+                 "on each hold the disc between them twice over; keep one point, or "
+                 "take `formulation: penalty` or elastic pads",
+                 {},
+                 0,
+                 0});
+          })
           .check(check_elastic_pads);
   return keys;
 }

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -108,6 +109,25 @@ TEST(CompareProgram, AnAssumptionThatFailsIsARowAndTheOthersGoOn) {
     EXPECT_THAT(row.substr(0, row.find('\n')), HasSubstr("failed: contact at t = 0.0002")) << name;
   }
   EXPECT_THAT(table.substr(table.find("film ")), ::testing::EndsWith("  done\n"));
+}
+
+TEST(CompareProgram, RunsThatEndedBeforeTheWindowHaveNoEmptyPanels) {
+  const TemporaryFolder folder;
+  const std::filesystem::path kept = folder / "comparison";
+  const ProgramResult result =
+      Program({"compare", main_scene, "--set", "drive.load=+0.2", "--set", "drive.ramp=1e-4",
+               "--set", "contact.armed_from=2e-4", "--set", "time.end=2e-3", "--set",
+               "measure.from=1e-3", "-o", kept.string()})
+          .run();
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  // Of the four forces that of FiLM alone is left: a picture of one panel is wider than high.
+  std::ifstream picture(kept / "contact_forces.png", std::ios::binary);
+  unsigned char head[24];
+  ASSERT_TRUE(picture.read(reinterpret_cast<char*>(head), sizeof head));
+  const auto number = [&](int at) {
+    return (head[at] << 24) + (head[at + 1] << 16) + (head[at + 2] << 8) + head[at + 3];
+  };
+  EXPECT_GT(number(16), number(20));
 }
 
 TEST(CompareProgram, NeedsChannelsToCompareBy) {

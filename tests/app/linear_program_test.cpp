@@ -209,6 +209,19 @@ TEST(DiscProgram, ElasticPadsInEveryVerbOfSmallMotion) {
   EXPECT_EQ(locus["eigenvalues"].size(), 2U);
 }
 
+TEST(DiscProgram, RigidPadsHaveOneRigidContactEach) {
+  // Two of them on a mass that does not tilt are redundant: the dense method found B_C of rank 3.
+  const std::string rigid = scene_path("disc_and_pads.yaml");
+  const std::vector<std::string> check{"check", rigid, "--set", "contact.offsets=[-12 mm, 12 mm]"};
+  const ProgramResult refused = Program(check).run();
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.out + refused.err,
+              HasSubstr("contact.offsets: pads that are rigid masses do not tilt"));
+  std::vector<std::string> springs = check;
+  springs.insert(springs.end(), {"--set", "contact.formulation=penalty"});
+  EXPECT_EQ(Program(springs).run().exit_code, 0);
+}
+
 TEST(DiscProgram, SaysWhatElasticPadsCannotHave) {
   const std::string elastic = scene_path("examples/elastic_pads.yaml");
   const auto refused = [&](const std::string& set) {
