@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "io/hdf5_handles.hpp"
-#include "io/run_file.hpp"
+#include "io/output_options.hpp"
 
 namespace stridor {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "coupling/viscoelastic_law.hpp"
-#include "io/run_file.hpp"
+#include "io/output_options.hpp"
 
 namespace stridor {
 

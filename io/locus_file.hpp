@@ -15,7 +15,7 @@
 
 #include "analysis/locus.hpp"
 #include "analysis/stability_map.hpp"
-#include "io/run_file.hpp"
+#include "io/output_options.hpp"
 
 namespace stridor {
 

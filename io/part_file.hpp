@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/stop_token.hpp"
-#include "io/run_file.hpp"
+#include "io/output_options.hpp"
 
 namespace stridor {
 

@@ -29,13 +29,12 @@
 #include <vector>
 
 #include "io/checkpoint.hpp"
+#include "io/output_options.hpp"
 
 namespace stridor {
 
 /// Number of the layout above; readers refuse files with a higher one.
 inline constexpr int run_file_format = 1;
-
-enum class Overwrite { no, yes };
 
 /// Where a run comes from. Text is UTF-8 without zero bytes.
 struct RunFileHeader {
@@ -49,24 +48,10 @@ struct RunFileHeader {
   std::string scene_digests{};  ///< of the text and the files it names (io/scene_files.hpp)
 };
 
-/// Checks whether a run file can be made, before anything expensive is computed for it.
-/// @throws FileError as the constructor of RunFileWriter; the file is not touched
-void check_output(const std::string& path, Overwrite overwrite);
-
-/// Checks whether a file of this name may be made where there is one already.
-/// @throws FileError if it exists and `overwrite` is no, or if another process is writing it
-void check_replaceable(const std::string& path, Overwrite overwrite);
-
-/// The present time as "2024-05-17T08:30:00Z".
-std::string utc_now();
-
 enum class SeriesKind {
   real,   ///< 64-bit floating point
   state,  ///< unsigned 8-bit integer; needs the attribute "meaning"
 };
-
-/// Further attributes of a dataset: text or one number.
-using Attributes = std::vector<std::pair<std::string, std::variant<std::string, double>>>;
 
 /// One recorded quantity, a value per entry of /time.
 struct SeriesSpec {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "analysis/spectrogram.hpp"
-#include "io/run_file.hpp"
+#include "io/output_options.hpp"
 
 namespace stridor {
 
