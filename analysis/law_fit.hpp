@@ -16,7 +16,7 @@ struct LawSample {
   double friction = 0.0;
 };
 
-/// What a law says at every pair of speed and indentation.
+/// Values of a law at every pair of speed and indentation.
 std::vector<LawSample> law_samples(const ViscoelasticContactLaw& law,
                                    const std::vector<double>& speeds,
                                    const std::vector<double>& indentations);

@@ -35,7 +35,7 @@ struct TurningPoint {
 
 struct LimitCycle {
   CycleStatus status = CycleStatus::diverged;
-  /// What went wrong and when, and what to try; empty unless `diverged`.
+  /// Cause, time and remedy of the failure; empty unless `diverged`.
   std::string failure;
   double period = 0.0;  ///< 0 where not periodic
   int loops = 0;        ///< turns per period

@@ -111,7 +111,8 @@ class Decimator {
   /// Outputs that have become due so far.
   std::int64_t num_outputs() const { return num_outputs_; }
 
-  /// Stores the window and the counters under `prefix`; load() goes on bitwise as if never stopped.
+  /// Stores the window and the counters under `prefix`. After load() the filter resumes
+  /// bit-identically to an uninterrupted run.
   void save(State& state, const std::string& prefix) const;
   /// @throws std::invalid_argument if an array is missing or comes from another filter; this object
   ///         is unchanged then.

@@ -51,7 +51,7 @@ class PairSearch {
 
   /// Where to look next; nothing once the search has converged.
   std::optional<double> next() const;
-  /// What the parabolas expect at a value.
+  /// Prediction of the parabolas at a value.
   PairLook expected(double value) const;
   void add(const PairLook& look);
   /// Whether the parabolas at the extremum also hold at both ends, within a factor of 3: there is

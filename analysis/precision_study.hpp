@@ -42,7 +42,7 @@ struct PrecisionMethod {
   TimeParameters at(int steps, const TimeParameters& time, double interval) const;
 };
 
-/// What a study is made of.
+/// Parameters of a study.
 struct StudyParameters {
   std::vector<double> retained;  ///< frequencies up to which modes move, Hz, ascending
   /// Contact assumptions that are compared; the scene's own need not be among them.
@@ -77,7 +77,7 @@ struct ObservedRow {
   int row = 0;  ///< of ReducedBody::rows
 };
 
-/// What a run has cost so far.
+/// Cost of a run so far.
 struct RunCost {
   double setup = 0.0;        ///< s, model excluded
   double sampling = 0.0;     ///< s, what looking at the samples took, estimated from some of them

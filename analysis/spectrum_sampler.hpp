@@ -1,4 +1,4 @@
-// Spectra of a system at single values of a parameter: what grows, and which eigenvalue is which.
+// Spectra of a system at single values of a parameter: growing eigenvalues and their matching.
 #pragma once
 
 #include <complex>

@@ -1,4 +1,4 @@
-// What every verb of the command line shares.
+// Functions common to all verbs of the command line.
 #pragma once
 
 #include <CLI/CLI.hpp>

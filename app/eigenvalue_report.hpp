@@ -1,4 +1,4 @@
-// What every kind of `eig` prints of eigenvalues.
+// Output of eigenvalues common to all kinds of `eig`.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// What a scene expects of its results.
+// Expectations of a scene about its results.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Progress of what follows eigenvalues along a key.
+// Progress of the computations that follow eigenvalues along a key.
 #pragma once
 
 #include "app/progress.hpp"

@@ -1,4 +1,4 @@
-// What the verbs that make pictures of a run file share.
+// Functions common to the verbs that make pictures of a run file.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@
 
 namespace stridor {
 
-/// What the user asked for, as written; nothing where an option was not given.
+/// Options as the user wrote them; nothing where an option was not given.
 struct PictureOptions {
   CommonOptions common;
   std::string file;

@@ -31,7 +31,7 @@ class Progress {
   /// Removes the bar.
   void finish();
 
-  /// What a plain line says of it, with what it has been told.
+  /// Text of a plain line from the reports so far.
   std::string text(SteadyTime now) const;
 
  private:

@@ -1,4 +1,4 @@
-// What is said beside the results, on stderr.
+// Remarks on stderr, apart from the results.
 #pragma once
 
 #include <fmt/format.h>

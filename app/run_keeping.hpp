@@ -1,4 +1,4 @@
-// What runs of every kind of scene share: where they come from, what they take, how they end.
+// Functions common to runs of every kind of scene: resumption, run times and endings.
 #pragma once
 
 #include <chrono>
@@ -57,7 +57,7 @@ void store_results(RunFileWriter& writer, const Json& results);
 /// Seconds of wall time since a moment.
 double seconds_since(std::chrono::steady_clock::time_point moment);
 
-/// What a run took, s.
+/// Times that a run took, s.
 struct RunTimes {
   double setup = 0.0, march = 0.0, output = 0.0;
 };

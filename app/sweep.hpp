@@ -1,4 +1,4 @@
-// What the verb sweep was asked for, and what it does on every kind of scene.
+// Options of the verb sweep, and its work on every kind of scene.
 #pragma once
 
 #include <optional>

@@ -1,7 +1,7 @@
-// The doors through which stridor reports that something is wrong.
+// Exceptions through which stridor reports errors.
 //
 //   ConfigError            what the user wrote (scene, --set, command line)   exit 2
-//   NumericalError         the numbers failed: diverged, singular, lost       exit 3
+//   NumericalError         numerical failure: diverged, singular, lost        exit 3
 //   FileError              a file cannot be read or written                   exit 4
 //   Interrupted            stopped on request                                 exit 5
 //   std::invalid_argument  a broken precondition of a C++ call (a bug)        exit 1

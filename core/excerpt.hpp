@@ -12,7 +12,7 @@ namespace stridor {
 ///         |     ^
 ///
 /// Fits into a terminal of 80 columns: a line that does not is cut to what surrounds the caret. The
-/// caret stands under its character whatever tabs, wide characters and marks are before it; tabs
+/// caret is under its character whatever tabs, wide characters and marks are before it; tabs
 /// become spaces, and what is not UTF-8 or would steer the terminal becomes '?'.
 ///
 /// @param line   without its line break

@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM: what ends at once, and what is asked to end in order.
+// Ctrl-C and SIGTERM: immediate end of the program, or a request to end in order.
 #pragma once
 
 #include <sys/types.h>

@@ -90,8 +90,8 @@ FaceSlidingState prescribed_sliding_state(const std::vector<FaceContact>& contac
 Eigen::VectorXd unit_force(const FaceContact& contact, const FaceContactLaw& law,
                            const FaceContactPoint& point);
 
-/// What friction along and across changes by per velocity along and across: μ λ₀ (1 − d dᵀ)/|v|,
-/// N s/m; zero where friction does not turn.
+/// Derivative of friction along and across with respect to velocity along and across:
+/// μ λ₀ (1 − d dᵀ)/|v|, N s/m; zero where friction does not turn.
 Eigen::Matrix2d turning_resistance(const FaceContactLaw& law, const FaceContactPoint& point);
 
 /// Small motion of bodies about a sliding state (docs/theory.md, 10.2, 10.3).

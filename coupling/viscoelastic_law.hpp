@@ -20,11 +20,11 @@ struct LawValue {
 enum class LawRange {
   inside,
   no_contact,   ///< ŷ ≤ 0: everything vanishes
-  too_deep,     ///< ŷ above what the law was made for: a continuation
+  too_deep,     ///< ŷ above the range of the law: a continuation
   beyond_data,  ///< |v̂| or ŷ outside the data behind the law: a continuation or a limit
 };
 
-/// What a law says of one contact, all dimensionless: F̃ = F/(E_0* R²), Ã = A/R², μ.
+/// Values of a law for one contact, all dimensionless: F̃ = F/(E_0* R²), Ã = A/R², μ.
 struct ViscoelasticContact {
   LawValue force;
   LawValue area;
@@ -34,7 +34,7 @@ struct ViscoelasticContact {
 
 /// Force, area and viscoelastic friction of a contact that slides steadily (docs/theory.md, 8.4).
 ///
-/// Never clamped: outside of what a law was made for it goes on and says so.
+/// Never clamped: outside its range a law is continued and reports it.
 class ViscoelasticContactLaw {
  public:
   virtual ~ViscoelasticContactLaw() = default;

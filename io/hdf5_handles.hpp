@@ -1,4 +1,4 @@
-// What writing and reading run files share: identifiers and errors of HDF5. Only for the sources of
+// Identifiers and errors of HDF5, common to writing and reading run files. Only for the sources of
 // io/run_file.hpp, whose users need no HDF5.
 #pragma once
 
@@ -52,7 +52,7 @@ class QuietErrors {
   void* data_ = nullptr;
 };
 
-/// What HDF5 says about the call that has just failed; the text of errno where there is one.
+/// Message of HDF5 about the call that has just failed; the text of errno where there is one.
 std::string hdf5_cause();
 
 /// The text of an error number of the system.

@@ -1,11 +1,11 @@
-// What is read must be a regular file.
+// Check that an input is a regular file.
 #pragma once
 
 #include <string>
 
 namespace stridor {
 
-/// What stands under a path where it is no regular file: "a folder", "a FIFO (named pipe)", "a
+/// Kind of the file under a path that is no regular file: "a folder", "a FIFO (named pipe)", "a
 /// device", "a socket"; "" for a regular file, and where there is nothing.
 std::string irregular_kind(const std::string& path);
 

@@ -1,4 +1,4 @@
-// Run files: what a simulation leaves behind, as HDF5 that h5py, Octave and ncdump read.
+// Run files: results of a simulation, as HDF5 that h5py, Octave and ncdump read.
 //
 //     /                      format, version, commit, command, scene_hash, date
 //     /scene/text, resolved  the scene as given and as resolved

@@ -1,4 +1,4 @@
-// What the two sources of RunFileWriter share: one makes and opens files, the other fills them.
+// State common to the two sources of RunFileWriter: one makes and opens files, one fills them.
 #pragma once
 
 #include <array>

@@ -36,8 +36,8 @@ struct SceneNode {
   std::vector<SceneEntry> entries;  ///< of a map, in the order of the file; no name occurs twice
   std::vector<SceneNode> items;     ///< of a list
   Place place;
-  /// What the text itself has wrong here (a duplicate key, a merge key, a tag, ...), with keys
-  /// relative to this node. Kept so that they are reported along with everything else.
+  /// Faults of the text itself here (a duplicate key, a merge key, a tag, ...), with keys relative
+  /// to this node. Kept so that they are reported along with everything else.
   std::vector<Problem> problems;
   std::string document;  ///< of the map at the top: what was read, for the excerpts of messages
 
@@ -119,7 +119,7 @@ void locate(std::vector<Problem>& problems, const SceneNode& root);
 /// Sorts by place, those of the file before those of `--set`; equal places keep their order.
 void sort_by_place(std::vector<Problem>& problems);
 
-/// Adds what the text itself has wrong at this node and below it (SceneNode::problems).
+/// Adds the faults of the text itself at this node and below it (SceneNode::problems).
 /// @param path key path of `node`, which goes before the keys
 void collect_text_problems(const SceneNode& node, const std::string& path,
                            std::vector<Problem>& problems);

@@ -28,7 +28,7 @@ struct SpectrogramMark {
   MarkStyle style = MarkStyle::found;
 };
 
-/// What a picture of a spectrogram shows besides the amplitudes.
+/// Contents of a picture of a spectrogram besides the amplitudes.
 struct SpectrogramPicture {
   std::string title;           ///< above; may be empty
   std::string units;           ///< of the amplitudes, as in a run file
@@ -51,7 +51,7 @@ struct AmplitudeRaster {
 
 /// Brings a spectrogram onto the raster of a picture, coarser or finer, by taking maxima.
 ///
-/// A column of the spectrogram stands for the time up to half-way to its neighbours, the first and
+/// A column of the spectrogram represents the time up to half-way to its neighbours, the first and
 /// the last one for all of their piece; a line for the frequencies up to half-way to its
 /// neighbours. A cell of the raster is the largest amplitude of all that it touches, so that a
 /// burst of a single column, or a single line, does not vanish from the picture.

@@ -26,8 +26,8 @@ struct DiscParameters {
   static const Schema& schema();
 };
 
-/// What presses the back of a pad towards the disc: a force, or a displacement of the far ends of
-/// its springs.
+/// Load that presses the back of a pad towards the disc: a force, or a displacement of the far ends
+/// of its springs.
 struct PistonParameters {
   std::optional<double> force;         ///< N, >= 0
   std::optional<double> displacement;  ///< m, >= 0
@@ -40,7 +40,7 @@ struct PadsParameters {
   std::optional<ElasticPadParameters> elastic;  ///< or what they are made of
   PadStiffness stiffness;
   std::optional<PistonParameters> piston;
-  double radius = 0.0;  ///< where they stand, m
+  double radius = 0.0;  ///< of their position, m
   double angle = 0.0;   ///< rad
   MaterialDamping damping;
   static const Schema& schema();

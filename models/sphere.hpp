@@ -11,8 +11,8 @@
 
 namespace stridor {
 
-/// A sphere on springs and dampers that is pressed against a sliding substrate (PPH, Fig. 2). What
-/// makes it move is given dimensionless or, instead, by its dimensional twin.
+/// A sphere on springs and dampers that is pressed against a sliding substrate (PPH, Fig. 2). The
+/// parameters of its motion are given dimensionless or, instead, by its dimensional twin.
 struct SphereParameters {
   double stiffness_x = 0.0;        ///< k_x, N/m
   double natural_frequency = 0.0;  ///< ω_nx = √(k_x/m), rad/s

@@ -7,8 +7,8 @@
 
 namespace stridor {
 
-/// A sink that, as it may be, looks at nothing but the displacement of one row of one body: it then
-/// takes what a batch of simulations computes on the way.
+/// A sink that may read nothing but the displacement of one row of one body. It then takes the
+/// value that a batch of simulations computes on the way.
 class DisplacementSink : public SampleSink {
  public:
   struct Row {

@@ -23,9 +23,9 @@ namespace stridor {
 ///
 /// P is the characteristic polynomial. With one contact and without G and H, A is the number
 /// f(s) = Σ b_C,i b_E,i/(s² + c_i s + ω_i²). Modes whose residue vanishes are zeros of P like the
-/// others. Modes that coupled terms of their body join are replaced by pairs of its complex modes
-/// (CoupledModes), whose weights are polynomials of s; ω² is then the product of the two poles of a
-/// pair, and −c their sum.
+/// others. Modes that gyroscopic, circulatory and non-proportional damping terms of their body
+/// couple are replaced by pairs of its complex modes (CoupledModes), whose weights are polynomials
+/// of s; ω² is then the product of the two poles of a pair, and −c their sum.
 ///
 /// P overflows, and f has poles next to its zeros. What is evaluated is the logarithmic derivative
 /// of F(s) = det A Π_near d_i, in which the pole nearest to s is multiplied out; F is smooth where
