@@ -200,7 +200,7 @@ struct Insertion {
   std::array<double, 2> place{};
 };
 
-/// The line with known points in their places; where one of its own is the same, that is left out.
+/// The line with known points in their places; its own points that coincide with them are dropped.
 BoundaryLine joined(const BoundaryLine& line, std::vector<Insertion> known) {
   std::sort(known.begin(), known.end(), [](const Insertion& a, const Insertion& b) {
     return std::pair(a.foot.segment, a.foot.share) < std::pair(b.foot.segment, b.foot.share);

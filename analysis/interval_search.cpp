@@ -292,7 +292,7 @@ Outcome Pass::climb(std::size_t i, std::size_t b, double sign) {
     if (!(sign * curvature < 0.0)) return Outcome::halve;
     next = 0.5 * (points[0].value + points[1].value) - 0.5 * left / curvature;
     const double offset = next - points[1].value;
-    // What a parabola may add, four times over, does not reach zero.
+    // Four times the contribution of a parabola does not reach zero.
     const double rise = std::abs(curvature) * offset * offset;
     if (4.0 * rise < std::abs(points[1].excess)) return Outcome::resolved;
     const double smallest = 1e-12 * (points[2].value - points[0].value);

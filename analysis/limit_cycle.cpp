@@ -70,7 +70,7 @@ void measure(const SubstrateMotion& motion, LimitCycle& cycle) {
   cycle.last_velocity = {motion.state()[2], motion.state()[3]};
 }
 
-/// What is left where a motion has failed.
+/// Result for a motion that has failed.
 LimitCycle failed(const SubstrateMotion& motion) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   LimitCycle cycle;

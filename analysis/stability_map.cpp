@@ -60,7 +60,7 @@ struct OnSide {
   int side = 0;
 };
 
-/// Connects the crossings around one cell, given in the order in which they stand there.
+/// Connects the crossings around one cell, given in the order in which they follow there.
 void connect(std::vector<Node>& nodes, const std::vector<OnSide>& around, double width,
              double height) {
   const std::size_t count = around.size();

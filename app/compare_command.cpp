@@ -101,8 +101,8 @@ void remove_files(Candidates& candidates) {
   }
 }
 
-/// Runs the transients in turns, a hundredth of the run at a time, so that whatever else the
-/// machine does weighs on all of them alike.
+/// Runs the transients interleaved, a hundredth of the run at a time, so that other load on the
+/// machine affects all of them alike.
 Candidates run_interleaved(const LoadedScene& loaded, Coordinates coordinates, double end,
                            const fs::path& folder, const CompareOptions& options) {
   const char* suffix = coordinates == Coordinates::modal ? "" : "_published";

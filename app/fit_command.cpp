@@ -27,7 +27,7 @@ struct FitOptions {
   std::optional<std::string> figures;
 };
 
-/// What is compared.
+/// Quantities compared.
 struct Comparison {
   std::vector<LawSample> samples;
   PerQuantity shift;  ///< decades, of the published coefficients

@@ -5,7 +5,7 @@
 namespace stridor {
 namespace {
 
-/// What openblas_get_parallel() returns.
+/// Return values of openblas_get_parallel().
 enum class Threads { none = 0, posix = 1, openmp = 2, unknown = -1 };
 
 template <class Function>

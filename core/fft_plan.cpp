@@ -55,7 +55,7 @@ class Plans {
 
   /// @throws std::bad_alloc
   detail::SharedFftwPlan find(Direction direction, int n, double* reals, fftw_complex* complexes) {
-    // What goes at the end, or where something is thrown, takes the lock when it is free again.
+    // A plan destroyed at the end, or by an exception, takes the lock when it is free again.
     detail::FftwPlan made;
     detail::SharedFftwPlan plan;
     detail::SharedFftwPlan forgotten;

@@ -14,7 +14,7 @@
 namespace stridor {
 namespace {
 
-// What the handler reads. It may come at any moment, in any thread.
+// Flags that the handler reads. It may run at any moment, in any thread.
 std::atomic<bool> stop{false};
 std::atomic<int> num_orderly{0};
 std::atomic<bool> is_told_as_json{false};

@@ -16,7 +16,7 @@ namespace stridor {
 
 using Run = Simulation::Implementation;
 
-/// What a batch takes out of the bodies and contacts of a simulation, and puts back.
+/// Copies the state of bodies and contacts of a simulation into a batch, and back.
 struct LaneAccess {
   static ModalRecurrence* modal(Run& run, int body) {
     return dynamic_cast<ModalRecurrence*>(run.bodies[static_cast<std::size_t>(body)].get());
@@ -56,7 +56,7 @@ struct LaneAccess {
   using Into = Copy<false>;
   using OutOf = Copy<true>;
 
-  /// What a step changes and displacements depend on.
+  /// Variables that a step changes and displacements depend on.
   template <bool is_out>
   static void copy_place(const Copy<is_out>& copy, const BodyLanes& lanes, ModalRecurrence& body,
                          std::vector<double>& forces) {
@@ -68,7 +68,7 @@ struct LaneAccess {
     if constexpr (is_out) copy(lanes.forces, body.acting_.forces);
     if (body.has_residual()) copy(lanes.lagging, body.lagging_.forces);
   }
-  /// What else a step changes.
+  /// Other variables that a step changes.
   template <bool is_out>
   static void copy_rest(const Copy<is_out>& copy, const BodyLanes& lanes, ModalRecurrence& body) {
     copy(lanes, ModalField::increment, body);
@@ -79,7 +79,7 @@ struct LaneAccess {
     copy(lanes.answer, body.answer_);
   }
 
-  /// What it does not.
+  /// Constants of a step.
   static void copy_constants(const Into& copy, const BodyLanes& lanes, ModalRecurrence& body) {
     for (const ModalField field :
          {ModalField::keep, ModalField::pull, ModalField::gain, ModalField::load})
@@ -97,7 +97,7 @@ struct LaneAccess {
     copy(lanes.share, 0, body.share_);
   }
 
-  /// What the displacement of a row is made of; of no row, zeros.
+  /// Terms of the displacement of a row; zeros without a row.
   static void copy_watched(const Into& copy, const BodyLanes& lanes, ModalRecurrence& body,
                            std::optional<int> row) {
     const auto set = [&](double* entries, std::size_t i, double number) {
@@ -172,7 +172,7 @@ struct LaneAccess {
 
 namespace {
 
-/// What simulations in the same lanes share.
+/// Sizes common to simulations in the same lanes.
 struct Shape {
   bool is_prompt;
   ContactAssumption assumption;

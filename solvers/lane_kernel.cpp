@@ -156,7 +156,7 @@ STRIDOR_INLINE V solve_contact(const Lanes& lanes) {
   const V pull_x = nx - friction * tx;
   const V pull_y = ny - friction * ty;
 
-  // What unit λ_n does to the slots.
+  // Response of the ports to unit λ_n.
   V slave_answer[2];
   V master_answer[4];
   const V master_pull[4] = {w0 * pull_x, w0 * pull_y, w1 * pull_x, w1 * pull_y};

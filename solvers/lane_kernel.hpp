@@ -83,7 +83,7 @@ struct Lanes {
   double* trace = nullptr;    ///< an entry per step: the sum of the rows watched
 };
 
-/// Steps all lanes until `max_steps` are done or a lane needs a treatment that is not provided here:
+/// Steps all lanes until `max_steps` are done or a lane needs a treatment not provided here:
 /// another segment, a force that pulls, jams or is not finite, sliding against the drive. Such a
 /// lane has done the last step up to the contact, which is unchanged: index and bodies are at t_n,
 /// ports predicted.

@@ -93,7 +93,7 @@ class Propagator {
   const double* compliances() const { return compliance_.data(); }
 
   /// For a body with direct feedthrough: predicts its ports in the next step. Cost: a product of
-  /// the length of the body for every port, and that of `watch` where ports have changed their rows.
+  /// the length of the body for every port, and `watch` for ports that have changed their rows.
   void look_ahead();
   /// u at the ports at t_{n+1} without forces from t_n on, m, as of the last `look_ahead`.
   const double* ahead() const { return ahead_.data(); }

@@ -166,8 +166,8 @@ struct Simulation::Implementation {
   bool pose(RunningContact& contact, LocalProblem& problem, double drive_at, double rise) {
     SlidingPoint& sliding = contact.sliding;
     if (!sliding.find(drive_at)) return false;
-    // Gap and slip are those without the contact forces; the instantaneous response to these is part
-    // of the Delassus operator.
+    // Gap and slip are those without the contact forces; the instantaneous response to these is
+    // part of the Delassus operator.
     problem.penetration = sliding.roughness() - sliding.predicted_gap(drive_at);
     problem.sliding_friction =
         rise * sliding_friction(contact.point().friction, contact.slip_velocity);

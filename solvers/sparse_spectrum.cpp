@@ -157,7 +157,7 @@ void SparseSearch::add(const Eigen::VectorXd& vector) {
   double rest_length = std::sqrt(std::max(0.0, rest.dot(momentum)));
   if (rest_length <= negligible * length || dim_ == size()) return;
   rest /= rest_length;
-  // What is stretched is no longer orthogonal.
+  // A stretched vector is no longer orthogonal.
   rest -= basis_.leftCols(dim_) * (momenta_.leftCols(dim_).transpose() * rest);
   momentum = mass * rest;
   rest_length = std::sqrt(rest.dot(momentum));
@@ -181,7 +181,7 @@ double SparseSearch::add_complex(const Eigen::VectorXcd& vector) {
   for (int round = 0; round < 2; ++round)
     rest -= basis_.leftCols(dim_) * (momenta_.leftCols(dim_).transpose() * rest);
   const double share = length_of(rest);
-  // What is less is rounding as much as anything, and makes projections have what no one asked for.
+  // Less is mostly rounding, and gives the projections eigenvalues that were not asked for.
   if (share > tolerance) {
     add(unit.real());
     add(unit.imag());
@@ -248,7 +248,7 @@ void SparseSearch::refine() {
         have_converged &= add_complex(vector) <= tolerance;
         improve(improved[first], vector);
       }
-      // What the first space has nothing of would never come in by itself.
+      // A direction absent from the first space would never enter by itself.
       if (round == 0 && !rank_) add_random(factor, shift, 2);
     }
     if (have_converged) {

@@ -40,7 +40,7 @@ struct NodeGrid {
 /// DoFs of an element in the order of its matrices, or `held`.
 using ElementDofs = std::array<int, 16>;
 
-/// What displacements in direction `column` (x: 0, y: 1) give in direction `row`, node by node.
+/// Response in direction `row` to displacements in direction `column` (x: 0, y: 1), node by node.
 Eigen::Map<Eigen::Matrix<double, 8, 8>, 0, Eigen::Stride<32, 2>> direction_part(
     Q8Matrix& matrix, Eigen::Index row, Eigen::Index column) {
   return Eigen::Map<Eigen::Matrix<double, 8, 8>, 0, Eigen::Stride<32, 2>>(&matrix(row, column));
