@@ -1,4 +1,4 @@
-// What the program says of a wrong scene: the place in a line of its own, the line, a caret.
+// Messages of the program about a wrong scene: the place in a line of its own, the line, a caret.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -777,7 +777,7 @@ TEST_F(Pictures, BytesChangedAnywhereNeverEndInAnInternalError) {
   std::mt19937 generator(11);
   for (int trial = 0; trial < 15; ++trial) {
     std::string bytes = whole;
-    // What describes the data stands mostly in the first pages.
+    // The description of the data is mostly in the first pages.
     for (int i = 0; i < 20; ++i) bytes[generator() % 16384] = static_cast<char>(generator());
     write_file(path("bad.h5"), bytes);
     for (const std::vector<std::string>& arguments :

@@ -377,7 +377,7 @@ TEST(SceneFile, ThatIsTooLargeIsAFileError) {
   EXPECT_EQ(file_failure(path), "");
   write_file(path, "a: 1\n#" + std::string(SceneLimits::bytes - 5, 'x'));
   EXPECT_THAT(file_failure(path), HasSubstr("is larger than 4 MiB"));
-  // What has no end is not even opened.
+  // A file without end is not even opened.
   EXPECT_THAT(file_failure("/dev/zero"), HasSubstr("is a device; give the path of a scene file"));
 }
 

@@ -1,8 +1,8 @@
 // Valid scenes that together hold every declared key, found from the declarations alone.
 //
-// The values are first guesses by kind, unit and range. What must hold between keys is known to the
-// checks only; so guesses are changed until none objects. Should no valid scene be found for a key,
-// the test that asked fails with the scene that came nearest and what is still said of it.
+// The values are first guesses by kind, unit and range. Conditions between keys are known to the
+// checks only, so guesses are changed until none objects. If no valid scene is found for a key, the
+// test that asked fails with the scene that came nearest and its remaining errors.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -210,7 +210,7 @@ class Repair {
   std::set<std::string> visited_;
 };
 
-/// What the checks between keys say of a struct and of those below it. The reader runs them from
+/// Errors of the checks between keys of a struct and of those below it. The reader runs them from
 /// the inside out and stops at the first that objects; here none hides another.
 inline void run_checks(const Schema& schema, const void* object, const std::string& path,
                        std::vector<Problem>& problems) {
