@@ -8,7 +8,7 @@
 
 namespace stridor {
 
-/// What one mode sees of the matrices (docs/theory.md, 7.5; HS (30), (34)).
+/// Quotients of one mode with the matrices (docs/theory.md, 7.5; HS (30), (34)).
 ///
 /// The contact forces are eliminated from the equations of motion, which leaves
 ///
@@ -53,7 +53,7 @@ ModeQuotients mode_quotients(const SparseSystem& system, std::complex<double> s,
 struct ModeEnergy {
   double from_contact = 0.0;  ///< P_contact/2E, part of the growth rate, 1/s
   double by_damping = 0.0;    ///< −P_damping/2E, likewise; negative where damping takes energy
-  double by_coupled = 0.0;    ///< likewise of the coupled terms of bodies
+  double by_coupled = 0.0;    ///< likewise of the gyroscopic, circulatory and damping terms
   double residual = 0.0;      ///< |from_contact + by_damping + by_coupled − Re s|/|s|
 
   /// Share of the energy that enters or leaves in one period.

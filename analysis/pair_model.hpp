@@ -37,7 +37,8 @@ std::optional<FoundPair> closest_pair(const std::vector<std::complex<double>>& e
 /// Solves for the value between two others at which a pair grows most, or grows least.
 ///
 /// Mean and square are interpolated by parabolas through three looks. Proposed is the extremum of
-/// Re D, then that of the growth, until neither would change by what matters for stability.
+/// Re D, then that of the growth, until neither would change by an amount that matters for
+/// stability.
 class PairSearch {
  public:
   enum class Aim {

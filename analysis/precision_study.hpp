@@ -80,7 +80,7 @@ struct ObservedRow {
 /// Cost of a run so far.
 struct RunCost {
   double setup = 0.0;        ///< s, model excluded
-  double sampling = 0.0;     ///< s, what looking at the samples took, estimated from some of them
+  double sampling = 0.0;     ///< s, time of sampling, estimated from some samples
   double stepping = 0.0;     ///< s, the rest
   double least_step = 0.0;   ///< s per step, of the fastest stretch
   double median_step = 0.0;  ///< s per step, over the stretches

@@ -39,7 +39,7 @@ class Pace {
 /// "12 s", "3 min 05 s", "2 h 10 min".
 std::string duration_text(double seconds);
 
-/// "42 %, 12 s left"; 100 % only where all is done. What is not known is left out: without a part
+/// "42 %, 12 s left"; 100 % only where all is done. Unknown parts are omitted: without a part
 /// done there is the time so far, "12 s so far".
 std::string pace_text(const Pace& pace, SteadyTime now);
 

@@ -79,7 +79,7 @@ struct RecordedStretch {
 };
 
 /// Opens the run file and finds the samples between --from and --to.
-/// @throws ConfigError if there are none; FileError if the file is not what it should be
+/// @throws ConfigError if there are none; FileError if the file is not a valid run file
 RecordedStretch open_stretch(const PictureOptions& options);
 
 /// The series with this name.
@@ -127,7 +127,7 @@ struct NumberedBurst {
 /// The bursts_of() the run that touch the stretch.
 std::vector<NumberedBurst> bursts_in(const RecordedStretch& run, const PictureOptions& options);
 
-/// Makes the spectrogram of a channel: figure, data, and what is printed.
+/// Makes the spectrogram of a channel: figure, data and printed results.
 /// @throws ConfigError, FileError
 ExitCode draw_spectrogram(const PictureOptions& options);
 

@@ -10,9 +10,9 @@ namespace stridor {
 
 /// A bar on a terminal, a plain line now and then elsewhere.
 ///
-/// What is shown is kept up by a thread of its own, so that it also moves while a library computes.
-/// Of several the newest is shown; where it has not been told anything, what the main thread is at
-/// (core/activity.hpp) stands in its place, if it is at anything.
+/// A thread of its own updates the display, so that it also moves while a library computes. Of
+/// several the newest is shown; where it has not been told anything, the current phase of the main
+/// thread (core/activity.hpp) is shown in its place, if there is one.
 class Progress {
  public:
   explicit Progress(std::string what);
@@ -20,7 +20,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// The next phase begins: what was done before does not count, and the time left is of this
+  /// The next phase begins: work done before does not count, and the time left is of this
   /// phase.
   void begin(std::string phase);
   /// @param fraction done of the phase, 0 to 1

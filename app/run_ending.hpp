@@ -20,8 +20,8 @@ namespace stridor {
 /// @tparam Run  has keeper(), run_to_end(), write_checkpoint(), finish(), time() and failure()
 /// @param end   of the run, in units of its time()
 /// @param print prints the results where they are not asked for as JSON
-/// @throws Interrupted if the run was stopped, NumericalError if it failed or does not meet what is
-///         expected, FileError
+/// @throws Interrupted if the run was stopped, NumericalError if it failed or does not meet its
+///         expectations, FileError
 template <class Run, class Print>
 ExitCode run_and_report(Run& run, double end, const std::string& file, const RunEnding& ending,
                         const std::vector<Expectation>& expectations, Print&& print) {

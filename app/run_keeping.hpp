@@ -19,7 +19,7 @@ struct RunOutput {
   std::string command_line;
 };
 
-/// How a run is to end, and what is said of it.
+/// Requested ending of a run, and its report.
 struct RunEnding {
   double max_wall = std::numeric_limits<double>::infinity();  ///< s
   bool json = false;
@@ -100,7 +100,7 @@ class RunKeeper {
   std::function<void(double, const std::string&)> report_;
 };
 
-/// That a run was stopped on request, and how it goes on.
+/// Message that a run was stopped on request, and how to resume it.
 /// @param time, end s, or in units of the run
 [[noreturn]] void throw_interrupted(double time, double end, const std::string& file);
 

@@ -41,7 +41,7 @@ class Transient {
   RunKeeper& keeper() { return keeper_; }
 
   /// Flushes, reads the statistics off the file, stores them in it and closes it.
-  /// @param error what was found of the error of the run, or null
+  /// @param error estimated error of the run, or null
   /// @return the JSON object of `run`
   Json finish(const Json& error = nullptr);
 

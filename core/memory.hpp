@@ -7,7 +7,7 @@
 
 namespace stridor {
 
-/// The most that this process may hold, and what sets it.
+/// Largest memory that this process may hold, and the origin of the limit.
 struct MemoryLimit {
   double bytes = std::numeric_limits<double>::infinity();
   std::string source;  ///< "physical memory", ...

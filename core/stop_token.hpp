@@ -12,13 +12,14 @@ constexpr int stopped_exit_code = 5;
 
 /// Routes SIGINT and SIGTERM.
 ///
-/// Wherever nothing would be lost, a signal ends the program at once: inside a factorisation or an
-/// eigenvalue decomposition of a library too, which no loop of ours could leave. Unfinished files
-/// are removed, a word goes to stderr, the exit code is 5. While an OrderlyStop exists, a signal is
-/// a request that loops ask for, and a second one ends the program as if nobody had listened.
+/// Wherever nothing would be lost, a signal ends the program immediately: inside a factorisation or
+/// an eigenvalue decomposition of a library too, which no loop of ours could leave. Unfinished
+/// files are removed, a word goes to stderr, the exit code is 5. While an OrderlyStop exists, a
+/// signal is a request that loops ask for, and a second one ends the program as if nobody had
+/// listened.
 void install_stop_signals();
 
-/// Where a signal ends the program at once, it also prints one JSON object with the error to
+/// Where a signal ends the program immediately, it also prints one JSON object with the error to
 /// stdout.
 void tell_stop_as_json();
 
@@ -31,7 +32,7 @@ void request_stop(bool value = true);
 /// @throws Interrupted if a stop was requested; for loops whose results nobody keeps
 void throw_if_stopped();
 
-/// While one exists, something would be lost if the program ended at once.
+/// While one exists, an immediate end of the program would lose data.
 class OrderlyStop {
  public:
   OrderlyStop();

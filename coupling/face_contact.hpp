@@ -101,7 +101,7 @@ Eigen::Matrix2d turning_resistance(const FaceContactLaw& law, const FaceContactP
 /// over the closed contacts, D = turning_resistance(). They are constraints with the rows n + A q₀
 /// and unit_force(), or springs with a penalty.
 ///
-/// @param bodies without contact; its own constraints are left out
+/// @param bodies without contact; its own constraints are ignored
 LinearSystem linearise(const LinearSystem& bodies, const std::vector<FaceContact>& contacts,
                        const FaceContactLaw& law, const FaceSlidingState& state);
 

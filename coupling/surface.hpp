@@ -51,7 +51,7 @@ struct NodeWeights {
 /// (T2 − T0)/2 at T1 and (T3 − T1)/2 at T2 (Catmull-Rom), T0 and T3 being the neighbours. Where one
 /// is missing, the other is mirrored at the end node, T0 = 2 T1 − T2. Both reproduce straight lines
 /// and sum to 1.
-/// @param xi also outside [0, 1], where the cubic of this segment goes on
+/// @param xi also outside [0, 1], where the cubic of this segment continues
 inline NodeWeights weights_at(const Stencil& stencil, double xi) {
   NodeWeights weights;
   if (stencil.count == 2) {

@@ -134,7 +134,7 @@ class BoundaryElementLaw : public ViscoelasticContactLaw {
   ViscoelasticContact at(double indentation, double speed) const override;
 
  private:
-  /// m over its ratio to what both limits are made of, β a/(1 + (a/b) β²).
+  /// m over its ratio to the function with both limits, β a/(1 + (a/b) β²).
   LimitedSpline::Value friction_scale(double beta) const;
 
   double first_beta_ = 0.0;

@@ -126,7 +126,7 @@ double line_height(double font_size);
 /// Width of a text, cm, about: a character is 0.52 of the font size wide.
 double text_width(const std::string& text, double font_size);
 
-/// Words in lines that are no wider than `width` cm, as far as single words allow; what is
+/// Words in lines that are no wider than `width` cm, as far as single words allow; text that is
 /// unbroken() counts as a word.
 std::vector<std::string> wrapped(const std::string& text, double font_size, double width);
 

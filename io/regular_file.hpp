@@ -9,7 +9,7 @@ namespace stridor {
 /// device", "a socket"; "" for a regular file, and where there is nothing.
 std::string irregular_kind(const std::string& path);
 
-/// Refuses what is no regular file before it is opened: a FIFO would block until somebody writes
+/// Refuses an irregular file before it is opened: a FIFO would block until somebody writes
 /// into it, a device may never end.
 /// @throws FileError "is a FIFO (named pipe), expected a regular file"
 void refuse_irregular_file(const std::string& path);

@@ -7,14 +7,14 @@
 //     /channels/<name>       recorded quantities, thinned
 //     /contact/<name>/…      force, gap, slip_velocity, position, state; force_min, force_max,
 //                            stick_fraction, open_fraction: over every step since the row before;
-//                            the attribute `filter` says what is low-passed
+//                            the attribute `filter` states which are low-passed
 //     /energy/…              energy ledger
 //     /modal/<body>/…        static arrays
 //     /results               numbers read off the run, as attributes
 //     /checkpoint/a, b       the two latest states from which the run can go on, as bytes
 //
 // A series may be longer than /time while the run goes on, or after it was killed: len(/time) rows
-// of every series are complete, what comes after is not to be trusted.
+// of every series are complete, later rows are not to be trusted.
 #pragma once
 
 #include <cstdint>
@@ -102,7 +102,7 @@ class RunFileWriter : public RowSink {
   /// @param path      final name; an existing file is replaced only with Overwrite::yes
   /// @param overwrite whether an existing file may be replaced
   /// @param header    text for root attributes and /scene
-  /// @param series    what append() will bring, in this order; may be empty
+  /// @param series    series of append(), in this order; may be empty
   /// @throws FileError if the file exists ("exists; use --force to overwrite it"), is no regular
   ///         file, its folder is missing, no folder or not writable, or anything cannot be written;
   ///         what was there before is untouched then
@@ -113,7 +113,7 @@ class RunFileWriter : public RowSink {
                 std::vector<SeriesSpec> series, RunFileOptions options = {});
   /// Goes on with the file of a run from one of its checkpoints. The next row to append is row
   /// `checkpoint.rows`; rows that the file holds from there on are written over and must come again
-  /// as they were. What the run had left when it stopped (/final, /results, /bursts) is removed.
+  /// as they were. Results of the stopped run (/final, /results, /bursts) are removed.
   ///
   /// @throws FileError if the file cannot be changed, or does not hold these series
   static RunFileWriter resume(const std::string& path, std::vector<SeriesSpec> series,
@@ -134,10 +134,10 @@ class RunFileWriter : public RowSink {
   void append(std::span<const double> time, const std::vector<std::span<const double>>& columns);
   /// Adds one row: `row` has one entry per series. @throws as above
   void append(double time, std::span<const double> row) override;
-  /// Writes and flushes what is in memory. @throws FileError as append()
+  /// Writes and flushes the rows in memory. @throws FileError as append()
   void flush();
 
-  /// Writes and flushes what is in memory and then the state of the run, in place of the last but
+  /// Writes and flushes the rows in memory and then the state of the run, in place of the last but
   /// one checkpoint: there is a whole one at any moment. @throws FileError as append()
   void write_checkpoint(const State& state);
 

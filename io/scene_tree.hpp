@@ -1,8 +1,8 @@
 // The text of a scene as a tree of maps, lists and scalars that know where they were written.
 //
-// YAML is read with yaml-cpp, and what that library lets pass is caught here: duplicate keys, merge
-// keys, tags, several documents, alias bombs. Numbers stay text; what a scalar means is decided by
-// the key that it fills (io/scene_reader.hpp).
+// YAML is read with yaml-cpp. Errors that the library lets pass are caught here: duplicate keys,
+// merge keys, tags, several documents, alias bombs. Numbers stay text; what a scalar means is
+// decided by the key that it fills (io/scene_reader.hpp).
 #pragma once
 
 #include <cstddef>
@@ -39,7 +39,7 @@ struct SceneNode {
   /// Faults of the text itself here (a duplicate key, a merge key, a tag, ...), with keys relative
   /// to this node. Kept so that they are reported along with everything else.
   std::vector<Problem> problems;
-  std::string document;  ///< of the map at the top: what was read, for the excerpts of messages
+  std::string document;  ///< of the map at the top: the text read, for the excerpts of messages
 
   /// The entry of a map with this name, or nullptr.
   const SceneEntry* entry(const std::string& key) const;
@@ -63,7 +63,7 @@ struct SceneLimits {
 /// Reads a scene from YAML text.
 ///
 /// @param text        the scene, UTF-8
-/// @param source_name what messages call it, as a rule the path of the file
+/// @param source_name name in messages, as a rule the path of the file
 /// @return the map at the top
 /// @throws ConfigError with source, line and column where the text is not YAML in UTF-8, is empty,
 /// is
@@ -78,7 +78,7 @@ SceneNode read_scene_file(const std::string& path);
 
 /// Applies one `--set key.path=value` to the tree.
 ///
-/// The value is read as YAML (a scalar, or a list or map in one line) and replaces what was there;
+/// The value is read as YAML (a scalar, or a list or map in one line) and replaces the old one;
 /// maps missing on the way are made. A number in the path counts the entries of a list from 0.
 ///
 /// @param root       map at the top; unchanged where this throws

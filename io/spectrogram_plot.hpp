@@ -94,12 +94,12 @@ struct MarkPlace {
   PictureBox box;                    ///< around the mark, within the map
   std::string text;                  ///< the label, or the short one
   std::optional<PictureBox> label;   ///< around the text; nothing where there is no room
-  std::optional<PictureBox> leader;  ///< vertical line to a label that stands apart
+  std::optional<PictureBox> leader;  ///< vertical line to a label apart from its box
 };
 
 /// Lays out marks on a map.
 ///
-/// Marks that do not touch the map are left out; the others are cut at its edges. A label stands
+/// Marks that do not touch the map are omitted; the others are cut at its edges. A label is
 /// right above or below its box where it covers neither another label nor a box, else in rows
 /// farther away with a line to its box. Where there is no room the short label is tried.
 ///

@@ -14,7 +14,7 @@
 
 namespace stridor {
 
-/// Holds what HDF5 writes in memory until it is committed (a virtual file driver of HDF5).
+/// Holds the writes of HDF5 in memory until they are committed (a virtual file driver of HDF5).
 ///
 /// HDF5 flushes its metadata in the order of addresses. A process killed half-way leaves, for
 /// example, a node of the chunk index that points beyond the end that the superblock states, and
@@ -22,7 +22,7 @@ namespace stridor {
 ///
 ///   1. the end of the file, first of the file itself, then in the superblock;
 ///   2. raw data, and blocks that the file did not have before: nothing refers to them yet;
-///   3. what refers to those: heaps, index nodes from the root down, object headers.
+///   3. references to those: heaps, index nodes from the root down, object headers.
 ///
 /// The file then is readable after every single write. It takes for granted that rows are only
 /// appended: raw data in front of len(/time) do not change, and no block is freed and used anew.

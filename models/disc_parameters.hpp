@@ -37,7 +37,7 @@ struct PistonParameters {
 /// Two pads, one on each face, mirror images of each other; rigid or elastic.
 struct PadsParameters {
   std::optional<double> mass;                   ///< of each, where they are rigid, kg, > 0
-  std::optional<ElasticPadParameters> elastic;  ///< or what they are made of
+  std::optional<ElasticPadParameters> elastic;  ///< or their material and geometry
   PadStiffness stiffness;
   std::optional<PistonParameters> piston;
   double radius = 0.0;  ///< of their position, m

@@ -38,7 +38,7 @@ struct SphereParameters {
   static const Schema& schema();
 };
 
-/// Friction that only resembles the set-valued one, to see what that does.
+/// Friction that only resembles the set-valued one, to see the effect.
 struct RegularisationParameters {
   RegularisedSign::Kind law = RegularisedSign::Kind::none;
   std::optional<double> speed;  ///< v_ε/v_d

@@ -36,12 +36,12 @@ class Batch {
   void watch(std::size_t run, DisplacementSink& sink);
 
   /// Steps every simulation that has not failed until it is at `target`, as
-  /// Simulation::step_until(). What may be asked of them then is displacements, contacts and
+  /// Simulation::step_until(). They then provide displacements, contacts and
   /// statistics, which may be reset; for all else, `synchronise` first.
   void step_until(std::int64_t target);
   /// Gives the simulations their whole state.
   void synchronise();
-  /// Of the last step of a simulation; what is not `done` is final.
+  /// Of the last step of a simulation; any outcome but `done` is final.
   StepOutcome outcome(std::size_t run) const;
   /// Whether it is one that steps in lanes.
   bool steps_in_lanes(std::size_t run) const;

@@ -100,7 +100,7 @@ struct ContactGain {
 class EnergyLedger {
  public:
   /// Begins at the initial motion of the bodies.
-  /// @param system copied in what it needs; not referenced afterwards
+  /// @param system its needed parts are copied; not referenced afterwards
   /// @param time   step, and the coordinates in which positions and increments will come
   EnergyLedger(const System& system, const TimeParameters& time);
 

@@ -131,7 +131,7 @@ struct Equilibrium {
   EquilibriumState state;                     ///< as asked for
   std::vector<Eigen::VectorXd> displacement;  ///< of every body, modal coordinates, m kg^½
   std::vector<ContactEquilibrium> contacts;
-  double residual = 0.0;  ///< largest of displacement, gap and force, relative to what they are of
+  double residual = 0.0;  ///< largest of displacement, gap and force, each relative to its scale
   int iterations = 0;     ///< Newton steps over all passes
   std::string failure;    ///< cause of the failure; empty where converged
 };

@@ -79,7 +79,7 @@ struct Lanes {
   ContactLanes contact;
   double* step = nullptr;     ///< h
   double* index = nullptr;    ///< n
-  double* is_used = nullptr;  ///< 1 or 0; what is not used holds no state
+  double* is_used = nullptr;  ///< 1 or 0; an unused lane holds no state
   double* trace = nullptr;    ///< an entry per step: the sum of the rows watched
 };
 

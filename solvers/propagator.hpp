@@ -125,14 +125,14 @@ class Propagator {
     Eigen::VectorXd displacement;
     Eigen::VectorXd velocity;
   };
-  /// @param forces on the slots at t_n, N
+  /// @param forces on the ports at t_n, N
   virtual Motion motion(const double* forces) const = 0;
   /// Contribution of the truncated modes to u_n in reduced coordinates, m; empty without them.
   Eigen::VectorXd residual_displacement() const;
 
   /// The step that `advance` would make with these forces: u_n and u_{n+1} − u_n in the coordinates
   /// of the body, which stays where it is.
-  /// @param forces on the slots at t_n, N
+  /// @param forces on the ports at t_n, N
   /// Cost: less than that of `advance`. No allocation.
   virtual void foresee(const double* forces, std::span<double> position,
                        std::span<double> increment) const = 0;

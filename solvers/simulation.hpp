@@ -73,7 +73,7 @@ enum class Accounts {
 /// known, contact forces λ_n included.
 class Simulation {
  public:
-  /// @param system copied in what it needs; not referenced afterwards
+  /// @param system its needed parts are copied; not referenced afterwards
   /// @param time   step h > 0, at most `step_limit(system, time)`; `end` is not used here
   /// @throws ConfigError for `time.step` if h is above the limit, naming both; for keys that do not
   ///         go together
