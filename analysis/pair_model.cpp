@@ -152,7 +152,7 @@ double PairSearch::fastest_place(double around) const {
 
 std::optional<double> PairSearch::next() const {
   constexpr double rounding = 1e-15;     // of D in proportion to scale²
-  constexpr double least_growth = 1e-8;  // of scale: what an undamped pair must grow by
+  constexpr double least_growth = 1e-8;  // of scale: least growth of an undamped pair
   const PairLook& top = best();
   const std::optional<double> vertex_place = vertex();
   const bool is_first = looks_.size() == num_given_;

@@ -16,7 +16,7 @@ using Complex = std::complex<double>;
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-/// All eigenvalues of the dense problem, and what may be rounding of them.
+/// All eigenvalues of the dense problem, and their possible rounding errors.
 class DenseSpectra {
  public:
   explicit DenseSpectra(const PencilFamily& family) : family_(&family) {}

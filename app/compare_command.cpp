@@ -80,7 +80,7 @@ void record_contact(Scene& scene) {
   }
 }
 
-/// One assumption's transient and what came of it.
+/// Transient of one assumption and its results.
 struct Candidate {
   LoadedScene scene;
   std::string file;

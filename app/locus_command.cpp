@@ -96,7 +96,7 @@ double gain_between(const Branch& branch, double from, double to, const PassingT
   return gain;
 }
 
-/// When the run of the scene is in a window, and what grows by then: it may start or end inside.
+/// Times of a window in the run of the scene, and the growth in it: it may start or end inside.
 TimedWindow timed(const Locus& locus, const UnstableWindow& window, const PassingTimes& times) {
   TimedWindow one{window, never, never, never};
   const auto is_passed = [&](double value) { return std::isfinite(times.at(value)); };
@@ -176,7 +176,7 @@ Json windows_json(const std::vector<TimedWindow>& windows, double trusted) {
   return list;
 }
 
-/// Eigenvalues that were sampled, as curves: each goes on where its last two points lead to.
+/// Eigenvalues that were sampled, as curves: each continues where its last two points lead.
 std::vector<std::vector<std::pair<double, std::complex<double>>>> connected(const Locus& locus) {
   std::vector<std::vector<std::pair<double, std::complex<double>>>> curves;
   std::vector<std::size_t> open;  // curves that have reached the last value

@@ -55,7 +55,7 @@ void occupy_closed_streams() {
   }
 }
 
-/// Brings what was printed out. @return 4, said on stderr, where a command that is done could not
+/// Flushes the output. @return 4, reported on stderr, where a command that is done could not
 ///         print; else `code`
 int with_output_written(int code) {
   errno = 0;

@@ -43,9 +43,9 @@ fftw_complex* as_fftw(const detail::FftwComplexes& memory) {
 
 enum class Direction { forward, backward };
 
-/// The plans used last, by direction and length. They hold tables as long as what they transform.
+/// The plans used last, by direction and length. Their tables are as long as the data.
 ///
-/// FFTW executes a plan on any arrays of the same alignment, in several threads at once.
+/// FFTW executes a plan on any arrays of the same alignment, in several threads concurrently.
 class Plans {
  public:
   static Plans& of_process() {

@@ -72,7 +72,7 @@ void start_from_file(System& system, const std::string& path) {
   }
 }
 
-/// Steady sliding under what acts at t = 0.
+/// Steady sliding under the loads at t = 0.
 Equilibrium equilibrium_at_start(const System& system) {
   EquilibriumState state;
   state.drive_velocity = system.drive.velocity.value(0.0);

@@ -49,7 +49,7 @@ std::uint64_t size_of(int descriptor) {
 
 }  // namespace
 
-// ---------------------------------------------------------------- what HDF5 calls
+// ---------------------------------------------------------------- functions called by HDF5
 
 /// A file as HDF5 knows it.
 struct StagedFileDriver {

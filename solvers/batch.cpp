@@ -321,7 +321,7 @@ class LaneGroup {
 
     DisplacementSink* sink = nullptr;
     DisplacementSink::Row row{};
-    std::optional<int> slave_row{};  ///< what is watched
+    std::optional<int> slave_row{};  ///< row that is watched
     std::optional<int> master_row{};
     std::int64_t next_sample = std::numeric_limits<std::int64_t>::max();
 
@@ -461,7 +461,7 @@ class LaneGroup {
     }
   }
 
-  /// Steps that the kernel does at once where rows are watched; what they fill stays in the cache.
+  /// Steps that the kernel does in one call where rows are watched; their data stay in the cache.
   static constexpr std::size_t max_traced = 256;
 
   std::size_t width_;

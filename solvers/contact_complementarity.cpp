@@ -165,7 +165,7 @@ ComplementarityOutcome ContactComplementarity::solve(std::span<const double> tar
     const auto count = std::count(in_contact_.begin(), in_contact_.end(), 1);
     return largest * std::sqrt(std::max(1.0, static_cast<double>(count)));
   };
-  // Cells that leave must not come back because of what the residual leaves open.
+  // Cells that leave must not come back because of the remaining residual.
   const double sinking = 0.1 * limits.tolerance * largest;
 
   apply();

@@ -35,7 +35,7 @@ STRIDOR_INLINE bool has_any(const V& mask) {
   return any;
 }
 
-/// ModalRecurrence::advance_body() and what follows it in Propagator::advance().
+/// ModalRecurrence::advance_body() and the rest of Propagator::advance().
 template <class V, std::size_t num_slots, bool is_prompt>
 STRIDOR_INLINE void advance_body(const BodyLanes& body) {
   V force[num_slots];

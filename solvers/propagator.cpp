@@ -279,7 +279,7 @@ void Propagator::settle(const double* forces) {
   has_new_rows_ = false;
 }
 
-/// Where the new rows were before is not known, so the increments stay; and what lags has settled.
+/// The former displacements of new rows are unknown, so the increments stay; the lag has settled.
 void Propagator::take_new_rows(const double* forces) {
   last_increment_ = increment_;
   influences_.clear();

@@ -94,7 +94,7 @@ void SecularFunction::assign_modes(const Pencil& pencil) {
   sort_modes(omega, damping);
 }
 
-/// Sets up what depends on the poles, in the order of order_.
+/// Sets up the quantities that depend on the poles, in the order of order_.
 void SecularFunction::sort_modes(const Eigen::VectorXd& omega, const Eigen::VectorXd& damping) {
   padded_ = padded_size(num_modes_);
   omega_ = AlignedArray(padded_);

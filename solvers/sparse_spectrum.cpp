@@ -144,7 +144,7 @@ bool SparseSearch::is_near(Complex s) const {
   return s.imag() <= 1.1 * height_ && s.real() >= -0.6 * height_ && s.real() <= 1.4 * height_;
 }
 
-/// Adds what is new of a vector to the basis.
+/// Adds the new component of a vector to the basis.
 void SparseSearch::add(const Eigen::VectorXd& vector) {
   constexpr double negligible = 1e-11;
   const SparseMatrix& mass = pencil_.system().mass;

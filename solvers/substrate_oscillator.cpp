@@ -11,7 +11,7 @@ namespace {
 
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 
-/// g(y) with its derivative and what it was made of.
+/// g(y) with its derivative and its terms.
 struct Imbalance {
   double value = 0.0;
   double slope = 0.0;

@@ -244,7 +244,7 @@ TEST(CheckStart, ABilateralContactStartsWithoutAnyGap) {
   EXPECT_EQ(open.exit_code, 0) << open.err;
 }
 
-// ---------------------------------------------------------------- what had been accepted silently
+// ---------------------------------------------------------------- input formerly accepted silently
 
 TEST(Check, RefusesWhatCannotBeMeant) {
   const struct {

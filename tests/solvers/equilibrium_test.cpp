@@ -245,7 +245,7 @@ TEST(Equilibrium, IsThatOfTheFullModel) {
   }
   ASSERT_LE(change, 2e-7);
 
-  // Reduction and modes are exact in statics; what is left is rounding, most of it in the full
+  // Reduction and modes are exact in statics; the remainder is rounding, most of it in the full
   // model, whose stiffness has a condition number of 1e9: eps times that.
   const ContactEquilibrium& contact = equilibrium.contacts[0];
   const double tolerance = 1e-6;

@@ -77,7 +77,7 @@ struct ExactForm {
     return make_modal_form<Integrator::exact>(body, patterns, step, slots, loads);
   }
 };
-/// Of the three modes of chain() the highest, of 24 rad/s, left out.
+/// The highest of the three modes of chain(), 24 rad/s, is truncated.
 struct ResidualForm {
   static std::unique_ptr<Propagator> make(const ReducedBody& body, const Eigen::MatrixXd& patterns,
                                           double step, int slots, std::span<const double> loads) {
