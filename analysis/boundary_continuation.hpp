@@ -9,7 +9,7 @@
 
 namespace stridor {
 
-/// How the values of an axis of a map are spaced; its boundary is followed in the same measure.
+/// Spacing of the values of an axis of a map; its boundary is followed in the same measure.
 enum class GridSpacing { linear, logarithmic };
 
 struct MapGrid {

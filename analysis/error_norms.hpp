@@ -1,4 +1,4 @@
-// How far one run of a system is from another, and which of several settings is worth its time.
+// Distance between two runs of a system, and choice of the setting that is worth its time.
 #pragma once
 
 #include <span>

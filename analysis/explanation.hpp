@@ -66,7 +66,7 @@ ModeEnergy mode_energy(const Pencil& pencil, std::complex<double> s, const Eigen
 /// and H. Its modes are real and orthonormal.
 Pencil frictionless(const Pencil& pencil);
 
-/// A mode of the frictionless system and how much of a vibration it is.
+/// A mode of the frictionless system and its share of a vibration.
 struct Participation {
   double frequency = 0.0;  ///< Hz
   double share = 0.0;      ///< |φᵀq|², 0 to 1 for |q| = 1; all modes together give 1

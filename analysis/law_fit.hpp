@@ -1,4 +1,4 @@
-// How well the functional forms of PPH describe a contact law.
+// Accuracy of the functional forms of PPH for a contact law.
 #pragma once
 
 #include <vector>

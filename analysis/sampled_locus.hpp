@@ -8,7 +8,7 @@
 
 namespace stridor {
 
-/// How many spectra a locus may cost.
+/// Limits of the number of spectra for a locus.
 struct SamplingEffort {
   int least_values = 64;  ///< looked at in all, where fewer are asked for
   int most_added = 256;   ///< values put between where eigenvalues cannot be told apart

@@ -40,7 +40,7 @@ constexpr std::array<Assumption, 4> assumptions{{{"subs_a", "Subs-a", ContactAss
                                                  {"film", "FiLM", ContactAssumption::film}}};
 constexpr std::size_t film = 3;
 
-/// A folder for files that nobody asked for; removed with everything in it.
+/// A folder for temporary files; removed with everything in it.
 class ScratchFolder {
  public:
   ScratchFolder() {

@@ -130,7 +130,7 @@ TimedWindow timed(const Locus& locus, const UnstableWindow& window, const Passin
   one.from_time = std::min(at_from, at_to);
   one.to_time = std::max(at_from, at_to);
   const bool is_whole = from == window.from && to == window.to;
-  // A whole window is passed at constant speed, as good as.
+  // A whole window is passed at nearly constant speed.
   one.gain = is_whole ? window.growth_integral * (one.to_time - one.from_time) / (to - from)
                       : gain_between(locus.branches[static_cast<std::size_t>(window.branch)], from,
                                      to, times);

@@ -1,4 +1,4 @@
-// How far a computation is and how long the rest of it takes.
+// Progress of a computation and its remaining time.
 #pragma once
 
 #include <chrono>

@@ -38,7 +38,7 @@ struct PictureOptions {
 
 /// --from, --to, --json, --force.
 void add_picture_options(CLI::App& verb, PictureOptions& options);
-/// How a signal is cut into pieces, and how levels are shown.
+/// Division of a signal into pieces, and display of levels.
 void add_spectrum_options(CLI::App& verb, PictureOptions& options);
 /// --data.
 void add_data_option(CLI::App& verb, PictureOptions& options);
@@ -87,7 +87,7 @@ RecordedStretch open_stretch(const PictureOptions& options);
 /// @throws ConfigError with a suggestion and all names if there is none
 std::string find_series(const RecordedStretch& run, const std::string& channel, const char* key);
 
-/// How a stretch is cut into pieces for spectra, and how far they are shown.
+/// Division of a stretch into pieces for spectra, and their range of frequencies.
 struct PieceSettings {
   SpectrogramParameters parameters;
   double max_frequency = 0.0;  ///< Hz

@@ -26,7 +26,7 @@ class Progress {
   /// @param fraction done of the phase, 0 to 1
   /// @param detail   short text behind the bar, e.g. "t = 1.25 of 2.25 s"
   void report(double fraction, const std::string& detail);
-  /// The same where nothing says how much is left.
+  /// The same where the remaining work is unknown.
   void report(const std::string& detail);
   /// Removes the bar.
   void finish();

@@ -1,4 +1,4 @@
-// How a run of any kind of scene goes to its end and says how it ended.
+// Ending of a run of any kind of scene, and its report.
 #pragma once
 
 #include <fmt/format.h>

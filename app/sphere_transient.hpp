@@ -14,7 +14,7 @@
 
 namespace stridor {
 
-/// Reads amplitude and period off the whole cycles of the second half of a run.
+/// Reads amplitude and period from the whole cycles of the second half of a run.
 class CycleMeter {
  public:
   /// Quantities gathered up to a turn, where x is largest.

@@ -71,7 +71,7 @@ NumericKey find_stability_key(const Scene& scene, const std::string& path,
 struct SlidingState {
   Equilibrium equilibrium;
   Pencil pencil;
-  bool is_on_the_way = false;  ///< the drive puts the scene there, `equilibrium.state` says how far
+  bool is_on_the_way = false;  ///< the drive puts the scene there, by `equilibrium.state`
 };
 
 /// The state of a member of a family. In the deformed geometry the contact is at the position on
@@ -106,7 +106,7 @@ class StabilityFamily {
   /// @param values one per key
   /// @throws ConfigError, NumericalError naming the values
   virtual Pencil pencil(std::span<const double> values) = 0;
-  /// Frequency up to which the model answers as the bodies do, Hz; may be infinite.
+  /// Frequency up to which the model responds as the bodies do, Hz; may be infinite.
   virtual double trusted_frequency(std::span<const double> values) = 0;
   /// Whether eigenvalues are sampled rather than followed (analysis/sampled_locus.hpp).
   virtual bool is_sampled() const { return false; }
@@ -249,7 +249,7 @@ LowestEigenvalues find_lowest(const Pencil& pencil, EigenvalueMethod method,
 void keep_window(std::vector<Eigenvalue>& all, const SpectrumWindow& window);
 
 /// Up to where a verdict over some of the lowest eigenvalues holds, Hz: to the highest that was
-/// computed, to where the window ends, and no further than the model answers for.
+/// computed, to where the window ends, and no further than the model is valid.
 double verdict_limit(std::span<const std::complex<double>> eigenvalues,
                      const SpectrumWindow& window, double trusted);
 /// The same for all values of a locus.
@@ -257,7 +257,7 @@ double verdict_limit(const Locus& locus, const SpectrumWindow& window, double tr
 /// "the verdict holds between 0 and 7494.83 Hz"
 std::string window_text(double highest);
 /// Why a verdict reaches no further, in brackets; empty where it does not end.
-/// @param trusted up to where the model answers, Hz
+/// @param trusted up to where the model is valid, Hz
 std::string limit_text(double highest, double trusted);
 
 /// How far a verdict over a range of values reaches between them: "everywhere", or "at all values

@@ -40,7 +40,7 @@ class Transient {
   /// Progress and the limit of wall time.
   RunKeeper& keeper() { return keeper_; }
 
-  /// Flushes, reads the statistics off the file, stores them in it and closes it.
+  /// Flushes, reads the statistics from the file, stores them in it and closes it.
   /// @param error estimated error of the run, or null
   /// @return the JSON object of `run`
   Json finish(const Json& error = nullptr);

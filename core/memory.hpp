@@ -1,4 +1,4 @@
-// How much memory there is.
+// Available memory.
 #pragma once
 
 #include <filesystem>

@@ -27,7 +27,7 @@ static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_alw
               "needed inside a signal handler");
 
 void say(int descriptor, const char* text) {
-  // Where nobody reads any more, nobody needs to know.
+  // A failure to write here is of no interest: the reader is gone.
   if (write(descriptor, text, std::strlen(text)) < 0) return;
 }
 

@@ -29,7 +29,7 @@ bool stop_requested();
 /// As if the signal had come (tests, time limits); `false` takes the request back.
 void request_stop(bool value = true);
 
-/// @throws Interrupted if a stop was requested; for loops whose results nobody keeps
+/// @throws Interrupted if a stop was requested; for loops whose results are not kept
 void throw_if_stopped();
 
 /// While one exists, an immediate end of the program would lose data.

@@ -9,7 +9,7 @@
 
 namespace stridor {
 
-/// How segment, position on it and normal of a contact are found (docs/theory.md, table in 2.2).
+/// Rule for segment, position on it and normal of a contact (docs/theory.md, table in 2.2).
 enum class ContactAssumption {
   subs_a,  ///< prescribed rigid sliding on the undeformed master
   subs_b,  ///< predicted positions of both bodies, normal of the predicted surface

@@ -48,7 +48,7 @@ struct FaceContact {
   Eigen::MatrixXd friction_bending() const;
 };
 
-/// How the contacts on the faces of a plate act.
+/// Action of the contacts on the faces of a plate.
 struct FaceContactLaw {
   double friction = 0.0;          ///< μ, >= 0
   std::optional<double> penalty;  ///< k_C of each, N/m, > 0; rigid where absent

@@ -23,7 +23,7 @@ struct Stencil {
   int before = 0;  ///< how many of them come before T1
 };
 
-/// How many nodes shape a segment of a surface; the same for all its segments.
+/// Number of nodes that shape a segment of a surface; the same for all its segments.
 inline int stencil_size(SurfaceKind kind, int num_nodes) {
   return kind == SurfaceKind::polyline ? 2 : std::min(num_nodes, max_stencil);
 }

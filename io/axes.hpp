@@ -16,7 +16,7 @@
 
 namespace stridor {
 
-/// How the numbers along an axis are written: value = offset + 10^exponent · number.
+/// Form of the numbers along an axis: value = offset + 10^exponent · number.
 struct AxisScale {
   double offset = 0.0;  ///< taken off where the values differ only from the fifth digit on
   int exponent = 0;     ///< multiple of 3; 0 for values between 10⁻² and 10⁵

@@ -75,7 +75,7 @@ class Checker {
   std::string path_;
 };
 
-/// How run files are opened: without locks, and closed together with all that is open in them.
+/// Access to run files: without locks, and closed together with all that is open in them.
 /// @throws FileError if HDF5 refuses
 Handle file_access(const Checker& at);
 

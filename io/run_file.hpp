@@ -10,7 +10,7 @@
 //                            the attribute `filter` states which are low-passed
 //     /energy/…              energy ledger
 //     /modal/<body>/…        static arrays
-//     /results               numbers read off the run, as attributes
+//     /results               numbers computed from the run, as attributes
 //     /checkpoint/a, b       the two latest states from which the run can go on, as bytes
 //
 // A series may be longer than /time while the run goes on, or after it was killed: len(/time) rows
@@ -61,7 +61,7 @@ struct SeriesSpec {
   Attributes attributes = {};  ///< e.g. {"filter", "…"}, {"acts_at", "…"}; not "units"
 };
 
-/// How a RunFileWriter writes.
+/// Options of a RunFileWriter.
 struct RunFileOptions {
   /// Rows kept in memory before they are written and flushed, at least 1.
   std::size_t block_rows = 16384;

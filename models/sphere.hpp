@@ -52,7 +52,7 @@ struct SphereModelParameters {
 
   SphereParameters sphere;
   std::string contact_law = published_fit;  ///< one of the two, or a file with a table
-  /// The law in that file, which whoever reads the scene reads as well.
+  /// The law in that file; the reader of the scene reads it as well.
   std::shared_ptr<const ViscoelasticContactLaw> table;
   FrictionLoad friction_normal_force = FrictionLoad::applied;
   RegularisationParameters regularisation;

@@ -64,7 +64,7 @@ struct LaneAccess {
     copy(lanes.current, body.current_);
     copy(lanes.forces, forces);
     if (!body.is_prompt()) return;
-    // After a step the last forces are those that everything has answered.
+    // After a step everything has responded to the last forces.
     if constexpr (is_out) copy(lanes.forces, body.acting_.forces);
     if (body.has_residual()) copy(lanes.lagging, body.lagging_.forces);
   }
@@ -105,7 +105,7 @@ struct LaneAccess {
     };
     for (std::size_t m = 0; m < lanes.num_modes; ++m)
       set(lanes.watched_row, m, row ? body.row_data(*row)[m] : 0.0);
-    // Of bodies that answer later than they are pushed, forces are in the modes already.
+    // Without direct feedthrough, forces are in the modes already.
     const Propagator::Influence* const influence =
         row && body.is_prompt() ? &body.influence_on(*row) : nullptr;
     const bool has_lagging = influence != nullptr && body.has_residual();

@@ -9,7 +9,7 @@
 namespace stridor {
 namespace {
 
-/// By how much the residual is reduced before the set of contact cells is looked at again.
+/// Reduction of the residual before the set of contact cells is checked again.
 constexpr double early_stop = 0.1;
 /// Residual, over the largest target, from which there is no way back.
 constexpr double hopeless = 100.0;

@@ -43,7 +43,7 @@ double zero_before(double q0, double q1, double q2) {
   return -2.0 * q0 / (slope + std::sqrt(discriminant));
 }
 
-/// A place of the edge on a line of cells, and how far it may be off.
+/// A place of the edge on a line of cells, and its possible error.
 struct EdgeGuess {
   double place = 0.0;
   double doubt = 0.0;

@@ -15,7 +15,7 @@ namespace stridor {
 ///
 /// J and G are those of the modes by themselves (exact_propagation()) where nothing is coupled.
 /// Gyroscopic terms enter both such that, without damping, the step under the forces of frictionless
-/// contacts keeps the symplectic form of the body. The answer to a constant force is the static
+/// contacts keeps the symplectic form of the body. The response to a constant force is the static
 /// one, whatever is coupled.
 struct CoupledStep {
   /// Largest |s| h of the free motions of a body, with its damping and without: beyond it, impulses

@@ -1,4 +1,4 @@
-// How many eigenvalues lie in a rectangle: the argument principle.
+// Number of eigenvalues in a rectangle by the argument principle.
 #pragma once
 
 #include <complex>

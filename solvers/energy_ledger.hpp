@@ -36,7 +36,7 @@ class CompensatedSum {
   double carry_ = 0.0;
 };
 
-/// How a contact acts on its bodies from t_n to t_{n+1}.
+/// Action of a contact on its bodies from t_n to t_{n+1}.
 struct ContactAction {
   int segment = 0;              ///< of its master surface
   Projection projection;        ///< where and in which directions its forces act

@@ -1,4 +1,4 @@
-// How one body moves from step to step under point forces.
+// Motion of one body from step to step under point forces.
 #pragma once
 
 #include <Eigen/Core>

@@ -117,7 +117,7 @@ struct Simulation::Implementation {
     return at < drive_constant_from ? drive.velocity.value(at) : end_velocity;
   }
 
-  /// How far the drive slides in the step from an instant on, m, frozen or not.
+  /// Sliding distance of the drive in the step from an instant on, m, frozen or not.
   double drawn_in_step(std::int64_t from) const {
     return 0.5 * step * (sliding_velocity(time(from)) + sliding_velocity(time(from + 1)));
   }

@@ -40,7 +40,7 @@ class SlidingPoint {
   /// Watches the rows of the slave and of the first segment.
   /// @param surface, slave, master referenced from here on
   /// @param slave_slot, master_slot first of its ports on either body
-  /// @param drive_share how far slave against master follow the drive: 1, 0 or −1
+  /// @param drive_share share of the drive in the motion of slave against master: 1, 0 or −1
   SlidingPoint(const ContactPoint& point, const MasterSurface& surface, Propagator& slave,
                Propagator& master, int slave_slot, int master_slot, double drive_share);
 
@@ -55,7 +55,7 @@ class SlidingPoint {
   /// Distance of the slave from its projection along the normal, with the displacements predicted,
   /// m.
   double predicted_gap(double drive_at) const;
-  /// How far the displacements predicted are ahead of those expected along the tangent, m.
+  /// Distance along the tangent from the displacements expected to those predicted, m.
   double predicted_slip() const;
   /// The same two at t_{n+1} by Propagator::ahead(), with the rows of t_n.
   /// @param advance of the drive in the step, m

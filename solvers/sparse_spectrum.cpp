@@ -53,7 +53,7 @@ struct Pair {
   Eigen::VectorXcd x;
 };
 
-/// How much an eigenvalue is wanted.
+/// Priority of an eigenvalue.
 using Rank = std::function<double(Complex)>;
 
 class SparseSearch {
@@ -64,7 +64,7 @@ class SparseSearch {
   }
 
   SparseSpectrum run();
-  /// @param rank  of an eigenvalue: how much it is wanted
+  /// @param rank  of an eigenvalue: its priority
   /// @param count of the pairs that are wanted most
   SparseSpectrum run(const SpectrumBasis& basis, const Rank& rank, int count);
 

@@ -11,7 +11,7 @@
 
 namespace stridor {
 
-/// How the body touches the substrate.
+/// State of contact of the body with the substrate.
 enum class SubstrateMode {
   slip_back,     ///< slower than the substrate
   slip_forward,  ///< faster than the substrate

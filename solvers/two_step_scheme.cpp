@@ -6,7 +6,7 @@ namespace stridor {
 
 namespace {
 
-/// s, k and, as gain, the whole static answer k/ω² of a step.
+/// s, k and, as gain, the whole static response k/ω² of a step.
 StepCoefficients exact_free_motion(double omega, double damping, double step) {
   const double half = 0.5 * damping;
   if (omega == 0.0) {

@@ -7,7 +7,7 @@ namespace stridor {
 ///
 ///   d_{n+1} = s d_n − k r_n + e p_n,  r_{n+1} = r_n + d_{n+1},  q_n = r_n + g p_n
 ///
-/// All schemes have this form, most of them with g = 0. The static answer is e + k g = k/ω² in
+/// All schemes have this form, most of them with g = 0. The static response is e + k g = k/ω² in
 /// each, and e ≥ 0: g is at most 1/ω².
 struct StepCoefficients {
   double keep;          ///< s: part of the increment that the next step keeps
@@ -53,7 +53,7 @@ StepCoefficients exact_propagation(double omega, double damping, double step, do
 /// The central difference starts with d₀ = h v₀: a = s h, ρ = 1.
 struct StartCoefficients {
   double rate;   ///< a, s
-  double share;  ///< ρ: part of a step's gain that acts in the first step
+  double share;  ///< ρ: share of e that acts in the first step
 };
 
 /// Parameters as central_difference().
