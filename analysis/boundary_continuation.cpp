@@ -104,7 +104,7 @@ class Tracer {
     return centre + radius * Point(std::cos(angle), std::sin(angle));
   }
 
-  /// Where the line goes from a point.
+  /// Direction of the line from a point.
   /// @param side 1: unstable on the left, −1: on the right
   std::optional<double> direction_at(const Point& centre, double side) const {
     std::vector<double> angles;
@@ -176,7 +176,7 @@ class Tracer {
   Axis y_;
 };
 
-/// Where on a line a point lies nearest.
+/// Nearest place on a line to a point.
 struct Foot {
   double distance = 1e300;
   std::size_t segment = 0;

@@ -44,7 +44,7 @@ ModeQuotients mode_quotients(const Pencil& pencil, std::complex<double> s,
 ModeQuotients mode_quotients(const SparseSystem& system, std::complex<double> s,
                              const Eigen::VectorXcd& right);
 
-/// Where the energy of a mode comes from and goes to, averaged over a period.
+/// Sources and sinks of the energy of a mode, averaged over a period.
 ///
 ///   2 Re s E = P_contact − P_damping,   E = (|s|² + q̄ᵀ diag(ω²) q)/4  for |q| = 1
 ///

@@ -14,7 +14,7 @@ namespace {
 /// that is stable: this close to it the motion is linear.
 constexpr double at_rest = 1e-6;
 /// Longest time to wait for a turn: several times the time in which the substrate winds up the
-/// spring to the static strength, as far as it is finite.
+/// spring to the static strength, within bounds.
 double longest_loop(const SubstrateOscillator& oscillator) {
   const SubstrateEquilibrium rest =
       find_equilibrium(oscillator, 1e-2 * oscillator.contact.indentation_unit);

@@ -127,7 +127,7 @@ std::optional<double> PairSearch::vertex() const {
   return place;
 }
 
-/// Where the pair grows most, or least, by the parabolas around a value.
+/// Value of largest or least growth of the pair, by the parabolas around a value.
 double PairSearch::fastest_place(double around) const {
   constexpr int parts = 64;
   constexpr int octaves = 40;
@@ -163,7 +163,7 @@ std::optional<double> PairSearch::next() const {
     });
   };
   if (is_first && !vertex_place) {
-    // Where two straight branches would meet.
+    // Intersection of two straight branches.
     const double left = std::sqrt(std::abs(expected(from_).square));
     const double right = std::sqrt(std::abs(expected(to_).square));
     const double share = left + right > 0.0 ? left / (left + right) : 0.5;

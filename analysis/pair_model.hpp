@@ -50,7 +50,7 @@ class PairSearch {
   /// @param scale of the eigenvalues, 1/s
   PairSearch(std::vector<PairLook> looks, double from, double to, double scale, Aim aim);
 
-  /// Where to look next; nothing once the search has converged.
+  /// Value to compute next; nothing once the search has converged.
   std::optional<double> next() const;
   /// Prediction of the parabolas at a value.
   PairLook expected(double value) const;

@@ -265,7 +265,7 @@ double highest_frequency(const Locus& locus) {
   return highest;
 }
 
-/// How many there are where there are most.
+/// Largest number of them at any value.
 std::size_t most_eigenvalues(const Locus& locus) {
   std::size_t most = 0;
   for (const auto& list : locus.eigenvalues) most = std::max(most, list.size());

@@ -12,7 +12,7 @@
 
 namespace stridor {
 
-/// Where the results of a run go, and by which command.
+/// Destination of the results of a run, and the command.
 struct RunOutput {
   std::string file;  ///< run file (HDF5)
   Overwrite overwrite = Overwrite::no;

@@ -8,7 +8,7 @@
 
 namespace stridor {
 
-/// Where a motion of the scene starts: its equilibrium, pressed in or lifted a little.
+/// Start of a motion of the scene: its equilibrium, pressed in or lifted a little.
 /// @throws NumericalError if there is no equilibrium
 Eigen::Vector2d initial_displacement(const SphereScene& scene,
                                      const SubstrateOscillator& oscillator);

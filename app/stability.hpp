@@ -55,7 +55,7 @@ std::vector<double> range_values(const NumericKey& key, const RangeOptions& opti
 /// --parameter, --from, --to, --points.
 void add_range_options(CLI::App& verb, RangeOptions& options);
 
-/// Where no method was asked for: the secular function.
+/// If no method was asked for: the secular function.
 void choose_method(StabilityOptions& options);
 
 /// The scene, --about, --method, --count, --set, --threads and --json.
@@ -238,7 +238,7 @@ struct LowestEigenvalues {
   }
 };
 
-/// Where the search for zeros of the secular function does not converge, all eigenvalues are
+/// If the search for zeros of the secular function does not converge, all eigenvalues are
 /// computed by the dense method, if there are no more than 2,000.
 /// @throws NumericalError if there are more, or as dense_eigenvalues()
 LowestEigenvalues find_lowest(const Pencil& pencil, EigenvalueMethod method,
@@ -260,7 +260,7 @@ std::string window_text(double highest);
 /// @param trusted up to where the model is valid, Hz
 std::string limit_text(double highest, double trusted);
 
-/// How far a verdict over a range of values reaches between them: "everywhere", or "at all values
+/// Validity of a verdict between the values of a range: "everywhere", or "at all values
 /// looked at" where something may have been missed.
 std::string reach_text(const Locus& locus);
 /// Prints which parts of a locus may have been missed, if any.

@@ -19,7 +19,7 @@ constexpr int stopped_exit_code = 5;
 /// listened.
 void install_stop_signals();
 
-/// Where a signal ends the program immediately, it also prints one JSON object with the error to
+/// When a signal ends the program immediately, it also prints one JSON object with the error to
 /// stdout.
 void tell_stop_as_json();
 

@@ -99,7 +99,7 @@ inline Projection project_along(const SurfacePiece& piece, const Eigen::Vector2d
     const double square = direction.dot(piece.combine(w.slope));
     const double slope = square - directions.combine(w.curvature).dot(arm);
     (ahead > 0.0 ? low : high) = xi;
-    // Where the slave is further away than the centre of curvature, the distance has no minimum.
+    // If the slave is further away than the centre of curvature, the distance has no minimum.
     double next = xi + ahead / (slope > 0.0 ? slope : square);
     const bool is_within = low <= next && next <= high;
     if (!is_within) next = 0.5 * (low + high);

@@ -16,7 +16,7 @@ struct LawValue {
   double by_speed = 0.0;        ///< ∂/∂|v̂|
 };
 
-/// Where a law was asked.
+/// Range of a law in which a point lies.
 enum class LawRange {
   inside,
   no_contact,   ///< ŷ ≤ 0: everything vanishes

@@ -10,7 +10,7 @@
 
 namespace stridor {
 
-/// Where a run file keeps its two latest checkpoints.
+/// Paths of the two latest checkpoints in a run file.
 inline constexpr std::array checkpoint_paths{"/checkpoint/a", "/checkpoint/b"};
 
 /// Owns one HDF5 identifier of any kind.

@@ -26,7 +26,7 @@ struct TimeMark {
   std::string label;  ///< at its top
 };
 
-/// Where values lay between two points of a curve; drawn behind the curves.
+/// Range of the values between two points of a curve; drawn behind the curves.
 struct ValueBand {
   std::vector<double> times;  ///< s, ascending; the band reaches from the time before to each
   std::vector<double> lower;

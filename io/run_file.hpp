@@ -36,7 +36,7 @@ namespace stridor {
 /// Number of the layout above; readers refuse files with a higher one.
 inline constexpr int run_file_format = 1;
 
-/// Where a run comes from. Text is UTF-8 without zero bytes.
+/// Origin of a run. Text is UTF-8 without zero bytes.
 struct RunFileHeader {
   std::string version;          ///< of the program
   std::string commit;           ///< of the source
@@ -75,7 +75,7 @@ struct RunFileOptions {
   std::function<void()> on_write = {};
 };
 
-/// Where the rows of a recorder go.
+/// Destination of the rows of a recorder.
 class RowSink {
  public:
   virtual ~RowSink() = default;

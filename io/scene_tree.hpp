@@ -13,7 +13,7 @@
 
 namespace stridor {
 
-/// Where something was written.
+/// Place of a text in its source.
 struct Place {
   std::string source;  ///< file, or "--set key.path=value"
   int line = 0;        ///< 1-based; 0 where the source has no lines (--set)

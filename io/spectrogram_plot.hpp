@@ -12,7 +12,7 @@
 
 namespace stridor {
 
-/// Where a mark on a spectrogram comes from; decides how it is drawn.
+/// Origin of a mark on a spectrogram; decides how it is drawn.
 enum class MarkStyle {
   found,      ///< in the signal: white, dashed
   predicted,  ///< by something else: red, dotted
@@ -88,7 +88,7 @@ struct MapArea {
   double font_size = 11.0;     ///< pt, of the labels
 };
 
-/// Where a mark and its label are drawn.
+/// Position of a mark and its label.
 struct MarkPlace {
   std::size_t mark = 0;              ///< index into the marks given
   PictureBox box;                    ///< around the mark, within the map

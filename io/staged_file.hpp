@@ -42,8 +42,8 @@ class StagedFile {
   /// Opens a file to change it. @throws FileError if the system refuses, or if another process has
   /// it open to change it
   void open(const std::string& path);
-  /// What H5Fcreate or H5Fopen takes to work on this file, which must live longer than what they
-  /// open. @throws FileError if HDF5 refuses
+  /// Access property list for H5Fcreate or H5Fopen on this file, which must live longer than the
+  /// objects that they open. @throws FileError if HDF5 refuses
   Handle access(const Checker& at);
 
   /// To be called after H5Fopen.

@@ -329,7 +329,7 @@ class LaneGroup {
       sink->sample_displacement(displacement);
       next_sample = sink->next_step();
     }
-    /// Where the last step was done by itself.
+    /// For simulations whose last step was done outside the lanes.
     void sample_where_due() {
       if (outcome == StepOutcome::done && run->index == next_sample)
         sample(simulation->displacement(row.body, row.row));

@@ -1,4 +1,4 @@
-// Where the energy of a run comes from and where it goes.
+// Sources and sinks of the energy of a run.
 #pragma once
 
 #include <cmath>
@@ -104,7 +104,7 @@ class EnergyLedger {
   /// @param time   step, and the coordinates in which positions and increments will come
   EnergyLedger(const System& system, const TimeParameters& time);
 
-  /// Where q_n and d_{n+1} of a body are to be put before `add`, in its coordinates.
+  /// Destination of q_n and d_{n+1} of a body before `add`, in its coordinates.
   std::span<double> position(int body);
   std::span<double> increment(int body);
 

@@ -142,7 +142,7 @@ class Simulation {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Where the samples of a run go. Called between steps, never inside one, after
+/// Destination of the samples of a run. Called between steps, never inside one, after
 /// Simulation::end_interval().
 class SampleSink {
  public:
