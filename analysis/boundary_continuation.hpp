@@ -31,7 +31,7 @@ struct MapGrid {
 /// @param seeds  lines near which the boundary is known to run: those of boundary_lines(); lines
 ///               without a seed are not found. Their points become points of the lines, unchanged
 /// @return longest first; closed ones repeat their first point
-/// @throws std::invalid_argument if the grid is not as it says
+/// @throws std::invalid_argument if the grid is inconsistent
 std::vector<BoundaryLine> trace_boundary(const std::function<double(double, double)>& margin,
                                          const MapGrid& grid,
                                          const std::vector<BoundaryLine>& seeds);

@@ -90,7 +90,7 @@ struct RunCost {
 /// A run that is sampled and timed in stretches.
 ///
 /// A setting that cannot be run, or that fails on its way, is a result and no error: `failure()`
-/// says why.
+/// gives the reason.
 class TimedRun {
  public:
   /// @param interval between samples, s, a whole multiple of time.step

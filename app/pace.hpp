@@ -24,7 +24,7 @@ class Pace {
   std::size_t num_marks() const { return marks_.size(); }
   /// Since the start, s.
   double elapsed(SteadyTime now) const;
-  /// s; nothing while too little has been seen.
+  /// s; nothing while too little is done.
   std::optional<double> left(SteadyTime now) const;
 
  private:

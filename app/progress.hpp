@@ -43,7 +43,7 @@ class Progress {
   std::string what_;
   std::string phase_;
   std::string detail_;
-  std::optional<Pace> pace_;  ///< once it has been told something
+  std::optional<Pace> pace_;  ///< once something has been reported
   SteadyTime start_ = std::chrono::steady_clock::now();
   bool is_open_ = true;
 };

@@ -15,7 +15,7 @@
 
 namespace stridor {
 
-/// Runs to the end, or as far as it gets, and says how it ended.
+/// Runs to the end, or as far as it gets, and reports the ending.
 ///
 /// @tparam Run  has keeper(), run_to_end(), write_checkpoint(), finish(), time() and failure()
 /// @param end   of the run, in units of its time()

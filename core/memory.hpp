@@ -14,7 +14,7 @@ struct MemoryLimit {
 };
 
 /// The least of: the memory of the machine, that of the control groups the process is in, and the
-/// limit of its address space (`ulimit -v`). Infinite where nothing says. Read once in a process.
+/// limit of its address space (`ulimit -v`). Infinite without a limit. Read once in a process.
 MemoryLimit memory_limit();
 
 /// The same from other files than those of this machine.

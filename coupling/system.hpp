@@ -157,7 +157,7 @@ struct System {
   const MasterSurface& surface_of(const ContactPoint& contact) const {
     return surfaces[static_cast<std::size_t>(contact.surface)];
   }
-  /// Displacements that a contact sees of the bodies: x and y of the slave and of every node of the
+  /// Displacements of the bodies at a contact: x and y of the slave and of every node of the
   /// stencil.
   int num_contact_slots(const ContactPoint& contact) const {
     return 2 + 2 * surface_of(contact).stencil_size();

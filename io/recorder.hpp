@@ -14,7 +14,7 @@
 
 namespace stridor {
 
-/// Every how many steps a recorder looks at a simulation.
+/// Number of steps between the looks of a recorder at a simulation.
 ///
 /// The low-pass in front of the thinning takes what lies above 0.6 of the recording rate, but what
 /// lies near its own input rate folds below that. So the rate of looking is at least the highest

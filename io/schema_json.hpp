@@ -28,7 +28,7 @@ std::string json_schema_text(const Schema& schema);
 /// A kind of scene that is known by the keys at its top, or by the type of its substructures.
 struct SpecialScene {
   const Schema* schema = nullptr;
-  std::vector<std::string> signs;      ///< any one of them says that it is of this kind
+  std::vector<std::string> signs;      ///< any one of them marks this kind
   std::string substructure_type = {};  ///< or that every substructure is of this type and there is
                                        ///< no contact, drive or time; may be empty
 };

@@ -61,7 +61,7 @@ class StagedFile {
   void freeze() { is_frozen_ = true; }
   /// Asks the system for room beyond the end of the file. @return an error number, or 0
   int reserve(std::uint64_t bytes) const;
-  /// Gives room that was asked for in vain back.
+  /// Gives back space whose reservation was in vain.
   void trim() const;
 
   void observe(Observer observer) { observer_ = std::move(observer); }

@@ -16,7 +16,7 @@ class DisplacementSink : public SampleSink {
     int row = 0;
   };
 
-  /// The row, where it is all that `sample` looks at.
+  /// The row, where `sample` reads nothing else.
   virtual std::optional<Row> sole_row() const = 0;
   /// In place of `sample`, where there is a sole row.
   /// @throws as sample()

@@ -13,7 +13,7 @@ namespace stridor {
 /// Geometry in which the contacts are evaluated.
 enum class ContactGeometry {
   undeformed,  ///< every contact where the drive puts it on the undeformed master, as under Subs-a
-  deformed,    ///< every contact as its assumption says
+  deformed,    ///< every contact by its assumption
 };
 
 /// A contact with positions as seen from the undeformed T1 of its segment, where the rounding of a

@@ -12,7 +12,7 @@ namespace stridor {
 enum class MarchEnd {
   finished,  ///< the last step was reached
   stopped,   ///< stop_requested()
-  failed,    ///< a step did not end with StepOutcome::done; Simulation::failure() says why
+  failed,    ///< a step did not end with StepOutcome::done; Simulation::failure() gives the reason
 };
 
 struct MarchPlan {
