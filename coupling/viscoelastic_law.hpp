@@ -158,7 +158,7 @@ struct ContactTable {
 
 /// A law by interpolation in a table: monotone cubics in the logarithms, of the logarithms of F̃, Ã
 /// and μ; for indenters other than a paraboloid and several creep times. Where the values along a
-/// line of the table rise or fall, so does the law on it. Outside the table it reports `beyond_data`
+/// line of the table rise or fall, so does the law on it. Outside the table it gives `beyond_data`
 /// and goes on: linearly in the logarithms, and below the smallest speed so that at rest friction
 /// vanishes in proportion to the speed and force and area have limits.
 class TabulatedLaw : public ViscoelasticContactLaw {
