@@ -104,7 +104,7 @@ class Tracer {
     return centre + radius * Point(std::cos(angle), std::sin(angle));
   }
 
-  /// Where the line goes from a point.
+  /// Direction of the line from a point.
   /// @param side 1: unstable on the left, −1: on the right
   std::optional<double> direction_at(const Point& centre, double side) const {
     std::vector<double> angles;
@@ -176,7 +176,7 @@ class Tracer {
   Axis y_;
 };
 
-/// Where on a line a point lies nearest.
+/// Nearest place on a line to a point.
 struct Foot {
   double distance = 1e300;
   std::size_t segment = 0;
@@ -200,7 +200,7 @@ struct Insertion {
   std::array<double, 2> place{};
 };
 
-/// The line with known points in their places; where one of its own is the same, that is left out.
+/// The line with known points in their places; its own points that coincide with them are dropped.
 BoundaryLine joined(const BoundaryLine& line, std::vector<Insertion> known) {
   std::sort(known.begin(), known.end(), [](const Insertion& a, const Insertion& b) {
     return std::pair(a.foot.segment, a.foot.share) < std::pair(b.foot.segment, b.foot.share);

@@ -9,7 +9,7 @@
 
 namespace stridor {
 
-/// How the values of an axis of a map are spaced; its boundary is followed in the same measure.
+/// Spacing of the values of an axis of a map; its boundary is followed in the same measure.
 enum class GridSpacing { linear, logarithmic };
 
 struct MapGrid {
@@ -28,10 +28,10 @@ struct MapGrid {
 /// end at the edge of the rectangle, or where the margin is NaN, or close.
 ///
 /// @param margin positive where unstable
-/// @param seeds  lines near which the boundary is known to run: those of boundary_lines(); what
-///               has none is not found. Their points become points of the lines, as they are
+/// @param seeds  lines near which the boundary is known to run: those of boundary_lines(); lines
+///               without a seed are not found. Their points become points of the lines, unchanged
 /// @return longest first; closed ones repeat their first point
-/// @throws std::invalid_argument if the grid is not as it says
+/// @throws std::invalid_argument if the grid is inconsistent
 std::vector<BoundaryLine> trace_boundary(const std::function<double(double, double)>& margin,
                                          const MapGrid& grid,
                                          const std::vector<BoundaryLine>& seeds);

@@ -10,8 +10,8 @@
 namespace stridor {
 
 /// Eigenvalues that differ by less, relative to their size, are tied: equal bodies have equal ones.
-/// Rounding moves a double one by the root of what it does to others, and which of them continues
-/// which has no meaning.
+/// Rounding moves a double one by the root of its effect on others, so it has no meaning which of
+/// them continues which.
 inline constexpr double tie = 1e-7;
 
 /// Values to be visited in any case, ascending.
@@ -26,7 +26,7 @@ struct Grid {
 /// @param kinks  values where the pencil is not smooth, ascending
 Grid make_grid(const std::vector<double>& wanted, const std::vector<double>& kinks);
 
-/// A branch with what is needed to come back to it.
+/// A branch with the data needed to come back to it.
 struct Track {
   Branch branch;
   std::vector<double> spacing;  ///< of every sample: distance to the nearest one not tied to it
@@ -40,7 +40,7 @@ struct Track {
 
 /// Follows every eigenvalue over the grid (trace_locus()).
 ///
-/// @param locus its values are asked for; receives eigenvalues, places and what is unverified
+/// @param locus gives the values; receives eigenvalues, places and the unverified parts
 /// @throws NumericalError if the eigenvalues at the first value cannot be found
 std::vector<Track> follow_branches(SpectrumSource& source, const LocusOptions& options,
                                    const Grid& grid, Locus& locus);

@@ -1,4 +1,4 @@
-// How far one run of a system is from another, and which of several settings is worth its time.
+// Distance between two runs of a system, and choice of the setting that is worth its time.
 #pragma once
 
 #include <span>
@@ -16,7 +16,7 @@ struct SampledRun {
   std::vector<std::vector<double>> forces;  ///< per contact, N; as many samples each
 };
 
-/// What the errors of a run are taken over.
+/// Window, band and averaging length of the error norms of a run.
 struct NormParameters {
   Window window;              ///< s
   Band band;                  ///< Hz, of the acceleration

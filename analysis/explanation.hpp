@@ -8,7 +8,7 @@
 
 namespace stridor {
 
-/// What one mode sees of the matrices (docs/theory.md, 7.5; HS (30), (34)).
+/// Quotients of one mode with the matrices (docs/theory.md, 7.5; HS (30), (34)).
 ///
 /// The contact forces are eliminated from the equations of motion, which leaves
 ///
@@ -44,7 +44,7 @@ ModeQuotients mode_quotients(const Pencil& pencil, std::complex<double> s,
 ModeQuotients mode_quotients(const SparseSystem& system, std::complex<double> s,
                              const Eigen::VectorXcd& right);
 
-/// Where the energy of a mode comes from and goes to, averaged over a period.
+/// Sources and sinks of the energy of a mode, averaged over a period.
 ///
 ///   2 Re s E = P_contact − P_damping,   E = (|s|² + q̄ᵀ diag(ω²) q)/4  for |q| = 1
 ///
@@ -53,7 +53,7 @@ ModeQuotients mode_quotients(const SparseSystem& system, std::complex<double> s,
 struct ModeEnergy {
   double from_contact = 0.0;  ///< P_contact/2E, part of the growth rate, 1/s
   double by_damping = 0.0;    ///< −P_damping/2E, likewise; negative where damping takes energy
-  double by_coupled = 0.0;    ///< likewise of the coupled terms of bodies
+  double by_coupled = 0.0;    ///< likewise of the gyroscopic, circulatory and damping terms
   double residual = 0.0;      ///< |from_contact + by_damping + by_coupled − Re s|/|s|
 
   /// Share of the energy that enters or leaves in one period.
@@ -66,7 +66,7 @@ ModeEnergy mode_energy(const Pencil& pencil, std::complex<double> s, const Eigen
 /// and H. Its modes are real and orthonormal.
 Pencil frictionless(const Pencil& pencil);
 
-/// A mode of the frictionless system and how much of a vibration it is.
+/// A mode of the frictionless system and its share of a vibration.
 struct Participation {
   double frequency = 0.0;  ///< Hz
   double share = 0.0;      ///< |φᵀq|², 0 to 1 for |q| = 1; all modes together give 1

@@ -119,7 +119,7 @@ GrowthMap make_growth_map(const std::function<std::unique_ptr<GrowthField>()>& m
   crossings.along_y.resize(x.size());
   const std::size_t num_lines = x.size() + y.size();
   const auto trace = [&](std::size_t line, std::size_t) {
-    // Anew for every line, or what it begins from would depend on the lines of this thread.
+    // Anew for every line, or its start would depend on the lines of this thread.
     const std::unique_ptr<GrowthField> field = make_field();
     if (line < y.size()) {
       const double at = y[line];

@@ -10,7 +10,7 @@
 
 namespace stridor {
 
-/// What decides on stability at one place: unstable where it is positive. NaN: undecided.
+/// Stability margin at one place: unstable where it is positive. NaN: undecided.
 using StabilityMargin = std::function<double(double)>;
 
 /// All sign changes of a margin between neighbours of a list of values.

@@ -44,7 +44,7 @@ class Chains {
     return samples_[interval + 1].value - samples_[interval].value;
   }
 
-  /// Where a chain is expected after an interval, by its last two samples.
+  /// Expected position of a chain after an interval, by its last two samples.
   Complex expected(std::size_t interval, std::size_t chain) const {
     const Complex here = s(interval, chain);
     if (interval == 0 || !has(static_cast<std::ptrdiff_t>(interval) - 1, chain)) return here;
@@ -228,7 +228,7 @@ std::optional<double> Pass::slope(std::ptrdiff_t interval, std::size_t b) const 
   return (chains_.excess(at + 1, b) - chains_.excess(at, b)) / chains_.width(at);
 }
 
-/// Where the tangents of the excess at both ends meet, if that is on the other side of zero.
+/// Intersection of the tangents of the excess at both ends, if it is on the other side of zero.
 /// @param sign +1 for a maximum, −1 for a minimum
 std::optional<double> Pass::tip_of(std::size_t i, std::size_t b, double sign) const {
   const auto here = static_cast<std::ptrdiff_t>(i);
@@ -292,7 +292,7 @@ Outcome Pass::climb(std::size_t i, std::size_t b, double sign) {
     if (!(sign * curvature < 0.0)) return Outcome::halve;
     next = 0.5 * (points[0].value + points[1].value) - 0.5 * left / curvature;
     const double offset = next - points[1].value;
-    // What a parabola may add, four times over, does not reach zero.
+    // Four times the contribution of a parabola does not reach zero.
     const double rise = std::abs(curvature) * offset * offset;
     if (4.0 * rise < std::abs(points[1].excess)) return Outcome::resolved;
     const double smallest = 1e-12 * (points[2].value - points[0].value);

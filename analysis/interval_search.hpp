@@ -7,7 +7,7 @@
 
 namespace stridor {
 
-/// What a search between samples adds to them.
+/// Result of a search between samples.
 struct IntervalSearch {
   std::vector<Sample> between;  ///< samples of any kind, in any order
   /// Largest distance of two values between which something may have been missed; 0 if none.

@@ -1,4 +1,4 @@
-// How well the functional forms of PPH describe a contact law.
+// Accuracy of the functional forms of PPH for a contact law.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ struct LawSample {
   double friction = 0.0;
 };
 
-/// What a law says at every pair of speed and indentation.
+/// Values of a law at every pair of speed and indentation.
 std::vector<LawSample> law_samples(const ViscoelasticContactLaw& law,
                                    const std::vector<double>& speeds,
                                    const std::vector<double>& indentations);

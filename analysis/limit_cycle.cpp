@@ -13,8 +13,8 @@ namespace {
 /// The motion has died down, or does so, where it moves less than this part of the equilibrium and
 /// that is stable: this close to it the motion is linear.
 constexpr double at_rest = 1e-6;
-/// How long a turn is waited for: several times what the substrate takes to wind up the spring to
-/// the static strength, as far as that can be waited for.
+/// Longest time to wait for a turn: several times the time in which the substrate winds up the
+/// spring to the static strength, within bounds.
 double longest_loop(const SubstrateOscillator& oscillator) {
   const SubstrateEquilibrium rest =
       find_equilibrium(oscillator, 1e-2 * oscillator.contact.indentation_unit);
@@ -52,7 +52,7 @@ bool is_stable(const SubstrateOscillator& oscillator, const SubstrateEquilibrium
   return leading_eigenvalue(small_motion(oscillator, rest)).real() < 0.0;
 }
 
-/// Reads the statistics off the motion.
+/// Reads the statistics from the motion.
 void measure(const SubstrateMotion& motion, LimitCycle& cycle) {
   const SubstrateMotion::Statistics& seen = motion.statistics();
   const double duration = motion.time() - seen.from;
@@ -70,7 +70,7 @@ void measure(const SubstrateMotion& motion, LimitCycle& cycle) {
   cycle.last_velocity = {motion.state()[2], motion.state()[3]};
 }
 
-/// What is left where a motion has failed.
+/// Result for a motion that has failed.
 LimitCycle failed(const SubstrateMotion& motion) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   LimitCycle cycle;

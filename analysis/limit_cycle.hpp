@@ -35,7 +35,7 @@ struct TurningPoint {
 
 struct LimitCycle {
   CycleStatus status = CycleStatus::diverged;
-  /// What went wrong and when, and what to try; empty unless `diverged`.
+  /// Cause, time and remedy of the failure; empty unless `diverged`.
   std::string failure;
   double period = 0.0;  ///< 0 where not periodic
   int loops = 0;        ///< turns per period
@@ -47,11 +47,11 @@ struct LimitCycle {
   double stick_fraction = 0.0;  ///< of the time
   double free_fraction = 0.0;
   TurningPoint point;     ///< on the cycle
-  double residual = 0.0;  ///< what is left of P(z) − z, over the size of the motion
+  double residual = 0.0;  ///< remainder of P(z) − z, over the size of the motion
   int newton_steps = 0;
   /// Of the return map of (x, y, ẏ) at turns, largest first; stable where all are below 1.
   std::vector<std::complex<double>> multipliers;
-  /// Where a motion that goes on from here starts.
+  /// Initial state of a motion that continues from here.
   Eigen::Vector2d last_displacement = Eigen::Vector2d::Zero();
   Eigen::Vector2d last_velocity = Eigen::Vector2d::Zero();
 };

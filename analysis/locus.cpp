@@ -26,7 +26,7 @@ std::optional<double> height_at(const Branch& branch, double value) {
   return (1.0 - fraction) * branch.s[i - 1].imag() + fraction * branch.s[i].imag();
 }
 
-/// Drops what belongs to eigenvalues that were not asked for.
+/// Drops the results of eigenvalues that were not asked for.
 void keep_wanted(Locus& locus, const LocusOptions& options) {
   const auto is_wanted = [&](const UnstableWindow& window) {
     if (window.frequency > options.frequency) return false;

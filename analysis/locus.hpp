@@ -12,8 +12,8 @@ namespace stridor {
 
 /// A system that depends on one parameter.
 struct PencilFamily {
-  /// Makes a pencil that of a value. It is handed the pencil of another value, or an empty one the
-  /// first time, so that what does not change need not be made again. Called in any order.
+  /// Sets a pencil to that of a value. It is given the pencil of another value, or an empty one the
+  /// first time, so that unchanged parts need not be made again. Called in any order.
   std::function<void(double value, Pencil& pencil)> place;
   /// Values where the pencil is continuous but not smooth, ascending: a contact at a master node.
   std::vector<double> kinks;
@@ -55,7 +55,7 @@ struct LocusOptions {
 
 /// One eigenvalue as the parameter varies.
 struct Branch {
-  std::vector<double> values;           ///< ascending: those asked for, and what was put between
+  std::vector<double> values;           ///< ascending: those asked for, and those inserted
   std::vector<std::complex<double>> s;  ///< Im s >= 0
 };
 
@@ -106,7 +106,7 @@ struct Locus {
 /// modes, modal_assurance(). Two that coincide to 1e-7, as those of equal bodies, go on together.
 ///
 /// A branch is refined wherever its real part, by the curvature of its samples, may reach zero
-/// between two of them. Crossings are then solved for. What is found does not depend on the values
+/// between two of them. Crossings are then solved for. The result does not depend on the values
 /// asked for.
 ///
 /// @param values  strictly ascending, at least one

@@ -21,11 +21,12 @@ enum class Derivative { none, first, second };
 ///
 ///     pass band  f ≤ 0.4 / dt_out,   stop band  f ≥ 0.6 / dt_out,   80 dB,   dt_out = ratio·dt_in,
 ///
-/// of odd length 2H+1. What folds back into the pass band lies above 0.6 / dt_out and so is 80 dB
-/// down; what folds onto 0.4…0.5 / dt_out is not, so the thinned signal is clean up to 0.4 /
-/// dt_out. The first derivative convolves these taps with the 5-point central difference at dt_in,
-/// whose relative error is (ω dt_in)⁴/30: at the edge of the pass band 8·10⁻⁶ for ratio
-/// 50, 1.3·10⁻⁴ for ratio 10. The second derivative is the second difference of the thinned signal,
+/// of odd length 2H+1. Content that folds back into the pass band lies above 0.6 / dt_out and so is
+/// 80 dB down; content that folds onto 0.4…0.5 / dt_out is not, so the thinned signal is clean up
+/// to 0.4 / dt_out. The first derivative convolves these taps with the 5-point central difference
+/// at dt_in, whose relative error is (ω dt_in)⁴/30: at the edge of the pass band 8·10⁻⁶ for
+/// ratio 50, 1.3·10⁻⁴ for ratio 10. The second derivative is the second difference of the thinned
+/// signal,
 ///
 ///     (x(t + dt_out) − 2 x(t) + x(t − dt_out)) / dt_out²,
 ///
@@ -102,8 +103,9 @@ class Decimator {
   ///
   /// Any number of derivatives may be asked for; each costs one pass over the window.
   double value(Derivative derivative) const;
-  /// The input sample that the due output belongs to, as it came in: for what must not be filtered
-  /// (states, energies) and yet stand beside filtered values of the same instant. Valid as value().
+  /// The unfiltered input sample of the due output, for quantities that must not be filtered
+  /// (states, energies) but are recorded with filtered values of the same instant. Valid as
+  /// value().
   double sample() const;
 
   /// Input samples that must follow a sample before its output is known.
@@ -111,7 +113,8 @@ class Decimator {
   /// Outputs that have become due so far.
   std::int64_t num_outputs() const { return num_outputs_; }
 
-  /// Stores the window and the counters under `prefix`; load() goes on bitwise as if never stopped.
+  /// Stores the window and the counters under `prefix`. After load() the filter resumes
+  /// bit-identically to an uninterrupted run.
   void save(State& state, const std::string& prefix) const;
   /// @throws std::invalid_argument if an array is missing or comes from another filter; this object
   ///         is unchanged then.

@@ -127,7 +127,7 @@ std::optional<double> PairSearch::vertex() const {
   return place;
 }
 
-/// Where the pair grows most, or least, by the parabolas around a value.
+/// Value of largest or least growth of the pair, by the parabolas around a value.
 double PairSearch::fastest_place(double around) const {
   constexpr int parts = 64;
   constexpr int octaves = 40;
@@ -152,7 +152,7 @@ double PairSearch::fastest_place(double around) const {
 
 std::optional<double> PairSearch::next() const {
   constexpr double rounding = 1e-15;     // of D in proportion to scale²
-  constexpr double least_growth = 1e-8;  // of scale: what an undamped pair must grow by
+  constexpr double least_growth = 1e-8;  // of scale: least growth of an undamped pair
   const PairLook& top = best();
   const std::optional<double> vertex_place = vertex();
   const bool is_first = looks_.size() == num_given_;
@@ -163,7 +163,7 @@ std::optional<double> PairSearch::next() const {
     });
   };
   if (is_first && !vertex_place) {
-    // Where two straight branches would meet.
+    // Intersection of two straight branches.
     const double left = std::sqrt(std::abs(expected(from_).square));
     const double right = std::sqrt(std::abs(expected(to_).square));
     const double share = left + right > 0.0 ? left / (left + right) : 0.5;

@@ -37,7 +37,8 @@ std::optional<FoundPair> closest_pair(const std::vector<std::complex<double>>& e
 /// Solves for the value between two others at which a pair grows most, or grows least.
 ///
 /// Mean and square are interpolated by parabolas through three looks. Proposed is the extremum of
-/// Re D, then that of the growth, until neither would change by what matters for stability.
+/// Re D, then that of the growth, until neither would change by an amount that matters for
+/// stability.
 class PairSearch {
  public:
   enum class Aim {
@@ -49,9 +50,9 @@ class PairSearch {
   /// @param scale of the eigenvalues, 1/s
   PairSearch(std::vector<PairLook> looks, double from, double to, double scale, Aim aim);
 
-  /// Where to look next; nothing once the search has converged.
+  /// Value to compute next; nothing once the search has converged.
   std::optional<double> next() const;
-  /// What the parabolas expect at a value.
+  /// Prediction of the parabolas at a value.
   PairLook expected(double value) const;
   void add(const PairLook& look);
   /// Whether the parabolas at the extremum also hold at both ends, within a factor of 3: there is

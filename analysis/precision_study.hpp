@@ -26,7 +26,7 @@ std::vector<int> step_ladder(int coarsest, int finest, int count);
 /// @throws std::invalid_argument if there are more than 10⁵
 int stable_steps_per_sample(const System& system, const TimeParameters& time, double interval);
 
-/// Number of modes that move on their own.
+/// Number of retained modes.
 int num_moving_modes(const System& system, const TimeParameters& time);
 
 /// The system with one contact assumption for all its contacts.
@@ -42,9 +42,9 @@ struct PrecisionMethod {
   TimeParameters at(int steps, const TimeParameters& time, double interval) const;
 };
 
-/// What a study is made of.
+/// Parameters of a study.
 struct StudyParameters {
-  std::vector<double> retained;  ///< frequencies up to which modes move, Hz, ascending
+  std::vector<double> retained;  ///< frequencies up to which modes are retained, Hz, ascending
   /// Contact assumptions that are compared; the scene's own need not be among them.
   std::vector<ContactAssumption> assumptions;
   int points = 7;  ///< steps per method, ≥ 2
@@ -65,7 +65,7 @@ struct PrecisionPlan {
 /// the central difference or less; its check run takes twice that step.
 ///
 /// @param system   under the scene's own assumption
-/// @param time     of the scene; its step is one that somebody thought good
+/// @param time     of the scene; its step is the choice of its author
 /// @param interval between samples, s
 /// @throws std::invalid_argument as stable_steps_per_sample()
 PrecisionPlan make_plan(const System& system, const TimeParameters& time, double interval,
@@ -77,10 +77,10 @@ struct ObservedRow {
   int row = 0;  ///< of ReducedBody::rows
 };
 
-/// What a run has cost so far.
+/// Cost of a run so far.
 struct RunCost {
   double setup = 0.0;        ///< s, model excluded
-  double sampling = 0.0;     ///< s, what looking at the samples took, estimated from some of them
+  double sampling = 0.0;     ///< s, time of sampling, estimated from some samples
   double stepping = 0.0;     ///< s, the rest
   double least_step = 0.0;   ///< s per step, of the fastest stretch
   double median_step = 0.0;  ///< s per step, over the stretches
@@ -90,7 +90,7 @@ struct RunCost {
 /// A run that is sampled and timed in stretches.
 ///
 /// A setting that cannot be run, or that fails on its way, is a result and no error: `failure()`
-/// says why.
+/// gives the reason.
 class TimedRun {
  public:
   /// @param interval between samples, s, a whole multiple of time.step

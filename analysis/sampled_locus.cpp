@@ -52,7 +52,7 @@ bool has_less_excess(const Sample& a, const Sample& b) {
   return a.ranked_excess(1) < b.ranked_excess(1);
 }
 
-/// What two samples do not show of the values between them, by several glimpses there. Ascending.
+/// Samples hidden between two samples, found by several glimpses there. Ascending.
 std::vector<Sample> hidden_between(const SpectrumSampler& sampler, const SamplingEffort& effort,
                                    const Sample& low, const Sample& high, int num_glimpses) {
   std::vector<Sample> looks{low};

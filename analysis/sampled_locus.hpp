@@ -8,7 +8,7 @@
 
 namespace stridor {
 
-/// How many spectra a locus may cost.
+/// Limits of the number of spectra for a locus.
 struct SamplingEffort {
   int least_values = 64;  ///< looked at in all, where fewer are asked for
   int most_added = 256;   ///< values put between where eigenvalues cannot be told apart
@@ -29,7 +29,7 @@ inline constexpr SamplingEffort sparing_effort{1, 16, {1e-9, 8, WindowEffort::En
 /// A the linearised matrix and κ its condition number. Every one that grows has a window of its
 /// own, whose ends are bisected: where two eigenvalues meet on the axis their real part grows like
 /// a square root, and the error of the end is of order ε all the same. Besides the values asked for
-/// at least 64 are looked at; what may lie between two of them is searched by search_intervals().
+/// at least 64 are computed; search_intervals() searches for windows between two of them.
 ///
 /// @return no branches; `branch` of windows and crossings is 0
 /// @throws as trace_locus()

@@ -30,7 +30,7 @@ double middle_number(double a, double b) {
                                           : middle);
 }
 
-/// Where the rank-th largest excess changes its sign.
+/// Value at which the rank-th largest excess changes its sign.
 class SignChange {
  public:
   SignChange(const SpectrumSampler& sampler, const WindowEffort& effort, std::size_t rank)

@@ -7,7 +7,7 @@
 
 namespace stridor {
 
-/// How the ends and the largest growth of windows are found.
+/// Search for the ends and the largest growth of windows.
 struct WindowEffort {
   double tolerance = 1e-13;  ///< of the ends, relative
   int climbing_steps = 40;   ///< of golden sections towards the largest growth

@@ -33,7 +33,7 @@ std::size_t main_lobe_lines(WindowKind kind);
 /// The weights of a window. @throws std::invalid_argument if the length is below 2
 std::vector<double> make_window(WindowKind kind, std::size_t length);
 
-/// How a signal is cut into pieces.
+/// Division of a signal into pieces.
 struct SpectrogramParameters {
   WindowKind window = WindowKind::hann;
   std::size_t length = 0;  ///< n, samples per piece, ≥ 2; must be given

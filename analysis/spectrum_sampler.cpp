@@ -16,7 +16,7 @@ using Complex = std::complex<double>;
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-/// All eigenvalues of the dense problem, and what may be rounding of them.
+/// All eigenvalues of the dense problem, and their possible rounding errors.
 class DenseSpectra {
  public:
   explicit DenseSpectra(const PencilFamily& family) : family_(&family) {}
@@ -32,7 +32,7 @@ class DenseSpectra {
 
   SampledSpectrum compute(double value) {
     family_->place(value, pencil_);
-    // What is beyond doubt needs no condition numbers.
+    // Eigenvalues without doubt need no condition numbers.
     DenseSpectrum all = dense_spectrum(pencil_, DenseWork::eigenvalues);
     if (std::any_of(all.eigenvalues.begin(), all.eigenvalues.end(), is_doubtful))
       all = dense_spectrum(pencil_, DenseWork::conditions);
@@ -48,7 +48,7 @@ class DenseSpectra {
     return std::abs(one.s.real()) <= largest_rounding * std::abs(one.s);
   }
 
-  /// What rounding may have added to the real part.
+  /// Possible rounding error of the real part.
   static double rounding_of(const DenseSpectrum& all, std::size_t i) {
     if (!is_doubtful(all.eigenvalues[i])) return 0.0;
     const double rounding = 20.0 * std::numeric_limits<double>::epsilon() * all.norm;

@@ -1,4 +1,4 @@
-// Spectra of a system at single values of a parameter: what grows, and which eigenvalue is which.
+// Spectra of a system at single values of a parameter: growing eigenvalues and their matching.
 #pragma once
 
 #include <complex>
@@ -12,7 +12,7 @@ namespace stridor {
 /// Eigenvalues at one value of a parameter.
 struct SampledSpectrum {
   std::vector<std::complex<double>> eigenvalues;  ///< Im s >= 0, ascending Im s
-  std::vector<double> rounding;  ///< what rounding may have added to each real part, 1/s
+  std::vector<double> rounding;  ///< possible rounding error of each real part, 1/s
 };
 
 /// Those of a system that depends on one parameter; called in any order.
@@ -35,7 +35,7 @@ SpectrumFamily dense_spectra(const PencilFamily& family);
 struct Sample {
   double value = 0.0;
   std::vector<std::complex<double>> eigenvalues;  ///< Im s >= 0, ascending Im s
-  /// Of each: its real part less what may be rounding, 1/s; −∞ above the trusted frequency.
+  /// Of each: its real part less the possible rounding error, 1/s; −∞ above the trusted frequency.
   std::vector<double> excess;
 
   bool is_growing(std::size_t i) const { return excess[i] > 0.0; }
@@ -48,7 +48,7 @@ struct Sample {
   std::complex<double> fastest() const;
 };
 
-/// Takes samples of what a locus wants of a family.
+/// Takes the samples of a family that a locus needs.
 class SpectrumSampler {
  public:
   /// @param family, options referenced

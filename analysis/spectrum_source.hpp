@@ -10,12 +10,12 @@
 
 namespace stridor {
 
-/// Whether an eigenvalue of the upper half plane stands for itself and its conjugate.
+/// Whether an eigenvalue of the upper half plane represents itself and its conjugate.
 inline bool is_pair(std::complex<double> s) {
   return s.imag() > 0.0;
 }
 
-/// What a locus needs of an eigenvalue method. Sets are of the upper half plane and the real axis.
+/// Eigenvalue method of a locus. Sets are of the upper half plane and the real axis.
 class SpectrumSource {
  public:
   using Complex = std::complex<double>;
@@ -36,8 +36,8 @@ class SpectrumSource {
   /// Whether every eigenvalue with Im s <= needed is in the set, and no stranger.
   virtual bool covers(const std::vector<Complex>& set, double needed) = 0;
   virtual Eigen::VectorXcd shape(Complex s) = 0;
-  /// Size of the numbers of which an eigenvalue is the difference, 1/s: what its rounding is in
-  /// proportion to.
+  /// Size of the numbers whose difference is an eigenvalue, 1/s: its rounding error is proportional
+  /// to it.
   virtual double magnitude(Complex s) const = 0;
 };
 

@@ -60,7 +60,7 @@ struct OnSide {
   int side = 0;
 };
 
-/// Connects the crossings around one cell, given in the order in which they stand there.
+/// Connects the crossings around one cell, given in the order in which they follow there.
 void connect(std::vector<Node>& nodes, const std::vector<OnSide>& around, double width,
              double height) {
   const std::size_t count = around.size();
@@ -139,7 +139,7 @@ std::vector<BoundaryLine> boundary_lines(const GridCrossings& crossings) {
 
   std::vector<BoundaryLine> lines;
   std::vector<bool> is_taken(all.nodes.size(), false);
-  // Open lines from their ends first; what is left is closed.
+  // Open lines from their ends first; the remaining ones are closed.
   for (const bool is_from_end : {true, false}) {
     for (std::size_t start = 0; start < all.nodes.size(); ++start) {
       const std::size_t degree = all.nodes[start].neighbours.size();

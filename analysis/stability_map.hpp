@@ -6,7 +6,7 @@
 
 namespace stridor {
 
-/// Where stability changes along the lines of a grid.
+/// Changes of stability along the lines of a grid.
 struct GridCrossings {
   std::vector<double> x;                     ///< of the grid, strictly ascending, at least two
   std::vector<double> y;                     ///< likewise

@@ -56,7 +56,7 @@ class WindowFinder {
   const std::vector<double>& values() const { return track_->branch.values; }
   double growth(std::size_t i) const { return growth_[i]; }
 
-  /// Re s less what rounding may make of zero: without damping eigenvalues lie on the axis over
+  /// Re s less the rounding error of zero: without damping eigenvalues lie on the axis over
   /// whole intervals. Next to another one an eigenvalue is ill-conditioned, and a double one is off
   /// by the root of the rounding.
   double growth_of(Complex s, double nearest) const {
@@ -114,7 +114,7 @@ class WindowFinder {
     const auto left = curvature(i);
     const auto right = curvature(i + 1);
     if (!left && !right) return false;
-    // Deviation from the chord, ½ |f″| length²/4, twice for what the samples do not show.
+    // Deviation from the chord, ½ |f″| length²/4, twice for deviations between the samples.
     const double deviation = 0.5 * length * length *
                              std::max(std::abs(left.value_or(0.0)), std::abs(right.value_or(0.0)));
     const double low = std::min(growth(i), growth(i + 1));

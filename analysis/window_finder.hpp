@@ -1,4 +1,4 @@
-// Where the real part of a followed eigenvalue is positive.
+// Windows in which the real part of a followed eigenvalue is positive.
 #pragma once
 
 #include "analysis/branch_tracker.hpp"

@@ -8,7 +8,7 @@
 namespace stridor {
 namespace {
 
-/// What follows the number in "30 mm"; empty for a bare number or what is none.
+/// Unit after the number in "30 mm"; empty for a bare number or a text without a number.
 std::string unit_in(const std::string& text) {
   std::size_t end = 0;
   try {

@@ -9,7 +9,7 @@
 
 namespace stridor {
 
-/// A unit and what one of it is in SI.
+/// A unit and its value in SI.
 struct AxisUnit {
   std::string name;  ///< "mm"; "1" where dimensionless
   double in_si = 1.0;

@@ -67,7 +67,7 @@ void finish_json(const std::vector<Problem>& errors) {
   if (!json_to_print) return;
   // Names of files need not be UTF-8.
   const std::string text = json_to_print->dump(2, ' ', false, Json::error_handler_t::replace);
-  // Where nothing can be printed this does not throw; main() looks at stdout at the end.
+  // If nothing can be printed this does not throw; main() looks at stdout at the end.
   std::fputs((text + "\n").c_str(), stdout);
   json_to_print.reset();
 }

@@ -1,4 +1,4 @@
-// What every verb of the command line shares.
+// Functions common to all verbs of the command line.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -48,7 +48,7 @@ void check_figure(const std::filesystem::path& figure, const CommonOptions& opti
 /// Place, key and message of a problem; of a failure without a place the message alone.
 Json problem_json(const Problem& problem);
 
-/// Tells on stderr of what is hardly meant but does not stop a verb.
+/// Warns on stderr of input that is probably not intended but does not stop a verb.
 void print_warnings(const std::vector<Problem>& warnings);
 
 /// Takes the one JSON object that a verb prints. It is printed when the verb has ended, since a
@@ -66,7 +66,7 @@ Json number(double value);
 /// @throws ConfigError naming the option if they are not 0 < first < last and 4 to 1000 of them
 std::vector<double> spaced_values(const char* option, const std::vector<double>& range);
 
-/// Each verb declares itself; `action` receives what to do when it was given.
+/// Each verb declares itself; `action` receives its work when it was given.
 using Action = std::function<ExitCode()>;
 void add_contact_command(CLI::App& program, Action& action, const std::string& command_line);
 void add_fit_command(CLI::App& program, Action& action);

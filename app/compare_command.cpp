@@ -40,7 +40,7 @@ constexpr std::array<Assumption, 4> assumptions{{{"subs_a", "Subs-a", ContactAss
                                                  {"film", "FiLM", ContactAssumption::film}}};
 constexpr std::size_t film = 3;
 
-/// A folder for files that nobody asked for; removed with everything in it.
+/// A folder for temporary files; removed with everything in it.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -80,7 +80,7 @@ void record_contact(Scene& scene) {
   }
 }
 
-/// One assumption's transient and what came of it.
+/// Transient of one assumption and its results.
 struct Candidate {
   LoadedScene scene;
   std::string file;
@@ -101,8 +101,8 @@ void remove_files(Candidates& candidates) {
   }
 }
 
-/// Runs the transients in turns, a hundredth of the run at a time, so that whatever else the
-/// machine does weighs on all of them alike.
+/// Runs the transients interleaved, a hundredth of the run at a time, so that other load on the
+/// machine affects all of them alike.
 Candidates run_interleaved(const LoadedScene& loaded, Coordinates coordinates, double end,
                            const fs::path& folder, const CompareOptions& options) {
   const char* suffix = coordinates == Coordinates::modal ? "" : "_published";

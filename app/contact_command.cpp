@@ -54,7 +54,7 @@ struct Row {
   ContactFields fields;
 };
 
-/// Refuses what an indenter that ends cannot carry.
+/// Refuses loads that an indenter of finite size cannot carry.
 void check_reach(const LoadedContactScene& loaded, const SlidingPoints& points) {
   const double radius = loaded.scene.profile.radius;
   const IndenterProfile profile(loaded.scene.profile);

@@ -6,7 +6,7 @@
 namespace stridor {
 
 /// Marches the scene from a perturbed steady sliding, and writes samples and results.
-/// @throws ConfigError if the scene is no disc, or lacks what a run needs; Interrupted,
+/// @throws ConfigError if the scene is no disc, or lacks keys that a run needs; Interrupted,
 /// NumericalError
 ExitCode run_disc(const LoadedLinearScene& loaded, const RunOutput& output,
                   const RunEnding& ending);

@@ -1,4 +1,4 @@
-// What every kind of `eig` prints of eigenvalues.
+// Output of eigenvalues common to all kinds of `eig`.
 #pragma once
 
 #include <optional>
@@ -16,10 +16,10 @@ namespace stridor {
 std::size_t chosen_mode(const std::vector<Eigenvalue>& eigenvalues, std::size_t num_real,
                         const std::optional<int>& mode);
 
-/// How many of the eigenvalues are real.
+/// Number of real eigenvalues.
 std::size_t num_real_of(const std::vector<Eigenvalue>& eigenvalues);
 
-/// @param trusted frequency above which the model does not answer for them, Hz
+/// @param trusted frequency above which the model is not valid for them, Hz
 void print_eigenvalues(const std::vector<Eigenvalue>& eigenvalues, double trusted);
 
 /// Whether rounding may have made an eigenvalue up: more is left of the equations of motion than
@@ -28,7 +28,7 @@ bool is_doubtful(const Eigenvalue& eigenvalue);
 /// Which of them, by their places in the list.
 Json doubtful_json(const std::vector<Eigenvalue>& eigenvalues);
 
-/// Whether a model that answers up to a frequency resolves an eigenvalue: a real one has no
+/// Whether a model valid up to a frequency resolves an eigenvalue: a real one has no
 /// frequency, but a rate, and s = 2πf is as fast as a vibration of frequency f.
 /// @param trusted Hz
 bool is_resolved(std::complex<double> s, double trusted);

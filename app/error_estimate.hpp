@@ -18,8 +18,8 @@ struct ErrorEstimate {
 
 /// Runs a scene as it is, and by exact propagation of all modes at half the step, and sets one
 /// against the other. At order p in the step the difference is 1 − 2⁻ᵖ of the error by the step,
-/// half of it or more, and what modes left out do is all in it.
-/// @param on_progress is told the part done
+/// half of it or more, and it contains the full error of the truncated modes.
+/// @param on_progress receives the part done
 ErrorEstimate estimate_error(const StudiedScene& study,
                              const std::function<void(double)>& on_progress);
 

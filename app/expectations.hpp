@@ -1,4 +1,4 @@
-// What a scene expects of its results.
+// Expectations of a scene about its results.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace stridor {
 
-/// Compares results with the `expect` block of a scene and says on stderr how many were met.
+/// Compares results with the `expect` block of a scene and reports on stderr how many were met.
 /// @param results JSON object; an expectation names a number in it by "a.b.c", an entry of a list
 /// by
 ///                its index from 0

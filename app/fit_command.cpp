@@ -27,7 +27,7 @@ struct FitOptions {
   std::optional<std::string> figures;
 };
 
-/// What is compared.
+/// Quantities compared.
 struct Comparison {
   std::vector<LawSample> samples;
   PerQuantity shift;  ///< decades, of the published coefficients
@@ -128,7 +128,7 @@ void draw_cuts(const Comparison& comparison, const std::filesystem::path& figure
               figure);
 }
 
-/// PPH Fig. 14: every sample against what the forms say of it.
+/// PPH Fig. 14: every sample against the value of the forms.
 void draw_scatter(const Comparison& comparison, const std::filesystem::path& figure) {
   const FittedLaw refit(comparison.refit.coefficients);
   const FittedLaw moved(comparison.moved);

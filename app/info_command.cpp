@@ -1,4 +1,4 @@
-// stridor info: what a run file holds.
+// stridor info: contents of a run file.
 #include <fmt/format.h>
 
 #include "app/burst_text.hpp"

@@ -96,7 +96,7 @@ double gain_between(const Branch& branch, double from, double to, const PassingT
   return gain;
 }
 
-/// When the run of the scene is in a window, and what grows by then: it may start or end inside.
+/// Times of a window in the run of the scene, and the growth in it: it may start or end inside.
 TimedWindow timed(const Locus& locus, const UnstableWindow& window, const PassingTimes& times) {
   TimedWindow one{window, never, never, never};
   const auto is_passed = [&](double value) { return std::isfinite(times.at(value)); };
@@ -130,7 +130,7 @@ TimedWindow timed(const Locus& locus, const UnstableWindow& window, const Passin
   one.from_time = std::min(at_from, at_to);
   one.to_time = std::max(at_from, at_to);
   const bool is_whole = from == window.from && to == window.to;
-  // A whole window is passed at constant speed, as good as.
+  // A whole window is passed at nearly constant speed.
   one.gain = is_whole ? window.growth_integral * (one.to_time - one.from_time) / (to - from)
                       : gain_between(locus.branches[static_cast<std::size_t>(window.branch)], from,
                                      to, times);
@@ -176,7 +176,7 @@ Json windows_json(const std::vector<TimedWindow>& windows, double trusted) {
   return list;
 }
 
-/// Eigenvalues that were sampled, as curves: each goes on where its last two points lead to.
+/// Eigenvalues that were sampled, as curves: each continues where its last two points lead.
 std::vector<std::vector<std::pair<double, std::complex<double>>>> connected(const Locus& locus) {
   std::vector<std::vector<std::pair<double, std::complex<double>>>> curves;
   std::vector<std::size_t> open;  // curves that have reached the last value
@@ -265,7 +265,7 @@ double highest_frequency(const Locus& locus) {
   return highest;
 }
 
-/// How many there are where there are most.
+/// Largest number of them at any value.
 std::size_t most_eigenvalues(const Locus& locus) {
   std::size_t most = 0;
   for (const auto& list : locus.eigenvalues) most = std::max(most, list.size());

@@ -1,4 +1,4 @@
-// Progress of what follows eigenvalues along a key.
+// Progress of the computations that follow eigenvalues along a key.
 #pragma once
 
 #include "app/progress.hpp"
@@ -6,8 +6,8 @@
 
 namespace stridor {
 
-/// Tells how far along its range a family is, and then, as windows are refined, how many values
-/// have been looked at: how many it takes, nobody knows.
+/// Reports the progress of a family along its range and then, as windows are refined, the number of
+/// values computed: the total is not known beforehand.
 class LocusProgress {
  public:
   /// @param family, range must live longer

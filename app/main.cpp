@@ -55,7 +55,7 @@ void occupy_closed_streams() {
   }
 }
 
-/// Brings what was printed out. @return 4, said on stderr, where a command that is done could not
+/// Flushes the output. @return 4, reported on stderr, where a command that is done could not
 ///         print; else `code`
 int with_output_written(int code) {
   errno = 0;
@@ -77,7 +77,7 @@ std::string joined_arguments(int argc, char** argv) {
   return command;
 }
 
-/// What is wrong with the verb that the user wrote, or "".
+/// Error of the verb that the user wrote, or "".
 std::string verb_problem(CLI::App& program, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return "";
   std::vector<std::string> verbs;
@@ -88,7 +88,7 @@ std::string verb_problem(CLI::App& program, int argc, char** argv) {
                      did_you_mean(argv[1], verbs), fmt::join(verbs, ", "));
 }
 
-/// What is wrong with an option that the verb does not have, or "".
+/// Error of an option that the verb does not have, or "".
 std::string option_problem(CLI::App& program, int argc, char** argv) {
   const auto verbs = program.get_subcommands(
       [&](const CLI::App* verb) { return argc > 1 && verb->get_name() == argv[1]; });

@@ -1,4 +1,4 @@
-// How far a computation is and how long the rest of it takes.
+// Progress of a computation and its remaining time.
 #pragma once
 
 #include <chrono>
@@ -24,7 +24,7 @@ class Pace {
   std::size_t num_marks() const { return marks_.size(); }
   /// Since the start, s.
   double elapsed(SteadyTime now) const;
-  /// s; nothing while too little has been seen.
+  /// s; nothing while too little is done.
   std::optional<double> left(SteadyTime now) const;
 
  private:
@@ -39,7 +39,7 @@ class Pace {
 /// "12 s", "3 min 05 s", "2 h 10 min".
 std::string duration_text(double seconds);
 
-/// "42 %, 12 s left"; 100 % only where all is done. What is not known is left out: without a part
+/// "42 %, 12 s left"; 100 % only where all is done. Unknown parts are omitted: without a part
 /// done there is the time so far, "12 s so far".
 std::string pace_text(const Pace& pace, SteadyTime now);
 

@@ -1,4 +1,4 @@
-// What the verbs that make pictures of a run file share.
+// Functions common to the verbs that make pictures of a run file.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@
 
 namespace stridor {
 
-/// What the user asked for, as written; nothing where an option was not given.
+/// Options as the user wrote them; nothing where an option was not given.
 struct PictureOptions {
   CommonOptions common;
   std::string file;
@@ -38,7 +38,7 @@ struct PictureOptions {
 
 /// --from, --to, --json, --force.
 void add_picture_options(CLI::App& verb, PictureOptions& options);
-/// How a signal is cut into pieces, and how levels are shown.
+/// Division of a signal into pieces, and display of levels.
 void add_spectrum_options(CLI::App& verb, PictureOptions& options);
 /// --data.
 void add_data_option(CLI::App& verb, PictureOptions& options);
@@ -79,7 +79,7 @@ struct RecordedStretch {
 };
 
 /// Opens the run file and finds the samples between --from and --to.
-/// @throws ConfigError if there are none; FileError if the file is not what it should be
+/// @throws ConfigError if there are none; FileError if the file is not a valid run file
 RecordedStretch open_stretch(const PictureOptions& options);
 
 /// The series with this name.
@@ -87,7 +87,7 @@ RecordedStretch open_stretch(const PictureOptions& options);
 /// @throws ConfigError with a suggestion and all names if there is none
 std::string find_series(const RecordedStretch& run, const std::string& channel, const char* key);
 
-/// How a stretch is cut into pieces for spectra, and how far they are shown.
+/// Division of a stretch into pieces for spectra, and their range of frequencies.
 struct PieceSettings {
   SpectrogramParameters parameters;
   double max_frequency = 0.0;  ///< Hz
@@ -127,7 +127,7 @@ struct NumberedBurst {
 /// The bursts_of() the run that touch the stretch.
 std::vector<NumberedBurst> bursts_in(const RecordedStretch& run, const PictureOptions& options);
 
-/// Makes the spectrogram of a channel: figure, data, and what is printed.
+/// Makes the spectrogram of a channel: figure, data and printed results.
 /// @throws ConfigError, FileError
 ExitCode draw_spectrogram(const PictureOptions& options);
 

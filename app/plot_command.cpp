@@ -28,12 +28,12 @@ void refuse_option(const PlotOptions& options, const char* name,
 /// Channels of a picture where the user names none.
 constexpr std::size_t most_default_channels = 8;
 
-/// What a picture shows, and what it leaves out because nobody asked for it.
+/// Series that a picture shows, and series omitted because they were not asked for.
 struct Wanted {
   std::vector<std::string> series;
   std::vector<std::string> left_out;  ///< names of channels
 
-  /// What a caption says of the rest.
+  /// Text of a caption about the rest.
   std::string rest_text() const {
     if (left_out.empty()) return "";
     return fmt::format("{} of {} channels; the others with --channel NAME (stridor info lists them). ",
@@ -67,7 +67,7 @@ Wanted wanted_series(const PlotOptions& options, const RecordedStretch& run, Ser
   return wanted;
 }
 
-/// What a kind of picture adds to the JSON object.
+/// Addition of a kind of picture to the JSON object.
 using Drawn = Json;
 
 Drawn draw_history(const PlotOptions& options, const RecordedStretch& run) {
@@ -94,8 +94,8 @@ Drawn draw_history(const PlotOptions& options, const RecordedStretch& run) {
 constexpr const char* no_silent_derivatives =
     "nothing is integrated or differentiated for a picture";
 
-/// What belongs to a quantity in a phase plot: displacement with velocity, position along the
-/// master with the slip velocity; empty where nothing does.
+/// Partner of a quantity in a phase plot: displacement with velocity, position along the master
+/// with the slip velocity; empty where there is none.
 std::string partner_of(const std::string& name) {
   static const std::map<std::string, std::string> partners{{"displacement", "velocity"},
                                                            {"velocity", "displacement"},

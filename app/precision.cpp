@@ -54,7 +54,7 @@ PrecisionRow make_row(const PrecisionStudy& study, const PrecisionMethod& method
   return row;
 }
 
-/// Runs all settings in turns; the reference is the first.
+/// Runs all settings interleaved; the reference is the first.
 void run_all(const PrecisionStudy& study, PrecisionRows& rows) {
   const int turns = static_cast<int>(
       std::clamp<std::int64_t>(study.num_samples / least_samples_per_turn, 1, most_turns));

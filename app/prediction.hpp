@@ -20,8 +20,8 @@ struct PredictedBurst {
 
 /// Gives every window the burst of like frequency that overlaps it most in time.
 ///
-/// Windows without times are left out. A burst lags behind its window, since it starts where it
-/// rises out of the quiet and ends long after: what counts is that it is present in the window, or
+/// Windows without times are omitted. A burst lags behind its window, since it starts where it
+/// rises out of the quiet and ends long after: it counts if it is present in the window, or
 /// starts at most 0.05 s after it, within 2 % of the frequency (at the steepest rise) of the
 /// window.
 std::vector<PredictedBurst> match_bursts(const std::vector<TimedWindow>& windows,

@@ -74,7 +74,7 @@ class ProgressDisplay {
   static constexpr auto line_interval = std::chrono::seconds(10);
   static constexpr auto drawing_interval = std::chrono::milliseconds(100);
   static constexpr auto tick = std::chrono::milliseconds(500);
-  /// What is over sooner need not be shown.
+  /// Shorter phases need not be shown.
   static constexpr auto patience = std::chrono::seconds(1);
 
   /// Signals are for the main thread.

@@ -10,9 +10,9 @@ namespace stridor {
 
 /// A bar on a terminal, a plain line now and then elsewhere.
 ///
-/// What is shown is kept up by a thread of its own, so that it also moves while a library computes.
-/// Of several the newest is shown; where it has not been told anything, what the main thread is at
-/// (core/activity.hpp) stands in its place, if it is at anything.
+/// A thread of its own updates the display, so that it also moves while a library computes. Of
+/// several the newest is shown; where it has not been told anything, the current phase of the main
+/// thread (core/activity.hpp) is shown in its place, if there is one.
 class Progress {
  public:
   explicit Progress(std::string what);
@@ -20,18 +20,18 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// The next phase begins: what was done before does not count, and the time left is of this
+  /// The next phase begins: work done before does not count, and the time left is of this
   /// phase.
   void begin(std::string phase);
   /// @param fraction done of the phase, 0 to 1
   /// @param detail   short text behind the bar, e.g. "t = 1.25 of 2.25 s"
   void report(double fraction, const std::string& detail);
-  /// The same where nothing says how much is left.
+  /// The same where the remaining work is unknown.
   void report(const std::string& detail);
   /// Removes the bar.
   void finish();
 
-  /// What a plain line says of it, with what it has been told.
+  /// Text of a plain line from the reports so far.
   std::string text(SteadyTime now) const;
 
  private:
@@ -43,7 +43,7 @@ class Progress {
   std::string what_;
   std::string phase_;
   std::string detail_;
-  std::optional<Pace> pace_;  ///< once it has been told something
+  std::optional<Pace> pace_;  ///< once something has been reported
   SteadyTime start_ = std::chrono::steady_clock::now();
   bool is_open_ = true;
 };

@@ -1,4 +1,4 @@
-// What is said beside the results, on stderr.
+// Remarks on stderr, apart from the results.
 #pragma once
 
 #include <fmt/format.h>
@@ -8,8 +8,8 @@
 
 namespace stridor {
 
-/// Prints on stderr. Where nobody listens any more (fmt::print throws there) the work goes on: what
-/// counts are results and exit code.
+/// Prints on stderr. If stderr is closed (fmt::print throws then) the work continues: results and
+/// exit code matter.
 template <class... Values>
 void print_remark(fmt::format_string<Values...> format, Values&&... values) {
   std::fputs(fmt::format(format, std::forward<Values>(values)...).c_str(), stderr);

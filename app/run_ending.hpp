@@ -1,4 +1,4 @@
-// How a run of any kind of scene goes to its end and says how it ended.
+// Ending of a run of any kind of scene, and its report.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,13 +15,13 @@
 
 namespace stridor {
 
-/// Runs to the end, or as far as it gets, and says how it ended.
+/// Runs to the end, or as far as it gets, and reports the ending.
 ///
 /// @tparam Run  has keeper(), run_to_end(), write_checkpoint(), finish(), time() and failure()
 /// @param end   of the run, in units of its time()
 /// @param print prints the results where they are not asked for as JSON
-/// @throws Interrupted if the run was stopped, NumericalError if it failed or does not meet what is
-///         expected, FileError
+/// @throws Interrupted if the run was stopped, NumericalError if it failed or does not meet its
+///         expectations, FileError
 template <class Run, class Print>
 ExitCode run_and_report(Run& run, double end, const std::string& file, const RunEnding& ending,
                         const std::vector<Expectation>& expectations, Print&& print) {

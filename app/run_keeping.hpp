@@ -1,4 +1,4 @@
-// What runs of every kind of scene share: where they come from, what they take, how they end.
+// Functions common to runs of every kind of scene: resumption, run times and endings.
 #pragma once
 
 #include <chrono>
@@ -12,14 +12,14 @@
 
 namespace stridor {
 
-/// Where the results of a run go, and by which command.
+/// Destination of the results of a run, and the command.
 struct RunOutput {
   std::string file;  ///< run file (HDF5)
   Overwrite overwrite = Overwrite::no;
   std::string command_line;
 };
 
-/// How a run is to end, and what is said of it.
+/// Requested ending of a run, and its report.
 struct RunEnding {
   double max_wall = std::numeric_limits<double>::infinity();  ///< s
   bool json = false;
@@ -57,7 +57,7 @@ void store_results(RunFileWriter& writer, const Json& results);
 /// Seconds of wall time since a moment.
 double seconds_since(std::chrono::steady_clock::time_point moment);
 
-/// What a run took, s.
+/// Times that a run took, s.
 struct RunTimes {
   double setup = 0.0, march = 0.0, output = 0.0;
 };
@@ -100,7 +100,7 @@ class RunKeeper {
   std::function<void(double, const std::string&)> report_;
 };
 
-/// That a run was stopped on request, and how it goes on.
+/// Message that a run was stopped on request, and how to resume it.
 /// @param time, end s, or in units of the run
 [[noreturn]] void throw_interrupted(double time, double end, const std::string& file);
 

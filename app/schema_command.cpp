@@ -1,4 +1,4 @@
-// stridor schema: what a scene may hold, for editors and for readers.
+// stridor schema: keys of a scene, for editors and for readers.
 #include <fmt/format.h>
 
 #include "app/command.hpp"

@@ -1,4 +1,4 @@
-// What the verbs share that follow a sphere on a viscoelastic substrate in time.
+// Functions common to the verbs that follow a sphere on a viscoelastic substrate in time.
 #pragma once
 
 #include "analysis/limit_cycle.hpp"
@@ -8,7 +8,7 @@
 
 namespace stridor {
 
-/// Where a motion of the scene starts: its equilibrium, pressed in or lifted a little.
+/// Start of a motion of the scene: its equilibrium, pressed in or lifted a little.
 /// @throws NumericalError if there is no equilibrium
 Eigen::Vector2d initial_displacement(const SphereScene& scene,
                                      const SubstrateOscillator& oscillator);
@@ -38,7 +38,7 @@ struct SphereHistory {
 void plot_history(const SphereHistory& history, const std::string& caption,
                   const std::string& figure);
 
-/// What every file of such a verb says of itself.
+/// Attributes of every file of such a verb.
 Attributes sphere_attributes(const LoadedSphereScene& loaded, const std::string& command_line);
 
 }  // namespace stridor

@@ -16,7 +16,7 @@ namespace {
 /// After so many turns a motion may repeat itself.
 constexpr std::size_t most_loops = 12;
 
-/// What is recorded, and the units in which the sphere measures it.
+/// Recorded series, with the units in which the sphere measures them.
 struct Series {
   SeriesSpec spec;
   std::vector<double> SphereHistory::*values;

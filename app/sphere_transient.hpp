@@ -14,10 +14,10 @@
 
 namespace stridor {
 
-/// Reads amplitude and period off the whole cycles of the second half of a run.
+/// Reads amplitude and period from the whole cycles of the second half of a run.
 class CycleMeter {
  public:
-  /// What has been gathered up to a turn, where x is largest.
+  /// Quantities gathered up to a turn, where x is largest.
   struct Turn {
     double time = 0.0;
     double x = 0.0;
@@ -56,7 +56,7 @@ class SphereTransient {
   /// @param loaded must live longer
   /// @throws ConfigError if the step is beyond the limit; FileError, NumericalError
   SphereTransient(const LoadedSphereScene& loaded, const RunOutput& output);
-  /// Goes on with a run from the latest checkpoint of its file, bitwise as if it had not stopped.
+  /// Resumes a run from the latest checkpoint of its file, bit-identically to an uninterrupted run.
   /// @throws FileError as Transient
   SphereTransient(const LoadedSphereScene& loaded, const InterruptedRun& interrupted);
   SphereTransient(const SphereTransient&) = delete;
@@ -75,7 +75,7 @@ class SphereTransient {
 
   double time() const;
   const SphereNumbers& numbers() const { return numbers_; }
-  /// What has gone wrong and when, and what to try; empty unless the run has failed.
+  /// Cause, time and remedy of the failure; empty unless the run has failed.
   const std::string& failure() const { return failure_; }
 
  private:

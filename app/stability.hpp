@@ -1,4 +1,4 @@
-// What the verbs about small vibrations share: the sliding state of a scene and its eigenvalues.
+// Functions common to the verbs about small vibrations: sliding state of a scene and eigenvalues.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@ namespace stridor {
 
 enum class EigenvalueMethod { secular, dense };
 
-/// What the user asked for, as written.
+/// Options as the user wrote them.
 struct StabilityOptions {
   CommonOptions common;
   std::string scene;
@@ -55,7 +55,7 @@ std::vector<double> range_values(const NumericKey& key, const RangeOptions& opti
 /// --parameter, --from, --to, --points.
 void add_range_options(CLI::App& verb, RangeOptions& options);
 
-/// Where no method was asked for: the secular function.
+/// If no method was asked for: the secular function.
 void choose_method(StabilityOptions& options);
 
 /// The scene, --about, --method, --count, --set, --threads and --json.
@@ -71,11 +71,11 @@ NumericKey find_stability_key(const Scene& scene, const std::string& path,
 struct SlidingState {
   Equilibrium equilibrium;
   Pencil pencil;
-  bool is_on_the_way = false;  ///< the drive puts the scene there, `equilibrium.state` says how far
+  bool is_on_the_way = false;  ///< the drive puts the scene there, by `equilibrium.state`
 };
 
-/// The state of a member of a family. About the deformed geometry the contact stands where the
-/// member wants it on the deformed master; the drive is displaced accordingly.
+/// The state of a member of a family. In the deformed geometry the contact is at the position on
+/// the deformed master that the member specifies; the drive is displaced accordingly.
 /// @param what names the member in messages, e.g. "contact.start = 0.05"; empty where there is one
 /// @throws NumericalError if there is no equilibrium, or every contact is open
 SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry geometry,
@@ -106,7 +106,7 @@ class StabilityFamily {
   /// @param values one per key
   /// @throws ConfigError, NumericalError naming the values
   virtual Pencil pencil(std::span<const double> values) = 0;
-  /// Frequency up to which the model answers as the bodies do, Hz; may be infinite.
+  /// Frequency up to which the model responds as the bodies do, Hz; may be infinite.
   virtual double trusted_frequency(std::span<const double> values) = 0;
   /// Whether eigenvalues are sampled rather than followed (analysis/sampled_locus.hpp).
   virtual bool is_sampled() const { return false; }
@@ -179,7 +179,7 @@ class StabilityScene {
   }
   /// Whether its lines must be traced by one thread: dense products go to BLAS.
   virtual bool needs_one_thread() const { return false; }
-  /// What a rate of one is in 1/s, where some keys have other values than in the scene; files and
+  /// Value in 1/s of a rate of one, where some keys have other values than in the scene; files and
   /// pictures are in 1/s and Hz.
   virtual double rate_unit(const std::vector<NumericKey>&, std::span<const double>) const {
     return 1.0;
@@ -238,7 +238,7 @@ struct LowestEigenvalues {
   }
 };
 
-/// Where the search for zeros of the secular function does not converge, all eigenvalues are
+/// If the search for zeros of the secular function does not converge, all eigenvalues are
 /// computed by the dense method, if there are no more than 2,000.
 /// @throws NumericalError if there are more, or as dense_eigenvalues()
 LowestEigenvalues find_lowest(const Pencil& pencil, EigenvalueMethod method,
@@ -249,7 +249,7 @@ LowestEigenvalues find_lowest(const Pencil& pencil, EigenvalueMethod method,
 void keep_window(std::vector<Eigenvalue>& all, const SpectrumWindow& window);
 
 /// Up to where a verdict over some of the lowest eigenvalues holds, Hz: to the highest that was
-/// computed, to where the window ends, and no further than the model answers for.
+/// computed, to where the window ends, and no further than the model is valid.
 double verdict_limit(std::span<const std::complex<double>> eigenvalues,
                      const SpectrumWindow& window, double trusted);
 /// The same for all values of a locus.
@@ -257,25 +257,25 @@ double verdict_limit(const Locus& locus, const SpectrumWindow& window, double tr
 /// "the verdict holds between 0 and 7494.83 Hz"
 std::string window_text(double highest);
 /// Why a verdict reaches no further, in brackets; empty where it does not end.
-/// @param trusted up to where the model answers, Hz
+/// @param trusted up to where the model is valid, Hz
 std::string limit_text(double highest, double trusted);
 
-/// How far a verdict over a range of values reaches between them: "everywhere", or "at all values
+/// Validity of a verdict between the values of a range: "everywhere", or "at all values
 /// looked at" where something may have been missed.
 std::string reach_text(const Locus& locus);
-/// Prints what may have been missed of a locus, if anything.
+/// Prints which parts of a locus may have been missed, if any.
 void print_resolution(const Locus& locus, const NumericKey& key);
 
 /// Whether a motion grows: Re s > 0 by more than rounding, 1e-10 |s|.
 bool is_growing(const Eigenvalue& eigenvalue);
 
-/// Frequency up to which the reduced bodies answer as the full ones, Hz; infinite where no mode was
-/// left out.
+/// Frequency up to which the reduced bodies respond as the full ones, Hz; infinite where no mode is
+/// truncated.
 ///
-/// Half the frequency of the highest fixed-interface mode that any body keeps: what the modes left
-/// out add below that is quasi-static up to a share of (f/f_cut)² ≤ 1/4, and that share is of a
-/// residual flexibility which constraint modes carry already. A body that keeps no such mode does
-/// not say how high its first one is, and gives no limit.
+/// It is half the frequency of the highest fixed-interface mode that any body keeps. Below it the
+/// contribution of the truncated modes is quasi-static up to a share of (f/f_cut)² ≤ 1/4, and that
+/// is a share of a residual flexibility which the constraint modes already carry. The first
+/// fixed-interface mode of a body that keeps none is unknown; such a body gives no limit.
 double trusted_frequency(const System& system);
 
 Json eigenvalues_json(const std::vector<Eigenvalue>& eigenvalues);

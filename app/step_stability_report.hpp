@@ -9,7 +9,7 @@
 
 namespace stridor {
 
-/// Stability of the steps of a scene along its path, with what would cure it.
+/// Stability of the steps of a scene along its path, with the remedy.
 struct StepStabilityReport {
   TimeParameters time;
   double limit = 0.0;  ///< step_limit(), s
@@ -28,7 +28,7 @@ StepStabilityReport check_step_stability(const Model& model, const TimeParameter
                                          int num_places);
 
 Json step_stability_json(const StepStabilityReport& report);
-/// A row per place, and what follows from them.
+/// A row per place, and the conclusions.
 void print_step_stability(const StepStabilityReport& report);
 
 }  // namespace stridor

@@ -1,4 +1,4 @@
-// A scene whose transients are set against each other: what is looked at, and where.
+// A scene whose transients are compared with each other: quantities compared, and where.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@
 
 namespace stridor {
 
-/// The scene, its system and what is looked at: the contact forces and the motion of a point at
-/// every multiple of `record.interval`. The point is that of the acceleration by which `run` sums
-/// up, else of the first channel that is of a point.
+/// The scene, its system and the quantities compared: the contact forces and the motion of a point
+/// at every multiple of `record.interval`. The point is that of the acceleration by which `run`
+/// sums up, else of the first channel that is of a point.
 struct StudiedScene {
   LoadedScene loaded;
   Model model;

@@ -1,4 +1,4 @@
-// What the verb sweep was asked for, and what it does on every kind of scene.
+// Options of the verb sweep, and its work on every kind of scene.
 #pragma once
 
 #include <optional>
@@ -25,7 +25,7 @@ struct SweepOptions {
 
 /// Limit cycles of a sphere on a viscoelastic substrate.
 ExitCode sweep_spheres(const SweepOptions& options);
-/// Transients of beams, each from the start that the scene says.
+/// Transients of beams, each from the initial state of the scene.
 ExitCode sweep_transients(const SweepOptions& options);
 
 }  // namespace stridor

@@ -19,7 +19,7 @@ struct ThresholdOptions {
   RangeOptions range;
 };
 
-/// Where the scan for roots looks, besides the values asked for.
+/// Values of the scan for roots, besides the values asked for.
 constexpr int scanned = 4001;
 
 /// Values from one end of a range to the other, at equal distances and, where both ends are

@@ -1,4 +1,4 @@
-// A transient of a scene on its way into a run file; what `run` and `compare` share.
+// A transient of a scene that is written to a run file; common to `run` and `compare`.
 #pragma once
 
 #include <chrono>
@@ -21,7 +21,7 @@ class Transient {
   /// @param loaded must live longer
   /// @throws ConfigError with places in the scene, FileError, NumericalError
   Transient(const LoadedScene& loaded, const RunOutput& output);
-  /// Goes on with a run from the latest checkpoint of its file, bitwise as if it had not stopped.
+  /// Resumes a run from the latest checkpoint of its file, bit-identically to an uninterrupted run.
   /// @param loaded the scene of `interrupted`
   /// @throws FileError if the file has no checkpoint, or not one of this program and scene, or
   ///         cannot be changed; as the other constructor
@@ -29,7 +29,7 @@ class Transient {
   Transient(const Transient&) = delete;
   Transient& operator=(const Transient&) = delete;
 
-  /// Steps until a time, or until the end of the run (with what its filters look ahead).
+  /// Steps until a time, or until the end of the run (including the look-ahead of its filters).
   /// @return `failed` where a step failed before the end that was asked for
   MarchEnd run_until(double time);
   MarchEnd run_to_end();
@@ -40,8 +40,8 @@ class Transient {
   /// Progress and the limit of wall time.
   RunKeeper& keeper() { return keeper_; }
 
-  /// Flushes, reads the statistics off the file, stores them in it and closes it.
-  /// @param error what was found of the error of the run, or null
+  /// Flushes, reads the statistics from the file, stores them in it and closes it.
+  /// @param error estimated error of the run, or null
   /// @return the JSON object of `run`
   Json finish(const Json& error = nullptr);
 

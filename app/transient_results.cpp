@@ -50,7 +50,7 @@ Json contact_json(const Simulation& simulation, const System& system,
   return results;
 }
 
-/// How many modes of every body move and how many are left to their static residual.
+/// Numbers of retained modes and of modes truncated to their residual flexibility, for every body.
 Json modes_json(const System& system, double highest) {
   Json bodies = Json::object();
   for (const SystemBody& body : system.bodies) {
@@ -60,10 +60,10 @@ Json modes_json(const System& system, double highest) {
   return bodies;
 }
 
-/// What no step computes, and what the modes and rows left out would have cost.
-/// @param highest frequency of a mode that moves, rad/s
+/// Computations omitted from every step, and the cost avoided by truncated modes and omitted rows.
+/// @param highest frequency of a retained mode, rad/s
 Json left_out_json(const System& system, double highest, bool has_ledger) {
-  // Rows of the bodies that contacts follow at a time, and all on which they might stand.
+  // Rows of the bodies that contacts follow at a time, and all on which they might be.
   std::vector<Eigen::Index> followed(system.bodies.size(), 0);
   std::vector<Eigen::Index> touchable(system.bodies.size(), 0);
   bool has_friction = false;

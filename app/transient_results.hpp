@@ -1,4 +1,4 @@
-// What a transient comes to, as the JSON object of `run`.
+// Results of a transient, as the JSON object of `run`.
 #pragma once
 
 #include <optional>

@@ -44,7 +44,7 @@ struct ArkodeResult {
 /// found as roots, the slope jumps: an impulse Λ along the force direction of the new segment makes
 /// Ġ = 0 there.
 ///
-/// What it shares with the program is the modal form of the bodies and the curves of the drive.
+/// It shares with the program the modal form of the bodies and the curves of the drive.
 /// @throws std::runtime_error where ARKODE fails or the system is of another kind
 ArkodeResult run_arkode(const System& system, ObservedRow observed, double interval,
                         std::int64_t num_samples, const ArkodeParameters& parameters = {});

@@ -20,7 +20,7 @@ struct MoreauJeanParameters {
 ///
 /// (Jean, Comput. Methods Appl. Mech. Engrg. 177, 1999, 235), with the rows B at q_k + h v_k. In
 /// modes the iteration matrix is diagonal; correction, position and the free velocity of the next
-/// step are one pass over the modes, the contact sees its slots only. The local problem is solved
+/// step are one pass over the modes, the contact sees its ports only. The local problem is solved
 /// by the ContactSolver of the program. The force at t_k is the mean of the impulses before and
 /// after it by h.
 ///

@@ -3,7 +3,7 @@
 
 namespace stridor::bench {
 
-/// What a body holds per mode: arrays of equal length, 64-byte aligned and padded with zeros to a
+/// Data of a body per mode: arrays of equal length, 64-byte aligned and padded with zeros to a
 /// multiple of 8, as the rows are.
 struct MoreauJeanModes {
   int count = 0;
@@ -16,7 +16,7 @@ struct MoreauJeanModes {
   const double* loaded = nullptr;  ///< v_free by the loads
 };
 
-/// Ends a step with the impulses at the slots and begins the next one:
+/// Ends a step with the impulses at the ports and begins the next one:
 ///
 ///   v_{k+1} = v_free + answer Σ_j row_j P_j,   q_{k+1} = q_k + h (θ v_{k+1} + (1 − θ) v_k),
 ///   v_free  = kept v_{k+1} + pulled q_{k+1} + loaded,   seen_j = row_j · v_free

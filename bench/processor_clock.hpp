@@ -1,4 +1,4 @@
-// Processor time of the calling thread: what else the machine does is not in it.
+// Processor time of the calling thread, without other load on the machine.
 #pragma once
 
 #include <algorithm>

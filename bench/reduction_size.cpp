@@ -4,7 +4,7 @@
 //   build/release/bench/reduction_size [ALONG THROUGH [SPACING [ROUNDS]]]
 //       elements along the axis and through the thickness, distance of the interface nodes on the
 //       top in m; by default 1250 26 0.001 3: 200,000 DoFs, 200 of them kept, three rounds of
-//       factorisation and reduction in turn
+//       factorisation and reduction, alternating
 //
 // Seconds are processor time, which other work on the machine disturbs less than the clock on the
 // wall (in brackets). Memory is the largest resident set of the process during each part, with what

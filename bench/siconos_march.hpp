@@ -15,7 +15,7 @@ struct SiconosBody {
   Eigen::VectorXd displacement, velocity;  ///< at t = 0
 };
 
-/// Where a contact stands and what it does, as functions of time and coordinates of both bodies.
+/// Position and action of a contact, as functions of time and coordinates of both bodies.
 class MovingContact {
  public:
   using Vector = Eigen::Map<const Eigen::VectorXd>;

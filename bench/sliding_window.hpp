@@ -17,7 +17,7 @@ struct SlidingWindow {
   std::int64_t num_samples = 0;
 };
 
-/// A window as somebody has marched it, and what it took, in s of processor time.
+/// Result of marching a window, and its processor time in s.
 struct WindowRun {
   SampledRun samples;
   std::int64_t steps = 0;

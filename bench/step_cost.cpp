@@ -1,9 +1,9 @@
-// What a step costs: against the number of modes, contacts, master nodes, batches and threads.
+// Cost of a step: against the number of modes, contacts, master nodes, batches and threads.
 //
 //   build/release/bench/step_cost [ROUNDS]
 //
 // Exact propagation of the main scene, set going within 0.1 ms. Nanoseconds of processor time
-// per step, the least over ROUNDS (15) of stretches in turn.
+// per step, the least over ROUNDS (15) of interleaved stretches.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -157,7 +157,7 @@ void against_nodes(int rounds) {
   print("nodes of the master", cases);
 }
 
-/// Eight runs one after the other and in a batch, in turns.
+/// Eight runs one after the other and in a batch, interleaved.
 void against_batch(const System& system, int rounds) {
   constexpr double fine = 2.5e-7;
   constexpr int num_runs = 8;

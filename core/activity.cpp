@@ -37,7 +37,7 @@ Activity::~Activity() {
   {
     const std::lock_guard lock(all.changing);
     all.open.pop_back();
-    // What goes on after it is timed anew.
+    // The enclosing activity is timed anew afterwards.
     if (!all.open.empty()) all.open.back().count = ++all.count;
     if (all.open.empty()) act = all.on_idle;
   }

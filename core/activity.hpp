@@ -1,4 +1,4 @@
-// What a long computation is at, for whoever shows it.
+// Current phase of a long computation, for display.
 #pragma once
 
 #include <cstdint>
@@ -6,9 +6,9 @@
 
 namespace stridor {
 
-/// Names what the main thread is at while it exists; nothing else depends on it. They may be
-/// nested. Those of other threads are not told: their tasks are counted by who shares
-/// them out.
+/// Names the current phase of the main thread while it exists; nothing else depends on it. Objects
+/// may be nested. Those of other threads are ignored: whoever shares out the tasks of those threads
+/// counts them.
 class Activity {
  public:
   explicit Activity(std::string what);
@@ -23,7 +23,7 @@ class Activity {
   bool is_told_;
 };
 
-/// What Activity says, for another thread.
+/// Phase named by Activity, for another thread.
 struct CurrentActivity {
   std::string what;         ///< the outermost first; empty: nothing is known
   double fraction = 0.0;    ///< of the innermost; 0 also where it is not told
@@ -31,7 +31,7 @@ struct CurrentActivity {
 };
 CurrentActivity current_activity();
 
-/// What to do whenever the outermost one ends, on the main thread; null: nothing.
+/// Sets the action whenever the outermost one ends, on the main thread; null: none.
 void on_idle(void (*act)());
 
 }  // namespace stridor

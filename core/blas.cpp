@@ -5,7 +5,7 @@
 namespace stridor {
 namespace {
 
-/// What openblas_get_parallel() returns.
+/// Return values of openblas_get_parallel().
 enum class Threads { none = 0, posix = 1, openmp = 2, unknown = -1 };
 
 template <class Function>
@@ -13,7 +13,7 @@ Function* library_function(const char* name) {
   return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
 }
 
-/// How the BLAS at hand makes threads; it is chosen when the program starts.
+/// Threading of the BLAS at hand; it is chosen when the program starts.
 Threads threads_of_blas() {
   static const Threads threads = [] {
     const auto parallel = library_function<int()>("openblas_get_parallel");

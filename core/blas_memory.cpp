@@ -17,8 +17,8 @@ extern "C" int dtrsm_(const char* side, const char* triangle, const char* transp
 namespace stridor {
 namespace {
 
-/// What OpenBLAS 0.3 takes on x86-64 where it chooses its kernels at run time, the largest of all
-/// its builds. Pages that are not touched cost nothing.
+/// Memory that OpenBLAS 0.3 takes on x86-64 where it chooses its kernels at run time, the largest
+/// of all its builds. Pages that are not touched cost nothing.
 constexpr std::size_t work_space = std::size_t{128} << 20;
 
 bool is_room_for(std::size_t bytes) {

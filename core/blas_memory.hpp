@@ -1,4 +1,4 @@
-// The work space of BLAS, asked for while there is somebody to hear that there is none.
+// The work space of BLAS, requested early enough to report that there is none.
 #pragma once
 
 #include <new>

@@ -1,7 +1,7 @@
-// The doors through which stridor reports that something is wrong.
+// Exceptions through which stridor reports errors.
 //
-//   ConfigError            what the user wrote (scene, --set, command line)   exit 2
-//   NumericalError         the numbers failed: diverged, singular, lost       exit 3
+//   ConfigError            wrong user input (scene, --set, command line)      exit 2
+//   NumericalError         numerical failure: diverged, singular, lost        exit 3
 //   FileError              a file cannot be read or written                   exit 4
 //   Interrupted            stopped on request                                 exit 5
 //   std::invalid_argument  a broken precondition of a C++ call (a bug)        exit 1
@@ -13,17 +13,17 @@
 
 namespace stridor {
 
-/// One thing that is wrong with what the user wrote.
+/// One error in the user's input.
 struct Problem {
   std::string key;      ///< dotted path, e.g. "time.step"; empty where the file as a whole is meant
-  std::string message;  ///< what is wrong, what was expected, what to do; one line, no place
+  std::string message;  ///< error, expected value and remedy; one line, no place
   std::string
       source;      ///< file, or "--set key=value"; empty until the reader of the scene fills it in
   int line = 0;    ///< 1-based; 0 where there is none
   int column = 0;  ///< 1-based; 0 where there is none
-  std::string excerpt{};  ///< what was written there, with a caret (core/excerpt.hpp); may be empty
+  std::string excerpt{};  ///< text written there, with a caret (core/excerpt.hpp); may be empty
 
-  /// "source:line:column: key: message", leaving out what is not known.
+  /// "source:line:column: key: message", omitting unknown parts.
   std::string text() const;
 };
 
@@ -41,12 +41,12 @@ class ConfigError : public std::runtime_error {
   std::vector<Problem> problems_;
 };
 
-/// A file cannot be opened, read, written or is not what it should be.
+/// A file cannot be opened, read or written, or has unexpected contents.
 class FileError : public std::runtime_error {
  public:
   /// @param path    the file
   /// @param dataset dataset or attribute inside it; empty where the file as a whole is meant
-  /// @param cause   what went wrong and what to do, one line
+  /// @param cause   cause and remedy, one line
   FileError(const std::string& path, const std::string& dataset, const std::string& cause);
 };
 

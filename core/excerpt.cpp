@@ -48,7 +48,7 @@ bool continues_character(char c) {
   return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u;
 }
 
-/// A line, or what is looked at of it.
+/// A line, or the part of it that is shown.
 struct Cells {
   std::vector<Cell> cells;
   std::size_t marked = 0;  ///< cells before the caret

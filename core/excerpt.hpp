@@ -11,9 +11,9 @@ namespace stridor {
 ///      12 |     thicknes: 1.5 mm
 ///         |     ^
 ///
-/// Fits into a terminal of 80 columns: a line that does not is cut to what surrounds the caret. The
-/// caret stands under its character whatever tabs, wide characters and marks are before it; tabs
-/// become spaces, and what is not UTF-8 or would steer the terminal becomes '?'.
+/// Fits into a terminal of 80 columns: a longer line is cut to the surroundings of the caret. The
+/// caret is under its character whatever tabs, wide characters and marks are before it; tabs
+/// become spaces; bytes that are not UTF-8 or would control the terminal become '?'.
 ///
 /// @param line   without its line break
 /// @param number 1-based, for the margin; 0: none is shown

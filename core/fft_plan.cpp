@@ -43,9 +43,9 @@ fftw_complex* as_fftw(const detail::FftwComplexes& memory) {
 
 enum class Direction { forward, backward };
 
-/// The plans used last, by direction and length. They hold tables as long as what they transform.
+/// The plans used last, by direction and length. Their tables are as long as the data.
 ///
-/// FFTW executes a plan on any arrays of the same alignment, in several threads at once.
+/// FFTW executes a plan on any arrays of the same alignment, in several threads concurrently.
 class Plans {
  public:
   static Plans& of_process() {
@@ -55,7 +55,7 @@ class Plans {
 
   /// @throws std::bad_alloc
   detail::SharedFftwPlan find(Direction direction, int n, double* reals, fftw_complex* complexes) {
-    // What goes at the end, or where something is thrown, takes the lock when it is free again.
+    // A plan destroyed at the end, or by an exception, takes the lock when it is free again.
     detail::FftwPlan made;
     detail::SharedFftwPlan plan;
     detail::SharedFftwPlan forgotten;

@@ -13,9 +13,9 @@ namespace stridor {
 
 /// The lock of the whole process under which plans of FFTW are made and destroyed.
 ///
-/// FFTW executes plans from several threads at once, but its planner is one global object. Whoever
-/// calls `fftw_plan_*` or `fftw_destroy_plan` holds this lock meanwhile; RealFft and InverseRealFft
-/// do so themselves.
+/// FFTW executes plans from several threads concurrently, but its planner is one global object.
+/// Whoever calls `fftw_plan_*` or `fftw_destroy_plan` holds this lock meanwhile; RealFft and
+/// InverseRealFft do so themselves.
 std::mutex& fftw_planner_mutex();
 
 namespace detail {
@@ -38,9 +38,8 @@ using SharedFftwPlan = std::shared_ptr<fftw_plan_s>;
 /// Write the samples into input(), call execute(), read output(). The input survives. The buffers
 /// are aligned for SIMD and belong to the object, which may be moved and then keeps them in place.
 ///
-/// Plans are made by FFTW_ESTIMATE, hence the same on every run. What was planned last is kept for
-/// the next transform of the same length: a plan costs as much as several
-/// transforms.
+/// Plans are made by FFTW_ESTIMATE, hence the same on every run. The last plan is kept for the next
+/// transform of the same length: a plan costs as much as several transforms.
 class RealFft {
  public:
   /// @param length n, 1 to 2³¹ − 1; the input starts as zeros

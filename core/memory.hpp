@@ -1,4 +1,4 @@
-// How much memory there is.
+// Available memory.
 #pragma once
 
 #include <filesystem>
@@ -7,14 +7,14 @@
 
 namespace stridor {
 
-/// The most that this process may hold, and what sets it.
+/// Largest memory that this process may hold, and the origin of the limit.
 struct MemoryLimit {
   double bytes = std::numeric_limits<double>::infinity();
   std::string source;  ///< "physical memory", ...
 };
 
 /// The least of: the memory of the machine, that of the control groups the process is in, and the
-/// limit of its address space (`ulimit -v`). Infinite where nothing says. Read once in a process.
+/// limit of its address space (`ulimit -v`). Infinite without a limit. Read once in a process.
 MemoryLimit memory_limit();
 
 /// The same from other files than those of this machine.

@@ -11,8 +11,8 @@ namespace stridor {
 
 /// Named arrays of doubles. Integers are stored exactly as doubles (|i| <= 2⁵³).
 ///
-/// What was put is got under the same name and with the same length; parts of a state use names
-/// with a prefix of their own ("bodies/oblique/increment").
+/// A value is retrieved under the name and with the length with which it was stored; parts of a
+/// state use names with a prefix of their own ("bodies/oblique/increment").
 class State {
  public:
   void put(const std::string& name, std::span<const double> values);

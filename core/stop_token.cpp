@@ -14,7 +14,7 @@
 namespace stridor {
 namespace {
 
-// What the handler reads. It may come at any moment, in any thread.
+// Flags that the handler reads. It may run at any moment, in any thread.
 std::atomic<bool> stop{false};
 std::atomic<int> num_orderly{0};
 std::atomic<bool> is_told_as_json{false};
@@ -27,7 +27,7 @@ static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_alw
               "needed inside a signal handler");
 
 void say(int descriptor, const char* text) {
-  // Where nobody reads any more, nobody needs to know.
+  // A failure to write here is of no interest: the reader is gone.
   if (write(descriptor, text, std::strlen(text)) < 0) return;
 }
 

@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM: what ends at once, and what is asked to end in order.
+// Ctrl-C and SIGTERM: immediate end of the program, or a request to end in order.
 #pragma once
 
 #include <sys/types.h>
@@ -12,13 +12,14 @@ constexpr int stopped_exit_code = 5;
 
 /// Routes SIGINT and SIGTERM.
 ///
-/// Wherever nothing would be lost, a signal ends the program at once: inside a factorisation or an
-/// eigenvalue decomposition of a library too, which no loop of ours could leave. Unfinished files
-/// are removed, a word goes to stderr, the exit code is 5. While an OrderlyStop exists, a signal is
-/// a request that loops ask for, and a second one ends the program as if nobody had listened.
+/// Wherever nothing would be lost, a signal ends the program immediately: inside a factorisation or
+/// an eigenvalue decomposition of a library too, which no loop of ours could leave. Unfinished
+/// files are removed, a word goes to stderr, the exit code is 5. While an OrderlyStop exists, a
+/// signal is a request that loops ask for, and a second one ends the program as if nobody had
+/// listened.
 void install_stop_signals();
 
-/// Where a signal ends the program at once, it also prints one JSON object with the error to
+/// When a signal ends the program immediately, it also prints one JSON object with the error to
 /// stdout.
 void tell_stop_as_json();
 
@@ -28,10 +29,10 @@ bool stop_requested();
 /// As if the signal had come (tests, time limits); `false` takes the request back.
 void request_stop(bool value = true);
 
-/// @throws Interrupted if a stop was requested; for loops whose results nobody keeps
+/// @throws Interrupted if a stop was requested; for loops whose results are not kept
 void throw_if_stopped();
 
-/// While one exists, something would be lost if the program ended at once.
+/// While one exists, an immediate end of the program would lose data.
 class OrderlyStop {
  public:
   OrderlyStop();

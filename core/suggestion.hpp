@@ -6,7 +6,7 @@
 
 namespace stridor {
 
-/// The candidate nearest to what was written (edit distance, case ignored), or "" where none is
+/// The candidate nearest to the word written (edit distance, case ignored), or "" where none is
 /// near enough to be a misspelling of it.
 std::string nearest(const std::string& written, const std::vector<std::string>& candidates);
 

@@ -7,12 +7,12 @@
 namespace stridor {
 
 /// Does tasks 0 … count − 1, each once, on several threads. Which thread does a task must not
-/// matter to what it does.
+/// affect its result.
 ///
 /// @param work gets the task and the number of the thread, from 0
 /// @param done called after every task, one at a time, with how many are done
-/// @throws what the first task in order has thrown that has thrown anything, whatever the threads
-///         do, once those that had begun are done; Interrupted where a stop was requested
+/// @throws the exception of the first task in order that has thrown, whatever the threads do, once
+///         the tasks that had begun are done; Interrupted where a stop was requested
 void run_tasks(std::size_t count, int num_threads,
                const std::function<void(std::size_t task, std::size_t thread)>& work,
                const std::function<void(std::size_t num_done, std::size_t task)>& done);

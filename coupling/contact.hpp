@@ -9,7 +9,7 @@
 
 namespace stridor {
 
-/// How segment, position on it and normal of a contact are found (docs/theory.md, table in 2.2).
+/// Rule for segment, position on it and normal of a contact (docs/theory.md, table in 2.2).
 enum class ContactAssumption {
   subs_a,  ///< prescribed rigid sliding on the undeformed master
   subs_b,  ///< predicted positions of both bodies, normal of the predicted surface
@@ -24,7 +24,7 @@ struct Segment {
   Eigen::Vector2d second;
 };
 
-/// Where a slave point stands on a master segment.
+/// Position of a slave point on a master segment.
 struct Projection {
   double xi = 0.0;  ///< 0 at T1, 1 at T2
   Eigen::Vector2d tangent = Eigen::Vector2d::UnitX();
@@ -76,7 +76,7 @@ inline Projection project_along(const Segment& segment, const Eigen::Vector2d& s
 /// T' = Σ w'_k x'_k of the other (docs/theory.md, 2.5).
 ///
 /// Newton's method in ξ, kept within one segment length on either side of the segment. Beyond its
-/// ends the segment goes on as it is, so ξ < 0 and ξ > 1 say on which side the slave stands.
+/// ends the segment is continued, so ξ < 0 and ξ > 1 tell on which side the slave is.
 /// @param directions the piece itself for the orthogonal projection, the undeformed one for Subs-c
 /// @param guess      of ξ
 inline Projection project_along(const SurfacePiece& piece, const Eigen::Vector2d& slave,
@@ -99,7 +99,7 @@ inline Projection project_along(const SurfacePiece& piece, const Eigen::Vector2d
     const double square = direction.dot(piece.combine(w.slope));
     const double slope = square - directions.combine(w.curvature).dot(arm);
     (ahead > 0.0 ? low : high) = xi;
-    // Where the slave is further away than the centre of curvature, the distance has no minimum.
+    // If the slave is further away than the centre of curvature, the distance has no minimum.
     double next = xi + ahead / (slope > 0.0 ? slope : square);
     const bool is_within = low <= next && next <= high;
     if (!is_within) next = 0.5 * (low + high);
@@ -131,7 +131,7 @@ struct ContactRows {
 };
 
 /// Rows of one sliding contact (docs/theory.md, 2.2; BDF (20), (21) with the sign of friction
-/// mended):
+/// corrected):
 ///
 ///   B_C: −n on C, w_k n on the nodes
 ///   B_E: B_C + χ μ ( t on C, −w_k t on the nodes )

@@ -1,4 +1,4 @@
-// What a scene says about contacts and about the drive.
+// Parameters of contacts and of the drive in a scene.
 #pragma once
 
 #include <optional>

@@ -48,7 +48,7 @@ struct FaceContact {
   Eigen::MatrixXd friction_bending() const;
 };
 
-/// How the contacts on the faces of a plate act.
+/// Action of the contacts on the faces of a plate.
 struct FaceContactLaw {
   double friction = 0.0;          ///< μ, >= 0
   std::optional<double> penalty;  ///< k_C of each, N/m, > 0; rigid where absent
@@ -90,8 +90,8 @@ FaceSlidingState prescribed_sliding_state(const std::vector<FaceContact>& contac
 Eigen::VectorXd unit_force(const FaceContact& contact, const FaceContactLaw& law,
                            const FaceContactPoint& point);
 
-/// What friction along and across changes by per velocity along and across: μ λ₀ (1 − d dᵀ)/|v|,
-/// N s/m; zero where friction does not turn.
+/// Derivative of friction along and across with respect to velocity along and across:
+/// μ λ₀ (1 − d dᵀ)/|v|, N s/m; zero where friction does not turn.
 Eigen::Matrix2d turning_resistance(const FaceContactLaw& law, const FaceContactPoint& point);
 
 /// Small motion of bodies about a sliding state (docs/theory.md, 10.2, 10.3).
@@ -101,7 +101,7 @@ Eigen::Matrix2d turning_resistance(const FaceContactLaw& law, const FaceContactP
 /// over the closed contacts, D = turning_resistance(). They are constraints with the rows n + A q₀
 /// and unit_force(), or springs with a penalty.
 ///
-/// @param bodies without contact; its own constraints are left out
+/// @param bodies without contact; its own constraints are ignored
 LinearSystem linearise(const LinearSystem& bodies, const std::vector<FaceContact>& contacts,
                        const FaceContactLaw& law, const FaceSlidingState& state);
 

@@ -30,7 +30,7 @@ class MonotoneCubic {
   double first() const { return x_.front(); }
   double last() const { return x_.back(); }
 
-  /// @param x within [first(), last()]; beyond them the outermost cubic goes on
+  /// @param x within [first(), last()]; beyond them the outermost cubic continues
   CurvePoint at(double x) const;
 
  private:

@@ -8,7 +8,7 @@ namespace stridor {
 
 class Schema;
 
-/// What a scene says about the roughness of a master.
+/// Parameters of the roughness of a master in a scene.
 struct RoughnessParameters {
   double rms = 0.0;                 ///< of the height, m, ≥ 0
   double correlation_length = 0.0;  ///< ℓ of the autocorrelation exp(−(d/ℓ)²), m, > 0

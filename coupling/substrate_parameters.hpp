@@ -1,4 +1,4 @@
-// What a scene says about a viscoelastic substrate under a sphere.
+// Parameters of a viscoelastic substrate under a sphere in a scene.
 #pragma once
 
 #include <memory>

@@ -23,7 +23,7 @@ struct Stencil {
   int before = 0;  ///< how many of them come before T1
 };
 
-/// How many nodes shape a segment of a surface; the same for all its segments.
+/// Number of nodes that shape a segment of a surface; the same for all its segments.
 inline int stencil_size(SurfaceKind kind, int num_nodes) {
   return kind == SurfaceKind::polyline ? 2 : std::min(num_nodes, max_stencil);
 }
@@ -51,7 +51,7 @@ struct NodeWeights {
 /// (T2 − T0)/2 at T1 and (T3 − T1)/2 at T2 (Catmull-Rom), T0 and T3 being the neighbours. Where one
 /// is missing, the other is mirrored at the end node, T0 = 2 T1 − T2. Both reproduce straight lines
 /// and sum to 1.
-/// @param xi also outside [0, 1], where the cubic of this segment goes on
+/// @param xi also outside [0, 1], where the cubic of this segment continues
 inline NodeWeights weights_at(const Stencil& stencil, double xi) {
   NodeWeights weights;
   if (stencil.count == 2) {

@@ -1,4 +1,4 @@
-// The coupled system: bodies, the surfaces and points where they may touch, and what drives them.
+// The coupled system: bodies, the surfaces and points where they may touch, and the drive.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct PointRows {
   int y = 0;
 };
 
-/// One component and where it stands.
+/// One component and its position.
 struct SystemBody {
   std::string name;
   ReducedBody reduced;
@@ -65,7 +65,7 @@ struct MasterSurface {
     return piece;
   }
   /// Projection of a point on the undeformed surface within one segment; ξ outside [0, 1] where the
-  /// point stands beside it.
+  /// point is beside it.
   /// @param point global, m
   Projection project_undeformed(int segment, const Eigen::Vector2d& point) const {
     if (stencil_size() == 2) return project(undeformed_segment(segment), point);
@@ -78,7 +78,7 @@ struct MasterSurface {
     const double origin = arc_length[static_cast<std::size_t>(segment)];
     return origin + combine_arcs(segment, weights, origin);
   }
-  /// How far the rough surface stands out of the smooth one at a place, m.
+  /// Height of the rough surface above the smooth one at a place, m.
   double roughness_at(int segment, const std::array<double, max_stencil>& weights) const {
     return roughness.is_smooth() ? 0.0 : roughness.at(arc_at(segment, weights)).value;
   }
@@ -100,7 +100,7 @@ struct MasterSurface {
   }
 };
 
-/// What becomes of a contact whose assumption of persistent sliding is violated once it is armed.
+/// Treatment of a contact that violates the assumption of persistent sliding once it is armed.
 enum class OnViolation {
   stop,        ///< the run ends
   unilateral,  ///< it sticks, slips and lifts off
@@ -132,7 +132,7 @@ struct ContactPoint {
   }
 };
 
-/// What moves the system from outside.
+/// Prescribed motion that drives the system from outside.
 struct Drive {
   TimeCurve velocity;      ///< of guided supports in +x, m/s
   TimeCurve load;          ///< on every guided support in +y, N
@@ -157,7 +157,7 @@ struct System {
   const MasterSurface& surface_of(const ContactPoint& contact) const {
     return surfaces[static_cast<std::size_t>(contact.surface)];
   }
-  /// Displacements that a contact sees of the bodies: x and y of the slave and of every node of the
+  /// Displacements of the bodies at a contact: x and y of the slave and of every node of the
   /// stencil.
   int num_contact_slots(const ContactPoint& contact) const {
     return 2 + 2 * surface_of(contact).stencil_size();

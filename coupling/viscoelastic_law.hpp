@@ -16,15 +16,15 @@ struct LawValue {
   double by_speed = 0.0;        ///< ∂/∂|v̂|
 };
 
-/// Where a law was asked.
+/// Range of a law in which a point lies.
 enum class LawRange {
   inside,
   no_contact,   ///< ŷ ≤ 0: everything vanishes
-  too_deep,     ///< ŷ above what the law was made for: a continuation
+  too_deep,     ///< ŷ above the range of the law: a continuation
   beyond_data,  ///< |v̂| or ŷ outside the data behind the law: a continuation or a limit
 };
 
-/// What a law says of one contact, all dimensionless: F̃ = F/(E_0* R²), Ã = A/R², μ.
+/// Values of a law for one contact, all dimensionless: F̃ = F/(E_0* R²), Ã = A/R², μ.
 struct ViscoelasticContact {
   LawValue force;
   LawValue area;
@@ -34,7 +34,7 @@ struct ViscoelasticContact {
 
 /// Force, area and viscoelastic friction of a contact that slides steadily (docs/theory.md, 8.4).
 ///
-/// Never clamped: outside of what a law was made for it goes on and says so.
+/// Never clamped: outside its range a law is continued and reports it.
 class ViscoelasticContactLaw {
  public:
   virtual ~ViscoelasticContactLaw() = default;
@@ -134,7 +134,7 @@ class BoundaryElementLaw : public ViscoelasticContactLaw {
   ViscoelasticContact at(double indentation, double speed) const override;
 
  private:
-  /// m over its ratio to what both limits are made of, β a/(1 + (a/b) β²).
+  /// m over its ratio to the function with both limits, β a/(1 + (a/b) β²).
   LimitedSpline::Value friction_scale(double beta) const;
 
   double first_beta_ = 0.0;
@@ -158,12 +158,12 @@ struct ContactTable {
 
 /// A law by interpolation in a table: monotone cubics in the logarithms, of the logarithms of F̃, Ã
 /// and μ; for indenters other than a paraboloid and several creep times. Where the values along a
-/// line of the table rise or fall, so does the law on it. Outside the table it says `beyond_data`
+/// line of the table rise or fall, so does the law on it. Outside the table it gives `beyond_data`
 /// and goes on: linearly in the logarithms, and below the smallest speed so that at rest friction
 /// vanishes in proportion to the speed and force and area have limits.
 class TabulatedLaw : public ViscoelasticContactLaw {
  public:
-  /// @throws std::invalid_argument if the table is not as it says
+  /// @throws std::invalid_argument if the table is inconsistent
   explicit TabulatedLaw(const ContactTable& table);
   ViscoelasticContact at(double indentation, double speed) const override;
 

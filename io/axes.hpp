@@ -1,5 +1,5 @@
-// What pictures with numbers along their axes share: ranges, labels, units, the room that text
-// takes.
+// Functions common to pictures with numbers along their axes: ranges, labels, units, the room
+// that text takes.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 
 namespace stridor {
 
-/// How the numbers along an axis are written: value = offset + 10^exponent · number.
+/// Form of the numbers along an axis: value = offset + 10^exponent · number.
 struct AxisScale {
   double offset = 0.0;  ///< taken off where the values differ only from the fifth digit on
   int exponent = 0;     ///< multiple of 3; 0 for values between 10⁻² and 10⁵
@@ -33,7 +33,7 @@ struct ValueRange {
   double lower = std::numeric_limits<double>::infinity();
   double upper = -std::numeric_limits<double>::infinity();
 
-  /// Takes in what is finite.
+  /// Includes the finite values.
   void include(std::span<const double> values);
   bool is_empty() const { return !(lower <= upper); }
   /// The same with a margin of a share of the width at both ends; never empty and never a point.
@@ -60,14 +60,14 @@ std::size_t tick_characters(const ValueRange& range, const AxisScale& scale);
 /// @param highest finite, positive
 AxisScale frequency_scale(double highest, int num_ticks);
 
-/// What is written at an axis for a value.
+/// Number written at an axis for a value.
 double as_number(double value, const AxisScale& scale);
 
-/// "contact force (10⁻⁶ N)": what an axis shows and in which unit its numbers are.
+/// "contact force (10⁻⁶ N)": the quantity on an axis and the unit of its numbers.
 /// @param units as typeset_units() gives them; empty where dimensionless
 std::string axis_label(const std::string& label, const std::string& units, const AxisScale& scale);
 
-/// "minus 0.2 N", what has been taken off the numbers of an axis; empty if nothing.
+/// "minus 0.2 N", the offset subtracted from the numbers of an axis; empty if none.
 std::string offset_text(const std::string& units, const AxisScale& scale);
 
 /// Units of a run file as they are printed: "m/s²" for "m/s^2", "" for "1".
@@ -101,7 +101,7 @@ class FigureScript {
   /// unless `font_size` says otherwise.
   void add_text(const std::string& text, double x, double y, const char* how,
                 double font_size = 0.0);
-  /// Sets where the axes of the next diagram stand, cm.
+  /// Sets the position of the axes of the next diagram, cm.
   void set_margins(double left, double right, double bottom, double top);
   /// Sets range and tick marks of the axis 'x' or 'y'.
   void set_axis(char axis, const ValueRange& range, const AxisScale& scale);
@@ -126,7 +126,7 @@ double line_height(double font_size);
 /// Width of a text, cm, about: a character is 0.52 of the font size wide.
 double text_width(const std::string& text, double font_size);
 
-/// Words in lines that are no wider than `width` cm, as far as single words allow; what is
+/// Words in lines that are no wider than `width` cm, as far as single words allow; text that is
 /// unbroken() counts as a word.
 std::vector<std::string> wrapped(const std::string& text, double font_size, double width);
 

@@ -54,7 +54,7 @@ std::string one_of(const std::string& what, const std::string& written,
                      did_you_mean(written, allowed), fmt::join(allowed, ", "));
 }
 
-/// @throws std::string with what is wrong
+/// @throws std::string with the error
 Channel parse(const std::string& name, const ModelParameters& model) {
   Channel channel;
   channel.name = name;

@@ -28,7 +28,7 @@ class Packer {
   std::vector<unsigned char> bytes_;
 };
 
-/// Takes what a Packer has put; every size is checked against the bytes that are left.
+/// Reads the bytes of a Packer; every size is checked against the bytes that are left.
 class Unpacker {
  public:
   explicit Unpacker(std::span<const unsigned char> bytes) : rest_(bytes) {}

@@ -1,4 +1,4 @@
-// What a run needs to go on, as bytes in its run file.
+// State from which a run resumes, as bytes in its run file.
 #pragma once
 
 #include <cstdint>

@@ -16,7 +16,7 @@ struct Column {
 };
 
 /// Writes columns to a file of their own; the file takes its name when it is whole.
-/// @param kind       what the file is, an attribute of the root
+/// @param kind       kind of the file, an attribute of the root
 /// @param attributes of the root besides
 /// @throws FileError if the file exists, its folder is not writable, or anything cannot be written
 void write_column_file(const std::string& path, Overwrite overwrite, const std::string& kind,

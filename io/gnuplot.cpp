@@ -93,7 +93,7 @@ Outcome run_gnuplot(const std::string& script, const std::string& messages) {
   return outcome;
 }
 
-// What gnuplot said, on one line, without what is known to be harmless.
+// Messages of gnuplot on one line, without those known to be harmless.
 std::string read_messages(const fs::path& path) {
   std::ifstream file(path);
   std::string text;
@@ -105,7 +105,7 @@ std::string read_messages(const fs::path& path) {
     if (!text.empty()) text += "; ";
     text += line.substr(line.find_first_not_of(" \t"));
   }
-  // A script may be long; the end of the message is where the reason stands.
+  // A script may be long; the reason is at the end of the message.
   constexpr std::size_t longest = 600;
   return text.size() > longest ? "… " + text.substr(text.size() - longest) : text;
 }

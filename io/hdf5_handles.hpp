@@ -1,4 +1,4 @@
-// What writing and reading run files share: identifiers and errors of HDF5. Only for the sources of
+// Identifiers and errors of HDF5, common to writing and reading run files. Only for the sources of
 // io/run_file.hpp, whose users need no HDF5.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace stridor {
 
-/// Where a run file keeps its two latest checkpoints.
+/// Paths of the two latest checkpoints in a run file.
 inline constexpr std::array checkpoint_paths{"/checkpoint/a", "/checkpoint/b"};
 
 /// Owns one HDF5 identifier of any kind.
@@ -52,7 +52,7 @@ class QuietErrors {
   void* data_ = nullptr;
 };
 
-/// What HDF5 says about the call that has just failed; the text of errno where there is one.
+/// Message of HDF5 about the call that has just failed; the text of errno where there is one.
 std::string hdf5_cause();
 
 /// The text of an error number of the system.
@@ -75,7 +75,7 @@ class Checker {
   std::string path_;
 };
 
-/// How run files are opened: without locks, and closed together with all that is open in them.
+/// Access to run files: without locks, and closed together with all that is open in them.
 /// @throws FileError if HDF5 refuses
 Handle file_access(const Checker& at);
 

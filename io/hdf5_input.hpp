@@ -1,4 +1,4 @@
-// What readers of HDF5 files share. Only for the sources of io, whose users need no HDF5.
+// Functions common to readers of HDF5 files. Only for the sources of io, whose users need no HDF5.
 #pragma once
 
 #include <cstdint>

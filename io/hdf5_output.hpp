@@ -1,5 +1,5 @@
-// What writers of HDF5 files share: attributes, and files that are filled at once. Only for the
-// sources of io, whose users need no HDF5.
+// Functions common to writers of HDF5 files: attributes, and files that are filled at once. Only
+// for the sources of io, whose users need no HDF5.
 #pragma once
 
 #include <functional>

@@ -26,7 +26,7 @@ struct TimeMark {
   std::string label;  ///< at its top
 };
 
-/// Where values lay between two points of a curve; drawn behind the curves.
+/// Range of the values between two points of a curve; drawn behind the curves.
 struct ValueBand {
   std::vector<double> times;  ///< s, ascending; the band reaches from the time before to each
   std::vector<double> lower;
@@ -42,7 +42,7 @@ struct NamedValue {
 /// One diagram of a stack.
 struct Panel {
   std::string title;          ///< above the panel; may be empty
-  std::string label;          ///< what the axis shows, e.g. "contact force"
+  std::string label;          ///< quantity on the axis, e.g. "contact force"
   std::string units;          ///< e.g. "N"; empty where dimensionless
   std::vector<Curve> curves;  ///< at least one; later ones are drawn over earlier ones
   std::vector<TimeMark> marks{};
@@ -67,7 +67,7 @@ struct TimeLabel {
 };
 
 /// Places the labels of marks: each over the middle of its mark; neighbours that would overlap get
-/// one label, from the first to the last. So none covers another and none is left out.
+/// one label, from the first to the last. So none covers another and none is omitted.
 /// @param from, to  s, at the left and right edge
 /// @param width     of the diagram, cm
 /// @return from left to right; marks outside have none

@@ -47,7 +47,7 @@ void check_modes(const RunFileReader& file, const std::string& path, const Syste
   }
 }
 
-/// The drive and the bodies stand and move as they did at the end of the run.
+/// Gives the drive and the bodies the positions and velocities at the end of the run.
 void start_from_file(System& system, const std::string& path) {
   constexpr const char* drive = "/final/drive_displacement";
   const DamageGuard guard(path);
@@ -72,7 +72,7 @@ void start_from_file(System& system, const std::string& path) {
   }
 }
 
-/// Steady sliding under what acts at t = 0.
+/// Steady sliding under the loads at t = 0.
 Equilibrium equilibrium_at_start(const System& system) {
   EquilibriumState state;
   state.drive_velocity = system.drive.velocity.value(0.0);

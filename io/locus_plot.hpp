@@ -23,7 +23,7 @@ struct LocusWindow {
 };
 
 struct LocusPicture {
-  std::string parameter;  ///< what it is, e.g. "contact.start"
+  std::string parameter;  ///< its key, e.g. "contact.start"
   std::string units;      ///< of the parameter, as in a run file; "1" or empty: dimensionless
   std::vector<LocusCurve> curves;
   std::vector<LocusWindow> windows;
@@ -50,7 +50,7 @@ struct WindowLabel {
 };
 
 /// Lays out labels over the middles of windows, moved apart to at least `spacing`. Where there is
-/// no room for all of them, those of the windows with the least growth are left out.
+/// no room for all of them, those of the windows with the least growth are omitted.
 /// @param from, to parameter at the left and right edge
 /// @param width    of the diagram, cm
 /// @param spacing  cm, > 0

@@ -15,7 +15,7 @@ namespace stridor {
 /// out of bounds, given twice, or above the diagonal of a symmetric matrix, and anything left over
 /// at the end are errors.
 ///
-/// @param source what messages call the text
+/// @param source name of the text in messages
 /// @throws ConfigError with source, line and column
 SparseMatrix read_matrix_market(std::istream& text, const std::string& source);
 

@@ -1,4 +1,4 @@
-// What all files that the program makes have in common: when one may be replaced, and attributes.
+// Options common to all files that the program makes: when one may be replaced, and attributes.
 #pragma once
 
 #include <string>

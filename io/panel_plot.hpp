@@ -15,7 +15,7 @@ enum class Mark { line, dashed_line, points };
 struct PanelCurve {
   std::string label;  ///< in the legend; empty: none
   std::vector<double> x;
-  std::vector<double> y;  ///< as many; what is not finite is left out
+  std::vector<double> y;  ///< as many; values that are not finite are omitted
   Mark mark = Mark::line;
   int colour = 0;  ///< curves of the same number have the same colour
 };

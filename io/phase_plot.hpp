@@ -12,7 +12,7 @@ namespace stridor {
 
 /// The values along one axis.
 struct PhaseAxis {
-  std::string label;  ///< what the axis shows
+  std::string label;  ///< quantity on the axis
   std::string units;  ///< as in a run file
   std::vector<double> values;
 };
@@ -35,7 +35,7 @@ struct PlanePath {
 PlanePath visible_path(std::span<const double> x, std::span<const double> y, std::size_t columns,
                        std::size_t rows);
 
-/// Samples to a period of what a series swings with, from how often it passes its mean value.
+/// Samples per period of the oscillation of a series, from how often it passes its mean value.
 /// @return nothing where it passes that less than four times
 std::optional<double> samples_per_period(std::span<const double> values);
 

@@ -21,7 +21,7 @@ struct PrecisionCurve {
 };
 
 struct PrecisionPicture {
-  std::string error_label;       ///< what the errors are of
+  std::string error_label;       ///< quantity of the errors
   double reference_error = 0.0;  ///< of the reference itself; none where not positive
   std::optional<double> wanted;  ///< error that a setting was sought for
   std::string caption;
@@ -31,7 +31,7 @@ struct PrecisionPicture {
 /// Draws the errors over the times, both logarithmic: a line per way, a ring around the points that
 /// are on the front, lines across for the error of the reference and the error wanted.
 ///
-/// Points with an error of 0 or without one are left out.
+/// Points with an error of 0 or without one are omitted.
 /// @throws ConfigError, FileError as draw_figure(); std::invalid_argument where there is no point
 void plot_precision(const PrecisionPicture& picture, const std::filesystem::path& figure);
 

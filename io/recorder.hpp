@@ -14,13 +14,13 @@
 
 namespace stridor {
 
-/// Every how many steps a recorder looks at a simulation.
+/// Number of steps between the looks of a recorder at a simulation.
 ///
 /// The low-pass in front of the thinning takes what lies above 0.6 of the recording rate, but what
 /// lies near its own input rate folds below that. So the rate of looking is at least the highest
 /// frequency with a damping ratio below 5 % (stiffer damped modes do not ring) plus 0.6 of the
 /// recording rate, and at least five looks per recorded sample where there are as many steps.
-/// Within that the fewest. What changes from step to step, such as the chatter of the friction
+/// Within that the fewest. A quantity that changes from step to step, such as the friction
 /// force in a start-up that violates persistent sliding, is not band-limited and does fold.
 ///
 /// @param ratio steps per recorded sample
@@ -39,7 +39,7 @@ class Recorder : public DisplacementSink {
   Recorder(const Model& model, std::vector<Channel> channels, double step, double interval,
            RowSink& rows);
 
-  /// What the run file must hold for these channels, in the order of the columns.
+  /// Series that the run file must hold for these channels, in the order of the columns.
   static std::vector<SeriesSpec> series(const Model& model, const std::vector<Channel>& channels,
                                         double step, double interval);
 

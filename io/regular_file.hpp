@@ -1,15 +1,15 @@
-// What is read must be a regular file.
+// Check that an input is a regular file.
 #pragma once
 
 #include <string>
 
 namespace stridor {
 
-/// What stands under a path where it is no regular file: "a folder", "a FIFO (named pipe)", "a
+/// Kind of the file under a path that is no regular file: "a folder", "a FIFO (named pipe)", "a
 /// device", "a socket"; "" for a regular file, and where there is nothing.
 std::string irregular_kind(const std::string& path);
 
-/// Refuses what is no regular file before it is opened: a FIFO would block until somebody writes
+/// Refuses an irregular file before it is opened: a FIFO would block until somebody writes
 /// into it, a device may never end.
 /// @throws FileError "is a FIFO (named pipe), expected a regular file"
 void refuse_irregular_file(const std::string& path);

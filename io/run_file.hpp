@@ -1,4 +1,4 @@
-// Run files: what a simulation leaves behind, as HDF5 that h5py, Octave and ncdump read.
+// Run files: results of a simulation, as HDF5 that h5py, Octave and ncdump read.
 //
 //     /                      format, version, commit, command, scene_hash, date
 //     /scene/text, resolved  the scene as given and as resolved
@@ -7,14 +7,14 @@
 //     /channels/<name>       recorded quantities, thinned
 //     /contact/<name>/…      force, gap, slip_velocity, position, state; force_min, force_max,
 //                            stick_fraction, open_fraction: over every step since the row before;
-//                            the attribute `filter` says what is low-passed
+//                            the attribute `filter` states which are low-passed
 //     /energy/…              energy ledger
 //     /modal/<body>/…        static arrays
-//     /results               numbers read off the run, as attributes
+//     /results               numbers computed from the run, as attributes
 //     /checkpoint/a, b       the two latest states from which the run can go on, as bytes
 //
 // A series may be longer than /time while the run goes on, or after it was killed: len(/time) rows
-// of every series are complete, what comes after is not to be trusted.
+// of every series are complete, later rows are not to be trusted.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ namespace stridor {
 /// Number of the layout above; readers refuse files with a higher one.
 inline constexpr int run_file_format = 1;
 
-/// Where a run comes from. Text is UTF-8 without zero bytes.
+/// Origin of a run. Text is UTF-8 without zero bytes.
 struct RunFileHeader {
   std::string version;          ///< of the program
   std::string commit;           ///< of the source
@@ -61,7 +61,7 @@ struct SeriesSpec {
   Attributes attributes = {};  ///< e.g. {"filter", "…"}, {"acts_at", "…"}; not "units"
 };
 
-/// How a RunFileWriter writes.
+/// Options of a RunFileWriter.
 struct RunFileOptions {
   /// Rows kept in memory before they are written and flushed, at least 1.
   std::size_t block_rows = 16384;
@@ -75,7 +75,7 @@ struct RunFileOptions {
   std::function<void()> on_write = {};
 };
 
-/// Where the rows of a recorder go.
+/// Destination of the rows of a recorder.
 class RowSink {
  public:
   virtual ~RowSink() = default;
@@ -102,7 +102,7 @@ class RunFileWriter : public RowSink {
   /// @param path      final name; an existing file is replaced only with Overwrite::yes
   /// @param overwrite whether an existing file may be replaced
   /// @param header    text for root attributes and /scene
-  /// @param series    what append() will bring, in this order; may be empty
+  /// @param series    series of append(), in this order; may be empty
   /// @throws FileError if the file exists ("exists; use --force to overwrite it"), is no regular
   ///         file, its folder is missing, no folder or not writable, or anything cannot be written;
   ///         what was there before is untouched then
@@ -113,7 +113,7 @@ class RunFileWriter : public RowSink {
                 std::vector<SeriesSpec> series, RunFileOptions options = {});
   /// Goes on with the file of a run from one of its checkpoints. The next row to append is row
   /// `checkpoint.rows`; rows that the file holds from there on are written over and must come again
-  /// as they were. What the run had left when it stopped (/final, /results, /bursts) is removed.
+  /// as they were. Results of the stopped run (/final, /results, /bursts) are removed.
   ///
   /// @throws FileError if the file cannot be changed, or does not hold these series
   static RunFileWriter resume(const std::string& path, std::vector<SeriesSpec> series,
@@ -134,10 +134,10 @@ class RunFileWriter : public RowSink {
   void append(std::span<const double> time, const std::vector<std::span<const double>>& columns);
   /// Adds one row: `row` has one entry per series. @throws as above
   void append(double time, std::span<const double> row) override;
-  /// Writes and flushes what is in memory. @throws FileError as append()
+  /// Writes and flushes the rows in memory. @throws FileError as append()
   void flush();
 
-  /// Writes and flushes what is in memory and then the state of the run, in place of the last but
+  /// Writes and flushes the rows in memory and then the state of the run, in place of the last but
   /// one checkpoint: there is a whole one at any moment. @throws FileError as append()
   void write_checkpoint(const State& state);
 

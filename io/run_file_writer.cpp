@@ -56,7 +56,7 @@ void RunFileWriter::Impl::reserve(std::uint64_t rows) const {
   std::uint64_t needed = 0;
   if (chunks_after > chunks_before) {
     const std::uint64_t num_series = columns.size() + 1;
-    // 16 KiB per series for the chunk index, 64 KiB for the rest of what describes the data.
+    // 16 KiB per series for the chunk index, 64 KiB for the other metadata.
     needed = (chunks_after - chunks_before) * num_series * chunk_rows * sizeof(double) +
              num_series * 16384 + 65536;
   }
@@ -130,7 +130,7 @@ void RunFileWriter::Impl::settle() {
   if (!times.empty()) flush();
 }
 
-// @return what went wrong, empty if nothing
+// @return the error, empty if there was none
 std::string RunFileWriter::Impl::close_file() {
   bool failed = false;
   std::string cause;

@@ -1,4 +1,4 @@
-// What the two sources of RunFileWriter share: one makes and opens files, the other fills them.
+// State common to the two sources of RunFileWriter: one makes and opens files, one fills them.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace stridor {
 
-/// How links are made: groups as needed, names in UTF-8. @throws FileError if HDF5 refuses
+/// Creation of links: groups as needed, names in UTF-8. @throws FileError if HDF5 refuses
 Handle link_creation(const Checker& at);
 
 /// @throws std::invalid_argument unless this is the path of a dataset that users may make

@@ -1,4 +1,4 @@
-// The series of a run file as panels of a picture: which ones, in what order, and what each says.
+// The series of a run file as panels of a picture: choice, order and labels.
 #pragma once
 
 #include <string>

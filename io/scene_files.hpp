@@ -1,4 +1,4 @@
-// The files that a scene names, and whether they are still what they were when a run began.
+// The files that a scene names, and the check that they are unchanged since a run began.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace stridor {
 
-/// A file that a scene names, with a digest of what is in it.
+/// A file that a scene names, with a digest of its contents.
 struct SceneFile {
   std::string key;     ///< that names it, e.g. "substructures.plate.mass"
   std::string path;    ///< from the root
@@ -35,7 +35,7 @@ std::string scene_digests(const std::string& text, const std::vector<SceneFile>&
 
 /// Checks that a run would go on with the scene with which it began: the scene in its file by its
 /// hash and digests, and the files that the scene names where they still exist. (One that is gone
-/// is refused by what needs it; the initial state is in the checkpoints, too.)
+/// is refused where it is needed; the initial state is in the checkpoints, too.)
 /// @param run_file which has this header
 /// @throws FileError with all that differs
 void check_unchanged(const RunFileHeader& header, const std::string& run_file);

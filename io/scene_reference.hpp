@@ -10,7 +10,7 @@ namespace stridor {
 
 /// Markdown page with every key that a scene may hold: docs/scene_reference.md.
 ///
-/// One section per map, in the order of declaration, headed by its key path; NAME stands for a name
+/// One section per map, in the order of declaration, headed by its key path; NAME denotes a name
 /// that the user gives, N for the index in a list. Each has a table key | type | allowed | default
 /// | meaning. A map that occurs at several paths is described at the first and linked from the
 /// others.

@@ -1,8 +1,8 @@
 // The text of a scene as a tree of maps, lists and scalars that know where they were written.
 //
-// YAML is read with yaml-cpp, and what that library lets pass is caught here: duplicate keys, merge
-// keys, tags, several documents, alias bombs. Numbers stay text; what a scalar means is decided by
-// the key that it fills (io/scene_reader.hpp).
+// YAML is read with yaml-cpp. Errors that the library lets pass are caught here: duplicate keys,
+// merge keys, tags, several documents, alias bombs. Numbers stay text; what a scalar means is
+// decided by the key that it fills (io/scene_reader.hpp).
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace stridor {
 
-/// Where something was written.
+/// Place of a text in its source.
 struct Place {
   std::string source;  ///< file, or "--set key.path=value"
   int line = 0;        ///< 1-based; 0 where the source has no lines (--set)
@@ -36,10 +36,10 @@ struct SceneNode {
   std::vector<SceneEntry> entries;  ///< of a map, in the order of the file; no name occurs twice
   std::vector<SceneNode> items;     ///< of a list
   Place place;
-  /// What the text itself has wrong here (a duplicate key, a merge key, a tag, ...), with keys
-  /// relative to this node. Kept so that they are reported along with everything else.
+  /// Faults of the text itself here (a duplicate key, a merge key, a tag, ...), with keys relative
+  /// to this node. Kept so that they are reported along with everything else.
   std::vector<Problem> problems;
-  std::string document;  ///< of the map at the top: what was read, for the excerpts of messages
+  std::string document;  ///< of the map at the top: the text read, for the excerpts of messages
 
   /// The entry of a map with this name, or nullptr.
   const SceneEntry* entry(const std::string& key) const;
@@ -63,7 +63,7 @@ struct SceneLimits {
 /// Reads a scene from YAML text.
 ///
 /// @param text        the scene, UTF-8
-/// @param source_name what messages call it, as a rule the path of the file
+/// @param source_name name in messages, as a rule the path of the file
 /// @return the map at the top
 /// @throws ConfigError with source, line and column where the text is not YAML in UTF-8, is empty,
 /// is
@@ -78,7 +78,7 @@ SceneNode read_scene_file(const std::string& path);
 
 /// Applies one `--set key.path=value` to the tree.
 ///
-/// The value is read as YAML (a scalar, or a list or map in one line) and replaces what was there;
+/// The value is read as YAML (a scalar, or a list or map in one line) and replaces the old one;
 /// maps missing on the way are made. A number in the path counts the entries of a list from 0.
 ///
 /// @param root       map at the top; unchanged where this throws
@@ -119,7 +119,7 @@ void locate(std::vector<Problem>& problems, const SceneNode& root);
 /// Sorts by place, those of the file before those of `--set`; equal places keep their order.
 void sort_by_place(std::vector<Problem>& problems);
 
-/// Adds what the text itself has wrong at this node and below it (SceneNode::problems).
+/// Adds the faults of the text itself at this node and below it (SceneNode::problems).
 /// @param path key path of `node`, which goes before the keys
 void collect_text_problems(const SceneNode& node, const std::string& path,
                            std::vector<Problem>& problems);

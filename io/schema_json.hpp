@@ -12,7 +12,7 @@ namespace stridor {
 /// JSON Schema (draft 2020-12) of the scenes that a Schema describes.
 ///
 /// Every map becomes an object with `required` and without additional properties; maps below the
-/// top stand in `$defs`, once each. A real is a number within its range, or a string that holds a
+/// top are in `$defs`, once each. A real is a number within its range, or a string that holds a
 /// number and perhaps a unit; a curve is a real or {times, values}; entries of named sections are
 /// told apart by their discriminator. `description` holds doc, unit and range.
 ///
@@ -28,12 +28,12 @@ std::string json_schema_text(const Schema& schema);
 /// A kind of scene that is known by the keys at its top, or by the type of its substructures.
 struct SpecialScene {
   const Schema* schema = nullptr;
-  std::vector<std::string> signs;      ///< any one of them says that it is of this kind
+  std::vector<std::string> signs;      ///< any one of them marks this kind
   std::string substructure_type = {};  ///< or that every substructure is of this type and there is
                                        ///< no contact, drive or time; may be empty
 };
 
-/// The schema of scenes of several kinds: the first of `specials` whose sign stands at the top,
+/// The schema of scenes of several kinds: the first of `specials` whose sign is at the top,
 /// else `usual`.
 nlohmann::ordered_json json_schema(const Schema& usual, const std::vector<SpecialScene>& specials);
 

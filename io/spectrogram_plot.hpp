@@ -12,7 +12,7 @@
 
 namespace stridor {
 
-/// Where a mark on a spectrogram comes from; decides how it is drawn.
+/// Origin of a mark on a spectrogram; decides how it is drawn.
 enum class MarkStyle {
   found,      ///< in the signal: white, dashed
   predicted,  ///< by something else: red, dotted
@@ -28,7 +28,7 @@ struct SpectrogramMark {
   MarkStyle style = MarkStyle::found;
 };
 
-/// What a picture of a spectrogram shows besides the amplitudes.
+/// Contents of a picture of a spectrogram besides the amplitudes.
 struct SpectrogramPicture {
   std::string title;           ///< above; may be empty
   std::string units;           ///< of the amplitudes, as in a run file
@@ -51,7 +51,7 @@ struct AmplitudeRaster {
 
 /// Brings a spectrogram onto the raster of a picture, coarser or finer, by taking maxima.
 ///
-/// A column of the spectrogram stands for the time up to half-way to its neighbours, the first and
+/// A column of the spectrogram represents the time up to half-way to its neighbours, the first and
 /// the last one for all of their piece; a line for the frequencies up to half-way to its
 /// neighbours. A cell of the raster is the largest amplitude of all that it touches, so that a
 /// burst of a single column, or a single line, does not vanish from the picture.
@@ -88,18 +88,18 @@ struct MapArea {
   double font_size = 11.0;     ///< pt, of the labels
 };
 
-/// Where a mark and its label are drawn.
+/// Position of a mark and its label.
 struct MarkPlace {
   std::size_t mark = 0;              ///< index into the marks given
   PictureBox box;                    ///< around the mark, within the map
   std::string text;                  ///< the label, or the short one
   std::optional<PictureBox> label;   ///< around the text; nothing where there is no room
-  std::optional<PictureBox> leader;  ///< vertical line to a label that stands apart
+  std::optional<PictureBox> leader;  ///< vertical line to a label apart from its box
 };
 
 /// Lays out marks on a map.
 ///
-/// Marks that do not touch the map are left out; the others are cut at its edges. A label stands
+/// Marks that do not touch the map are omitted; the others are cut at its edges. A label is
 /// right above or below its box where it covers neither another label nor a box, else in rows
 /// farther away with a line to its box. Where there is no room the short label is tried.
 ///

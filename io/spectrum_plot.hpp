@@ -10,7 +10,7 @@
 
 namespace stridor {
 
-/// A curve and what the key calls it.
+/// A curve and its name in the key.
 struct SpectrumCurve {
   std::string name;
   Spectrum spectrum;
@@ -34,7 +34,7 @@ struct FrequencyMark {
   std::string name;        ///< short, e.g. "1"
 };
 
-/// What a picture of spectra shows besides the curves.
+/// Contents of a picture of spectra besides the curves.
 struct SpectrumPicture {
   AmplitudeScale scale = AmplitudeScale::level;
   double max_frequency = 0.0;  ///< Hz, end of the axis, positive

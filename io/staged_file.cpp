@@ -49,7 +49,7 @@ std::uint64_t size_of(int descriptor) {
 
 }  // namespace
 
-// ---------------------------------------------------------------- what HDF5 calls
+// ---------------------------------------------------------------- functions called by HDF5
 
 /// A file as HDF5 knows it.
 struct StagedFileDriver {
@@ -162,7 +162,7 @@ void StagedFile::open(const std::string& path) {
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor_ < 0)
     throw FileError(path, "", "cannot be opened for writing: " + errno_text(errno));
-  // The process that wrote it may have put a copy in its place meanwhile (commit_by_copy).
+  // The process that wrote it may have replaced it by a copy meanwhile (commit_by_copy).
   if (!lock_for_writing(descriptor_) || !is_named(descriptor_, path)) throw_being_written(path);
   written_end_ = size_of(descriptor_);
 }

@@ -14,7 +14,7 @@
 
 namespace stridor {
 
-/// Holds what HDF5 writes in memory until it is committed (a virtual file driver of HDF5).
+/// Holds the writes of HDF5 in memory until they are committed (a virtual file driver of HDF5).
 ///
 /// HDF5 flushes its metadata in the order of addresses. A process killed half-way leaves, for
 /// example, a node of the chunk index that points beyond the end that the superblock states, and
@@ -22,7 +22,7 @@ namespace stridor {
 ///
 ///   1. the end of the file, first of the file itself, then in the superblock;
 ///   2. raw data, and blocks that the file did not have before: nothing refers to them yet;
-///   3. what refers to those: heaps, index nodes from the root down, object headers.
+///   3. references to those: heaps, index nodes from the root down, object headers.
 ///
 /// The file then is readable after every single write. It takes for granted that rows are only
 /// appended: raw data in front of len(/time) do not change, and no block is freed and used anew.
@@ -42,8 +42,8 @@ class StagedFile {
   /// Opens a file to change it. @throws FileError if the system refuses, or if another process has
   /// it open to change it
   void open(const std::string& path);
-  /// What H5Fcreate or H5Fopen takes to work on this file, which must live longer than what they
-  /// open. @throws FileError if HDF5 refuses
+  /// Access property list for H5Fcreate or H5Fopen on this file, which must live longer than the
+  /// objects that they open. @throws FileError if HDF5 refuses
   Handle access(const Checker& at);
 
   /// To be called after H5Fopen.
@@ -61,7 +61,7 @@ class StagedFile {
   void freeze() { is_frozen_ = true; }
   /// Asks the system for room beyond the end of the file. @return an error number, or 0
   int reserve(std::uint64_t bytes) const;
-  /// Gives room that was asked for in vain back.
+  /// Gives back space whose reservation was in vain.
   void trim() const;
 
   void observe(Observer observer) { observer_ = std::move(observer); }

@@ -31,7 +31,7 @@ void throw_being_written(const std::string& path) {
 WriteLock::WriteLock(const std::string& path)
     : descriptor_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
   if (descriptor_ < 0) return;
-  // The process that wrote it may have put a copy in its place meanwhile (StagedFile).
+  // The process that wrote it may have replaced it by a copy meanwhile (StagedFile).
   if (lock_for_writing(descriptor_) && is_named(descriptor_, path)) return;
   ::close(descriptor_);
   throw_being_written(path);

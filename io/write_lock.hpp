@@ -18,7 +18,7 @@ bool is_named(int descriptor, const std::string& path);
 /// Keeps other processes from writing a file that is to be replaced.
 class WriteLock {
  public:
-  /// @throws FileError if another process is writing the file, or puts another one in its place
+  /// @throws FileError if another process is writing the file, or replaces it
   explicit WriteLock(const std::string& path);
   WriteLock(const WriteLock&) = delete;
   WriteLock& operator=(const WriteLock&) = delete;

@@ -12,9 +12,9 @@ namespace stridor {
 
 /// Makes bodies from their parameters and reduces them, each once.
 ///
-/// What belongs together is found by the resolved keys of a body, all of them but the damping,
+/// Equal bodies are found by the resolved keys of a body, all of them but the damping,
 /// which is proportional and leaves meshes, shapes and frequencies alone; for a reduction also by
-/// the DoFs kept and watched. What has not been used for longest is forgotten first.
+/// the DoFs kept and watched. The least recently used entry is forgotten first.
 class BodyCache {
  public:
   /// @param capacity bodies, and reductions, kept at most; > 0

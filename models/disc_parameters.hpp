@@ -26,8 +26,8 @@ struct DiscParameters {
   static const Schema& schema();
 };
 
-/// What presses the back of a pad towards the disc: a force, or a displacement of the far ends of
-/// its springs.
+/// Load that presses the back of a pad towards the disc: a force, or a displacement of the far ends
+/// of its springs.
 struct PistonParameters {
   std::optional<double> force;         ///< N, >= 0
   std::optional<double> displacement;  ///< m, >= 0
@@ -37,10 +37,10 @@ struct PistonParameters {
 /// Two pads, one on each face, mirror images of each other; rigid or elastic.
 struct PadsParameters {
   std::optional<double> mass;                   ///< of each, where they are rigid, kg, > 0
-  std::optional<ElasticPadParameters> elastic;  ///< or what they are made of
+  std::optional<ElasticPadParameters> elastic;  ///< or their material and geometry
   PadStiffness stiffness;
   std::optional<PistonParameters> piston;
-  double radius = 0.0;  ///< where they stand, m
+  double radius = 0.0;  ///< of their position, m
   double angle = 0.0;   ///< rad
   MaterialDamping damping;
   static const Schema& schema();

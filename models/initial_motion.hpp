@@ -1,4 +1,4 @@
-// Motions that a body starts with, from what is prescribed of them.
+// Initial motions of a body, from the values prescribed.
 #pragma once
 
 #include <Eigen/Core>

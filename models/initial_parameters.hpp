@@ -1,4 +1,4 @@
-// What a scene says about the state at t = 0.
+// Parameters of the state at t = 0 in a scene.
 #pragma once
 
 #include <cstdint>

@@ -13,8 +13,8 @@ namespace stridor {
 /// A mode about an equilibrium, on the meshes of the bodies. A rigid master has no nodes and is
 /// left out.
 ///
-/// @param equilibrium of its system; nodes stand where it puts them, the bodies that follow the
-///                    drive displaced by it. In the undeformed geometry they are not deformed
+/// @param equilibrium of its system, which gives the positions of nodes; the bodies that follow the
+///                    drive are displaced by it. In the undeformed geometry they are not deformed
 /// @param mode        q, modal coordinates of all bodies in their order
 /// @throws std::invalid_argument if `mode` is not as long as the bodies have modes
 /// Cost: a reduction of every body.

@@ -218,7 +218,7 @@ void refuse_shared_nodes(const std::vector<ResolvedPair>& pairs) {
   }
 }
 
-/// By how much two slave points of one body may stand apart in height, m.
+/// Largest difference in height of two slave points of one body, m.
 double height_of_roughness(const ContactParameters& parameters) {
   constexpr double never_exceeded = 20.0;
   return parameters.roughness ? never_exceeded * parameters.roughness->rms : 0.0;
@@ -581,7 +581,7 @@ Model make_model(const ModelParameters& parameters,
         resolve_pair(name, parameters.contact ? name : "contacts." + name, pair, bodies));
   }
 
-  // A body that carries others stands before they are placed on it; chains are placed in order.
+  // A body that carries others is placed before them; chains are placed in order.
   Model model;
   model.substructures = parameters.substructures;
   System& system = model.system;

@@ -26,7 +26,7 @@ struct ModelParameters {
   InitialParameters initial;
   static const Schema& schema();
 
-  /// All pairs by name, whichever key they stand under.
+  /// All pairs by name, under whichever key they are.
   std::map<std::string, ContactParameters> pairs() const;
 };
 
@@ -43,7 +43,7 @@ struct Model {
     int body = 0;
     PointRows rows;
   };
-  /// Where a body stands and what its reduction kept.
+  /// Position of a body and the DoFs that its reduction kept.
   struct Placement {
     Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< of its frame, m
     std::vector<int> interface;                       ///< DoFs, as of make_craig_bampton()

@@ -8,7 +8,7 @@
 namespace stridor {
 namespace {
 
-/// A dimensionless number and the dimensional one that may stand in its place.
+/// A dimensionless number and the dimensional one that may replace it.
 struct Twin {
   const char* ratio;
   const char* dimensional;

@@ -11,8 +11,8 @@
 
 namespace stridor {
 
-/// A sphere on springs and dampers that is pressed against a sliding substrate (PPH, Fig. 2). What
-/// makes it move is given dimensionless or, instead, by its dimensional twin.
+/// A sphere on springs and dampers that is pressed against a sliding substrate (PPH, Fig. 2). The
+/// parameters of its motion are given dimensionless or, instead, by its dimensional twin.
 struct SphereParameters {
   double stiffness_x = 0.0;        ///< k_x, N/m
   double natural_frequency = 0.0;  ///< ω_nx = √(k_x/m), rad/s
@@ -38,7 +38,7 @@ struct SphereParameters {
   static const Schema& schema();
 };
 
-/// Friction that only resembles the set-valued one, to see what that does.
+/// Friction that only resembles the set-valued one, to see the effect.
 struct RegularisationParameters {
   RegularisedSign::Kind law = RegularisedSign::Kind::none;
   std::optional<double> speed;  ///< v_ε/v_d
@@ -52,7 +52,7 @@ struct SphereModelParameters {
 
   SphereParameters sphere;
   std::string contact_law = published_fit;  ///< one of the two, or a file with a table
-  /// The law in that file, which whoever reads the scene reads as well.
+  /// The law in that file; the reader of the scene reads it as well.
   std::shared_ptr<const ViscoelasticContactLaw> table;
   FrictionLoad friction_normal_force = FrictionLoad::applied;
   RegularisationParameters regularisation;

@@ -16,7 +16,7 @@ namespace stridor {
 
 using Run = Simulation::Implementation;
 
-/// What a batch takes out of the bodies and contacts of a simulation, and puts back.
+/// Copies the state of bodies and contacts of a simulation into a batch, and back.
 struct LaneAccess {
   static ModalRecurrence* modal(Run& run, int body) {
     return dynamic_cast<ModalRecurrence*>(run.bodies[static_cast<std::size_t>(body)].get());
@@ -56,7 +56,7 @@ struct LaneAccess {
   using Into = Copy<false>;
   using OutOf = Copy<true>;
 
-  /// What a step changes and displacements depend on.
+  /// Variables that a step changes and displacements depend on.
   template <bool is_out>
   static void copy_place(const Copy<is_out>& copy, const BodyLanes& lanes, ModalRecurrence& body,
                          std::vector<double>& forces) {
@@ -64,11 +64,11 @@ struct LaneAccess {
     copy(lanes.current, body.current_);
     copy(lanes.forces, forces);
     if (!body.is_prompt()) return;
-    // After a step the last forces are those that everything has answered.
+    // After a step everything has responded to the last forces.
     if constexpr (is_out) copy(lanes.forces, body.acting_.forces);
     if (body.has_residual()) copy(lanes.lagging, body.lagging_.forces);
   }
-  /// What else a step changes.
+  /// Other variables that a step changes.
   template <bool is_out>
   static void copy_rest(const Copy<is_out>& copy, const BodyLanes& lanes, ModalRecurrence& body) {
     copy(lanes, ModalField::increment, body);
@@ -79,7 +79,7 @@ struct LaneAccess {
     copy(lanes.answer, body.answer_);
   }
 
-  /// What it does not.
+  /// Constants of a step.
   static void copy_constants(const Into& copy, const BodyLanes& lanes, ModalRecurrence& body) {
     for (const ModalField field :
          {ModalField::keep, ModalField::pull, ModalField::gain, ModalField::load})
@@ -97,7 +97,7 @@ struct LaneAccess {
     copy(lanes.share, 0, body.share_);
   }
 
-  /// What the displacement of a row is made of; of no row, zeros.
+  /// Terms of the displacement of a row; zeros without a row.
   static void copy_watched(const Into& copy, const BodyLanes& lanes, ModalRecurrence& body,
                            std::optional<int> row) {
     const auto set = [&](double* entries, std::size_t i, double number) {
@@ -105,7 +105,7 @@ struct LaneAccess {
     };
     for (std::size_t m = 0; m < lanes.num_modes; ++m)
       set(lanes.watched_row, m, row ? body.row_data(*row)[m] : 0.0);
-    // Of bodies that answer later than they are pushed, forces are in the modes already.
+    // Without direct feedthrough, forces are in the modes already.
     const Propagator::Influence* const influence =
         row && body.is_prompt() ? &body.influence_on(*row) : nullptr;
     const bool has_lagging = influence != nullptr && body.has_residual();
@@ -172,7 +172,7 @@ struct LaneAccess {
 
 namespace {
 
-/// What simulations in the same lanes share.
+/// Sizes common to simulations in the same lanes.
 struct Shape {
   bool is_prompt;
   ContactAssumption assumption;
@@ -321,7 +321,7 @@ class LaneGroup {
 
     DisplacementSink* sink = nullptr;
     DisplacementSink::Row row{};
-    std::optional<int> slave_row{};  ///< what is watched
+    std::optional<int> slave_row{};  ///< row that is watched
     std::optional<int> master_row{};
     std::int64_t next_sample = std::numeric_limits<std::int64_t>::max();
 
@@ -329,7 +329,7 @@ class LaneGroup {
       sink->sample_displacement(displacement);
       next_sample = sink->next_step();
     }
-    /// Where the last step was done by itself.
+    /// For simulations whose last step was done outside the lanes.
     void sample_where_due() {
       if (outcome == StepOutcome::done && run->index == next_sample)
         sample(simulation->displacement(row.body, row.row));
@@ -461,7 +461,7 @@ class LaneGroup {
     }
   }
 
-  /// Steps that the kernel does at once where rows are watched; what they fill stays in the cache.
+  /// Steps that the kernel does in one call where rows are watched; their data stay in the cache.
   static constexpr std::size_t max_traced = 256;
 
   std::size_t width_;

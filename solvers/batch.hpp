@@ -1,4 +1,4 @@
-// Several simulations stepped at once.
+// Several simulations stepped simultaneously.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace stridor {
 /// change, for a step that takes a contact to another segment, and for everything that ends a run,
 /// a simulation steps by itself, as others do all the time.
 ///
-/// A simulation ends the same, bitwise, whatever the others in its batch are and in whatever order;
+/// A simulation ends bit-identically, whatever the others in its batch are and in whatever order;
 /// it differs by rounding from one that is stepped without a batch.
 class Batch {
  public:
@@ -35,13 +35,13 @@ class Batch {
   /// @throws std::invalid_argument if `run` or `sink` is another, or a sample is due already
   void watch(std::size_t run, DisplacementSink& sink);
 
-  /// Steps every simulation that has not failed until it stands at `target`, as
-  /// Simulation::step_until(). What may be asked of them then is displacements, contacts and
+  /// Steps every simulation that has not failed until it is at `target`, as
+  /// Simulation::step_until(). They then provide displacements, contacts and
   /// statistics, which may be reset; for all else, `synchronise` first.
   void step_until(std::int64_t target);
   /// Gives the simulations their whole state.
   void synchronise();
-  /// Of the last step of a simulation; what is not `done` is final.
+  /// Of the last step of a simulation; any outcome but `done` is final.
   StepOutcome outcome(std::size_t run) const;
   /// Whether it is one that steps in lanes.
   bool steps_in_lanes(std::size_t run) const;

@@ -9,7 +9,7 @@
 namespace stridor {
 namespace {
 
-/// By how much the residual is reduced before the set of contact cells is looked at again.
+/// Reduction of the residual before the set of contact cells is checked again.
 constexpr double early_stop = 0.1;
 /// Residual, over the largest target, from which there is no way back.
 constexpr double hopeless = 100.0;
@@ -165,7 +165,7 @@ ComplementarityOutcome ContactComplementarity::solve(std::span<const double> tar
     const auto count = std::count(in_contact_.begin(), in_contact_.end(), 1);
     return largest * std::sqrt(std::max(1.0, static_cast<double>(count)));
   };
-  // Cells that leave must not come back because of what the residual leaves open.
+  // Cells that leave must not come back because of the remaining residual.
   const double sinking = 0.1 * limits.tolerance * largest;
 
   apply();

@@ -34,7 +34,7 @@ class StraightField {
   std::vector<double> values_;
 };
 
-/// Where the parabola through the values at s = 0, 1, 2 has its first zero at s < 0.
+/// First zero at s < 0 of the parabola through the values at s = 0, 1, 2.
 double zero_before(double q0, double q1, double q2) {
   const double slope = 0.5 * (4.0 * q1 - 3.0 * q0 - q2);  // at s = 0
   const double bend = 0.5 * (q0 + q2) - q1;
@@ -43,7 +43,7 @@ double zero_before(double q0, double q1, double q2) {
   return -2.0 * q0 / (slope + std::sqrt(discriminant));
 }
 
-/// A place of the edge on a line of cells, and how far it may be off.
+/// A place of the edge on a line of cells, and its possible error.
 struct EdgeGuess {
   double place = 0.0;
   double doubt = 0.0;

@@ -29,7 +29,7 @@ struct ContactEdge {
 /// the edge are left out, since the steps of the contact area disturb them. A = ½ ∮ r² dθ over the
 /// points.
 ///
-/// Where the contact is not one piece without holes, or only a few cells wide, the contact cells
+/// If the contact is not one piece without holes, or only a few cells wide, the contact cells
 /// are counted instead and `is_resolved` is false.
 ///
 /// @param pressure  N/2 × N, rows along x from the axis outwards; > 0 in contact

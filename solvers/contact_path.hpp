@@ -25,7 +25,7 @@ DriveRange drive_range(const Drive& drive, double end);
 
 /// Places on the master that the slave passes until `end`, with some to spare for its deformation:
 /// a hundredth of the path and the length of a segment. The ends of every segment and its middle,
-/// where what stiff modes add to the flexibility is least.
+/// where the contribution of stiff modes to the flexibility is least.
 std::vector<WeightedRows> path_of(const System& system, const ContactPoint& contact, double end);
 
 }  // namespace stridor

@@ -26,7 +26,7 @@ bool solve_substrate(LocalProblem& contact, const LocalCompliance& w, double sli
   return !std::isnan(contact.indentation) && !std::isnan(slip);
 }
 
-/// The answer of one contact under the forces of all others.
+/// The solution of one contact under the forces of all others.
 /// @returns false where no force closes the gap
 bool solve_local(LocalProblem& contact, const LocalCompliance& w, double penetration, double slip) {
   const auto slide = [&](double direction) {

@@ -70,8 +70,8 @@ struct ContactSolverParameters {
 /// bilateral ones gap = 0 and λ_t = χ μ λ_n. Contacts that all slide bilaterally are one linear
 /// system. Otherwise the contacts are visited in turn, each solved exactly under the forces of the
 /// others (Gauss-Seidel over 2 x 2 blocks), until no force changes any more; for a single contact
-/// the first visit is the answer. Sticking is tried first, with the sign of its friction force the
-/// direction of sliding where that exceeds the limit (FiLM: Carpenter, Taylor, Katona 1991). A
+/// the first visit is the solution. Sticking is tried first, with the sign of its friction force
+/// the direction of sliding where that exceeds the limit (FiLM: Carpenter, Taylor, Katona 1991). A
 /// contact with a force law is solved by solve_substrate_step().
 class ContactSolver {
  public:
@@ -81,7 +81,7 @@ class ContactSolver {
   /// filled before `solve`.
   Eigen::MatrixXd& delassus() { return delassus_; }
 
-  /// @param contacts problems in, answers out
+  /// @param contacts problems in, solutions out
   /// No allocation but where strong friction makes bilateral contacts nearly jam.
   ContactAnswer solve(std::span<LocalProblem> contacts);
 

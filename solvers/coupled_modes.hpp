@@ -9,10 +9,11 @@
 
 namespace stridor {
 
-/// The modes of a pencil that coupled terms of bodies join (docs/theory.md, 7.3): for q of them
+/// The modes of a pencil that gyroscopic, circulatory and non-proportional damping terms of bodies
+/// couple (docs/theory.md, 7.3): for q of them
 ///
 ///   (s² + s C + K)⁻¹ = Σ_j x_j y_jᵀ/(s − s_j),   j = 1 … 2q,
-///   K = diag(ω²) + Sᵀ G S,  C = diag(c) + Sᵀ H S  with the slots of bodies only
+///   K = diag(ω²) + Sᵀ G S,  C = diag(c) + Sᵀ H S  with the ports of bodies only
 ///
 /// Contacts leave this sum as it is, so that it serves every place and every friction.
 struct CoupledModes {

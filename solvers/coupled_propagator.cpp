@@ -103,7 +103,7 @@ Eigen::VectorXd CoupledPropagator::modal_force(const double* forces) const {
   return force;
 }
 
-/// Both motions are to be at the same place at t_{n+1}, where the forces still are what they were.
+/// Both motions are to be at the same place at t_{n+1}, where the forces are still the same.
 Eigen::VectorXd CoupledPropagator::velocity_before(const Eigen::VectorXd& force) const {
   const Eigen::Index n = body_.size();
   const Eigen::VectorXd at_once = by_step_.prompt * force;

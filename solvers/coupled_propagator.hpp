@@ -13,22 +13,24 @@
 namespace stridor {
 
 /// @param body its name
-/// @throws ConfigError (time.integrator) if a body with coupled terms is to be marched otherwise
+/// @throws ConfigError (time.integrator) if a body with gyroscopic, circulatory or non-proportional
+///         damping terms is to be marched otherwise
 void require_exact(const std::string& body, const TimeParameters& time);
 
-/// The exact scheme of ModalRecurrence for a body with coupled terms (docs/theory.md, 3.8), in
-/// modal coordinates, r̈ + V ṙ + Q r = p with V = diag(c) + coupled, Q = diag(ω²) + coupled:
+/// The exact scheme of ModalRecurrence for a body with gyroscopic, circulatory or non-proportional
+/// damping terms (docs/theory.md, 3.8), in modal coordinates, r̈ + V ṙ + Q r = p with
+/// V = diag(c) + coupled, Q = diag(ω²) + coupled:
 ///
 ///   x = (r, v),  x_{n+1} = e^{Ah} (x_n + J rowᵀ f_n + (0, h K⁻¹ p_n)),   q_n = r_n + G rowᵀ f_n
 ///
-/// with the matrices of CoupledStep. Free motion is exact and so is the static answer; without
-/// coupled terms every number is that of ModalRecurrence up to rounding. x is the state just before
-/// the impulses at t_n.
+/// with the matrices of CoupledStep. Free motion and the static response are exact; without coupled
+/// terms every number is that of ModalRecurrence up to rounding. x is the state just before the
+/// impulses at t_n.
 class CoupledPropagator : public Propagator {
  public:
   /// Parameters as ModalRecurrence.
   /// @throws ConfigError (time.step) as make_coupled_step()
-  /// Cost: that of make_coupled_step(); a step costs (2n)² and 3n for every slot.
+  /// Cost: that of make_coupled_step(); a step costs (2n)² and 3n for every port.
   CoupledPropagator(const ModalBody& body, const Eigen::MatrixXd& patterns, double step,
                     std::optional<double> surplus, int num_slots, double alpha,
                     std::span<const double> loads, const std::string& name);
@@ -58,11 +60,11 @@ class CoupledPropagator : public Propagator {
 
   /// Everything that follows from α.
   void renew();
-  /// rowᵀ f of all slots.
+  /// rowᵀ f of all ports.
   Eigen::VectorXd modal_force(const double* forces) const;
   /// Velocity just before the impulses less that of the continuous motion under constant forces.
   Eigen::VectorXd velocity_before(const Eigen::VectorXd& force) const;
-  /// x_{n+1} without forces on the slots.
+  /// x_{n+1} without forces on the ports.
   void predict();
 
   ModalBody body_;
@@ -80,7 +82,7 @@ class CoupledPropagator : public Propagator {
 
   Eigen::VectorXd load_;          ///< p
   Eigen::VectorXd load_impulse_;  ///< x_{n+1} by p
-  Eigen::VectorXd state_, next_;  ///< x_n; x_{n+1} without forces on the slots
+  Eigen::VectorXd state_, next_;  ///< x_n; x_{n+1} without forces on the ports
 };
 
 }  // namespace stridor

@@ -15,32 +15,32 @@ namespace stridor {
 ///
 /// J and G are those of the modes by themselves (exact_propagation()) where nothing is coupled.
 /// Gyroscopic terms enter both such that, without damping, the step under the forces of frictionless
-/// contacts keeps the symplectic form of the body. The answer to a constant force is the static
+/// contacts keeps the symplectic form of the body. The response to a constant force is the static
 /// one, whatever is coupled.
 struct CoupledStep {
-  /// Largest |s| h of the free motions of a body, with its damping and without: beyond, impulses
-  /// once a step stand for forces no longer.
+  /// Largest |s| h of the free motions of a body, with its damping and without: beyond it, impulses
+  /// once a step no longer represent forces.
   static constexpr double largest_turn = 2.0;
   /// Largest δ that is taken: no motion without damping that turns by largest_turn or less needs
   /// more, and with more the impulse of the fastest would change its sign, 1 − δ (|s| h)² < 0.
   static constexpr double largest_surplus = 1.0 / (largest_turn * largest_turn);
 
-  Eigen::MatrixXd prompt;       ///< G: displacement at once per modal force
+  Eigen::MatrixXd prompt;       ///< G: instantaneous displacement per modal force
   Eigen::MatrixXd position;     ///< Q
   Eigen::MatrixXd free;         ///< e^{Ah}
   Eigen::MatrixXd by_constant;  ///< r_{n+1} per force that is constant from t_n on
   Eigen::MatrixXd by_impulse;   ///< x_{n+1} per load: e^{Ah} (0, h K⁻¹)
   Eigen::MatrixXd by_force;     ///< x_{n+1} per force: e^{Ah} J; by_impulse where G = 0
 
-  /// What a force that changes its sign with every step leaves of r_n, per force and with the
+  /// Share of r_n due to a force that changes its sign with every step, per force and with the
   /// opposite sign: (1 + e^{Ah})⁻¹ e^{Ah} J. Contacts are stable at z = −1 where G exceeds it.
   Eigen::MatrixXd alternating() const;
 };
 
-/// @param body    with coupled terms
+/// @param body    with gyroscopic, circulatory or non-proportional damping terms
 /// @param step    h, s
 /// @param surplus δ of exact_propagation(), of which at most largest_surplus is taken; absent: the
-///                body does not answer at once, G = 0
+///                body has no direct feedthrough, G = 0
 /// @param alpha   α, 1/s
 /// @param name    of the body, for messages
 /// @throws ConfigError (time.step) if a free motion, or one of the body without its damping and

@@ -17,7 +17,7 @@ enum class DenseWork {
 struct DenseSpectrum {
   std::vector<Eigenvalue> eigenvalues;  ///< Im s >= 0, ascending Im s, then ascending Re s
   Eigen::MatrixXcd right;               ///< q of each, one per column; empty without residuals
-  /// By how much rounding in the linearised matrix is magnified in each: 1/|yᴴx| for its unit left
+  /// Magnification of rounding in the linearised matrix for each: 1/|yᴴx| for its unit left
   /// and right eigenvectors, large where two eigenvalues and their motions are about to coincide.
   /// Empty unless asked for.
   std::vector<double> conditions;
@@ -49,7 +49,7 @@ struct DenseSpectrum {
 /// @throws std::invalid_argument as check_pencil()
 /// @throws NumericalError if the constraints are not independent, if L_Eᵀ L_C is singular to
 /// working
-///         precision (the contact forces then have no unique answer to an acceleration), or if the
+///         precision (the contact forces for an acceleration are then not unique), or if the
 ///         iteration fails
 /// Cost: of order 10 (2n)³ operations, 25 (2n)³ with residuals, 35 (2n)³ with condition numbers.
 DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work = DenseWork::residuals);

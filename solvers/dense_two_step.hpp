@@ -56,7 +56,7 @@ class PublishedTwoStep : public Propagator {
 ///
 ///   u*_{n+1} = u_n + (1 − h α) d_n − A (h² u_n + h β d_n) + h² M⁻¹ f_n,  d_n = u_n − u_{n−1}
 ///
-/// Cost per step: one product with a dense n x n matrix and one column of M⁻¹ per slot.
+/// Cost per step: one product with a dense n x n matrix and one column of M⁻¹ per port.
 class FusedTwoStep : public Propagator {
  public:
   /// As PublishedTwoStep.

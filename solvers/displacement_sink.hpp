@@ -7,8 +7,8 @@
 
 namespace stridor {
 
-/// A sink that, as it may be, looks at nothing but the displacement of one row of one body: it then
-/// takes what a batch of simulations computes on the way.
+/// A sink that may read nothing but the displacement of one row of one body. It then takes the
+/// value that a batch of simulations computes on the way.
 class DisplacementSink : public SampleSink {
  public:
   struct Row {
@@ -16,7 +16,7 @@ class DisplacementSink : public SampleSink {
     int row = 0;
   };
 
-  /// The row, where it is all that `sample` looks at.
+  /// The row, where `sample` reads nothing else.
   virtual std::optional<Row> sole_row() const = 0;
   /// In place of `sample`, where there is a sole row.
   /// @throws as sample()

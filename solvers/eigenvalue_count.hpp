@@ -1,4 +1,4 @@
-// How many eigenvalues lie in a rectangle: the argument principle.
+// Number of eigenvalues in a rectangle by the argument principle.
 #pragma once
 
 #include <complex>
@@ -13,7 +13,7 @@ namespace stridor {
 ///
 ///   N = (1/π) ∫ d arg f,   s = right → right + j height → left + j height → left
 ///
-/// The known zeros s_k are divided out, so that what remains turns slowly as long as none is
+/// The known zeros s_k are divided out, so that the quotient turns slowly as long as none is
 /// missing; a step is halved until the phase changes by less than 1 in it.
 ///
 /// @param phase f(s)/|f(s)|

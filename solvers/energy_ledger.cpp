@@ -282,7 +282,7 @@ void EnergyLedger::enter_gain(double given, double time) {
   if (gain > contact_gain_.energy) contact_gain_ = {gain, time};
 }
 
-/// @param driven by how much the drive moves the slave against the master in +x, m
+/// @param driven displacement of the slave against the master by the drive in +x, m
 /// @return contact work of the step, J
 double EnergyLedger::enter_contact(const Contact& contact, const ContactAction& action,
                                  double driven) {

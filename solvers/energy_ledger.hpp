@@ -1,4 +1,4 @@
-// Where the energy of a run comes from and where it goes.
+// Sources and sinks of the energy of a run.
 #pragma once
 
 #include <cmath>
@@ -36,14 +36,14 @@ class CompensatedSum {
   double carry_ = 0.0;
 };
 
-/// How a contact acts on its bodies from t_n to t_{n+1}.
+/// Action of a contact on its bodies from t_n to t_{n+1}.
 struct ContactAction {
   int segment = 0;              ///< of its master surface
   Projection projection;        ///< where and in which directions its forces act
   double force = 0.0;           ///< λ_n, N, compression positive
   double friction_force = 0.0;  ///< λ_t, N, positive against sliding of the slave along +t
   ContactState state = ContactState::open;
-  double roughness = 0.0;  ///< how far the rough surface stands out at t_{n+1}, m
+  double roughness = 0.0;  ///< height of the rough surface at t_{n+1}, m
 };
 
 /// The entries of the ledger, J (docs/theory.md, 3.4). Losses and works are sums since the start.
@@ -68,9 +68,9 @@ struct FrictionGain {
   double last_time = 0.0;      ///< of the latest such step, s
 };
 
-/// Contacts that have given energy to the bodies: a normal force works on a gap that it holds closed
-/// not at all, in an impact it only takes, and a rough surface moved by the drive works on its own
-/// account. What is left of the contact work may therefore not rise.
+/// Contacts that have given energy to the bodies. A normal force does no work on a gap that it
+/// holds closed, and only takes energy in an impact. A rough surface moved by the drive has an
+/// account of its own. The remaining contact work may therefore not rise.
 struct ContactGain {
   double energy = 0.0;     ///< largest rise of it over any stretch of time, J
   double last_time = 0.0;  ///< at the end of that stretch, s
@@ -100,11 +100,11 @@ struct ContactGain {
 class EnergyLedger {
  public:
   /// Begins at the initial motion of the bodies.
-  /// @param system copied in what it needs; not referenced afterwards
+  /// @param system its needed parts are copied; not referenced afterwards
   /// @param time   step, and the coordinates in which positions and increments will come
   EnergyLedger(const System& system, const TimeParameters& time);
 
-  /// Where q_n and d_{n+1} of a body are to be put before `add`, in its coordinates.
+  /// Destination of q_n and d_{n+1} of a body before `add`, in its coordinates.
   std::span<double> position(int body);
   std::span<double> increment(int body);
 
@@ -122,15 +122,15 @@ class EnergyLedger {
   double initial() const { return initial_; }
   /// Largest |balance_error| of all steps, J.
   double largest_error() const { return largest_error_; }
-  /// Largest stored energy so far and what has been lost: |damping_loss| + |friction_loss| +
-  /// |contact_work|, J.
+  /// Exchanged energy: largest stored energy so far and the losses, |damping_loss| +
+  /// |friction_loss| + |contact_work|, J.
   double turned_over() const;
   /// largest_error() / turned_over(); 0 where nothing has moved.
   double relative_error() const;
   const FrictionGain& friction_gain() const { return friction_gain_; }
   const ContactGain& contact_gain() const { return contact_gain_; }
-  /// Whether the contacts have given more than what the turning of the normal within a step makes of
-  /// their work, a hundredth of the energy turned over (docs/theory.md, 3.4).
+  /// Whether the contacts have given more work than the rotation of the normal within a step
+  /// explains: a hundredth of the energy exchanged (docs/theory.md, 3.4).
   bool contacts_feed() const { return contact_gain_.energy > 0.01 * turned_over(); }
 
   void save(State& state, const std::string& prefix) const;
@@ -156,7 +156,7 @@ class EnergyLedger {
     AlignedArray mean_increment;  ///< d̄_n
     Eigen::VectorXd product;      ///< scratch
   };
-  /// What one step of a body comes to, before time step and damping: d_{n+1}ᵀ M d_{n+1},
+  /// Quadratic forms of one step of a body, before time step and damping: d_{n+1}ᵀ M d_{n+1},
   /// q_nᵀ K q_{n+1}, d̄_nᵀ M d_n, d̄_nᵀ K d_n.
   struct Forms {
     double kinetic, strain, mass_damping, stiffness_damping;

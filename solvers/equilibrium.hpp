@@ -13,7 +13,7 @@ namespace stridor {
 /// Geometry in which the contacts are evaluated.
 enum class ContactGeometry {
   undeformed,  ///< every contact where the drive puts it on the undeformed master, as under Subs-a
-  deformed,    ///< every contact as its assumption says
+  deformed,    ///< every contact by its assumption
 };
 
 /// A contact with positions as seen from the undeformed T1 of its segment, where the rounding of a
@@ -36,7 +36,7 @@ using SlotVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_contact_slots
 using SlotMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, max_contact_slots, max_contact_slots>;
 
-/// Parts of the derivative of a contact, each of which can be left out to see what it does.
+/// Parts of the derivative of a contact, each of which can be left out to see its effect.
 struct LinearisationTerms {
   bool turning_normal = true;    ///< the normal force turns with the surface
   bool turning_friction = true;  ///< the friction force turns with the surface
@@ -47,7 +47,7 @@ struct LinearisationTerms {
   bool friction_slope = true;  ///< μ changes with the sliding velocity
 };
 
-/// One sliding contact and its derivatives with respect to the displacements z of its slots
+/// One sliding contact and its derivatives with respect to the displacements z of its ports
 /// (docs/theory.md, 6.2).
 struct ContactLinearisation {
   Projection projection;
@@ -81,7 +81,7 @@ ContactLinearisation linearise_contact(const ContactPositions& positions, const 
 /// @param segment of the master that the positions belong to
 void set_roughness(ContactPositions& positions, const MasterSurface& surface, int segment);
 
-/// What holds the system in its equilibrium from outside.
+/// External loads and drive that hold the system in its equilibrium.
 struct EquilibriumState {
   double drive_displacement = 0.0;  ///< of the bodies that follow the drive, in +x, m
   double drive_velocity = 0.0;      ///< likewise; gives χ and μ(v) only, m/s
@@ -122,7 +122,7 @@ struct ContactEquilibrium {
 
 enum class EquilibriumStatus {
   converged,
-  master_lost,    ///< a slave point stands beyond the end of its master surface
+  master_lost,    ///< a slave point is beyond the end of its master surface
   not_converged,  ///< the iteration was given up
 };
 
@@ -131,9 +131,9 @@ struct Equilibrium {
   EquilibriumState state;                     ///< as asked for
   std::vector<Eigen::VectorXd> displacement;  ///< of every body, modal coordinates, m kg^½
   std::vector<ContactEquilibrium> contacts;
-  double residual = 0.0;  ///< largest of displacement, gap and force, relative to what they are of
+  double residual = 0.0;  ///< largest of displacement, gap and force, each relative to its scale
   int iterations = 0;     ///< Newton steps over all passes
-  std::string failure;    ///< what went wrong; empty where converged
+  std::string failure;    ///< cause of the failure; empty where converged
 };
 
 struct EquilibriumParameters {
@@ -148,7 +148,7 @@ struct EquilibriumParameters {
 ///
 /// for the contacts that slide bilaterally; 0 ≤ λ ⟂ gap ≥ 0 for those that may lift off, at
 /// whatever time (ContactPoint::unilateral_from). χ and μ(v) are those of the drive's velocity.
-/// Elastic modes are eliminated; unknown are the displacements of the contact slots, λ and the
+/// Elastic modes are eliminated; unknown are the displacements of the contact ports, λ and the
 /// amplitudes of the rigid modes. Newton's method with the exact derivative, halving the step until
 /// the residual falls. As in `Simulation`, a contact moves from segment to segment without turning
 /// back; next to a node ξ may come out slightly beyond [0, 1].
@@ -165,7 +165,7 @@ struct EquilibriumParameters {
 Equilibrium find_equilibrium(const System& system, const EquilibriumState& state,
                              const EquilibriumParameters& parameters = {});
 
-/// The same with the drive displaced such that a contact stands at a given place of its deformed
+/// The same with the drive displaced such that a contact is at a given place of its deformed
 /// master: friction and load bend the slave away from where the drive alone would put it.
 ///
 /// The segment is that of the position, the one before it where that is a node.

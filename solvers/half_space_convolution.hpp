@@ -58,7 +58,7 @@ class HalfSpaceConvolution {
   /// From the Fourier transforms along y in lines_ to the cosine transforms, times `factors`, and
   /// to what is transformed back.
   void multiply_cosine_lines(const std::vector<std::complex<double>>& factors);
-  /// How many of the N/2 rows are even: 0, 2, ...
+  /// Number of even rows among the N/2: 0, 2, ...
   std::size_t num_even_rows() const { return (num_cells() / 2 + 1) / 2; }
   void transform_with(const std::vector<std::complex<double>>& factors,
                       std::span<const double> from, std::span<double> to);

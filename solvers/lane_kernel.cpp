@@ -35,7 +35,7 @@ STRIDOR_INLINE bool has_any(const V& mask) {
   return any;
 }
 
-/// ModalRecurrence::advance_body() and what follows it in Propagator::advance().
+/// ModalRecurrence::advance_body() and the rest of Propagator::advance().
 template <class V, std::size_t num_slots, bool is_prompt>
 STRIDOR_INLINE void advance_body(const BodyLanes& body) {
   V force[num_slots];
@@ -156,7 +156,7 @@ STRIDOR_INLINE V solve_contact(const Lanes& lanes) {
   const V pull_x = nx - friction * tx;
   const V pull_y = ny - friction * ty;
 
-  // What unit λ_n does to the slots.
+  // Response of the ports to unit λ_n.
   V slave_answer[2];
   V master_answer[4];
   const V master_pull[4] = {w0 * pull_x, w0 * pull_y, w1 * pull_x, w1 * pull_y};

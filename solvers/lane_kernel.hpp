@@ -1,4 +1,4 @@
-// The step of several simulations at once, one in each lane of a vector.
+// The step of several simultaneous simulations, one in each lane of a vector.
 #pragma once
 
 #include <array>
@@ -21,11 +21,11 @@ struct BodyLanes {
   bool has_residual = false;
 
   std::array<double*, num_modal_fields> fields{};  ///< by ModalField, an entry per mode
-  double* rows = nullptr;                          ///< an entry per slot, mode after mode
+  double* rows = nullptr;                          ///< an entry per port, mode after mode
   double* compliance = nullptr;                    ///< W, column after column
   double* lag = nullptr;                           ///< (1 − w) R, likewise
   double* share = nullptr;                         ///< w
-  // Entries per slot.
+  // Entries per port.
   double* load = nullptr;
   double* predicted = nullptr;
   double* expected = nullptr;
@@ -35,11 +35,12 @@ struct BodyLanes {
   double* lagging = nullptr;
   double* forces = nullptr;
 
-  // A row of the body that is watched: its displacement is Σ watched_row·position, and with prompt
-  // bodies what forces, lagging forces and loads add. All 0 in lanes that watch none.
+  // A row of the body that is watched: its displacement is Σ watched_row·position, and with direct
+  // feedthrough the contributions of forces, lagging forces and loads. All 0 in lanes that watch
+  // none.
   bool is_watched = false;            ///< in any lane
   double* watched_row = nullptr;      ///< an entry per mode
-  double* watched_forces = nullptr;   ///< an entry per slot: of the forces
+  double* watched_forces = nullptr;   ///< an entry per port: of the forces
   double* watched_lagging = nullptr;  ///< likewise, of the lagging ones
   double* watched_load = nullptr;
 };
@@ -78,16 +79,16 @@ struct Lanes {
   ContactLanes contact;
   double* step = nullptr;     ///< h
   double* index = nullptr;    ///< n
-  double* is_used = nullptr;  ///< 1 or 0; what is not used holds no state
+  double* is_used = nullptr;  ///< 1 or 0; an unused lane holds no state
   double* trace = nullptr;    ///< an entry per step: the sum of the rows watched
 };
 
-/// Steps all lanes until `max_steps` are done or a lane needs what is not done here: another
-/// segment, a force that pulls, jams or is not finite, sliding against the drive. Such a lane has
-/// done the last step up to the contact, which stands as before: index and bodies are at t_n, slots
-/// predicted.
+/// Steps all lanes until `max_steps` are done or a lane needs a treatment not provided here:
+/// another segment, a force that pulls, jams or is not finite, sliding against the drive. Such a
+/// lane has done the last step up to the contact, which is unchanged: index and bodies are at t_n,
+/// ports predicted.
 ///
-/// What a lane computes depends on no other lane, nor on which it is.
+/// The results of a lane depend on no other lane, nor on which lane it is.
 /// Where a row is watched, `trace` gets its displacement after every step; what it holds for a lane
 /// after its flagged step means nothing.
 /// @param max_steps at most the entries of `trace`, where a row is watched

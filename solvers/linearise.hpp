@@ -13,12 +13,12 @@ namespace stridor {
 ///   B_C = −∂gap/∂y,   B_E,   G = Σ λ ∂b_Eᵀ/∂y,   H = Σ λ ∂b_Eᵀ/∂ẏ
 ///
 /// in the geometry and under the assumptions that the equilibrium was found with: in the undeformed
-/// geometry, and under Subs-a, the rows are constant and G = 0. The bodies are taken to slide as
-/// the drive says; an open contact does not appear. The damping is that at the end of its schedule.
+/// geometry, and under Subs-a, the rows are constant and G = 0. The bodies slide with the velocity
+/// of the drive; an open contact does not appear. The damping is that at the end of its schedule.
 ///
 /// @param equilibrium of this system, converged
 /// @param terms       which parts of G, H and of the gap's derivative are kept
-/// @return slots and constraints of the closed contacts, in their order; G and H empty where they
+/// @return ports and constraints of the closed contacts, in their order; G and H empty where they
 ///         vanish
 /// @throws std::invalid_argument if the equilibrium has not converged
 Pencil linearise(const System& system, const Equilibrium& equilibrium,

@@ -18,7 +18,7 @@ namespace stridor {
 /// the acceleration of the drive (m/s²), which acts as −base_inertia. Other bodies have none.
 ///
 /// @param surplus   prompt_surplus()
-/// @param num_slots slots for contacts, two per point
+/// @param num_slots ports for contacts, two per point
 /// @param loads     amplitudes of the patterns at t = 0
 std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimeParameters& time,
                                             std::optional<double> surplus, int num_slots,
@@ -27,12 +27,12 @@ std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimePa
 /// Whether no body of the system starts with a displacement or a velocity.
 bool starts_at_rest(const System& system);
 
-/// Propagator::foresee_start() with what the body starts with.
+/// Propagator::foresee_start() with the initial motion of the body.
 void foresee_start(Propagator& propagator, const SystemBody& body, const TimeParameters& time);
 
-/// Gives it the displacements and velocities that the body starts with. To be called when its slots
-/// watch the rows that they start with, whose increments follow from the velocities.
-/// @param forces that will act on the slots at t = 0, as far as they are known
+/// Sets the initial displacements and velocities of the body. To be called when its ports watch the
+/// rows that they start with, whose increments follow from the velocities.
+/// @param forces that will act on the ports at t = 0, as far as they are known
 void start_motion(Propagator& propagator, const SystemBody& body, const TimeParameters& time,
                   const double* forces);
 
@@ -43,9 +43,9 @@ struct StepLimit {
 };
 StepLimit step_limit(const System& system);
 
-/// The same of a run: of the modes that it keeps, and nine tenths of it where it leaves out others,
-/// whose answer at once leaves no room beside the fastest damped ones (docs/theory.md, 3.6);
-/// infinite for exact propagation.
+/// The same of a run: of the modes that it keeps, and nine tenths of it where it truncates others,
+/// whose instantaneous response leaves no room beside the fastest damped ones (docs/theory.md,
+/// 3.6); infinite for exact propagation.
 /// @param system with all modes
 StepLimit step_limit(const System& system, const TimeParameters& time);
 

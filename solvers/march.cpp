@@ -100,7 +100,7 @@ std::vector<MarchEnd> march_together(const std::vector<March*>& marches) {
   for (std::size_t i = 0; i < marches.size(); ++i) {
     auto* const sink = dynamic_cast<DisplacementSink*>(marches[i]->sink_);
     if (sink == nullptr || !sink->sole_row() || !batch.steps_in_lanes(i)) continue;
-    // The first sample may be due now; what follows goes from the batch to the sink.
+    // The first sample may be due now; later ones go from the batch to the sink.
     marches[i]->attend();
     marches[i]->sink_next_ = std::numeric_limits<std::int64_t>::max();
     batch.watch(i, *sink);

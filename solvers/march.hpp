@@ -12,7 +12,7 @@ namespace stridor {
 enum class MarchEnd {
   finished,  ///< the last step was reached
   stopped,   ///< stop_requested()
-  failed,    ///< a step did not end with StepOutcome::done; Simulation::failure() says why
+  failed,    ///< a step did not end with StepOutcome::done; Simulation::failure() gives the reason
 };
 
 struct MarchPlan {
@@ -25,7 +25,7 @@ struct MarchPlan {
   std::function<void(const Simulation&)> on_progress;
 };
 
-/// What every contact did over the window of a plan; empty where no step fell into it.
+/// Statistics of every contact over the window of a plan; empty where no step fell into it.
 using MeasuredContacts = std::vector<std::optional<ContactStatistics>>;
 
 struct MarchResult {
@@ -33,8 +33,8 @@ struct MarchResult {
   MeasuredContacts statistics;
 };
 
-/// Steps a simulation through a plan, at once or in stretches, handing it to the sink whenever that
-/// is due.
+/// Steps a simulation through a plan, in one call or in stretches, handing it to the sink whenever
+/// that is due.
 ///
 /// The samples at the present step are taken first, so a fresh simulation is sampled at t = 0. A
 /// simulation that was loaded must come with a sink that was loaded.
@@ -45,11 +45,11 @@ class March {
 
   /// Steps until `step` or the end of the plan, whichever comes first.
   /// @return `finished` where it got there; after anything else it must not be called again
-  /// @throws whatever the sink throws; the simulation stands between two steps then
+  /// @throws whatever the sink throws; the simulation is between two steps then
   MarchEnd run_until(std::int64_t step);
 
-  /// What `run_until` does between steps, for what steps the simulation in its place: takes the
-  /// sample and opens or closes the window where that is due at the present step.
+  /// Work of `run_until` between steps, for a caller that steps the simulation in its place: takes
+  /// the sample and opens or closes the window where that is due at the present step.
   void attend();
   /// The next step at which `attend` has something to do, at most the last of the plan.
   std::int64_t next_event() const;

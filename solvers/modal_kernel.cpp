@@ -42,7 +42,7 @@ STRIDOR_INLINE auto& field(Double* block, ModalField which, std::size_t part) {
   return at<Vector>(block, static_cast<std::size_t>(which) * modal_block + part);
 }
 
-/// The fused pass for a number of slots known to the compiler, which keeps one sum for each in a
+/// The fused pass for a number of ports known to the compiler, which keeps one sum for each in a
 /// register.
 template <class Vector, int num_slots>
 STRIDOR_INLINE void fused_pass(double* blocks, std::size_t num_blocks, const double* const* rows,

@@ -8,7 +8,7 @@ namespace stridor {
 /// Modes are worked on in blocks of this many; rows are padded with zeros to whole blocks.
 inline constexpr std::size_t modal_block = 8;
 
-/// What a block holds, `modal_block` numbers each, one after the other: 6 cache lines that the pass
+/// Fields of a block, `modal_block` numbers each, one after the other: 6 cache lines that the pass
 /// reads as one stream.
 enum class ModalField : std::size_t {
   position,   ///< q_n
@@ -28,7 +28,7 @@ constexpr std::size_t modal_index(std::size_t mode, ModalField field) {
 
 /// One step of every mode of a body (docs/theory.md, 3.2):
 ///
-///   d_{n+1} = d*_{n+1} + e Σ_j row_j f_j        correct by the forces at the slots
+///   d_{n+1} = d*_{n+1} + e Σ_j row_j f_j        correct by the forces at the ports
 ///   q_{n+1} = q_n + d_{n+1}
 ///   d*_{n+2} = s d_{n+1} − k q_{n+1} + e p      predict
 ///   seen_j = row_j · (q_{n+1} + a d*_{n+2})     gather, a = 1 for the prediction, 0 for the

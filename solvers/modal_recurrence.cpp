@@ -192,7 +192,7 @@ void ModalRecurrence::renew_gains() {
 }
 
 void ModalRecurrence::advance_body(const double* forces, double* predicted) {
-  // What answers at once is seen at t_n, the rest at t_{n+1}.
+  // With direct feedthrough displacements are seen at t_n, without at t_{n+1}.
   const double lookahead = is_prompt() ? 0.0 : 1.0;
   advance_modes(blocks_.data(), num_blocks_, slot_rows_.data(), forces, num_slots(), lookahead,
                 predicted);

@@ -22,7 +22,7 @@ StepCoefficients step_coefficients(Integrator scheme, double omega, double dampi
 ///   q_n = r_n + g rowᵀ f_n
 ///
 /// with the coefficients of two_step_scheme.hpp for c = α(t_n) + β ω²; g = 0 and r = q where the
-/// body does not answer at once.
+/// body has no direct feedthrough.
 ///
 /// The increment is carried beside the position: r_{n+1} − r_n taken from positions would lose
 /// ε/(ω h)² of relative accuracy.
@@ -34,11 +34,11 @@ class ModalRecurrence : public Propagator {
   /// @param patterns  one column per load pattern, modal coordinates
   /// @param scheme    a scheme of two steps
   /// @param step      h, s
-  /// @param surplus   δ of the scheme; absent: the body does not answer at once
+  /// @param surplus   δ of the scheme; absent: the body has no direct feedthrough
   /// @param num_slots points watched, x and y counted apart
   /// @param alpha     α at t = 0, 1/s
   /// @param loads     amplitudes at t = 0
-  /// @param residual  of the modes that the body leaves out
+  /// @param residual  of the truncated modes of the body
   ModalRecurrence(const ModalBody& body, const Eigen::MatrixXd& patterns, Integrator scheme,
                   double step, std::optional<double> surplus, int num_slots, double alpha,
                   std::span<const double> loads, Residual residual = {});
@@ -84,7 +84,7 @@ class ModalRecurrence : public Propagator {
   std::size_t num_blocks_;
   Integrator scheme_;
   double step_;
-  double surplus_;  ///< 0 where it does not answer at once
+  double surplus_;  ///< 0 without direct feedthrough
   double alpha_;
   AlignedArray blocks_;     ///< state and coefficients of every mode
   AlignedArray row_table_;  ///< padded rows, one after the other

@@ -1,4 +1,4 @@
-// What keeps the contacts stable whose bodies answer at once.
+// Added feedthrough that keeps contacts of bodies with direct feedthrough stable.
 #pragma once
 
 #include <optional>
@@ -8,12 +8,11 @@
 
 namespace stridor {
 
-/// How much more than the scheme says the bodies answer at once: the least δ with which the
-/// contacts of a system are stable (docs/theory.md, 3.5), 4 P − W positive definite, with a margin,
-/// at every node of the master that the slave passes until time.end, where P is the flexibility
-/// with which the bodies answer at once and W that of the next step.
-/// @param system with the modes that time.retain keeps
-/// @return nothing where bodies do not answer at once: the central difference with all modes
+/// Added feedthrough beyond that of the scheme: the least δ with which the contacts of a system are
+/// stable (docs/theory.md, 3.5), 4 P − W positive definite, with a margin, at every node of the
+/// master that the slave passes until time.end. P is the instantaneous flexibility of the bodies
+/// and W that of the next step.
+/// @return nothing without direct feedthrough: the central difference with all modes
 std::optional<double> prompt_surplus(const System& system, const TimeParameters& time);
 
 }  // namespace stridor

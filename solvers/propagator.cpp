@@ -29,7 +29,7 @@ void correct_all(std::size_t n, const Correct& work) {
   for_lanes(n, work);
 }
 
-/// What Propagator::settle() does with slots that have kept their rows.
+/// Propagator::settle() for ports that have kept their rows.
 struct Settle {
   const PromptSlots& slots;
   const double* forces;
@@ -53,8 +53,8 @@ void settle_all(const PromptSlots& slots, const double* forces) {
   for_lanes(slots.n, Settle{slots, forces});
 }
 
-/// Adds what acts at once to the displacements of the body, (1 − w) R f~ and the answer of the
-/// modes left out to the loads; with the last answer to the forces, what is expected.
+/// Adds the instantaneous response to the displacements of the body, (1 − w) R f~ and the response
+/// of the truncated modes to the loads; the last response to the forces gives the expected value.
 struct Expect {
   const PromptSlots& slots;
 
@@ -134,7 +134,7 @@ double Propagator::load_residual(int row) const {
 
 double Propagator::prompt_compliance(int row_a, int row_b) const {
   double sum = row_compliance(row_a, row_b);
-  // What is constant over a step does not lag.
+  // A force that is constant over a step does not lag.
   if (has_residual())
     sum += (is_starting_ ? 1.0 : share_) * residual_.modes.flexibility(row_a, row_b);
   return sum;
@@ -244,7 +244,7 @@ void Propagator::look_ahead() {
     for (std::size_t i = 0; i < n; ++i) {
       double& compliance = ahead_compliance_[j * n + i];
       compliance = ahead_compliance(rows_[i], rows_[j]);
-      // What is constant over a step does not lag.
+      // A force that is constant over a step does not lag.
       if (has_residual()) compliance += residual_.modes.flexibility(rows_[i], rows_[j]);
     }
   }
@@ -279,7 +279,7 @@ void Propagator::settle(const double* forces) {
   has_new_rows_ = false;
 }
 
-/// Where the new rows were before is not known, so the increments stay; and what lags has settled.
+/// The former displacements of new rows are unknown, so the increments stay; the lag has settled.
 void Propagator::take_new_rows(const double* forces) {
   last_increment_ = increment_;
   influences_.clear();

@@ -1,4 +1,4 @@
-// How one body moves from step to step under point forces.
+// Motion of one body from step to step under point forces.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,13 +11,13 @@
 
 namespace stridor {
 
-/// Where a body that answers at once keeps what its slots do, for the functions of every step.
+/// Data of the ports of a body with direct feedthrough, for the functions of every step.
 struct PromptSlots {
-  std::size_t n = 0;                   ///< number of slots
+  std::size_t n = 0;                   ///< number of ports
   double share = 1.0;                  ///< w
   const double* compliance = nullptr;  ///< W, column after column
-  const double* lag = nullptr;         ///< (1 − w) R, likewise; null where no modes are left out
-  const double* load = nullptr;        ///< what the loads do to the modes left out
+  const double* lag = nullptr;         ///< (1 − w) R, likewise; null without truncated modes
+  const double* load = nullptr;        ///< response of the truncated modes to the loads
   double* predicted = nullptr;         ///< u*
   double* expected = nullptr;          ///< u* + W f_{n−1}
   double* current = nullptr;           ///< u_n
@@ -27,29 +27,30 @@ struct PromptSlots {
   double* lagging = nullptr;           ///< f~
 };
 
-/// Marches one body with a two-step scheme under forces at its slots.
+/// Marches one body with a two-step scheme under forces at its ports.
 ///
-/// The contacts see a body through its slots: each slot watches one row of ReducedBody::rows (the
-/// displacement of a point in one direction). They seek the forces f_n that make the displacements
-/// at one instant what they allow; there u = u* + W f_n with u* the prediction without them. After
-/// construction and after every `advance` the body stands at t_n with u* predicted. `settle` takes
-/// the forces found, after which everything at t_n is known, and `advance` goes on under them.
+/// The contacts see a body through its ports: each port watches one row of ReducedBody::rows (the
+/// displacement of a point in one direction). They seek the forces f_n for which the displacements
+/// at one instant satisfy the contact conditions; there u = u* + W f_n with u* the prediction
+/// without them. After construction and after every `advance` the body is at t_n with u* predicted.
+/// `settle` takes the forces found, after which everything at t_n is known, and `advance` continues
+/// under them.
 ///
-/// That instant is t_{n+1} where the body answers in the next step (W = e of the scheme), and t_n
-/// where part of the body answers at once: the prompt parts g of its modes, and the modes that it
-/// leaves out with their flexibility R,
+/// That instant is t_{n+1} where the body responds in the next step (W = e of the scheme), and t_n
+/// where it has direct feedthrough: the instantaneous parts g of its modes, and the residual
+/// flexibility R of its truncated modes,
 ///
 ///   W = Σ φ g φᵀ + w R,   u* = Σ φ r_n + R_loads + (1 − w) R f~_{n−1},
 ///   f~_n = w f_n + (1 − w) f~_{n−1},   w = h/(h + β)
 ///
-/// where f~ lags behind f by β, the damping of the modes left out (docs/theory.md, 3.5 and 3.6).
+/// where f~ lags behind f by β, the damping of the truncated modes (docs/theory.md, 3.5 and 3.6).
 ///
-/// Public functions keep the slots, the private hooks compute.
+/// Public functions keep the ports, the private hooks compute.
 class Propagator {
   friend struct LaneAccess;
 
  public:
-  /// The modes that a body which answers at once leaves out.
+  /// The truncated modes of a body with direct feedthrough.
   struct Residual {
     ModalResidual modes;            ///< empty where there are none
     Eigen::MatrixXd load_patterns;  ///< displacement of every row per amplitude of a load
@@ -63,27 +64,27 @@ class Propagator {
   int num_slots() const { return static_cast<int>(rows_.size()); }
   int row(int slot) const { return rows_[at(slot)]; }
 
-  /// Lets a slot watch another row. Its increment is not known until the next `advance`.
+  /// Lets a port watch another row. Its increment is not known until the next `advance`.
   /// Cost: a few products of the length of the body.
   void watch(int slot, int row);
 
-  /// Whether W is what the forces do at once, at t_n.
+  /// Whether W is the instantaneous response to the forces, at t_n (direct feedthrough).
   bool is_prompt() const { return is_prompt_; }
   /// Whether u* and W are those of foresee_start().
   bool is_starting() const { return is_starting_; }
 
-  /// u* at a slot, m.
+  /// u* at a port, m.
   double predicted(int slot) const { return predicted_[at(slot)]; }
-  /// The same with the prompt answer to the last forces, where the slots are expected, m.
+  /// The same with the instantaneous response to the last forces: the expected displacement, m.
   double expected(int slot) const { return expected()[at(slot)]; }
-  /// u_n at a slot, m, after `settle`.
+  /// u_n at a port, m, after `settle`.
   double current(int slot) const { return current_[at(slot)]; }
-  /// u_n − u_{n−1} at a slot, m, after `settle`; that of the step before where a slot was given
+  /// u_n − u_{n−1} at a port, m, after `settle`; that of the step before where the port was given
   /// another row since.
   double increment(int slot) const { return increment_[at(slot)]; }
-  /// W between slots: displacement of `a` per force on `b` at t_n, m/N.
+  /// W between ports: displacement of `a` per force on `b` at t_n, m/N.
   double compliance(int a, int b) const { return compliance_[at(b) * rows_.size() + at(a)]; }
-  /// The same for all slots, in their order.
+  /// The same for all ports, in their order.
   const double* predicted() const { return predicted_.data(); }
   const double* expected() const { return (is_prompt_ ? expected_ : predicted_).data(); }
   const double* current() const { return current_.data(); }
@@ -91,31 +92,31 @@ class Propagator {
   /// W, column after column.
   const double* compliances() const { return compliance_.data(); }
 
-  /// For a body that answers at once: finds what its slots do in the next step. Cost: a product of
-  /// the length of the body for every slot, and where slots have changed their rows as `watch`.
+  /// For a body with direct feedthrough: predicts its ports in the next step. Cost: a product of
+  /// the length of the body for every port, and `watch` for ports that have changed their rows.
   void look_ahead();
-  /// u at the slots at t_{n+1} without forces from t_n on, m, as of the last `look_ahead`.
+  /// u at the ports at t_{n+1} without forces from t_n on, m, as of the last `look_ahead`.
   const double* ahead() const { return ahead_.data(); }
-  /// Displacement of slots at t_{n+1} per force that is constant from t_n on, m/N, column after
+  /// Displacement of ports at t_{n+1} per force that is constant from t_n on, m/N, column after
   /// column, likewise.
   const double* ahead_compliances() const { return ahead_compliance_.data(); }
 
   /// Makes u_n = u and its rate v, in the coordinates of the body, and predicts anew from the loads
   /// and the damping set last.
-  /// @param forces on the slots at t_n; they matter to a body that answers at once
+  /// @param forces on the ports at t_n; they matter to a body with direct feedthrough
   void set_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,
                   const double* forces);
-  /// The first part of a start of which the forces are not known, for a body that answers at once:
-  /// until the next `set_motion`, u* and W are those of t_{n+1} under forces constant in the step.
+  /// First part of a start with unknown forces, for a body with direct feedthrough: until the next
+  /// `set_motion`, u* and W are those of t_{n+1} under forces constant in the step.
   void foresee_start(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity);
 
-  /// Everything at t_n is known with the forces on the slots at t_n, N.
+  /// Completes everything at t_n from the forces on the ports at t_n, N.
   void settle(const double* forces);
   /// @param forces those of `settle`
   void advance(const double* forces);
 
-  /// u_n of any row, m, after `settle`. Cost: a product of the length of the body; what the forces
-  /// do to a row at once is computed when it is asked for the first time from these slots.
+  /// u_n of any row, m, after `settle`. Cost: a product of the length of the body; the
+  /// instantaneous response of a row is computed when it is first asked for with these ports.
   double displacement(int row) const;
 
   /// u_n and its rate in the coordinates of the body: by the scheme itself where it knows the
@@ -124,14 +125,14 @@ class Propagator {
     Eigen::VectorXd displacement;
     Eigen::VectorXd velocity;
   };
-  /// @param forces on the slots at t_n, N
+  /// @param forces on the ports at t_n, N
   virtual Motion motion(const double* forces) const = 0;
-  /// What the modes left out add to u_n in reduced coordinates, m; empty where there are none.
+  /// Contribution of the truncated modes to u_n in reduced coordinates, m; empty without them.
   Eigen::VectorXd residual_displacement() const;
 
   /// The step that `advance` would make with these forces: u_n and u_{n+1} − u_n in the coordinates
   /// of the body, which stays where it is.
-  /// @param forces on the slots at t_n, N
+  /// @param forces on the ports at t_n, N
   /// Cost: less than that of `advance`. No allocation.
   virtual void foresee(const double* forces, std::span<double> position,
                        std::span<double> increment) const = 0;
@@ -141,8 +142,8 @@ class Propagator {
   /// α of the Rayleigh damping for the next prediction, 1/s.
   virtual void set_mass_damping(double alpha) = 0;
 
-  /// Everything that a later `load` into a propagator of the same body needs to go on bitwise
-  /// equally.
+  /// State from which a later `load` into a propagator of the same body resumes bit-identically to
+  /// an uninterrupted run.
   void save(State& state, const std::string& prefix) const;
   /// @throws std::invalid_argument if the state is of another body or lacks arrays
   void load(const State& state, const std::string& prefix);
@@ -165,11 +166,11 @@ class Propagator {
     std::vector<double> forces;
   };
 
-  /// What forces on the slots do at once to another row.
+  /// Instantaneous response of another row to forces on the ports.
   struct Influence {
     int row;
-    std::vector<double> modes;     ///< of the modes that move, per slot
-    std::vector<double> residual;  ///< of those left out
+    std::vector<double> modes;     ///< of the retained modes, per port
+    std::vector<double> residual;  ///< of the truncated modes
   };
 
   static std::size_t at(int slot) { return static_cast<std::size_t>(slot); }
@@ -180,26 +181,26 @@ class Propagator {
   void renew_compliance(int slot);
   const Influence& influence_on(int row) const;
   double prompt_compliance(int row_a, int row_b) const;
-  /// By the loads and the forces before t_n, of the modes left out at a row.
+  /// Displacement of a row by the truncated modes, due to the loads and the forces before t_n.
   double lagging_residual(int row) const;
-  /// Of the modes left out at a row.
+  /// Displacement of a row by the truncated modes, due to the loads.
   double load_residual(int row) const;
 
   virtual void advance_body(const double* forces, double* predicted) = 0;
-  /// u_n of a row, without what answers at once.
+  /// u_n of a row, without the instantaneous response.
   virtual double body_displacement(int row) const = 0;
   /// u* of a row.
   virtual double predicted_displacement(int row) const = 0;
   virtual double row_compliance(int row_a, int row_b) const = 0;
-  /// u at t_{n+1} without forces from t_n on, and what constant ones do, of a body that answers at
-  /// once.
+  /// u at t_{n+1} without forces from t_n on, and its change per constant force, of a body with
+  /// direct feedthrough.
   virtual double ahead_displacement(int /*row*/) const { return 0.0; }
   virtual double ahead_compliance(int /*row_a*/, int /*row_b*/) const { return 0.0; }
   virtual void slot_changed(int slot) = 0;
   virtual void set_body_loads(std::span<const double> amplitudes) = 0;
   virtual void set_body_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,
                                const double* forces) = 0;
-  /// u* and W by is_starting() for the motion at t_n; for a body that answers at once.
+  /// u* and W by is_starting() for the motion at t_n; for a body with direct feedthrough.
   virtual void foresee_body_start(const Eigen::VectorXd& /*displacement*/,
                                   const Eigen::VectorXd& /*velocity*/) {}
   /// u_n − u_{n−1} of a row as set_body_motion() has left it.
@@ -218,7 +219,7 @@ class Propagator {
   bool has_new_rows_ = false;  ///< since the last `settle`
   std::vector<double> expected_;
   RowForces acting_;            ///< f of the last `settle`
-  std::vector<double> answer_;  ///< W f at the slots
+  std::vector<double> answer_;  ///< W f at the ports
   std::vector<double> ahead_;
   std::vector<double> ahead_compliance_;
   bool has_ahead_compliance_ = false;
@@ -229,9 +230,9 @@ class Propagator {
   Residual residual_;
   double share_ = 1.0;              ///< w
   std::vector<double> amplitudes_;  ///< of the loads
-  std::vector<double> slot_load_;   ///< load_residual() of the slots
+  std::vector<double> slot_load_;   ///< load_residual() of the ports
   RowForces lagging_;               ///< f~
-  std::vector<double> slot_lag_;    ///< (1 − w) R between slots
+  std::vector<double> slot_lag_;    ///< (1 − w) R between ports
   PromptSlots prompt_slots_;
 };
 

@@ -53,7 +53,7 @@ std::size_t num_needed(const std::vector<SeenMode>& modes, const RetainParameter
     double missing = 0.0;  // Δ
     while (kept > needed) {
       const double stiffness = modes[kept - 1].omega * modes[kept - 1].omega;
-      // A mode within the band is never left out.
+      // A mode within the band is never truncated.
       if (!(stiffness > square)) break;
       missing += modes[kept - 1].square * square / (stiffness * (stiffness - square));
       if (missing > allowed) break;
@@ -92,13 +92,13 @@ double asked_frequency(const System& system, const TimeParameters& time) {
 double retained_frequency(const System& system, const TimeParameters& time) {
   const double asked = asked_frequency(system, time);
   if (time.integrator != Integrator::exact) return asked;
-  // Where a force law takes the place of the constraint, nothing answers at once.
+  // Where a force law takes the place of the constraint, there is no direct feedthrough.
   if (std::any_of(system.contacts.begin(), system.contacts.end(),
                   [](const ContactPoint& contact) { return contact.substrate.has_value(); })) {
     return asked;
   }
-  // Beyond a step of 2 rad a mode nears the one at which it would seem to stand still or to run
-  // backwards.
+  // Beyond a step of 2 rad a mode approaches the frequency at which it would seem to be at rest or
+  // to run backwards.
   const double resolved = 2.0 / time.step;
   if (time.retain && time.retain->error && asked > resolved) {
     throw ConfigError(

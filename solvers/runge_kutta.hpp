@@ -117,7 +117,7 @@ class RungeKuttaStep {
 
   const State& end() const { return end_; }
 
-  /// Estimate of the error over what is allowed: accept up to 1.
+  /// Estimate of the error over the allowed error: accept up to 1.
   /// @param scale allowed error of the unknowns under control
   double error(const std::array<double, num_controlled>& scale) const {
     double fifth = 0.0;

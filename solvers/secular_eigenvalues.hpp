@@ -23,7 +23,7 @@ struct SpectrumWindow {
   static constexpr double inf = std::numeric_limits<double>::infinity();
 };
 
-/// Eigenvalues in a window and what is known about their number.
+/// Eigenvalues in a window, and whether their number is verified.
 struct SecularSpectrum {
   /// Im s >= 0, ascending Im s, then ascending Re s; real ones first, all of them. Multiple ones
   /// repeated.
@@ -43,7 +43,7 @@ struct SecularSpectrum {
 ///
 /// A line |Im s| = h + |Re s| is drawn above the window, midway between two poles. The argument
 /// principle gives the number N of zeros between it and its conjugate, Ehrlich and Aberth's
-/// iteration finds N zeros at once from starts between the poles:
+/// iteration finds N zeros simultaneously from starts between the poles:
 ///
 ///   s_j ← s_j − 1/(P_h′/P_h − Σ_{k≠j} 1/(s_j − s_k))
 ///
@@ -51,7 +51,7 @@ struct SecularSpectrum {
 /// found twice and a double zero is found as two. Where fewer than N come out below the line, the
 /// iteration is repeated for all 2 (n − k) zeros of P.
 ///
-/// @return status in is_complete; where it is false, what was found
+/// @return status in is_complete; where it is false, the eigenvalues found
 /// @throws std::invalid_argument if the window is empty
 /// Cost: about 10 evaluations of n modes per eigenvalue.
 SecularSpectrum secular_spectrum(SecularFunction& function, const SpectrumWindow& window);

@@ -68,7 +68,7 @@ void SecularFunction::assign_modes(const Pencil& pencil) {
   given_omega_ = pencil.omega;
   given_damping_ = pencil.damping;
   given_terms_ = body_terms(pencil);
-  // Terms that have no eigenvectors stay between slots, where they cost more.
+  // Terms that have no eigenvectors stay between ports, where they cost more.
   coupled_ = coupled_modes(pencil).value_or(CoupledModes{});
 
   // Pairs of coupled modes come after the modes of the pencil.
@@ -94,7 +94,7 @@ void SecularFunction::assign_modes(const Pencil& pencil) {
   sort_modes(omega, damping);
 }
 
-/// Sets up what depends on the poles, in the order of order_.
+/// Sets up the quantities that depend on the poles, in the order of order_.
 void SecularFunction::sort_modes(const Eigen::VectorXd& omega, const Eigen::VectorXd& damping) {
   padded_ = padded_size(num_modes_);
   omega_ = AlignedArray(padded_);

@@ -23,11 +23,11 @@ namespace stridor {
 ///
 /// P is the characteristic polynomial. With one contact and without G and H, A is the number
 /// f(s) = Σ b_C,i b_E,i/(s² + c_i s + ω_i²). Modes whose residue vanishes are zeros of P like the
-/// others. Modes that coupled terms of their body join are replaced by pairs of its complex modes
-/// (CoupledModes), whose weights are polynomials of s; ω² is then the product of the two poles of a
-/// pair, and −c their sum.
+/// others. Modes that gyroscopic, circulatory and non-proportional damping terms of their body
+/// couple are replaced by pairs of its complex modes (CoupledModes), whose weights are polynomials
+/// of s; ω² is then the product of the two poles of a pair, and −c their sum.
 ///
-/// P overflows, and f has poles next to its zeros. What is evaluated is the logarithmic derivative
+/// P overflows, and f has poles next to its zeros. Evaluated is the logarithmic derivative
 /// of F(s) = det A Π_near d_i, in which the pole nearest to s is multiplied out; F is smooth where
 /// f is not, and a zero that coincides with a pole is one like any other.
 class SecularFunction {
@@ -60,7 +60,7 @@ class SecularFunction {
   /// one of this relative error is exact: the size of numbers whose rounding steps are measured by.
   double size_of(std::complex<double> s) const { return std::max(std::abs(s), smallest_pole_); }
 
-  /// F'/F at a number, and what was multiplied out of the poles.
+  /// F'/F at a number, and the poles multiplied out.
   struct LogSlope {
     std::complex<double> value;  ///< F'/F
     bool is_zero = false;        ///< F(s) = 0 to the last bit; value is then 0

@@ -18,8 +18,8 @@
 
 namespace stridor {
 
-/// What a step ended with. Anything but `done` ends the run: bodies and channels stand at the time
-/// of the failure, contact forces may be those of the step before.
+/// Outcome of a step. Anything but `done` ends the run: bodies and channels are at the time of the
+/// failure, contact forces may be those of the step before.
 enum class StepOutcome {
   done,
   master_lost,       ///< a slave point has left the end of its master surface
@@ -36,7 +36,7 @@ enum class StepOutcome {
 /// not assume it.
 struct ViolationCount {
   std::int64_t negative_force = 0;  ///< λ < 0, or lifted off where the contact is unilateral
-  /// Sliding velocity against that of the drive (never while the drive stands still), or sticking.
+  /// Sliding velocity against that of the drive (never while the drive is at rest), or sticking.
   std::int64_t reversed_sliding = 0;
   std::int64_t before_armed = 0;  ///< of the two, those before ContactPoint::armed_from
   double last_time = 0.0;         ///< of the latest one, s
@@ -44,7 +44,7 @@ struct ViolationCount {
   std::int64_t total() const { return negative_force + reversed_sliding; }
 };
 
-/// What a contact did over a stretch of steps.
+/// Statistics of a contact over a stretch of steps.
 struct ContactStatistics {
   double force_min = std::numeric_limits<double>::infinity();   ///< of λ, N
   double force_max = -std::numeric_limits<double>::infinity();  ///< of λ, N
@@ -52,7 +52,7 @@ struct ContactStatistics {
   std::int64_t sticking = 0;  ///< steps that ended in stick
   std::int64_t open = 0;      ///< steps without contact
 
-  /// Takes in what it did over another stretch.
+  /// Adds the statistics of another stretch.
   void add(const ContactStatistics& other) {
     force_min = std::min(force_min, other.force_min);
     force_max = std::max(force_max, other.force_max);
@@ -62,7 +62,7 @@ struct ContactStatistics {
   }
 };
 
-/// What a simulation keeps account of from its start.
+/// Quantities that a simulation keeps account of from its start.
 enum class Accounts {
   none,
   energy,  ///< a step costs two and a half times as much
@@ -73,7 +73,7 @@ enum class Accounts {
 /// known, contact forces λ_n included.
 class Simulation {
  public:
-  /// @param system copied in what it needs; not referenced afterwards
+  /// @param system its needed parts are copied; not referenced afterwards
   /// @param time   step h > 0, at most `step_limit(system, time)`; `end` is not used here
   /// @throws ConfigError for `time.step` if h is above the limit, naming both; for keys that do not
   ///         go together
@@ -96,7 +96,7 @@ class Simulation {
   double displacement(int body, int row) const;
   /// u_n and its rate by backward difference, of a body in the coordinates that it is marched in.
   Propagator::Motion motion(int body) const;
-  /// The same in the reduced coordinates of the body, with what the modes left out add.
+  /// The same in the reduced coordinates of the body, including the truncated modes.
   Propagator::Motion reduced_motion(int body) const;
   /// Displacement of the bodies that follow the drive, m.
   double drive_displacement() const;
@@ -107,7 +107,7 @@ class Simulation {
   /// λ_t, N, positive against sliding of the slave along +t.
   double friction_force(int contact) const;
   ContactState contact_state(int contact) const;
-  /// What a contact does to its bodies from t_n to t_{n+1}.
+  /// Action of a contact on its bodies from t_n to t_{n+1}.
   ContactAction contact_action(int contact) const;
   /// Of the slave relative to the master along the tangent at t_n, m/s.
   double slip_velocity(int contact) const;
@@ -126,16 +126,15 @@ class Simulation {
   /// Up to t_n; null unless Accounts::energy was asked for.
   const EnergyLedger* energy() const;
 
-  /// What went wrong in the last step that did not end with `done`: where, when, by how much, what
-  /// to do.
+  /// Failure of the last step that did not end with `done`: place, time, size and remedy.
   const std::string& failure() const;
 
   struct Implementation;  ///< see simulation_implementation.hpp
   Implementation& implementation() { return *implementation_; }
 
   State save() const;
-  /// Goes on from a state saved by a simulation of the same system, step and accounts, bitwise as
-  /// if never stopped.
+  /// Resumes from a state saved by a simulation of the same system, step and accounts,
+  /// bit-identically to an uninterrupted run.
   /// @throws std::invalid_argument if the state does not fit; the simulation must not be used then
   void load(const State& state);
 
@@ -143,7 +142,7 @@ class Simulation {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Where the samples of a run go. Called between steps, never inside one, after
+/// Destination of the samples of a run. Called between steps, never inside one, after
 /// Simulation::end_interval().
 class SampleSink {
  public:

@@ -1,5 +1,5 @@
-// The state of a simulation and what a step does to it; for simulation.cpp and what steps several
-// simulations at once.
+// The state of a simulation and its changes in a step; for simulation.cpp and the sources that
+// step several simulations simultaneously.
 #pragma once
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ namespace stridor {
 
 /// No contact of a computable scene carries this; beyond it the numbers have run away.
 inline constexpr double absurd_force = 1e30;
-/// Likewise the sum of the squares of what moves, in SI units.
+/// Likewise the sum of the squares of all motions, in SI units.
 inline constexpr double absurd_motion = 1e30;
 /// Steps between looks at the motion of the bodies: a thousandth of the cost of a step.
 inline constexpr std::int64_t health_interval = 1024;
@@ -31,8 +31,8 @@ inline constexpr const char* persistent_sliding_remedy =
     "lift off (contact.assumption: film, or contact.on_violation: unilateral), lower the friction "
     "coefficient, or raise contact.armed_from if this is start-up";
 inline constexpr int slave_slots = 2;
-/// A contact is steady after this many steps without a change: by then what the change has stirred
-/// up in the forces has faded to a hundredth or less (docs/theory.md, 3.5).
+/// A contact is steady after this many steps without a change: by then the transient of the forces
+/// after the change has decayed to a hundredth or less (docs/theory.md, 3.5).
 inline constexpr int steady_after = 6;
 
 /// A contact while it runs.
@@ -81,17 +81,17 @@ struct Simulation::Implementation {
   Drive drive;
   double step;
   std::int64_t next_health_check = 0;
-  bool is_prompt = false;  ///< bodies answer at once (Propagator::is_prompt)
+  bool is_prompt = false;  ///< bodies have direct feedthrough (Propagator::is_prompt)
   bool is_foreseeing_start = false;
   bool slides_only = true;  ///< no contact tracks its slip
   std::int64_t index = 0;
   std::vector<std::unique_ptr<Propagator>> bodies;
   std::vector<Eigen::MatrixXd> shapes;  ///< of the modes; empty in reduced coordinates
   std::vector<RunningContact> contacts;
-  std::vector<std::vector<double>> forces;  ///< per body, at its slots
+  std::vector<std::vector<double>> forces;  ///< per body, at its ports
   std::string failure;
 
-  // What no longer changes is not computed again.
+  // Quantities that no longer change are not computed again.
   double loads_constant_from = 0.0;
   double drive_constant_from = 0.0;
   double end_displacement = 0.0;  ///< of the drive at drive_constant_from
@@ -105,7 +105,7 @@ struct Simulation::Implementation {
   std::vector<LocalProblem> local;  ///< per contact
 
   double time(std::int64_t at_index) const { return static_cast<double>(at_index) * step; }
-  /// Step at which gap and slip are sought to be what the contacts allow.
+  /// Step at which gap and slip satisfy the contact conditions.
   std::int64_t sought_index() const { return index + (is_prompt && !is_foreseeing_start ? 0 : 1); }
 
   double drive_displacement(double at) const {
@@ -117,7 +117,7 @@ struct Simulation::Implementation {
     return at < drive_constant_from ? drive.velocity.value(at) : end_velocity;
   }
 
-  /// How far the drive slides in the step from an instant on, m, frozen or not.
+  /// Sliding distance of the drive in the step from an instant on, m, frozen or not.
   double drawn_in_step(std::int64_t from) const {
     return 0.5 * step * (sliding_velocity(time(from)) + sliding_velocity(time(from + 1)));
   }
@@ -131,7 +131,7 @@ struct Simulation::Implementation {
 
   std::span<double> forces_on(int body) { return forces[static_cast<std::size_t>(body)]; }
 
-  /// The contacts of a system, whose slots follow each other on every body.
+  /// Adds the contacts of a system. Their ports follow each other on every body.
   void add_contacts(const System& system) {
     std::vector<int> next_slot(bodies.size(), 0);
     for (const ContactPoint& point : system.contacts) {
@@ -161,13 +161,13 @@ struct Simulation::Implementation {
     update_slip_velocity(contact, sliding_velocity(time(index)));
   }
 
-  /// Poses the problem of one contact: what its forces at t_n have to do. @returns false where it
-  /// has left its master
+  /// Poses the problem of one contact for its forces at t_n. @returns false where it has left its
+  /// master
   bool pose(RunningContact& contact, LocalProblem& problem, double drive_at, double rise) {
     SlidingPoint& sliding = contact.sliding;
     if (!sliding.find(drive_at)) return false;
-    // Gap and slip are those without the contact forces; what these do at once is part of the
-    // Delassus operator.
+    // Gap and slip are those without the contact forces; the instantaneous response to these is
+    // part of the Delassus operator.
     problem.penetration = sliding.roughness() - sliding.predicted_gap(drive_at);
     problem.sliding_friction =
         rise * sliding_friction(contact.point().friction, contact.slip_velocity);
@@ -176,7 +176,7 @@ struct Simulation::Implementation {
     return true;
   }
 
-  /// What stick, lift-off and force laws take besides.
+  /// Additional data for stick, lift-off and force laws.
   [[gnu::noinline]] void pose_slip(RunningContact& contact, LocalProblem& problem, double rise) {
     const SlidingPoint& sliding = contact.sliding;
     problem.is_unilateral = time(index) >= contact.unilateral_from;
@@ -211,8 +211,8 @@ struct Simulation::Implementation {
     }
   }
 
-  /// Whether a contact that answers at once is sought at t_{n+1} (docs/theory.md, 3.5): where it is
-  /// open, or has closed or changed between stick and slip not long ago.
+  /// Whether a contact with direct feedthrough is solved at t_{n+1} (docs/theory.md, 3.5): where it
+  /// is open, or has recently closed or changed between stick and slip.
   bool is_unsteady(std::size_t i) const {
     return local[i].is_unilateral && contacts[i].steady_steps < steady_after;
   }
@@ -297,7 +297,7 @@ struct Simulation::Implementation {
     };
     const bool is_loaded = drive.load.value(0.0) != 0.0 || drive.acceleration(0.0) != 0.0;
     if (is_prompt && (is_loaded || !starts_at_rest(system))) {
-      // The part of the motion that answers at once is known with the forces only.
+      // The instantaneous part of the motion is known with the forces only.
       is_foreseeing_start = true;
       for (std::size_t b = 0; b < bodies.size(); ++b)
         foresee_start(*bodies[b], system.bodies[b], time_parameters);
@@ -313,7 +313,7 @@ struct Simulation::Implementation {
     stand_and_solve();
   }
 
-  /// Forces of the contacts with a force law as the motion stands. @returns whether there are any
+  /// Forces of the contacts with a force law for the present motion. @returns whether there are any
   bool apply_substrates() {
     bool has_any = false;
     for (RunningContact& contact : contacts) {
@@ -326,14 +326,14 @@ struct Simulation::Implementation {
       const double direction = contact.slip_velocity > 0.0 ? 1.0 : -1.0;
       const SubstrateForces acting = substrate->at(indentation, contact.slip_velocity, direction);
       contact.force = acting.normal.value;
-      // At rest it sticks; what that takes is not known before the first step.
+      // At rest it sticks; the force needed for that is not known before the first step.
       contact.friction_force = contact.slip_velocity == 0.0 ? 0.0 : -acting.tangential.value;
       apply_forces(contact);
     }
     return has_any;
   }
 
-  /// Contact forces at t_n: those that make gap and slip what the contacts allow.
+  /// Contact forces at t_n: those with which gap and slip satisfy the contact conditions.
   StepOutcome solve() {
     const double sought_time = time(sought_index());
     const double drive_at = drive_displacement(sought_time);
@@ -381,7 +381,7 @@ struct Simulation::Implementation {
     return outcome;
   }
 
-  /// What a contact that may stick, part or sink in takes besides, once its forces are known.
+  /// Additional update of a contact that may stick, separate or sink in, once its forces are known.
   [[gnu::noinline]] StepOutcome follow_slip(RunningContact& contact, std::size_t i) {
     const bool has_law = local[i].substrate != nullptr;
     const StepOutcome outcome = has_law ? check_penetration(contact, i) : StepOutcome::done;
@@ -425,7 +425,7 @@ struct Simulation::Implementation {
     contact.anchor += slip / contact.stretch;
   }
 
-  /// Counts what persistent sliding would not have allowed, where it had been assumed.
+  /// Counts violations of persistent sliding, where it had been assumed.
   void note_unilateral(RunningContact& contact) {
     if (contact.point().assumption == ContactAssumption::film) return;
     if (contact.state == ContactState::open) note(contact, contact.violations.negative_force);
@@ -484,7 +484,7 @@ struct Simulation::Implementation {
                                                  : StepOutcome::sliding_reversed;
   }
 
-  /// What a step does once the bodies are at t_n.
+  /// Completion of a step once the bodies are at t_n.
   StepOutcome finish_step() {
     const StepOutcome outcome = arrive();
     return outcome == StepOutcome::done ? solve() : outcome;
@@ -515,7 +515,7 @@ struct Simulation::Implementation {
     }
     advance();
     const StepOutcome outcome = arrive();
-    // What the contacts have done stands until they are solved anew.
+    // The results of the contacts are kept until they are solved anew.
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       actions[i] = action_of(contacts[i]);
       slip_velocities[i] = contacts[i].slip_velocity;

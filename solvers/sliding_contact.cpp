@@ -11,7 +11,7 @@
 namespace stridor {
 namespace {
 
-/// Coarse grids only predict; what they would gain beyond this the fine grid has to find anyway.
+/// Coarse grids only predict; accuracy beyond this tolerance is left to the fine grid.
 constexpr double coarse_tolerance = 1e-5;
 constexpr std::int64_t coarsest_grid = 32;
 

@@ -28,8 +28,8 @@ struct SlidingContactParameters {
 /// is negative for sliding towards −x.
 using CreepLengths = std::vector<SlidingCreep>;
 
-/// What is found at one speed and indentation, and how far it can be trusted. Where the solver
-/// diverged, force, area and friction are NaN.
+/// Result at one speed and indentation, and how far it can be trusted. Where the solver diverged,
+/// force, area and friction are NaN.
 struct SlidingContactResult {
   double indentation = 0.0;  ///< δ, m
   double force = 0.0;        ///< F/E_0*, m²
@@ -49,7 +49,7 @@ struct SlidingContactResult {
   std::size_t products = 0;  ///< transforms there and back on this grid
   double residual = 0.0;     ///< as ComplementarityOutcome
 
-  /// What limits the result, in words; empty where nothing does.
+  /// Limitations of the result, in words; empty where there are none.
   std::vector<std::string> remarks() const;
 };
 
@@ -57,7 +57,7 @@ struct SlidingContactResult {
 ///
 /// The window is `window` times the elastic contact radius wide at any indentation, so the grid is
 /// the same in units of the contact. Coarser grids of half the cells, down to about 32 a side, are
-/// solved first: what changes on them from one problem to the next corrects the pressures that the
+/// solved first: the change on them from one problem to the next corrects the pressures that the
 /// fine grid starts from. Memory grows as N².
 class SlidingContact {
  public:

@@ -180,7 +180,7 @@ void SlidingInfluence::add_memory(const SlidingCreep& creep, double cell_side,
       weights[kind].insert(weights[kind].end(), of_panel.begin(), of_panel.end());
     }
   }
-  // What lies beyond the table: panels as long as L and the exponential are smooth.
+  // Beyond the table: panels as long as L and the exponential are smooth.
   static const GaussRule tail_rule = gauss_rule(12);
   std::vector<double> tail_places;
   std::vector<double> tail_weights;

@@ -20,9 +20,8 @@ struct SlidingCreep {
 ///     K(i,j) = e_0 L(i,j) + Σ_k w_k I_k(i,j),   e_0 = 1 − Σ_k w_k,
 ///     I_k − l_k ∂I_k/∂x = L,   l_k = v τ_k / (side of a cell)
 ///
-/// L is Love's displacement under a uniformly loaded square. I_k sums what the pressure left
-/// behind: the memory of a point comes from ahead of it, so the equation is marched from large x
-/// down.
+/// L is Love's displacement under a uniformly loaded square. I_k sums the memory of the pressure.
+/// The memory of a point comes from ahead of it, so the equation is marched from large x down.
 ///
 /// (i, j) is the offset of the observed cell from the loaded one, i along the sliding direction.
 struct InfluenceTable {

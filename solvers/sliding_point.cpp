@@ -6,7 +6,7 @@
 namespace stridor {
 namespace {
 
-/// Entries of a contact at the slots of one body.
+/// Entries of a contact at the ports of one body.
 struct Entries {
   int slot;
   std::size_t count;
@@ -61,7 +61,7 @@ double sliding_through(const double* block, std::size_t stride, const Entries& a
   return sum;
 }
 
-/// e_a W e_b of a slave's two slots.
+/// e_a W e_b of a slave's two ports.
 STRIDOR_INLINE double through_slave(const double* block, std::size_t stride, const double* a,
                                     const double* b) {
   return a[0] * (block[0] * b[0] + block[stride] * b[1]) +
@@ -69,7 +69,7 @@ STRIDOR_INLINE double through_slave(const double* block, std::size_t stride, con
 }
 
 /// n W (n − κ t) of a contact with itself, on a straight segment between two bodies.
-/// @param slave, master blocks of W at the first slots of the contact
+/// @param slave, master blocks of W at the first ports of the contact
 STRIDOR_CLONES
 double sliding_through_both(const double* slave, std::size_t slave_stride, const double* master,
                             std::size_t master_stride, const SlotRow& normal,
@@ -84,7 +84,7 @@ double sliding_through_both(const double* slave, std::size_t slave_stride, const
                  master_pull);
 }
 
-/// W from slots of a body on, columns num_slots apart.
+/// W from given ports of a body on, columns num_slots apart.
 const double* block_of(const Propagator& body, const double* compliances, int slot_a, int slot_b) {
   return compliances +
          static_cast<std::size_t>(slot_b) * static_cast<std::size_t>(body.num_slots()) + slot_a;

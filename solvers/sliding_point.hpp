@@ -8,8 +8,8 @@
 
 namespace stridor {
 
-/// What a direction of a contact sees of its bodies: entries at the slots of the slave (x, y) and
-/// of the nodes of the master's stencil (x, y each), e·(u_C − Σ w_k u_k) for the direction e.
+/// Row of one direction of a contact: entries at the ports of the slave (x, y) and of the nodes of
+/// the master's stencil (x, y each), e·(u_C − Σ w_k u_k) for the direction e.
 /// Forces along e act through the same entries.
 struct SlotRow {
   std::array<double, 2> slave{};
@@ -25,22 +25,22 @@ struct ContactCompliance {
   double tt = 0.0;
 };
 
-/// Where a slave point stands on its master.
+/// Position of a slave point on its master.
 struct ContactPlace {
   double gap;       ///< distance from the deformed surface along its own normal, m
   double position;  ///< along the undeformed master from its first node, m
 };
 
-/// Kinematics of a contact (docs/theory.md, 2.2): where the slave point is over its master, with
-/// which normal and tangent, and what gap, slip and forces are at the slots of the bodies.
+/// Kinematics of a contact (docs/theory.md, 2.2): position of the slave point over its master,
+/// normal and tangent there, and gap, slip and forces at the ports of the bodies.
 class SlidingPoint {
   friend struct LaneAccess;
 
  public:
   /// Watches the rows of the slave and of the first segment.
   /// @param surface, slave, master referenced from here on
-  /// @param slave_slot, master_slot first of its slots on either body
-  /// @param drive_share how far slave against master follow the drive: 1, 0 or −1
+  /// @param slave_slot, master_slot first of its ports on either body
+  /// @param drive_share share of the drive in the motion of slave against master: 1, 0 or −1
   SlidingPoint(const ContactPoint& point, const MasterSurface& surface, Propagator& slave,
                Propagator& master, int slave_slot, int master_slot, double drive_share);
 
@@ -55,7 +55,7 @@ class SlidingPoint {
   /// Distance of the slave from its projection along the normal, with the displacements predicted,
   /// m.
   double predicted_gap(double drive_at) const;
-  /// How far the displacements predicted are ahead of those expected along the tangent, m.
+  /// Distance along the tangent from the displacements expected to those predicted, m.
   double predicted_slip() const;
   /// The same two at t_{n+1} by Propagator::ahead(), with the rows of t_n.
   /// @param advance of the drive in the step, m
@@ -71,7 +71,7 @@ class SlidingPoint {
   double place() const;
   /// Deformed length of the master along the tangent by undeformed length.
   double stretch() const;
-  /// How far the rough surface stands out, m.
+  /// Height of the rough surface, m.
   double roughness() const { return surface_->roughness_at(segment_, projection_.weights); }
   /// Of the present motion.
   ContactPlace present_place(double drive_at) const;
@@ -85,7 +85,7 @@ class SlidingPoint {
   /// n_i W (n_j − κ t_j): displacement along this normal per normal force of another contact that
   /// slides with κ = χ μ. Cost: less than half of compliance().
   double sliding_compliance(const SlidingPoint& other, double friction) const;
-  /// Writes λ_n and λ_t as forces on the slots of either body.
+  /// Writes λ_n and λ_t as forces on the ports of either body.
   void apply(double normal, double tangential, double* slave_forces, double* master_forces) const;
 
   const ContactPoint& point() const { return point_; }

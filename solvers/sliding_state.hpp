@@ -5,7 +5,7 @@
 
 namespace stridor {
 
-/// What was found, and how well.
+/// Solution and its quality.
 struct SlidingStateSolution {
   FaceSlidingState state;
   bool has_converged = false;

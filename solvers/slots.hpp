@@ -1,4 +1,4 @@
-// Small products over the slots of a body, without loops for the sizes that bodies commonly have.
+// Small products over the ports of a body, without loops for the sizes that bodies commonly have.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@ using Slots2 = double __attribute__((vector_size(16)));
 using Slots4 = double __attribute__((vector_size(32)));
 using Slots8 = double __attribute__((vector_size(64)));
 
-/// Some of the n slots of a body, from `first` on, as one vector: left to itself the compiler
-/// stores every partial sum.
+/// Some of the n ports of a body, from `first` on, as one vector: without it the compiler stores
+/// every partial sum.
 template <class Slots>
 struct SlotLanes {
   std::size_t n;
@@ -40,7 +40,7 @@ struct SlotLanes {
   }
 };
 
-/// Calls work(lanes) for all n slots: at once where n is a common number. What `work`
+/// Calls work(lanes) for all n ports: in one call where n is a common number. Values that `work`
 /// writes must not be read through other lanes.
 template <class Work>
 STRIDOR_INLINE void for_lanes(std::size_t n, const Work& work) {

@@ -53,7 +53,7 @@ struct Pair {
   Eigen::VectorXcd x;
 };
 
-/// How much an eigenvalue is wanted.
+/// Priority of an eigenvalue.
 using Rank = std::function<double(Complex)>;
 
 class SparseSearch {
@@ -64,7 +64,7 @@ class SparseSearch {
   }
 
   SparseSpectrum run();
-  /// @param rank  of an eigenvalue: how much it is wanted
+  /// @param rank  of an eigenvalue: its priority
   /// @param count of the pairs that are wanted most
   SparseSpectrum run(const SpectrumBasis& basis, const Rank& rank, int count);
 
@@ -144,7 +144,7 @@ bool SparseSearch::is_near(Complex s) const {
   return s.imag() <= 1.1 * height_ && s.real() >= -0.6 * height_ && s.real() <= 1.4 * height_;
 }
 
-/// Adds what is new of a vector to the basis.
+/// Adds the new component of a vector to the basis.
 void SparseSearch::add(const Eigen::VectorXd& vector) {
   constexpr double negligible = 1e-11;
   const SparseMatrix& mass = pencil_.system().mass;
@@ -157,7 +157,7 @@ void SparseSearch::add(const Eigen::VectorXd& vector) {
   double rest_length = std::sqrt(std::max(0.0, rest.dot(momentum)));
   if (rest_length <= negligible * length || dim_ == size()) return;
   rest /= rest_length;
-  // What is stretched is no longer orthogonal.
+  // A stretched vector is no longer orthogonal.
   rest -= basis_.leftCols(dim_) * (momenta_.leftCols(dim_).transpose() * rest);
   momentum = mass * rest;
   rest_length = std::sqrt(rest.dot(momentum));
@@ -181,7 +181,7 @@ double SparseSearch::add_complex(const Eigen::VectorXcd& vector) {
   for (int round = 0; round < 2; ++round)
     rest -= basis_.leftCols(dim_) * (momenta_.leftCols(dim_).transpose() * rest);
   const double share = length_of(rest);
-  // What is less is rounding as much as anything, and makes projections have what no one asked for.
+  // Less is mostly rounding, and gives the projections eigenvalues that were not asked for.
   if (share > tolerance) {
     add(unit.real());
     add(unit.imag());
@@ -248,7 +248,7 @@ void SparseSearch::refine() {
         have_converged &= add_complex(vector) <= tolerance;
         improve(improved[first], vector);
       }
-      // What the first space has nothing of would never come in by itself.
+      // A direction absent from the first space would never enter by itself.
       if (round == 0 && !rank_) add_random(factor, shift, 2);
     }
     if (have_converged) {

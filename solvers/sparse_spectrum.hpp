@@ -23,7 +23,7 @@ struct SpectrumRectangle {
   }
 };
 
-/// Eigenvalues in a rectangle and what is known about their number.
+/// Eigenvalues in a rectangle, and whether their number is verified.
 struct SparseSpectrum {
   /// Im s >= 0, ascending Im s, then ascending Re s; the residuals are scaled_residual().
   std::vector<Eigenvalue> eigenvalues;
@@ -53,7 +53,7 @@ struct SparseSpectrum {
 /// the search repeated.
 ///
 /// @param window a count, or a frequency; with a count there may be more
-/// @return status in is_complete; where it is false, what was found
+/// @return status in is_complete; where it is false, the eigenvalues found
 /// @throws std::invalid_argument as SparsePencil, or if the window is neither
 /// @throws NumericalError if M is not positive definite, the window takes more than 1,000 modes of
 /// the
@@ -76,8 +76,8 @@ SpectrumBasis spectrum_basis(const std::vector<const SparseSpectrum*>& spectra);
 std::vector<std::complex<double>> projected_eigenvalues(const SparseSystem& system,
                                                         const SpectrumBasis& basis);
 
-/// Those of the projected eigenvalues that grow fastest, refined as in sparse_spectrum(). What
-/// grows in another direction than the basis has is missed, and nothing is counted.
+/// Those of the projected eigenvalues that grow fastest, refined as in sparse_spectrum(). Growth in
+/// a direction that the basis lacks is missed, and nothing is counted.
 /// @param count how many of them to refine, >= 1
 /// @throws as sparse_spectrum()
 /// Cost: a few factorisations.

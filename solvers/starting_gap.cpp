@@ -14,7 +14,7 @@ Eigen::Vector2d displaced(const SystemBody& body, const PointRows& rows) {
           body.reduced.rows.row(rows.y).dot(body.initial_displacement)};
 }
 
-/// How far the drive has moved the slave against the master in +x, m.
+/// Displacement of the slave against the master by the drive in +x, m.
 double driven(const System& system, const ContactPoint& contact) {
   const auto share = [&](int index) {
     return body_at(system, index).follows_drive ? 1.0 : 0.0;

@@ -7,7 +7,7 @@
 
 namespace stridor {
 
-/// How far a slave point starts from its master.
+/// Initial distance of a slave point from its master.
 struct StartingGap {
   int contact = 0;
   double gap = 0.0;  ///< along the normal, m; negative: the slave starts inside its master

@@ -11,12 +11,12 @@
 
 namespace stridor {
 
-/// How the body touches the substrate.
+/// State of contact of the body with the substrate.
 enum class SubstrateMode {
   slip_back,     ///< slower than the substrate
   slip_forward,  ///< faster than the substrate
   stick,         ///< moves with it
-  free,          ///< off it
+  free,          ///< separated
 };
 
 /// Marches the equations of SubstrateOscillator with an adaptive Runge-Kutta method of order 8
@@ -47,14 +47,14 @@ class SubstrateMotion {
   /// Marches to a time or, where asked, to the next turn.
   Stop advance(double end, bool stops_at_turns);
 
-  /// What went wrong, and what to try; empty unless `advance` has failed.
+  /// Cause and remedy of the failure; empty unless `advance` has failed.
   const std::string& failure() const { return failure_; }
 
   double time() const { return time_; }
   const State& state() const { return state_; }
   SubstrateMode mode() const { return mode_; }
 
-  /// What has happened since start() or restart_statistics().
+  /// Events since start() or restart_statistics().
   struct Statistics {
     double from = 0.0;
     double stick_time = 0.0;
@@ -69,7 +69,8 @@ class SubstrateMotion {
   const Statistics& statistics() const { return statistics_; }
   void restart_statistics();
 
-  /// Everything that a later `load` into a motion of the same oscillator needs to go on bitwise.
+  /// Everything with which a later `load` into a motion of the same oscillator resumes
+  /// bit-identically to an uninterrupted run.
   void save(stridor::State& state, const std::string& prefix) const;
   /// @throws std::invalid_argument if the state is of another kind
   void load(const stridor::State& state, const std::string& prefix);
@@ -77,7 +78,7 @@ class SubstrateMotion {
  private:
   using Step = RungeKuttaStep<6, 4>;
 
-  /// What ends a step.
+  /// Event that ends a step.
   enum class Event { slip_ends, strength_reached, lift_off, touch_down, turn };
   static constexpr std::size_t num_events = 5;
   struct Value {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 
-/// g(y) with its derivative and what it was made of.
+/// g(y) with its derivative and its terms.
 struct Imbalance {
   double value = 0.0;
   double slope = 0.0;
@@ -114,7 +114,7 @@ double imbalance(const SubstrateOscillator& oscillator, double indentation) {
 SubstrateEquilibrium find_equilibrium(const SubstrateOscillator& oscillator, double guess) {
   SubstrateEquilibrium result;
   const Eigen::Matrix2d& k = oscillator.stiffness;
-  // Not touching, the body would stand at this height.
+  // Without contact the body would be at this height.
   const double free = oscillator.load.y() - k(1, 0) * oscillator.load.x() / k(0, 0);
   if (!(free > 0.0)) return result;
   double low = 0.0;

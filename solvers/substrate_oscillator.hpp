@@ -31,8 +31,8 @@ struct SubstrateEquilibrium {
   int evaluations = 0;  ///< of the law
 };
 
-/// What is out of balance where x is at rest for a given y: increasing in y where the equilibrium
-/// is the only one.
+/// Unbalanced force where x is at rest for a given y: increasing in y where the equilibrium is the
+/// only one.
 ///
 ///   g(y) = k_yy y + k_xy x(y) − p_y + F_k(y),   k_xx x(y) = p_x + F_µ(y) − k_xy y
 double imbalance(const SubstrateOscillator& oscillator, double indentation);
@@ -53,15 +53,15 @@ struct SmallMotion {
 /// Which terms of the small motion are kept.
 enum class SmallMotionTerms {
   all,
-  without_damping,  ///< C = 0: what PPH (24) to (28) look at
+  without_damping,  ///< C = 0: the case of PPH (24) to (28)
 };
 
 SmallMotion small_motion(const SubstrateOscillator& oscillator,
                          const SubstrateEquilibrium& equilibrium,
                          SmallMotionTerms terms = SmallMotionTerms::all);
 
-/// The same motion for the eigenvalue solvers: the modes of the body without contact, and what the
-/// contact and the dampers add as G and H on the slots x and y.
+/// The same motion for the eigenvalue solvers: the modes of the body without contact, and the
+/// contact and the dampers as G and H on the ports x and y.
 Pencil make_pencil(const SubstrateOscillator& oscillator, const SmallMotion& motion);
 
 /// Its four eigenvalues in closed form: two quadratic factors of the characteristic polynomial by
@@ -74,8 +74,8 @@ std::complex<double> leading_eigenvalue(const SmallMotion& motion);
 /// D = 4 k_xy k_yx + (k_xx − k_yy)², PPH (26): without damping, flutter where it is negative.
 double flutter_discriminant(const SmallMotion& motion);
 
-/// What is positive where the motion grows and changes its sign where stability does: the largest
-/// growth; without damping, where nothing decays, −D or −4 det K, whichever is larger.
+/// Margin that is positive where the motion grows and changes its sign where stability does: the
+/// largest growth; without damping, where nothing decays, −D or −4 det K, whichever is larger.
 double stability_margin(const SmallMotion& motion);
 
 }  // namespace stridor

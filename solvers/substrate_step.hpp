@@ -6,7 +6,7 @@
 
 namespace stridor {
 
-/// What the forces of a contact do to its slip velocity at the end of the step:
+/// Response of the slip velocity at the end of the step to the forces of a contact:
 /// w_{n+1} = free + by_tangential f_t + by_normal f_n.
 struct SlipAnswer {
   double free = 0.0;
@@ -36,7 +36,7 @@ SubstrateStep solve_substrate_step(const SubstrateContact& contact, double inden
 /// Whether the substrate is too stiff for the step, k W > 4: every small change of the indentation
 /// is followed by a larger one to the other side, whatever the bodies are (docs/theory.md, 9.4).
 /// @param stiffness  k = ∂f_n/∂y
-/// @param compliance W, what a unit of f_n moves the body by in the step
+/// @param compliance W, displacement of the body in the step per unit of f_n
 inline bool overshoots(double stiffness, double compliance) {
   return stiffness * compliance > 4.0;
 }

@@ -35,7 +35,7 @@ class SubstrateStepper {
   /// Goes from t_n to t_{n+1}. @return false where that fails, see failure()
   bool advance();
 
-  /// What went wrong in the step made last, and what to try; empty if nothing did.
+  /// Cause and remedy of the failure in the last step; empty if there was none.
   const std::string& failure() const { return failure_; }
 
   std::int64_t steps() const { return steps_; }

@@ -1,4 +1,4 @@
-// What a scene says about marching in time.
+// Parameters of the time integration in a scene.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ enum class Coordinates {
   craig_bampton_fused,  ///< the same with constants folded in advance
 };
 
-/// Which modes move on their own; the others become their static residual. By a frequency or by an
+/// Retained modes; the truncated ones become residual flexibility. Given by a frequency or by an
 /// error, never both (see retained_frequency()).
 struct RetainParameters {
   std::optional<double> frequency;  ///< modes up to this one are kept, Hz, > 0

@@ -6,7 +6,7 @@ namespace stridor {
 
 namespace {
 
-/// s, k and, as gain, the whole static answer k/ω² of a step.
+/// s, k and, as gain, the whole static response k/ω² of a step.
 StepCoefficients exact_free_motion(double omega, double damping, double step) {
   const double half = 0.5 * damping;
   if (omega == 0.0) {
@@ -30,9 +30,9 @@ StepCoefficients exact_free_motion(double omega, double damping, double step) {
   return {decay * decay, pull, pull / (omega * omega)};
 }
 
-/// g without surplus, over h².
+/// g without added feedthrough, over h².
 double prompt_share(double pull, double x, double lag) {
-  // What the subtraction below would cancel is left out: ε/x² against x².
+  // Terms that the subtraction below would cancel are omitted: ε/x² against x².
   constexpr double smallest = 1e-4;
   if (x > smallest) {
     const double loss = lag == 0.0 ? 1.0 : -lag / std::expm1(-lag);
@@ -44,8 +44,9 @@ double prompt_share(double pull, double x, double lag) {
   return (1.0 / std::expm1(lag) - 1.0 / lag + 0.5) / lag;
 }
 
-/// Takes an answer at once out of that of the step. It is at most the whole flexibility 1/ω²; with
-/// more the impulses would change their sign, e < 0, and the mode would feed the contacts.
+/// Takes an instantaneous response out of that of the step. It is at most the whole flexibility
+/// 1/ω²; with more the impulses would change their sign, e < 0, and the mode would feed the
+/// contacts.
 StepCoefficients with_prompt(StepCoefficients c, double prompt) {
   if (c.pull * prompt >= c.gain) return {c.keep, c.pull, 0.0, c.gain / c.pull};
   return {c.keep, c.pull, c.gain - c.pull * prompt, prompt};

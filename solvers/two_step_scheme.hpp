@@ -7,13 +7,13 @@ namespace stridor {
 ///
 ///   d_{n+1} = s d_n − k r_n + e p_n,  r_{n+1} = r_n + d_{n+1},  q_n = r_n + g p_n
 ///
-/// All schemes have this form, most of them with g = 0. The static answer is e + k g = k/ω² in
+/// All schemes have this form, most of them with g = 0. The static response is e + k g = k/ω² in
 /// each, and e ≥ 0: g is at most 1/ω².
 struct StepCoefficients {
   double keep;          ///< s: part of the increment that the next step keeps
   double pull;          ///< k: restoring increment per unit position
   double gain;          ///< e: displacement in a step per unit modal force, s²
-  double prompt = 0.0;  ///< g: displacement at once per unit modal force, s²
+  double prompt = 0.0;  ///< g: instantaneous displacement per unit modal force, s²
 
   /// e + k g, by which loads act that do not change within a step.
   double answer() const { return gain + pull * prompt; }
@@ -30,8 +30,8 @@ struct StepCoefficients {
 StepCoefficients central_difference(double omega, double damping, double step,
                                     double surplus = 0.0);
 
-/// Exact free motion and static answer; under a force exp(iΩt) wrong in the fourth order of Ωh, in
-/// the third times c/ω with damping, whatever ωh is (docs/theory.md, 3.5):
+/// Exact free motion and static response; under a force exp(iΩt) the error is of fourth order in
+/// Ωh, with damping of third order times c/ω, whatever ωh is (docs/theory.md, 3.5):
 ///
 ///   s = r₁ r₂,  k = (1 − r₁)(1 − r₂),  g = (1 − k/(ωh)² · ch/(1 − s))/ω² + δ k/ω²,  e = k/ω² − k g
 ///
@@ -41,19 +41,19 @@ StepCoefficients central_difference(double omega, double damping, double step,
 ///
 /// Written so that nothing cancels, however small ω h; any damping, negative too; stable at every
 /// step where c ≥ 0. Parameters as central_difference().
-/// @param surplus δ ≥ 0 of prompt answer: costs accuracy of second order, for the stability of
+/// @param surplus δ ≥ 0, added feedthrough: costs accuracy of second order, for the stability of
 ///                contacts; g is not made larger than 1/ω²
 StepCoefficients exact_propagation(double omega, double damping, double step, double surplus = 0.0);
 
 /// The first step of a mode from a displacement and a velocity at t = 0. The force f of the
-/// contacts acts with the gain of every step, so the prediction makes up for what that is too much:
+/// contacts acts with the coefficient e of every step; the prediction corrects for the excess:
 ///
 ///   d*₁ = a v₀ − ρ (k r₀ − e p) + (ρ − 1) e f
 ///
 /// The central difference starts with d₀ = h v₀: a = s h, ρ = 1.
 struct StartCoefficients {
   double rate;   ///< a, s
-  double share;  ///< ρ: part of a step's gain that acts in the first step
+  double share;  ///< ρ: share of e that acts in the first step
 };
 
 /// Parameters as central_difference().

@@ -40,7 +40,7 @@ struct NodeGrid {
 /// DoFs of an element in the order of its matrices, or `held`.
 using ElementDofs = std::array<int, 16>;
 
-/// What displacements in direction `column` (x: 0, y: 1) give in direction `row`, node by node.
+/// Response in direction `row` to displacements in direction `column` (x: 0, y: 1), node by node.
 Eigen::Map<Eigen::Matrix<double, 8, 8>, 0, Eigen::Stride<32, 2>> direction_part(
     Q8Matrix& matrix, Eigen::Index row, Eigen::Index column) {
   return Eigen::Map<Eigen::Matrix<double, 8, 8>, 0, Eigen::Stride<32, 2>>(&matrix(row, column));
@@ -52,7 +52,7 @@ Eigen::Map<Eigen::Matrix<double, 8, 8>, 0, Eigen::Stride<32, 2>> direction_part(
 /// Rounded one by one the entries of a row do not cancel. As all elements are alike the remainders
 /// add up to an elastic bedding, which is as stiff as a slender beam in bending once elements are a
 /// thousand times shorter than it. Entries on a grid a little coarser than the rounding unit are
-/// summed without error; what is left of a row then goes to its diagonal.
+/// summed without error; the remainder of a row then goes to its diagonal.
 void balance_translations(Q8Matrix& stiffness) {
   int exponent = 0;
   std::frexp(stiffness.cwiseAbs().maxCoeff(), &exponent);
@@ -62,8 +62,8 @@ void balance_translations(Q8Matrix& stiffness) {
     auto part = direction_part(stiffness, direction, direction);
     part.diagonal() -= part.rowwise().sum().eval();
   }
-  // The columns must cancel as well: the last column takes what is left of the rows, then the last
-  // row what is left of the columns.
+  // The columns must cancel as well: the last column takes the remainder of the rows, then the
+  // last row the remainder of the columns.
   auto mixed = direction_part(stiffness, 0, 1);
   mixed.col(7) -= mixed.rowwise().sum().eval();
   mixed.row(7) -= mixed.colwise().sum().eval();
@@ -235,7 +235,7 @@ BodyMatrices make_beam(const BeamParameters& parameters) {
     }
   }
 
-  // Supports first mark what is held or shared; the DoFs are numbered after that.
+  // Supports first mark held and shared DoFs; the DoFs are numbered after that.
   constexpr int unset = -2;
   constexpr int shared_y = -3;
   body.node_dofs.assign(static_cast<std::size_t>(grid.num_nodes()), {unset, unset});

@@ -1,4 +1,4 @@
-// The elements of a beam's mesh, for whoever draws it.
+// The elements of a beam's mesh, for figures.
 #pragma once
 
 #include <array>

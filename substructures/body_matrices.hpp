@@ -1,4 +1,4 @@
-// What every kind of body is to the rest of the program before its reduction.
+// Matrices and interface of every kind of body before its reduction.
 #pragma once
 
 #include <Eigen/Core>

@@ -23,7 +23,7 @@ BodyMatrices mesh_of(const ElasticPadParameters& pad) {
   return make_beam(beam);
 }
 
-/// A node of the face and how much of a place on it moves with it.
+/// A node of the face and its weight in the motion of a place on it.
 struct Share {
   int index = 0;  ///< from the smallest offset on
   double weight = 0.0;

@@ -46,7 +46,7 @@ struct PadBody {
   std::vector<PadPoint> points;  ///< of contact
   Eigen::VectorXd pushed;        ///< generalised force of 1 N on the back, towards the disc
   Eigen::VectorXd advanced;      ///< that of springs whose far ends come 1 m closer to the disc, N
-  /// Of the highest fixed-interface mode that is kept, rad/s; infinite where none is left out.
+  /// Of the highest fixed-interface mode that is kept, rad/s; infinite where none is truncated.
   double highest_kept = std::numeric_limits<double>::infinity();
 
   Eigen::Index size() const { return mass.rows(); }

@@ -5,7 +5,7 @@
 
 namespace stridor {
 
-/// What stands beside M, K and proportional damping in the motion of a body (docs/theory.md, 1.5):
+/// Gyroscopic, circulatory and non-proportional damping terms of a body (docs/theory.md, 1.5):
 ///
 ///   M q̈ + (α M + β K + V) q̇ + (K + N) q = f
 ///

@@ -1,5 +1,5 @@
-// Small motion of anything, as matrices: what gyroscopic and circulatory systems are handed around
-// as.
+// Small motion of a linear system, as matrices: the common form of gyroscopic and circulatory
+// systems.
 #pragma once
 
 #include <Eigen/Core>

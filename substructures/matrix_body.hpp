@@ -14,7 +14,7 @@
 
 namespace stridor {
 
-/// What a scene says of one matrix: the name of a Matrix Market file, or its rows as texts of
+/// One matrix in a scene: the name of a Matrix Market file, or its rows as texts of
 /// numbers ("1 0 -2.5"). Nothing where it is zero.
 using MatrixText = std::vector<std::string>;
 
@@ -69,7 +69,7 @@ struct MatrixSurfaceParameters {
   static const Schema& schema();
 };
 
-/// What makes such a body follow the drive.
+/// Guide by which such a body follows the drive.
 struct MatrixGuideParameters {
   std::int64_t load = 0;            ///< unknown on which the drive's load acts, from 1
   std::vector<double> translation;  ///< of every unknown as the body moves by one metre in +x
@@ -83,13 +83,13 @@ struct TouchedMatrixBodyParameters {
   std::map<std::string, MatrixSurfaceParameters> surfaces;
   std::optional<MatrixGuideParameters> guided;
   std::optional<ReductionParameters> reduction;   ///< absent: every unknown is kept
-  std::shared_ptr<const NamedMatrices> matrices;  ///< what `body` names, read
+  std::shared_ptr<const NamedMatrices> matrices;  ///< the matrices that `body` names, read
   static const Schema& schema();
 };
 
-/// The body, its stiffness the symmetric part of what multiplies q. What multiplies q̇ is its damping
-/// where that is proportional (proportional_damping()); otherwise it is a term beside it, as what is
-/// skew in the stiffness (CoupledTerms).
+/// The body. Its stiffness is the symmetric part of the matrix of q. The matrix of q̇ is its
+/// damping where that is proportional (proportional_damping()); otherwise it is an additional term,
+/// like the skew part of the stiffness (CoupledTerms).
 /// @throws ConfigError (key paths below the body) if an unknown or a point is not there, or sizes
 ///         do not fit
 /// @throws std::invalid_argument if the matrices have not been read

@@ -5,20 +5,22 @@
 
 namespace stridor {
 
-/// Modes that a body leaves out: they follow the forces at once, u = R f (docs/theory.md, 3.6).
+/// Truncated modes of a body: instantaneous response u = R f with the residual flexibility R
+/// (docs/theory.md, 3.6).
 ///
-/// Of the sums below over the modes left out, φ is the entry of a mode at a row.
+/// In the sums below over the truncated modes, φ is the entry of a mode at a row.
 struct ModalResidual {
-  Eigen::MatrixXd flexibility;  ///< R = Σ φ φᵀ/ω², rows x rows, m/N; empty where none is left out
+  Eigen::MatrixXd flexibility;  ///< R = Σ φ φᵀ/ω², rows x rows, m/N; empty where none is truncated
   Eigen::MatrixXd shapes;       ///< Σ Φ φᵀ/ω², reduced coordinates per force on a row
   Eigen::VectorXd base_rows;    ///< Σ φ g/ω² with g of base_inertia, per m/s²; or empty
   Eigen::VectorXd base_shapes;  ///< Σ Φ g/ω²; or empty
   double beta = 0.0;            ///< β of their damping, s; their α is nothing beside it
-  Eigen::Index num_modes = 0;   ///< left out
+  Eigen::Index num_modes = 0;   ///< truncated
 };
 
 /// One component as independent modes: q̈_i + c_i q̇_i + ω_i² q_i = p_i, c_i = α(t) + β ω_i²
-/// (docs/theory.md, 1.4), with coupled terms on top where the body has them (1.5).
+/// (docs/theory.md, 1.4), with gyroscopic, circulatory and non-proportional damping terms where the
+/// body has them (1.5).
 struct ModalBody {
   Eigen::VectorXd omega;  ///< ω, ascending, rad/s; exactly 0 for rigid modes
   RayleighDamping damping;
@@ -29,7 +31,7 @@ struct ModalBody {
   CoupledTerms coupled;          ///< in modal coordinates; empty where there are none
 
   Eigen::Index size() const { return omega.size(); }
-  /// c of every mode for a given α: α + β ω² and the diagonal of what is coupled, 1/s.
+  /// c of every mode for a given α: α + β ω² and the diagonal of the coupled damping, 1/s.
   Eigen::VectorXd mode_damping(double alpha) const;
 };
 
@@ -40,9 +42,9 @@ struct ModalBody {
 /// rounding
 ModalBody make_modal(const ReducedBody& body);
 
-/// The body with the modes up to a frequency; those above become its static residual.
+/// The body with the modes up to a frequency; those above become its residual flexibility.
 ///
-/// @param body   without a residual and without coupled terms
+/// @param body   without residual flexibility and without CoupledTerms
 /// @param cutoff ω, rad/s, > 0
 /// @throws std::invalid_argument if the body has either or `cutoff` is not positive
 ModalBody with_static_residual(const ModalBody& body, double cutoff);

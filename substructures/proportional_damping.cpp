@@ -31,7 +31,7 @@ std::optional<RayleighDamping> proportional_damping(const SparseMatrix& velocity
   double by_mass = 0.0;
   double by_stiffness = 0.0;
   SparseMatrix rest = C;
-  // The second pass takes out what rounding left in the first.
+  // The second pass removes the rounding error of the first.
   for (int pass = 0; pass < 2; ++pass) {
     const double on_mass = dot(M, rest);
     const double on_stiffness = dot(K, rest);

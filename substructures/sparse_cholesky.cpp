@@ -77,8 +77,8 @@ void scatter(const Panel& panel, const int* dofs, std::span<const int> rows,
 /// Right-hand sides that `solve` takes through the factor together.
 constexpr Eigen::Index solved_together = 32;
 
-/// How far the softest motion of A stands out of rounding: xᵀ A x / (ε √Σ (A_ij x_i x_j)²), where x
-/// is what two inverse iterations leave of an arbitrary start.
+/// Ratio of the softest motion of A to rounding: xᵀ A x / (ε √Σ (A_ij x_i x_j)²), where x is the
+/// result of two inverse iterations from an arbitrary start.
 ///
 /// Rounding may hide from the factorisation that A is singular: the last pivot is then positive by
 /// chance. It is about ten times the reciprocal of this ratio in the stiffness of the softest
@@ -102,7 +102,7 @@ double softest_over_rounding(const SparseCholesky& factor, const SparseMatrix& m
   return softest.dot(start) / (std::numeric_limits<double>::epsilon() * std::sqrt(squares));
 }
 
-/// What is less stiff than this is a rigid motion, or as good as unknown. Rigid motions of beams
+/// Anything less stiff than this is a rigid motion, or as good as unknown. Rigid motions of beams
 /// reach 15, whatever the mesh; bending of a cantilever of slenderness 1e3 comes to 4e3.
 constexpr double least_over_rounding = 100.0;
 

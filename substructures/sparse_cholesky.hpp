@@ -8,8 +8,8 @@
 
 namespace stridor {
 
-/// Vectors side by side, one a column. The entries of one DoF are neighbours in memory: what goes
-/// through a sparse matrix or a factor fetches them together.
+/// Vectors side by side, one a column. The entries of one DoF are neighbours in memory: a product
+/// with a sparse matrix or a factor fetches them together.
 using VectorBlock = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 /// A block, or neighbouring columns of one.
 using VectorBlockRef = Eigen::Ref<VectorBlock, 0, Eigen::OuterStride<>>;
@@ -21,7 +21,7 @@ using VectorBlockRef = Eigen::Ref<VectorBlock, 0, Eigen::OuterStride<>>;
 class SparseCholesky {
  public:
   /// @param matrix symmetric; both triangles stored
-  /// @param what   what it is, for the message
+  /// @param what   name of the matrix, for the message
   /// @throws NumericalError if the matrix is not positive definite to working precision
   /// @throws std::bad_alloc if the factor has more than 2^31 entries or does not fit into memory
   SparseCholesky(const SparseMatrix& matrix, const std::string& what);

@@ -27,7 +27,7 @@ struct ViscoelasticMaterial {
   double composite_modulus() const;
   /// e_0 = E_0/E_∞.
   double modulus_ratio() const { return rubbery_modulus / glassy_modulus; }
-  /// w_k = (1 − e_0) s_k: what the time τ_k adds to the compliance, over 1/E_0.
+  /// w_k = (1 − e_0) s_k: contribution of the time τ_k to the compliance, over 1/E_0.
   double creep_weight(std::size_t k) const;
   /// E(ω), Pa, of e^{iωt}; ω in rad/s.
   std::complex<double> modulus(double omega) const;

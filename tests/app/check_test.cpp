@@ -1,4 +1,4 @@
-// What the program says of a wrong scene: the place in a line of its own, the line, a caret.
+// Messages of the program about a wrong scene: the place in a line of its own, the line, a caret.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -244,7 +244,7 @@ TEST(CheckStart, ABilateralContactStartsWithoutAnyGap) {
   EXPECT_EQ(open.exit_code, 0) << open.err;
 }
 
-// ---------------------------------------------------------------- what had been accepted silently
+// ---------------------------------------------------------------- input formerly accepted silently
 
 TEST(Check, RefusesWhatCannotBeMeant) {
   const struct {

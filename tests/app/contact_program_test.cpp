@@ -183,7 +183,7 @@ TEST(ContactProgram, TableOfASphereWithTwoCreepTimesDrivesTheOscillator) {
                 "10", "7", "--indentations", "1e-3", "0.1", "5"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   EXPECT_THAT(made.out, HasSubstr("7 speeds, 5 indentations"));
-  // A file named in a scene stands beside it.
+  // A file named in a scene is beside it.
   std::filesystem::copy_file(scene_path("viscoelastic_sphere.yaml"), folder / "sphere.yaml");
   std::string text = contents_of(folder / "sphere.yaml");
   text.replace(text.find("contact_law: published_fit"), 26, "contact_law: law.h5       ");

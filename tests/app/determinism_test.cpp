@@ -27,7 +27,7 @@ void PrintTo(const Case& one, std::ostream* stream) {
 
 class Determinism : public ::testing::TestWithParam<Case> {};
 
-/// What the verb prints, without the time taken; numbers are printed with all their digits.
+/// Output of the verb, without the time taken; numbers are printed with all their digits.
 std::string printed(const Case& one, const std::string& threads) {
   std::vector<std::string> arguments = one.arguments;
   arguments.insert(arguments.end(), {"--json", "--threads", threads});

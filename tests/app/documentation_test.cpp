@@ -1,4 +1,4 @@
-// What the documents print is run as it stands there.
+// Commands in the documents are run as printed there.
 #include <gtest/gtest.h>
 
 #include <array>

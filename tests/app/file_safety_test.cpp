@@ -1,4 +1,4 @@
-// What the program does with files and streams that are not as it expects: closed, full, changed
+// Behaviour of the program with files and streams that are not as it expects: closed, full, changed
 // since, left over, no files at all; and with too little memory.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -86,7 +86,7 @@ TEST_F(FileSafety, OutputThatCannotBeWrittenEndsWithFour) {
         << command;
   }
   EXPECT_FALSE(RunFileReader(path("d.h5")).times().empty()) << "the run itself is whole";
-  // What is wrong otherwise is told first.
+  // Other errors are reported first.
   EXPECT_EQ(shell("$S check none.yaml > /dev/full"), 4);
   EXPECT_THAT(said_, HasSubstr("none.yaml: does not exist"));
   EXPECT_EQ(shell("$S eig " + flutter + " --set nothing=1 > /dev/full"), 2);

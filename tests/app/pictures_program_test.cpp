@@ -1,4 +1,4 @@
-// The pictures that the program makes of run files, and what it says where it cannot.
+// The pictures that the program makes of run files, and its messages where it cannot.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -298,7 +298,7 @@ TEST_F(Pictures, DataHoldTheToneWhereItIs) {
   H5LTread_dataset_double(file, "/amplitude", amplitude.data());
   H5LTread_dataset_double(file, "/times", times.data());
   for (std::size_t j = 0; j < times.size(); ++j) {
-    // Ten periods to a piece: the tone stands exactly on line 10. A Hann window weighs its
+    // Ten periods to a piece: the tone is exactly on line 10. A Hann window weighs its
     // outermost samples by next to nothing.
     const double at_tone = amplitude[j * shape[1] + 10];
     if (times[j] > 0.2051 && times[j] < 0.2949) {
@@ -522,7 +522,7 @@ TEST_F(Pictures, PhaseSaysWhatToRecordInsteadOfIntegrating) {
   EXPECT_FALSE(exists("a.svg"));
 }
 
-// ---------------------------------------------------------------- what is refused
+// ---------------------------------------------------------------- refusals
 
 struct BadUsage {
   std::vector<std::string> arguments;  ///< behind the verb and the run file
@@ -777,7 +777,7 @@ TEST_F(Pictures, BytesChangedAnywhereNeverEndInAnInternalError) {
   std::mt19937 generator(11);
   for (int trial = 0; trial < 15; ++trial) {
     std::string bytes = whole;
-    // What describes the data stands mostly in the first pages.
+    // The description of the data is mostly in the first pages.
     for (int i = 0; i < 20; ++i) bytes[generator() % 16384] = static_cast<char>(generator());
     write_file(path("bad.h5"), bytes);
     for (const std::vector<std::string>& arguments :

@@ -80,7 +80,7 @@ TEST(PrecisionProgram, MeasuresEveryMethodAndNamesTheCheapest) {
   EXPECT_GT(std::filesystem::file_size(folder / "study" / "precision.png"), 1000u);
   EXPECT_EQ(Json::parse(contents_of(folder / "study" / "precision.json")), object);
 
-  // What is said to be pasted can be pasted.
+  // The text offered for pasting can be pasted.
   std::string text = contents_of(scene);
   const std::size_t line = text.find("\ntime:");
   text.replace(line + 1, text.find('\n', line + 1) - line, tune["scene"].get<std::string>());

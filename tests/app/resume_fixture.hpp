@@ -16,7 +16,7 @@
 
 namespace stridor::test {
 
-/// What differs between two run files in anything but times taken; empty where nothing does.
+/// Differences between two run files in anything but times taken; empty where there are none.
 inline std::string difference(const std::string& one, const std::string& other) {
   const RunFileReader a(one);
   const RunFileReader b(other);

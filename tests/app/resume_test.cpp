@@ -1,4 +1,4 @@
-// Interrupted runs that go on: bitwise the same data as without the interruption.
+// Interrupted runs that are resumed: data bit-identical to an uninterrupted run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>

@@ -257,7 +257,7 @@ TEST(Robustness, EveryFailureWithJsonIsOneObject) {
     EXPECT_THAT(error["key"].get<std::string>() + error["message"].get<std::string>(),
                 HasSubstr(message));
   }
-  // Where there are results, they stand beside the errors.
+  // Where there are results, they are beside the errors.
   const ProgramResult result =
       Program({"run", runs_off, "-o", folder / "off.h5", "--json"}).run();
   EXPECT_EQ(result.exit_code, 3);

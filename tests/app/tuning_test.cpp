@@ -1,4 +1,4 @@
-// What `precision --tune` names keeps the error that was asked for, judged by another integrator.
+// Settings of `precision --tune` keep the error that was asked for, judged by another integrator.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

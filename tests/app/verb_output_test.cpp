@@ -1,4 +1,4 @@
-// What verbs print and draw without --json: the tables, and a picture of each kind.
+// Output of verbs without --json: the tables, and a picture of each kind.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

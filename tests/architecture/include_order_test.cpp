@@ -149,7 +149,7 @@ bool is_storage_header(const std::string& header) {
   return std::regex_match(header, storage);
 }
 
-/// What is wrong with one #include of a file in `folder`.
+/// Problems of one #include of a file in `folder`.
 Strings problems_of_include(const std::string& folder, const std::string& header, bool is_quoted,
                             const Strings& folders) {
   Strings problems;

@@ -89,7 +89,7 @@ TEST_F(StopToken, SignalInAnotherThreadEndsTheProgramToo) {
       testing::ExitedWithCode(stopped_exit_code), "");
 }
 
-/// What the program leaves behind is looked at, so that both sides must have the same files.
+/// Compares the files that the program leaves behind, so both sides must have the same files.
 class StopTokenAtOnce : public StopToken {
  protected:
   StopTokenAtOnce() { testing::GTEST_FLAG(death_test_style) = "fast"; }

@@ -20,7 +20,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// What parse_quantity says when it refuses; "" where it does not.
+/// Message of parse_quantity where it throws; "" where it does not.
 std::string refusal(const std::string& text, const std::string& unit) {
   try {
     parse_quantity(text, unit);

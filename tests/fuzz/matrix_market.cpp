@@ -12,7 +12,7 @@
 
 namespace {
 
-/// What is read holds finite numbers only.
+/// A matrix that was read holds finite numbers only.
 void expect_finite(const stridor::SparseMatrix& matrix) {
   for (int k = 0; k < matrix.outerSize(); ++k) {
     for (stridor::SparseMatrix::InnerIterator entry(matrix, k); entry; ++entry)

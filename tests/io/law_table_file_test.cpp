@@ -40,7 +40,7 @@ class LawTableFile : public ::testing::Test {
     write_law_table(path(), Overwrite::yes, table, std::vector<double>(table.force.size(), 5.0),
                     {});
   }
-  /// What is said of the file after a change of it.
+  /// Message about the file after a change of it.
   std::string says(const std::function<void(hid_t)>& change) const {
     write(power_table());
     const hid_t file = H5Fopen(path().c_str(), H5F_ACC_RDWR, H5P_DEFAULT);

@@ -118,7 +118,7 @@ TEST(DiscScene, ReadsTheReferenceBrake) {
   EXPECT_EQ(model.dense.size(), 19);
   EXPECT_EQ(model.dense.gaps.rows(), 2);
   EXPECT_NEAR(model.highest_frequency, 7494.83, 0.01);
-  // What is resolved reads back as the same.
+  // A resolved scene reads back as the same.
   const LoadedLinearScene again = load_resolved_linear_scene(loaded.resolved(), "resolved");
   EXPECT_EQ(again.model().dense.position, model.dense.position);
 }

@@ -26,7 +26,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
 
-// ---------------------------------------------------------------- what is written is read
+// ---------------------------------------------------------------- data written are read back
 
 TEST_F(RunFile, EverythingWrittenIsReadBack) {
   const std::vector<double> frequencies{101.5, 640.25};

@@ -67,7 +67,7 @@ void expect_only(const std::string& from, const std::string& to, int column, con
   expect_problem(problems[0], line_of(from), column, key, message);
 }
 
-// --- what is read
+// --- accepted input
 // -----------------------------------------------------------------------------------
 
 TEST(SceneReader, EveryKindOfKeyIsRead) {

@@ -59,7 +59,7 @@ void expect_at(const Problem& problem, int line, int column, const std::string& 
 
 const Place kNowhere{};
 
-// --- what is read
+// --- accepted input
 // -----------------------------------------------------------------------------------
 
 TEST(SceneTree, MapsListsAndScalarsKeepTheirPlaces) {
@@ -123,7 +123,7 @@ TEST(SceneTree, ByteOrderMarkAndCarriageReturnsAreRead) {
   EXPECT_EQ(find(root, "b")->text, "2");
 }
 
-// --- what leaves the rest readable
+// --- errors that leave the rest readable
 // ---------------------------------------------------------------------
 
 TEST(SceneTree, DuplicateKeyNamesBothLines) {
@@ -183,7 +183,7 @@ TEST(SceneTree, AllProblemsAreCollected) {
   EXPECT_THAT(problems_of("a: 1\na: 2\nb:\n  - {c: 1, c: 2}\n  - {<<: 3}\nb: 4\n"), SizeIs(4));
 }
 
-// --- what refuses the text as a whole
+// --- errors that refuse the text as a whole
 // ------------------------------------------------------------------
 
 TEST(SceneTree, EmptySceneIsRefused) {
@@ -377,7 +377,7 @@ TEST(SceneFile, ThatIsTooLargeIsAFileError) {
   EXPECT_EQ(file_failure(path), "");
   write_file(path, "a: 1\n#" + std::string(SceneLimits::bytes - 5, 'x'));
   EXPECT_THAT(file_failure(path), HasSubstr("is larger than 4 MiB"));
-  // What has no end is not even opened.
+  // A file without end is not even opened.
   EXPECT_THAT(file_failure("/dev/zero"), HasSubstr("is a device; give the path of a scene file"));
 }
 

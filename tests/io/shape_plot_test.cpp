@@ -32,7 +32,7 @@ BodyShape square() {
   return body;
 }
 
-/// What a reader of VTK's legacy format sees of an unstructured grid.
+/// Unstructured grid as a reader of VTK's legacy format sees it.
 struct VtkContents {
   std::vector<std::array<double, 3>> points;
   std::vector<std::vector<int>> cells;

@@ -122,7 +122,7 @@ TEST(ModeShape, AgreesWithTheRowsOfWatchedPoints) {
       cantilever.modal.rows.row(point.rows.y) * mode.head(cantilever.modal.size());
   EXPECT_NEAR(std::abs(shapes[0].displacement(node, 1) - expected), 0.0,
               1e-12 * std::abs(expected));
-  // The clamp holds; the tip stands at the start of the contact, moved by the drive.
+  // The clamp holds; the tip is at the start of the contact, moved by the drive.
   EXPECT_EQ(shapes[0].displacement.row(matrices.points.at("start")).norm(), 0.0);
   const BodyMatrices oblique = cache.matrices(parameters.substructures.at("oblique"));
   EXPECT_NEAR(shapes[1].nodes(oblique.points.at("tip"), 0), 0.030 + 0.02, 1e-12);

@@ -18,7 +18,7 @@ namespace {
 
 using namespace test;
 
-/// What becomes of one simulation: its whole state, and where the free end is.
+/// Outcome of one simulation: its whole state, and the position of the free end.
 struct Fate {
   std::map<std::string, std::vector<double>> state;
   StepOutcome outcome;
@@ -134,7 +134,7 @@ class TipSink : public DisplacementSink {
   Model::Point tip_;
 };
 
-/// What is seen of these kinds on the way, in one batch.
+/// Displacements recorded of these kinds on the way, in one batch.
 std::vector<std::vector<double>> tips(const std::vector<int>& kinds, const TimeParameters& time,
                                       int num_parts) {
   std::vector<Model> models;

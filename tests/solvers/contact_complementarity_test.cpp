@@ -151,8 +151,8 @@ TEST(ContactComplementarity, DoesNotDependOnTheStart) {
 }
 
 TEST(ContactComplementarity, NumberOfTransformsHardlyDependsOnSpeedAndGrid) {
-  // What the approximate inverse is for. With the transform of K itself for it, β = 1 takes ten
-  // times as many.
+  // Purpose of the approximate inverse. With the transform of K itself in its place, β = 1 takes
+  // ten times as many.
   for (const std::size_t n : {32, 64}) {
     for (const double length : {0.0, 0.1, 1.0, 10.0, 1000.0}) {
       Problem problem(n, {{0.9, length}});

@@ -1,4 +1,4 @@
-// Bodies with coupled terms by their complex modes.
+// Bodies with gyroscopic, circulatory and non-proportional damping terms by their complex modes.
 #include "solvers/coupled_modes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Bodies with coupled terms in sliding contact: against the same bodies without, and growth against
-// eigenvalues.
+// Bodies with gyroscopic, circulatory and non-proportional damping terms in sliding contact:
+// against the same bodies without, and growth against eigenvalues.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -150,7 +150,7 @@ TEST(CoupledSystem, EquilibriumBalancesTheCirculatoryForces) {
   const System system = with_coupled_terms(small_model(SlidingMode::frozen).system);
   const Equilibrium found = find_equilibrium(system, sliding_state(system, 0.0));
   ASSERT_EQ(found.status, EquilibriumStatus::converged);
-  // What is left of K u + N u is a force of the contact on its own rows alone.
+  // The remainder of K u + N u is a force of the contact on its own rows alone.
   std::size_t b = 0;
   while (system.bodies[b].name != "cantilever") ++b;
   const ModalBody& modal = system.bodies[b].modal;

@@ -33,7 +33,7 @@ TEST(EigenvalueCount, CountsWhatLiesInsideWhateverIsKnown) {
   EXPECT_EQ(count(zeros), 5);
   EXPECT_EQ(count({zeros[0]}), 5);
   EXPECT_EQ(count({zeros[2], zeros[4]}), 5);
-  // What is called known and is none.
+  // A zero that is passed as known and is none.
   EXPECT_EQ(count({zeros[0], {0.3, 2.0}}), 5);
 }
 

@@ -137,8 +137,8 @@ void expect_transient_to_end_in_equilibrium(System system, double step) {
   }
   Simulation simulation(system, paper_time(step));
   // All modes oscillate, the slowest at 40 Hz, so everything decays at 225 1/s or faster: to 1.4e-7
-  // in 0.07 s. What stays is that a step takes ξ and the normal from its prediction, in which the
-  // contact has given way by W λ, 1e-9 m: 1e-6 of a segment.
+  // in 0.07 s. One difference stays: a step takes ξ and the normal from its prediction, in which
+  // the contact has given way by W λ, 1e-9 m: 1e-6 of a segment.
   const double tolerance = 3e-6;
   ASSERT_EQ(simulation.step_until(std::llround(0.07 / step)), StepOutcome::done)
       << simulation.failure();
@@ -245,7 +245,7 @@ TEST(Equilibrium, IsThatOfTheFullModel) {
   }
   ASSERT_LE(change, 2e-7);
 
-  // Reduction and modes are exact in statics; what is left is rounding, most of it in the full
+  // Reduction and modes are exact in statics; the remainder is rounding, most of it in the full
   // model, whose stiffness has a condition number of 1e9: eps times that.
   const ContactEquilibrium& contact = equilibrium.contacts[0];
   const double tolerance = 1e-6;

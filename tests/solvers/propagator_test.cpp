@@ -43,7 +43,7 @@ ReducedBody oscillator(double mass, double stiffness, double alpha, double beta)
 /// δ of the exact forms.
 constexpr double surplus = 0.02;
 
-/// Modes marched by a scheme; those above a cut-off left to their static residual.
+/// Modes marched by a scheme; those above a cut-off truncated to their residual flexibility.
 template <Integrator scheme>
 std::unique_ptr<Propagator> make_modal_form(const ReducedBody& body,
                                             const Eigen::MatrixXd& patterns, double step, int slots,
@@ -77,7 +77,7 @@ struct ExactForm {
     return make_modal_form<Integrator::exact>(body, patterns, step, slots, loads);
   }
 };
-/// Of the three modes of chain() the highest, of 24 rad/s, left out.
+/// The highest of the three modes of chain(), 24 rad/s, is truncated.
 struct ResidualForm {
   static std::unique_ptr<Propagator> make(const ReducedBody& body, const Eigen::MatrixXd& patterns,
                                           double step, int slots, std::span<const double> loads) {
@@ -118,7 +118,7 @@ class PropagatorTest : public ::testing::Test {};
 using Forms = ::testing::Types<ModalForm, PublishedForm, FusedForm>;
 TYPED_TEST_SUITE(PropagatorTest, Forms);
 
-/// What holds for every scheme.
+/// Properties of every scheme.
 template <class Form>
 class AnyPropagatorTest : public ::testing::Test {};
 using AllForms =
@@ -217,7 +217,7 @@ TYPED_TEST(PropagatorTest, CorrectionIsComplianceTimesForce) {
 }
 
 TYPED_TEST(PropagatorTest, ForeseesTheStepThatItThenMakes) {
-  // Any number of slots; nine masses, so that the modes do not fill whole blocks.
+  // Any number of ports; nine masses, so that the modes do not fill whole blocks.
   for (const int num_slots : {0, 1, 2, 5}) {
     ReducedBody many;
     many.mass = Eigen::VectorXd::LinSpaced(9, 1.0, 2.0).asDiagonal();
@@ -271,7 +271,7 @@ TYPED_TEST(AnyPropagatorTest, WatchingAnotherRowShowsItsPresentAndPredictedPlace
   if (!body->is_prompt()) body->advance(&none);
   // Without the force the prediction is what happens.
   EXPECT_NEAR(body->current(0), predicted, 1e-16);
-  // On new rows the lag of the modes left out begins anew.
+  // On new rows the lag of the truncated modes begins anew.
   if (!std::is_same_v<TypeParam, ResidualForm>) {
     EXPECT_NEAR(body->displacement(2), predicted, 1e-16);
   }
@@ -300,7 +300,7 @@ TYPED_TEST(AnyPropagatorTest, ExpectsItsPlaceUnderTheLastForces) {
 }
 
 TYPED_TEST(AnyPropagatorTest, MoreSlotsThanAreFusedGiveTheSameMotion) {
-  // Five slots on the same row share a force that one slot carries alone.
+  // Five ports on the same row share a force that one port carries alone.
   const auto one = TypeParam::make(chain(0.5, 1e-3), Eigen::MatrixXd(3, 0), 0.01, 1, {});
   const auto five = TypeParam::make(chain(0.5, 1e-3), Eigen::MatrixXd(3, 0), 0.01, 5, {});
   one->watch(0, 1);
@@ -492,7 +492,7 @@ TEST(ExactPropagation, AnswersAnOscillatingForceToFourthOrderHoweverStiffTheMode
           << "ω " << omega << ", Ω " << frequency;
     }
   }
-  // Without the answer at once, e p_n alone, the error is of second order, y²/12.
+  // Without direct feedthrough, e p_n alone, the error is of second order, y²/12.
   const StepCoefficients c = exact_propagation(1.0, 0.0, step);
   const StepCoefficients plain{c.keep, c.pull, c.answer()};
   EXPECT_NEAR(std::abs(transfer(plain, 320.0, step) * (1.0 - 320.0 * 320.0)) - 1.0,

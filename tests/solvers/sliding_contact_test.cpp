@@ -57,7 +57,7 @@ TEST(SlidingContact, FastSlidingIsHertzWithTheGlassyModulus) {
   const double beta = 1e7;
   const SlidingContactResult result = solver.indent(1.0, {{1.0 - e0, beta}});
   ASSERT_TRUE(result.converged);
-  // What is left of the memory is of the order ln(β)/β/e0.
+  // The remaining memory is of the order ln(β)/β/e0.
   EXPECT_NEAR(result.force / (4.0 / (3.0 * e0)), 1.0, 1e-4);
   EXPECT_NEAR(result.area / pi, 1.0, 5e-3);
   EXPECT_NEAR(result.friction * beta / (0.8 * (1.0 / e0 - 1.0)), 1.0, 0.01);
@@ -100,7 +100,7 @@ TEST(SlidingContact, SlowFrictionOfAnyProfileIsThatOfItsCurvature) {
   const double speed = 0.002;
   const SlidingContactResult slow = solver.indent(0.3, {{0.3, speed}, {0.2, 2.0 * speed}});
   ASSERT_TRUE(slow.converged);
-  // The edge layers are 0.2 and 0.4 cells. What is lost there is of first order in the cell: 0.4 %
+  // The edge layers are 0.2 and 0.4 cells. The loss there is of first order in the cell: 0.4 %
   // on the 512 cells of the shipped curve, so 1.7 % here; the next order in the speed is 0.5 %.
   EXPECT_NEAR(slow.friction / ((0.3 + 0.2 * 2.0) * speed * mean), 1.0, 0.025);
 }

@@ -93,7 +93,7 @@ TEST(SlidingInfluence, StandingStillIsRubberyAndFastSlidingGlassy) {
   const InfluenceTable fast = table(1e9);
   for (const int i : {-8, -3, 0, 5}) {
     EXPECT_EQ(rest.at(i, 2), love_square(i, 2));
-    // What is left of the memory is that of the tail, (1/l) ∫ exp(−t/l)/t dt ~ ln(l)/l.
+    // The remaining memory is that of the tail, (1/l) ∫ exp(−t/l)/t dt ~ ln(l)/l.
     EXPECT_NEAR(fast.at(i, 2), 0.25 * love_square(i, 2), 1e-7);
   }
 }

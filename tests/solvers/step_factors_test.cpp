@@ -14,8 +14,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// n modes from 1 to 300 rad/s with some overdamped, k contacts with friction; a body that leaves out
-/// modes where forces act at once.
+/// n modes from 1 to 300 rad/s with some overdamped, k contacts with friction; a body that has
+/// truncated modes where forces have direct feedthrough.
 FrozenModes random_modes(unsigned seed, bool is_exact) {
   std::mt19937 engine(seed);
   std::normal_distribution<double> normal;

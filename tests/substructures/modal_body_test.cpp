@@ -267,7 +267,7 @@ TEST(CentralDifferenceLimit, SeparatesStableFromUnstableSteps) {
   }
 }
 
-// --- static residual
+// --- residual flexibility
 // ------------------------------------------------------------------------------
 
 /// A chain of six masses, each watched, on a base that moves.

@@ -22,7 +22,7 @@ TEST(ProportionalDamping, IsFoundInTheEntriesOfAMesh) {
   const auto found =
       proportional_damping(damping_of(body, 5.0, 1e-7), body.mass, body.stiffness);
   ASSERT_TRUE(found);
-  // What rounding of C leaves of α, which is a small part of it.
+  // Accuracy that rounding of C leaves to α, which is a small part of it.
   EXPECT_NEAR(found->alpha, 5.0, 1e-14 * 1e-7 * body.stiffness.norm() / body.mass.norm());
   EXPECT_NEAR(found->beta, 1e-7, 1e-20);
   EXPECT_FALSE(found->alpha_start);

@@ -1,8 +1,8 @@
 // Valid scenes that together hold every declared key, found from the declarations alone.
 //
-// The values are first guesses by kind, unit and range. What must hold between keys is known to the
-// checks only; so guesses are changed until none objects. Should no valid scene be found for a key,
-// the test that asked fails with the scene that came nearest and what is still said of it.
+// The values are first guesses by kind, unit and range. Conditions between keys are known to the
+// checks only, so guesses are changed until none objects. If no valid scene is found for a key, the
+// test that asked fails with the scene that came nearest and its remaining errors.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -77,7 +77,7 @@ class Repair {
  public:
   using Problems = std::function<std::vector<Problem>(const Draft&)>;
 
-  /// @param problems_of what the checks say, none hiding another
+  /// @param problems_of errors of the checks, none hiding another
   /// @param wanted      pattern of a key that must stay
   /// @param fixed       path of a value that must stay as it is; "": none
   Repair(Problems problems_of, std::string wanted, std::string fixed = "")
@@ -85,7 +85,7 @@ class Repair {
         wanted_(std::move(wanted)),
         fixed_(std::move(fixed)) {}
 
-  /// @return what is still wrong where nothing helped; empty where the draft is right
+  /// @return the remaining errors where nothing helped; empty where the draft is right
   std::vector<Problem> operator()(Draft& root) {
     std::vector<Problem> problems = problems_of_(root);
     for (int i = 0; i < 100 && !problems.empty(); ++i) {
@@ -210,7 +210,7 @@ class Repair {
   std::set<std::string> visited_;
 };
 
-/// What the checks between keys say of a struct and of those below it. The reader runs them from
+/// Errors of the checks between keys of a struct and of those below it. The reader runs them from
 /// the inside out and stops at the first that objects; here none hides another.
 inline void run_checks(const Schema& schema, const void* object, const std::string& path,
                        std::vector<Problem>& problems) {
@@ -248,7 +248,7 @@ struct CompleteScene {
   std::set<std::string> new_paths;
 };
 
-/// Copies what stands at `path`, or the map around it that is missing, from one draft to another.
+/// Copies the value at `path`, or the map around it that is missing, from one draft to another.
 inline void take_over(Draft& from, Draft& to, const std::string& path) {
   std::string missing;
   for (std::string above = path; find_draft(to, above) == nullptr; above = parent_path(above)) {

@@ -1,4 +1,4 @@
-// What a call says when it refuses.
+// Message of a call that throws.
 #pragma once
 
 #include <exception>

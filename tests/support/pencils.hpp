@@ -25,7 +25,7 @@ inline Eigen::MatrixXd circulatory(double p) {
   return Eigen::Matrix2d{{0.0, p}, {-p, 0.0}};
 }
 
-/// Modes with one constraint and slots of which each is a mode: rows of B_C and B_E as given.
+/// Modes with one constraint and ports of which each is a mode: rows of B_C and B_E as given.
 inline Pencil constrained_modes(const Eigen::VectorXd& omega, const Eigen::VectorXd& damping,
                                 const Eigen::MatrixXd& compatibility,
                                 const Eigen::MatrixXd& equilibrium) {
@@ -40,7 +40,7 @@ inline Pencil constrained_modes(const Eigen::VectorXd& omega, const Eigen::Vecto
 
 enum class ContactTerms { rows_only, with_stiffness, with_stiffness_and_damping };
 
-/// n modes from 1 to 1000 rad/s, a damping ratio of at most 1 %, k contacts of six slots with
+/// n modes from 1 to 1000 rad/s, a damping ratio of at most 1 %, k contacts of six ports with
 /// friction, and of G and H the terms asked for, of rank 2 per contact.
 inline Pencil random_pencil(unsigned seed, Eigen::Index n, Eigen::Index k, ContactTerms terms) {
   std::mt19937 engine(seed);

@@ -25,7 +25,7 @@ struct ProgramResult {
   std::string err;
 };
 
-/// Starts the program, waits for it and collects what it printed.
+/// Starts the program, waits for it and collects its output.
 class Program {
  public:
   explicit Program(std::vector<std::string> arguments) : arguments_(std::move(arguments)) {}

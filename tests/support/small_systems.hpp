@@ -29,7 +29,7 @@ inline SystemBody driven_body(std::string name, Eigen::MatrixXd mass, Eigen::Mat
   return body;
 }
 
-/// A body without degrees of freedom: what stands on it stands on rigid ground.
+/// A body without degrees of freedom: rigid ground for others.
 inline SystemBody rigid_body(std::string name) {
   SystemBody body;
   body.name = std::move(name);

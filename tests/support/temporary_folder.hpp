@@ -12,7 +12,7 @@
 
 namespace stridor::test {
 
-/// A folder of its own that is removed at the end, with what is in it.
+/// A folder of its own that is removed at the end, with its contents.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -30,7 +30,7 @@ class TemporaryFolder {
 
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
   const std::filesystem::path& path() const { return path_; }
-  /// Names of what is in it.
+  /// Names of its entries.
   std::vector<std::string> files() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(path_)) {

@@ -12,8 +12,8 @@ enum class Fault {
   no_space_kill,  ///< this call fails, and a later one kills
 };
 
-/// What is to happen to the calls that write files: write, pwrite, ftruncate, posix_fallocate,
-/// rename, renameat2, fsync and unlink, of regular files other than the standard streams.
+/// Faults of the calls that write files: write, pwrite, ftruncate, posix_fallocate, rename,
+/// renameat2, fsync and unlink, of regular files other than the standard streams.
 struct FaultPlan {
   Fault fault = Fault::none;
   long at = 0;     ///< number of the call, from 1 on

@@ -130,8 +130,8 @@ double belt_motion(double time) {
 }
 
 TEST(ClosedForms, BeltStickSlipAtFirstOrder) {
-  // A change between stick and slip falls somewhere into a step. What falls regularly is the root
-  // of the mean square over the steps of an octave.
+  // A change between stick and slip falls somewhere into a step, so the error of a single step is
+  // irregular. The root of the mean square over the steps of an octave decreases regularly.
   std::vector<double> errors;
   for (const double h : {1e-3, 5e-4, 2.5e-4, 1.25e-4}) {
     constexpr int num_steps = 16;
@@ -465,7 +465,7 @@ TEST(ClosedForms, FallingFrictionGrowsAtTheRateOfItsSlope) {
         const double rate = growth_rate(scene, step);
         errors.push_back(std::abs(rate - expected));
         // Backward differences in both: 1 − h c is the square of the factor per step, so the rate
-        // is ln(1 − 2 σ' h)/(2 h) with σ' = −σ. What is left is the curvature of the law over a
+        // is ln(1 − 2 σ' h)/(2 h) with σ' = −σ. The remainder is the curvature of the law over a
         // perturbation of 10⁻⁵ m/s.
         EXPECT_NEAR(rate, std::log1p(2.0 * expected * step) / (2.0 * step),
                     1e-6 * std::abs(expected))

@@ -71,7 +71,7 @@ std::vector<double> window_peaks(Simulation& simulation, const Energy& energy) {
 }
 
 TEST(EnergyGrowth, UndampedBodiesInContactKeepTheirEnergy) {
-  // What the central difference keeps is ½ dᵀd/h² + ½ q_nᵀ ω² q_{n+1}, the ledger's: to rounding.
+  // The central difference conserves ½ dᵀd/h² + ½ q_nᵀ ω² q_{n+1}, that of the ledger: to rounding.
   for (unsigned seed = 1; seed <= 10; ++seed) {
     const System system = released(seed, false);
     const double step = (0.1 * seed - 0.01) * step_limit(system).step;
@@ -84,7 +84,7 @@ TEST(EnergyGrowth, UndampedBodiesInContactKeepTheirEnergy) {
 }
 
 TEST(EnergyGrowth, ExactPropagationDoesNotGainEither) {
-  // The energy swings with what the contact forces answer at once; the peaks of the motion stay.
+  // The energy swings with the direct feedthrough of contact forces; the peaks of the motion stay.
   int moving = 0;
   for (unsigned seed = 1; seed <= 10; ++seed) {
     for (const double share : {0.3, 1.0, 3.0}) {

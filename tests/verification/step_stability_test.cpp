@@ -82,7 +82,7 @@ double recurrence_error(const std::vector<std::complex<double>>& factors,
   return worst;
 }
 
-/// What is seen of forty steps from a displacement.
+/// Motion recorded over forty steps from a displacement.
 std::vector<double> motion_from(System system, const TimeParameters& time, double displacement) {
   for (SystemBody& body : system.bodies) {
     body.initial_displacement =
@@ -187,8 +187,8 @@ bool is_stable(const Pencil& contacts) {
                      [](const Eigenvalue& one) { return one.growth() < 0.0; });
 }
 
-/// Cases of damped bodies with coupled terms that are stable in contact, and how many of the steps
-/// grow.
+/// Cases of damped bodies with gyroscopic, circulatory or non-proportional damping terms that are
+/// stable in contact, and how many of the steps grow.
 struct CoupledCases {
   int cases = 0;
   int growing = 0;
