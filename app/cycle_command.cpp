@@ -23,7 +23,7 @@ struct CycleCommandOptions {
   std::string command_line;
 };
 
-constexpr int samples_per_period = 1000;
+constexpr int num_samples_per_period = 1000;
 
 /// One period from the turn where x is largest; where there is none, as much as a few loops take.
 SphereHistory history_of(const SubstrateOscillator& oscillator, const LimitCycle& cycle,
@@ -37,8 +37,8 @@ SphereHistory history_of(const SubstrateOscillator& oscillator, const LimitCycle
   }
   const double end = is_periodic ? cycle.period : 50.0;
   SphereHistory history;
-  for (int k = 0; k <= samples_per_period; ++k) {
-    if (k > 0) (void)motion.advance(end * k / samples_per_period, false);
+  for (int k = 0; k <= num_samples_per_period; ++k) {
+    if (k > 0) (void)motion.advance(end * k / num_samples_per_period, false);
     history.add(oscillator, motion);
   }
   return history;

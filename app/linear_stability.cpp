@@ -272,7 +272,7 @@ FoundSpectrum find_sparse(const SparseSystem& system, const SpectrumWindow& aske
   return found;
 }
 
-void print_explanation(const Json& explanation) {
+void print_linear_explanation(const Json& explanation) {
   fmt::print("\nmode {} at {:.6g} Hz, growth {:.6g} 1/s\n", explanation["mode"].get<int>(),
              explanation["frequency"].get<double>(), explanation["growth"].get<double>());
   print_quotients(explanation["quotients"]);
@@ -341,7 +341,7 @@ ExitCode eig_of_linear_scene(const StabilityOptions& options, bool explain,
     fmt::print("{} eigenvalues with their conjugates, as the argument principle counts\n",
                found.more["counted"].get<int>());
   }
-  if (explain) print_explanation(object["explanation"]);
+  if (explain) print_linear_explanation(object["explanation"]);
   return ExitCode::done;
 }
 

@@ -15,6 +15,10 @@
 
 namespace stridor {
 
+/// Files in the folder of a study.
+inline constexpr const char* precision_figure_name = "precision.png";
+inline constexpr const char* precision_json_name = "precision.json";
+
 /// What the user asked for, as written.
 struct PrecisionOptions {
   CommonOptions common;

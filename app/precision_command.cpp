@@ -17,9 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* figure_name = "precision.png";
-constexpr const char* json_name = "precision.json";
-
 ExitCode precision(const PrecisionOptions& options) {
   if (is_sphere_scene_file(options.scene)) return precision_of_sphere(options);
   std::optional<double> wanted;
@@ -27,7 +24,8 @@ ExitCode precision(const PrecisionOptions& options) {
   const PrecisionStudy study = make_precision_study(options);
   const bool is_kept = !options.folder.empty();
   if (is_kept) {
-    prepare_folder(options.folder, {figure_name, json_name}, options.common.overwrite());
+    prepare_folder(options.folder, {precision_figure_name, precision_json_name},
+                   options.common.overwrite());
   }
 
   PrecisionResult result = measure_precision(study, options);
@@ -35,14 +33,16 @@ ExitCode precision(const PrecisionOptions& options) {
 
   const Json object = precision_json(study, options, result, wanted);
   if (is_kept) {
-    draw_precision(study, options, result, wanted, fs::path(options.folder) / figure_name);
-    write_json(fs::path(options.folder) / json_name, object);
+    draw_precision(study, options, result, wanted,
+                   fs::path(options.folder) / precision_figure_name);
+    write_json(fs::path(options.folder) / precision_json_name, object);
   }
   if (options.common.json) {
     print_json(object);
   } else {
     print_precision(study, options, result, wanted);
-    if (is_kept) fmt::print("\n{} and {} in {}\n", figure_name, json_name, options.folder);
+    if (is_kept)
+      fmt::print("\n{} and {} in {}\n", precision_figure_name, precision_json_name, options.folder);
   }
   if (wanted && !result.tuned) {
     print_remark(

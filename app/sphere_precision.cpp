@@ -20,8 +20,6 @@
 namespace stridor {
 namespace {
 
-constexpr const char* figure_name = "precision.png";
-constexpr const char* json_name = "precision.json";
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double reference_tolerance = 1e-13;
 constexpr double check_tolerance = 1e-12;
@@ -212,7 +210,8 @@ ExitCode precision_of_sphere(const PrecisionOptions& options) {
     throw ConfigError("time.end", "holds less than two samples of `record_interval`");
   const bool is_kept = !options.folder.empty();
   if (is_kept) {
-    prepare_folder(options.folder, {figure_name, json_name}, options.common.overwrite());
+    prepare_folder(options.folder, {precision_figure_name, precision_json_name},
+                   options.common.overwrite());
   }
 
   std::string failure;
@@ -246,8 +245,8 @@ ExitCode precision_of_sphere(const PrecisionOptions& options) {
   for (const Setting& setting : settings) object["rows"].push_back(row_json(study, setting));
   if (wanted) object["tuned"] = tuned != nullptr ? row_json(study, *tuned) : Json(nullptr);
   if (is_kept) {
-    draw(study, settings, std::filesystem::path(options.folder) / figure_name);
-    write_json(std::filesystem::path(options.folder) / json_name, object);
+    draw(study, settings, std::filesystem::path(options.folder) / precision_figure_name);
+    write_json(std::filesystem::path(options.folder) / precision_json_name, object);
   }
   if (options.common.json) {
     print_json(object);
@@ -263,7 +262,8 @@ ExitCode precision_of_sphere(const PrecisionOptions& options) {
     }
     fmt::print("the reference, event-driven at {:g}, differs from the same at {:g} by {:.2g}\n",
                reference_tolerance, check_tolerance, own_error);
-    if (is_kept) fmt::print("{} and {} in {}\n", figure_name, json_name, options.folder);
+    if (is_kept)
+      fmt::print("{} and {} in {}\n", precision_figure_name, precision_json_name, options.folder);
   }
   if (wanted && tuned == nullptr) {
     print_remark("stridor: no setting measured is within {:g}\n", *wanted);

@@ -24,15 +24,23 @@ add_library(stridor_headers OBJECT "${PROJECT_SOURCE_DIR}/cmake/headers.cpp")
 target_link_libraries(stridor_headers PRIVATE stridor_options Eigen3::Eigen fmt::fmt)
 target_precompile_headers(stridor_headers PRIVATE ${STRIDOR_HEADERS})
 
-# stridor_library(FOLDER SOURCES ... LINKS ... [HEADERS <header>...])
-# A folder that names HEADERS has precompiled headers of its own, with these beside the common ones.
+# stridor_unity(TARGET NUM_SOURCES): lets the compiler read that many sources at a time, with the headers
+# that they share once. So names without linkage differ within a folder; a source that cannot be read
+# with others has the property SKIP_UNITY_BUILD_INCLUSION.
+function(stridor_unity target num_sources)
+  set_target_properties(${target} PROPERTIES
+    UNITY_BUILD ${STRIDOR_UNITY} UNITY_BUILD_MODE BATCH UNITY_BUILD_BATCH_SIZE ${num_sources})
+endfunction()
+
+# stridor_library(FOLDER SOURCES ... LINKS ... [TOGETHER <number of sources>])
+# TOGETHER says how many sources the compiler reads at a time; such a folder needs no precompiled headers.
 function(stridor_library folder)
-  cmake_parse_arguments(arg "" "" "SOURCES;LINKS;PRIVATE_LINKS;HEADERS" ${ARGN})
+  cmake_parse_arguments(arg "" "TOGETHER" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
   add_library(stridor_${folder} STATIC ${arg_SOURCES})
   target_link_libraries(stridor_${folder}
     PUBLIC stridor_options ${arg_LINKS} PRIVATE ${arg_PRIVATE_LINKS})
-  if(arg_HEADERS)
-    target_precompile_headers(stridor_${folder} PRIVATE ${STRIDOR_HEADERS} ${arg_HEADERS})
+  if(arg_TOGETHER)
+    stridor_unity(stridor_${folder} ${arg_TOGETHER})
   else()
     target_precompile_headers(stridor_${folder} REUSE_FROM stridor_headers)
   endif()
@@ -41,22 +49,40 @@ endfunction()
 # What is tested stands in the libraries; the tests themselves need not be fast, but must compile fast.
 set(STRIDOR_TEST_OPTIONS -O1)
 
-# All programs of tests labelled unit: what the sanitizers run.
+# All programs of tests labelled unit: what the sanitizers run; and those labelled long, which are
+# built for `./run test-all` only.
 add_custom_target(unit_tests)
+add_custom_target(long_tests)
 
-# stridor_test(NAME LABEL unit|verification|scene SOURCES ... LINKS ...)
-# One program per call; every TEST in it becomes a ctest with that label.
+# stridor_test(NAME LABEL unit|verification|scene|long SOURCES ... LINKS ... [TOGETHER <number of sources>])
+# One program per call; every TEST in it becomes a ctest with that label. TOGETHER: see stridor_library().
 function(stridor_test name)
-  cmake_parse_arguments(arg "" "LABEL" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(arg "" "LABEL;TOGETHER" "SOURCES;LINKS" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE stridor_options ${arg_LINKS} Eigen3::Eigen fmt::fmt GTest::gtest GTest::gmock GTest::gtest_main)
   target_compile_options(${name} PRIVATE ${STRIDOR_TEST_OPTIONS})
   target_precompile_headers(${name} REUSE_FROM stridor_test_headers)
+  if(arg_TOGETHER)
+    stridor_unity(${name} ${arg_TOGETHER})
+  endif()
   target_compile_definitions(${name} PRIVATE
     STRIDOR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" STRIDOR_PROGRAM="$<TARGET_FILE:stridor>")
   if(arg_LABEL STREQUAL unit)
     add_dependencies(unit_tests ${name})
+  elseif(arg_LABEL STREQUAL long)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+    add_dependencies(long_tests ${name})
   endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
     PROPERTIES LABELS ${arg_LABEL} TIMEOUT 600)
+  if(arg_LABEL STREQUAL long)
+    # CTest has a test of its own for a program that is not there; it fails with those of the program.
+    set(label_file "${CMAKE_CURRENT_BINARY_DIR}/${name}_label.cmake")
+    file(GENERATE OUTPUT "${label_file}" CONTENT
+"if(NOT EXISTS \"$<TARGET_FILE:${name}>\")
+  set_tests_properties(${name}_NOT_BUILT PROPERTIES LABELS long)
+endif()
+")
+    set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${label_file}")
+  endif()
 endfunction()

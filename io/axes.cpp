@@ -248,7 +248,7 @@ std::vector<std::string> wrapped(const std::string& text, double font_size, doub
   if (!line.empty()) lines.push_back(line);
   for (std::string& done : lines) {
     for (std::size_t at = 0; (at = done.find(no_break, at)) != std::string::npos;)
-      done.replace(at, std::string_view(no_break).size(), " ");
+      done.replace(at, std::string_view(no_break).size(), 1, ' ');
   }
   return lines;
 }

@@ -32,11 +32,11 @@ std::vector<ContactStatistics> take(const double* numbers, std::size_t num_conta
 
 }  // namespace
 
-std::vector<ContactColumn> contact_columns(const std::string& contact, const std::string& quantity,
+std::vector<ContactSeries> contact_columns(const std::string& contact, const std::string& quantity,
                                            const std::string& units, const std::string& low_pass) {
-  std::vector<ContactColumn> columns;
+  std::vector<ContactSeries> columns;
   const auto add = [&](const std::string& name, const std::string& of, const std::string& long_name,
-                       const std::string& filter) -> ContactColumn& {
+                       const std::string& filter) -> ContactSeries& {
     columns.push_back(
         {{fmt::format("/contact/{}/{}", contact, name), of, SeriesKind::real, {{"filter", filter}}},
          filter != unfiltered});
@@ -50,9 +50,8 @@ std::vector<ContactColumn> contact_columns(const std::string& contact, const std
     return columns;
   }
   const std::string words = quantity == "force" ? "contact force" : "friction force";
-  SeriesSpec& own = add(quantity, units, is_force ? words + " at the time of the row" : "",
-                        unfiltered)
-                        .spec;
+  SeriesSpec& own =
+      add(quantity, units, is_force ? words + " at the time of the row" : "", unfiltered).spec;
   own.attributes.emplace_back("acts_at", "the time of the same row of /time");
   if (is_state) {
     own.kind = SeriesKind::state;
@@ -60,8 +59,7 @@ std::vector<ContactColumn> contact_columns(const std::string& contact, const std
     add("stick_fraction", "1", "share of the steps since the row before that ended in stick",
         unfiltered)
         .of_interval = [](const ContactStatistics& one) { return share(one.sticking, one.steps); };
-    add("open_fraction", "1", "share of the steps since the row before without contact",
-        unfiltered)
+    add("open_fraction", "1", "share of the steps since the row before without contact", unfiltered)
         .of_interval = [](const ContactStatistics& one) { return share(one.open, one.steps); };
     return columns;
   }
@@ -97,8 +95,8 @@ void ContactIntervals::load(const State& state, const std::string& prefix) {
   const std::vector<double>& numbers = state.array(prefix + "intervals");
   const double looks = state.get(prefix + "looks_until_row");
   const std::size_t per_interval = numbers_per_contact * open_.size();
-  const bool fits = per_interval == 0 ? numbers.empty()
-                                      : !numbers.empty() && numbers.size() % per_interval == 0;
+  const bool fits =
+      per_interval == 0 ? numbers.empty() : !numbers.empty() && numbers.size() % per_interval == 0;
   if (!fits || !(looks >= 1.0 && looks <= ratio_)) {
     throw std::invalid_argument(
         fmt::format("ContactIntervals: state '{}' is of other contacts", prefix));

@@ -1,4 +1,5 @@
-// What contacts do between two rows of a run file, so that what is shorter than an interval is kept.
+// What contacts do between two rows of a run file, so that what is shorter than an interval is
+// kept.
 #pragma once
 
 #include <deque>
@@ -12,7 +13,7 @@
 namespace stridor {
 
 /// One of the series in which a quantity of a contact is recorded.
-struct ContactColumn {
+struct ContactSeries {
   SeriesSpec spec;
   bool is_low_passed = false;
   double (*of_interval)(const ContactStatistics&) = nullptr;  ///< null: of the row
@@ -24,7 +25,7 @@ struct ContactColumn {
 /// low-passed.
 /// @param quantity "force", "friction_force", "state" or another
 /// @param low_pass DecimationFilter::description()
-std::vector<ContactColumn> contact_columns(const std::string& contact, const std::string& quantity,
+std::vector<ContactSeries> contact_columns(const std::string& contact, const std::string& quantity,
                                            const std::string& units, const std::string& low_pass);
 
 /// Gathers what the contacts do into the intervals that end with a row, and keeps those whose rows
@@ -36,8 +37,7 @@ class ContactIntervals {
  public:
   /// @param num_contacts whose statistics come in
   /// @param ratio        looks from row to row, at least 1
-  ContactIntervals(std::size_t num_contacts, int ratio)
-      : ratio_(ratio), open_(num_contacts) {}
+  ContactIntervals(std::size_t num_contacts, int ratio) : ratio_(ratio), open_(num_contacts) {}
 
   /// Takes the steps since the last look, of all contacts; the first look is that of row 0.
   void add(const std::vector<ContactStatistics>& since_last_look);

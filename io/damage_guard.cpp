@@ -9,7 +9,7 @@ namespace stridor {
 namespace {
 
 // Read by the handler, which may call next to nothing.
-std::atomic<const char*> words{nullptr};
+std::atomic<const char*> message_words{nullptr};
 std::atomic<std::size_t> num_bytes{0};
 const DamageGuard* innermost = nullptr;
 
@@ -17,7 +17,7 @@ const DamageGuard* innermost = nullptr;
 alignas(16) std::array<char, 16384> handler_stack;
 
 void leave(int) {
-  const char* text = words;
+  const char* text = message_words;
   if (text != nullptr && write(STDERR_FILENO, text, num_bytes) < 0) _exit(1);
   _exit(DamageGuard::exit_code);
 }
@@ -31,7 +31,7 @@ DamageGuard::DamageGuard(const std::string& path)
       outer_(innermost) {
   innermost = this;
   num_bytes = last_words_.size();
-  words = last_words_.data();
+  message_words = last_words_.data();
   stack_t stack{};
   stack.ss_sp = handler_stack.data();
   stack.ss_size = handler_stack.size();
@@ -48,7 +48,7 @@ DamageGuard::~DamageGuard() {
     sigaction(crashes[i], &former_actions_[i], nullptr);
   sigaltstack(&former_stack_, nullptr);
   innermost = outer_;
-  words = outer_ != nullptr ? outer_->last_words_.data() : nullptr;
+  message_words = outer_ != nullptr ? outer_->last_words_.data() : nullptr;
   num_bytes = outer_ != nullptr ? outer_->last_words_.size() : 0;
 }
 

@@ -12,15 +12,15 @@
 namespace stridor {
 namespace {
 
-constexpr std::array<const char*, 3> motions{"displacement", "velocity", "acceleration"};
+constexpr std::array<const char*, 3> motion_names{"displacement", "velocity", "acceleration"};
 constexpr std::array<const char*, 3> motion_units{"m", "m/s", "m/s^2"};
 
-struct Quantity {
+struct DiscQuantity {
   const char* name;
   const char* units;
   double FaceContactState::*member;  ///< null: the state
 };
-constexpr std::array<Quantity, 5> quantities{
+constexpr std::array<DiscQuantity, 5> contact_quantities{
     {{"force", "N", &FaceContactState::force},
      {"friction_force", "N", &FaceContactState::friction_force},
      {"gap", "m", &FaceContactState::gap},
@@ -28,12 +28,12 @@ constexpr std::array<Quantity, 5> quantities{
      {"state", "1", nullptr}}};
 
 /// A displacement at a contact.
-struct Place {
+struct RecordedPlace {
   const char* body;
   const char* direction;
   Eigen::VectorXd (*row)(const FaceContact&);
 };
-constexpr std::array<Place, 4> places{
+constexpr std::array<RecordedPlace, 4> places{
     {{"pad", "r", [](const FaceContact& contact) { return contact.pad_r; }},
      {"pad", "phi", [](const FaceContact& contact) { return contact.pad_phi; }},
      {"pad", "z", [](const FaceContact& contact) { return contact.pad_z; }},
@@ -45,13 +45,14 @@ template <class OnMotion, class OnQuantity>
 void for_every_channel(std::size_t per_pad, OnMotion&& on_motion, OnQuantity&& on_quantity) {
   for (std::size_t i = 0; i < 2 * per_pad; ++i) {
     const std::string contact = disc_contact_name(i, per_pad);
-    for (const Place& place : places) {
-      for (std::size_t d = 0; d < motions.size(); ++d) {
-        on_motion(i, place, d,
-                  fmt::format("{}.{}.{}.{}", place.body, contact, place.direction, motions[d]));
+    for (const RecordedPlace& place : places) {
+      for (std::size_t d = 0; d < motion_names.size(); ++d) {
+        on_motion(
+            i, place, d,
+            fmt::format("{}.{}.{}.{}", place.body, contact, place.direction, motion_names[d]));
       }
     }
-    for (const Quantity& quantity : quantities)
+    for (const DiscQuantity& quantity : contact_quantities)
       on_quantity(i, quantity, fmt::format("{}.{}", contact, quantity.name));
   }
 }
@@ -67,10 +68,10 @@ std::vector<std::string> disc_channels(std::size_t per_pad) {
   std::vector<std::string> names;
   for_every_channel(
       per_pad,
-      [&](std::size_t, const Place&, std::size_t, const std::string& name) {
+      [&](std::size_t, const RecordedPlace&, std::size_t, const std::string& name) {
         names.push_back(name);
       },
-      [&](std::size_t, const Quantity&, const std::string& name) { names.push_back(name); });
+      [&](std::size_t, const DiscQuantity&, const std::string& name) { names.push_back(name); });
   return names;
 }
 
@@ -112,7 +113,7 @@ DiscRecorder::DiscRecorder(const DiscModel& model, const std::vector<std::string
   };
   // The derivatives of one displacement share its stream.
   std::size_t place_of_stream = 0;
-  const auto on_motion = [&](std::size_t contact, const Place& place, std::size_t derivative,
+  const auto on_motion = [&](std::size_t contact, const RecordedPlace& place, std::size_t derivative,
                              const std::string& name) {
     const std::string stream = name.substr(0, name.rfind('.'));
     if (!is_wanted(name)) return;
@@ -127,11 +128,11 @@ DiscRecorder::DiscRecorder(const DiscModel& model, const std::vector<std::string
                        {{"filter", filter_->description()}}});
     columns_.push_back({place_of_stream, static_cast<Derivative>(derivative), nullptr, 0});
   };
-  const auto on_quantity = [&](std::size_t contact, const Quantity& quantity,
+  const auto on_quantity = [&](std::size_t contact, const DiscQuantity& quantity,
                                const std::string& name) {
     if (!is_wanted(name)) return;
     streams_.push_back({name, {}, static_cast<int>(contact), quantity.member, Decimator(filter_)});
-    for (const ContactColumn& column :
+    for (const ContactSeries& column :
          contact_columns(name.substr(0, name.rfind('.')), quantity.name, quantity.units,
                          filter_->description())) {
       series_.push_back(column.spec);

@@ -16,6 +16,9 @@ struct FigureSize {
   double font_size = 13.0;  ///< pt, DejaVu Sans
 };
 
+/// Size of the text below the panels of a figure, pt.
+inline constexpr double caption_font = 10.5;
+
 /// Text as a gnuplot string, in single quotes; line breaks become blanks.
 std::string gnuplot_string(const std::string& text);
 

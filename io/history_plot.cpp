@@ -15,10 +15,10 @@
 namespace stridor {
 namespace {
 
-constexpr std::size_t num_columns = 2000;
+constexpr std::size_t num_history_columns = 2000;
 
 // Blue, and for second curves an orange that stays apart from it in grey and for the colour-blind.
-constexpr std::array<const char*, 4> colours{"#0b5394", "#e07b00", "#38761d", "#741b47"};
+constexpr std::array<const char*, 4> history_colours{"#0b5394", "#e07b00", "#38761d", "#741b47"};
 
 // A text that is too long for a panel in two lines, broken near the middle.
 std::vector<std::string> broken(const std::string& text, FigureSize size, double length) {
@@ -198,7 +198,6 @@ struct PanelLayout {
 
 constexpr double panel_height = 4.2;
 constexpr double label_length = panel_height + 0.5;  // may reach a little into the gaps
-constexpr double caption_font = 10.5;
 
 PanelLayout layout_of(const Panel& panel, const FigureSize& size) {
   PanelLayout layout;
@@ -214,19 +213,16 @@ PanelLayout layout_of(const Panel& panel, const FigureSize& size) {
   layout.tick_width = tick_characters(layout.range, layout.scale);
   for (const NamedValue& named : panel.named_values)
     layout.tick_width = std::max(layout.tick_width, named.name.size());
-  const std::string label = panel.named_values.empty()
-                                ? axis_label(panel.label, panel.units, layout.scale)
-                                : panel.label;
+  const std::string label =
+      panel.named_values.empty() ? axis_label(panel.label, panel.units, layout.scale) : panel.label;
   layout.labels = broken(label, size, label_length);
-  if (layout.scale.offset != 0.0)
-    layout.labels.push_back(offset_text(panel.units, layout.scale));
+  if (layout.scale.offset != 0.0) layout.labels.push_back(offset_text(panel.units, layout.scale));
   return layout;
 }
 
 std::string y_axis(const Panel& panel, const PanelLayout& layout) {
   const AxisScale& scale = layout.scale;
-  std::string ticks =
-      fmt::format("{:.12g} format '%.{}f'", scale.step, scale.decimals);
+  std::string ticks = fmt::format("{:.12g} format '%.{}f'", scale.step, scale.decimals);
   if (!panel.named_values.empty()) {
     ticks = "(";
     for (const NamedValue& named : panel.named_values) {
@@ -265,8 +261,7 @@ std::string texts(const Panel& panel, const PanelLayout& layout, const FigureSiz
   return commands +
          (has_names(panel)
               ? fmt::format(
-                    "set key at graph 1, graph {:.4f} right center horizontal samplen 1.5\n",
-                    above)
+                    "set key at graph 1, graph {:.4f} right center horizontal samplen 1.5\n", above)
               : std::string("unset key\n"));
 }
 
@@ -274,16 +269,17 @@ std::string texts(const Panel& panel, const PanelLayout& layout, const FigureSiz
 std::string curves_of(const Panel& panel, const PanelLayout& layout, const AxisScale& time,
                       std::size_t p, std::string& data_blocks) {
   std::string curves;
-  const ValueBand band = thinned(panel.band, num_columns);
+  const ValueBand band = thinned(panel.band, num_history_columns);
   if (!band.times.empty()) {
     const std::string block = fmt::format("$band_{}", p);
     add_band(data_blocks, block, band, time, layout.scale);
-    curves += block + " using 1:2:3 with filledcurves fillcolor '#9fc5e8' fillstyle solid "
-                      "noborder notitle, ";
+    curves += block +
+              " using 1:2:3 with filledcurves fillcolor '#9fc5e8' fillstyle solid "
+              "noborder notitle, ";
   }
   for (std::size_t c = 0; c < panel.curves.size(); ++c) {
-    const char* colour = colours[c % colours.size()];
-    const Curve drawn = envelope(panel.curves[c], num_columns);
+    const char* colour = history_colours[c % history_colours.size()];
+    const Curve drawn = envelope(panel.curves[c], num_history_columns);
     if (std::any_of(drawn.values.begin(), drawn.values.end(),
                     [](double x) { return std::isfinite(x); })) {
       const std::string block = fmt::format("$panel_{}_{}", p, c);
@@ -390,8 +386,7 @@ void plot_histories(const std::vector<Panel>& panels, const std::filesystem::pat
   const std::vector<std::string> lines = wrapped(caption, caption_font, size.width - left - 0.3);
   const double axis_height = 3.3 * line;
   const double caption_height =
-      lines.empty() ? 0.0
-                    : 0.2 + static_cast<double>(lines.size()) * line_height(caption_font);
+      lines.empty() ? 0.0 : 0.2 + static_cast<double>(lines.size()) * line_height(caption_font);
   height += axis_height + caption_height;
   size.height = height;
 
@@ -408,8 +403,8 @@ void plot_histories(const std::vector<Panel>& panels, const std::filesystem::pat
     plots += fmt::format("set xlabel {}\n",
                          gnuplot_string(is_last ? axis_label("time", "s", time) : ""));
     plots += texts(panels[p], layout, size, num_lines);
-    const Shading shaded = shading(panels[p], time, time_range, right - left, size,
-                                   static_cast<int>(num_lines) + 2);
+    const Shading shaded =
+        shading(panels[p], time, time_range, right - left, size, static_cast<int>(num_lines) + 2);
     // Drawn once, with the last panel.
     for (std::size_t i = 0; is_last && i < lines.size(); ++i) {
       plots += fmt::format(

@@ -12,13 +12,13 @@
 namespace stridor {
 namespace {
 
-struct Quantity {
+struct TableDataset {
   const char* dataset;
   std::vector<double> ContactTable::*values;
 };
-constexpr Quantity quantities[] = {{"/force", &ContactTable::force},
-                                   {"/area", &ContactTable::area},
-                                   {"/friction", &ContactTable::friction}};
+constexpr TableDataset table_datasets[] = {{"/force", &ContactTable::force},
+                                           {"/area", &ContactTable::area},
+                                           {"/friction", &ContactTable::friction}};
 
 }  // namespace
 
@@ -30,7 +30,7 @@ void write_law_table(const std::string& path, Overwrite overwrite, const Contact
     writer.write("/speed", table.speeds, "1");
     writer.write("/indentation", table.indentations, "1");
     const std::vector<hsize_t> shape{table.indentations.size(), table.speeds.size()};
-    for (const auto& [dataset, values] : quantities)
+    for (const auto& [dataset, values] : table_datasets)
       writer.write(dataset, shape, (table.*values).data(), "1");
     writer.write("/memory_in_cells", shape, memory_in_cells.data(), "1");
   });
@@ -47,7 +47,7 @@ TabulatedLaw read_law_table(const std::string& path) {
   };
   table.speeds = read("/speed", 1);
   table.indentations = read("/indentation", 1);
-  for (const auto& [dataset, values] : quantities) {
+  for (const auto& [dataset, values] : table_datasets) {
     const Hdf5Array array = open_array(at, file.id(), dataset, 2);
     if (array.shape[0] != table.indentations.size() || array.shape[1] != table.speeds.size()) {
       throw FileError(

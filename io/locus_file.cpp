@@ -17,13 +17,13 @@ namespace stridor {
 namespace {
 
 /// A column of /unstable: its name, unit and the member it holds.
-struct Column {
+struct WindowColumn {
   const char* name;
   const char* units;  ///< null: that of the parameter
   double& (*of)(TimedWindow&);
 };
 
-const std::array<Column, 9> columns{{
+const std::array<WindowColumn, 9> columns{{
     {"from", nullptr, [](TimedWindow& w) -> double& { return w.window.from; }},
     {"to", nullptr, [](TimedWindow& w) -> double& { return w.window.to; }},
     {"frequency", "Hz", [](TimedWindow& w) -> double& { return w.window.frequency; }},
@@ -88,7 +88,7 @@ void write_locus_file(const std::string& path, Overwrite overwrite, const Locus&
     write_eigenvalues(writer, locus);
     write_branches(writer, locus, units);
     writer.make_group("/unstable");
-    for (const Column& column : columns) {
+    for (const WindowColumn& column : columns) {
       std::vector<double> values;
       for (TimedWindow window : windows) values.push_back(column.of(window));
       writer.write(std::string("/unstable/") + column.name, values,
@@ -128,7 +128,7 @@ std::vector<TimedWindow> read_locus_windows(const std::string& path) {
     throw FileError(path, "/unstable", "is missing; a file of `stridor locus -o` is needed");
   // A window takes the memory of all its columns: these are there before it is taken.
   std::vector<std::vector<double>> values;
-  for (const Column& column : columns) {
+  for (const WindowColumn& column : columns) {
     const std::string dataset = std::string("/unstable/") + column.name;
     values.push_back(read_array(at, open_array(at, file.id(), dataset, 1), dataset));
     if (values.back().size() != values.front().size()) {
@@ -151,8 +151,8 @@ std::string read_locus_parameter(const std::string& path) {
   const Checker at(path);
   const Handle file = open_hdf5_file(at);
   if (H5Aexists(file.id(), name) <= 0) return "";
-  const Handle attribute = at.own(H5Aopen(file.id(), name, H5P_DEFAULT), H5Aclose, "/",
-                                  "cannot read an attribute");
+  const Handle attribute =
+      at.own(H5Aopen(file.id(), name, H5P_DEFAULT), H5Aclose, "/", "cannot read an attribute");
   const Handle type =
       at.own(H5Aget_type(attribute.id()), H5Tclose, "/", "cannot read an attribute");
   const Handle space =

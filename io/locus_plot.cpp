@@ -25,7 +25,6 @@ constexpr std::array<const char*, 3> blues{"#0b3c7a", "#3b74b4", "#c3daee"};
 constexpr std::array<const char*, 3> reds{"#f6cbb9", "#d0553f", "#8a1020"};
 constexpr const char* unstable_colour = "#c0392b";
 constexpr const char* stable_colour = "#0b5394";
-constexpr double caption_font = 10.5;
 constexpr double label_font = 10.5;
 
 [[noreturn]] void refuse(const std::string& what) {

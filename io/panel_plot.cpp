@@ -14,13 +14,12 @@
 namespace stridor {
 namespace {
 
-constexpr std::array<const char*, 8> colours{"#0b5394", "#e07b00", "#2a8a4a", "#b02318",
-                                             "#6a3d9a", "#808080", "#17a2b8", "#8c564b"};
-constexpr double caption_font = 10.5;
+constexpr std::array<const char*, 8> panel_colours{"#0b5394", "#e07b00", "#2a8a4a", "#b02318",
+                                                   "#6a3d9a", "#808080", "#17a2b8", "#8c564b"};
 constexpr double gap_below_axis = 1.6;  // cm: numbers and label
 
 const char* colour_of(int number) {
-  return colours[static_cast<std::size_t>(number) % colours.size()];
+  return panel_colours[static_cast<std::size_t>(number) % panel_colours.size()];
 }
 
 /// A text for a legend, where gnuplot does not know doubled quotes.
@@ -93,14 +92,14 @@ std::string unit_of(const std::string& label) {
   if (open == std::string::npos || label.back() != ')') return "";
   return label.substr(open + 2, label.size() - open - 3);
 }
-std::string words_of(const std::string& label) {
+std::string label_words(const std::string& label) {
   return unit_of(label).empty() ? label : label.substr(0, label.rfind(" ("));
 }
 
 void add_axis(FigureScript& script, char name, const std::string& label, const PanelAxis& axis) {
   if (axis.kind == AxisKind::linear) {
     script.add("unset logscale {0}\nset {0}label {1}", name,
-               gnuplot_string(axis_label(words_of(label), unit_of(label), axis.scale)));
+               gnuplot_string(axis_label(label_words(label), unit_of(label), axis.scale)));
     script.set_axis(name, axis.range, axis.scale);
     return;
   }

@@ -44,12 +44,6 @@ struct Folder {
   void operator()(DIR* folder) const { closedir(folder); }
 };
 
-std::string folder_of(const std::string& path) {
-  const auto slash = path.rfind('/');
-  if (slash == std::string::npos) return ".";
-  return slash == 0 ? "/" : path.substr(0, slash);
-}
-
 /// Waits until a file or folder is on the disk. @return an error number, or 0
 int sync_to_disk(const std::string& path, int flags) {
   const Descriptor file(::open(path.c_str(), flags | O_RDONLY | O_CLOEXEC));
@@ -88,6 +82,12 @@ bool is_ours(const Descriptor& file, const struct stat& status) {
 }
 
 }  // namespace
+
+std::string folder_of(const std::string& path) {
+  const auto slash = path.rfind('/');
+  if (slash == std::string::npos) return ".";
+  return slash == 0 ? "/" : path.substr(0, slash);
+}
 
 void remove_leftovers(const std::string& final_path) {
   const std::string folder = folder_of(final_path);

@@ -42,6 +42,9 @@ class PartFile {
   bool is_made_ = false;
 };
 
+/// The folder in which a file of this name stands: "." where the name has none.
+std::string folder_of(const std::string& path);
+
 /// Removes `<name>.part-<pid>` of processes that were killed. Kept are files of a process that
 /// lives, or that another one holds locked, of other users, and whatever does not begin as a file
 /// of this program does: somebody else's piece of a file may be called like that.

@@ -14,7 +14,7 @@
 namespace stridor {
 namespace {
 
-constexpr std::size_t num_columns = 1600;
+constexpr std::size_t num_path_columns = 1600;
 constexpr std::size_t num_rows = 1000;
 
 // Cells that have been passed through.
@@ -159,7 +159,7 @@ std::optional<double> samples_per_period(std::span<const double> values) {
 void plot_phase(const PhaseAxis& across, const PhaseAxis& up, const std::string& caption,
                 const std::filesystem::path& figure) {
   check_figure_name(figure);
-  const PlanePath path = visible_path(across.values, up.values, num_columns, num_rows);
+  const PlanePath path = visible_path(across.values, up.values, num_path_columns, num_rows);
   ValueRange x_range;
   ValueRange y_range;
   x_range.include(across.values);
@@ -174,7 +174,6 @@ void plot_phase(const PhaseAxis& across, const PhaseAxis& up, const std::string&
   const double line = line_height(size.font_size);
   const double character = 0.64 * size.font_size * 2.54 / 72.0;
   constexpr double plane_height = 8.4;
-  constexpr double caption_font = 10.5;
   std::vector<std::string> y_label = wrapped_label(
       axis_label(up.label, typeset_units(up.units), y_scale), size.font_size, plane_height + 0.5);
   if (y_scale.offset != 0.0) y_label.push_back(offset_text(typeset_units(up.units), y_scale));

@@ -8,13 +8,14 @@
 #include <stdexcept>
 
 #include "io/axes.hpp"
+#include "io/gnuplot.hpp"
 
 namespace stridor {
 namespace {
 
-constexpr std::array<const char*, 10> colours{"#0b5394", "#e07b00", "#38761d", "#cc0000",
-                                              "#674ea7", "#7f6000", "#45818e", "#a64d79",
-                                              "#000000", "#6aa84f"};
+constexpr std::array<const char*, 10> setting_colours{"#0b5394", "#e07b00", "#38761d", "#cc0000",
+                                                      "#674ea7", "#7f6000", "#45818e", "#a64d79",
+                                                      "#000000", "#6aa84f"};
 constexpr std::array<int, 6> marks{7, 5, 9, 11, 13, 4};
 
 bool is_drawable(const PrecisionCurve::Point& point) {
@@ -73,7 +74,6 @@ void plot_precision(const PrecisionPicture& picture, const std::filesystem::path
   const double line = line_height(size.font_size);
   constexpr double plane_height = 10.5;
   constexpr double legend_font = 9.5;
-  constexpr double caption_font = 10.5;
   const double legend_line = line_height(legend_font);
   const double left = 3.2;
   double legend_width = text_width("none is better in both", legend_font) + 1.0;
@@ -123,7 +123,7 @@ void plot_precision(const PrecisionPicture& picture, const std::filesystem::path
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const std::string block = fmt::format("$curve{}", i);
     add_points(script, block, curves[i]);
-    const char* colour = colours[i % colours.size()];
+    const char* colour = setting_colours[i % setting_colours.size()];
     const int mark = marks[i % marks.size()];
     plot += fmt::format(
         ", {0} using 1:2 with linespoints linewidth 1.3 pointtype {1} pointsize 1.6 linecolor "

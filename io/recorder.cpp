@@ -133,7 +133,7 @@ void Recorder::add_motion(const Model& model, const Channel& channel,
 void Recorder::add_contact(const Channel& channel, int contact,
                            const std::shared_ptr<const DecimationFilter>& filter) {
   // Names and filters are for series().
-  for (const ContactColumn& column :
+  for (const ContactSeries& column :
        contact_columns("", name_of(channel.quantity), channel.units(), "")) {
     Column added{streams_.size()};
     if (column.is_low_passed) added.derivative = Derivative::none;
@@ -165,7 +165,7 @@ std::vector<SeriesSpec> Recorder::series(const Model& model, const std::vector<C
     }
     for (const int contact : contacts_of(model.system, channel.pair)) {
       const std::string& name = model.system.contacts[static_cast<std::size_t>(contact)].name;
-      for (const ContactColumn& column :
+      for (const ContactSeries& column :
            contact_columns(name, name_of(channel.quantity), channel.units(), low_pass))
         series.push_back(column.spec);
     }

@@ -39,12 +39,6 @@ void write_text(const Checker& at, hid_t file, const Handle& links, const std::s
 
 // ---------------------------------------------------------------- the temporary file
 
-std::string folder_of(const std::string& path) {
-  const auto slash = path.rfind('/');
-  if (slash == std::string::npos) return ".";
-  return slash == 0 ? "/" : path.substr(0, slash);
-}
-
 // @throws FileError unless a file of this name may be made
 void check_target(const std::string& path, Overwrite overwrite) {
   struct stat status = {};

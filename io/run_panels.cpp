@@ -16,7 +16,7 @@ namespace stridor {
 namespace {
 
 /// Quantities in the order in which they matter.
-constexpr std::array<const char*, 10> quantities{
+constexpr std::array<const char*, 10> ranked_quantities{
     "acceleration", "force",    "slip_velocity", "state",    "friction_force",
     "gap",          "velocity", "displacement",  "position", "area"};
 
@@ -28,10 +28,10 @@ constexpr std::array<const char*, 6> accompanying{"force_min",
                                                   "open_fraction"};
 
 std::size_t rank_of(const std::string& series) {
-  if (series.starts_with("/energy/")) return quantities.size() + 1;
+  if (series.starts_with("/energy/")) return ranked_quantities.size() + 1;
   const std::string quantity = split_name(channel_name(series)).second;
-  const auto found = std::find(quantities.begin(), quantities.end(), quantity);
-  return static_cast<std::size_t>(found - quantities.begin());
+  const auto found = std::find(ranked_quantities.begin(), ranked_quantities.end(), quantity);
+  return static_cast<std::size_t>(found - ranked_quantities.begin());
 }
 
 bool is_digit(char c) {

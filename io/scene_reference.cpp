@@ -65,7 +65,7 @@ std::string code(const std::string& text) {
   return fmt::format("`{}`", text);
 }
 
-std::string joined(const std::vector<std::string>& words) {
+std::string comma_list(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
@@ -74,7 +74,7 @@ std::string joined(const std::vector<std::string>& words) {
 std::string list_text(const std::vector<double>& values) {
   std::vector<std::string> items;
   for (const double value : values) items.push_back(fmt::format("{}", value));
-  return fmt::format("[{}]", joined(items));
+  return fmt::format("[{}]", comma_list(items));
 }
 
 /// A default as in a scene; "" where the key simply is not given.
@@ -88,7 +88,7 @@ struct DefaultText {
   std::string operator()(const std::string& value) const { return value.empty() ? "\"\"" : value; }
   std::string operator()(const std::vector<double>& values) const { return list_text(values); }
   std::string operator()(const std::vector<std::string>& values) const {
-    return fmt::format("[{}]", joined(values));
+    return fmt::format("[{}]", comma_list(values));
   }
   std::string operator()(const TimeTable& table) const {
     return fmt::format("{{times: {}, values: {}}}", list_text(table.times),
@@ -106,7 +106,7 @@ std::string allowed_text(const Key& key) {
   if (key.kind == KeyKind::choice) {
     std::vector<std::string> choices;
     for (const std::string& choice : key.choices) choices.push_back(code(choice));
-    return joined(choices);
+    return comma_list(choices);
   }
   const bool has_bound = std::isfinite(key.range.low) || std::isfinite(key.range.high);
   return has_bound ? code(key.range.text()) : "";
@@ -215,7 +215,7 @@ class Page {
     for (const Section& section : sections_of(key, parent)) {
       links.push_back(link(section.alternative, section.heading()));
     }
-    return "named maps: " + joined(links);
+    return "named maps: " + comma_list(links);
   }
 
   std::string text_ = introduction;

@@ -32,7 +32,7 @@ Json numbers_json(const std::vector<double>& values) {
   return list;
 }
 
-bool all_finite(const std::vector<double>& values) {
+bool are_finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(),
                      [](double value) { return std::isfinite(value); });
 }
@@ -47,7 +47,7 @@ struct DefaultJson {
   }
   Json operator()(const std::string& value) const { return value; }
   Json operator()(const std::vector<double>& values) const {
-    return all_finite(values) ? numbers_json(values) : Json(nullptr);
+    return are_finite(values) ? numbers_json(values) : Json(nullptr);
   }
   Json operator()(const std::vector<std::string>& values) const {
     Json list = Json::array();

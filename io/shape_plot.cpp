@@ -17,8 +17,7 @@
 namespace stridor {
 namespace {
 
-constexpr std::array<const char*, 4> colours{"#0b5394", "#c0392b", "#38761d", "#741b47"};
-constexpr double caption_font = 10.5;
+constexpr std::array<const char*, 4> shape_colours{"#0b5394", "#c0392b", "#38761d", "#741b47"};
 
 /// The nodes displaced by scale · Re(displacement e^{iφ}).
 Eigen::MatrixX2d displaced(const BodyShape& body, double scale, double phase) {
@@ -156,7 +155,7 @@ void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure
     for (std::size_t b = 0; b < picture.bodies.size(); ++b)
       plot += fmt::format(", $rest_{} using 1:2 with lines linewidth 0.8 linecolor '#909090'", b);
     for (std::size_t b = 0; b < picture.bodies.size(); ++b) {
-      const char* colour = colours[b % colours.size()];
+      const char* colour = shape_colours[b % shape_colours.size()];
       if (!element_sides(picture.bodies[b]).empty()) {
         plot += fmt::format(", $mesh_{}_{} using 1:2 with lines linewidth 0.5 linecolor '{}'", b, p,
                             colour);

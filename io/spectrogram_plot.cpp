@@ -26,7 +26,7 @@ Eigen::Index raster_cells(std::size_t sources, Eigen::Index most) {
 constexpr std::array<const char*, 9> viridis{"#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c",
                                              "#28ae80", "#5ec962", "#addc30", "#fde725"};
 
-[[noreturn]] void refuse(const std::string& what) {
+[[noreturn]] void refuse_spectrogram(const std::string& what) {
   throw std::invalid_argument("spectrogram plot: " + what);
 }
 
@@ -37,7 +37,7 @@ bool is_positive(double value) {
 // From the beginning of the first piece to the end of the last one.
 ValueRange times_of(const Spectrogram& spectrogram) {
   if (spectrogram.times.empty() || spectrogram.frequencies.size() < 2)
-    refuse("a spectrogram without a column or with a single line");
+    refuse_spectrogram("a spectrogram without a column or with a single line");
   const double half_piece = 0.5 / spectrogram.frequencies[1];
   return {spectrogram.times.front() - half_piece, spectrogram.times.back() + half_piece};
 }
@@ -211,9 +211,9 @@ void add_marks(FigureScript& script, const std::vector<SpectrogramMark>& marks, 
 AmplitudeRaster rasterise(const Spectrogram& spectrogram, double max_frequency, Eigen::Index rows,
                           Eigen::Index columns) {
   if (spectrogram.times.empty() || spectrogram.frequencies.size() < 2)
-    refuse("a spectrogram without a column or with a single line");
-  if (rows < 1 || columns < 1) refuse("a raster without cells");
-  if (!is_positive(max_frequency)) refuse("the highest frequency must be positive");
+    refuse_spectrogram("a spectrogram without a column or with a single line");
+  if (rows < 1 || columns < 1) refuse_spectrogram("a raster without cells");
+  if (!is_positive(max_frequency)) refuse_spectrogram("the highest frequency must be positive");
   const double spacing = spectrogram.frequencies[1];
   const ValueRange times = times_of(spectrogram);
   const double highest = spectrogram.frequencies.back() + 0.5 * spacing;
@@ -296,10 +296,11 @@ void plot_spectrogram(const Spectrogram& spectrogram, const SpectrogramPicture& 
 void plot_spectrograms(const std::vector<SpectrogramPanel>& panels,
                        const SpectrogramPicture& picture, const std::filesystem::path& figure) {
   check_figure_name(figure);
-  if (panels.empty()) refuse("there is no spectrogram to draw");
-  if (!is_positive(picture.max_frequency)) refuse("the highest frequency must be positive");
-  if (!is_positive(picture.reference)) refuse("the reference must be positive");
-  if (!is_positive(picture.range)) refuse("the range must be positive");
+  if (panels.empty()) refuse_spectrogram("there is no spectrogram to draw");
+  if (!is_positive(picture.max_frequency))
+    refuse_spectrogram("the highest frequency must be positive");
+  if (!is_positive(picture.reference)) refuse_spectrogram("the reference must be positive");
+  if (!is_positive(picture.range)) refuse_spectrogram("the range must be positive");
   double highest = 0.0;
   for (const SpectrogramPanel& panel : panels) {
     highest = std::max(
@@ -317,7 +318,6 @@ void plot_spectrograms(const std::vector<SpectrogramPanel>& panels,
   const double line = line_height(size.font_size);
   const double character = 0.64 * size.font_size * 2.54 / 72.0;
   const double map_height = is_stack ? 3.6 : 7.2;
-  constexpr double caption_font = 10.5;
   constexpr double bar_width = 0.45;
   const double frequency_digits = static_cast<double>(
       fmt::format("{:.{}f}", as_number(picture.max_frequency, frequency), frequency.decimals)
@@ -338,8 +338,8 @@ void plot_spectrograms(const std::vector<SpectrogramPanel>& panels,
     map.max_frequency = picture.max_frequency;
     maps.push_back(map);
   }
-  const std::vector<std::string> caption = wrapped(
-      picture.caption + unlabelled_text(panels, maps), caption_font, size.width - left - 0.3);
+  const std::vector<std::string> caption = wrapped(picture.caption + unlabelled_text(panels, maps),
+                                                   caption_font, size.width - left - 0.3);
   const double below = 2.7 * line +
                        static_cast<double>(caption.size()) * line_height(caption_font) +
                        (caption.empty() ? 0.0 : 0.2);

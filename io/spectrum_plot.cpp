@@ -15,19 +15,18 @@
 namespace stridor {
 namespace {
 
-constexpr std::size_t num_columns = 2000;
-constexpr double caption_font = 10.5;
+constexpr std::size_t num_spectrum_columns = 2000;
 constexpr double mark_font = 11.0;
 
 // Told apart also in grey and by the colour-blind.
-constexpr std::array<const char*, 6> colours{"#0b5394", "#e07b00", "#38761d",
-                                             "#741b47", "#5b9bd5", "#7f7f7f"};
+constexpr std::array<const char*, 6> spectrum_colours{"#0b5394", "#e07b00", "#38761d",
+                                                      "#741b47", "#5b9bd5", "#7f7f7f"};
 
-[[noreturn]] void refuse(const std::string& what) {
+[[noreturn]] void refuse_spectrum(const std::string& what) {
   throw std::invalid_argument("spectrum plot: " + what);
 }
 
-bool is_positive(double value) {
+bool is_positive_number(double value) {
   return value > 0.0 && std::isfinite(value);
 }
 
@@ -45,7 +44,7 @@ Curve drawn_curve(const SpectrumCurve& curve, double reference, const SpectrumPi
     drawn.times.push_back(spectrum.frequencies[k]);
     drawn.values.push_back(drawn_value(spectrum.amplitude[k], reference, picture.scale));
   }
-  return envelope(drawn, num_columns);
+  return envelope(drawn, num_spectrum_columns);
 }
 
 // What the vertical axis shows: not the mean value, which would leave no room for the rest.
@@ -123,9 +122,10 @@ std::vector<MarkGroup> grouped(const std::vector<FrequencyMark>& marks, double d
 void plot_spectra(const std::vector<SpectrumPanel>& panels, const SpectrumPicture& picture,
                   const std::filesystem::path& figure) {
   check_figure_name(figure);
-  if (panels.empty()) refuse("no panels");
-  if (!is_positive(picture.max_frequency)) refuse("the highest frequency must be positive");
-  if (!is_positive(picture.range)) refuse("the range must be positive");
+  if (panels.empty()) refuse_spectrum("no panels");
+  if (!is_positive_number(picture.max_frequency))
+    refuse_spectrum("the highest frequency must be positive");
+  if (!is_positive_number(picture.range)) refuse_spectrum("the range must be positive");
   const bool is_level = picture.scale == AmplitudeScale::level;
 
   FigureSize size;
@@ -138,8 +138,8 @@ void plot_spectra(const std::vector<SpectrumPanel>& panels, const SpectrumPictur
   std::size_t most_characters = 1;
   std::size_t most_lines = 1;
   for (const SpectrumPanel& panel : panels) {
-    if (panel.curves.empty()) refuse("a panel without a curve");
-    if (!is_positive(panel.reference)) refuse("the reference must be positive");
+    if (panel.curves.empty()) refuse_spectrum("a panel without a curve");
+    if (!is_positive_number(panel.reference)) refuse_spectrum("the reference must be positive");
     Layout layout;
     for (const SpectrumCurve& curve : panel.curves)
       layout.curves.push_back(drawn_curve(curve, panel.reference, picture));
@@ -243,7 +243,7 @@ void plot_spectra(const std::vector<SpectrumPanel>& panels, const SpectrumPictur
           "set arrow {} from screen {:.6f}, screen {:.6f} to screen {:.6f}, screen {:.6f} nohead "
           "linecolor '{}' linewidth 2",
           arrow++, script.across(left), script.up(y), script.across(left + 0.7), script.up(y),
-          colours[c % colours.size()]);
+          spectrum_colours[c % spectrum_colours.size()]);
       script.add_text(layout.curves[c].name, left + 0.85, y, "left", mark_font);
     }
     if (p == 0) {
@@ -256,8 +256,9 @@ void plot_spectra(const std::vector<SpectrumPanel>& panels, const SpectrumPictur
     }
     std::string curves;
     for (std::size_t c = 0; c < layout.curves.size(); ++c) {
-      curves += fmt::format("{}$curve_{}_{} using 1:2 with lines linewidth 1 linecolor '{}'",
-                            c == 0 ? "" : ", ", p, c, colours[c % colours.size()]);
+      curves +=
+          fmt::format("{}$curve_{}_{} using 1:2 with lines linewidth 1 linecolor '{}'",
+                      c == 0 ? "" : ", ", p, c, spectrum_colours[c % spectrum_colours.size()]);
     }
     script.add("plot {}\nunset label", curves);
   }
