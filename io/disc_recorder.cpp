@@ -31,13 +31,12 @@ constexpr std::array<Quantity, 5> quantities{
 struct Place {
   const char* body;
   const char* direction;
-  Eigen::VectorXd (*row)(const FaceContact&);
+  FacePort port;
 };
-constexpr std::array<Place, 4> places{
-    {{"pad", "r", [](const FaceContact& contact) { return contact.pad_r; }},
-     {"pad", "phi", [](const FaceContact& contact) { return contact.pad_phi; }},
-     {"pad", "z", [](const FaceContact& contact) { return contact.pad_z; }},
-     {"disc", "z", [](const FaceContact& contact) { return contact.plate.w; }}}};
+constexpr std::array<Place, 4> places{{{"pad", "r", FacePort::pad_r},
+                                       {"pad", "phi", FacePort::pad_phi},
+                                       {"pad", "z", FacePort::pad_z},
+                                       {"disc", "z", FacePort::plate_w}}};
 
 /// Calls what is given for every motion (contact, place, number of derivatives, name) and for every
 /// quantity (contact, quantity, name).
@@ -119,7 +118,7 @@ DiscRecorder::DiscRecorder(const DiscModel& model, const std::vector<std::string
     if (streams_.empty() || streams_[place_of_stream].name != stream) {
       place_of_stream = streams_.size();
       streams_.push_back(
-          {stream, place.row(model.contacts[contact]), 0, nullptr, Decimator(filter_)});
+          {stream, place.port, static_cast<int>(contact), nullptr, Decimator(filter_)});
     }
     series_.push_back({"/channels/" + name,
                        motion_units[derivative],
@@ -130,7 +129,8 @@ DiscRecorder::DiscRecorder(const DiscModel& model, const std::vector<std::string
   const auto on_quantity = [&](std::size_t contact, const Quantity& quantity,
                                const std::string& name) {
     if (!is_wanted(name)) return;
-    streams_.push_back({name, {}, static_cast<int>(contact), quantity.member, Decimator(filter_)});
+    streams_.push_back(
+        {name, std::nullopt, static_cast<int>(contact), quantity.member, Decimator(filter_)});
     for (const ContactColumn& column :
          contact_columns(name.substr(0, name.rfind('.')), quantity.name, quantity.units,
                          filter_->description())) {
@@ -181,7 +181,7 @@ void DiscRecorder::load(const State& state, const std::string& prefix) {
 }
 
 double DiscRecorder::value(const Stream& stream, const FaceContactMotion& motion) {
-  if (stream.row.size() > 0) return stream.row.dot(motion.displacement());
+  if (stream.port) return motion.moved(stream.contact, *stream.port);
   const FaceContactState contact = motion.contact(stream.contact);
   return stream.member != nullptr ? contact.*stream.member : static_cast<double>(contact.state);
 }
