@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/errors.hpp"
+#include "solvers/search_failure.hpp"
 
 namespace stridor {
 namespace {
@@ -65,7 +66,7 @@ class Tracker {
     source_.move_to(value_);
     const auto found = source_.search();
     if (!found) {
-      throw NumericalError(
+      throw SearchFailure(
           fmt::format("locus: the eigenvalues at the first value, {:g}, were not found", value_));
     }
     ++locus_.num_places;

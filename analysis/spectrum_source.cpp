@@ -152,6 +152,7 @@ class DenseSource : public SpectrumSource {
     if (value == value_) return;
     family_.place(value, pencil_);
     known_.clear();
+    const BlasGuard guard;
     for (const Eigenvalue& eigenvalue : dense_eigenvalues(pencil_, DenseWork::eigenvalues)) {
       known_.push_back(eigenvalue.s);
     }

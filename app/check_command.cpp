@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "app/body_report.hpp"
 #include "app/command.hpp"
 #include "app/step_stability_report.hpp"
 #include "core/activity.hpp"
@@ -29,7 +30,8 @@ struct CheckOptions {
 /// What is told of a scene without errors.
 struct Report {
   std::vector<Problem> warnings;
-  std::optional<StepStabilityReport> stability;
+  std::optional<StepStabilityReport> stability{};
+  Json bodies = Json::object();  ///< given by matrices, see matrix_bodies_json()
 };
 
 /// Of a scene of another kind. @throws ConfigError
@@ -48,18 +50,18 @@ Report check_scene(const CheckOptions& options) {
   if (is_contact_scene(tree)) {
     const LoadedContactScene loaded = load_contact_scene(options.scene, options.common.sets);
     refuse_stability(options);
-    return {unit_warnings(ContactScene::schema(), &loaded.scene, tree), {}};
+    return {unit_warnings(ContactScene::schema(), &loaded.scene, tree)};
   }
   if (is_linear_scene(tree)) {
     const LoadedLinearScene loaded = load_linear_scene(options.scene, options.common.sets);
     (void)loaded.model();
     refuse_stability(options);
-    return {unit_warnings(schema_of(loaded.scene), object_of(loaded.scene), tree), {}};
+    return {unit_warnings(schema_of(loaded.scene), object_of(loaded.scene), tree)};
   }
   if (is_sphere_scene(tree)) {
     const LoadedSphereScene loaded = load_sphere_scene(options.scene, options.common.sets);
     refuse_stability(options);
-    return {unit_warnings(SphereScene::schema(), &loaded.scene, tree), {}};
+    return {unit_warnings(SphereScene::schema(), &loaded.scene, tree)};
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   require_summary_memory(loaded);
@@ -71,7 +73,7 @@ Report check_scene(const CheckOptions& options) {
   } catch (const ConfigError& error) {
     throw loaded.located(error);
   }
-  Report report{scene_warnings(loaded, model), {}};
+  Report report{scene_warnings(loaded, model), {}, matrix_bodies_json(model)};
   if (options.stability)
     report.stability = check_step_stability(model, loaded.scene.time, options.places);
   return report;
@@ -91,6 +93,7 @@ ExitCode check(const CheckOptions& options) {
     Json object = {{"errors", Json::array()}, {"warnings", Json::array()}};
     for (const Problem& problem : problems) object["errors"].push_back(problem_json(problem));
     for (const Problem& one : report.warnings) object["warnings"].push_back(problem_json(one));
+    if (!report.bodies.empty()) object["matrix_bodies"] = report.bodies;
     if (report.stability) object["stability"] = step_stability_json(*report.stability);
     print_json(object);
   } else {
@@ -99,6 +102,7 @@ ExitCode check(const CheckOptions& options) {
                num_warnings == 0   ? ""
                : num_warnings == 1 ? ", 1 warning"
                                    : fmt::format(", {} warnings", num_warnings));
+    print_matrix_bodies(report.bodies);
     if (report.stability) print_step_stability(*report.stability);
   }
   if (!problems.empty()) return ExitCode::bad_input;

@@ -27,7 +27,6 @@ class DiscStatistics {
   void load(const State& state, const std::string& prefix);
 
  private:
-  const DiscModel* model_;
   double half_;                        ///< s
   std::vector<double> least_, most_;   ///< force of every contact in the second half, N
   double before_ = 0.0, after_ = 0.0;  ///< largest displacement of a pad, m

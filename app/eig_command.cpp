@@ -181,11 +181,6 @@ ExitCode eig(EigOptions options) {
     return eig_of_sphere(options.stability);
   }
   const LoadedScene loaded = load_scene(options.stability.scene, options.stability.common.sets);
-  // Eigenvectors of many coupled modes are more accurate, and sooner had, by the dense method.
-  for (const auto& [name, substructure] : loaded.scene.model.substructures) {
-    const bool is_matrices = std::holds_alternative<TouchedMatrixBodyParameters>(substructure);
-    if (is_matrices && options.stability.method.empty()) options.stability.method = "dense";
-  }
   choose_method(options.stability);
   std::vector<double> values;
   SceneFamily family = make_family(loaded, options, values);

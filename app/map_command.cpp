@@ -61,7 +61,14 @@ struct LineResult {
   std::vector<double> growth;                                ///< at every value, 1/s
   std::vector<double> changes;                               ///< of stability, ascending
   double highest = std::numeric_limits<double>::infinity();  ///< up to where all were looked at, Hz
+  Locus resolution;  ///< what may have been missed, Locus::unresolved and unverified
 };
+
+/// Adds what may have been missed of one locus to that of others.
+void add_resolution(Locus& all, const Locus& one) {
+  all.unresolved = std::max(all.unresolved, one.unresolved);
+  all.unverified.insert(all.unverified.end(), one.unverified.begin(), one.unverified.end());
+}
 
 double largest_growth(const std::vector<std::complex<double>>& eigenvalues) {
   double largest = -std::numeric_limits<double>::infinity();
@@ -120,8 +127,11 @@ LineResult trace_broken_line(StabilityFamily& family, const Axis& axis, std::siz
                                    axis.values.begin() + (end - result.growth.begin()));
     values[varied] = part.front();
     try {
-      if (part.size() > 1)
-        add_changes(result, axis, locus_along(family, axis.key, varied, values, part, options));
+      if (part.size() > 1) {
+        const Locus locus = locus_along(family, axis.key, varied, values, part, options);
+        add_changes(result, axis, locus);
+        add_resolution(result.resolution, locus);
+      }
     } catch (const NumericalError&) {
       // Between two values there may be none either.
     }
@@ -144,6 +154,7 @@ LineResult trace_line(StabilityFamily& family, const std::array<Axis, 2>& axes, 
     for (const auto& eigenvalues : locus.eigenvalues)
       result.growth.push_back(largest_growth(eigenvalues));
     add_changes(result, axis, locus);
+    add_resolution(result.resolution, locus);
     return result;
   } catch (const NumericalError&) {
     return trace_broken_line(family, axis, varied, values, options);
@@ -179,8 +190,9 @@ std::vector<LineResult> trace_lines(const StabilityScene& loaded, const std::arr
   return results;
 }
 
+/// @param resolution what may have been missed along x and along y
 StabilityMap make_map(const StabilityScene& loaded, const std::array<Axis, 2>& axes,
-                      const StabilityOptions& stability) {
+                      const StabilityOptions& stability, std::array<Locus, 2>& resolution) {
   StabilityMap map;
   map.x = axes[0].values;
   map.y = axes[1].values;
@@ -205,6 +217,7 @@ StabilityMap make_map(const StabilityScene& loaded, const std::array<Axis, 2>& a
     const bool is_row = i < map.y.size();
     if (is_row) map.growth.push_back(lines[i].growth);
     map.highest_frequency = std::min(map.highest_frequency, lines[i].highest);
+    add_resolution(resolution[is_row ? 0 : 1], lines[i].resolution);
     (is_row ? crossings.along_x : crossings.along_y).push_back(lines[i].changes);
   }
   map.boundary = boundary_lines(crossings);
@@ -262,7 +275,8 @@ ExitCode map(MapOptions options) {
       make_axis(loaded, options.y, "--y", options.y_scale.value_or(options.scale))};
   if (axes[0].key.path == axes[1].key.path)
     throw ConfigError("--y", fmt::format("'{}' is the key of --x already", axes[1].key.path));
-  const StabilityMap found = make_map(loaded, axes, stability);
+  std::array<Locus, 2> resolution;
+  const StabilityMap found = make_map(loaded, axes, stability, resolution);
 
   const StabilityMap shown = in_seconds(found, loaded, axes);
   if (options.output) {
@@ -291,7 +305,9 @@ ExitCode map(MapOptions options) {
                    {"y", found.y},
                    {"window", {0.0, number(found.highest_frequency)}},
                    {"growth", Json::array()},
-                   {"boundary", found.boundary}};
+                   {"boundary", found.boundary},
+                   {"unresolved", {resolution[0].unresolved, resolution[1].unresolved}},
+                   {"unverified", {resolution[0].unverified, resolution[1].unverified}}};
     for (const auto& row : found.growth) {
       Json numbers = Json::array();
       for (const double value : row) numbers.push_back(number(value));
@@ -307,6 +323,7 @@ ExitCode map(MapOptions options) {
   fmt::print("{} of {} points are unstable; the boundary has {} line(s)\n", num_unstable,
              found.x.size() * found.y.size(), found.boundary.size());
   fmt::print("{}\n", window_text(found.highest_frequency));
+  for (std::size_t i = 0; i < 2; ++i) print_resolution(resolution[i], axes[i].key);
   for (const auto& file : {options.output, options.figure})
     if (file) fmt::print("{}\n", *file);
   return ExitCode::done;

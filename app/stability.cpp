@@ -9,12 +9,14 @@
 
 #include "analysis/sampled_locus.hpp"
 #include "app/linear_stability.hpp"
+#include "app/remark.hpp"
 #include "app/sphere_stability.hpp"
 #include "core/blas.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/retained_modes.hpp"
+#include "solvers/search_failure.hpp"
 #include "solvers/secular_eigenvalues.hpp"
 
 namespace stridor {
@@ -199,9 +201,15 @@ std::string value_text(const NumericKey& key, double value) {
                      key.unit.empty() ? "" : " " + printed_units(key));
 }
 
+namespace {
+
+/// Up to how many eigenvalues the dense method steps in where another fails: about a minute.
+constexpr Eigen::Index most_dense = 2000;
+
+}  // namespace
+
 LowestEigenvalues find_lowest(const Pencil& pencil, EigenvalueMethod method,
                               const SpectrumWindow& window) {
-  constexpr Eigen::Index most_dense = 2000;  // about a minute
   const BlasGuard guard;
   LowestEigenvalues found;
   if (method == EigenvalueMethod::secular) {
@@ -473,6 +481,28 @@ Locus locus_at(const PencilFamily& family, const std::vector<double>& range,
   return locus;
 }
 
+/// The branches along a range, by the dense method where the search for zeros of the secular
+/// function fails.
+/// @throws NumericalError as trace_locus()
+Locus trace(const PencilFamily& family, const NumericKey& varied, const std::vector<double>& range,
+            const LocusOptions& options) {
+  try {
+    return trace_locus(family, range, options);
+  } catch (const SearchFailure& error) {
+    if (options.method == LocusMethod::dense) throw;
+    Pencil first;
+    family.place(range.front(), first);
+    if (first.num_eigenvalues() > most_dense) throw;
+    print_remark(
+        "the search for zeros of the secular function did not converge at {}: all {} eigenvalues "
+        "by the dense method\n",
+        value_text(varied, range.front()), first.num_eigenvalues());
+  }
+  LocusOptions dense = options;
+  dense.method = LocusMethod::dense;
+  return trace_locus(family, range, dense);
+}
+
 }  // namespace
 
 Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t key,
@@ -492,7 +522,7 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
     return sample_locus(family.spectra(key, values, within), range, within, sparing_effort);
   const PencilFamily pencils = family.along(key, values, range.front(), range.back());
   if (varied.is_integer) return locus_at(pencils, range, options);
-  if (!family.is_sampled()) return trace_locus(pencils, range, options);
+  if (!family.is_sampled()) return trace(pencils, varied, range, options);
   return sample_locus(pencils, range, within);
 }
 

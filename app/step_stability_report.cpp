@@ -108,7 +108,6 @@ Json step_stability_json(const StepStabilityReport& report) {
 }
 
 void print_step_stability(const StepStabilityReport& report) {
-  print_matrix_bodies(report.matrix_bodies);
   if (report.time.integrator == Integrator::central_difference) {
     fmt::print("step {:.6g} s, largest stable step of the bodies {:.6g} s\n", report.time.step,
                report.limit);

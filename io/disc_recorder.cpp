@@ -31,13 +31,12 @@ constexpr std::array<DiscQuantity, 5> contact_quantities{
 struct RecordedPlace {
   const char* body;
   const char* direction;
-  Eigen::VectorXd (*row)(const FaceContact&);
+  FacePort port;
 };
-constexpr std::array<RecordedPlace, 4> places{
-    {{"pad", "r", [](const FaceContact& contact) { return contact.pad_r; }},
-     {"pad", "phi", [](const FaceContact& contact) { return contact.pad_phi; }},
-     {"pad", "z", [](const FaceContact& contact) { return contact.pad_z; }},
-     {"disc", "z", [](const FaceContact& contact) { return contact.plate.w; }}}};
+constexpr std::array<RecordedPlace, 4> places{{{"pad", "r", FacePort::pad_r},
+                                               {"pad", "phi", FacePort::pad_phi},
+                                               {"pad", "z", FacePort::pad_z},
+                                               {"disc", "z", FacePort::plate_w}}};
 
 /// Calls what is given for every motion (contact, place, number of derivatives, name) and for every
 /// quantity (contact, quantity, name).
@@ -113,14 +112,14 @@ DiscRecorder::DiscRecorder(const DiscModel& model, const std::vector<std::string
   };
   // The derivatives of one displacement share its stream.
   std::size_t place_of_stream = 0;
-  const auto on_motion = [&](std::size_t contact, const RecordedPlace& place, std::size_t derivative,
-                             const std::string& name) {
+  const auto on_motion = [&](std::size_t contact, const RecordedPlace& place,
+                             std::size_t derivative, const std::string& name) {
     const std::string stream = name.substr(0, name.rfind('.'));
     if (!is_wanted(name)) return;
     if (streams_.empty() || streams_[place_of_stream].name != stream) {
       place_of_stream = streams_.size();
       streams_.push_back(
-          {stream, place.row(model.contacts[contact]), 0, nullptr, Decimator(filter_)});
+          {stream, place.port, static_cast<int>(contact), nullptr, Decimator(filter_)});
     }
     series_.push_back({"/channels/" + name,
                        motion_units[derivative],
@@ -131,7 +130,8 @@ DiscRecorder::DiscRecorder(const DiscModel& model, const std::vector<std::string
   const auto on_quantity = [&](std::size_t contact, const DiscQuantity& quantity,
                                const std::string& name) {
     if (!is_wanted(name)) return;
-    streams_.push_back({name, {}, static_cast<int>(contact), quantity.member, Decimator(filter_)});
+    streams_.push_back(
+        {name, std::nullopt, static_cast<int>(contact), quantity.member, Decimator(filter_)});
     for (const ContactSeries& column :
          contact_columns(name.substr(0, name.rfind('.')), quantity.name, quantity.units,
                          filter_->description())) {
@@ -182,7 +182,7 @@ void DiscRecorder::load(const State& state, const std::string& prefix) {
 }
 
 double DiscRecorder::value(const Stream& stream, const FaceContactMotion& motion) {
-  if (stream.row.size() > 0) return stream.row.dot(motion.displacement());
+  if (stream.port) return motion.moved(stream.contact, *stream.port);
   const FaceContactState contact = motion.contact(stream.contact);
   return stream.member != nullptr ? contact.*stream.member : static_cast<double>(contact.state);
 }

@@ -54,7 +54,7 @@ class DiscRecorder {
   /// What one step gives: a displacement, a quantity of a contact, or its state.
   struct Stream {
     std::string name;
-    Eigen::VectorXd row;  ///< of a displacement; empty: of a contact
+    std::optional<FacePort> port;  ///< of a displacement; none: of a contact
     int contact = 0;
     double FaceContactState::*member = nullptr;  ///< null: the state
     Decimator decimator;

@@ -53,11 +53,12 @@ LinearSystem dense_system(const SparseSystem& sparse) {
   return dense;
 }
 
-LinearModel model_of(const DiscScene& scene, const LoadedLinearScene&) {
+LinearModel model_of(const DiscScene& scene, const LoadedLinearScene& loaded) {
   require_memory(estimate_set_up(scene.model), memory_limit());
   const Activity assembling("disc and pads and their steady sliding");
   LinearModel model;
-  model.disc = make_disc_model(scene.model);
+  if (!loaded.bodies) loaded.bodies = std::make_shared<DiscBodyCache>();
+  model.disc = make_disc_model(scene.model, *loaded.bodies);
   model.dense = model.disc->system;
   model.highest_frequency = model.disc->highest_frequency;
   return model;
@@ -223,6 +224,7 @@ LinearModel LoadedLinearScene::model(const std::vector<NumericKey>& keys,
   changed.scene = read_linear_scene(changed.tree);
   LinearModel made = changed.model();
   matrices = changed.matrices;
+  bodies = changed.bodies;
   return made;
 }
 

@@ -88,6 +88,8 @@ struct LoadedLinearScene {
   LinearScene scene;
   /// Read when they are first needed; copies share them.
   mutable std::shared_ptr<const NamedMatrices> matrices;
+  /// Plate and pads of the models made so far, likewise.
+  mutable std::shared_ptr<DiscBodyCache> bodies;
 
   std::string resolved() const;
   std::string hash() const;

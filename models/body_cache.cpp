@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "models/keys_text.hpp"
+
 namespace stridor {
 namespace {
 
@@ -38,6 +40,16 @@ void append_keys(std::string& text, const Schema& schema, const void* object) {
     text += ';';
   }
 }
+
+}  // namespace
+
+std::string keys_text(const Schema& schema, const void* object) {
+  std::string text;
+  append_keys(text, schema, object);
+  return text;
+}
+
+namespace {
 
 /// Proportional damping of a body that is among its keys; that of matrices comes with them.
 struct DampingOf {

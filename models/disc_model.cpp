@@ -22,12 +22,6 @@ Eigen::VectorXd padded(const Eigen::VectorXd& row, Eigen::Index first, Eigen::In
   return whole;
 }
 
-PadBody make_pad(const DiscModelParameters& parameters, const std::vector<double>& offsets) {
-  const PadsParameters& pads = parameters.pads;
-  return pads.elastic ? make_elastic_pad(*pads.elastic, pads.stiffness, offsets)
-                      : make_rigid_pad(*pads.mass, pads.stiffness, offsets.size());
-}
-
 /// A contact point of a pad, `offset` along φ from its centre, whose directions turn with it.
 FaceContact make_contact(const AnnularPlate& plate, const PadPoint& point,
                          const DiscModelParameters& parameters, int side, Eigen::Index first_pad,
@@ -137,12 +131,17 @@ void check(const DiscModelParameters& parameters, const DiscTerms& terms) {
 }  // namespace
 
 DiscModel make_disc_model(const DiscModelParameters& parameters) {
+  DiscBodyCache cache;
+  return make_disc_model(parameters, cache);
+}
+
+DiscModel make_disc_model(const DiscModelParameters& parameters, DiscBodyCache& cache) {
   const DiscTerms terms = disc_terms(parameters.terms);
   check(parameters, terms);
-  const AnnularPlate plate(parameters.disc.plate,
-                           parameters.disc.centrifugal ? parameters.disc.speed : 0.0);
+  const AnnularPlate& plate = cache.plate(
+      parameters.disc.plate, parameters.disc.centrifugal ? parameters.disc.speed : 0.0);
   const std::vector<double> offsets = contact_offsets(parameters);
-  const PadBody pad = make_pad(parameters, offsets);
+  const PadBody& pad = cache.pad(parameters.pads, offsets);
   DiscModel model;
   model.highest_frequency =
       std::min(plate.lowest_omitted(), 0.5 * pad.highest_kept) / (2.0 * std::numbers::pi);

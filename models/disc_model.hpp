@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "coupling/face_contact.hpp"
+#include "models/disc_body_cache.hpp"
 #include "models/disc_parameters.hpp"
 #include "substructures/linear_system.hpp"
 
@@ -32,5 +33,7 @@ struct DiscModel {
 /// friction damping is wanted at no speed; as make_elastic_pad()
 /// @throws NumericalError if pads that are pressed on have no state of steady sliding
 DiscModel make_disc_model(const DiscModelParameters& parameters);
+/// The same with plate and pads from a cache.
+DiscModel make_disc_model(const DiscModelParameters& parameters, DiscBodyCache& cache);
 
 }  // namespace stridor

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "solvers/decoupling.hpp"
 #include "substructures/linear_system.hpp"
 
 namespace stridor {
@@ -26,7 +27,8 @@ EliminatedSystem eliminate_constraints(const LinearSystem& system);
 ///   f_n)
 ///
 /// Exact for free motion at any step, and for forces that are linear over it; there is no limit of
-/// stability but that of the system itself. M need not be symmetric.
+/// stability but that of the system itself. M need not be symmetric. The system is taken apart first
+/// (decouple()): every group of coordinates z, q = T z, has an exponential of its own.
 class ExponentialPropagator {
  public:
   /// @param system without constraints
@@ -34,32 +36,42 @@ class ExponentialPropagator {
   /// @throws std::invalid_argument if the step is not positive, sizes do not fit together or there
   ///         are constraints
   /// @throws NumericalError if M is singular
-  /// Cost: of order 10 (2n + 2n)³ operations; a step costs (2n)² + 4n².
+  /// Cost: of order 10 (4 m)³ operations for every group of m coordinates; a step costs 8 m² each.
   ExponentialPropagator(const LinearSystem& system, double step);
 
-  Eigen::Index size() const { return size_; }
+  Eigen::Index size() const { return apart_.system.size(); }
   double step() const { return step_; }
 
   /// From t_n to t_{n+1} without forces.
-  void advance(Eigen::VectorXd& q, Eigen::VectorXd& v);
+  void advance(Eigen::VectorXd& q, Eigen::VectorXd& v) const;
   /// The same under forces that go linearly from `before` to `after`.
   void advance(Eigen::VectorXd& q, Eigen::VectorXd& v, const Eigen::VectorXd& before,
-               const Eigen::VectorXd& after);
+               const Eigen::VectorXd& after) const;
+
+  /// The coordinates z and their groups.
+  const DecoupledSystem& apart() const { return apart_; }
+  /// (z, ż) at t_{n+1} without forces. Vectors are of padded_size(size()) numbers.
+  void advance(const double* z, const double* v, double* next_z, double* next_v) const;
+
+  /// z and ż at t_{n+1} per velocity ż at t_n.
+  const GroupDiagonal& z_by_v() const { return z_by_v_; }
+  const GroupDiagonal& v_by_v() const { return v_by_v_; }
 
   /// Displacement at t_{n+1} per force that is constant from t_n on, m/N: n x n.
-  Eigen::MatrixXd compliance() const { return by_constant_.topRows(size_); }
+  Eigen::MatrixXd compliance() const { return by_constant_.topRows(size()); }
+  /// (q, q̇) at t_{n+1} per force that is constant from t_n on: 2n x n.
+  const Eigen::MatrixXd& constant_response() const { return by_constant_; }
   /// (q, q̇) at t_{n+1} per force that grows from nothing at t_n: 2n x n.
   const Eigen::MatrixXd& slope_response() const { return by_slope_; }
   /// e^{Ah}: (q, q̇) at t_{n+1} per (q, q̇) at t_n.
-  const Eigen::MatrixXd& free_response() const { return free_; }
+  Eigen::MatrixXd free_response() const;
 
  private:
-  Eigen::Index size_;
+  DecoupledSystem apart_;
   double step_;
-  Eigen::MatrixXd free_;         ///< e^{Ah}
-  Eigen::MatrixXd by_constant_;  ///< h φ₁(Ah) B
-  Eigen::MatrixXd by_slope_;     ///< h φ₂(Ah) B
-  Eigen::VectorXd state_, next_;
+  GroupDiagonal z_by_z_, z_by_v_, v_by_z_, v_by_v_;  ///< e^{Ah}
+  Eigen::MatrixXd by_constant_;                      ///< h φ₁(Ah) B, of q
+  Eigen::MatrixXd by_slope_;                         ///< h φ₂(Ah) B
 };
 
 }  // namespace stridor

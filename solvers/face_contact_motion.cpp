@@ -1,77 +1,14 @@
 #include "solvers/face_contact_motion.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "solvers/rigid_contact_motion.hpp"
 #include "solvers/spring_contact_motion.hpp"
+#include "substructures/symmetric_eigenpairs.hpp"
 
 namespace stridor {
-
-FaceContactRows::FaceContactRows(const LinearSystem& bodies,
-                                 const std::vector<FaceContact>& contacts,
-                                 const FaceContactLaw& law, const FaceSlidingState& state) {
-  const Eigen::Index n = bodies.size();
-  const auto num_contacts = static_cast<Eigen::Index>(contacts.size());
-  displacement = velocity = Eigen::MatrixXd::Zero(3 * num_contacts, n);
-  drive = preload = Eigen::VectorXd::Zero(3 * num_contacts);
-  inputs = Eigen::MatrixXd::Zero(n, 3 * num_contacts);
-  for (Eigen::Index i = 0; i < num_contacts; ++i) {
-    const FaceContact& contact = contacts[static_cast<std::size_t>(i)];
-    const FaceContactPoint& point = state.contacts[static_cast<std::size_t>(i)];
-    const Eigen::Index k = 3 * i;
-    displacement.row(k) = point.normal;
-    velocity.row(k + 1) = -contact.friction();
-    drive(k) = point.gap;
-    drive.segment<2>(k + 1) = point.velocity;
-    inputs.col(k) = point.normal;
-    inputs.col(k + 1) = point.along;
-    if (law.friction_turns) {
-      velocity.row(k + 2) = -contact.across();
-      displacement.row(k + 2) = -law.speed * contact.radius * contact.turning();
-      inputs.col(k + 2) = contact.across();
-    }
-    if (!point.is_closed) continue;
-    preload(k) = point.force;
-    preload.segment<2>(k + 1) = point.force * law.friction * point.direction;
-  }
-  constexpr Eigen::Index each = FaceContact::num_bending;
-  const Eigen::Index num_bending = law.forces_bend ? each * num_contacts : 0;
-  bending_inputs.resize(n, num_bending);
-  normal_bending.resize(num_bending, n);
-  friction_bending.resize(num_bending, n);
-  for (Eigen::Index i = 0; each * i < num_bending; ++i) {
-    const FaceContact& contact = contacts[static_cast<std::size_t>(i)];
-    bending_inputs.middleCols(each * i, each) = contact.bending_forces();
-    normal_bending.middleRows(each * i, each) = contact.normal_bending();
-    friction_bending.middleRows(each * i, each) = contact.friction_bending();
-  }
-}
-
-Eigen::VectorXd FaceContactRows::gap_bending(const Eigen::VectorXd& x) const {
-  constexpr Eigen::Index each = FaceContact::num_bending;
-  Eigen::VectorXd bent = Eigen::VectorXd::Zero(num_contacts());
-  if (!bends()) return bent;
-  const Eigen::VectorXd turned = normal_bending * x;
-  const Eigen::VectorXd moved = bending_inputs.transpose() * x;
-  for (Eigen::Index i = 0; i < bent.size(); ++i)
-    bent(i) = 0.5 * turned.segment<each>(each * i).dot(moved.segment<each>(each * i));
-  return bent;
-}
-
-Eigen::VectorXd FaceContactRows::bending(const Eigen::VectorXd& f, const Eigen::VectorXd& x) const {
-  constexpr Eigen::Index each = FaceContact::num_bending;
-  if (!bends()) return {};
-  const Eigen::VectorXd normal = normal_bending * x;
-  Eigen::VectorXd bent = friction_bending * x;
-  for (Eigen::Index i = 0; i < num_contacts(); ++i) {
-    bent.segment<each>(each * i) =
-        f(3 * i) * normal.segment<each>(each * i) + f(3 * i + 1) * bent.segment<each>(each * i);
-  }
-  return bent;
-}
 
 FaceContactState face_contact_state(const FaceContactLaw& law, const FaceContact& contact,
                                     const Eigen::Vector3d& seen, const Eigen::Vector3d& forces) {
@@ -98,12 +35,12 @@ double least_sine_ratio(double x) {
 
 Eigen::MatrixXd normal_answer(const LinearSystem& system, const FaceSlidingState& state,
                               const std::function<double(double)>& answer) {
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(
-      split(system.position).symmetric, system.mass);
-  const Eigen::VectorXd answers = modes.eigenvalues().cwiseMax(0.0).cwiseSqrt().unaryExpr(answer);
+  const SymmetricEigenpairs modes =
+      generalised_eigenpairs(split(system.position).symmetric, system.mass, "contact motion");
+  const Eigen::VectorXd answers = modes.values.cwiseMax(0.0).cwiseSqrt().unaryExpr(answer);
   std::vector<Eigen::VectorXd> rows;
   for (const FaceContactPoint& point : state.contacts)
-    if (point.is_closed) rows.push_back(modes.eigenvectors().transpose() * point.normal);
+    if (point.is_closed) rows.push_back(modes.vectors.transpose() * point.normal);
   const auto size = static_cast<Eigen::Index>(rows.size());
   Eigen::MatrixXd sum(size, size);
   for (Eigen::Index i = 0; i < size; ++i) {

@@ -9,6 +9,7 @@
 #include "core/state.hpp"
 #include "coupling/face_contact.hpp"
 #include "solvers/contact_solver.hpp"
+#include "solvers/face_contact_ports.hpp"
 
 namespace stridor {
 
@@ -21,29 +22,6 @@ struct FaceContactState {
   double across_force = 0.0;    ///< across it, N
   double slip_velocity = 0.0;   ///< of the face against the pad, magnitude, m/s
   ContactState state = ContactState::slip;
-};
-
-/// What contacts see of a displacement x from a sliding state, and how their forces act: three of
-/// each of k contacts, along its normal, along the sliding direction and across it.
-struct FaceContactRows {
-  FaceContactRows(const LinearSystem& bodies, const std::vector<FaceContact>& contacts,
-                  const FaceContactLaw& law, const FaceSlidingState& state);
-
-  Eigen::MatrixXd displacement;  ///< gap and velocities on x, 3k x n
-  Eigen::MatrixXd velocity;      ///< on ẋ
-  Eigen::VectorXd drive;         ///< gap and velocities of the sliding state, 3k
-  Eigen::MatrixXd inputs;        ///< n + A q₀, b + B q₀ and a, n x 3k
-  Eigen::VectorXd preload;       ///< forces of the sliding state, 3k
-  /// A and B of every contact (FaceContact), F K_A and F K_B; empty without bending.
-  Eigen::MatrixXd bending_inputs;                    ///< F, n x 7k
-  Eigen::MatrixXd normal_bending, friction_bending;  ///< K_A, K_B, 7k x n
-
-  int num_contacts() const { return static_cast<int>(drive.size() / 3); }
-  bool bends() const { return bending_inputs.cols() > 0; }
-  /// ½ xᵀ A x of every contact, m.
-  Eigen::VectorXd gap_bending(const Eigen::VectorXd& x) const;
-  /// What forces f do by bending at a displacement, on `bending_inputs`: λ K_A x + τ K_B x, 7k.
-  Eigen::VectorXd bending(const Eigen::VectorXd& f, const Eigen::VectorXd& x) const;
 };
 
 /// Marches M ẍ + P ẋ + Q x = the deviation of contact forces from those of a sliding state, x = q −
@@ -60,10 +38,12 @@ class FaceContactMotion {
   virtual bool step() = 0;
 
   /// x, from the sliding state.
-  virtual const Eigen::VectorXd& displacement() const = 0;
+  virtual Eigen::VectorXd displacement() const = 0;
   virtual Eigen::VectorXd velocity() const = 0;
   virtual int num_contacts() const = 0;
   virtual FaceContactState contact(int index) const = 0;
+  /// A displacement at a contact, from the sliding state, m.
+  virtual double moved(int contact, FacePort port) const = 0;
 
   virtual void save(State& state, const std::string& prefix) const = 0;
   /// @throws std::invalid_argument if the state is of another system

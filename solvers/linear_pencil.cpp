@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <stdexcept>
+
+#include "substructures/symmetric_eigenpairs.hpp"
 
 namespace stridor {
 namespace {
@@ -38,12 +39,12 @@ void check(const LinearSystem& system) {
 Pencil make_pencil(const LinearSystem& system) {
   check(system);
   const Eigen::Index n = system.size();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(
-      split(system.position).symmetric, system.mass);
+  const SymmetricEigenpairs modes =
+      generalised_eigenpairs(split(system.position).symmetric, system.mass, "linear system");
   Pencil pencil;
-  pencil.omega = modes.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  pencil.omega = modes.values.cwiseMax(0.0).cwiseSqrt();
   pencil.damping = Eigen::VectorXd::Zero(n);
-  pencil.slots = modes.eigenvectors();
+  pencil.slots = modes.vectors;
   const Eigen::MatrixXd momenta = system.mass * pencil.slots;
   pencil.slot_stiffness =
       system.position -

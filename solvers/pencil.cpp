@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -146,19 +147,59 @@ Eigen::VectorXcd null_vector(Eigen::MatrixXcd matrix) {
     const double largest = matrix.row(i).cwiseAbs().maxCoeff();
     if (largest > 0.0) matrix.row(i) /= largest;
   }
-  // Many rows, those of bodies with coupled terms: the decomposition would take too long.
-  constexpr Eigen::Index most_decomposed = 24;
-  if (matrix.rows() > most_decomposed) {
-    const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(matrix);
-    Eigen::VectorXcd vector = Eigen::VectorXcd::NullaryExpr(matrix.rows(), [](Eigen::Index i) {
-      return std::polar(1.0, static_cast<double>(i));
-    });
-    constexpr int num_iterations = 3;
-    for (int i = 0; i < num_iterations; ++i) vector = lu.solve(vector).normalized().eval();
-    if (vector.allFinite()) return column_scale.asDiagonal() * vector;
-  }
   const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(matrix, Eigen::ComputeFullV);
   return column_scale.asDiagonal() * svd.matrixV().col(matrix.cols() - 1);
+}
+
+/// The vector that a nearly singular matrix makes smallest, by inverse iteration.
+Eigen::VectorXcd smallest_image(const Eigen::MatrixXcd& matrix) {
+  const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(matrix);
+  Eigen::VectorXcd vector = Eigen::VectorXcd::NullaryExpr(
+      matrix.rows(), [](Eigen::Index i) { return std::polar(1.0, static_cast<double>(i)); });
+  constexpr int num_iterations = 3;
+  for (int i = 0; i < num_iterations; ++i) vector = lu.solve(vector).normalized().eval();
+  return vector;
+}
+
+/// Eigenvector from all modes and multipliers, for as many slots as bodies with coupled terms have:
+/// the small problem on the slots would divide by modes near their poles, of which there are many.
+///
+///   [P(s)  B_Eᵀ] [q ]
+///   [B_C    0  ] [δλ] = 0,   rows and columns of modes over |s| + ω, those of B_C and B_E over
+///                            their lengths
+///
+/// @param d s² + s c + ω²
+/// @return nothing where the matrix is singular to the last digit
+std::optional<Eigenvector> eigenvector_of_all_modes(const Pencil& pencil, const ModalRows& rows,
+                                                    const Eigen::ArrayXcd& d, Complex s) {
+  const Eigen::Index n = pencil.num_modes();
+  const Eigen::Index k = rows.num_constraints;
+  Eigen::MatrixXcd matrix = Eigen::MatrixXcd::Zero(n + k, n + k);
+  matrix.topLeftCorner(n, n) = d.matrix().asDiagonal();
+  if (rows.rank > 0) {
+    const Eigen::MatrixXcd inputs = rows.inputs.middleRows(k, rows.rank).cast<Complex>() +
+                                    s * rows.inputs.bottomRows(rows.rank).cast<Complex>();
+    matrix.topLeftCorner(n, n) +=
+        inputs.transpose() * rows.outputs.bottomRows(rows.rank).cast<Complex>();
+  }
+  matrix.topRightCorner(n, k) = rows.inputs.topRows(k).transpose().cast<Complex>();
+  matrix.bottomLeftCorner(k, n) = rows.outputs.topRows(k).cast<Complex>();
+  Eigen::VectorXd row_scale(n + k), column_scale(n + k);
+  row_scale.head(n) = (pencil.omega.array() + std::abs(s)).inverse();
+  column_scale.head(n) = row_scale.head(n);
+  for (Eigen::Index i = 0; i < k; ++i) {
+    const double length_of_row = matrix.row(n + i).head(n).cwiseAbs().dot(row_scale.head(n));
+    const double length_of_column = matrix.col(n + i).head(n).cwiseAbs().dot(row_scale.head(n));
+    row_scale(n + i) = length_of_row > 0.0 ? 1.0 / length_of_row : 1.0;
+    column_scale(n + i) = length_of_column > 0.0 ? 1.0 / length_of_column : 1.0;
+  }
+  matrix = row_scale.asDiagonal() * matrix * column_scale.asDiagonal();
+  const Eigen::VectorXcd right = column_scale.asDiagonal() * smallest_image(matrix);
+  const Eigen::VectorXcd left = row_scale.asDiagonal() * smallest_image(matrix.transpose());
+  if (!right.allFinite() || !left.allFinite()) return std::nullopt;
+  const double length = right.head(n).norm();
+  return Eigenvector{right.head(n) / length, left.head(n).conjugate().normalized(),
+                     right.tail(k) / length};
 }
 
 }  // namespace
@@ -369,6 +410,10 @@ Eigenvector eigenvector(const Pencil& pencil, Complex s) {
   const Eigen::Index size = k + rows.rank;
   const Eigen::ArrayXcd d = s * s + s * pencil.damping.array().cast<Complex>() +
                             pencil.omega.array().square().cast<Complex>();
+  constexpr Eigen::Index most_rows = 24;
+  if (size > most_rows) {
+    if (const auto vector = eigenvector_of_all_modes(pencil, rows, d, s)) return *vector;
+  }
   // Modes at their pole would be divided by next to nothing: they stay unknowns.
   Eigen::Index nearest = 0;
   d.abs().minCoeff(&nearest);

@@ -34,35 +34,109 @@ void check_compliance(const LinearSystem& bodies, const FaceSlidingState& state,
       step));
 }
 
+/// Gap at the end of a step and mean velocities over it, from the ports at its end.
+std::vector<FaceContactPorts::LocalRows> mean_rows(const FaceContactPorts& ports, double step) {
+  std::vector<FaceContactPorts::LocalRows> mean;
+  for (int i = 0; i < ports.num_contacts(); ++i) {
+    mean.push_back(ports.velocity(i) / step + 0.5 * ports.displacement(i));
+    mean.back().row(0) = ports.displacement(i).row(0);
+  }
+  return mean;
+}
+
+/// The same from the ports at its beginning.
+std::vector<FaceContactPorts::LocalRows> now_rows(const FaceContactPorts& ports, double step) {
+  std::vector<FaceContactPorts::LocalRows> now;
+  for (int i = 0; i < ports.num_contacts(); ++i) {
+    now.push_back(-ports.velocity(i) / step + 0.5 * ports.displacement(i));
+    now.back().row(0).setZero();
+  }
+  return now;
+}
+
 }  // namespace
+
+class RigidContactMotion::Answer final : public FaceContactAnswer {
+ public:
+  /// @param share of the impulse that is still to come
+  /// @param free  ports at t_{n+1} without it
+  /// @param lag   slip_lag()
+  Answer(const RigidContactMotion& motion, double share, const Eigen::VectorXd& free,
+         const Eigen::VectorXd& lag)
+      : motion_(motion), share_(share), free_(free), compliance_(&motion.compliance_) {
+    if (share != 1.0) {
+      scaled_ = share * motion.compliance_;
+      compliance_ = &scaled_;
+    }
+    const FaceContactPorts& ports = motion.ports_;
+    known_ = ports.drive() - lag;
+    for (int i = 0; i < ports.num_contacts(); ++i) {
+      const auto index = static_cast<std::size_t>(i);
+      known_.segment<3>(3 * i) += motion.now_[index] * ports.of(i, motion.y_.data()) +
+                                  motion.mean_[index] * ports.of(i, free.data());
+    }
+    force_ = moved_ = y_ = Eigen::VectorXd::Zero(free.size());
+  }
+
+  double see(const double* forces, double* seen) override {
+    const FaceContactPorts& ports = motion_.ports_;
+    motion_.port_forces(forces, force_.data());
+    force_ *= share_;
+    moved_.setZero();
+    motion_.port_answer_.add_product(force_.data(), moved_.data());
+    y_ = free_ + moved_;
+    // What forces move is so little in a short step that it would be lost in the rounding of y.
+    for (int i = 0; i < ports.num_contacts(); ++i) {
+      Eigen::Map<Eigen::Vector3d> sees(seen + 3 * i);
+      sees = known_.segment<3>(3 * i) +
+             motion_.mean_[static_cast<std::size_t>(i)] * ports.of(i, moved_.data());
+      sees(0) += ports.gap_bending(i, ports.of(i, y_.data()));
+    }
+    return 0.0;
+  }
+  const Compliance& compliance() const override { return *compliance_; }
+
+ private:
+  const RigidContactMotion& motion_;
+  double share_;
+  Eigen::VectorXd free_;
+  const Compliance* compliance_;
+  Compliance scaled_;
+  Eigen::VectorXd known_;  ///< seen without the impulse
+  Eigen::VectorXd force_, moved_, y_;
+};
 
 RigidContactMotion::RigidContactMotion(const LinearSystem& bodies,
                                        std::vector<FaceContact> contacts, const FaceContactLaw& law,
                                        const FaceSlidingState& state, double step)
     : contacts_(std::move(contacts)),
       law_(checked(law)),
-      rows_(bodies, contacts_, law_, state),
+      ports_(contacts_, law_, state),
       propagator_(bodies, step),
-      solver_(law_, rows_.preload.cwiseAbs().maxCoeff()) {
+      solver_(law_, ports_.preload().cwiseAbs().maxCoeff()),
+      mean_(mean_rows(ports_, step)),
+      now_(now_rows(ports_, step)) {
   check_compliance(bodies, state, step);
   const Eigen::Index n = bodies.size();
-  impulse_ = step * bodies.mass.inverse();
-  mean_rows_ = rows_.velocity / step + 0.5 * rows_.displacement;
-  now_rows_ = -rows_.velocity / step + 0.5 * rows_.displacement;
-  for (Eigen::Index k = 0; k < mean_rows_.rows(); k += 3) {
-    mean_rows_.row(k) = rows_.displacement.row(k);
-    now_rows_.row(k).setZero();
-  }
-  const Eigen::MatrixXd after = propagator_.free_response().rightCols(n) * impulse_;
-  answer_ = after * rows_.inputs;
-  seen_ = mean_rows_ * answer_.topRows(n);
-  if (rows_.bends()) {  // BLAS takes no empty matrices
-    bending_answer_ = after * rows_.bending_inputs;
-    bending_seen_ = mean_rows_ * bending_answer_.topRows(n);
-  }
-  preload_answer_ = answer_ * rows_.preload;
-  check_growth(bodies, state, step, after);
-  forces_ = rows_.preload;
+  const DecoupledSystem& apart = propagator_.apart();
+  const Eigen::MatrixXd rows = ports_.rows() * apart.motion;
+  const Eigen::MatrixXd impulse = step * apart.system.mass.inverse();
+  const Eigen::MatrixXd z_answer = propagator_.z_by_v().dense() * impulse;
+  const Eigen::MatrixXd port_answer = rows * z_answer * rows.transpose();
+  rows_ = PortRows(rows);
+  impulse_ = GroupDiagonal(impulse, apart.groups);
+  z_answer_ = GroupDiagonal(z_answer, apart.groups);
+  v_answer_ = GroupDiagonal(propagator_.v_by_v().dense() * impulse, apart.groups);
+  port_answer_ = PaddedMatrix(port_answer);
+  compliance_ = ports_.placed(mean_) * port_answer * ports_.inputs();
+  preload_ports_ = ports_.inputs() * ports_.preload();
+  check_growth(bodies, state, step,
+               propagator_.free_response().rightCols(n) * (step * bodies.mass.inverse()));
+  directions_.resize(static_cast<std::size_t>(num_contacts()));
+  for (Eigen::VectorXd* values : {&z_, &v_, &next_z_, &next_v_, &modal_force_})
+    values->setZero(static_cast<Eigen::Index>(padded_size(n)));
+  for (Eigen::VectorXd* values : {&y_, &next_y_, &port_force_})
+    values->setZero(static_cast<Eigen::Index>(padded_size(ports_.num_ports())));
   start(Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n));
 }
 
@@ -78,6 +152,9 @@ Eigen::MatrixXd RigidContactMotion::linear_step(const FaceSlidingState& state,
   const Eigen::Index n = after.cols();
   const Eigen::Index size = 2 * n + 4 * k;
   // ΔF = U z + C x of z = (λ, τ) - those of the sliding state, and of forces that bend.
+  const Eigen::MatrixXd mean_rows = ports_.placed(mean_) * ports_.rows();
+  const Eigen::MatrixXd now_rows = ports_.placed(now_) * ports_.rows();
+  const Eigen::MatrixXd inputs = ports_.rows().transpose() * ports_.inputs();
   Eigen::MatrixXd U(n, 3 * k), gaps(k, n), mean(2 * k, n), now(2 * k, n);
   Eigen::MatrixXd C = Eigen::MatrixXd::Zero(n, n);
   Eigen::MatrixXd D = Eigen::MatrixXd::Zero(2 * k, 2 * k);
@@ -86,10 +163,10 @@ Eigen::MatrixXd RigidContactMotion::linear_step(const FaceSlidingState& state,
     const FaceContact& contact = contacts_[static_cast<std::size_t>(i)];
     const FaceContactPoint& point = state.contacts[static_cast<std::size_t>(i)];
     U.col(j) = unit_force(contact, law_, point);
-    U.middleCols<2>(k + 2 * j) = rows_.inputs.middleCols<2>(3 * i + 1);
-    gaps.row(j) = mean_rows_.row(3 * i);
-    mean.middleRows<2>(2 * j) = mean_rows_.middleRows<2>(3 * i + 1);
-    now.middleRows<2>(2 * j) = now_rows_.middleRows<2>(3 * i + 1);
+    U.middleCols<2>(k + 2 * j) = inputs.middleCols<2>(3 * i + 1);
+    gaps.row(j) = mean_rows.row(3 * i);
+    mean.middleRows<2>(2 * j) = mean_rows.middleRows<2>(3 * i + 1);
+    now.middleRows<2>(2 * j) = now_rows.middleRows<2>(3 * i + 1);
     D.block<2, 2>(2 * j, 2 * j) = turning_resistance(law_, point);
     if (!law_.forces_bend) continue;
     C += contact.bending_forces() *
@@ -148,65 +225,78 @@ void RigidContactMotion::check_growth(const LinearSystem& bodies, const FaceSlid
 
 void RigidContactMotion::start(const Eigen::VectorXd& displacement,
                                const Eigen::VectorXd& velocity) {
-  q_ = displacement;
-  v_ = velocity;
-  forces_ = rows_.preload;
-  ahead_ = rows_.drive + rows_.displacement * q_ + rows_.velocity * v_;
-  const Eigen::VectorXd bent = rows_.gap_bending(q_);
-  for (Eigen::Index i = 0; i < bent.size(); ++i) ahead_(3 * i) += bent(i);
+  const Eigen::Index n = propagator_.size();
+  z_.head(n) = propagator_.apart().inverse * displacement;
+  v_.head(n) = propagator_.apart().inverse * velocity;
+  rows_.gather(z_.data(), y_.data());
+  Eigen::VectorXd rates = y_;
+  rows_.gather(v_.data(), rates.data());
+  forces_ = ports_.preload();
+  ahead_ = ports_.drive();
+  for (int i = 0; i < num_contacts(); ++i) {
+    const FaceContactPorts::Local y = ports_.of(i, y_.data());
+    ahead_.segment<3>(3 * i) +=
+        ports_.displacement(i) * y + ports_.velocity(i) * ports_.of(i, rates.data());
+    ahead_(3 * i) += ports_.gap_bending(i, y);
+  }
   before_ = ahead_;
   // Half of the first impulse comes before t = 0: the velocity there is that in its middle.
+  solver_.forget();
   has_converged_ = solve(0.5);
-  v_ -= 0.5 * impulse_ * deviation();
+  solver_.forget();
+  v_ -= half_impulse();
 }
 
 bool RigidContactMotion::step() {
   if (!has_converged_) return false;
-  q_ = next_q_;
-  v_ = next_v_;
+  z_.swap(next_z_);
+  v_.swap(next_v_);
+  rows_.gather(z_.data(), y_.data());
   has_converged_ = solve(1.0);
-  return has_converged_ && std::isfinite(q_.squaredNorm() + v_.squaredNorm());
+  return has_converged_ && std::isfinite(z_.squaredNorm() + v_.squaredNorm());
 }
 
 /// f_n and the motion until t_{n+1}, from that at t_n before the impulse.
 /// @param share of the impulse that is still to come
 bool RigidContactMotion::solve(double share) {
-  constexpr int max_repeats = 100;
-  const bool bends = rows_.bends();
-  next_q_ = q_;
-  next_v_ = v_;
-  propagator_.advance(next_q_, next_v_);
-  const Eigen::Index n = q_.size();
-  next_q_ -= share * preload_answer_.head(n);
-  next_v_ -= share * preload_answer_.tail(n);
+  propagator_.advance(z_.data(), v_.data(), next_z_.data(), next_v_.data());
+  rows_.gather(next_z_.data(), next_y_.data());
   const Eigen::VectorXd lag = slip_lag();
   before_ = ahead_;
-  at_end_.compliance = share * seen_;
-  if (bends) bend_compliance(share);
-  const Eigen::VectorXd free = rows_.drive + mean_rows_ * next_q_ + now_rows_ * q_ - lag;
-  at_end_.free = free;
-  Eigen::VectorXd gap_bending = Eigen::VectorXd::Zero(num_contacts());
-  Eigen::VectorXd change;
-  bool has_converged = false;
-  for (int repeat = 0; repeat < max_repeats && !has_converged; ++repeat) {
-    if (!solver_.solve(at_end_, forces_)) return false;
-    change = share * (answer_ * forces_);
-    if (!bends) break;
-    change += share * (bending_answer_ * rows_.bending(forces_, q_));
-    const Eigen::VectorXd bent = rows_.gap_bending(next_q_ + change.head(n));
-    has_converged = true;
-    for (Eigen::Index i = 0; i < bent.size(); ++i) {
-      const double least = solver_.tolerance * at_end_.compliance(3 * i, 3 * i) * largest_force();
-      has_converged = has_converged && std::abs(bent(i) - gap_bending(i)) <= least;
-      at_end_.free(3 * i) = free(3 * i) + bent(i);
-    }
-    gap_bending = bent;
-  }
-  next_q_ += change.head(n);
-  next_v_ += change.tail(n);
-  slip_ = at_end_.free + at_end_.compliance * forces_;
+  point_forces();
+  Answer answer(*this, share, next_y_, lag);
+  if (!solver_.solve(answer, forces_)) return false;
+  slip_.resize(forces_.size());
+  answer.see(forces_.data(), slip_.data());
   ahead_ = slip_ + lag;
-  return has_converged || !bends;
+  port_forces(forces_.data(), port_force_.data());
+  port_force_ *= share;
+  rows_.scatter(port_force_.data(), modal_force_.data());
+  z_answer_.add_product(modal_force_.data(), next_z_.data());
+  v_answer_.add_product(modal_force_.data(), next_v_.data());
+  return true;
+}
+
+/// Forces act in the directions that contacts have at t_n.
+void RigidContactMotion::point_forces() {
+  for (int i = 0; i < num_contacts(); ++i) {
+    FaceContactPorts::LocalColumns& directions = directions_[static_cast<std::size_t>(i)];
+    directions = ports_.inputs(i);
+    if (!ports_.bends()) continue;
+    const FaceContactPorts::Local y = ports_.of(i, y_.data());
+    directions.col(0) += ports_.normal_turn(i, y);
+    directions.col(1) += ports_.friction_turn(i, y);
+  }
+}
+
+/// R ΔF_n: what forces and those of the sliding state differ by, on the ports.
+void RigidContactMotion::port_forces(const double* forces, double* ports) const {
+  std::fill_n(ports, padded_size(ports_.num_ports()), 0.0);
+  for (int i = 0; i < num_contacts(); ++i) {
+    const Eigen::Map<const Eigen::Vector3d> f(forces + 3 * i);
+    ports_.add(i, directions_[static_cast<std::size_t>(i)] * f, ports);
+  }
+  Eigen::Map<Eigen::VectorXd>(ports, ports_.num_ports()) -= preload_ports_;
 }
 
 /// How much of the mean velocity over the coming step belongs to the time after t_n: half of what
@@ -223,31 +313,22 @@ Eigen::VectorXd RigidContactMotion::slip_lag() const {
   return lag;
 }
 
-double RigidContactMotion::largest_force() const {
-  return std::max(forces_.cwiseAbs().maxCoeff(), rows_.preload.cwiseAbs().maxCoeff());
+/// ½ h M⁻¹ ΔF_n, of z.
+Eigen::VectorXd RigidContactMotion::half_impulse() const {
+  Eigen::VectorXd ports = y_, force = z_;
+  port_forces(forces_.data(), ports.data());
+  rows_.scatter(ports.data(), force.data());
+  Eigen::VectorXd impulse = Eigen::VectorXd::Zero(force.size());
+  impulse_.add_product(force.data(), impulse.data());
+  return 0.5 * impulse;
 }
 
-/// Forces act in the directions that contacts have at t_n.
-void RigidContactMotion::bend_compliance(double share) {
-  constexpr Eigen::Index each = FaceContact::num_bending;
-  const Eigen::VectorXd normal = rows_.normal_bending * q_;
-  const Eigen::VectorXd friction = rows_.friction_bending * q_;
-  for (Eigen::Index i = 0; i < num_contacts(); ++i) {
-    const auto seen = bending_seen_.middleCols(each * i, each);
-    at_end_.compliance.col(3 * i) += share * (seen * normal.segment<each>(each * i));
-    at_end_.compliance.col(3 * i + 1) += share * (seen * friction.segment<each>(each * i));
-  }
-}
-
-/// ΔF_n.
-Eigen::VectorXd RigidContactMotion::deviation() const {
-  Eigen::VectorXd sum = rows_.inputs * (forces_ - rows_.preload);
-  if (rows_.bends()) sum += rows_.bending_inputs * rows_.bending(forces_, q_);
-  return sum;
+Eigen::VectorXd RigidContactMotion::displacement() const {
+  return propagator_.apart().motion * z_.head(propagator_.size());
 }
 
 Eigen::VectorXd RigidContactMotion::velocity() const {
-  return v_ + 0.5 * impulse_ * deviation();
+  return propagator_.apart().motion * (v_ + half_impulse()).head(propagator_.size());
 }
 
 FaceContactState RigidContactMotion::contact(int index) const {
@@ -258,31 +339,37 @@ FaceContactState RigidContactMotion::contact(int index) const {
 }
 
 void RigidContactMotion::save(State& state, const std::string& prefix) const {
-  const auto put = [&](const char* name, const Eigen::VectorXd& values) {
-    state.put(prefix + name, {values.data(), static_cast<std::size_t>(values.size())});
+  const auto put = [&](const char* name, const Eigen::VectorXd& values, Eigen::Index size) {
+    state.put(prefix + name, {values.data(), static_cast<std::size_t>(size)});
   };
-  put("displacement", q_);
-  put("velocity", v_);
-  put("forces", forces_);
-  put("next_displacement", next_q_);
-  put("next_velocity", next_v_);
-  put("before", before_);
-  put("ahead", ahead_);
-  put("slip", slip_);
+  const Eigen::Index n = propagator_.size();
+  put("displacement", z_, n);
+  put("velocity", v_, n);
+  put("forces", forces_, forces_.size());
+  put("next_displacement", next_z_, n);
+  put("next_velocity", next_v_, n);
+  put("before", before_, before_.size());
+  put("ahead", ahead_, ahead_.size());
+  put("slip", slip_, slip_.size());
+  solver_.save(state, prefix + "solver/");
 }
 
 void RigidContactMotion::load(const State& state, const std::string& prefix) {
-  const auto get = [&](const char* name, Eigen::VectorXd& values) {
-    state.get(prefix + name, {values.data(), static_cast<std::size_t>(values.size())});
+  const auto get = [&](const char* name, Eigen::VectorXd& values, Eigen::Index size) {
+    state.get(prefix + name, {values.data(), static_cast<std::size_t>(size)});
   };
-  get("displacement", q_);
-  get("velocity", v_);
-  get("forces", forces_);
-  get("next_displacement", next_q_);
-  get("next_velocity", next_v_);
-  get("before", before_);
-  get("ahead", ahead_);
-  get("slip", slip_);
+  const Eigen::Index n = propagator_.size();
+  get("displacement", z_, n);
+  get("velocity", v_, n);
+  get("forces", forces_, forces_.size());
+  get("next_displacement", next_z_, n);
+  get("next_velocity", next_v_, n);
+  get("before", before_, before_.size());
+  get("ahead", ahead_, ahead_.size());
+  get("slip", slip_, slip_.size());
+  solver_.load(state, prefix + "solver/");
+  rows_.gather(z_.data(), y_.data());
+  point_forces();
   has_converged_ = true;
 }
 

@@ -4,6 +4,7 @@
 #include "solvers/exponential_propagator.hpp"
 #include "solvers/face_contact_motion.hpp"
 #include "solvers/face_contact_solver.hpp"
+#include "solvers/port_rows.hpp"
 
 namespace stridor {
 
@@ -32,44 +33,56 @@ class RigidContactMotion final : public FaceContactMotion {
 
   void start(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity) override;
   bool step() override;
-  const Eigen::VectorXd& displacement() const override { return q_; }
+  Eigen::VectorXd displacement() const override;
   /// At t_n, between that before the impulse and that after it.
   Eigen::VectorXd velocity() const override;
-  int num_contacts() const override { return rows_.num_contacts(); }
+  int num_contacts() const override { return ports_.num_contacts(); }
   FaceContactState contact(int index) const override;
+  double moved(int contact, FacePort port) const override {
+    return ports_.at(contact, port, y_.data());
+  }
   void save(State& state, const std::string& prefix) const override;
   void load(const State& state, const std::string& prefix) override;
 
  private:
+  using Compliance = FaceContactAnswer::Compliance;
+  /// What contacts see at the end of a step under forces at its beginning.
+  class Answer;
+
   Eigen::MatrixXd linear_step(const FaceSlidingState& state, const Eigen::MatrixXd& after) const;
   void check_growth(const LinearSystem& bodies, const FaceSlidingState& state, double step,
                     const Eigen::MatrixXd& after) const;
   bool solve(double share);
-  void bend_compliance(double share);
+  void point_forces();
+  void port_forces(const double* forces, double* ports) const;
   Eigen::VectorXd slip_lag() const;
-  double largest_force() const;
-  Eigen::VectorXd deviation() const;
+  Eigen::VectorXd half_impulse() const;
 
   std::vector<FaceContact> contacts_;
   FaceContactLaw law_;
-  FaceContactRows rows_;
+  FaceContactPorts ports_;
   ExponentialPropagator propagator_;
   FaceContactSolver solver_;
-  Eigen::MatrixXd impulse_;         ///< h M⁻¹, n x n
-  Eigen::MatrixXd mean_rows_;       ///< of the gap and of mean velocities on x at the end of a step
-  Eigen::MatrixXd now_rows_;        ///< of the latter on x at its beginning, 3k x n
-  Eigen::MatrixXd answer_;          ///< (x, ẋ) at t_{n+1} per force at t_n, 2n x 3k
-  Eigen::MatrixXd seen_;            ///< gap at t_{n+1} and mean velocities until then, 3k x 3k
-  Eigen::MatrixXd bending_answer_;  ///< 2n x 7k
-  Eigen::MatrixXd bending_seen_;    ///< 3k x 7k
-  Eigen::VectorXd preload_answer_;  ///< of the forces of the sliding state, 2n
-  Eigen::VectorXd q_, v_;           ///< at t_n, before the impulse
-  Eigen::VectorXd forces_;          ///< f_n
-  Eigen::VectorXd next_q_, next_v_;  ///< at t_{n+1}
-  Eigen::VectorXd ahead_;            ///< gap at t_{n+1} and mean velocities until then, 3k
-  Eigen::VectorXd before_;           ///< gap at t_n and mean velocities since t_{n-1}, 3k
-  Eigen::VectorXd slip_;             ///< gap at t_{n+1} and velocities at t_n, 3k
-  FaceContactAnswer at_end_;
+  PortRows rows_;  ///< of the ports on z
+  /// Gap and mean velocities on y at the end of a step, the latter on y at its beginning.
+  std::vector<FaceContactPorts::LocalRows> mean_, now_;
+  Eigen::VectorXd preload_ports_;  ///< forces of the sliding state
+  PaddedMatrix port_answer_;       ///< y at t_{n+1} per force on the ports at t_n
+  GroupDiagonal z_answer_, v_answer_;  ///< (z, ż) at t_{n+1} per force on z at t_n
+  GroupDiagonal impulse_;              ///< h M⁻¹ of z
+  Compliance compliance_;              ///< of gap and mean velocities, 3k x 3k
+
+  Eigen::VectorXd z_, v_;            ///< at t_n, before the impulse
+  Eigen::VectorXd y_;                ///< ports at t_n
+  Eigen::VectorXd forces_;           ///< f_n
+  Eigen::VectorXd next_z_, next_v_;  ///< at t_{n+1}
+  Eigen::VectorXd next_y_;
+  Eigen::VectorXd ahead_;   ///< gap at t_{n+1} and mean velocities until then, 3k
+  Eigen::VectorXd before_;  ///< gap at t_n and mean velocities since t_{n-1}, 3k
+  Eigen::VectorXd slip_;    ///< gap at t_{n+1} and velocities at t_n, 3k
+  /// Unit forces in the directions that contacts have at t_n.
+  std::vector<FaceContactPorts::LocalColumns> directions_;
+  Eigen::VectorXd port_force_, modal_force_;
   bool has_converged_ = true;
 };
 

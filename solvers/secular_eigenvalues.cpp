@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/errors.hpp"
+#include "solvers/search_failure.hpp"
 
 namespace stridor {
 namespace {
@@ -341,7 +342,7 @@ std::vector<Eigenvalue> secular_eigenvalues(const Pencil& pencil, const Spectrum
   SecularFunction function(pencil);
   SecularSpectrum spectrum = secular_spectrum(function, window);
   if (!spectrum.is_complete) {
-    throw NumericalError(fmt::format(
+    throw SearchFailure(fmt::format(
         "secular eigenvalues: the search for {} eigenvalues did not converge; use the dense method",
         spectrum.num_counted));
   }

@@ -41,152 +41,253 @@ void check_step(const LinearSystem& closed, const FaceSlidingState& state, doubl
 
 }  // namespace
 
+class SpringContactMotion::Answer final : public FaceContactAnswer {
+ public:
+  /// @param free_y, free_rates ports and their rates at the end of a step without forces there
+  Answer(const SpringContactMotion& motion, const Eigen::VectorXd& free_y,
+         const Eigen::VectorXd& free_rates)
+      : motion_(motion), free_y_(free_y), y_(motion.y_) {
+    const auto size = static_cast<Eigen::Index>(padded_size(motion.forces_.size()));
+    free_.setZero(size);
+    relative_.setZero(size);
+    const Eigen::VectorXd free = motion.relative(free_y, free_rates);
+    motion.answering_.add_product(free.data(), free_.data());
+    bending_.setZero(y_.size());
+    port_force_.setZero(y_.size());
+    gap_bending_.setZero(motion.num_contacts());
+  }
+
+  /// The bending is that of the ports when last asked.
+  double see(const double* forces, double* seen) override {
+    const FaceContactPorts& ports = motion_.ports_;
+    const Eigen::Index size = motion_.forces_.size();
+    const Eigen::VectorXd change =
+        Eigen::Map<const Eigen::VectorXd>(forces, size) - ports.preload();
+    double unsettled = 0.0;
+    relative_ = free_;
+    motion_.force_answer_.add_product(change.data(), relative_.data());
+    if (ports.bends()) {
+      unsettled = bend(change);
+      motion_.bending_answer_.add_product(bending_.data(), relative_.data());
+    }
+    port_force_ = bending_;
+    motion_.add_inputs(change, relative_, port_force_.data());
+    y_ = free_y_;
+    motion_.port_answer_.add_product(port_force_.data(), y_.data());
+    Eigen::Map<Eigen::VectorXd> sees(seen, size);
+    sees = ports.drive() + relative_.head(size);
+    double gap_change = 0.0;
+    for (int i = 0; ports.bends() && i < motion_.num_contacts(); ++i) {
+      const double bent = ports.gap_bending(i, ports.of(i, y_.data()));
+      gap_change = std::max(gap_change, std::abs(bent - gap_bending_(i)));
+      gap_bending_(i) = bent;
+      sees(3 * i) += bent;
+    }
+    return unsettled + *motion_.law_.penalty * gap_change;
+  }
+  const Compliance& compliance() const override { return motion_.compliance_; }
+
+  const Eigen::VectorXd& ports() const { return y_; }
+  const Eigen::VectorXd& port_force() const { return port_force_; }
+
+ private:
+  /// @return the largest change of a force on a pad
+  double bend(const Eigen::VectorXd& change) {
+    const FaceContactPorts& ports = motion_.ports_;
+    const Eigen::VectorXd before = bending_;
+    bending_.setZero();
+    motion_.add_bending(change.data(), y_.data(), bending_.data());
+    double largest = 0.0;
+    for (int i = 0; i < motion_.num_contacts(); ++i)
+      for (const FacePort port : {FacePort::pad_r, FacePort::pad_phi, FacePort::pad_z}) {
+        largest = std::max(largest, std::abs(ports.at(i, port, bending_.data()) -
+                                             ports.at(i, port, before.data())));
+      }
+    return largest;
+  }
+
+  const SpringContactMotion& motion_;
+  Eigen::VectorXd free_y_, y_;
+  Eigen::VectorXd free_, relative_;  ///< 3k
+  Eigen::VectorXd bending_, port_force_;
+  Eigen::VectorXd gap_bending_;
+};
+
 SpringContactMotion::SpringContactMotion(const LinearSystem& bodies,
                                          std::vector<FaceContact> contacts,
                                          const FaceContactLaw& law, const FaceSlidingState& state,
                                          double step)
     : contacts_(std::move(contacts)),
       law_(checked(law)),
-      rows_(bodies, contacts_, law_, state),
+      ports_(contacts_, law_, state),
       propagator_(linearise(bodies, contacts_, law_, state), step),
-      solver_(law_, rows_.preload.cwiseAbs().maxCoeff()) {
+      solver_(law_, ports_.preload().cwiseAbs().maxCoeff()) {
   const Eigen::Index n = bodies.size();
-  const Eigen::Index m = rows_.drive.size();
+  const Eigen::Index m = 3 * num_contacts();
   const double penalty = *law_.penalty;
   check_step(linearise(bodies, contacts_, law_, state), state, penalty, step);
-  linear_ = Eigen::MatrixXd::Zero(m, m);
-  for (Eigen::Index k = 0; k < m; k += 3) {
-    const FaceContactPoint& point = state.contacts[static_cast<std::size_t>(k / 3)];
+  Eigen::MatrixXd linear = Eigen::MatrixXd::Zero(m, m);
+  std::vector<FaceContactPorts::LocalRows> displacement, velocity;
+  for (int i = 0; i < num_contacts(); ++i) {
+    const FaceContactPoint& point = state.contacts[static_cast<std::size_t>(i)];
+    displacement.push_back(ports_.displacement(i));
+    velocity.push_back(ports_.velocity(i));
+    linear_.push_back(Eigen::Matrix3d::Zero());
     if (!point.is_closed) continue;
-    linear_(k, k) = -penalty;
-    linear_.block<2, 1>(k + 1, k) = -penalty * law_.friction * point.direction;
-    linear_.block<2, 2>(k + 1, k + 1) = turning_resistance(law_, point);
+    linear_.back()(0, 0) = -penalty;
+    linear_.back().bottomLeftCorner<2, 1>() = -penalty * law_.friction * point.direction;
+    linear_.back().bottomRightCorner<2, 2>() = turning_resistance(law_, point);
+    linear.block<3, 3>(3 * i, 3 * i) = linear_.back();
   }
-  const Eigen::MatrixXd& response = propagator_.slope_response();
-  const auto seen = [&](const Eigen::MatrixXd& answer) -> Eigen::MatrixXd {
-    return rows_.displacement * answer.topRows(n) + rows_.velocity * answer.bottomRows(n);
-  };
-  answer_ = response * rows_.inputs;
-  bare_ = seen(answer_);
-  answering_ = (Eigen::MatrixXd::Identity(m, m) + bare_ * linear_).inverse();
-  at_end_.compliance = answering_ * bare_;
-  if (rows_.bends()) {  // BLAS takes no empty matrices
-    bending_answer_ = response * rows_.bending_inputs;
-    bending_bare_ = seen(bending_answer_);
-  }
+  const Eigen::MatrixXd& R = ports_.rows();
+  const Eigen::MatrixXd slope = propagator_.slope_response() * R.transpose();
+  const Eigen::MatrixXd fall = propagator_.constant_response() * R.transpose() - slope;
+  const Eigen::MatrixXd answer =
+      ports_.placed(displacement) * (R * slope.topRows(n)) +
+      ports_.placed(velocity) * (R * slope.bottomRows(n));
+  const Eigen::MatrixXd bare = answer * ports_.inputs();
+  const Eigen::MatrixXd answering =
+      (Eigen::MatrixXd::Identity(m, m) + bare * linear).inverse();
+  compliance_ = answering * bare;
+  answering_ = PaddedMatrix(answering);
+  force_answer_ = PaddedMatrix(compliance_);
+  bending_answer_ = PaddedMatrix(answering * answer);
+  port_answer_ = PaddedMatrix(R * slope.topRows(n));
+  const DecoupledSystem& apart = propagator_.apart();
+  rows_ = PortRows(R * apart.motion);
+  z_before_ = PaddedMatrix(apart.inverse * fall.topRows(n));
+  v_before_ = PaddedMatrix(apart.inverse * fall.bottomRows(n));
+  z_after_ = PaddedMatrix(apart.inverse * slope.topRows(n));
+  v_after_ = PaddedMatrix(apart.inverse * slope.bottomRows(n));
+  for (Eigen::VectorXd* values : {&z_, &v_, &next_z_, &next_v_})
+    values->setZero(static_cast<Eigen::Index>(padded_size(n)));
+  for (Eigen::VectorXd* values : {&y_, &port_force_})
+    values->setZero(static_cast<Eigen::Index>(padded_size(ports_.num_ports())));
   start(Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n));
 }
 
 /// Gap and velocities, as far as they are linear, from those of the sliding state.
-Eigen::VectorXd SpringContactMotion::relative(const Eigen::VectorXd& q,
-                                              const Eigen::VectorXd& v) const {
-  return rows_.displacement * q + rows_.velocity * v;
+Eigen::VectorXd SpringContactMotion::relative(const Eigen::VectorXd& y,
+                                              const Eigen::VectorXd& rates) const {
+  Eigen::VectorXd relative(3 * num_contacts());
+  for (int i = 0; i < num_contacts(); ++i) {
+    relative.segment<3>(3 * i) = ports_.displacement(i) * ports_.of(i, y.data()) +
+                                 ports_.velocity(i) * ports_.of(i, rates.data());
+  }
+  return relative;
 }
 
-Eigen::VectorXd SpringContactMotion::linear_forces(const Eigen::VectorXd& relative) const {
-  return rows_.preload + linear_ * relative;
+/// What forces beside those of the sliding state do by bending, on the ports; those of the sliding
+/// state are in the linear part.
+void SpringContactMotion::add_bending(const double* forces, const double* y, double* ports) const {
+  for (int i = 0; i < num_contacts(); ++i) {
+    const FaceContactPorts::Local local = ports_.of(i, y);
+    ports_.add(i,
+               forces[3 * i] * ports_.normal_turn(i, local) +
+                   forces[3 * i + 1] * ports_.friction_turn(i, local),
+               ports);
+  }
 }
 
-/// What the forces of this instant do by bending, at a displacement; those of the sliding state are
-/// in the linear part.
-void SpringContactMotion::bend(const Eigen::VectorXd& displacement) {
-  if (!rows_.bends()) return;
-  gap_bending_ = rows_.gap_bending(displacement);
-  bending_ = rows_.bending(forces_ - rows_.preload, displacement);
+/// Forces beside those of the sliding state and the linear ones, on the ports.
+void SpringContactMotion::add_inputs(const Eigen::VectorXd& forces, const Eigen::VectorXd& relative,
+                                     double* ports) const {
+  for (int i = 0; i < num_contacts(); ++i) {
+    const Eigen::Vector3d rest =
+        forces.segment<3>(3 * i) -
+        linear_[static_cast<std::size_t>(i)] * relative.segment<3>(3 * i);
+    ports_.add(i, ports_.inputs(i) * rest, ports);
+  }
 }
 
 void SpringContactMotion::start(const Eigen::VectorXd& displacement,
                                 const Eigen::VectorXd& velocity) {
-  q_ = displacement;
-  v_ = velocity;
-  relative_ = relative(q_, v_);
-  forces_ = linear_forces(relative_);
-  gap_bending_ = rows_.gap_bending(q_);
-  for (Eigen::Index k = 0; k < forces_.size(); k += 3) {
-    const double gap = rows_.drive(k) + relative_(k) + gap_bending_(k / 3);
-    forces_(k) = std::max(0.0, -*law_.penalty * gap);
-    const Eigen::Vector2d v_face = rows_.drive.segment<2>(k + 1) + relative_.segment<2>(k + 1);
-    const double speed = v_face.norm();
+  const Eigen::Index n = propagator_.size();
+  z_.head(n) = propagator_.apart().inverse * displacement;
+  v_.head(n) = propagator_.apart().inverse * velocity;
+  rows_.gather(z_.data(), y_.data());
+  Eigen::VectorXd rates = y_;
+  rows_.gather(v_.data(), rates.data());
+  const Eigen::VectorXd moved = relative(y_, rates);
+  seen_ = ports_.drive() + moved;
+  forces_.setZero(seen_.size());
+  for (int i = 0; i < num_contacts(); ++i) {
+    const Eigen::Index k = 3 * i;
+    seen_(k) += ports_.gap_bending(i, ports_.of(i, y_.data()));
+    forces_(k) = std::max(0.0, -*law_.penalty * seen_(k));
+    const double speed = seen_.segment<2>(k + 1).norm();
     const double limit = law_.friction * forces_(k);
-    if (speed > 0.0) forces_.segment<2>(k + 1) = limit / speed * v_face;
+    if (speed > 0.0) {
+      forces_.segment<2>(k + 1) = limit / speed * seen_.segment<2>(k + 1);
+    } else {
+      forces_.segment<2>(k + 1) = ports_.preload().segment<2>(k + 1) +
+                                  (linear_[static_cast<std::size_t>(i)] * moved.segment<3>(k))
+                                      .tail<2>();
+    }
   }
-  bend(q_);
-  remainder_ = forces_ - linear_forces(relative_);
+  const Eigen::VectorXd change = forces_ - ports_.preload();
+  port_force_.setZero();
+  add_bending(change.data(), y_.data(), port_force_.data());
+  add_inputs(change, moved, port_force_.data());
+  solver_.forget();
 }
 
 bool SpringContactMotion::step() {
-  constexpr int max_repeats = 100;
-  const Eigen::Index n = q_.size();
-  const bool bends = rows_.bends();
-  Eigen::VectorXd before = rows_.inputs * remainder_;
-  if (bends) before += rows_.bending_inputs * bending_;
-  propagator_.advance(q_, v_, before, Eigen::VectorXd::Zero(n));
-  const Eigen::VectorXd predicted = relative(q_, v_);
-  Eigen::VectorXd change;
-  bool has_converged = false;
-  for (int repeat = 0; repeat < max_repeats && !has_converged; ++repeat) {
-    if (!solve(bends ? predicted + bending_bare_ * bending_ : predicted)) return false;
-    change = answer_ * remainder_;
-    if (!bends) break;
-    change += bending_answer_ * bending_;
-    const Eigen::VectorXd gap_before = gap_bending_;
-    const Eigen::VectorXd bending_before = bending_;
-    bend(q_ + change.head(n));
-    const double largest =
-        std::max(forces_.cwiseAbs().maxCoeff(), rows_.preload.cwiseAbs().maxCoeff());
-    const double gap_change = (gap_bending_ - gap_before).lpNorm<Eigen::Infinity>();
-    const double force_change = (bending_ - bending_before).lpNorm<Eigen::Infinity>();
-    has_converged = *law_.penalty * gap_change + force_change <= solver_.tolerance * largest;
-  }
-  q_ += change.head(n);
-  v_ += change.tail(n);
-  return (has_converged || !bends) && std::isfinite(q_.squaredNorm() + v_.squaredNorm());
+  propagator_.advance(z_.data(), v_.data(), next_z_.data(), next_v_.data());
+  z_before_.add_product(port_force_.data(), next_z_.data());
+  v_before_.add_product(port_force_.data(), next_v_.data());
+  z_.swap(next_z_);
+  v_.swap(next_v_);
+  Eigen::VectorXd free_y = y_, free_rates = y_;
+  rows_.gather(z_.data(), free_y.data());
+  rows_.gather(v_.data(), free_rates.data());
+  Answer answer(*this, free_y, free_rates);
+  if (!solver_.solve(answer, forces_)) return false;
+  answer.see(forces_.data(), seen_.data());
+  y_ = answer.ports();
+  port_force_ = answer.port_force();
+  z_after_.add_product(port_force_.data(), z_.data());
+  v_after_.add_product(port_force_.data(), v_.data());
+  return std::isfinite(z_.squaredNorm() + v_.squaredNorm());
 }
 
-/// Forces at the end of a step.
-/// @param predicted what is linear of gap and velocities there, without any remainder
-bool SpringContactMotion::solve(const Eigen::VectorXd& predicted) {
-  const Eigen::VectorXd linear = answering_ * (predicted - bare_ * rows_.preload);
-  at_end_.free = rows_.drive + linear;
-  for (Eigen::Index i = 0; i < gap_bending_.size(); ++i) at_end_.free(3 * i) += gap_bending_(i);
-  const bool has_converged = solver_.solve(at_end_, forces_);
-  relative_ = linear + at_end_.compliance * forces_;
-  remainder_ = forces_ - linear_forces(relative_);
-  return has_converged;
+Eigen::VectorXd SpringContactMotion::displacement() const {
+  return propagator_.apart().motion * z_.head(propagator_.size());
+}
+
+Eigen::VectorXd SpringContactMotion::velocity() const {
+  return propagator_.apart().motion * v_.head(propagator_.size());
 }
 
 FaceContactState SpringContactMotion::contact(int index) const {
-  const Eigen::Index k = 3 * index;
-  Eigen::Vector3d seen = rows_.drive.segment<3>(k) + relative_.segment<3>(k);
-  seen(0) += gap_bending_(index);
-  return face_contact_state(law_, contacts_[static_cast<std::size_t>(index)], seen,
-                            forces_.segment<3>(k));
+  return face_contact_state(law_, contacts_[static_cast<std::size_t>(index)],
+                            seen_.segment<3>(3 * index), forces_.segment<3>(3 * index));
 }
 
 void SpringContactMotion::save(State& state, const std::string& prefix) const {
   const auto put = [&](const char* name, const Eigen::VectorXd& values) {
     state.put(prefix + name, {values.data(), static_cast<std::size_t>(values.size())});
   };
-  put("displacement", q_);
+  put("displacement", z_);
   put("velocity", v_);
+  put("ports", y_);
   put("forces", forces_);
-  put("relative", relative_);
-  put("remainder", remainder_);
-  put("bending", bending_);
-  put("gap_bending", gap_bending_);
+  put("seen", seen_);
+  put("port_force", port_force_);
+  solver_.save(state, prefix + "solver/");
 }
 
 void SpringContactMotion::load(const State& state, const std::string& prefix) {
   const auto get = [&](const char* name, Eigen::VectorXd& values) {
     state.get(prefix + name, {values.data(), static_cast<std::size_t>(values.size())});
   };
-  get("displacement", q_);
+  get("displacement", z_);
   get("velocity", v_);
+  get("ports", y_);
   get("forces", forces_);
-  get("relative", relative_);
-  get("remainder", remainder_);
-  get("bending", bending_);
-  get("gap_bending", gap_bending_);
+  get("seen", seen_);
+  get("port_force", port_force_);
+  solver_.load(state, prefix + "solver/");
 }
 
 }  // namespace stridor

@@ -4,6 +4,7 @@
 #include "solvers/exponential_propagator.hpp"
 #include "solvers/face_contact_motion.hpp"
 #include "solvers/face_contact_solver.hpp"
+#include "solvers/port_rows.hpp"
 
 namespace stridor {
 
@@ -27,34 +28,48 @@ class SpringContactMotion final : public FaceContactMotion {
 
   void start(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity) override;
   bool step() override;
-  const Eigen::VectorXd& displacement() const override { return q_; }
-  Eigen::VectorXd velocity() const override { return v_; }
-  int num_contacts() const override { return rows_.num_contacts(); }
+  Eigen::VectorXd displacement() const override;
+  Eigen::VectorXd velocity() const override;
+  int num_contacts() const override { return ports_.num_contacts(); }
   FaceContactState contact(int index) const override;
+  double moved(int contact, FacePort port) const override {
+    return ports_.at(contact, port, y_.data());
+  }
   void save(State& state, const std::string& prefix) const override;
   void load(const State& state, const std::string& prefix) override;
 
  private:
-  Eigen::VectorXd relative(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const;
-  Eigen::VectorXd linear_forces(const Eigen::VectorXd& relative) const;
-  bool solve(const Eigen::VectorXd& predicted);
-  void bend(const Eigen::VectorXd& displacement);
+  using Compliance = FaceContactAnswer::Compliance;
+  /// What contacts see at the end of a step under forces there.
+  class Answer;
+
+  void add_bending(const double* forces, const double* y, double* ports) const;
+  void add_inputs(const Eigen::VectorXd& forces, const Eigen::VectorXd& relative,
+                  double* ports) const;
+  Eigen::VectorXd relative(const Eigen::VectorXd& y, const Eigen::VectorXd& rates) const;
 
   std::vector<FaceContact> contacts_;
   FaceContactLaw law_;
-  FaceContactRows rows_;
+  FaceContactPorts ports_;
   ExponentialPropagator propagator_;
   FaceContactSolver solver_;
-  Eigen::MatrixXd linear_;          ///< of the linear forces on gap and velocities, 3k x 3k
-  Eigen::MatrixXd answer_;          ///< (x, ẋ) at the end of a step per force there, 2n x 3k
-  FaceContactAnswer at_end_;        ///< linear forces answering
-  Eigen::MatrixXd answering_;       ///< (1 + W L)⁻¹
-  Eigen::MatrixXd bare_;            ///< W
-  Eigen::MatrixXd bending_answer_;  ///< 2n x 7k
-  Eigen::MatrixXd bending_bare_;    ///< 3k x 7k
-  Eigen::VectorXd q_, v_, forces_, relative_, remainder_;
-  Eigen::VectorXd bending_;      ///< what acts on the bending inputs besides the linear part, 7k
-  Eigen::VectorXd gap_bending_;  ///< ½ xᵀ A x of every contact, m
+  PortRows rows_;  ///< of the ports on z
+  /// L, of the linear forces on gap and velocities, 3 x 3 of every contact.
+  std::vector<Eigen::Matrix3d> linear_;
+  Compliance compliance_;        ///< (1 + W L)⁻¹ W, 3k x 3k
+  PaddedMatrix answering_;       ///< (1 + W L)⁻¹
+  PaddedMatrix force_answer_;    ///< (1 + W L)⁻¹ W
+  PaddedMatrix bending_answer_;  ///< the same of forces on the ports, 3k x ports
+  PaddedMatrix port_answer_;     ///< y at the end of a step per force on the ports there
+  /// (z, ż) at the end of a step per force on the ports that falls to none by then.
+  PaddedMatrix z_before_, v_before_;
+  PaddedMatrix z_after_, v_after_;  ///< per force on the ports that grows from none
+
+  Eigen::VectorXd z_, v_, next_z_, next_v_;
+  Eigen::VectorXd y_;           ///< ports
+  Eigen::VectorXd forces_;      ///< 3k
+  Eigen::VectorXd seen_;        ///< gap and velocities, 3k
+  Eigen::VectorXd port_force_;  ///< ρ: what acts on the ports besides the linear part
 };
 
 }  // namespace stridor

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/linear_pencil.hpp"
@@ -100,6 +101,47 @@ TEST(Pencil, EigenvectorsSolveTheRightAndTheLeftProblem) {
       EXPECT_LT((force_rows * vector.left).norm(), 1e-11 * force_rows.norm());
       EXPECT_LT(relative_residual(pencil, eigenvalue.s, vector.right), 1e-11);
     }
+  }
+}
+
+TEST(Pencil, EigenvectorsOfManyCoupledModesSolveBothProblems) {
+  // Forty modes from 100 to 1e5 rad/s that gyroscopic and circulatory terms couple, two constraints.
+  constexpr Eigen::Index n = 40;
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto random = [&](Eigen::Index rows, Eigen::Index cols) -> Eigen::MatrixXd {
+    return Eigen::MatrixXd::NullaryExpr(rows, cols, [&] { return uniform(generator); });
+  };
+  LinearSystem system;
+  system.mass = Eigen::MatrixXd::Identity(n, n);
+  const Eigen::MatrixXd gyroscopic = random(n, n), circulatory = random(n, n);
+  system.velocity = 200.0 * split(gyroscopic).skew;
+  system.position = 1e4 * split(circulatory).skew;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double omega = 100.0 * std::pow(1e3, static_cast<double>(i) / (n - 1));
+    system.position(i, i) += omega * omega;
+    system.velocity(i, i) += 1e-3 * omega;
+  }
+  system.gaps = random(2, n);
+  system.forces = system.gaps + 0.2 * random(2, n);
+  const Pencil pencil = make_pencil(system);
+  const Eigen::MatrixXd gap_rows = pencil.compatibility * pencil.slots;
+  const Eigen::MatrixXd force_rows = pencil.equilibrium * pencil.slots;
+  const Eigen::MatrixXd allowed = Eigen::FullPivLU<Eigen::MatrixXd>(gap_rows).kernel();
+  const std::vector<Eigenvalue> eigenvalues = dense_eigenvalues(pencil);
+  ASSERT_GE(eigenvalues.size(), 38U);
+  for (const Eigenvalue& one : eigenvalues) {
+    const Eigenvector vector = eigenvector(pencil, one.s);
+    EXPECT_LT(relative_residual(pencil, one.s, vector.right), 1e-9) << one.s;
+    const Eigen::MatrixXcd P = test::dynamic_stiffness(pencil, one.s);
+    const Eigen::VectorXd scale = (pencil.omega.array() + std::abs(one.s)).inverse();
+    const Eigen::VectorXcd left = (vector.left.adjoint() * P * allowed).transpose();
+    const double terms = (vector.left.cwiseAbs().transpose() * P.cwiseAbs() * allowed.cwiseAbs()).norm();
+    EXPECT_LT(left.norm(), 1e-9 * terms) << one.s;
+    EXPECT_LT((force_rows * vector.left).norm(), 1e-9 * force_rows.norm()) << one.s;
+    const Eigen::VectorXcd rest = P * vector.right + force_rows.transpose() * vector.force;
+    EXPECT_LT(rest.cwiseProduct(scale.cast<std::complex<double>>()).norm(),
+              1e-9 * (P.cwiseAbs() * vector.right.cwiseAbs()).cwiseProduct(scale).norm());
   }
 }
 
