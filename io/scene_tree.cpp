@@ -499,8 +499,13 @@ SceneNode read_scene_file(const std::string& path) {
   if (!file) throw FileError(path, "", fmt::format("cannot be opened: {}", std::strerror(errno)));
 
   // Read up to the limit rather than trust the size: files of /proc tell none.
-  std::string text(SceneLimits::bytes + 1, '\0');
-  const std::size_t size = std::fread(text.data(), 1, text.size(), file.get());
+  std::string text;
+  std::vector<char> part(64 * 1024);
+  std::size_t size = 1;
+  while (size > 0 && text.size() <= SceneLimits::bytes) {
+    size = std::fread(part.data(), 1, part.size(), file.get());
+    text.append(part.data(), size);
+  }
   if (std::ferror(file.get()) != 0) {
     throw FileError(path, "", fmt::format("cannot be read: {}", std::strerror(errno)));
   }
@@ -509,14 +514,13 @@ SceneNode read_scene_file(const std::string& path) {
          "is an HDF5 file, not a scene (YAML); `stridor info` says what a run file holds, and its "
          "scene is the text in /scene/text");
   }
-  if (size > SceneLimits::bytes) {
+  if (text.size() > SceneLimits::bytes) {
     throw FileError(
         path, "",
         fmt::format("is larger than {} MiB, which no scene is; put large tables into files "
                     "of their own",
                     SceneLimits::bytes / (1024 * 1024)));
   }
-  text.resize(size);
   return read_scene_text(text, path);
 }
 

@@ -58,6 +58,39 @@ Eigen::MatrixXd orthonormalise(VectorBlock& block, double negligible, VectorBloc
   return factor;
 }
 
+/// Residual |A y − ν y| / ν at which an eigenpair has converged.
+constexpr double tolerance = 1e-12;
+
+/// When the approximations in a Krylov space are worth a look, which costs as much as some steps.
+///
+/// The logarithm of the largest residual falls about evenly with the dimension, and faster towards
+/// the end. Two looks tell where it will reach the tolerance.
+class LookSchedule {
+ public:
+  explicit LookSchedule(Eigen::Index first_look) : next_(first_look) {}
+
+  bool is_due(Eigen::Index dim) const { return dim >= next_; }
+
+  void looked(Eigen::Index dim, double residual) {
+    // Not far enough apart, or not falling: some steps more.
+    Eigen::Index steps = std::max(2 * block_width, dim / 16);
+    const double excess = std::log(std::max(residual, tolerance) / tolerance);
+    const double fall = (last_excess_ - excess) / static_cast<double>(dim - last_dim_);
+    if (last_dim_ > 0 && std::isfinite(fall) && fall > 0.0) {
+      const double needed = std::min(excess / fall, static_cast<double>(dim / 2));
+      steps = std::max(block_width, static_cast<Eigen::Index>(needed));
+    }
+    last_dim_ = dim;
+    last_excess_ = excess;
+    next_ = dim + steps;
+  }
+
+ private:
+  Eigen::Index next_;
+  Eigen::Index last_dim_ = 0;
+  double last_excess_ = 0.0;  ///< logarithm of the largest residual over the tolerance
+};
+
 /// Block Lanczos for the largest eigenvalues ν = 1/ω² of A = L⁻¹ M L⁻ᵀ, where K = L Lᵀ.
 ///
 /// The Krylov space has an orthonormal basis V with A V = V T + Q R Eᵀ, where T = Vᵀ A V and Eᵀ
@@ -88,7 +121,7 @@ class Lanczos {
   void append(const VectorBlock& block);
   void apply(VectorBlock& block);
   Split split(VectorBlock& block);
-  void restart(const Eigen::VectorXd& values, const Eigen::MatrixXd& vectors);
+  void restart();
 
   const SparseCholesky& stiffness_;
   const SparseMatrix& mass_;
@@ -104,10 +137,10 @@ class Lanczos {
 };
 
 Modes Lanczos::solve() {
-  constexpr double tolerance = 1e-12;
   constexpr int max_steps = 1000;
   Eigen::Index num_converged = 0;
-  Eigen::Index next_look = 2 * count_;  // earlier, only what exhausts the space has converged
+  // Earlier, only what exhausts the space has converged.
+  LookSchedule looks(2 * count_ + 5 * block_width);
   VectorBlock block = random_block();
   for (int step = 0; step < max_steps; ++step) {
     throw_if_stopped();
@@ -120,25 +153,30 @@ Modes Lanczos::solve() {
 
     const bool is_exhausted = block.cols() == 0;
     const bool is_full = dim_ + block.cols() > basis_.cols();
-    if (dim_ < next_look && !is_exhausted && !is_full) continue;
-    next_look = dim_ + std::max(block_width, dim_ / 16);
+    if (!looks.is_due(dim_) && !is_exhausted && !is_full) continue;
+    const Eigen::Index num_looked_at = std::min(count_, dim_);
     const SymmetricEigenpairs ritz =
-        symmetric_eigenpairs(projection_.topLeftCorner(dim_, dim_), "fixed-interface modes");
+        neighbouring_eigenpairs(projection_.topLeftCorner(dim_, dim_), dim_ - num_looked_at,
+                                num_looked_at, "fixed-interface modes");
     const Eigen::VectorXd values = ritz.values.reverse();
     const Eigen::MatrixXd vectors = ritz.vectors.rowwise().reverse();
-    num_converged = 0;
-    for (Eigen::Index i = 0; i < std::min(count_, dim_); ++i) {
-      const double residual = (parts.outside * vectors.col(i).tail(newest_width)).norm();
-      if (residual <= tolerance * std::abs(values(i))) ++num_converged;
-    }
+    const Eigen::ArrayXd residuals =
+        (parts.outside * vectors.bottomRows(newest_width)).colwise().norm().transpose();
+    const Eigen::ArrayXd relative = residuals / values.array().abs();
+    num_converged = (residuals <= tolerance * values.array().abs()).count();
     if (num_converged == count_) {
       if (!(values(count_ - 1) > 0.0))
         throw NumericalError("fixed-interface modes: the mass is not positive definite");
-      VectorBlock shapes = basis_.leftCols(dim_) * vectors.leftCols(count_);
+      VectorBlock shapes = basis_.leftCols(dim_) * vectors;
       stiffness_.solve_upper_in_place(shapes);
-      return {values.head(count_).cwiseInverse(), shapes};
+      return {values.cwiseInverse(), shapes};
     }
-    if (is_full) restart(values, vectors);
+    if (is_full) {
+      restart();
+      looks = LookSchedule(dim_ + 5 * block_width);
+    } else {
+      looks.looked(dim_, relative.maxCoeff());
+    }
     if (is_exhausted) block = random_block();
   }
   throw NumericalError(fmt::format("fixed-interface modes: Lanczos found {} of {} eigenpairs",
@@ -198,7 +236,11 @@ Lanczos::Split Lanczos::split(VectorBlock& block) {
 }
 
 /// Keeps the better half of the approximations.
-void Lanczos::restart(const Eigen::VectorXd& values, const Eigen::MatrixXd& vectors) {
+void Lanczos::restart() {
+  const SymmetricEigenpairs ritz =
+      symmetric_eigenpairs(projection_.topLeftCorner(dim_, dim_), "fixed-interface modes");
+  const Eigen::VectorXd values = ritz.values.reverse();
+  const Eigen::MatrixXd vectors = ritz.vectors.rowwise().reverse();
   const Eigen::Index kept = count_ + (dim_ - count_) / 2;
   constexpr Eigen::Index rows_at_once = 4096;
   for (Eigen::Index row = 0; row < basis_.rows(); row += rows_at_once) {
