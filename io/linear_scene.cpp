@@ -67,9 +67,10 @@ LinearModel model_of(const DiscScene& scene, const LoadedLinearScene&) {
 LinearModel model_of(const MatrixScene& scene, const LoadedLinearScene& loaded) {
   const auto& [name, variant] = *scene.substructures.begin();
   const auto& body = std::get<MatrixBodyParameters>(variant);
-  if (!loaded.matrices) {
+  if (!loaded.matrices || !have_same_matrices(loaded.matrices_of, body)) {
     loaded.matrices = std::make_shared<const NamedMatrices>(
         read_matrices("substructures." + name, loaded.tree, body));
+    loaded.matrices_of = body;
   }
   SparseSystem sparse = sum(*loaded.matrices, body);
   LinearModel model;
@@ -88,6 +89,7 @@ const Schema& DiscScene::schema() {
   static const Schema keys =
       SchemaOf<DiscScene>("disc_and_pads")
           .integer("format", &DiscScene::format, format_key())
+          .parameters("parameters", &DiscScene::parameters, parameters_key())
           .include(&DiscScene::model)
           .section("time", &DiscScene::time, {.doc = "Steps of `run`.", .optional = true})
           .section("initial", &DiscScene::initial,
@@ -146,6 +148,7 @@ const Schema& MatrixScene::schema() {
   static const Schema keys =
       SchemaOf<MatrixScene>("matrix_scene")
           .integer("format", &MatrixScene::format, format_key())
+          .parameters("parameters", &MatrixScene::parameters, parameters_key())
           .named_variants("substructures", &MatrixScene::substructures, "type", {"matrices"},
                           {.doc = "One body, given by its matrices."})
           .check([](const MatrixScene& scene, std::vector<Problem>& problems) {
@@ -223,6 +226,7 @@ LinearModel LoadedLinearScene::model(const std::vector<NumericKey>& keys,
   changed.scene = read_linear_scene(changed.tree);
   LinearModel made = changed.model();
   matrices = changed.matrices;
+  matrices_of = changed.matrices_of;
   return made;
 }
 
