@@ -50,18 +50,18 @@ Report check_scene(const CheckOptions& options) {
   if (is_contact_scene(tree)) {
     const LoadedContactScene loaded = load_contact_scene(options.scene, options.common.sets);
     refuse_stability(options);
-    return {unit_warnings(ContactScene::schema(), &loaded.scene, tree)};
+    return {key_warnings(ContactScene::schema(), &loaded.scene, tree)};
   }
   if (is_linear_scene(tree)) {
     const LoadedLinearScene loaded = load_linear_scene(options.scene, options.common.sets);
     (void)loaded.model();
     refuse_stability(options);
-    return {unit_warnings(schema_of(loaded.scene), object_of(loaded.scene), tree)};
+    return {key_warnings(schema_of(loaded.scene), object_of(loaded.scene), tree)};
   }
   if (is_sphere_scene(tree)) {
     const LoadedSphereScene loaded = load_sphere_scene(options.scene, options.common.sets);
     refuse_stability(options);
-    return {unit_warnings(SphereScene::schema(), &loaded.scene, tree)};
+    return {key_warnings(SphereScene::schema(), &loaded.scene, tree)};
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   require_summary_memory(loaded);

@@ -197,12 +197,12 @@ ExitCode begin(const RunOptions& options) {
     refuse_error(options);
   if (is_sphere_scene_file(options.scene)) {
     const LoadedSphereScene loaded = load_sphere_scene(options.scene, options.common.sets);
-    print_warnings(unit_warnings(SphereScene::schema(), &loaded.scene, loaded.tree));
+    print_warnings(key_warnings(SphereScene::schema(), &loaded.scene, loaded.tree));
     return run_sphere(loaded, output, ending);
   }
   if (is_linear_scene_file(options.scene)) {
     const LoadedLinearScene loaded = load_linear_scene(options.scene, options.common.sets);
-    print_warnings(unit_warnings(schema_of(loaded.scene), object_of(loaded.scene), loaded.tree));
+    print_warnings(key_warnings(schema_of(loaded.scene), object_of(loaded.scene), loaded.tree));
     return run_disc(loaded, output, ending);
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);

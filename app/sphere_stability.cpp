@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -13,11 +15,11 @@ namespace {
 
 class SphereFamily : public StabilityFamily {
  public:
-  SphereFamily(const SphereScene& scene, std::vector<NumericKey> keys)
-      : scene_(scene), keys_(std::move(keys)) {}
+  SphereFamily(const LoadedSphereScene& loaded, std::vector<NumericKey> keys)
+      : loaded_(loaded), keys_(std::move(keys)) {}
 
   Pencil pencil(std::span<const double> values) override {
-    const SphereModelParameters model = with_values(scene_, keys_, values).model;
+    const SphereModelParameters model = with_values(loaded_, keys_, values).model;
     const SubstrateOscillator oscillator = make_sphere(model);
     return make_pencil(
         oscillator, small_motion(oscillator, sphere_equilibrium(oscillator), model.small_motion));
@@ -27,18 +29,23 @@ class SphereFamily : public StabilityFamily {
   }
 
  private:
-  SphereScene scene_;
+  LoadedSphereScene loaded_;
   std::vector<NumericKey> keys_;
 };
 
-/// The closed forms, without anything that allocates per point.
+/// The closed forms, without anything that allocates per point unless parameters vary.
 class SphereField : public GrowthField {
  public:
-  SphereField(const SphereScene& scene, const std::vector<NumericKey>& keys)
-      : parameters_(scene.model) {
+  SphereField(const LoadedSphereScene& loaded, const std::vector<NumericKey>& keys)
+      : parameters_(loaded.scene.model) {
+    if (std::any_of(keys.begin(), keys.end(), is_parameter)) {
+      varied_ = keys;
+      loaded_ = loaded;
+      return;
+    }
     // Refuses a number whose twin is given.
     std::vector<double> as_they_are(keys.size(), 1.0);
-    (void)with_values(scene, keys, as_they_are);
+    (void)with_values(loaded, keys, as_they_are);
     for (const NumericKey& key : keys) {
       const std::string name = key.path.substr(key.path.find('.') + 1);
       if (key.path.starts_with("sphere.")) {
@@ -61,8 +68,13 @@ class SphereField : public GrowthField {
   static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
   bool solve(double x, double y) {
-    keys_[0].key->assign(keys_[0].object, x);
-    if (keys_.size() > 1) keys_[1].key->assign(keys_[1].object, y);
+    if (loaded_) {
+      const std::array<double, 2> values{x, y};
+      parameters_ = with_values(*loaded_, varied_, std::span(values).first(varied_.size())).model;
+    } else {
+      keys_[0].key->assign(keys_[0].object, x);
+      if (keys_.size() > 1) keys_[1].key->assign(keys_[1].object, y);
+    }
     const SubstrateOscillator oscillator = make_sphere(parameters_);
     // The indentation over R changes less from point to point than that over F_n/k_x.
     const double unit = oscillator.contact.indentation_unit;
@@ -79,6 +91,8 @@ class SphereField : public GrowthField {
     void* object;
   };
   std::vector<Place> keys_;
+  std::optional<LoadedSphereScene> loaded_;  ///< where parameters vary
+  std::vector<NumericKey> varied_;           ///< likewise
   SmallMotion motion_;
   double last_ = 1e-2;  ///< ŷ
 };
@@ -102,19 +116,19 @@ const char* range_text(LawRange range) {
 NumericKey find_sphere_key(const SphereScene& scene, const std::string& path,
                            const std::string& option) {
   NumericKey key = find_numeric_key(SphereScene::schema(), &scene, path, option);
-  if (!path.starts_with("sphere.") && !path.starts_with("regularisation."))
+  if (!is_parameter(key) && !path.starts_with("sphere.") && !path.starts_with("regularisation."))
     throw ConfigError(option, fmt::format("'{}' has no influence on the eigenvalues", path));
   return key;
 }
 
 std::unique_ptr<StabilityFamily> SphereStabilityScene::family(std::vector<NumericKey> keys,
                                                               ContactGeometry) const {
-  return std::make_unique<SphereFamily>(loaded_.scene, std::move(keys));
+  return std::make_unique<SphereFamily>(loaded_, std::move(keys));
 }
 
 std::unique_ptr<GrowthField> SphereStabilityScene::growth_field(
     const std::vector<NumericKey>& keys) const {
-  return std::make_unique<SphereField>(loaded_.scene, keys);
+  return std::make_unique<SphereField>(loaded_, keys);
 }
 
 SubstrateEquilibrium sphere_equilibrium(const SubstrateOscillator& oscillator) {

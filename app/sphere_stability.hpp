@@ -24,7 +24,7 @@ class SphereStabilityScene : public StabilityScene {
   /// ω_nx.
   double rate_unit(const std::vector<NumericKey>& keys,
                    std::span<const double> values) const override {
-    return with_values(loaded_.scene, keys, values).model.sphere.natural_frequency;
+    return with_values(loaded_, keys, values).model.sphere.natural_frequency;
   }
   std::string hash() const override { return loaded_.hash(); }
   std::string resolved() const override { return loaded_.resolved(); }

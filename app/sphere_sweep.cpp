@@ -27,7 +27,7 @@ struct SweepPoint {
 };
 
 /// The cycle at a value, from the end of another motion where there is one.
-SweepPoint point_at(const SphereScene& scene, const NumericKey& key, double value,
+SweepPoint point_at(const LoadedSphereScene& scene, const NumericKey& key, double value,
                     const SweepPoint* last) {
   const SphereScene here = with_values(scene, {key}, std::span(&value, 1));
   const SubstrateOscillator oscillator = make_sphere(here.model);
@@ -52,7 +52,7 @@ SweepPoint point_at(const SphereScene& scene, const NumericKey& key, double valu
 }
 
 /// Each value from the motion at the one before.
-std::vector<SweepPoint> follow(const SphereScene& scene, const NumericKey& key,
+std::vector<SweepPoint> follow(const LoadedSphereScene& scene, const NumericKey& key,
                                const std::vector<double>& values, const SweepPoint* before,
                                Progress& progress) {
   std::vector<SweepPoint> points;
@@ -67,7 +67,7 @@ std::vector<SweepPoint> follow(const SphereScene& scene, const NumericKey& key,
 }
 
 /// Each value by itself, from the start that the scene says.
-std::vector<SweepPoint> sample(const SphereScene& scene, const NumericKey& key,
+std::vector<SweepPoint> sample(const LoadedSphereScene& scene, const NumericKey& key,
                                const std::vector<double>& values, int num_threads,
                                Progress& progress) {
   std::vector<SweepPoint> points(values.size());
@@ -176,13 +176,13 @@ ExitCode sweep_spheres(const SweepOptions& options) {
   Branches branches;
   Progress progress("sweep");
   if (options.is_up_and_down) {
-    branches.emplace_back("up", follow(loaded.scene, key, values, nullptr, progress));
+    branches.emplace_back("up", follow(loaded, key, values, nullptr, progress));
     const std::vector<double> back(values.rbegin(), values.rend());
     const SweepPoint turning = branches.front().second.back();
-    branches.emplace_back("down", follow(loaded.scene, key, back, &turning, progress));
+    branches.emplace_back("down", follow(loaded, key, back, &turning, progress));
   } else {
     branches.emplace_back("rows",
-                          sample(loaded.scene, key, values, options.common.threads, progress));
+                          sample(loaded, key, values, options.common.threads, progress));
   }
   progress.finish();
 

@@ -115,7 +115,8 @@ NumericKey find_stability_key(const Scene& scene, const std::string& path,
   NumericKey key = find_numeric_key(scene, path, option);
   const std::string section = path.substr(0, path.find('.'));
   const bool is_mechanical =
-      section != "initial" && ModelParameters::schema().find(section) != nullptr;
+      is_parameter(key) ||
+      (section != "initial" && ModelParameters::schema().find(section) != nullptr);
   if (!is_mechanical)
     throw ConfigError(option, fmt::format("'{}' has no influence on the eigenvalues", path));
   return key;

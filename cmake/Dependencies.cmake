@@ -3,6 +3,7 @@
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)
 find_package(yaml-cpp REQUIRED)
+find_package(muparser REQUIRED)
 find_package(FFTW3 REQUIRED)
 find_package(SuiteSparse REQUIRED COMPONENTS CHOLMOD UMFPACK)
 find_package(UDUNITS2 REQUIRED)

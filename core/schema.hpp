@@ -36,9 +36,19 @@
 
 namespace stridor {
 
+/// A number that a scene has given a name, for its expressions.
+struct NamedNumber {
+  std::string name;
+  double value = 0.0;    ///< in `unit`
+  std::string unit;      ///< SI; empty where it was written without one, or as an expression
+  bool is_used = false;  ///< some key depends on it, directly or through other parameters
+  bool operator==(const NamedNumber&) const = default;
+};
+using NamedNumbers = std::vector<NamedNumber>;
+
 /// What a key can hold once read. `monostate` stands for "not given".
 using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string,
-                           std::vector<double>, std::vector<std::string>, TimeTable>;
+                           std::vector<double>, std::vector<std::string>, TimeTable, NamedNumbers>;
 
 /// An interval of allowed numbers.
 struct Range {
@@ -78,6 +88,7 @@ enum class KeyKind {
   section,         ///< a map with the keys of `alternatives[0]`
   named_sections,  ///< a map name -> map; `alternatives` distinguished by `discriminator`
   section_list,    ///< a list of maps with the keys of `alternatives[0]`
+  parameters,      ///< a map name -> number, for the expressions of the other keys
 };
 
 class Schema;
@@ -256,6 +267,12 @@ class SchemaOf {
     text_list(std::move(name), member, std::move(says));
     schema_.keys.back().has_rows = true;
     return *this;
+  }
+
+  /// NamedNumbers, on which expressions of the other keys may depend.
+  SchemaOf& parameters(std::string name, NamedNumbers T::*member, PlainKey says) {
+    return add(KeyKind::parameters, std::move(name), member,
+               RealKey{std::move(says.doc), "", {}, says.optional});
   }
 
   /// An enum; `names` pairs what the user writes with what it means.

@@ -161,8 +161,8 @@ std::string expected_text(const std::string& unit) {
   throw std::invalid_argument(message);
 }
 
-[[noreturn]] void refuse_number(const std::string& text, const std::string& unit) {
-  refuse(fmt::format("'{}' is not a number, expected {}", text, expected_text(unit)));
+[[noreturn]] void refuse_number(const std::string& text, const std::string& expected) {
+  refuse(fmt::format("'{}' is not a number, expected {}", text, expected));
 }
 
 /// UDUNITS multiplies by numbers inside a unit ("m 10", "s/3") and shifts by them ("K @ 273"). Here
@@ -223,14 +223,26 @@ double convert(double value, const UnitMeaning& from, const UnitMeaning& to) {
   return value * factor;
 }
 
-}  // namespace
+[[noreturn]] void refuse_magnitude(const std::string& written) {
+  refuse(fmt::format("'{}' is outside the range of double precision; it must be finite", written));
+}
 
-double parse_quantity(const std::string& text, const std::string& unit) {
-  const std::string written = trimmed(text);
-  if (written.empty()) refuse(fmt::format("is empty, expected {}", expected_text(unit)));
+/// A number and the text of the unit behind it.
+struct SplitQuantity {
+  std::string written;  ///< both, without blanks around them
+  double number = 0.0;
+  std::string unit;  ///< may be empty
+};
 
-  // The number. from_chars knows neither a leading '+' nor the locale; the sign is taken here so
-  // that "+-1" does not pass.
+/// @param expected what the caller wants, for messages
+SplitQuantity split_quantity(const std::string& text, const std::string& expected) {
+  SplitQuantity split;
+  split.written = trimmed(text);
+  const std::string& written = split.written;
+  if (written.empty()) refuse(fmt::format("is empty, expected {}", expected));
+
+  // from_chars knows neither a leading '+' nor the locale; the sign is taken here so that "+-1"
+  // does not pass.
   std::string_view rest = written;
   double sign = 1.0;
   if (rest.front() == '+' || rest.front() == '-') {
@@ -244,60 +256,98 @@ double parse_quantity(const std::string& text, const std::string& unit) {
   const bool starts_number =
       !rest.empty() &&
       (is_digit(rest[0]) || (rest[0] == '.' && rest.size() > 1 && is_digit(rest[1])));
-  if (!starts_number) refuse_number(written, unit);
-  double number = 0.0;
-  const auto [end, status] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
-  if (status == std::errc::result_out_of_range) {
-    refuse(
-        fmt::format("'{}' is outside the range of double precision; it must be finite", written));
-  }
-  if (status != std::errc()) refuse_number(written, unit);
+  if (!starts_number) refuse_number(written, expected);
+  const auto [end, status] = std::from_chars(rest.data(), rest.data() + rest.size(), split.number);
+  if (status == std::errc::result_out_of_range) refuse_magnitude(written);
+  if (status != std::errc()) refuse_number(written, expected);
   rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
-  number *= sign;
-
-  // The unit.
-  const std::string unit_written = trimmed(rest);
-  if (unit_written.empty()) return number;
-  if (rest.front() == 'x' || rest.front() == 'X') {
+  split.number *= sign;
+  split.unit = trimmed(rest);
+  if (!split.unit.empty() && (rest.front() == 'x' || rest.front() == 'X')) {
     refuse(fmt::format("'{}' is not a decimal number (hexadecimal is not read), expected {}",
-                       written, expected_text(unit)));
+                       written, expected));
   }
-  if (unit.empty()) {
-    if (unit_written == "1") return number;
-    if (unit_written == "%") return number / 100.0;
-  }
-  const bool is_inverse = unit_written.starts_with("1/") || unit_written.starts_with('/');
+  return split;
+}
+
+/// What the unit of a quantity means; there is one.
+UnitMeaning read_unit(const SplitQuantity& split, const std::string& expected) {
+  const std::string& unit = split.unit;
+  const bool is_inverse = unit.starts_with("1/") || unit.starts_with('/');
   const std::string_view after_one =
-      std::string_view(unit_written).substr(!is_inverse ? 0 : unit_written.find('/') + 1);
+      std::string_view(unit).substr(!is_inverse ? 0 : unit.find('/') + 1);
   const bool starts_unit =
       !after_one.empty() && (is_letter(after_one[0]) || after_one[0] == '(' ||
                              after_one[0] == '%' || after_one[0] == '\'' || after_one[0] == '"');
-  if (!starts_unit) refuse_number(written, unit);
+  if (!starts_unit) refuse_number(split.written, expected);
   if (has_free_number(after_one)) {
-    refuse(fmt::format("'{}' holds a second number, expected one number and a unit: {}", written,
-                       expected_text(unit)));
+    refuse(fmt::format("'{}' holds a second number, expected one number and a unit: {}",
+                       split.written, expected));
   }
   UnitMeaning meaning;
-  if (!unit_system().read(is_inverse ? "1/" + std::string(after_one) : unit_written, meaning)) {
-    refuse(fmt::format("'{}' has the unknown unit '{}', expected {}{}", written, unit_written,
-                       expected_text(unit), suggest_unit(unit_written)));
+  if (!unit_system().read(is_inverse ? "1/" + std::string(after_one) : unit, meaning)) {
+    refuse(fmt::format("'{}' has the unknown unit '{}', expected {}{}", split.written, unit,
+                       expected, suggest_unit(unit)));
   }
+  return meaning;
+}
+
+/// "kg m-1 s-2" from the powers of basic units.
+std::string unit_text(const UnitMeaning& meaning) {
+  std::string text;
+  for (const auto& [name, power] : meaning.powers) {
+    if (power == 0) continue;
+    if (!text.empty()) text += ' ';
+    text += name;
+    if (power != 1) text += std::to_string(power);
+  }
+  return text;
+}
+
+/// "1" and "%", which may follow a number without dimension.
+bool is_dimensionless_sign(const std::string& unit) {
+  return unit == "1" || unit == "%";
+}
+double with_sign(const SplitQuantity& split) {
+  return split.unit == "%" ? split.number / 100.0 : split.number;
+}
+
+}  // namespace
+
+double parse_quantity(const std::string& text, const std::string& unit) {
+  const std::string wanted = expected_text(unit);
+  const SplitQuantity split = split_quantity(text, wanted);
+  if (split.unit.empty()) return split.number;
+  if (unit.empty() && is_dimensionless_sign(split.unit)) return with_sign(split);
+  const UnitMeaning meaning = read_unit(split, wanted);
   UnitMeaning expected;
   if (!unit.empty() && !(unit_system().read(unit, expected) && expected.is_scale)) {
     throw std::logic_error(
         fmt::format("parse_quantity: '{}' is declared as a unit but is none", unit));
   }
   if (unit.empty() || !meaning.is_scale || meaning.powers != expected.powers) {
-    refuse(fmt::format("'{}' has unit {}, expected {}{}", written, unit_written,
-                       expected_text(unit),
+    refuse(fmt::format("'{}' has unit {}, expected {}{}", split.written, split.unit, wanted,
                        unit.empty() ? " (only '%' may follow)" : angle_hint(meaning, expected)));
   }
-  const double value = convert(number, meaning, expected);
-  if (!std::isfinite(value)) {
-    refuse(
-        fmt::format("'{}' is outside the range of double precision; it must be finite", written));
-  }
+  const double value = convert(split.number, meaning, expected);
+  if (!std::isfinite(value)) refuse_magnitude(split.written);
   return value;
+}
+
+Quantity parse_any_quantity(const std::string& text) {
+  const std::string wanted = "a number, with a unit or without";
+  const SplitQuantity split = split_quantity(text, wanted);
+  if (split.unit.empty() || is_dimensionless_sign(split.unit)) return {with_sign(split), ""};
+  const UnitMeaning meaning = read_unit(split, wanted);
+  if (!meaning.is_scale) {
+    refuse(fmt::format("'{}' has unit {}, which is no multiple of an SI unit", split.written,
+                       split.unit));
+  }
+  UnitMeaning basic;
+  basic.powers = meaning.powers;
+  const Quantity quantity{convert(split.number, meaning, basic), unit_text(meaning)};
+  if (!std::isfinite(quantity.value)) refuse_magnitude(split.written);
+  return quantity;
 }
 
 }  // namespace stridor

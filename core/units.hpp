@@ -18,4 +18,14 @@ namespace stridor {
 ///         wrong dimension), without the place, which only the caller knows
 double parse_quantity(const std::string& text, const std::string& unit);
 
+/// A number in a unit made of basic SI units.
+struct Quantity {
+  double value = 0.0;
+  std::string unit;  ///< "m", "kg m-1 s-2"; empty: dimensionless
+};
+
+/// Reads a number with any unit and converts it to basic SI units: "2 GPa" is 2e9 kg m-1 s-2.
+/// @throws std::invalid_argument as parse_quantity(), but for the dimension
+Quantity parse_any_quantity(const std::string& text);
+
 }  // namespace stridor

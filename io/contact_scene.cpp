@@ -38,6 +38,7 @@ const Schema& ContactScene::schema() {
       SchemaOf<ContactScene>("viscoelastic_contact")
           .integer("format", &ContactScene::format,
                    {.doc = "Version of the scene language: 1.", .range = Range::between(1, 1)})
+          .parameters("parameters", &ContactScene::parameters, parameters_key())
           .section("material", &ContactScene::material,
                    {.doc = "The half-space that is slid over: linear viscoelastic, isotropic."})
           .section("profile", &ContactScene::profile, {.doc = "The rigid axisymmetric indenter."})

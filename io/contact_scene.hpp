@@ -24,6 +24,7 @@ struct SlidingPoints {
 /// A scene of this kind is known by its section `profile` or `contact_solver`.
 struct ContactScene {
   int format = 0;
+  NamedNumbers parameters;
   ViscoelasticMaterial material;
   ProfileParameters profile;
   SlidingContactParameters contact_solver;

@@ -68,9 +68,10 @@ LinearModel model_of(const DiscScene& scene, const LoadedLinearScene& loaded) {
 LinearModel model_of(const MatrixScene& scene, const LoadedLinearScene& loaded) {
   const auto& [name, variant] = *scene.substructures.begin();
   const auto& body = std::get<MatrixBodyParameters>(variant);
-  if (!loaded.matrices) {
+  if (!loaded.matrices || !have_same_matrices(loaded.matrices_of, body)) {
     loaded.matrices = std::make_shared<const NamedMatrices>(
         read_matrices("substructures." + name, loaded.tree, body));
+    loaded.matrices_of = body;
   }
   SparseSystem sparse = sum(*loaded.matrices, body);
   LinearModel model;
@@ -89,6 +90,7 @@ const Schema& DiscScene::schema() {
   static const Schema keys =
       SchemaOf<DiscScene>("disc_and_pads")
           .integer("format", &DiscScene::format, format_key())
+          .parameters("parameters", &DiscScene::parameters, parameters_key())
           .include(&DiscScene::model)
           .section("time", &DiscScene::time, {.doc = "Steps of `run`.", .optional = true})
           .section("initial", &DiscScene::initial,
@@ -147,6 +149,7 @@ const Schema& MatrixScene::schema() {
   static const Schema keys =
       SchemaOf<MatrixScene>("matrix_scene")
           .integer("format", &MatrixScene::format, format_key())
+          .parameters("parameters", &MatrixScene::parameters, parameters_key())
           .named_variants("substructures", &MatrixScene::substructures, "type", {"matrices"},
                           {.doc = "One body, given by its matrices."})
           .check([](const MatrixScene& scene, std::vector<Problem>& problems) {
@@ -225,6 +228,7 @@ LinearModel LoadedLinearScene::model(const std::vector<NumericKey>& keys,
   LinearModel made = changed.model();
   matrices = changed.matrices;
   bodies = changed.bodies;
+  matrices_of = changed.matrices_of;
   return made;
 }
 

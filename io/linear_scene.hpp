@@ -39,6 +39,7 @@ struct DiscRecordParameters {
 /// A scene of this kind is known by its section `disc`. From `time` on its sections are for `run`.
 struct DiscScene {
   int format = 0;
+  NamedNumbers parameters;
   DiscModelParameters model;
   std::optional<DiscTimeParameters> time;
   std::optional<DiscInitialParameters> initial;
@@ -52,6 +53,7 @@ struct DiscScene {
 /// has no contacts, no drive and no time. It has no other substructure.
 struct MatrixScene {
   int format = 0;
+  NamedNumbers parameters;
   std::map<std::string, std::variant<MatrixBodyParameters>> substructures;
   static const Schema& schema();
 };
@@ -86,10 +88,11 @@ struct LoadedLinearScene {
   std::string path;
   SceneNode tree;
   LinearScene scene;
-  /// Read when they are first needed; copies share them.
+  /// Read when they are first needed and when a parameter has changed a row; copies share them.
   mutable std::shared_ptr<const NamedMatrices> matrices;
   /// Plate and pads of the models made so far, likewise.
   mutable std::shared_ptr<DiscBodyCache> bodies;
+  mutable MatrixBodyParameters matrices_of;  ///< what names `matrices`
 
   std::string resolved() const;
   std::string hash() const;

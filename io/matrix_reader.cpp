@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
@@ -102,6 +103,11 @@ class MatrixLoader {
 NamedMatrices read_matrices(const std::string& key, const SceneNode& tree,
                             const MatrixBodyParameters& body) {
   return MatrixLoader(key, tree).load(body);
+}
+
+bool have_same_matrices(const MatrixBodyParameters& one, const MatrixBodyParameters& other) {
+  return std::all_of(std::begin(matrices_of_body), std::end(matrices_of_body),
+                     [&](const auto& named) { return one.*named.second == other.*named.second; });
 }
 
 std::vector<std::pair<std::string, std::string>> matrix_files(const std::string& key,

@@ -17,6 +17,9 @@ namespace stridor {
 NamedMatrices read_matrices(const std::string& key, const SceneNode& tree,
                             const MatrixBodyParameters& body);
 
+/// Whether two bodies name the same files and have the same rows; their factors may differ.
+bool have_same_matrices(const MatrixBodyParameters& one, const MatrixBodyParameters& other);
+
 /// The files that the matrices of a body come from: keys and names as written.
 /// @param key path of the body in the scene
 std::vector<std::pair<std::string, std::string>> matrix_files(const std::string& key,

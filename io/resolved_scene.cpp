@@ -83,6 +83,15 @@ struct InOneLine {
     return fmt::format("{{times: {}, values: {}}}", yaml_list(table.times),
                        yaml_list(table.values));
   }
+  std::string operator()(const NamedNumbers& numbers) const {
+    std::string text;
+    for (const NamedNumber& number : numbers) {
+      const std::string value = fmt::format("{}", number.value);
+      text += fmt::format("{}{}: {}", text.empty() ? "{" : ", ", yaml_text(number.name),
+                          number.unit.empty() ? value : yaml_text(value + " " + number.unit));
+    }
+    return text.empty() ? "" : text + "}";
+  }
 };
 
 using Lines = std::vector<std::string>;

@@ -10,7 +10,8 @@ namespace stridor {
 /// The scene text that reads back into exactly this struct.
 ///
 /// Every key in the order of its declaration, defaults included; numbers in SI units without a
-/// unit, in the shortest form that reads back to the same double. Left out are optionals that are
+/// unit, in the shortest form that reads back to the same double. Expressions are written as their
+/// values, parameters with the unit that they have. Left out are optionals that are
 /// empty and numbers that are not finite, which can only be defaults standing for "not given".
 ///
 /// @param schema declared keys

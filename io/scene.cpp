@@ -59,6 +59,12 @@ void check_spectrogram(const Scene& scene, std::vector<Problem>& problems) {
 
 }  // namespace
 
+PlainKey parameters_key() {
+  return {.doc = "Numbers with names, with or without a unit, or expressions of each other "
+                 "(`=sqrt(k/m)`), for the expressions of all other keys (`=2*mu`).",
+          .optional = true};
+}
+
 const Schema& RecordParameters::schema() {
   static const Schema keys =
       SchemaOf<RecordParameters>("record")
@@ -167,6 +173,7 @@ const Schema& Scene::schema() {
       SchemaOf<Scene>("scene")
           .integer("format", &Scene::format,
                    {.doc = "Version of the scene language: 1.", .range = Range::between(1, 1)})
+          .parameters("parameters", &Scene::parameters, parameters_key())
           .include(&Scene::model)
           .section("time", &Scene::time, {.doc = "How the system is marched in time."})
           .section("record", &Scene::record,

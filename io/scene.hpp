@@ -12,6 +12,9 @@
 
 namespace stridor {
 
+/// What every kind of scene says of its key `parameters`.
+PlainKey parameters_key();
+
 struct RecordParameters {
   double interval = 0.0;  ///< between samples, s, a multiple of time.step
   std::vector<std::string>
@@ -55,6 +58,7 @@ struct Expectation {
 
 struct Scene {
   int format = 0;
+  NamedNumbers parameters;
   ModelParameters model;
   TimeParameters time;
   std::optional<RecordParameters> record;

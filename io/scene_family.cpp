@@ -37,6 +37,31 @@ struct NamedEntry {
   const void* object = nullptr;
 };
 
+/// The parameters of a scene.
+NamedNumbers parameters_of(const Schema& schema, const void* object) {
+  for (const Key& key : schema.keys)
+    if (key.kind == KeyKind::parameters) return std::get<NamedNumbers>(key.read(object));
+  return {};
+}
+
+NumericKey parameter_key(const NamedNumbers& numbers, const std::string& path,
+                         const std::string& option) {
+  const std::size_t dot = std::min(path.find('.'), path.size());
+  const std::string name = path.substr(std::min(dot + 1, path.size()));
+  std::vector<std::string> names;
+  for (const NamedNumber& number : numbers) {
+    names.push_back(number.name);
+    if (number.name != name) continue;
+    if (!number.is_used) {
+      throw ConfigError(option, fmt::format("no expression of the scene uses '{}', so varying it "
+                                            "changes nothing",
+                                            path));
+    }
+    return {path, number.unit, Range::any()};
+  }
+  fail_unknown(option, path, name, path.substr(0, dot), names);
+}
+
 std::vector<NamedEntry> entries_of(const Key& key, const void* object) {
   std::vector<NamedEntry> entries;
   if (object == nullptr) return entries;
@@ -76,6 +101,10 @@ ConfigError in_settings(const ConfigError& error, const Settings& settings) {
 
 }  // namespace
 
+bool is_parameter(const NumericKey& key) {
+  return key.path.starts_with("parameters.");
+}
+
 NumericKey find_numeric_key(const Scene& scene, const std::string& path,
                             const std::string& option) {
   return find_numeric_key(Scene::schema(), &scene, path, option);
@@ -89,7 +118,17 @@ NumericKey find_numeric_key(const Schema& keys, const void* object, const std::s
     const std::size_t end = std::min(path.find('.', begin), path.size());
     const std::string part = path.substr(begin, end - begin);
     const Key* key = schema->find(part);
-    if (key == nullptr) fail_unknown(option, path, part, walked, key_names(*schema));
+    if (key == nullptr) {
+      if (schema == &keys) {
+        for (const NamedNumber& number : parameters_of(keys, object)) {
+          if (number.name != part) continue;
+          throw ConfigError(option, fmt::format("'{0}' is a parameter of the scene; write "
+                                                "'parameters.{0}'",
+                                                part));
+        }
+      }
+      fail_unknown(option, path, part, walked, key_names(*schema));
+    }
     walked = join_path(walked, part);
     begin = end + 1;
     const bool is_last = end == path.size();
@@ -126,6 +165,8 @@ NumericKey find_numeric_key(const Schema& keys, const void* object, const std::s
         }
         break;
       }
+      case KeyKind::parameters:
+        return parameter_key(std::get<NamedNumbers>(key->read(object)), path, option);
       case KeyKind::integer:
       case KeyKind::real:
       case KeyKind::curve:

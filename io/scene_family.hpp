@@ -19,10 +19,15 @@ struct NumericKey {
   bool is_integer = false;
 };
 
-/// The key at a path, which need not be written in the scene where it is optional.
+/// Whether a key is one of the scene's `parameters`, on which other keys may depend.
+bool is_parameter(const NumericKey& key);
+
+/// The key at a path, which need not be written in the scene where it is optional; a parameter has
+/// the path "parameters.<name>" and the unit in which it is written.
 ///
 /// @param option where the path was written, for messages
-/// @throws ConfigError with a suggestion if the path leads nowhere, or if the key is not a number
+/// @throws ConfigError with a suggestion if the path leads nowhere, if the key is not a number, or
+///         if it is a parameter that no expression uses
 NumericKey find_numeric_key(const Scene& scene, const std::string& path, const std::string& option);
 /// The same in a scene of any kind.
 /// @param schema its keys

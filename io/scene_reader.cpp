@@ -12,6 +12,8 @@
 
 #include "core/suggestion.hpp"
 #include "core/units.hpp"
+#include "io/expression.hpp"
+#include "io/scene_parameters.hpp"
 
 namespace stridor {
 namespace {
@@ -130,6 +132,7 @@ class Reader {
     if (!is_kind(node, Kind::map, "a map", path)) return;
     const std::size_t num_before = problems_.size();
     add_text_problems(node, path);
+    const Key* named_numbers = read_parameters(node, schema, path);
     for (const SceneEntry& entry : node.entries) {
       if (entry.key == discriminator) continue;
       const std::string key_path = join_path(path, entry.key);
@@ -151,10 +154,31 @@ class Reader {
                            expected_of(key), key.doc));
       }
     }
+    if (named_numbers != nullptr) {
+      // Of a map that was read as a whole, or a use may have been overlooked.
+      if (problems_.size() == num_before) parameters_.refuse_idle_settings(problems_);
+      named_numbers->assign(object, parameters_.numbers());
+    }
     if (problems_.size() == num_before) run_checks(node, schema, object, path);
   }
 
  private:
+  /// Reads the parameters of the scene, on which any other key may depend.
+  /// @returns their key where they are given
+  const Key* read_parameters(const SceneNode& node, const Schema& schema, const std::string& path) {
+    for (const SceneEntry& entry : node.entries) {
+      const Key* key = schema.find(entry.key);
+      if (key == nullptr || key->kind != KeyKind::parameters) continue;
+      const std::string key_path = join_path(path, entry.key);
+      if (entry.value.kind == Kind::null) return nullptr;  // reported with the other keys
+      if (!is_kind(entry.value, Kind::map, expected_of(*key), key_path)) return nullptr;
+      add_text_problems(entry.value, key_path);
+      parameters_.read(entry.value, key_path, problems_);
+      return key;
+    }
+    return nullptr;
+  }
+
   void report(const Place& place, const std::string& path, std::string message) {
     problems_.push_back(problem_at(place, path, std::move(message)));
   }
@@ -246,6 +270,8 @@ class Reader {
                    item_path, "");
         }
         return;
+      case KeyKind::parameters:
+        return;  // read before the others
       case KeyKind::flag:
       case KeyKind::integer:
       case KeyKind::real:
@@ -355,6 +381,7 @@ class Reader {
       case KeyKind::section:
       case KeyKind::named_sections:
       case KeyKind::section_list:
+      case KeyKind::parameters:
         break;
     }
     return {};
@@ -375,6 +402,7 @@ class Reader {
 
   Value read_integer(const SceneNode& node, const Key& key, const std::string& path) {
     if (!is_scalar(node, "a whole number", path)) return {};
+    if (is_expression(node.text)) return read_whole_result(node, key, path);
     const bool has_plus = node.text.starts_with('+') && !node.text.starts_with("+-");
     const char* begin = node.text.data() + (has_plus ? 1 : 0);
     const char* end = node.text.data() + node.text.size();
@@ -386,45 +414,80 @@ class Reader {
              fmt::format("expected a whole number without unit, got {}", quoted(node.text)));
       return {};
     }
-    const auto number = static_cast<double>(value);
-    if (!is_too_large && !key.range.contains(number)) {
-      report(node.place, path, fmt::format("must be {}, got {}", key.range.text(), value));
-      return {};
-    }
-    if (is_too_large || !key.storable.contains(number)) {
-      report(node.place, path,
-             fmt::format("is too far from 0 to be stored, got {}", quoted(node.text)));
+    if (!is_too_large && !is_in_range(node, key, static_cast<double>(value), path)) return {};
+    if (is_too_large || !key.storable.contains(static_cast<double>(value))) {
+      report_not_storable(node, path);
       return {};
     }
     return value;
   }
 
+  /// An expression for a whole number.
+  Value read_whole_result(const SceneNode& node, const Key& key, const std::string& path) {
+    const auto value = parameters_.value_of(node, path, problems_);
+    if (!value) return {};
+    if (*value != std::trunc(*value)) {
+      report(node.place, path,
+             fmt::format("must be a whole number, got {} (written {}); round() rounds", *value,
+                         quoted(node.text)));
+      return {};
+    }
+    if (!is_in_range(node, key, *value, path)) return {};
+    constexpr double largest = 9007199254740992.0;  // beyond it doubles leave whole numbers out
+    if (std::abs(*value) > largest || !key.storable.contains(*value)) {
+      report_not_storable(node, path);
+      return {};
+    }
+    return static_cast<std::int64_t>(*value);
+  }
+
+  bool is_in_range(const SceneNode& node, const Key& key, double whole, const std::string& path) {
+    if (key.range.contains(whole)) return true;
+    report(node.place, path,
+           fmt::format("must be {}, got {:.0f}{}", key.range.text(), whole, written(node)));
+    return false;
+  }
+
+  void report_not_storable(const SceneNode& node, const std::string& path) {
+    report(node.place, path,
+           fmt::format("is too far from 0 to be stored, got {}", quoted(node.text)));
+  }
+
+  /// How a number was written, where it was not in the form in which messages show it.
+  static std::string written(const SceneNode& node) {
+    return is_bare_number(node.text) ? "" : fmt::format(" (written {})", quoted(node.text));
+  }
+
   std::optional<double> read_real(const SceneNode& node, const std::string& unit,
                                   const Range& range, const std::string& path) {
     if (!is_scalar(node, in_unit("a number", unit), path)) return std::nullopt;
+    const auto value = is_expression(node.text) ? parameters_.value_of(node, path, problems_)
+                                                : read_quantity(node, unit, path);
+    if (!value) return std::nullopt;
+    if (!range.contains(*value)) {
+      report(node.place, path, range_message(range, *value, unit) + written(node));
+      return std::nullopt;
+    }
+    if (const std::string message = magnitude_message(*value, unit); !message.empty()) {
+      report(node.place, path, message);
+      return std::nullopt;
+    }
+    return value;
+  }
+
+  std::optional<double> read_quantity(const SceneNode& node, const std::string& unit,
+                                      const std::string& path) {
     if (quoted(node.text) != "'" + node.text + "'") {  // no number is long or has line breaks
       report(node.place, path,
              fmt::format("expected {}, got {}", in_unit("a number", unit), quoted(node.text)));
       return std::nullopt;
     }
-    double value = 0.0;
     try {
-      value = parse_quantity(node.text, unit);
+      return parse_quantity(node.text, unit);
     } catch (const std::invalid_argument& error) {
       report(node.place, path, error.what());
       return std::nullopt;
     }
-    if (!range.contains(value)) {
-      const std::string written =
-          is_bare_number(node.text) ? "" : fmt::format(" (written {})", quoted(node.text));
-      report(node.place, path, range_message(range, value, unit) + written);
-      return std::nullopt;
-    }
-    if (const std::string message = magnitude_message(value, unit); !message.empty()) {
-      report(node.place, path, message);
-      return std::nullopt;
-    }
-    return value;
   }
 
   std::optional<std::vector<double>> read_reals(const SceneNode& node, const std::string& unit,
@@ -453,7 +516,8 @@ class Reader {
   Value read_texts(const SceneNode& node, const Key& key, const std::string& path) {
     if (node.kind == Kind::scalar) {
       add_text_problems(node, path);
-      return std::vector<std::string>{node.text};
+      const auto text = text_of(node, key, path);
+      return text ? Value(std::vector<std::string>{*text}) : Value{};
     }
     if (!is_kind(node, Kind::list, expected_of(key), path)) return {};
     add_text_problems(node, path);
@@ -464,11 +528,22 @@ class Reader {
       if (key.has_rows && item.kind == Kind::list) {
         if (auto row = read_row(item, item_path)) texts.push_back(std::move(*row));
       } else if (is_scalar(item, key.has_rows ? "a row of numbers" : "a text", item_path)) {
-        texts.push_back(item.text);
+        if (auto text = text_of(item, key, item_path)) texts.push_back(std::move(*text));
       }
     }
     if (texts.size() != node.items.size()) return {};
     return texts;
+  }
+
+  /// A text; the number of an expression where texts are rows of numbers.
+  std::optional<std::string> text_of(const SceneNode& node, const Key& key,
+                                     const std::string& path) {
+    if (!key.has_rows || !is_expression(node.text)) return node.text;
+    const std::size_t num_before = problems_.size();
+    const auto value = parameters_.value_of(node, path, problems_);
+    if (problems_.size() > num_before)
+      problems_.back().message += "; a row of several is a list: [=a, =b]";
+    return value ? std::optional(fmt::format("{}", *value)) : std::nullopt;
   }
 
   /// The text of a list of numbers, as they are written.
@@ -541,6 +616,7 @@ class Reader {
   }
 
   std::vector<Problem>& problems_;
+  SceneParameters parameters_;
 };
 
 }  // namespace
@@ -569,6 +645,8 @@ std::string expected_of(const Key& key) {
       return "a map of named maps";
     case KeyKind::section_list:
       return "a list of maps";
+    case KeyKind::parameters:
+      return "a map of names to numbers";
   }
   return {};
 }

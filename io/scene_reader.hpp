@@ -15,7 +15,8 @@ namespace stridor {
 ///
 /// Strict: an unknown, doubled, missing or empty key, a wrong type, unit or range is a problem;
 /// nothing is converted silently. Bare numbers are SI, "75 mm" is converted, quotes make no
-/// difference. Names of named sections are letters, digits, '_' and '-', because dots separate the
+/// difference. A number may also be an expression of the scene's `parameters` (io/expression.hpp),
+/// which gives it in the SI unit of its key. Names of named sections are letters, digits, '_' and '-', because dots separate the
 /// parts of a channel. A table {times, values} with a single entry is read as the constant that it
 /// describes. Problems carry the place of the key where the key itself is wrong, else of the value;
 /// a missing key that of the map. `Schema::checks` of a map run only if no problem was found in it

@@ -25,6 +25,16 @@ converted, and a dimensionless number may be written in `%`. A curve is a number
 nor have a default are left out where they are not wanted. In the headings, NAME stands for a name
 of your choice (letters, digits, `_` and `-`, no digit or `-` first) and N for the index in a list.
 
+Wherever a number is expected, in lists, tables and rows of matrices too, an expression may stand:
+`=` and then numbers, names of `parameters`, `+ - * /`, `^` (before the sign: -2^2 = -4; from the
+right: 2^3^2 = 2^9), parentheses, `pi` and the functions `sqrt`, `sin`, `cos`, `tan` (of an angle in
+rad), `exp`, `ln`, `log10`, `abs`, `round`, `min` and `max`. Its value is in the SI unit of the key,
+and units do not occur in it; they may in `parameters: {mu: 0.3, length: 75 mm, omega: =sqrt(k/m)}`,
+which are converted to SI and may depend on each other. An expression with a `,` inside `{...}` or
+`[...]` stands in quotes. Verbs that vary a key vary a parameter by its path, `parameters.mu`, and
+`--set parameters.mu=0.4` or `--set contact.friction.coefficient==2*mu` set one for one command. Run
+files hold the values that expressions had.
+
 The path of a file is from the folder of the scene where it is written in the scene, and from the
 working directory where it comes from `--set`. The scene hash that results carry covers every key
 with its value, the paths of such files among them, but not what the files hold.
@@ -94,6 +104,7 @@ struct DefaultText {
     return fmt::format("{{times: {}, values: {}}}", list_text(table.times),
                        list_text(table.values));
   }
+  std::string operator()(const NamedNumbers&) const { return {}; }
 };
 
 std::string default_text(const Schema& schema, const Key& key) {
@@ -205,6 +216,8 @@ class Page {
         return link("map", sections_of(key, parent).front().heading());
       case KeyKind::section_list:
         return link("list of maps", sections_of(key, parent).front().heading());
+      case KeyKind::parameters:
+        return "map of names to numbers";
       case KeyKind::named_sections:
         break;
     }

@@ -49,6 +49,20 @@ void look_at_number(const Key& key, double value, const std::string& path, const
   }
 }
 
+void look_at_parameters(const Schema& schema, const void* object, std::vector<Problem>& warnings) {
+  for (const Key& key : schema.keys) {
+    if (key.kind != KeyKind::parameters) continue;
+    for (const NamedNumber& number : std::get<NamedNumbers>(key.read(object))) {
+      if (number.is_used) continue;
+      warnings.push_back({join_path(key.name, number.name),
+                          "no expression of the scene uses this parameter",
+                          {},
+                          0,
+                          0});
+    }
+  }
+}
+
 /// Calls back for every number with a single value, at its key path.
 template <class Look>
 void visit_numbers(const Schema& schema, const void* object, const std::string& path,
@@ -128,9 +142,10 @@ void look_at_paths(const LoadedScene& loaded, const System& system,
 
 }  // namespace
 
-std::vector<Problem> unit_warnings(const Schema& schema, const void* object,
-                                   const SceneNode& tree) {
+std::vector<Problem> key_warnings(const Schema& schema, const void* object,
+                                  const SceneNode& tree) {
   std::vector<Problem> warnings;
+  look_at_parameters(schema, object, warnings);
   visit_numbers(schema, object, "",
                 [&](const Key& key, double value, const std::string& path) {
                   look_at_number(key, value, path, tree, warnings);
@@ -141,7 +156,7 @@ std::vector<Problem> unit_warnings(const Schema& schema, const void* object,
 
 std::vector<Problem> scene_warnings(const LoadedScene& loaded, const Model& model) {
   const Scene& scene = loaded.scene;
-  std::vector<Problem> warnings = unit_warnings(Scene::schema(), &scene, loaded.tree);
+  std::vector<Problem> warnings = key_warnings(Scene::schema(), &scene, loaded.tree);
   for (const auto& [name, substructure] : scene.model.substructures) {
     if (const auto* beam = std::get_if<BeamParameters>(&substructure))
       look_at_aspect(name, *beam, warnings);

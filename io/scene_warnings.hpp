@@ -9,11 +9,11 @@
 namespace stridor {
 
 /// Numbers written without a unit that are of another order of magnitude than vibrating bodies
-/// have: a unit was probably left out.
+/// have, of which a unit was probably left out, and parameters that no expression uses.
 /// @param tree as it was read into the object
-std::vector<Problem> unit_warnings(const Schema& schema, const void* object, const SceneNode& tree);
+std::vector<Problem> key_warnings(const Schema& schema, const void* object, const SceneNode& tree);
 
-/// unit_warnings() of a scene of bodies in contact, a window of the statistics that begins after
+/// key_warnings() of a scene of bodies in contact, a window of the statistics that begins after
 /// the end of the run, and paths that lead off the end of a master within the run (of the
 /// undeformed bodies).
 std::vector<Problem> scene_warnings(const LoadedScene& loaded, const Model& model);

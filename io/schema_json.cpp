@@ -60,6 +60,7 @@ struct DefaultJson {
     json["values"] = numbers_json(table.values);
     return json;
   }
+  Json operator()(const NamedNumbers&) const { return nullptr; }
 };
 
 void add_bounds(Json& json, const Range& range) {
@@ -71,7 +72,10 @@ void add_bounds(Json& json, const Range& range) {
   }
 }
 
-/// What parse_quantity (core/units.hpp) reads, as a regular expression without look-ahead, which
+/// An expression (io/expression.hpp).
+constexpr const char* expression_pattern = "^=.";
+
+/// An expression, or what parse_quantity (core/units.hpp) reads, as a regular expression without look-ahead, which
 /// not every validator knows. Of the range only the sign is seen: the rest depends on the unit.
 std::string quantity_pattern(const Range& range, const std::string& unit) {
   const std::string exponent = "([eE][+-]?[0-9]+)?";
@@ -84,7 +88,7 @@ std::string quantity_pattern(const Range& range, const std::string& unit) {
   }
   const std::string suffix =
       unit.empty() ? "([ \\t]*%|[ \\t]+1)?[ \\t]*" : "[ \\t]*((1?/)?[^ \\t0-9+.,:;_*/^-].*)?";
-  return "^[ \\t]*" + number + suffix + "$";
+  return expression_pattern + ("|^[ \\t]*" + number + suffix + "$");
 }
 
 Json typed(const std::string& type) {
@@ -108,7 +112,8 @@ Json real_json(const std::string& unit, const Range& range) {
 }
 
 Json integer_json(const Key& key) {
-  Json json = typed("integer");
+  Json json = typed("integer", "string");
+  json["pattern"] = expression_pattern;
   Range range = key.range;
   if (key.storable.low > range.low && key.storable.low > -largest_exact) {
     range.low = key.storable.low;
@@ -218,7 +223,7 @@ class Writer {
       case KeyKind::text_list:
         json = typed("string", "array");
         json["items"] = key.has_rows ? typed("string", "array") : typed("string");
-        if (key.has_rows) json["items"]["items"] = typed("number");
+        if (key.has_rows) json["items"]["items"] = real_json("", Range::any());
         return json;
       case KeyKind::curve:
         json["oneOf"] = Json::array({real_json(key.unit, key.range), table_json(key)});
@@ -236,6 +241,11 @@ class Writer {
       case KeyKind::section_list:
         json = typed("array");
         json["items"] = reference(key, key.alternatives.front());
+        return json;
+      case KeyKind::parameters:
+        json = typed("object");
+        json["patternProperties"]["^[A-Za-z_][A-Za-z0-9_]*$"] = real_json("any", Range::any());
+        json["additionalProperties"] = false;
         return json;
     }
     return json;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "io/law_table_file.hpp"
@@ -25,6 +26,18 @@ void set_number(const Schema& schema, void* object, const std::string& path, dou
     return;
   }
   set_number(key->alternatives[0].schema(), key->open(object, "", 0), path.substr(dot + 1), value);
+}
+
+/// The scene with some of its numbers set before its expressions are evaluated.
+SphereScene read_again(const LoadedSphereScene& loaded, const std::vector<NumericKey>& keys,
+                       std::span<const double> values) {
+  SceneNode tree = loaded.tree;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    set_value(tree, fmt::format("{}={}", keys[i].path, values[i]));
+  SphereScene changed = read_as<SphereScene>(tree);
+  changed.model.contact_law = loaded.scene.model.contact_law;
+  changed.model.table = loaded.scene.model.table;
+  return changed;
 }
 
 /// Reads the table of the contact law where the scene names one. The resolved scene names it from
@@ -89,6 +102,7 @@ const Schema& SphereScene::schema() {
       SchemaOf<SphereScene>("viscoelastic_sphere")
           .integer("format", &SphereScene::format,
                    {.doc = "Version of the scene language: 1.", .range = Range::between(1, 1)})
+          .parameters("parameters", &SphereScene::parameters, parameters_key())
           .include(&SphereScene::model)
           .section("time", &SphereScene::time, {.doc = "How motions in time are computed."})
           .section("checkpoint", &SphereScene::checkpoint,
@@ -139,9 +153,10 @@ LoadedSphereScene load_resolved_sphere_scene(const std::string& text, const std:
   return loaded;
 }
 
-SphereScene with_values(const SphereScene& scene, const std::vector<NumericKey>& keys,
+SphereScene with_values(const LoadedSphereScene& loaded, const std::vector<NumericKey>& keys,
                         std::span<const double> values) {
-  SphereScene changed = scene;
+  if (std::any_of(keys.begin(), keys.end(), is_parameter)) return read_again(loaded, keys, values);
+  SphereScene changed = loaded.scene;
   for (std::size_t i = 0; i < keys.size(); ++i)
     set_number(SphereScene::schema(), &changed, keys[i].path, values[i]);
   std::vector<Problem> problems;

@@ -35,6 +35,7 @@ struct SphereTimeParameters {
 /// A scene of this kind is known by its section `sphere`.
 struct SphereScene {
   int format = 0;
+  NamedNumbers parameters;
   SphereModelParameters model;
   SphereTimeParameters time;
   CheckpointParameters checkpoint;
@@ -69,7 +70,7 @@ LoadedSphereScene load_resolved_sphere_scene(const std::string& text, const std:
 /// The scene with some of its numbers set.
 /// @param keys, values of as many numbers
 /// @throws ConfigError if the values do not fit the others
-SphereScene with_values(const SphereScene& scene, const std::vector<NumericKey>& keys,
+SphereScene with_values(const LoadedSphereScene& loaded, const std::vector<NumericKey>& keys,
                         std::span<const double> values);
 
 }  // namespace stridor

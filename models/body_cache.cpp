@@ -18,6 +18,8 @@ void append(std::string& text, const Value& value) {
       text += '-';
     } else if constexpr (std::is_same_v<Content, TimeTable>) {
       text += fmt::format("{} {}", content.times, content.values);
+    } else if constexpr (std::is_same_v<Content, NamedNumbers>) {
+      // Keys that depend on parameters hold values.
     } else {
       text += fmt::format("{}", content);
     }

@@ -389,7 +389,7 @@ TEST(DiscProgram, StopsWhereAPadGoesThroughTheDisc) {
 double example_limit(const std::string& name, const std::string& key, const std::string& to,
                      std::vector<std::string> more) {
   std::vector<std::string> arguments{"threshold",   scene_path("examples/" + name + ".yaml"),
-                                     "--parameter", "substructures." + key + ".load",
+                                     "--parameter", key,
                                      "--from",      "0.05",
                                      "--to",        to};
   arguments.insert(arguments.end(), more.begin(), more.end());
@@ -617,13 +617,15 @@ TEST(MatrixProgram, LargeMatricesHaveMaps) {
 }
 
 TEST(MatrixProgram, ExamplesHaveTheirClosedForms) {
-  EXPECT_NEAR(example_limit("flutter", "oscillator", "0.4", {}), 0.2, 1e-12);
-  EXPECT_NEAR(example_limit("flutter_equal_damping", "oscillator", "0.4", {}), 0.2280350850, 1e-10);
-  EXPECT_NEAR(example_limit("flutter_ziegler", "oscillator", "0.4", {}), 0.1732146068, 1e-10);
-  EXPECT_NEAR(example_limit("flutter_ziegler", "oscillator", "0.4",
+  EXPECT_NEAR(example_limit("flutter", "substructures.oscillator.load", "0.4", {}), 0.2, 1e-12);
+  EXPECT_NEAR(example_limit("flutter_equal_damping", "substructures.oscillator.load", "0.4", {}),
+              0.2280350850, 1e-10);
+  EXPECT_NEAR(example_limit("flutter_ziegler", "substructures.oscillator.load", "0.4", {}),
+              0.1732146068, 1e-10);
+  EXPECT_NEAR(example_limit("flutter_ziegler", "substructures.oscillator.load", "0.4",
                             {"--set", "substructures.oscillator.damping=[0.1 0, 0 0.3]"}),
               0.2509980080, 1e-10);
-  EXPECT_NEAR(example_limit("two_springs_on_a_belt", "mass", "1.2", {}), 0.75, 1e-12);
+  EXPECT_NEAR(example_limit("two_springs_on_a_belt", "parameters.mu", "1.2", {}), 0.75, 1e-12);
   const auto largest = [](const std::string& name) {
     return growth_of(json_of({"eig", scene_path("examples/" + name + ".yaml")})).largest;
   };

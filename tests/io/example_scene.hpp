@@ -116,6 +116,7 @@ enum class Scheme { central, exact };
 
 struct Example {
   std::uint8_t format = 0;
+  NamedNumbers parameters;
   std::string title;
   Scheme scheme = Scheme::central;
   std::vector<double> band;
@@ -132,6 +133,8 @@ struct Example {
         SchemaOf<Example>("example")
             .integer("format", &Example::format,
                      {.doc = "Version of the format.", .range = Range::positive()})
+            .parameters("parameters", &Example::parameters,
+                        {.doc = "Numbers with names.", .optional = true})
             .text("title", &Example::title, {.doc = "Title.", .optional = true})
             .choice("scheme", &Example::scheme,
                     {{"central", Scheme::central}, {"exact", Scheme::exact}},
@@ -162,7 +165,7 @@ struct Example {
     const auto same_curve = [](const TimeCurve& a, const TimeCurve& b) {
       return a.table() == b.table();
     };
-    return format == other.format && title == other.title && scheme == other.scheme &&
+    return format == other.format && parameters == other.parameters && title == other.title && scheme == other.scheme &&
            band == other.band && same_curve(velocity, other.velocity) &&
            load.has_value() == other.load.has_value() &&
            (!load || same_curve(*load, *other.load)) && bodies == other.bodies &&

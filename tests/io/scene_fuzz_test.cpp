@@ -61,7 +61,7 @@ class Damage {
 
  private:
   void inflict(std::string& text) {
-    static constexpr std::array<std::string_view, 44> kPieces{
+    static constexpr std::array<std::string_view, 47> kPieces{
         ":",     ": ",    "-",     "- ",    "?",    "? ",
         ",",     "[",     "]",     "{",     "}",    "&a",
         "*a",    "!",     "!!x ",  "|",     ">",    "'",
@@ -69,7 +69,7 @@ class Damage {
         "<<: ",  "~",     "\t",    "\n",    "\r\n", "\n\n  ",
         "---\n", "...\n", "\\",    "é",     "日",   "\xEF\xBB\xBF",
         "\xFF",  "\x04",  "\x1B[", "1e999", ".nan", "99999999999999999999",
-        "µm",    "\\x"};
+        "µm",    "\\x",   "=1/0",  "=sqrt(2)", "=mu"};
     const std::size_t at = below(text.size());
     const std::size_t length = std::min(1 + below(below(2) == 0 ? 3 : 60), text.size() - at);
     switch (below(7)) {

@@ -143,6 +143,7 @@ std::vector<NumberCase> number_cases(const NumberRules& rules, double allowed) {
       cases.push_back({text, fmt::format("expected a whole number without unit, got '{}'", text)});
     }
     cases.push_back({"''", "expected a whole number without unit, got ''"});
+    cases.push_back({"=0.5", "must be a whole number, got 0.5 (written '=0.5')"});
   } else {
     for (const std::string text : {"long", "true", "1 2", "1.2.3", "1 2 m"}) {
       cases.push_back({text, fmt::format("'{}' is not a number, expected", text)});
@@ -162,6 +163,10 @@ std::vector<NumberCase> number_cases(const NumberRules& rules, double allowed) {
                                         : number_text(allowed) + " " + rules.unit,
                      ""});
   }
+  cases.push_back({"=" + number_text(allowed), ""});
+  cases.push_back({"=1/0", "'=1/0': 1 is divided by 0"});
+  cases.push_back({"=nobody", "'=nobody', column 1: there is no parameter 'nobody'"});
+  cases.push_back({"=2 +", "'=2 +', column 4: a number or a name is missing after '+'"});
   add_range_cases(rules, cases);
   return cases;
 }
@@ -176,7 +181,9 @@ class MutantMaker {
     mutants_.clear();
     const Draft& draft = *find_draft(scene_, path);
     const Draft& parent = *find_draft(scene_, parent_path(path));
-    if (parent.form == Draft::Form::list) {
+    if (parent.key != nullptr && parent.key->kind == KeyKind::parameters) {
+      spoil_parameter(path);
+    } else if (parent.form == Draft::Form::list) {
       spoil_item(path);
     } else if (!parent.allowed.empty()) {
       spoil_name(path, draft, parent);
@@ -285,6 +292,25 @@ class MutantMaker {
     }
   }
 
+  /// A number with a name.
+  void spoil_parameter(const std::string& path) {
+    put_double(path);
+    put_null(path, At::key, "a number or an expression");
+    put(path, "[1]", "expected a number or an expression, got a map or a list");
+    put(path, "fast", "'fast' is not a number");
+    put(path, "=1/0", "1 is divided by 0");
+    put(path, "=nobody", "column 1: there is no parameter 'nobody'");
+    put(path, fmt::format("={}", last_name(path)), "depends on itself: " + last_name(path));
+    for (const std::string wrong : {"a-b", "1st", "sqrt", "pi"}) {
+      Draft scene = scene_;
+      Draft& map = *find_draft(scene, parent_path(path));
+      map.children.push_back(text_draft("1"));
+      map.children.back().name = wrong;
+      const std::string wrong_path = join_path(parent_path(path), wrong);
+      add("named " + wrong, std::move(scene), {{wrong_path, At::key, wrong_path, ""}});
+    }
+  }
+
   /// An entry of a list of sections.
   void spoil_item(const std::string& path) {
     put_null(path, At::value, "a map");
@@ -361,13 +387,15 @@ class MutantMaker {
       case KeyKind::section:
       case KeyKind::named_sections:
       case KeyKind::section_list:
+      case KeyKind::parameters:
         refuse("1", "'1'");
         break;
     }
     const bool takes_list = key.kind == KeyKind::real_list || key.kind == KeyKind::text_list ||
                             key.kind == KeyKind::section_list;
     const bool takes_map = key.kind == KeyKind::curve || key.kind == KeyKind::section ||
-                           key.kind == KeyKind::named_sections;
+                           key.kind == KeyKind::named_sections ||
+                           key.kind == KeyKind::parameters;
     if (!takes_list) refuse("[1]", "a list");
     if (!takes_map) refuse("{zz: 1}", "a map");
   }

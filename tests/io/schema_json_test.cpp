@@ -111,13 +111,36 @@ TEST(JsonSchema, OptionalKeysCarryTheirDefaults) {
 
 TEST(JsonSchema, IntegersHoldTheTighterOfRangeAndStorage) {
   const Json format = scene_key({"format"});
-  EXPECT_EQ(format["type"], "integer");
+  EXPECT_EQ(format["type"], Json::array({"integer", "string"}));
+  EXPECT_TRUE(matches(format, "=2*n"));
+  EXPECT_FALSE(matches(format, "1"));
   EXPECT_EQ(format["minimum"], 1);
   EXPECT_EQ(format["maximum"], 1);
   EXPECT_EQ(scene_key({"substructures", "NAME", "mesh", "along"})["maximum"], 1'000'000);
   const Json byte = example_key({"format"});  // std::uint8_t, declared > 0
   EXPECT_EQ(byte["exclusiveMinimum"], 0);
   EXPECT_EQ(byte["maximum"], 255);
+}
+
+TEST(JsonSchema, ExpressionsStandWhereNumbersDo) {
+  for (const Json& number :
+       {scene_key({"substructures", "NAME", "length"}), scene_key({"measure", "band"})["items"],
+        scene_key({"drive", "velocity"})["oneOf"][0], scene_key({"contact", "friction", "static"})}) {
+    EXPECT_TRUE(matches(number, "=2*mu")) << number;
+    EXPECT_TRUE(matches(number, "=-(a + b)^2")) << number;
+    EXPECT_FALSE(matches(number, "2*mu")) << number;
+    EXPECT_FALSE(matches(number, "=")) << number;
+  }
+  const Json parameters = scene_key({"parameters"});
+  EXPECT_EQ(parameters["type"], "object");
+  EXPECT_EQ(parameters["additionalProperties"], false);
+  ASSERT_EQ(parameters["patternProperties"].size(), 1u);
+  const auto form = parameters["patternProperties"].begin();
+  EXPECT_TRUE(std::regex_search("k_x", std::regex(form.key())));
+  EXPECT_FALSE(std::regex_search("k-x", std::regex(form.key())));
+  for (const char* text : {"0.3", "30 %", "75 mm", "=sqrt(k/m)"})
+    EXPECT_TRUE(matches(form.value(), text)) << text;
+  EXPECT_FALSE(matches(form.value(), "fast"));
 }
 
 TEST(JsonSchema, ChoicesTextsAndListsHaveTheirTypes) {

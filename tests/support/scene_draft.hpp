@@ -151,6 +151,14 @@ inline std::vector<Draft> candidates(const Key& key) {
         drafts.push_back(table_draft({"0", "1"}, {text, text}));
       }
       return drafts;
+    case KeyKind::parameters: {
+      Draft draft;
+      draft.form = Draft::Form::map;
+      draft.children = {text_draft("2 mm"), text_draft("=2*one")};
+      draft.children[0].name = "one";
+      draft.children[1].name = "two";
+      return {draft};
+    }
     case KeyKind::section:
     case KeyKind::named_sections:
     case KeyKind::section_list:
