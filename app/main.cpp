@@ -61,7 +61,7 @@ int with_output_written(int code) {
   errno = 0;
   const bool is_written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   if (is_written || code != static_cast<int>(ExitCode::done)) return code;
-  return report("file trouble",
+  return report("I/O error",
                 errno != 0
                     ? fmt::format("the standard output cannot be written: {}", std::strerror(errno))
                     : std::string("the standard output cannot be written"),
@@ -165,7 +165,7 @@ int run_program(int argc, char** argv) {
   } catch (const ConfigError& error) {
     return report("the input is wrong", error.report(), ExitCode::bad_input, error.problems());
   } catch (const FileError& error) {
-    return report("file trouble", error.what(), ExitCode::file_trouble);
+    return report("I/O error", error.what(), ExitCode::file_trouble);
   } catch (const NumericalError& error) {
     return report("the computation failed", error.what(), ExitCode::numbers_failed);
   } catch (const Interrupted& error) {
@@ -174,7 +174,7 @@ int run_program(int argc, char** argv) {
     // fmt says like this that a stream took no more.
     if (std::ferror(stdout) == 0)
       return report("internal error; please report it", error.what(), ExitCode::internal);
-    return report("file trouble",
+    return report("I/O error",
                   fmt::format("the standard output cannot be written: {}", error.code().message()),
                   ExitCode::file_trouble);
   } catch (const std::bad_alloc& error) {

@@ -25,7 +25,7 @@ void leave(int) {
 }  // namespace
 
 DamageGuard::DamageGuard(const std::string& path)
-    : last_words_(fmt::format("stridor: file trouble\n{}: is damaged, as it seems: the program "
+    : last_words_(fmt::format("stridor: I/O error\n{}: is damaged, as it seems: the program "
                               "crashed while it had this file open\n",
                               path)),
       outer_(innermost) {

@@ -7,7 +7,7 @@
 
 namespace stridor {
 
-/// While one lives, a crash of the program ends it with exit code 4, file trouble, and a message
+/// While one lives, a crash of the program ends it with exit code 4, I/O error, and a message
 /// that names the file.
 ///
 /// HDF5 trusts much of what it reads, and files in its default format carry no checksums: some

@@ -82,7 +82,7 @@ TEST_F(FileSafety, OutputThatCannotBeWrittenEndsWithFour) {
         std::string("$S info a.h5 --json"), std::string("$S run --resume a.h5"),
         short_run_ + " -o b.h5", short_run_ + " -o d.h5 --json"}) {
     EXPECT_EQ(shell(command + " > /dev/full"), 4) << command;
-    EXPECT_THAT(said_, HasSubstr("stridor: file trouble\nthe standard output cannot be written"))
+    EXPECT_THAT(said_, HasSubstr("stridor: I/O error\nthe standard output cannot be written"))
         << command;
   }
   EXPECT_FALSE(RunFileReader(path("d.h5")).times().empty()) << "the run itself is whole";

@@ -761,7 +761,7 @@ TEST(DamageGuardDeathTest, CrashWhileAFileIsOpenIsFileTrouble) {
       const DamageGuard guard("bad.h5");
       raise(signal);
     };
-    EXPECT_EXIT(crash(), ::testing::ExitedWithCode(4), "file trouble\nbad.h5: is damaged");
+    EXPECT_EXIT(crash(), ::testing::ExitedWithCode(4), "I/O error\nbad.h5: is damaged");
   }
   const auto crash_later = [] {
     { const DamageGuard guard("good.h5"); }
