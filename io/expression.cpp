@@ -18,7 +18,7 @@
 namespace stridor {
 namespace {
 
-constexpr std::size_t longest = 500;  ///< bytes of an expression
+constexpr std::size_t longest_expression = 500;  ///< bytes of an expression
 constexpr std::array<std::string_view, 11> functions{
     "sqrt", "sin", "cos", "tan", "exp", "ln", "log10", "abs", "round", "min", "max"};
 
@@ -177,9 +177,9 @@ class Words {
  public:
   /// @throws std::invalid_argument for what needs no grammar to be seen
   explicit Words(const std::string& expression) : text_(expression.substr(1)) {
-    if (text_.size() > longest) {
+    if (text_.size() > longest_expression) {
       throw std::invalid_argument(fmt::format(
-          "is longer than {} characters; compute parts of it under `parameters`", longest));
+          "is longer than {} characters; compute parts of it under `parameters`", longest_expression));
     }
     plain_ = text_;
     for (std::size_t at = 0; at < text_.size();) at = read_word(at);

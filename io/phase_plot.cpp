@@ -28,9 +28,9 @@ class Cells {
     const auto steps = static_cast<std::size_t>(std::ceil(length));
     bool is_new = false;
     for (std::size_t i = 0; i <= steps; ++i) {
-      const double part = steps == 0 ? 0.0 : static_cast<double>(i) / static_cast<double>(steps);
-      const auto at_column = static_cast<std::size_t>(column + part * (to_column - column));
-      const auto at_row = static_cast<std::size_t>(row + part * (to_row - row));
+      const double share = steps == 0 ? 0.0 : static_cast<double>(i) / static_cast<double>(steps);
+      const auto at_column = static_cast<std::size_t>(column + share * (to_column - column));
+      const auto at_row = static_cast<std::size_t>(row + share * (to_row - row));
       auto cell = is_taken_[at_row * columns_ + at_column];
       is_new = is_new || !cell;
       cell = true;

@@ -1,6 +1,8 @@
 // Check that an input is a regular file.
 #pragma once
 
+#include <cstdio>
+#include <memory>
 #include <string>
 
 namespace stridor {
@@ -13,5 +15,11 @@ std::string irregular_kind(const std::string& path);
 /// into it, a device may never end.
 /// @throws FileError "is a FIFO (named pipe), expected a regular file"
 void refuse_irregular_file(const std::string& path);
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+/// An open file, closed at its end.
+using OpenFile = std::unique_ptr<std::FILE, CloseFile>;
 
 }  // namespace stridor

@@ -22,17 +22,13 @@ constexpr const char* contact_law_key = "contact_law";
 /// Stands for the scene itself in the list of digests; no file is named by a key like this.
 constexpr const char* text_key = "/scene/text";
 
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
 std::string digits(std::uint64_t sum) {
   return fmt::format("{:016x}", sum);
 }
 
 std::string digest_of_file(const std::string& path) {
   refuse_irregular_file(path);
-  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rbe"));
+  const OpenFile file(std::fopen(path.c_str(), "rbe"));
   if (!file) throw FileError(path, "", fmt::format("cannot be opened: {}", std::strerror(errno)));
   std::vector<char> buffer(std::size_t{1} << 18);
   std::uint64_t sum = fnv1a(std::string_view());

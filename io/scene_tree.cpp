@@ -414,10 +414,6 @@ void add_excerpts(std::vector<Problem>& problems, const std::string& source,
   }
 }
 
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
 std::vector<std::string> split(const std::string& path) {
   std::vector<std::string> names;
   std::size_t begin = 0;
@@ -495,7 +491,7 @@ SceneNode read_scene_file(const std::string& path) {
   const std::string irregular = irregular_kind(path);
   if (!irregular.empty())
     throw FileError(path, "", "is " + irregular + "; give the path of a scene file");
-  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
+  const OpenFile file(std::fopen(path.c_str(), "rb"));
   if (!file) throw FileError(path, "", fmt::format("cannot be opened: {}", std::strerror(errno)));
 
   // Read up to the limit rather than trust the size: files of /proc tell none.
