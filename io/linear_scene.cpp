@@ -25,7 +25,7 @@ PlainKey format_key() {
 
 void check_recording(const DiscScene& scene, std::vector<Problem>& problems) {
   if (!scene.record) return;
-  const std::size_t per_pad = contact_offsets(scene.model).size();
+  const std::size_t per_pad = num_contact_points(scene.model);
   if (!scene.record->channels.empty() && per_pad <= most_contact_points) {
     const std::vector<Problem> channels = channel_problems(scene.record->channels, per_pad);
     problems.insert(problems.end(), channels.begin(), channels.end());

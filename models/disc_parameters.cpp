@@ -31,6 +31,13 @@ DiscTerms disc_terms(const std::vector<std::string>& names) {
   return terms;
 }
 
+std::size_t num_contact_points(const DiscModelParameters& parameters) {
+  if (!parameters.contact.offsets.empty()) return parameters.contact.offsets.size();
+  if (parameters.pads.elastic)
+    return 2 * static_cast<std::size_t>(parameters.pads.elastic->mesh.along) + 1;
+  return 1;
+}
+
 std::vector<double> contact_offsets(const DiscModelParameters& parameters) {
   if (!parameters.contact.offsets.empty()) return parameters.contact.offsets;
   if (parameters.pads.elastic) return face_nodes(*parameters.pads.elastic);
@@ -44,9 +51,7 @@ void check_elastic_pads(const DiscModelParameters& model, std::vector<Problem>& 
   const std::optional<ElasticPadParameters>& pad = model.pads.elastic;
   if (!pad) return;
   const std::string from_nodes = model.contact.offsets.empty() ? "pads.elastic.mesh.along" : "";
-  const std::size_t asked = model.contact.offsets.empty()
-                                ? 2 * static_cast<std::size_t>(pad->mesh.along) + 1
-                                : model.contact.offsets.size();
+  const std::size_t asked = num_contact_points(model);
   if (asked > most_contact_points) {
     problems.push_back(
         {from_nodes.empty() ? "contact.offsets" : from_nodes,
@@ -293,7 +298,8 @@ const Schema& DiscModelParameters::schema() {
           })
           .check([](const P& model, std::vector<Problem>& problems) {
             const bool is_rigid = model.contact.formulation == ContactFormulation::lagrange;
-            if (!model.pads.mass || !is_rigid || model.contact.offsets.size() < 2) return;
+            const bool is_mass = model.pads.mass && !model.pads.elastic;
+            if (!is_mass || !is_rigid || model.contact.offsets.size() < 2) return;
             problems.push_back(
                 {"contact.offsets",
                  "pads that are rigid masses do not tilt, so that two rigid contacts "

@@ -79,6 +79,8 @@ constexpr std::size_t most_contact_points = 400;
 /// The contact points of every pad along φ from its centre, m: those of the scene, else the nodes
 /// of an elastic face, else the centre.
 std::vector<double> contact_offsets(const DiscModelParameters& parameters);
+/// Their number, of which a mesh may ask for millions before it is refused.
+std::size_t num_contact_points(const DiscModelParameters& parameters);
 
 /// Which parts of the linearised equations are kept; HS (41) to (45) add one after the other.
 struct DiscTerms {

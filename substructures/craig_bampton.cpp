@@ -102,7 +102,8 @@ void correct_softest(const Blocks& stiffness, const VectorBlock& psi, Eigen::Mat
   auto interface = reduced.topLeftCorner(nb, nb);
   const Eigen::MatrixXd symmetric = 0.5 * (interface + interface.transpose());
   const Eigen::MatrixXd motions =
-      neighbouring_eigenpairs(symmetric, 0, num_motions, "softest motions of the interface").vectors;
+      symmetric_eigenpairs(symmetric, "softest motions of the interface")
+          .vectors.leftCols(num_motions);
   const VectorBlock interior = psi * motions;
   VectorBlock residual = stiffness.ii * interior;
   residual += stiffness.ib * motions;

@@ -156,10 +156,9 @@ Modes Lanczos::solve() {
     if (!looks.is_due(dim_) && !is_exhausted && !is_full) continue;
     const Eigen::Index num_looked_at = std::min(count_, dim_);
     const SymmetricEigenpairs ritz =
-        neighbouring_eigenpairs(projection_.topLeftCorner(dim_, dim_), dim_ - num_looked_at,
-                                num_looked_at, "fixed-interface modes");
-    const Eigen::VectorXd values = ritz.values.reverse();
-    const Eigen::MatrixXd vectors = ritz.vectors.rowwise().reverse();
+        symmetric_eigenpairs(projection_.topLeftCorner(dim_, dim_), "fixed-interface modes");
+    const Eigen::VectorXd values = ritz.values.tail(num_looked_at).reverse();
+    const Eigen::MatrixXd vectors = ritz.vectors.rightCols(num_looked_at).rowwise().reverse();
     const Eigen::ArrayXd residuals =
         (parts.outside * vectors.bottomRows(newest_width)).colwise().norm().transpose();
     const Eigen::ArrayXd relative = residuals / values.array().abs();

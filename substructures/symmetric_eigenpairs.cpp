@@ -4,8 +4,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <limits>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -14,11 +12,6 @@
 extern "C" void dsyevd_(const char* jobz, const char* uplo, const int* n, double* a, const int* lda,
                         double* w, double* work, const int* lwork, int* iwork, const int* liwork,
                         int* info);
-extern "C" void dsyevr_(const char* jobz, const char* range, const char* uplo, const int* n,
-                        double* a, const int* lda, const double* vl, const double* vu,
-                        const int* il, const int* iu, const double* abstol, int* m, double* w,
-                        double* z, const int* ldz, int* isuppz, double* work, const int* lwork,
-                        int* iwork, const int* liwork, int* info);
 
 namespace stridor {
 namespace {
@@ -59,44 +52,6 @@ SymmetricEigenpairs symmetric_eigenpairs(Eigen::MatrixXd matrix, const std::stri
   if (info == 0)
     solve(work.data(), static_cast<int>(work.size()), iwork.data(), static_cast<int>(iwork.size()));
   if (info != 0) refuse(what, n, "did not converge");
-  return pairs;
-}
-
-SymmetricEigenpairs neighbouring_eigenpairs(Eigen::MatrixXd matrix, Eigen::Index first,
-                                            Eigen::Index count, const std::string& what) {
-  const int n = static_cast<int>(matrix.rows());
-  if (first < 0 || count < 0 || first + count > n) {
-    throw std::invalid_argument(fmt::format(
-        "neighbouring_eigenpairs: {} pairs from number {} asked of {}", count, first + 1, n));
-  }
-  SymmetricEigenpairs pairs{Eigen::VectorXd(n), Eigen::MatrixXd(n, count)};
-  if (!is_finite(matrix)) refuse(what, n, "is not finite");
-  if (count > 0) {
-    const int lowest = static_cast<int>(first) + 1;
-    const int highest = static_cast<int>(first + count);
-    const double unused = 0.0;
-    // What LAPACK calls the most accurate.
-    const double tolerance = std::numeric_limits<double>::min();
-    int num_found = 0;
-    int info = 0;
-    std::vector<int> supports(2 * static_cast<std::size_t>(count));
-    const auto solve = [&](double* work, int lwork, int* iwork, int liwork) {
-      dsyevr_("V", "I", "L", &n, matrix.data(), &n, &unused, &unused, &lowest, &highest, &tolerance,
-              &num_found, pairs.values.data(), pairs.vectors.data(), &n, supports.data(), work,
-              &lwork, iwork, &liwork, &info);
-    };
-    double work_size = 0.0;
-    int iwork_size = 0;
-    solve(&work_size, -1, &iwork_size, -1);
-    std::vector<double> work(static_cast<std::size_t>(std::max(work_size, 1.0)));
-    std::vector<int> iwork(static_cast<std::size_t>(std::max(iwork_size, 1)));
-    if (info == 0) {
-      solve(work.data(), static_cast<int>(work.size()), iwork.data(),
-            static_cast<int>(iwork.size()));
-    }
-    if (info != 0 || num_found != highest - lowest + 1) refuse(what, n, "did not converge");
-  }
-  pairs.values.conservativeResize(count);
   return pairs;
 }
 

@@ -564,7 +564,7 @@ TEST(SceneMutationOfExample, HoldsEveryKindOfKey) {
   visit(complete_draft(Example::schema(), ""), "", [&](const Draft& draft, const std::string&) {
     if (draft.key != nullptr) kinds.insert(draft.key->kind);
   });
-  EXPECT_EQ(kinds.size(), 11u);
+  EXPECT_EQ(kinds.size(), 12u);
 }
 
 }  // namespace

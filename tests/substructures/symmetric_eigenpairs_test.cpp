@@ -3,11 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <cmath>
 #include <limits>
 #include <random>
-#include <stdexcept>
-#include <utility>
 
 #include "core/errors.hpp"
 #include "tests/support/message_of.hpp"
@@ -47,47 +44,6 @@ TEST(SymmetricEigenpairs, SolveTheirEquationAndAscend) {
   }
 }
 
-// Of a graded matrix, too: its small eigenvalues are what a Krylov space of an inverse wants.
-TEST(SymmetricEigenpairs, NeighboursAreThoseOfAll) {
-  for (const Eigen::Index n : {1, 2, 26, 120}) {
-    const Eigen::MatrixXd random = random_matrix(n, 10);
-    const Eigen::VectorXd grades = Eigen::VectorXd::LinSpaced(n, 0.0, -6.0).unaryExpr(
-        [](double exponent) { return std::pow(10.0, exponent); });
-    const Eigen::MatrixXd A =
-        grades.asDiagonal() * Eigen::MatrixXd(random + random.transpose()) * grades.asDiagonal();
-    const Eigen::VectorXd all = symmetric_eigenpairs(A, "here").values;
-    const double rounding = 10.0 * static_cast<double>(n) * eps;
-    for (const auto& [first, count] : {std::pair<Eigen::Index, Eigen::Index>{0, (n + 1) / 2},
-                                       {n / 3, n - n / 3},
-                                       {n - 1, 1},
-                                       {0, n}}) {
-      const SymmetricEigenpairs pairs = neighbouring_eigenpairs(lower_of(A), first, count, "here");
-      const Eigen::MatrixXd& X = pairs.vectors;
-      ASSERT_EQ(X.cols(), count);
-      EXPECT_LT((pairs.values - all.segment(first, count)).norm(), rounding * A.norm());
-      EXPECT_LT((A * X - X * pairs.values.asDiagonal()).norm(), rounding * A.norm());
-      // Inverse iteration makes neighbours orthogonal by Gram-Schmidt, which is less exact.
-      EXPECT_LT((X.transpose() * X - Eigen::MatrixXd::Identity(count, count)).norm(),
-                10.0 * rounding);
-    }
-  }
-}
-
-TEST(SymmetricEigenpairs, NeighboursOfEqualEigenvaluesAreOrthonormal) {
-  const Eigen::Index n = 60;
-  const Eigen::MatrixXd random = random_matrix(n, 11);
-  const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(random).householderQ();
-  Eigen::VectorXd values = Eigen::VectorXd::Ones(n);
-  values.tail(12).setConstant(2.0);
-  const Eigen::MatrixXd A = Q * values.asDiagonal() * Q.transpose();
-  const SymmetricEigenpairs pairs = neighbouring_eigenpairs(A, n - 16, 16, "here");
-  const double rounding = 10.0 * static_cast<double>(n) * eps;
-  EXPECT_LT((pairs.values - values.tail(16)).norm(), rounding);
-  EXPECT_LT(
-      (pairs.vectors.transpose() * pairs.vectors - Eigen::MatrixXd::Identity(16, 16)).norm(),
-      10.0 * rounding);
-}
-
 TEST(SymmetricEigenpairs, OfTwoMatricesSolveTheirEquationAndAreNormalised) {
   for (const Eigen::Index n : {1, 2, 26, 120}) {
     const Eigen::MatrixXd random = random_matrix(n, 8);
@@ -109,16 +65,6 @@ TEST(SymmetricEigenpairs, OfNothingAreNone) {
   EXPECT_EQ(
       generalised_eigenpairs(Eigen::MatrixXd(0, 0), Eigen::MatrixXd(0, 0), "here").values.size(),
       0);
-  EXPECT_EQ(neighbouring_eigenpairs(Eigen::MatrixXd(0, 0), 0, 0, "here").values.size(), 0);
-  EXPECT_EQ(neighbouring_eigenpairs(Eigen::MatrixXd::Identity(3, 3), 3, 0, "here").vectors.cols(),
-            0);
-}
-
-TEST(SymmetricEigenpairs, NeighboursThatAreNotThereThrow) {
-  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(3, 3);
-  EXPECT_EQ(
-      message_of<std::invalid_argument>([&] { neighbouring_eigenpairs(unit, 1, 3, "here"); }),
-      "neighbouring_eigenpairs: 3 pairs from number 2 asked of 3");
 }
 
 TEST(SymmetricEigenpairs, WhatIsNotFiniteOrNotPositiveDefiniteThrows) {
@@ -126,8 +72,6 @@ TEST(SymmetricEigenpairs, WhatIsNotFiniteOrNotPositiveDefiniteThrows) {
   Eigen::MatrixXd wrong = unit;
   wrong(2, 0) = std::numeric_limits<double>::infinity();
   EXPECT_EQ(message_of<NumericalError>([&] { symmetric_eigenpairs(wrong, "here"); }),
-            "here: the eigenproblem of 3 unknowns is not finite");
-  EXPECT_EQ(message_of<NumericalError>([&] { neighbouring_eigenpairs(wrong, 0, 1, "here"); }),
             "here: the eigenproblem of 3 unknowns is not finite");
   EXPECT_EQ(message_of<NumericalError>([&] { generalised_eigenpairs(wrong, unit, "here"); }),
             "here: the eigenproblem of 3 unknowns is not finite");
