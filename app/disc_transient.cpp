@@ -43,7 +43,9 @@ std::complex<double> largest_pad_displacement(const DiscModel& model, const Eige
   for (const FaceContact& contact : model.contacts) {
     for (const Eigen::VectorXd* row : {&contact.pad_r, &contact.pad_phi, &contact.pad_z}) {
       const std::complex<double> moved = row->cast<std::complex<double>>().dot(q);
-      if (std::abs(moved) > std::abs(largest)) largest = moved;
+      // Pads that mirror each other move alike but for rounding: the first of them counts, or the
+      // sign of the motion would be that of rounding.
+      if (std::abs(moved) > (1.0 + 1e-9) * std::abs(largest)) largest = moved;
     }
   }
   return largest;
