@@ -93,7 +93,7 @@ class Tracer {
   }
 
  private:
-  /// Beyond the edge the margin goes on as it is there, so that the line leaves at right angles.
+  /// Beyond the edge the margin keeps its value there, so that the line leaves at right angles.
   double margin_at(const Point& at) const {
     return margin_(x_.value_at(at.x()), y_.value_at(at.y()));
   }

@@ -27,7 +27,7 @@ struct CheckOptions {
   int places = 101;
 };
 
-/// What is told of a scene without errors.
+/// Report on a scene without errors.
 struct Report {
   std::vector<Problem> warnings;
   std::optional<StepStabilityReport> stability{};

@@ -291,7 +291,7 @@ Json DiscTransient::finish() {
   results["perturbation"] = {{"frequency", eigenvalue_.imag() / (2.0 * std::numbers::pi)},
                              {"growth", eigenvalue_.real()}};
   statistics_->report(results);
-  // What is for beams only.
+  // Results of beams only.
   for (const char* name : {"free_end_acceleration", "bursts", "violations", "energy_error"})
     results[name] = nullptr;
   results["file"] = file_;

@@ -15,7 +15,7 @@
 
 namespace stridor {
 
-/// What a run of a disc says of itself: over the whole of it, and over its second half.
+/// Statistics of a run of a disc: over the whole of it, and over its second half.
 class DiscStatistics {
  public:
   DiscStatistics(const DiscModel& model, double half);
@@ -57,7 +57,7 @@ class DiscTransient {
   Json finish();
 
   double time() const;
-  /// What has gone wrong with whom and when, and what to try; empty unless the run has failed.
+  /// Failure with body or contact, time and remedy; empty unless the run has failed.
   const std::string& failure() const { return failure_; }
 
  private:

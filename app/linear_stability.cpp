@@ -205,7 +205,7 @@ void print_equilibrium(const DiscModel& model) {
   }
 }
 
-/// What eig found, by whichever method.
+/// Results of eig, by either method.
 struct FoundSpectrum {
   std::string method;
   std::vector<Eigenvalue> eigenvalues;

@@ -56,12 +56,12 @@ Axis make_axis(const StabilityScene& scene, const std::vector<std::string>& writ
   return axis;
 }
 
-/// What is found along one line of the grid.
+/// Results along one line of the grid.
 struct LineResult {
   std::vector<double> growth;                                ///< at every value, 1/s
   std::vector<double> changes;                               ///< of stability, ascending
   double highest = std::numeric_limits<double>::infinity();  ///< up to where all were looked at, Hz
-  Locus resolution;  ///< what may have been missed, Locus::unresolved and unverified
+  Locus resolution;  ///< only its unresolved and unverified, of all parts of the line
 };
 
 /// Adds what may have been missed of one locus to that of others.

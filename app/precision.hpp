@@ -1,4 +1,4 @@
-// What the verb precision measures, and how it tells.
+// Measurements of the verb precision and their report.
 #pragma once
 
 #include <filesystem>

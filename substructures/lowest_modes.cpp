@@ -121,7 +121,7 @@ class Lanczos {
   void append(const VectorBlock& block);
   void apply(VectorBlock& block);
   Split split(VectorBlock& block);
-  void restart();
+  void restart(const SymmetricEigenpairs& ritz);
 
   const SparseCholesky& stiffness_;
   const SparseMatrix& mass_;
@@ -171,7 +171,7 @@ Modes Lanczos::solve() {
       return {values.cwiseInverse(), shapes};
     }
     if (is_full) {
-      restart();
+      restart(ritz);
       looks = LookSchedule(dim_ + 5 * block_width);
     } else {
       looks.looked(dim_, relative.maxCoeff());
@@ -235,9 +235,8 @@ Lanczos::Split Lanczos::split(VectorBlock& block) {
 }
 
 /// Keeps the better half of the approximations.
-void Lanczos::restart() {
-  const SymmetricEigenpairs ritz =
-      symmetric_eigenpairs(projection_.topLeftCorner(dim_, dim_), "fixed-interface modes");
+/// @param ritz all eigenpairs of T
+void Lanczos::restart(const SymmetricEigenpairs& ritz) {
   const Eigen::VectorXd values = ritz.values.reverse();
   const Eigen::MatrixXd vectors = ritz.vectors.rowwise().reverse();
   const Eigen::Index kept = count_ + (dim_ - count_) / 2;
