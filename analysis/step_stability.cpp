@@ -44,6 +44,7 @@ class BodiesInContact {
   void search(double frequency) {
     Pencil rows = *contacts_;
     drop_contact_terms(rows);
+    rows = with_springs(rows);
     SecularFunction function(rows);
     SecularSpectrum found = secular_spectrum(function, SpectrumWindow::below(frequency));
     eigenvalues_ = found.is_complete ? std::move(found.eigenvalues)
@@ -125,7 +126,7 @@ std::vector<PathStability> stability_along_path(const System& system, const Time
       for (const ContactEquilibrium& contact : equilibrium.contacts)
         place.positions.push_back(contact.position);
       if (equilibrium.status == EquilibriumStatus::converged) {
-        place.contacts = linearise(system, equilibrium);
+        place.contacts = linearise_constraints(system, equilibrium);
         place.stability = step_stability(step, place.contacts);
       }
     } catch (const NumericalError& error) {

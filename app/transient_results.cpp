@@ -77,8 +77,7 @@ Json left_out_json(const System& system, double highest, bool has_ledger) {
     touchable[slave] += 2;
     followed[master] += 2 * surface.stencil_size();
     touchable[master] += 2 * static_cast<Eigen::Index>(surface.positions.size());
-    has_friction |= contact.substrate || contact.friction.static_coefficient > 0.0 ||
-                    contact.friction.dynamic_coefficient > 0.0;
+    has_friction |= contact.substrate || !contact.friction.is_frictionless();
     slides_only &= contact.unilateral_from() == std::numeric_limits<double>::infinity();
     has_fixed_normal &= contact.assumption == ContactAssumption::subs_a ||
                         contact.assumption == ContactAssumption::subs_c;

@@ -17,17 +17,114 @@ void check_coefficient(const char* key, const std::optional<double>& coefficient
                       0});
 }
 
+namespace {
+
+const char* name_of(FrictionKind law) {
+  switch (law) {
+    case FrictionKind::constant:
+      return "constant";
+    case FrictionKind::static_dynamic:
+      return "static_dynamic";
+    case FrictionKind::stribeck:
+      return "stribeck";
+    case FrictionKind::shear:
+      return "shear";
+  }
+  return "";
+}
+
+void check_friction(const FrictionParameters& friction, std::vector<Problem>& problems) {
+  const FrictionKind law = friction.law;
+  const auto demand = [&](const char* key, bool is_given, bool is_wanted) {
+    if (is_given == is_wanted) return;
+    problems.push_back({key,
+                        fmt::format("{} by the {} friction law",
+                                    is_wanted ? "missing: needed" : "not used", name_of(law)),
+                        {},
+                        0,
+                        0});
+  };
+  const bool is_constant = law == FrictionKind::constant;
+  const bool is_shear = law == FrictionKind::shear;
+  demand("coefficient", friction.coefficient.has_value(), is_constant);
+  demand("static", friction.static_coefficient.has_value(), !is_constant && !is_shear);
+  demand("dynamic", friction.dynamic_coefficient.has_value(), !is_constant && !is_shear);
+  demand("decay_velocity", friction.decay_velocity.has_value(), law == FrictionKind::stribeck);
+  demand("strength", friction.strength.has_value(), is_shear);
+  check_coefficient("coefficient", friction.coefficient, problems);
+  check_coefficient("static", friction.static_coefficient, problems);
+  check_coefficient("dynamic", friction.dynamic_coefficient, problems);
+  if (friction.static_coefficient && friction.dynamic_coefficient &&
+      law == FrictionKind::static_dynamic &&
+      *friction.static_coefficient < *friction.dynamic_coefficient) {
+    problems.push_back({"static", "must not be below `dynamic`", {}, 0, 0});
+  }
+  if (friction.regularisation && law == FrictionKind::static_dynamic) {
+    problems.push_back({"regularisation",
+                        "goes with a law that is continuous in sliding: a regularised contact "
+                        "never rests, so that `static` would never act; take constant or stribeck",
+                        {},
+                        0,
+                        0});
+  }
+}
+
+/// Which laws go together.
+void check_laws(const ContactParameters& contact, std::vector<Problem>& problems) {
+  const auto refuse = [&](const char* key, const char* text) {
+    problems.push_back({key, text, {}, 0, 0});
+  };
+  const bool is_viscoelastic = contact.normal.law == NormalLaw::viscoelastic;
+  if (!contact.friction && !is_viscoelastic)
+    refuse("friction", "is missing: this normal law brings none of its own");
+  if (contact.friction && contact.friction->law == FrictionKind::shear && !is_viscoelastic) {
+    refuse("friction.law",
+           "shear is friction per area of contact, and this normal law has no area; take `normal: "
+           "{law: viscoelastic, ...}`, or a coefficient");
+  }
+  if (is_viscoelastic && contact.master != half_space_master)
+    refuse("master", "must be `half_space` with the viscoelastic normal law, which is that of one");
+  if (!is_viscoelastic && contact.master == half_space_master)
+    refuse("normal", "must be {law: viscoelastic, ...} on a half_space");
+  if (is_viscoelastic && contact.assumption != ContactAssumption::film) {
+    refuse("assumption",
+           "must be `film` with the viscoelastic normal law: it sticks, slips and lifts off");
+  }
+}
+
+}  // namespace
+
+const Schema& FrictionRegularisation::schema() {
+  using Kind = RegularisedSign::Kind;
+  static const Schema keys =
+      SchemaOf<FrictionRegularisation>("friction_regularisation")
+          .choice("law", &FrictionRegularisation::law,
+                  {{"tanh", Kind::tanh},
+                   {"linear", Kind::linear},
+                   {"square_root", Kind::square_root},
+                   {"atan", Kind::atan}},
+                  {.doc = "What stands in the place of the sign of the slip, with u the slip over "
+                          "`speed`: tanh u, u up to 1, u/(1 + u²)^1/2 or (2/π) arctan u.",
+                   .optional = true})
+          .real("speed", &FrictionRegularisation::speed,
+                {.doc = "Slip over which friction rises.",
+                 .unit = "m s-1",
+                 .range = Range::positive()});
+  return keys;
+}
+
 const Schema& FrictionParameters::schema() {
-  using Kind = FrictionLaw::Kind;
   static const Schema keys =
       SchemaOf<FrictionParameters>("friction")
           .choice(
               "law", &FrictionParameters::law,
-              {{"constant", Kind::constant},
-               {"static_dynamic", Kind::static_dynamic},
-               {"stribeck", Kind::stribeck}},
+              {{"constant", FrictionKind::constant},
+               {"static_dynamic", FrictionKind::static_dynamic},
+               {"stribeck", FrictionKind::stribeck},
+               {"shear", FrictionKind::shear}},
               {.doc = "constant: `coefficient`; static_dynamic: `static` at rest, `dynamic` in "
-                      "sliding; stribeck: from `static` to `dynamic` as exp(-|v|/decay_velocity).",
+                      "sliding; stribeck: from `static` to `dynamic` as exp(-|v|/decay_velocity); "
+                      "shear: `strength` times the area of a viscoelastic contact.",
                .optional = true})
           .real("coefficient", &FrictionParameters::coefficient,
                 {.doc = "Coulomb friction coefficient of the constant law, at most 100; rises with drive.ramp.",
@@ -46,43 +143,44 @@ const Schema& FrictionParameters::schema() {
                  .unit = "m s-1",
                  .range = Range::positive(),
                  .optional = true})
-          .check([](const FrictionParameters& friction, std::vector<Problem>& problems) {
-            const bool is_constant = friction.law == Kind::constant;
-            const auto demand = [&](const char* key, bool is_given, bool is_wanted) {
-              if (is_given == is_wanted) return;
-              const char* kind = is_constant                      ? "constant"
-                                 : friction.law == Kind::stribeck ? "stribeck"
-                                                                  : "static_dynamic";
-              problems.push_back({key,
-                                  fmt::format("{} by the {} friction law",
-                                              is_wanted ? "missing: needed" : "not used", kind),
-                                  {},
-                                  0,
-                                  0});
-            };
-            demand("coefficient", friction.coefficient.has_value(), is_constant);
-            demand("static", friction.static_coefficient.has_value(), !is_constant);
-            demand("dynamic", friction.dynamic_coefficient.has_value(), !is_constant);
-            demand("decay_velocity", friction.decay_velocity.has_value(),
-                   friction.law == Kind::stribeck);
-            check_coefficient("coefficient", friction.coefficient, problems);
-            check_coefficient("static", friction.static_coefficient, problems);
-            check_coefficient("dynamic", friction.dynamic_coefficient, problems);
-            if (friction.static_coefficient && friction.dynamic_coefficient &&
-                friction.law == Kind::static_dynamic &&
-                *friction.static_coefficient < *friction.dynamic_coefficient) {
-              problems.push_back({"static", "must not be below `dynamic`", {}, 0, 0});
-            }
-          });
+          .real("strength", &FrictionParameters::strength,
+                {.doc = "τ_0 of the shear law: friction of the interface per area of contact.",
+                 .unit = "Pa",
+                 .range = Range::non_negative(),
+                 .optional = true})
+          .section("regularisation", &FrictionParameters::regularisation,
+                   {.doc = "Friction without sticking, as a smooth function of the slip: the "
+                           "contact creeps where it would stick.",
+                    .optional = true})
+          .check(check_friction);
   return keys;
 }
 
 FrictionLaw make_friction_law(const FrictionParameters& parameters) {
-  if (parameters.law == FrictionLaw::Kind::constant) {
-    return constant_friction(parameters.coefficient.value());
+  FrictionLaw law;
+  switch (parameters.law) {
+    case FrictionKind::constant:
+      law = constant_friction(parameters.coefficient.value());
+      break;
+    case FrictionKind::static_dynamic:
+    case FrictionKind::stribeck:
+      law = {parameters.law == FrictionKind::stribeck ? FrictionLaw::Kind::stribeck
+                                                      : FrictionLaw::Kind::static_dynamic,
+             parameters.static_coefficient.value(), parameters.dynamic_coefficient.value(),
+             parameters.decay_velocity.value_or(1.0)};
+      break;
+    case FrictionKind::shear:
+      break;
   }
-  return {parameters.law, parameters.static_coefficient.value(),
-          parameters.dynamic_coefficient.value(), parameters.decay_velocity.value_or(1.0)};
+  if (parameters.regularisation)
+    law.sign = {parameters.regularisation->law, parameters.regularisation->speed};
+  return law;
+}
+
+SubstrateContact make_substrate_contact(const ContactParameters& contact) {
+  if (!contact.friction) return make_substrate_contact(contact.normal, 0.0);
+  return make_substrate_contact(contact.normal, contact.friction->strength.value_or(0.0),
+                                make_friction_law(*contact.friction));
 }
 
 const Schema& ContactParameters::schema() {
@@ -92,8 +190,9 @@ const Schema& ContactParameters::schema() {
                      {.doc = "Slave: <body>.<point>, <body>.<surface> (every node of it), or a "
                              "list of them."})
           .text("master", &ContactParameters::master,
-                {.doc = "Master surface: <body>.<surface>, or `rigid`: a rigid straight line along "
-                        "+x without end, below the slave."})
+                {.doc = "Master surface: <body>.<surface>; `rigid`: a rigid straight line along +x "
+                        "without end, below the slave; or `half_space`: a viscoelastic one there, "
+                        "of which the normal law is that of a sphere at the slave point."})
           .choice("assumption", &ContactParameters::assumption,
                   {{"subs_a", ContactAssumption::subs_a},
                    {"subs_b", ContactAssumption::subs_b},
@@ -134,27 +233,18 @@ const Schema& ContactParameters::schema() {
                .optional = true})
           .section("roughness", &ContactParameters::roughness,
                    {.doc = "Random roughness of the master, added to the gap.", .optional = true})
+          .section("normal", &ContactParameters::normal,
+                   {.doc = "Normal law; default: a multiplier, which closes the gap exactly.",
+                    .optional = true})
           .section("friction", &ContactParameters::friction,
-                   {.doc = "Friction law. This, or `substrate`.", .optional = true})
-          .section("substrate", &ContactParameters::substrate,
-                   {.doc = "The slave point carries a sphere that slides on a viscoelastic "
-                           "half-space in the place of the rigid master; its law gives force and "
-                           "friction. Takes master: rigid and assumption: film.",
+                   {.doc = "Friction law. A viscoelastic normal law has friction of its own, to "
+                           "which this adds that of the interface.",
                     .optional = true})
           .check([](const ContactParameters& contact, std::vector<Problem>& problems) {
             if (contact.slave.empty())
               problems.push_back({"slave", "is an empty list; name at least one point", {}, 0, 0});
-            const auto refuse = [&](const char* key, const char* text) {
-              problems.push_back({key, text, {}, 0, 0});
-            };
-            if (!contact.friction && !contact.substrate)
-              refuse("friction", "is missing: give `friction`, or a `substrate`");
-            if (!contact.substrate) return;
-            if (contact.friction) refuse("friction", "not used with a substrate, whose law has it");
-            if (contact.assumption != ContactAssumption::film)
-              refuse("assumption",
-                     "must be `film` with a substrate: it sticks, slips and lifts off");
-          });
+          })
+          .check(check_laws);
   return keys;
 }
 

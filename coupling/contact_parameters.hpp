@@ -7,18 +7,29 @@
 
 #include "core/schema.hpp"
 #include "coupling/roughness.hpp"
-#include "coupling/substrate_parameters.hpp"
+#include "coupling/normal_parameters.hpp"
 #include "coupling/system.hpp"
 
 namespace stridor {
 
+/// Smooth friction in the place of the set-valued one, which it only resembles.
+struct FrictionRegularisation {
+  RegularisedSign::Kind law = RegularisedSign::Kind::tanh;
+  double speed = 0.0;  ///< v_ε, m/s, > 0
+  static const Schema& schema();
+};
+
+enum class FrictionKind { constant, static_dynamic, stribeck, shear };
+
 /// Coefficients hold once the drive's ramp has ended.
 struct FrictionParameters {
-  FrictionLaw::Kind law = FrictionLaw::Kind::constant;
+  FrictionKind law = FrictionKind::constant;
   std::optional<double> coefficient;          ///< μ of the constant law, ≥ 0
   std::optional<double> static_coefficient;   ///< μ_s, ≥ 0
   std::optional<double> dynamic_coefficient;  ///< μ_d, ≥ 0
   std::optional<double> decay_velocity;       ///< v_d, m/s, > 0
+  std::optional<double> strength{};  ///< τ_0 of the shear law, friction per area of contact, Pa, ≥ 0
+  std::optional<FrictionRegularisation> regularisation{};
   static const Schema& schema();
 };
 
@@ -26,6 +37,7 @@ struct FrictionParameters {
 void check_coefficient(const char* key, const std::optional<double>& coefficient,
                        std::vector<Problem>& problems);
 
+/// Coulomb friction of a section; none for the shear law, which is in proportion to an area.
 FrictionLaw make_friction_law(const FrictionParameters& parameters);
 
 enum class SlidingMode {
@@ -33,10 +45,14 @@ enum class SlidingMode {
   frozen,  ///< the position is held, friction acts as in sliding
 };
 
+/// Names of the masters that are no surface of a body: straight lines along +x without end.
+inline constexpr const char* rigid_master = "rigid";
+inline constexpr const char* half_space_master = "half_space";
+
 /// One pair: slave points on a master surface.
 struct ContactParameters {
   std::vector<std::string> slave;  ///< "<body>.<point>" or "<body>.<surface>" (every node of it)
-  std::string master;              ///< "<body>.<surface>", or "rigid"
+  std::string master;              ///< "<body>.<surface>", rigid_master or half_space_master
   ContactAssumption assumption = ContactAssumption::subs_b;
   OnViolation on_violation = OnViolation::stop;
   std::optional<double> armed_from;  ///< s; the drive's ramp where absent
@@ -44,8 +60,8 @@ struct ContactParameters {
   SlidingMode sliding = SlidingMode::moving;
   SurfaceKind surface = SurfaceKind::polyline;
   std::optional<RoughnessParameters> roughness;
-  std::optional<FrictionParameters> friction;    ///< there is none with a substrate
-  std::optional<SubstrateParameters> substrate;  ///< on the rigid master
+  NormalParameters normal;
+  std::optional<FrictionParameters> friction;  ///< may be absent with a viscoelastic normal law
   static const Schema& schema();
 };
 
@@ -55,6 +71,10 @@ struct DriveParameters {
   double ramp = 0.0;   ///< s, >= 0
   static const Schema& schema();
 };
+
+/// The force law of a contact with a viscoelastic normal law, in SI units.
+/// @throws std::invalid_argument if its table has not been read
+SubstrateContact make_substrate_contact(const ContactParameters& contact);
 
 /// The drive as it acts: constants turned into ramps.
 Drive make_drive(const DriveParameters& parameters, SlidingMode sliding);

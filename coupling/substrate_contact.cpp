@@ -32,6 +32,13 @@ SubstrateForces SubstrateContact::at(double indentation, double slip, double dir
     value_by_y += forces.normal.by_indentation * friction.value;
     value_by_v += forces.normal.by_slip * friction.value;
   }
+  if (!interface_friction.is_frictionless()) {
+    const double coefficient = sliding_friction(interface_friction, slip);
+    value += coefficient * forces.normal.value;
+    value_by_y += coefficient * forces.normal.by_indentation;
+    value_by_v += coefficient * forces.normal.by_slip +
+                  direction * sliding_friction_slope(interface_friction, slip) * forces.normal.value;
+  }
   if (!sign.is_set_valued()) {
     const RegularisedSign::Value s = sign.at(std::max(0.0, direction * slip));
     value_by_y *= s.value;
@@ -63,8 +70,12 @@ SubstrateForces SubstrateContact::under(double normal, double slip, double direc
 
 SubstrateForces::Force SubstrateContact::static_strength(double indentation) const {
   if (!sign.is_set_valued()) return {};
-  const LawValue area = law->at(indentation / indentation_unit, 0.0).area;
-  return {shear * area.value, shear * area.by_indentation / indentation_unit, 0.0};
+  const ViscoelasticContact contact = law->at(indentation / indentation_unit, 0.0);
+  const double held = interface_friction.static_coefficient * force_unit;
+  return {shear * contact.area.value + held * contact.force.value,
+          (shear * contact.area.by_indentation + held * contact.force.by_indentation) /
+              indentation_unit,
+          0.0};
 }
 
 }  // namespace stridor

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "coupling/friction_law.hpp"
 #include "coupling/regularised_sign.hpp"
 #include "coupling/viscoelastic_law.hpp"
 
@@ -31,10 +32,11 @@ struct SubstrateForces {
 /// F_k and F_µ of PPH (4), (5) in the units of the equations of motion (docs/theory.md, 9.1):
 ///
 ///   normal     =  n F̃_k(ŷ, |v̂|)
-///   tangential = −σ (N μ(ŷ, |v̂|) + a Ã(ŷ, |v̂|)),  σ the direction of slip
+///   tangential = −σ (N μ(ŷ, |v̂|) + a Ã(ŷ, |v̂|) + μ_i(v) normal),  σ the direction of slip
 ///   ŷ = y/y_1,  v̂ = v/v_1
 ///
-/// with N the applied load or the normal force of the contact. Out of contact (y <= 0) everything
+/// with N the applied load or the normal force of the contact, and μ_i the friction of the
+/// interface where that is in proportion to the normal force. Out of contact (y <= 0) everything
 /// vanishes. Regularised friction has s(v/v_ε) in the place of σ.
 struct SubstrateContact {
   std::shared_ptr<const ViscoelasticContactLaw> law;
@@ -44,6 +46,7 @@ struct SubstrateContact {
   double shear = 0.0;             ///< a: friction per Ã by the interfacial shear
   double load = 0.0;              ///< the applied normal force
   FrictionLoad friction_load = FrictionLoad::applied;
+  FrictionLaw interface_friction;  ///< μ_i; its own sign is not used
   RegularisedSign sign;
 
   /// @param indentation y; <= 0 out of contact
@@ -57,8 +60,9 @@ struct SubstrateContact {
   /// @param normal > 0
   SubstrateForces under(double normal, double slip, double direction) const;
 
-  /// Largest tangential force that keeps the contact sticking, a Ã(ŷ, 0), by the indentation. Only
-  /// the adhesive part has static strength, and none if friction is regularised.
+  /// Largest tangential force that keeps the contact sticking, a Ã(ŷ, 0) + μ_s n F̃_k(ŷ, 0), by the
+  /// indentation. Only the friction of the interface has static strength, and none if friction is
+  /// regularised.
   SubstrateForces::Force static_strength(double indentation) const;
 
   /// Whether the body has sunk in by more than its radius, ŷ > 1. No law goes that far: they are of

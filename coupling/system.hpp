@@ -117,6 +117,8 @@ struct ContactPoint {
   ContactAssumption assumption = ContactAssumption::subs_b;
   FrictionLaw friction;
   TimeCurve friction_rise{1.0};  ///< factor on the law over time
+  /// Stiffness of a spring in the place of gap = 0, N/m, > 0: λ_n = −k gap.
+  std::optional<double> penalty;
   /// A force law in the place of gap = 0 and of the friction law, which then are not used. It acts
   /// with all of its friction from the start.
   std::optional<SubstrateContact> substrate;
@@ -124,6 +126,8 @@ struct ContactPoint {
   /// Violations of persistent sliding before this time are only counted, s.
   double armed_from = 0.0;
 
+  /// Gap per force of compression, 1/k, m/N; 0 of a contact that a multiplier closes.
+  double compliance() const { return penalty ? 1.0 / *penalty : 0.0; }
   /// From this time on the contact sticks, slips and lifts off; before it slides bilaterally.
   double unilateral_from() const {
     if (assumption == ContactAssumption::film) return -std::numeric_limits<double>::infinity();

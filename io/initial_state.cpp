@@ -142,8 +142,8 @@ std::string gap_message(const System& system, const StartingGap& start) {
       system.surface_of(contact).name, move);
 }
 
-/// Refuses gaps that the contact forces would close in the first step. An overlap in a substrate is
-/// the indentation of its law, which stores the energy that it gives back.
+/// Refuses gaps that the contact forces would close in the first step. An overlap of a force law is
+/// its indentation, which stores the energy that it gives back.
 void check_gaps(const System& system, const LoadedScene& loaded) {
   // An eigenvector closes the contacts to first order in its amplitude: the normal turns as well.
   constexpr double turning = 1e-3;
@@ -152,7 +152,7 @@ void check_gaps(const System& system, const LoadedScene& loaded) {
   std::map<int, StartingGap> worst;  // by slave body: one motion of it removes all
   for (const StartingGap& start : starting_gaps(system)) {
     const ContactPoint& contact = system.contacts[static_cast<std::size_t>(start.contact)];
-    if (contact.substrate) continue;
+    if (contact.substrate || contact.penalty) continue;
     if (may_start_open(contact) && start.gap >= 0.0) continue;
     const double allowed = negligible_gap(system.surface_of(contact)) + turning * amplitude;
     if (std::abs(start.gap) <= allowed) continue;

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
+#include <memory>
 
 #include "core/memory.hpp"
 #include "core/suggestion.hpp"
 #include "io/channels.hpp"
 #include "io/contact_scene.hpp"
+#include "io/law_table_file.hpp"
 #include "io/linear_scene.hpp"
 #include "io/matrix_reader.hpp"
 #include "io/resolved_scene.hpp"
@@ -235,6 +238,34 @@ std::string LoadedScene::hash() const {
   return scene_hash(resolved(), scene_files(*this));
 }
 
+namespace {
+
+/// Calls with every contact pair and its key path.
+template <class Visit>
+void for_each_pair(ModelParameters& model, const Visit& visit) {
+  if (model.contact) visit("contact", *model.contact);
+  for (auto& [name, pair] : model.contacts) visit("contacts." + name, pair);
+}
+
+/// Names files from the root, as the resolved scene may be read again from anywhere, and reads the
+/// tables of contact laws.
+void read_named_files(LoadedScene& loaded) {
+  ModelParameters& model = loaded.scene.model;
+  for (auto& [name, substructure] : model.substructures) {
+    if (auto* given = std::get_if<TouchedMatrixBodyParameters>(&substructure))
+      make_files_absolute("substructures." + name, loaded.tree, given->body);
+  }
+  for_each_pair(model, [&](const std::string& key, ContactParameters& pair) {
+    if (!pair.normal.has_table()) return;
+    pair.normal.form =
+        std::filesystem::absolute(path_of_file(loaded.tree, key + ".normal.form", pair.normal.form))
+            .lexically_normal();
+    pair.normal.table = std::make_shared<TabulatedLaw>(read_law_table(pair.normal.form));
+  });
+}
+
+}  // namespace
+
 ConfigError LoadedScene::located(const ConfigError& error) const {
   std::vector<Problem> problems = error.problems();
   locate(problems, tree);
@@ -267,10 +298,7 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
                     "map; run takes discs"));
   }
   loaded.scene = read_as<Scene>(loaded.tree);
-  for (auto& [name, substructure] : loaded.scene.model.substructures) {
-    if (auto* given = std::get_if<TouchedMatrixBodyParameters>(&substructure))
-      make_files_absolute("substructures." + name, loaded.tree, given->body);
-  }
+  read_named_files(loaded);
   return loaded;
 }
 
@@ -280,6 +308,7 @@ LoadedScene load_resolved_scene(const std::string& text, const std::string& sour
   loaded.text = text;
   loaded.tree = read_scene_text(text, source);
   loaded.scene = read_as<Scene>(loaded.tree);
+  read_named_files(loaded);
   return loaded;
 }
 

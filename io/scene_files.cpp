@@ -110,7 +110,12 @@ std::vector<SceneFile> scene_files(const LoadedScene& loaded) {
     if (const auto* given = std::get_if<TouchedMatrixBodyParameters>(&substructure))
       add_matrices(files, loaded.tree, name, given->body);
   }
-  const InitialParameters& initial = loaded.scene.model.initial;
+  const ModelParameters& model = loaded.scene.model;
+  for (const auto& [name, pair] : model.pairs()) {
+    const std::string key = model.contact ? name : "contacts." + name;
+    if (pair.normal.has_table()) add_file(files, loaded.tree, key + ".normal.form", pair.normal.form);
+  }
+  const InitialParameters& initial = model.initial;
   if (initial.is_file()) add_file(files, loaded.tree, initial_state_key, initial.state);
   return files;
 }

@@ -15,7 +15,10 @@
 namespace stridor {
 namespace {
 
-constexpr const char* rigid_name = "rigid";
+/// Whether a master is a straight line along +x without end, and no surface of a body.
+bool is_endless_master(const std::string& master) {
+  return master == rigid_master || master == half_space_master;
+}
 
 /// A contact pair with its names resolved to nodes. A rigid master has no nodes.
 struct ResolvedPair {
@@ -169,10 +172,7 @@ ResolvedPair resolve_pair(const std::string& name, const std::string& key,
   pair.parameters = &parameters;
 
   pair.master_name = parameters.master;
-  if (parameters.substrate && parameters.master != rigid_name) {
-    throw ConfigError(key + ".master", "must be `rigid` with a substrate, which takes its place");
-  }
-  if (parameters.master == rigid_name) {
+  if (is_endless_master(parameters.master)) {
     // The rigid master is the last body, without degrees of freedom.
     pair.master_body = static_cast<int>(bodies.size()) - 1;
     resolve_slaves(pair, bodies);
@@ -243,11 +243,12 @@ MasterSurface make_surface(const ResolvedPair& pair, Body& body) {
   surface.name = pair.master_name;
   surface.body = pair.master_body;
   surface.kind = pair.parameters->surface;
-  if (pair.master_name == rigid_name) {
+  if (is_endless_master(pair.master_name)) {
     if (pair.parameters->roughness) {
       throw ConfigError(pair.key + ".roughness",
-                        "the rigid master has no end, a rough surface needs one; take the surface "
-                        "of a body");
+                        fmt::format("the master `{}` has no end, a rough surface needs one; take "
+                                    "the surface of a body",
+                                    pair.master_name));
     }
     surface.rows = {{0, 0}, {0, 0}};
     surface.positions = {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(1.0, 0.0)};
@@ -448,7 +449,7 @@ struct InitialMotion {
 /// The rigid master: its one row stays where it is.
 SystemBody make_rigid_body() {
   SystemBody body;
-  body.name = rigid_name;
+  body.name = rigid_master;
   body.reduced.rows.resize(1, 0);
   body.modal.rows.resize(1, 0);
   return body;
@@ -549,9 +550,9 @@ Model make_model(const ModelParameters& parameters,
   require_memory(estimate_set_up(parameters), memory_limit());
   std::vector<Body> bodies;
   for (const auto& [name, substructure] : parameters.substructures) {
-    if (name == rigid_name) {
+    if (is_endless_master(name)) {
       throw ConfigError("substructures." + name,
-                        "'rigid' is the name of the rigid master; give the body another");
+                        fmt::format("'{}' is the name of a master; give the body another", name));
     }
     Body body;
     body.name = name;
@@ -567,11 +568,11 @@ Model make_model(const ModelParameters& parameters,
   }
   const auto pairs = parameters.pairs();
   const bool has_rigid_master = std::any_of(pairs.begin(), pairs.end(), [](const auto& pair) {
-    return pair.second.master == rigid_name;
+    return is_endless_master(pair.second.master);
   });
   if (has_rigid_master) {
     bodies.emplace_back();
-    bodies.back().name = rigid_name;
+    bodies.back().name = rigid_master;
   }
 
   std::vector<ResolvedPair> resolved;
@@ -640,8 +641,9 @@ Model make_model(const ModelParameters& parameters,
       point.first_segment = segment;
       point.assumption = pair.parameters->assumption;
       if (pair.parameters->friction) point.friction = make_friction_law(*pair.parameters->friction);
-      if (pair.parameters->substrate)
-        point.substrate = make_substrate_contact(*pair.parameters->substrate);
+      point.penalty = pair.parameters->normal.stiffness;
+      if (pair.parameters->normal.law == NormalLaw::viscoelastic)
+        point.substrate = make_substrate_contact(*pair.parameters);
       point.friction_rise = TimeCurve::ramp(1.0, parameters.drive.ramp);
       point.on_violation = pair.parameters->on_violation;
       point.armed_from = pair.parameters->armed_from.value_or(parameters.drive.ramp);

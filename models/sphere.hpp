@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/schema.hpp"
-#include "coupling/substrate_parameters.hpp"
+#include "coupling/normal_parameters.hpp"
 #include "solvers/substrate_oscillator.hpp"
 
 namespace stridor {

@@ -188,7 +188,7 @@ std::optional<Shape> shape_of(Run& run) {
   const RunningContact& contact = run.contacts.front();
   const ContactPoint& point = contact.point();
   const MasterSurface& surface = contact.sliding.surface();
-  if (!run.slides_only || point.substrate || point.friction.kind == FrictionLaw::Kind::stribeck ||
+  if (!run.slides_only || point.substrate || point.penalty || point.friction.kind == FrictionLaw::Kind::stribeck ||
       surface.stencil_size() != 2 || !surface.roughness.is_smooth() ||
       point.slave_body == surface.body) {
     return std::nullopt;

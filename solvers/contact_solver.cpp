@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "solvers/substrate_step.hpp"
@@ -26,6 +27,50 @@ bool solve_substrate(LocalProblem& contact, const LocalCompliance& w, double sli
   return !std::isnan(contact.indentation) && !std::isnan(slip);
 }
 
+/// The same where friction is regularised: with the signed coefficient g(v) = sign(v) μ(|v|) s(|v|),
+///
+///   λ_n = penetration/(w_nn + g w_nt),   F(v) = h v − slip + λ_n (w_tn + g w_tt) = 0,
+///
+/// by Newton's method in |v| on the side to which the contact slips without friction, in a bracket.
+/// @returns false where no force closes the gap
+bool solve_creep(LocalProblem& contact, const LocalCompliance& w, double penetration, double slip) {
+  contact.normal = 0.0;
+  contact.tangential = 0.0;
+  contact.state = ContactState::open;
+  if (contact.is_unilateral && !(penetration > 0.0)) return !std::isnan(penetration);
+  const double at_rest = w.tn * penetration / w.nn - slip;  // F(0)
+  if (!(w.nn > 0.0) || std::isnan(at_rest)) return false;
+  const double side = at_rest > 0.0 ? -1.0 : 1.0;
+  const auto coefficient_at = [&](double v) {
+    return side * contact.friction_factor * sliding_friction(*contact.creep, v);
+  };
+  double low = 0.0;
+  double high = std::numeric_limits<double>::infinity();
+  double v = side * contact.last_slip > 0.0 ? std::abs(contact.last_slip) : 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const double g = coefficient_at(v);
+    const double compliance = w.nn + g * w.nt;
+    if (!(compliance > 0.0)) return false;
+    contact.normal = penetration / compliance;
+    contact.tangential = g * contact.normal;
+    const double moved = w.tn + g * w.tt;
+    const double miss = contact.step * v + side * (contact.normal * moved - slip);
+    (miss > 0.0 ? high : low) = v;
+    const double by_v = contact.friction_factor * sliding_friction_slope(*contact.creep, v);
+    // g changes by side · by_v with |v|.
+    const double slope =
+        contact.step + contact.normal * by_v * (w.tt - w.nt * moved / compliance);
+    double next = v - miss / slope;
+    if (!(next > low && next < high)) {
+      next = std::isinf(high) ? 2.0 * v + std::abs(at_rest) / contact.step : 0.5 * (low + high);
+    }
+    if (std::abs(next - v) <= 1e-14 * v || next == v || miss == 0.0) break;
+    v = next;
+  }
+  contact.state = ContactState::slip;
+  return true;
+}
+
 /// The solution of one contact under the forces of all others.
 /// @returns false where no force closes the gap
 bool solve_local(LocalProblem& contact, const LocalCompliance& w, double penetration, double slip) {
@@ -37,6 +82,7 @@ bool solve_local(LocalProblem& contact, const LocalCompliance& w, double penetra
     return compliance > 0.0;
   };
   if (contact.substrate != nullptr) return solve_substrate(contact, w, slip);
+  if (contact.creep != nullptr) return solve_creep(contact, w, penetration, slip);
   if (!contact.is_unilateral) return slide(contact.direction);
 
   // Without penetration no force is a solution, and the one that is taken even where friction makes
@@ -76,8 +122,10 @@ ContactAnswer ContactSolver::solve(std::span<LocalProblem> contacts) {
     const bool is_solved = solve_local(contact, w, contact.penetration, contact.slip);
     return {is_solved ? ContactStatus::converged : ContactStatus::jammed, 0, 1};
   }
-  const bool is_bilateral = std::none_of(contacts.begin(), contacts.end(),
-                                         [](const LocalProblem& c) { return c.is_unilateral; });
+  const bool is_bilateral =
+      std::none_of(contacts.begin(), contacts.end(), [](const LocalProblem& c) {
+        return c.is_unilateral || c.creep != nullptr;
+      });
   return is_bilateral ? solve_bilateral(contacts) : iterate(contacts);
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "coupling/friction_law.hpp"
 #include "coupling/substrate_contact.hpp"
 #include "solvers/contact_jamming.hpp"
 
@@ -29,12 +30,17 @@ struct LocalProblem {
   double direction = 1.0;          ///< χ of persistent sliding, ±1
   bool is_unilateral = false;      ///< false: persistent sliding, λ_n of either sign
 
+  /// A regularised law of friction in the place of the two coefficients, not owned; null where
+  /// there is none.
+  const FrictionLaw* creep = nullptr;
+  double friction_factor = 1.0;  ///< on that law
+
   /// A force law instead of a constraint, not owned; null where there is none. Of what is above it
   /// takes the slip.
   const SubstrateContact* substrate = nullptr;
   double indentation = 0.0;  ///< at the beginning of the step, m
-  double last_slip = 0.0;    ///< velocity in the last step, m/s
-  double step = 0.0;         ///< s
+  double last_slip = 0.0;    ///< velocity in the last step, m/s; for the two laws
+  double step = 0.0;         ///< s, likewise
 
   // Answer; on entry the guess from which the iteration starts.
   double normal = 0.0;      ///< λ_n, N
@@ -67,8 +73,9 @@ struct ContactSolverParameters {
 ///
 ///   0 ≤ λ_n ⟂ gap ≥ 0,   |λ_t| ≤ μ λ_n,   slip = 0 where |λ_t| < μ λ_n,
 ///
-/// bilateral ones gap = 0 and λ_t = χ μ λ_n. Contacts that all slide bilaterally are one linear
-/// system. Otherwise the contacts are visited in turn, each solved exactly under the forces of the
+/// bilateral ones gap = 0 and λ_t = χ μ λ_n. A penalty 1/k on the diagonal of W makes the gap
+/// −λ_n/k in both. Regularised friction is λ_t = μ(v) s(v) λ_n of the mean velocity v = slip/h of
+/// the step. Contacts that all slide bilaterally without it are one linear system. Otherwise the contacts are visited in turn, each solved exactly under the forces of the
 /// others (Gauss-Seidel over 2 x 2 blocks), until no force changes any more; for a single contact
 /// the first visit is the solution. Sticking is tried first, with the sign of its friction force
 /// the direction of sliding where that exceeds the limit (FiLM: Carpenter, Taylor, Katona 1991). A

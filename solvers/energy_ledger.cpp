@@ -158,7 +158,7 @@ EnergyLedger::EnergyLedger(const System& system, const TimeParameters& time)
     };
     contacts_.push_back({point.slave_body, surface.body, point.slave_rows, surface.rows,
                          surface.kind, follows(point.slave_body) - follows(surface.body),
-                         not_yet, not_yet});
+                         point.compliance(), 0.0, 0.0, not_yet, not_yet});
   }
   initial_ = kinetic + strain;
   enter_stored(kinetic, strain);
@@ -248,6 +248,7 @@ void EnergyLedger::add(double time, std::span<const ContactAction> contacts,
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const ContactAction& action = contacts[i];
     const double raised = roughness_increment(contacts_[i], action.roughness);
+    given += stored_increment(contacts_[i], action.force);
     if (action.state == ContactState::open) continue;
     given +=
         enter_contact(contacts_[i], action, contacts_[i].driven * driven) - action.force * raised;
@@ -272,6 +273,16 @@ double EnergyLedger::roughness_increment(Contact& contact, double roughness) {
   contact.roughness_before_last = contact.last_roughness;
   contact.last_roughness = roughness;
   return raised;
+}
+
+/// Change of the energy in the spring of a penalty, J: (λ_n² − λ_{n−2}²)/(4k), with which its work
+/// along the mean increments, −λ_n (λ_n − λ_{n−2})/(2k), is never positive.
+/// @param force at t_n
+double EnergyLedger::stored_increment(Contact& contact, double force) {
+  const double before = contact.force_before_last;
+  contact.force_before_last = contact.last_force;
+  contact.last_force = force;
+  return 0.25 * contact.compliance * (force - before) * (force + before);
 }
 
 /// @param given by the contacts in the step that begins at `time`, J
@@ -344,6 +355,8 @@ void EnergyLedger::save(State& state, const std::string& prefix) const {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const double roughness[] = {contacts_[i].roughness_before_last, contacts_[i].last_roughness};
     state.put(fmt::format("{}contacts/{}/roughness", prefix, i), roughness);
+    const double forces[] = {contacts_[i].force_before_last, contacts_[i].last_force};
+    state.put(fmt::format("{}contacts/{}/force", prefix, i), forces);
   }
   const double values[] = {initial_,
                            balance_.kinetic,
@@ -375,6 +388,10 @@ void EnergyLedger::load(const State& state, const std::string& prefix) {
     state.get(fmt::format("{}contacts/{}/roughness", prefix, i), roughness);
     contacts_[i].roughness_before_last = roughness[0];
     contacts_[i].last_roughness = roughness[1];
+    double forces[2];
+    state.get(fmt::format("{}contacts/{}/force", prefix, i), forces);
+    contacts_[i].force_before_last = forces[0];
+    contacts_[i].last_force = forces[1];
   }
   double values[11];
   state.get(prefix + "scalars", values);

@@ -70,7 +70,8 @@ struct FrictionGain {
 
 /// Contacts that have given energy to the bodies. A normal force does no work on a gap that it
 /// holds closed, and only takes energy in an impact. A rough surface moved by the drive has an
-/// account of its own. The remaining contact work may therefore not rise.
+/// account of its own, and the spring of a penalty gives back what it has stored, ½ λ_n²/k. The
+/// remaining contact work may therefore not rise.
 struct ContactGain {
   double energy = 0.0;     ///< largest rise of it over any stretch of time, J
   double last_time = 0.0;  ///< at the end of that stretch, s
@@ -168,6 +169,10 @@ class EnergyLedger {
     std::vector<PointRows> master_rows;
     SurfaceKind surface_kind;
     double driven;  ///< +1, −1 or 0: how the drive moves the slave against the master
+    double compliance;  ///< of its spring, 1/k, m/N; 0 where it is rigid
+    /// Of the last two steps, t_{n−1} and t_n, N.
+    double force_before_last = 0.0;
+    double last_force = 0.0;
     /// Of the last two steps, t_{n−1} and t_n, m.
     double roughness_before_last = std::numeric_limits<double>::quiet_NaN();
     double last_roughness = std::numeric_limits<double>::quiet_NaN();
@@ -179,6 +184,7 @@ class EnergyLedger {
   Eigen::Vector2d mean_increment(const Contact& contact, const ContactAction& action) const;
   double enter_contact(const Contact& contact, const ContactAction& action, double driven);
   static double roughness_increment(Contact& contact, double roughness);
+  static double stored_increment(Contact& contact, double force);
   void enter_gain(double given, double time);
   void enter_stored(double kinetic, double strain);
 

@@ -475,7 +475,11 @@ class Search {
     const ContactPositions& positions = contact.result.positions;
     const double force = unknowns(row);
     const bool has_law = contact.point->substrate.has_value();
-    const LawState law = has_law ? law_state(contact, force) : LawState();
+    LawState law = has_law ? law_state(contact, force) : LawState();
+    if (!has_law) {
+      law.compliance = contact.point->compliance();
+      law.indentation = law.compliance * force;
+    }
     const ContactLinearisation local =
         has_law
             ? linearise_contact(positions, constant_friction(law.friction), 1.0)

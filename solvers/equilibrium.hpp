@@ -146,7 +146,7 @@ struct EquilibriumParameters {
 ///
 ///   K q = f − B_E(q)ᵀ λ,   gap(q) = 0, or gap(q) = −y(λ) for a force law
 ///
-/// for the contacts that slide bilaterally; 0 ≤ λ ⟂ gap ≥ 0 for those that may lift off, at
+/// for the contacts that slide bilaterally, y = λ/k of a penalty; 0 ≤ λ ⟂ gap ≥ 0 for those that may lift off, at
 /// whatever time (ContactPoint::unilateral_from). χ and μ(v) are those of the drive's velocity.
 /// Elastic modes are eliminated; unknown are the displacements of the contact ports, λ and the
 /// amplitudes of the rigid modes. Newton's method with the exact derivative, halving the step until

@@ -104,6 +104,7 @@ FrozenModes frozen_modes(const Pencil& contacts, const TimeParameters& time,
   modes.gaps = contacts.compatibility * slots;
   modes.forces = contacts.equilibrium * slots;
   modes.is_instantaneous = surplus.has_value();
+  modes.compliance = contacts.compliance;
   return modes;
 }
 
@@ -174,6 +175,7 @@ std::vector<std::complex<double>> FrozenStep::factors(const Pencil& contacts) co
   const MovingModes modes = moving_modes(contacts, *system_, time_, surplus_, cutoff_);
   Eigen::MatrixXd closed = modes.closed;
   for (const LeftOut& body : left_out) closed += body.share * body.closed;
+  if (contacts.compliance.size() > 0) closed.diagonal() += contacts.compliance;
   check_closed(closed);
   const Eigen::PartialPivLU<Eigen::MatrixXd> close(closed);
 

@@ -26,7 +26,8 @@ namespace stridor {
 ///   (C e Eᵀ) λ_n = C (r_n + s d_n − k r_n),   or   (C g Eᵀ + Σ w R_b) λ_n = C r_n − Σ (1 − w) R_b
 ///   λ~, λ~_n = w λ_n + (1 − w) λ~_{n−1}
 ///
-/// with R_b = B_C R B_Eᵀ of the modes that body b leaves out and λ~ the force as they feel it.
+/// A penalty adds its compliance c to the diagonal on the left, as the gap is −c λ_n then.
+/// Here R_b = B_C R B_Eᵀ of the modes that body b leaves out, and λ~ is the force as they feel it.
 /// Bodies with coupled terms have the matrices of their CoupledStep in place of s, k, e and g.
 class FrozenStep {
  public:
@@ -39,9 +40,10 @@ class FrozenStep {
   double step() const { return time_.step; }
 
   /// All factors by which motions change in a step, conjugates one by one, in no order; those of
-  /// the gaps, which one step closes, are 0.
+  /// rigid gaps, which one step closes, are 0.
   /// @param contacts rows of sliding or sticking contacts on all modes of the system, with their
-  ///                 damping; G and H, which turn the rows with the motion, are left out
+  ///                 damping and compliance (linearise_constraints()); G and H, which turn the
+  ///                 rows with the motion, are left out
   /// @throws std::invalid_argument as check_pencil(), or if it has other modes than the system
   /// @throws NumericalError if no contact forces close the gaps: the contact jams
   /// Cost: of order 20 n² k² operations for n modes that move and k contacts (step_factors()), and

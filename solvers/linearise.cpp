@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -27,6 +28,11 @@ void add_motion(Eigen::VectorXd& state, const Eigen::MatrixXd& shapes,
 
 Pencil linearise(const System& system, const Equilibrium& equilibrium,
                  const LinearisationTerms& terms) {
+  return with_springs(linearise_constraints(system, equilibrium, terms));
+}
+
+Pencil linearise_constraints(const System& system, const Equilibrium& equilibrium,
+                             const LinearisationTerms& terms) {
   if (equilibrium.status != EquilibriumStatus::converged)
     throw std::invalid_argument("linearise: the equilibrium has not converged");
   Pencil pencil = make_modal_pencil(system);
@@ -39,6 +45,7 @@ Pencil linearise(const System& system, const Equilibrium& equilibrium,
   }
   std::vector<Eigen::Index> kept_slots;
   std::vector<Eigen::Index> kept_constraints;
+  std::vector<double> compliance;
   for (std::size_t i = 0; i < equilibrium.contacts.size(); ++i) {
     const ContactEquilibrium& contact = equilibrium.contacts[i];
     if (!contact.is_closed) continue;
@@ -72,6 +79,7 @@ Pencil linearise(const System& system, const Equilibrium& equilibrium,
           pushed(forces.normal.by_slip, forces.tangential.by_slip) * local.tangent_row.transpose();
     } else {
       kept_constraints.push_back(constraint);
+      compliance.push_back(system.contacts[i].compliance());
     }
     for (Eigen::Index k = 0; k < size; ++k) kept_slots.push_back(first + k);
   }
@@ -80,6 +88,12 @@ Pencil linearise(const System& system, const Equilibrium& equilibrium,
   pencil.slots = pencil.slots(kept_slots, Eigen::all).eval();
   pencil.compatibility = pencil.compatibility(kept_constraints, kept_slots).eval();
   pencil.equilibrium = pencil.equilibrium(kept_constraints, kept_slots).eval();
+  const bool gives_way =
+      std::any_of(compliance.begin(), compliance.end(), [](double c) { return c > 0.0; });
+  if (gives_way) {
+    pencil.compliance = Eigen::Map<const Eigen::VectorXd>(
+        compliance.data(), static_cast<Eigen::Index>(compliance.size()));
+  }
   pencil.slot_stiffness.resize(0, 0);
   pencil.slot_damping.resize(0, 0);
   if (!stiffness.isZero(0.0)) pencil.slot_stiffness = stiffness(kept_slots, kept_slots);

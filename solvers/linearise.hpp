@@ -24,6 +24,11 @@ namespace stridor {
 Pencil linearise(const System& system, const Equilibrium& equilibrium,
                  const LinearisationTerms& terms = {});
 
+/// The same with every contact that is no force law as a constraint, those with a penalty giving way
+/// by its compliance (Pencil::compliance).
+Pencil linearise_constraints(const System& system, const Equilibrium& equilibrium,
+                             const LinearisationTerms& terms = {});
+
 /// Adds the motion u = Re(q exp(st)) of an eigenvector to the state in which the bodies start.
 ///
 /// @param system    its initial displacements and velocities grow by Re q and Re(s q)

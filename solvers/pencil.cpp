@@ -217,6 +217,7 @@ void check_pencil(const Pencil& pencil) {
   check_size("slots", pencil.slots, m, n);
   check_size("compatibility", pencil.compatibility, k, m);
   check_size("equilibrium", pencil.equilibrium, k, m);
+  if (pencil.compliance.size() > 0) check_size("compliance", pencil.compliance, k, 1);
   if (pencil.slot_stiffness.size() > 0) check_size("slot_stiffness", pencil.slot_stiffness, m, m);
   if (pencil.slot_damping.size() > 0) check_size("slot_damping", pencil.slot_damping, m, m);
   if (k >= n) reject(fmt::format("{} constraints leave nothing of {} modes", k, n));
@@ -261,6 +262,26 @@ Pencil make_modal_pencil(const System& system) {
     first += size;
   }
   return pencil;
+}
+
+Pencil with_springs(const Pencil& pencil) {
+  if (pencil.compliance.size() == 0) return pencil;
+  Pencil sprung = pencil;
+  sprung.compliance.resize(0);
+  if (sprung.slot_stiffness.size() == 0)
+    sprung.slot_stiffness.setZero(pencil.num_slots(), pencil.num_slots());
+  std::vector<Eigen::Index> rigid;
+  for (Eigen::Index i = 0; i < pencil.num_constraints(); ++i) {
+    if (pencil.compliance(i) == 0.0) {
+      rigid.push_back(i);
+      continue;
+    }
+    sprung.slot_stiffness +=
+        pencil.equilibrium.row(i).transpose() * (pencil.compatibility.row(i) / pencil.compliance(i));
+  }
+  sprung.compatibility = pencil.compatibility(rigid, Eigen::all);
+  sprung.equilibrium = pencil.equilibrium(rigid, Eigen::all);
+  return sprung;
 }
 
 void drop_contact_terms(Pencil& pencil) {

@@ -31,6 +31,9 @@ struct Pencil {
 
   Eigen::MatrixXd compatibility;    ///< B_C on the slots, k x m
   Eigen::MatrixXd equilibrium;      ///< B_E on the slots, k x m
+  /// Gap per force of each constraint, k, m/N: B_C y = c δλ. Empty where all are rigid, as all
+  /// functions on eigenvalues want it; see with_springs().
+  Eigen::VectorXd compliance;
   Eigen::MatrixXd slot_stiffness;   ///< G, m x m, N/m; empty where there is none
   Eigen::MatrixXd slot_damping;     ///< H, m x m, N s/m; empty where there is none
   Eigen::Index num_body_slots = 0;  ///< of bodies with coupled terms
@@ -51,6 +54,10 @@ void check_pencil(const Pencil& pencil);
 /// or place_undeformed() fills them; G and H hold the coupled terms of the bodies, and are empty
 /// where there are none.
 Pencil make_modal_pencil(const System& system);
+
+/// The same motion with the constraints that give way as springs on the slots, G += B_Eᵀ B_C/c, and
+/// the rigid ones alone as constraints.
+Pencil with_springs(const Pencil& pencil);
 
 /// Takes what the contact forces in equilibrium add out of G and H; what is left are the coupled
 /// terms of bodies.

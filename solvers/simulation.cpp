@@ -42,7 +42,7 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
   for (const ContactPoint& point : given.contacts) {
     if (point.substrate && point.assumption != ContactAssumption::film) {
       throw ConfigError("contact.assumption",
-                        "must be `film` with a substrate: the others slide on a rigid constraint, "
+                        "must be `film` on a half_space: the others slide on a rigid constraint, "
                         "and cannot be compared with it");
     }
   }

@@ -41,7 +41,9 @@ struct RunningContact {
 
   SlidingPoint sliding;
   double unilateral_from = 0.0;
-  bool tracks_slip = false;    ///< it is unilateral or may become so
+  bool tracks_slip = false;    ///< it is unilateral or may become so, or its friction is a function
+                               ///< of the slip in the step
+  double compliance = 0.0;     ///< ContactPoint::compliance()
   double constant_from = 0.0;  ///< of the rise of its friction
   double rise = 0.0;           ///< from then on
 
@@ -146,7 +148,9 @@ struct Simulation::Implementation {
       RunningContact contact(SlidingPoint(point, surface, *bodies[slave], *bodies[master],
                                           slave_slot, master_slot, share));
       contact.unilateral_from = point.unilateral_from();
-      contact.tracks_slip = contact.unilateral_from < std::numeric_limits<double>::infinity();
+      contact.tracks_slip = contact.unilateral_from < std::numeric_limits<double>::infinity() ||
+                            point.friction.is_regularised();
+      contact.compliance = point.compliance();
       contact.constant_from = point.friction_rise.constant_from();
       contact.rise = point.friction_rise.value(contact.constant_from);
       slides_only = slides_only && !contact.tracks_slip;
@@ -182,11 +186,15 @@ struct Simulation::Implementation {
     problem.is_unilateral = time(index) >= contact.unilateral_from;
     contact.looks_ahead = false;
     contact.stretch = sliding.stretch();
+    problem.last_slip = contact.slip_velocity;
+    problem.step = step;
+    if (contact.point().friction.is_regularised()) {
+      problem.creep = &contact.point().friction;
+      problem.friction_factor = rise;
+    }
     if (const auto& substrate = contact.point().substrate) {
       problem.substrate = &*substrate;
       problem.indentation = -sliding.present_place(drive_displacement(time(index))).gap;
-      problem.last_slip = contact.slip_velocity;
-      problem.step = step;
     }
     if (drive.is_frozen && sought_index() > 0) {
       // Held in place, the material of the master slides away below.
@@ -444,15 +452,17 @@ struct Simulation::Implementation {
     }
   }
 
-  /// Rows n and t of contact i against columns n and t of contact j. Forces are λ_n along the
+  /// Rows n and t of contact i against columns n and t of contact j, with the compliance of its own
+  /// spring. Forces are λ_n along the
   /// normal and λ_t against the tangent of the slave. Where no contact ever sticks or lifts off,
   /// the column of λ_n holds what its friction does as well.
   void fill_delassus(std::size_t i, std::size_t j) {
     const auto row = static_cast<Eigen::Index>(2 * i);
     const auto column = static_cast<Eigen::Index>(2 * j);
     Eigen::MatrixXd& delassus = solver.delassus();
+    const double own = i == j ? contacts[i].compliance : 0.0;
     if (slides_only) {
-      delassus(row, column) = contacts[i].sliding.sliding_compliance(
+      delassus(row, column) = own + contacts[i].sliding.sliding_compliance(
           contacts[j].sliding, local[j].direction * local[j].sliding_friction);
       return;
     }
@@ -460,7 +470,7 @@ struct Simulation::Implementation {
     const ContactCompliance w = contacts[i].looks_ahead
                                     ? sliding.compliance_ahead(contacts[j].sliding)
                                     : sliding.compliance(contacts[j].sliding);
-    delassus(row, column) = w.nn;
+    delassus(row, column) = own + w.nn;
     delassus(row, column + 1) = -w.nt;
     delassus(row + 1, column) = -w.tn;
     delassus(row + 1, column + 1) = w.tt;
@@ -621,7 +631,7 @@ struct Simulation::Implementation {
             "contact law holds",
             contact.indentation, contact.point().substrate->indentation_unit);
         remedy =
-            "take a smaller load (drive.load), a larger contact.substrate.modulus or radius, or, "
+            "take a smaller load (drive.load), a larger contact.normal.modulus or radius, or, "
             "if "
             "it did not sink under its load but came to swing so far, a smaller time.step";
         break;

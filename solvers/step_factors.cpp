@@ -55,6 +55,7 @@ class StepFunction {
     }
     if (given.is_instantaneous)
       constant_ = given.gaps * given.prompt.asDiagonal() * given.forces.transpose();
+    if (given.compliance.size() > 0) constant_.diagonal() += given.compliance;
     // Poles so close together that multiplying out one leaves nothing but rounding of the other.
     constexpr double closeness = 1e-5;
     for (std::size_t i = 0; i < clusters_.size(); ++i) {
@@ -159,7 +160,7 @@ class StepFunction {
   std::size_t padded_;
   AlignedArray omega_, damping_, mask_;
   AlignedArray value_re_, value_im_, slope_re_, slope_im_, norm_;
-  Eigen::MatrixXd constant_;           ///< Σ C_i g_i E_i
+  Eigen::MatrixXd constant_;           ///< c + Σ C_i g_i E_i
   std::vector<AlignedArray> weights_;  ///< C_i e_i E_i, columns of A fastest
   std::vector<std::vector<std::size_t>> clusters_;
   std::vector<std::size_t> near_;
@@ -277,12 +278,14 @@ Eigen::MatrixXd FrozenModes::closed() const {
   Eigen::MatrixXd sum =
       gaps * (is_instantaneous ? prompt : gain).asDiagonal() * forces.transpose();
   for (const LeftOut& body : left_out) sum += body.share * body.closed;
+  if (compliance.size() > 0) sum.diagonal() += compliance;
   return sum;
 }
 
 std::optional<std::vector<Complex>> step_factors(const FrozenModes& modes) {
   if (modes.gaps.rows() == 0 || modes.keep.size() <= modes.gaps.rows()) return std::nullopt;
-  if (!modes.is_instantaneous && !modes.left_out.empty()) return std::nullopt;
+  if (!modes.is_instantaneous && (!modes.left_out.empty() || modes.compliance.size() > 0))
+    return std::nullopt;
   if ((modes.pull.array() < 0.0).any()) return std::nullopt;
   StepFunction function(modes);
   std::vector<Complex> factors = starts_of(function, modes);

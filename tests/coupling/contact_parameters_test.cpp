@@ -122,9 +122,10 @@ TEST(ContactParameters, ChoicesMeanWhatTheySay) {
     FrictionParameters::schema().find("law")->assign(&friction, Value(std::string(text)));
     return friction.law;
   };
-  EXPECT_EQ(choose_law("static_dynamic"), FrictionLaw::Kind::static_dynamic);
-  EXPECT_EQ(choose_law("stribeck"), FrictionLaw::Kind::stribeck);
-  EXPECT_EQ(choose_law("constant"), FrictionLaw::Kind::constant);
+  EXPECT_EQ(choose_law("static_dynamic"), FrictionKind::static_dynamic);
+  EXPECT_EQ(choose_law("stribeck"), FrictionKind::stribeck);
+  EXPECT_EQ(choose_law("constant"), FrictionKind::constant);
+  EXPECT_EQ(choose_law("shear"), FrictionKind::shear);
 }
 
 TEST(ContactParameters, PhysicalQuantitiesHaveNoDefault) {
@@ -132,14 +133,13 @@ TEST(ContactParameters, PhysicalQuantitiesHaveNoDefault) {
     EXPECT_FALSE(ContactParameters::schema().find(key)->is_optional) << key;
   for (const char* key : {"velocity", "load", "ramp"})
     EXPECT_FALSE(DriveParameters::schema().find(key)->is_optional) << key;
-  for (const char* key : {"radius", "modulus", "creep_time", "shear_strength"})
-    EXPECT_FALSE(SubstrateParameters::schema().find(key)->is_optional) << key;
-  // Friction is that of a law or of a substrate, see ContactOnSubstrate; which coefficients are
-  // needed depends on the law, see FrictionParameters.
+  // Which numbers are needed depends on the laws, see NormalParameters and FrictionParameters.
+  EXPECT_EQ(NormalParameters{}.stiffness, std::nullopt);
+  EXPECT_EQ(NormalParameters{}.radius, std::nullopt);
   EXPECT_EQ(FrictionParameters{}.coefficient, std::nullopt);
 }
 
-using Kind = FrictionLaw::Kind;
+using Kind = FrictionKind;
 
 /// Complaints about the keys of a section, one line each.
 template <class Parameters>
@@ -151,30 +151,105 @@ std::vector<std::string> complaints(const Parameters& parameters) {
   return lines;
 }
 
-TEST(ContactOnSubstrate, TakesThePlaceOfFriction) {
+TEST(NormalParameters, EveryLawNeedsItsOwnKeys) {
+  NormalParameters normal;
+  EXPECT_THAT(complaints(normal), IsEmpty());
+  normal.law = NormalLaw::penalty;
+  EXPECT_THAT(complaints(normal),
+              ElementsAre("stiffness: missing: needed by the normal law penalty"));
+  normal.stiffness = 1e6;
+  EXPECT_THAT(complaints(normal), IsEmpty());
+  normal.law = NormalLaw::multiplier;
+  normal.form = NormalParameters::boundary_element;
+  EXPECT_THAT(complaints(normal), ElementsAre("stiffness: not used by the normal law multiplier",
+                                              "form: not used by the normal law multiplier"));
+  normal.law = NormalLaw::viscoelastic;
+  normal.form = "law.txt";
+  EXPECT_THAT(complaints(normal),
+              ElementsAre("stiffness: not used by the normal law viscoelastic",
+                          "radius: missing: needed by the normal law viscoelastic",
+                          "modulus: missing: needed by the normal law viscoelastic",
+                          "creep_time: missing: needed by the normal law viscoelastic",
+                          "form: 'law.txt' is neither published_fit nor boundary_element nor a "
+                          "file of `stridor contact --table` (*.h5)"));
+}
+
+NormalParameters sphere_of_2_mm() {
+  NormalParameters normal;
+  normal.law = NormalLaw::viscoelastic;
+  normal.radius = 2e-3;
+  normal.modulus = 1e6;
+  normal.creep_time = 0.01;
+  normal.form = NormalParameters::boundary_element;
+  return normal;
+}
+
+TEST(ContactParameters, LawsThatDoNotGoTogetherAreRefused) {
   ContactParameters contact;
   contact.slave = {"reed.tip"};
   contact.master = "cantilever.top";
   EXPECT_THAT(complaints(contact),
-              ElementsAre("friction: is missing: give `friction`, or a `substrate`"));
-  contact.friction.emplace();
-  contact.substrate.emplace();
-  EXPECT_THAT(
-      complaints(contact),
-      ElementsAre("friction: not used with a substrate, whose law has it",
-                  "assumption: must be `film` with a substrate: it sticks, slips and lifts off"));
-  contact.friction.reset();
+              ElementsAre("friction: is missing: this normal law brings none of its own"));
+  contact.friction.emplace().law = FrictionKind::shear;
+  EXPECT_THAT(complaints(contact),
+              ElementsAre("friction.law: shear is friction per area of contact, and this normal "
+                          "law has no area; take `normal: {law: viscoelastic, ...}`, or a "
+                          "coefficient"));
+  contact.normal = sphere_of_2_mm();
+  EXPECT_THAT(complaints(contact),
+              ElementsAre("master: must be `half_space` with the viscoelastic normal law, which is "
+                          "that of one",
+                          "assumption: must be `film` with the viscoelastic normal law: it sticks, "
+                          "slips and lifts off"));
+  contact.master = half_space_master;
   contact.assumption = ContactAssumption::film;
   EXPECT_THAT(complaints(contact), IsEmpty());
+  contact.friction.reset();
+  EXPECT_THAT(complaints(contact), IsEmpty());
+  contact.normal = {};
+  contact.friction.emplace().coefficient = 0.3;
+  EXPECT_THAT(complaints(contact),
+              ElementsAre("normal: must be {law: viscoelastic, ...} on a half_space"));
 }
 
-TEST(ContactOnSubstrate, LawIsInSiUnits) {
+TEST(ViscoelasticNormalLaw, IsInSiUnits) {
   // F = E_0* R² F̃(y/R, v τ/R); at rest F̃ = 4/3 ŷ^{3/2}, Ã = π ŷ by the boundary elements.
-  const SubstrateContact contact =
-      make_substrate_contact({2e-3, 1e6, 0.01, 0.02, SphereContactLaw::boundary_element});
+  const SubstrateContact contact = make_substrate_contact(sphere_of_2_mm(), 0.02e6);
   const double y = 2e-5;
   EXPECT_NEAR(contact.at(y, 0.0, 1.0).normal.value, 1e6 * 4e-6 * 4.0 / 3.0 * 1e-3, 1e-12);
   EXPECT_NEAR(contact.static_strength(y).value, 0.02 * 1e6 * 4e-6 * M_PI * 0.01, 1e-12);
+}
+
+TEST(ViscoelasticNormalLaw, FrictionOfTheInterfaceAddsToItsOwn) {
+  FrictionLaw interface{FrictionLaw::Kind::stribeck, 0.5, 0.2, 0.03};
+  const SubstrateContact bare = make_substrate_contact(sphere_of_2_mm(), 0.0);
+  const SubstrateContact rubbing = make_substrate_contact(sphere_of_2_mm(), 0.0, interface);
+  const double y = 2e-5;
+  for (const double v : {0.02, -0.4}) {
+    const double direction = v > 0.0 ? 1.0 : -1.0;
+    const SubstrateForces without = bare.at(y, v, direction);
+    const SubstrateForces with = rubbing.at(y, v, direction);
+    EXPECT_EQ(with.normal.value, without.normal.value);
+    EXPECT_NEAR(with.tangential.value,
+                without.tangential.value -
+                    direction * sliding_friction(interface, v) * without.normal.value,
+                1e-12);
+    const auto tangential = [&](double at, double slip) {
+      return rubbing.at(at, slip, direction).tangential.value;
+    };
+    EXPECT_NEAR(with.tangential.by_indentation,
+                (tangential(y * 1.0001, v) - tangential(y * 0.9999, v)) / (2e-4 * y),
+                1e-5 * std::abs(with.tangential.by_indentation));
+    EXPECT_NEAR(with.tangential.by_slip,
+                (tangential(y, v * 1.0001) - tangential(y, v * 0.9999)) / (2e-4 * v),
+                1e-4 * std::abs(with.tangential.by_slip) + 1e-9);
+  }
+  EXPECT_NEAR(rubbing.static_strength(y).value, 0.5 * rubbing.at(y, 0.0, 1.0).normal.value, 1e-15);
+  interface.sign = {RegularisedSign::Kind::tanh, 0.1};
+  const SubstrateContact creeping = make_substrate_contact(sphere_of_2_mm(), 0.0, interface);
+  EXPECT_EQ(creeping.static_strength(y).value, 0.0);
+  EXPECT_NEAR(creeping.at(y, 0.1, 1.0).tangential.value,
+              std::tanh(1.0) * rubbing.at(y, 0.1, 1.0).tangential.value, 1e-12);
 }
 
 TEST(FrictionParameters, EveryLawNeedsItsOwnKeys) {

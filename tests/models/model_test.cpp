@@ -357,13 +357,13 @@ TEST(Model, TheRigidMasterHasNoPointsOfItsOwn) {
 TEST(Model, ASubstructureMayNotTakeTheNameOfTheRigidMaster) {
   ModelParameters parameters = on_rigid_ground();
   parameters.substructures["rigid"] = paper_oblique();
-  expect_refusal(parameters, "substructures.rigid", "'rigid' is the name of the rigid master");
+  expect_refusal(parameters, "substructures.rigid", "'rigid' is the name of a master");
 }
 
 TEST(Model, FrictionLawsRiseWithTheRamp) {
   ModelParameters parameters = paper_model();
   parameters.contact->friction =
-      FrictionParameters{FrictionLaw::Kind::stribeck, {}, 0.4, 0.3, 0.01};
+      FrictionParameters{FrictionKind::stribeck, {}, 0.4, 0.3, 0.01, {}, {}};
   const Model model = make_paper_model(parameters);
   const ContactPoint& contact = model.system.contacts.at(0);
   EXPECT_EQ(contact.friction.kind, FrictionLaw::Kind::stribeck);

@@ -1,0 +1,55 @@
+// Normal laws of contacts in a scene.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/schema.hpp"
+#include "coupling/friction_law.hpp"
+#include "coupling/substrate_contact.hpp"
+
+namespace stridor {
+
+/// The law of the contact between a sphere and a substrate.
+enum class SphereContactLaw { published_fit, boundary_element };
+
+/// A law that the program has built in.
+std::shared_ptr<const ViscoelasticContactLaw> shipped_law(SphereContactLaw law);
+
+enum class NormalLaw {
+  multiplier,    ///< gap = 0 by a Lagrange multiplier
+  penalty,       ///< a spring, λ_n = −k gap
+  viscoelastic,  ///< a sphere on a viscoelastic half-space
+};
+
+/// The normal law of a contact, with the numbers of the law that is chosen.
+struct NormalParameters {
+  static constexpr const char* published_fit = "published_fit";
+  static constexpr const char* boundary_element = "boundary_element";
+
+  NormalLaw law = NormalLaw::multiplier;
+  std::optional<double> stiffness;   ///< k of a penalty, N/m, > 0
+  std::optional<double> radius;      ///< R of the sphere at the slave point, m, > 0
+  std::optional<double> modulus;     ///< E_0* of the half-space at frequency zero, Pa, > 0
+  std::optional<double> creep_time;  ///< τ of the half-space, s, > 0
+  std::string form = published_fit;  ///< one of the two, or a file with a table
+  /// The law in that file; the reader of the scene reads it as well.
+  std::shared_ptr<const ViscoelasticContactLaw> table;
+  static const Schema& schema();
+
+  bool has_table() const {
+    return law == NormalLaw::viscoelastic && form != published_fit && form != boundary_element;
+  }
+};
+
+/// The contact of a viscoelastic normal law in SI units:
+/// F_k = E_0* R² F̃(y/R, v τ/R), friction μ_v F_k + τ_0 R² Ã + μ(v) F_k.
+///
+/// @param shear_strength τ_0, Pa, >= 0
+/// @param friction       μ(v) of the interface, besides the viscoelastic friction μ_v
+/// @throws std::invalid_argument if the table of a law has not been read
+SubstrateContact make_substrate_contact(const NormalParameters& parameters, double shear_strength,
+                                        const FrictionLaw& friction = {});
+
+}  // namespace stridor
