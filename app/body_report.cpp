@@ -8,9 +8,7 @@ Json matrix_bodies_json(const Model& model) {
   Json bodies = Json::object();
   for (const SystemBody& body : model.system.bodies) {
     const auto found = model.substructures.find(body.name);
-    if (found == model.substructures.end() ||
-        !std::holds_alternative<TouchedMatrixBodyParameters>(found->second))
-      continue;
+    if (found == model.substructures.end() || found->second->own_damping() != nullptr) continue;
     if (body.modal.coupled.is_empty()) {
       bodies[body.name] = {{"damping", "proportional"},
                            {"alpha", number(body.modal.damping.alpha)},

@@ -386,6 +386,32 @@ class SchemaOf {
     return *this;
   }
 
+  /// std::map<std::string, H> whose entries are of one of the types that H::types() lists, each with
+  /// name, schema and emplace(); the key `discriminator` of an entry says of which.
+  template <class H>
+  SchemaOf& named_types(std::string name, std::map<std::string, H> T::*member,
+                        std::string discriminator, PlainKey says) {
+    Key key;
+    key.kind = KeyKind::named_sections;
+    key.name = std::move(name);
+    key.doc = std::move(says.doc);
+    key.is_optional = says.optional;
+    key.discriminator = std::move(discriminator);
+    for (const auto& type : H::types())
+      key.alternatives.push_back({type.name, [schema = type.schema]() -> const Schema& {
+                                    return schema();
+                                  }});
+    key.open = [member](void* object, const std::string& entry, std::size_t alternative) -> void* {
+      return H::types()[alternative].emplace((static_cast<T*>(object)->*member)[entry]);
+    };
+    key.visit = [member](const void* object, const Key::Visitor& see) {
+      for (const auto& [entry, nested] : static_cast<const T*>(object)->*member)
+        see(entry, nested.type_index(), nested.object());
+    };
+    schema_.keys.push_back(std::move(key));
+    return *this;
+  }
+
   /// std::vector<S>.
   template <class S>
   SchemaOf& section_list(std::string name, std::vector<S> T::*member, PlainKey says) {

@@ -82,6 +82,10 @@ void check_laws(const ContactParameters& contact, std::vector<Problem>& problems
            "shear is friction per area of contact, and this normal law has no area; take `normal: "
            "{law: viscoelastic, ...}`, or a coefficient");
   }
+  if (contact.friction && contact.friction->viscoelastic == FrictionLoad::applied &&
+      !is_viscoelastic) {
+    refuse("friction.viscoelastic", "is of a viscoelastic normal law, and this is none");
+  }
   if (is_viscoelastic && contact.master != half_space_master)
     refuse("master", "must be `half_space` with the viscoelastic normal law, which is that of one");
   if (!is_viscoelastic && contact.master == half_space_master)
@@ -127,7 +131,8 @@ const Schema& FrictionParameters::schema() {
                       "shear: `strength` times the area of a viscoelastic contact.",
                .optional = true})
           .real("coefficient", &FrictionParameters::coefficient,
-                {.doc = "Coulomb friction coefficient of the constant law, at most 100; rises with drive.ramp.",
+                {.doc = "Coulomb friction coefficient of the constant law, at most 100; rises with "
+                        "drive.ramp.",
                  .range = Range::non_negative(),
                  .optional = true})
           .real("static", &FrictionParameters::static_coefficient,
@@ -148,6 +153,12 @@ const Schema& FrictionParameters::schema() {
                  .unit = "Pa",
                  .range = Range::non_negative(),
                  .optional = true})
+          .choice(
+              "viscoelastic", &FrictionParameters::viscoelastic,
+              {{"applied", FrictionLoad::applied}, {"contact", FrictionLoad::contact}},
+              {.doc = "What the friction coefficient of a viscoelastic normal law is multiplied "
+                      "with: the drive's load, or the force of the contact at the instant.",
+               .optional = true})
           .section("regularisation", &FrictionParameters::regularisation,
                    {.doc = "Friction without sticking, as a smooth function of the slip: the "
                            "contact creeps where it would stick.",
@@ -177,10 +188,14 @@ FrictionLaw make_friction_law(const FrictionParameters& parameters) {
   return law;
 }
 
-SubstrateContact make_substrate_contact(const ContactParameters& contact) {
+SubstrateContact make_substrate_contact(const ContactParameters& contact, double load) {
   if (!contact.friction) return make_substrate_contact(contact.normal, 0.0);
-  return make_substrate_contact(contact.normal, contact.friction->strength.value_or(0.0),
-                                make_friction_law(*contact.friction));
+  const FrictionParameters& friction = *contact.friction;
+  SubstrateContact made = make_substrate_contact(contact.normal, friction.strength.value_or(0.0),
+                                                 make_friction_law(friction));
+  made.friction_load = friction.viscoelastic;
+  made.load = load;
+  return made;
 }
 
 const Schema& ContactParameters::schema() {
@@ -264,7 +279,16 @@ const Schema& DriveParameters::schema() {
               {.doc =
                    "Time over which velocity, load and friction rise from 0 (quintic smoothstep).",
                .unit = "s",
-               .range = Range::non_negative()});
+               .range = Range::non_negative()})
+          .text_list("moves", &DriveParameters::moves,
+                     {.doc = "What moves with the velocity: `guided` (all guided supports), "
+                             "<contact>.master (a rigid or half_space one, along itself), or a "
+                             "list of them; default: guided.",
+                      .optional = true})
+          .text_list("load_on", &DriveParameters::load_on,
+                     {.doc = "What the load acts on: `guided`, <body>.<point>, or a list of them; "
+                             "default: guided.",
+                      .optional = true});
   return keys;
 }
 

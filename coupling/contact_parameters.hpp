@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/schema.hpp"
-#include "coupling/roughness.hpp"
 #include "coupling/normal_parameters.hpp"
+#include "coupling/roughness.hpp"
 #include "coupling/system.hpp"
 
 namespace stridor {
@@ -28,7 +28,10 @@ struct FrictionParameters {
   std::optional<double> static_coefficient;   ///< μ_s, ≥ 0
   std::optional<double> dynamic_coefficient;  ///< μ_d, ≥ 0
   std::optional<double> decay_velocity;       ///< v_d, m/s, > 0
-  std::optional<double> strength{};  ///< τ_0 of the shear law, friction per area of contact, Pa, ≥ 0
+  std::optional<double>
+      strength{};  ///< τ_0 of the shear law, friction per area of contact, Pa, ≥ 0
+  /// What the viscoelastic friction coefficient of such a normal law is multiplied with.
+  FrictionLoad viscoelastic = FrictionLoad::contact;
   std::optional<FrictionRegularisation> regularisation{};
   static const Schema& schema();
 };
@@ -48,6 +51,9 @@ enum class SlidingMode {
 /// Names of the masters that are no surface of a body: straight lines along +x without end.
 inline constexpr const char* rigid_master = "rigid";
 inline constexpr const char* half_space_master = "half_space";
+
+/// Stands for all guided supports in the lists of the drive.
+inline constexpr const char* guided_supports = "guided";
 
 /// One pair: slave points on a master surface.
 struct ContactParameters {
@@ -69,12 +75,17 @@ struct DriveParameters {
   TimeCurve velocity;  ///< of guided supports in +x, m/s; a constant rises over `ramp`
   TimeCurve load;      ///< on guided supports in +y, N; a constant rises over `ramp`
   double ramp = 0.0;   ///< s, >= 0
+  /// What the velocity moves: guided_supports, "<contact>.master"; empty: the guided supports.
+  std::vector<std::string> moves{};
+  /// What the load acts on: guided_supports, "<body>.<point>"; empty: the guided supports.
+  std::vector<std::string> load_on{};
   static const Schema& schema();
 };
 
 /// The force law of a contact with a viscoelastic normal law, in SI units.
+/// @param load that presses the bodies together, for FrictionLoad::applied, N
 /// @throws std::invalid_argument if its table has not been read
-SubstrateContact make_substrate_contact(const ContactParameters& contact);
+SubstrateContact make_substrate_contact(const ContactParameters& contact, double load);
 
 /// The drive as it acts: constants turned into ramps.
 Drive make_drive(const DriveParameters& parameters, SlidingMode sliding);

@@ -23,12 +23,13 @@ void check_keys_of_law(const NormalParameters& normal, std::vector<Problem>& pro
   const auto demand = [&](const char* key, bool is_given, NormalLaw of) {
     const bool is_wanted = normal.law == of;
     if (is_given == is_wanted) return;
-    problems.push_back({key,
-                        fmt::format("{} by the normal law {}",
-                                    is_wanted ? "missing: needed" : "not used", name_of(normal.law)),
-                        {},
-                        0,
-                        0});
+    problems.push_back(
+        {key,
+         fmt::format("{} by the normal law {}", is_wanted ? "missing: needed" : "not used",
+                     name_of(normal.law)),
+         {},
+         0,
+         0});
   };
   demand("stiffness", normal.stiffness.has_value(), NormalLaw::penalty);
   demand("radius", normal.radius.has_value(), NormalLaw::viscoelastic);

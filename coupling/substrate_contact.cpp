@@ -36,8 +36,9 @@ SubstrateForces SubstrateContact::at(double indentation, double slip, double dir
     const double coefficient = sliding_friction(interface_friction, slip);
     value += coefficient * forces.normal.value;
     value_by_y += coefficient * forces.normal.by_indentation;
-    value_by_v += coefficient * forces.normal.by_slip +
-                  direction * sliding_friction_slope(interface_friction, slip) * forces.normal.value;
+    value_by_v +=
+        coefficient * forces.normal.by_slip +
+        direction * sliding_friction_slope(interface_friction, slip) * forces.normal.value;
   }
   if (!sign.is_set_valued()) {
     const RegularisedSign::Value s = sign.at(std::max(0.0, direction * slip));

@@ -33,6 +33,9 @@ struct SystemBody {
   /// Motion at t = 0 in reduced coordinates, m and m/s; empty for a body at rest.
   Eigen::VectorXd initial_displacement;
   Eigen::VectorXd initial_velocity;
+
+  /// Whether the drive moves or loads it.
+  bool feels_drive() const { return follows_drive || load_row >= 0; }
 };
 
 /// A master surface: nodes in order, the body on their right-hand side.
@@ -138,12 +141,12 @@ struct ContactPoint {
 
 /// Prescribed motion that drives the system from outside.
 struct Drive {
-  TimeCurve velocity;      ///< of guided supports in +x, m/s
-  TimeCurve load;          ///< on every guided support in +y, N
-  bool is_frozen = false;  ///< the supports stay where they are, friction acts as if they moved
-  double displaced = 0.0;  ///< of the guided supports in +x at t = 0, m
+  TimeCurve velocity;      ///< of the bodies that follow the drive in +x, m/s
+  TimeCurve load;          ///< on the load row of every body that has one, N
+  bool is_frozen = false;  ///< the bodies stay where they are, friction acts as if they moved
+  double displaced = 0.0;  ///< of these bodies in +x at t = 0, m
 
-  /// Displacement of the guided supports in +x, m.
+  /// Displacement of the bodies that follow the drive in +x, m.
   double displacement(double time) const {
     return displaced + (is_frozen ? 0.0 : velocity.integral(time));
   }

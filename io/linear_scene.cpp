@@ -15,6 +15,7 @@
 #include "io/scene_files.hpp"
 #include "io/scene_reader.hpp"
 #include "models/set_up_estimate.hpp"
+#include "substructures/matrix_body.hpp"
 
 namespace stridor {
 namespace {

@@ -110,8 +110,15 @@ bool have_same_matrices(const MatrixBodyParameters& one, const MatrixBodyParamet
                      [&](const auto& named) { return one.*named.second == other.*named.second; });
 }
 
-std::vector<std::pair<std::string, std::string>> matrix_files(const std::string& key,
-                                                              const MatrixBodyParameters& body) {
+std::vector<std::pair<std::string, std::string>> files_of(const std::string& key,
+                                                          const BodyParameters& body) {
+  const auto* given = dynamic_cast<const TouchedMatrixBodyParameters*>(&body);
+  if (given == nullptr) return {};
+  return files_of(key, given->body);
+}
+
+std::vector<std::pair<std::string, std::string>> files_of(const std::string& key,
+                                                          const MatrixBodyParameters& body) {
   std::vector<std::pair<std::string, std::string>> files;
   for (const auto& [name, member] : matrices_of_body) {
     const MatrixText& text = body.*member;
@@ -120,14 +127,21 @@ std::vector<std::pair<std::string, std::string>> matrix_files(const std::string&
   return files;
 }
 
-void make_files_absolute(const std::string& key, const SceneNode& tree,
-                         MatrixBodyParameters& body) {
+void make_files_absolute(const std::string& key, const SceneNode& tree, BodyParameters& body) {
+  auto* given = dynamic_cast<TouchedMatrixBodyParameters*>(&body);
+  if (given == nullptr) return;
   for (const auto& [name, member] : matrices_of_body) {
-    MatrixText& text = body.*member;
+    MatrixText& text = given->body.*member;
     if (!is_file(text)) continue;
     const std::string path = path_of_file(tree, key + "." + name, text.front());
     text.front() = std::filesystem::absolute(path).lexically_normal().string();
   }
+}
+
+void read_files(const std::string& key, const SceneNode& tree, BodyParameters& body) {
+  auto* given = dynamic_cast<TouchedMatrixBodyParameters*>(&body);
+  if (given == nullptr) return;
+  given->matrices = std::make_shared<const NamedMatrices>(read_matrices(key, tree, given->body));
 }
 
 }  // namespace stridor

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/scene_tree.hpp"
+#include "substructures/body_parameters.hpp"
 #include "substructures/matrix_body.hpp"
 
 namespace stridor {
@@ -20,13 +21,18 @@ NamedMatrices read_matrices(const std::string& key, const SceneNode& tree,
 /// Whether two bodies name the same files and have the same rows; their factors may differ.
 bool have_same_matrices(const MatrixBodyParameters& one, const MatrixBodyParameters& other);
 
-/// The files that the matrices of a body come from: keys and names as written.
+/// The files that a body names: keys and names as written. None where its type names none.
 /// @param key path of the body in the scene
-std::vector<std::pair<std::string, std::string>> matrix_files(const std::string& key,
-                                                              const MatrixBodyParameters& body);
+std::vector<std::pair<std::string, std::string>> files_of(const std::string& key,
+                                                          const BodyParameters& body);
+std::vector<std::pair<std::string, std::string>> files_of(const std::string& key,
+                                                          const MatrixBodyParameters& body);
 
 /// Names the files of a body from the root, so that a run file finds them wherever it is.
 /// Parameters as read_matrices().
-void make_files_absolute(const std::string& key, const SceneNode& tree, MatrixBodyParameters& body);
+void make_files_absolute(const std::string& key, const SceneNode& tree, BodyParameters& body);
+
+/// Reads the files of a body. Parameters and errors as read_matrices().
+void read_files(const std::string& key, const SceneNode& tree, BodyParameters& body);
 
 }  // namespace stridor

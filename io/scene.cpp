@@ -251,10 +251,8 @@ void for_each_pair(ModelParameters& model, const Visit& visit) {
 /// tables of contact laws.
 void read_named_files(LoadedScene& loaded) {
   ModelParameters& model = loaded.scene.model;
-  for (auto& [name, substructure] : model.substructures) {
-    if (auto* given = std::get_if<TouchedMatrixBodyParameters>(&substructure))
-      make_files_absolute("substructures." + name, loaded.tree, given->body);
-  }
+  for (auto& [name, substructure] : model.substructures)
+    make_files_absolute("substructures." + name, loaded.tree, *substructure);
   for_each_pair(model, [&](const std::string& key, ContactParameters& pair) {
     if (!pair.normal.has_table()) return;
     pair.normal.form =
@@ -337,12 +335,8 @@ Model build_model(const LoadedScene& loaded, BodyCache& cache) {
       if (channel.point) observed.emplace_back(*channel.point, channel.key);
     }
     ModelParameters parameters = scene.model;
-    for (auto& [name, substructure] : parameters.substructures) {
-      if (auto* given = std::get_if<TouchedMatrixBodyParameters>(&substructure)) {
-        given->matrices = std::make_shared<const NamedMatrices>(
-            read_matrices("substructures." + name, loaded.tree, given->body));
-      }
-    }
+    for (auto& [name, substructure] : parameters.substructures)
+      read_files("substructures." + name, loaded.tree, *substructure);
     return make_model(parameters, observed, cache);
   } catch (const ConfigError& error) {
     throw loaded.located(error);

@@ -13,6 +13,7 @@
 #include "core/errors.hpp"
 #include "io/matrix_reader.hpp"
 #include "io/regular_file.hpp"
+#include "substructures/matrix_body.hpp"
 
 namespace stridor {
 namespace {
@@ -48,9 +49,10 @@ void add_file(std::vector<SceneFile>& files, const SceneNode& tree, const std::s
   files.push_back({key, path, digest_of_file(path)});
 }
 
-void add_matrices(std::vector<SceneFile>& files, const SceneNode& tree, const std::string& body,
-                  const MatrixBodyParameters& parameters) {
-  for (const auto& [key, name] : matrix_files("substructures." + body, parameters))
+template <class Body>
+void add_files(std::vector<SceneFile>& files, const SceneNode& tree, const std::string& body,
+               const Body& parameters) {
+  for (const auto& [key, name] : files_of("substructures." + body, parameters))
     add_file(files, tree, key, name);
 }
 
@@ -106,11 +108,8 @@ std::vector<SceneFile> read_digests(const std::string& digests) {
 
 std::vector<SceneFile> scene_files(const LoadedScene& loaded) {
   std::vector<SceneFile> files;
-  for (const auto& [name, substructure] : loaded.scene.model.substructures) {
-    if (const auto* given = std::get_if<TouchedMatrixBodyParameters>(&substructure))
-      add_matrices(files, loaded.tree, name, given->body);
-  }
   const ModelParameters& model = loaded.scene.model;
+  for (const auto& [name, body] : model.substructures) add_files(files, loaded.tree, name, *body);
   for (const auto& [name, pair] : model.pairs()) {
     const std::string key = model.contact ? name : "contacts." + name;
     if (pair.normal.has_table()) add_file(files, loaded.tree, key + ".normal.form", pair.normal.form);
@@ -124,7 +123,7 @@ std::vector<SceneFile> scene_files(const LoadedLinearScene& loaded) {
   std::vector<SceneFile> files;
   if (const auto* scene = std::get_if<MatrixScene>(&loaded.scene)) {
     for (const auto& [name, substructure] : scene->substructures)
-      add_matrices(files, loaded.tree, name, std::get<MatrixBodyParameters>(substructure));
+      add_files(files, loaded.tree, name, std::get<MatrixBodyParameters>(substructure));
   }
   return files;
 }

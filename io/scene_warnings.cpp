@@ -84,22 +84,6 @@ void visit_numbers(const Schema& schema, const void* object, const std::string& 
   }
 }
 
-/// A beam thicker than long, or so slender that one of both has lost its unit.
-void look_at_aspect(const std::string& name, const BeamParameters& beam,
-                    std::vector<Problem>& warnings) {
-  constexpr double most_slender = 1e4;
-  const double ratio = beam.length / beam.thickness;
-  if (ratio >= 1.0 && ratio <= most_slender) return;
-  warnings.push_back({"substructures." + name + ".thickness",
-                      fmt::format("is {:g} m on a length of {:g} m: {}; check the units of both",
-                                  beam.thickness, beam.length,
-                                  ratio < 1.0 ? "thicker than long"
-                                              : fmt::format("{:.3g} times slender", ratio)),
-                      {},
-                      0,
-                      0});
-}
-
 /// When the drive has carried a slave off the end of its master, s.
 std::optional<double> leaving_time(const System& system, const ContactPoint& contact, double end) {
   const MasterSurface& surface = system.surface_of(contact);
@@ -158,8 +142,10 @@ std::vector<Problem> scene_warnings(const LoadedScene& loaded, const Model& mode
   const Scene& scene = loaded.scene;
   std::vector<Problem> warnings = key_warnings(Scene::schema(), &scene, loaded.tree);
   for (const auto& [name, substructure] : scene.model.substructures) {
-    if (const auto* beam = std::get_if<BeamParameters>(&substructure))
-      look_at_aspect(name, *beam, warnings);
+    for (Problem& warning : substructure->warnings()) {
+      warning.key = join_path("substructures." + name, warning.key);
+      warnings.push_back(std::move(warning));
+    }
   }
   if (scene.measure.from >= scene.time.end) {
     warnings.push_back({"measure.from",

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <memory>
 #include <stdexcept>
 
 #include "models/keys_text.hpp"
@@ -53,37 +54,13 @@ std::string keys_text(const Schema& schema, const void* object) {
 
 namespace {
 
-/// Proportional damping of a body that is among its keys; that of matrices comes with them.
-struct DampingOf {
-  std::optional<RayleighDamping> operator()(const BeamParameters& beam) const {
-    return beam.damping;
-  }
-  std::optional<RayleighDamping> operator()(const TouchedMatrixBodyParameters&) const { return {}; }
-};
-
-struct RemoveDamping {
-  void operator()(BeamParameters& beam) const { beam.damping = {}; }
-  void operator()(TouchedMatrixBodyParameters&) const {}
-};
-
 /// What is the same for two bodies that differ at most in their damping.
-std::string key_of(SubstructureParameters parameters) {
-  std::string text = std::to_string(parameters.index()) + ':';
-  std::visit(RemoveDamping{}, parameters);
-  std::visit(
-      [&](const auto& body) { append_keys(text, std::decay_t<decltype(body)>::schema(), &body); },
-      parameters);
+std::string key_of(const BodyParameters& parameters) {
+  const std::unique_ptr<BodyParameters> undamped = parameters.clone();
+  if (RayleighDamping* damping = undamped->own_damping()) *damping = {};
+  std::string text = std::string(undamped->type()) + ':';
+  append_keys(text, undamped->keys(), undamped->object());
   return text;
-}
-
-struct MakeBody {
-  BodyMatrices operator()(const BeamParameters& beam) const { return make_beam(beam); }
-  BodyMatrices operator()(const TouchedMatrixBodyParameters& body) const {
-    return make_matrix_body(body);
-  }
-};
-BodyMatrices make_body(const SubstructureParameters& parameters) {
-  return std::visit(MakeBody{}, parameters);
 }
 
 }  // namespace
@@ -113,16 +90,16 @@ Content& BodyCache::keep(Store<Content>& store, std::string key, Content content
   return store.back().content;
 }
 
-BodyMatrices BodyCache::matrices(const SubstructureParameters& parameters) {
+BodyMatrices BodyCache::matrices(const BodyParameters& parameters) {
   const std::string key = key_of(parameters);
   const BodyMatrices* found = find(bodies_, key);
-  if (found == nullptr) found = &keep(bodies_, key, make_body(parameters));
+  if (found == nullptr) found = &keep(bodies_, key, parameters.make());
   BodyMatrices body = *found;
-  if (const auto damping = std::visit(DampingOf{}, parameters)) body.damping = *damping;
+  if (const RayleighDamping* damping = parameters.own_damping()) body.damping = *damping;
   return body;
 }
 
-BodyCache::Reduction BodyCache::reduce(const SubstructureParameters& parameters,
+BodyCache::Reduction BodyCache::reduce(const BodyParameters& parameters,
                                        const BodyMatrices& body, std::span<const int> interface,
                                        Eigen::Index num_modes, std::span<const int> watched) {
   const std::string key = fmt::format("{}|{}|{}|{}", key_of(parameters), fmt::join(interface, ","),

@@ -21,9 +21,9 @@ class BodyCache {
   /// @throws std::invalid_argument if `capacity` is 0
   explicit BodyCache(std::size_t capacity = 16);
 
-  /// Matrices of a body with its supports, by its kind.
-  /// @throws as make_beam(), make_matrix_body()
-  BodyMatrices matrices(const SubstructureParameters& parameters);
+  /// Matrices of a body with its supports, whatever its type.
+  /// @throws as BodyParameters::make()
+  BodyMatrices matrices(const BodyParameters& parameters);
 
   struct Reduction {
     ReducedBody reduced;
@@ -34,7 +34,7 @@ class BodyCache {
   /// @param parameters of the body
   /// @param body       its matrices
   /// @throws as make_craig_bampton() and make_modal()
-  Reduction reduce(const SubstructureParameters& parameters, const BodyMatrices& body,
+  Reduction reduce(const BodyParameters& parameters, const BodyMatrices& body,
                    std::span<const int> interface, Eigen::Index num_modes,
                    std::span<const int> watched);
 

@@ -4,22 +4,8 @@
 
 #include <stdexcept>
 
-#include "substructures/beam_mesh.hpp"
 
 namespace stridor {
-namespace {
-
-struct ElementsOf {
-  std::vector<std::array<int, 8>> operator()(const BeamParameters& beam) const {
-    return beam_elements(beam.mesh);
-  }
-  std::vector<std::array<int, 8>> operator()(const TouchedMatrixBodyParameters&) const {
-    return {};
-  }
-};
-
-}  // namespace
-
 std::vector<BodyShape> mode_shape(const Model& model, const Equilibrium& equilibrium,
                                   const Eigen::VectorXcd& mode, BodyCache& cache) {
   Eigen::Index num_modes = 0;
@@ -37,7 +23,7 @@ std::vector<BodyShape> mode_shape(const Model& model, const Equilibrium& equilib
     first += size;
     const auto parameters = model.substructures.find(body.name);
     if (parameters == model.substructures.end()) continue;
-    const BodyMatrices matrices = cache.matrices(parameters->second);
+    const BodyMatrices matrices = cache.matrices(*parameters->second);
     const Model::Placement& placement = model.placements[b];
     const Eigen::MatrixXd recovery = recovery_matrix(
         matrices, placement.interface, body.reduced.size() - body.reduced.num_interface);
@@ -53,7 +39,7 @@ std::vector<BodyShape> mode_shape(const Model& model, const Equilibrium& equilib
       shape.nodes += node_displacements(matrices, static_part.cast<std::complex<double>>()).real();
     }
     for (const auto& [name, nodes] : matrices.surfaces) shape.outlines.push_back(nodes);
-    shape.elements = std::visit(ElementsOf{}, parameters->second);
+    shape.elements = parameters->second->elements();
     shapes.push_back(std::move(shape));
   }
   return shapes;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/activity.hpp"
 #include "core/memory.hpp"
@@ -14,6 +15,9 @@
 
 namespace stridor {
 namespace {
+
+/// Name of the body of the endless masters that the drive moves.
+constexpr const char* moving_master = "moving rigid";
 
 /// Whether a master is a straight line along +x without end, and no surface of a body.
 bool is_endless_master(const std::string& master) {
@@ -34,7 +38,7 @@ struct ResolvedPair {
 
 struct Body {
   std::string name;
-  const SubstructureParameters* parameters = nullptr;  ///< null for the rigid master
+  const BodyParameters* parameters = nullptr;  ///< null for the rigid master
   BodyMatrices matrices;
   Eigen::Vector2d place = Eigen::Vector2d::Zero();
   bool is_placed = false;
@@ -99,9 +103,8 @@ double node_distance(const BodyMatrices& body, const std::vector<int>& nodes, st
 
 /// The nodes of a surface that `interface.spacing` keeps.
 std::vector<int> spaced_nodes(const Body& body, const std::vector<int>& nodes) {
-  const auto* beam = std::get_if<BeamParameters>(body.parameters);
-  if (beam == nullptr || !beam->interface.spacing) return nodes;
-  const std::optional<double>& spacing = beam->interface.spacing;
+  const std::optional<double> spacing = body.parameters->interface_spacing();
+  if (!spacing) return nodes;
   const double distance = node_distance(body.matrices, nodes, 0);
   const double ratio = *spacing / distance;
   const auto stride = static_cast<std::size_t>(std::llround(ratio));
@@ -164,8 +167,20 @@ void resolve_slaves(ResolvedPair& pair, const std::vector<Body>& bodies) {
   }
 }
 
+/// Bodies without degrees of freedom that carry the masters without end.
+struct EndlessMasters {
+  int at_rest = -1;  ///< index of the body; −1 where no contact has such a master
+  int moving = -1;   ///< with the drive
+};
+
+/// Whether the drive moves the master of a pair.
+bool moves_master(const DriveParameters& drive, const std::string& pair) {
+  return std::find(drive.moves.begin(), drive.moves.end(), pair + ".master") != drive.moves.end();
+}
+
 ResolvedPair resolve_pair(const std::string& name, const std::string& key,
-                          const ContactParameters& parameters, const std::vector<Body>& bodies) {
+                          const ContactParameters& parameters, const std::vector<Body>& bodies,
+                          int endless_master) {
   ResolvedPair pair;
   pair.name = name;
   pair.key = key;
@@ -173,8 +188,7 @@ ResolvedPair resolve_pair(const std::string& name, const std::string& key,
 
   pair.master_name = parameters.master;
   if (is_endless_master(parameters.master)) {
-    // The rigid master is the last body, without degrees of freedom.
-    pair.master_body = static_cast<int>(bodies.size()) - 1;
+    pair.master_body = endless_master;
     resolve_slaves(pair, bodies);
     return pair;
   }
@@ -195,6 +209,46 @@ ResolvedPair resolve_pair(const std::string& name, const std::string& key,
     throw ConfigError(key + ".slave", "slave and master must be different bodies");
   }
   return pair;
+}
+
+/// Refuses what the drive is to move and is not there, or cannot be moved by it.
+void check_drive(const DriveParameters& drive,
+                 const std::map<std::string, ContactParameters>& pairs) {
+  for (std::size_t i = 0; i < drive.moves.size(); ++i) {
+    const std::string& name = drive.moves[i];
+    if (name == guided_supports) continue;
+    const std::string key = fmt::format("drive.moves.{}", i);
+    const auto pair = std::find_if(pairs.begin(), pairs.end(),
+                                   [&](const auto& one) { return one.first + ".master" == name; });
+    if (pair == pairs.end()) {
+      std::vector<std::string> known{guided_supports};
+      for (const auto& one : pairs) known.push_back(one.first + ".master");
+      throw ConfigError(key, fmt::format("there is no '{}' to move{} (there are: {})", name,
+                                         did_you_mean(name, known), listed(known)));
+    }
+    if (!is_endless_master(pair->second.master)) {
+      throw ConfigError(key, fmt::format("'{}' is the surface of a body, which its supports hold; "
+                                         "give that body a guided support",
+                                         pair->second.master));
+    }
+  }
+}
+
+/// Adds the bodies of masters without end, which come last.
+EndlessMasters add_endless_masters(const DriveParameters& drive,
+                                   const std::map<std::string, ContactParameters>& pairs,
+                                   std::vector<Body>& bodies) {
+  EndlessMasters endless;
+  for (const auto& [name, pair] : pairs) {
+    if (!is_endless_master(pair.master)) continue;
+    const bool moves = moves_master(drive, name);
+    int& index = moves ? endless.moving : endless.at_rest;
+    if (index >= 0) continue;
+    index = static_cast<int>(bodies.size());
+    bodies.emplace_back();
+    bodies.back().name = moves ? moving_master : rigid_master;
+  }
+  return endless;
 }
 
 /// Two pairs with one slave node on one master.
@@ -330,9 +384,9 @@ void place_slave(const ResolvedPair& pair, const MasterSurface& surface, Body& s
   }
 }
 
-/// Refuses a slave beam of which the part over the master lies on the inner side of its surface.
+/// Refuses a filled slave of which the part over the master lies on the inner side of its surface.
 void check_side(const ResolvedPair& pair, const MasterSurface& surface, const Body& slave) {
-  if (!std::holds_alternative<BeamParameters>(*slave.parameters)) return;
+  if (!slave.parameters->is_filled()) return;
   double height = 0.0;
   int num_over = 0;
   int segment = 0;
@@ -446,26 +500,67 @@ struct InitialMotion {
   }
 };
 
-/// The rigid master: its one row stays where it is.
-SystemBody make_rigid_body() {
+/// A master without end: its one row stays where the body is.
+SystemBody make_rigid_body(const std::string& name) {
   SystemBody body;
-  body.name = rigid_master;
+  body.name = name;
+  body.follows_drive = name == moving_master;
   body.reduced.rows.resize(1, 0);
   body.modal.rows.resize(1, 0);
   return body;
 }
 
-std::string type_name(const SubstructureParameters& parameters) {
-  return std::holds_alternative<BeamParameters>(parameters) ? "beam" : "body";
+/// Whether a list of the drive holds the guided supports.
+bool names_guided(const std::vector<std::string>& list) {
+  return list.empty() || std::find(list.begin(), list.end(), guided_supports) != list.end();
+}
+
+/// Size of the drive's load in the end, N.
+double final_load(const DriveParameters& drive) {
+  return std::abs(drive.load.value(std::numeric_limits<double>::infinity()));
+}
+
+/// Refuses loads on what is not there.
+void check_loads(const DriveParameters& drive, const std::vector<Body>& bodies) {
+  for (std::size_t i = 0; i < drive.load_on.size(); ++i) {
+    const std::string& name = drive.load_on[i];
+    if (name == guided_supports) continue;
+    const std::string key = fmt::format("drive.load_on.{}", i);
+    const auto [b, point] = split_name(name, bodies, key);
+    const Body& body = bodies[static_cast<std::size_t>(b)];
+    const int node = node_at(body, point, key);
+    if (body.matrices.node_dofs[static_cast<std::size_t>(node)][1] == BodyMatrices::held)
+      throw ConfigError(key, fmt::format("'{}' is held in y, so that no load moves it", name));
+  }
+}
+
+/// Row of a body on which the drive's load acts; −1 where there is none.
+int load_row_of(Body& body, const DriveParameters& drive) {
+  int dof = BodyMatrices::held;
+  if (body.matrices.follows_drive()) {
+    body.keep(body.matrices.load_dof);
+    if (names_guided(drive.load_on)) dof = body.matrices.load_dof;
+  }
+  for (std::size_t i = 0; i < drive.load_on.size(); ++i) {
+    const std::string prefix = body.name + ".";
+    if (!drive.load_on[i].starts_with(prefix)) continue;
+    const std::string key = fmt::format("drive.load_on.{}", i);
+    if (dof != BodyMatrices::held) {
+      throw ConfigError(key, fmt::format("'{}' carries the drive's load already; one place of each "
+                                         "body can",
+                                         body.name));
+    }
+    const int node = node_at(body, drive.load_on[i].substr(prefix.size()), key);
+    dof = body.matrices.node_dofs[static_cast<std::size_t>(node)][1];
+    body.keep(dof);
+  }
+  return dof == BodyMatrices::held ? -1 : body.row_of(dof);
 }
 
 /// Number of fixed-interface modes asked for; for a body of which nothing is to be reduced, all
 /// unknowns become interface.
 int modes_of(Body& body, const std::string& key) {
-  if (const auto* beam = std::get_if<BeamParameters>(body.parameters))
-    return beam->reduction.fixed_interface_modes;
-  const auto& given = std::get<TouchedMatrixBodyParameters>(*body.parameters);
-  if (given.reduction) return given.reduction->fixed_interface_modes;
+  if (const std::optional<int> asked = body.parameters->num_modes()) return *asked;
   constexpr Eigen::Index most_unknowns = 500;
   if (body.matrices.num_dofs() > most_unknowns) {
     throw ConfigError(key + ".reduction",
@@ -493,8 +588,8 @@ void check_coupled(const SystemBody& body, const std::string& key) {
 const Schema& ModelParameters::schema() {
   static const Schema keys =
       SchemaOf<ModelParameters>("model")
-          .named_variants("substructures", &ModelParameters::substructures, "type",
-                          {"beam", "matrices"}, {.doc = "The bodies, by name."})
+          .named_types("substructures", &ModelParameters::substructures, "type",
+                       {.doc = "The bodies, by name."})
           .section("contact", &ModelParameters::contact,
                    {.doc = "The contact pair, where there is one only.", .optional = true})
           .named_sections("contacts", &ModelParameters::contacts,
@@ -556,10 +651,10 @@ Model make_model(const ModelParameters& parameters,
     }
     Body body;
     body.name = name;
-    body.parameters = &substructure;
+    body.parameters = &*substructure;
     const Activity assembling(fmt::format("assembling '{}'", name));
     try {
-      body.matrices = cache.matrices(substructure);
+      body.matrices = cache.matrices(*substructure);
     } catch (const ConfigError& error) {
       const Problem& problem = error.problems().front();
       throw ConfigError("substructures." + name + "." + problem.key, problem.message);
@@ -567,19 +662,15 @@ Model make_model(const ModelParameters& parameters,
     bodies.push_back(std::move(body));
   }
   const auto pairs = parameters.pairs();
-  const bool has_rigid_master = std::any_of(pairs.begin(), pairs.end(), [](const auto& pair) {
-    return is_endless_master(pair.second.master);
-  });
-  if (has_rigid_master) {
-    bodies.emplace_back();
-    bodies.back().name = rigid_master;
-  }
+  check_drive(parameters.drive, pairs);
+  const EndlessMasters endless = add_endless_masters(parameters.drive, pairs, bodies);
 
   std::vector<ResolvedPair> resolved;
   resolved.reserve(pairs.size());
   for (const auto& [name, pair] : pairs) {
     resolved.push_back(
-        resolve_pair(name, parameters.contact ? name : "contacts." + name, pair, bodies));
+        resolve_pair(name, parameters.contact ? name : "contacts." + name, pair, bodies,
+                     moves_master(parameters.drive, name) ? endless.moving : endless.at_rest));
   }
 
   // A body that carries others is placed before them; chains are placed in order.
@@ -643,7 +734,7 @@ Model make_model(const ModelParameters& parameters,
       if (pair.parameters->friction) point.friction = make_friction_law(*pair.parameters->friction);
       point.penalty = pair.parameters->normal.stiffness;
       if (pair.parameters->normal.law == NormalLaw::viscoelastic)
-        point.substrate = make_substrate_contact(*pair.parameters);
+        point.substrate = make_substrate_contact(*pair.parameters, final_load(parameters.drive));
       point.friction_rise = TimeCurve::ramp(1.0, parameters.drive.ramp);
       point.on_violation = pair.parameters->on_violation;
       point.armed_from = pair.parameters->armed_from.value_or(parameters.drive.ramp);
@@ -660,30 +751,29 @@ Model make_model(const ModelParameters& parameters,
     model.points[name] = {b, body.rows_of(node_at(body, point, key))};
   }
 
+  check_loads(parameters.drive, bodies);
   const InitialMotion displacement(parameters.initial.displacement, "initial.displacement", bodies);
   const InitialMotion velocity(parameters.initial.velocity, "initial.velocity", bodies);
   for (Body& body : bodies) {
     if (body.parameters == nullptr) {
-      system.bodies.push_back(make_rigid_body());
+      system.bodies.push_back(make_rigid_body(body.name));
       model.placements.emplace_back();
       continue;
     }
     const std::string key = "substructures." + body.name;
     SystemBody finished;
     finished.name = body.name;
-    finished.follows_drive = body.matrices.follows_drive();
-    if (finished.follows_drive) {
-      body.keep(body.matrices.load_dof);
-      finished.load_row = body.row_of(body.matrices.load_dof);
-    }
+    finished.follows_drive =
+        body.matrices.follows_drive() && names_guided(parameters.drive.moves);
+    finished.load_row = load_row_of(body, parameters.drive);
     const int num_modes = modes_of(body, key);
     const auto num_interior =
         body.matrices.num_dofs() - static_cast<Eigen::Index>(body.interface.size());
     if (num_modes > num_interior) {
       throw ConfigError(key + ".reduction.fixed_interface_modes",
-                        fmt::format("{} modes asked, but the {} has only {} DoFs besides its "
+                        fmt::format("{} modes asked, but '{}' has only {} DoFs besides its "
                                     "interface; take at most that",
-                                    num_modes, type_name(*body.parameters), num_interior));
+                                    num_modes, body.name, num_interior));
     }
     const Activity reducing(fmt::format("reducing '{}'", body.name));
     try {

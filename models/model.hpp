@@ -4,22 +4,18 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "coupling/contact_parameters.hpp"
 #include "coupling/system.hpp"
 #include "models/initial_parameters.hpp"
-#include "substructures/matrix_body.hpp"
+#include "substructures/body_parameters.hpp"
 
 namespace stridor {
 
-/// Every kind of substructure that a scene can hold, by its key `type`.
-using SubstructureParameters = std::variant<BeamParameters, TouchedMatrixBodyParameters>;
-
 /// The part of a scene that describes the mechanics.
 struct ModelParameters {
-  std::map<std::string, SubstructureParameters> substructures;
+  Substructures substructures;
   std::optional<ContactParameters> contact;           ///< one pair, named "contact"
   std::map<std::string, ContactParameters> contacts;  ///< several pairs by name
   DriveParameters drive;
@@ -51,7 +47,7 @@ struct Model {
   System system;
   std::map<PointName, Point> points;
   std::vector<Placement> placements;                            ///< of the bodies of the system
-  std::map<std::string, SubstructureParameters> substructures;  ///< of which it was made
+  Substructures substructures;  ///< of which it was made
 };
 
 /// Builds, places and reduces the bodies, connects them and sets them moving. The initial state is

@@ -17,10 +17,8 @@
 namespace stridor {
 namespace {
 
-constexpr double number = 8.0;         ///< bytes of a real number
-constexpr double sparse_entry = 12.0;  ///< with its row
-constexpr const char* beam_remedy =
-    "take fewer elements, or keep fewer master nodes (interface.spacing)";
+constexpr double number = dense_entry_bytes;
+constexpr double sparse_entry = sparse_entry_bytes;
 
 /// "3.2e+06", "1,200": numbers of things, short.
 std::string count_text(double count) {
@@ -39,56 +37,18 @@ void append(SetUpEstimate& whole, const SetUpEstimate& part) {
   whole.operations += part.operations;
 }
 
-/// Nodes of a surface or point of a beam; 0 for a name that it does not have.
-double num_nodes_of(const BeamParameters& beam, const std::string& name) {
-  if (name == "top" || name == "bottom") return 2.0 * beam.mesh.along + 1.0;
-  if (name == "start_face" || name == "end_face") return 2.0 * beam.mesh.through + 1.0;
-  return 1.0;
-}
-
-double num_master_nodes_of(const BeamParameters& beam, const std::string& name) {
-  const double nodes = num_nodes_of(beam, name);
-  const std::optional<double>& spacing = beam.interface.spacing;
-  return spacing ? std::min(nodes, 1.0 + std::ceil(beam.length / *spacing)) : nodes;
-}
-
-/// The same of a body by matrices.
-double num_nodes_of(const TouchedMatrixBodyParameters& body, const std::string& name) {
-  const auto surface = body.surfaces.find(name);
-  return surface == body.surfaces.end() ? 1.0 : static_cast<double>(surface->second.points.size());
-}
-double num_master_nodes_of(const TouchedMatrixBodyParameters& body, const std::string& name) {
-  return num_nodes_of(body, name);
-}
-
 /// Nodes of a body that the contacts of a scene keep.
-template <class Body>
 double num_interface_nodes(const ModelParameters& model, const std::string& name,
-                           const Body& body) {
+                           const BodyParameters& body) {
   const std::string prefix = name + ".";
   double nodes = 0.0;
   for (const auto& [pair_name, pair] : model.pairs()) {
     if (pair.master.starts_with(prefix))
-      nodes += num_master_nodes_of(body, pair.master.substr(prefix.size()));
+      nodes += body.num_master_nodes(pair.master.substr(prefix.size()));
     for (const std::string& slave : pair.slave)
-      if (slave.starts_with(prefix)) nodes += num_nodes_of(body, slave.substr(prefix.size()));
+      if (slave.starts_with(prefix)) nodes += body.num_slave_nodes(slave.substr(prefix.size()));
   }
   return nodes;
-}
-
-ReductionSize size_of(const TouchedMatrixBodyParameters& body, double interface_nodes) {
-  ReductionSize size;
-  if (!body.matrices || !body.reduction) return size;
-  const auto n = static_cast<double>(body.matrices->mass.rows());
-  const auto stiffness = static_cast<double>(body.matrices->stiffness.nonZeros());
-  size.interface = size.watched = std::min(2.0 * interface_nodes, n);
-  size.unknowns = n - size.interface;
-  size.modes = body.reduction->fixed_interface_modes;
-  size.matrix_entries = static_cast<double>(body.matrices->mass.nonZeros()) + stiffness;
-  // As of a solid body under nested dissection.
-  size.factor_entries =
-      std::max(0.5 * stiffness, std::min(0.5 * n * n, 4.0 * std::pow(n, 4.0 / 3.0)));
-  return size;
 }
 
 }  // namespace
@@ -102,30 +62,6 @@ double SetUpEstimate::bytes() const {
 double SetUpEstimate::seconds() const {
   constexpr double operations_per_second = 4e9;
   return operations / operations_per_second;
-}
-
-ReductionSize size_of(const MeshParameters& mesh, const ReductionParameters& reduction,
-                      double interface_nodes) {
-  const double a = mesh.along;
-  const double t = mesh.through;
-  const double nodes = (a + 1.0) * (2.0 * t + 1.0) + a * (t + 1.0);
-  // Pairs of nodes that share an element: 64 of each element; those of a shared edge (9) count
-  // twice, that of an inner corner four times less four edges.
-  const double pairs = 64.0 * a * t - 9.0 * ((a - 1.0) * t + a * (t - 1.0)) + (a - 1.0) * (t - 1.0);
-  ReductionSize size;
-  size.interface = 2.0 * interface_nodes;
-  size.watched = size.interface;
-  size.unknowns = std::max(2.0 * nodes - size.interface, 0.0);
-  size.modes = reduction.fixed_interface_modes;
-  size.matrix_entries = (4.0 + 2.0) * pairs;  // the mass does not couple x and y
-  // A row of a band matrix reaches over an element; of broad meshes nested dissection leaves less.
-  const double shorter = std::min(a, t);
-  const double band = 6.0 * shorter + 12.0;
-  const double dissected = 12.0 * std::log2(size.unknowns + 2.0);
-  size.factor_entries = size.unknowns * std::min(band, dissected);
-  // Triplets of all element matrices, and the same sorted into columns.
-  size.assembly_bytes = 256.0 * a * t * (16.0 + sparse_entry);
-  return size;
 }
 
 SetUpEstimate estimate_reduction(const ReductionSize& size, const std::string& key,
@@ -185,17 +121,10 @@ SetUpEstimate estimate_reduction(const ReductionSize& size, const std::string& k
 
 SetUpEstimate estimate_set_up(const ModelParameters& model) {
   SetUpEstimate whole;
-  for (const auto& [name, parameters] : model.substructures) {
-    const std::string key = "substructures." + name;
-    if (const auto* beam = std::get_if<BeamParameters>(&parameters)) {
-      const double nodes = num_interface_nodes(model, name, *beam);
-      append(whole, estimate_reduction(size_of(beam->mesh, beam->reduction, nodes), key,
-                                       {".mesh.along", beam_remedy}));
-    } else {
-      const auto& body = std::get<TouchedMatrixBodyParameters>(parameters);
-      append(whole, estimate_reduction(size_of(body, num_interface_nodes(model, name, body)), key,
-                                       {".mass", "give smaller matrices, or fewer points"}));
-    }
+  for (const auto& [name, body] : model.substructures) {
+    const double nodes = num_interface_nodes(model, name, *body);
+    append(whole, estimate_reduction(body->reduction_size(nodes), "substructures." + name,
+                                     body->size_key()));
   }
   return whole;
 }

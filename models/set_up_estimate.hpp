@@ -8,6 +8,7 @@
 #include "models/disc_parameters.hpp"
 #include "models/model.hpp"
 #include "solvers/sliding_contact.hpp"
+#include "substructures/reduction_size.hpp"
 
 namespace stridor {
 
@@ -30,27 +31,7 @@ struct SetUpEstimate {
   double seconds() const;
 };
 
-/// A body that Craig-Bampton reduces.
-struct ReductionSize {
-  double unknowns = 0.0;        ///< inside, without those of the interface
-  double interface = 0.0;       ///< unknowns kept
-  double watched = 0.0;         ///< rows of displacements that are wanted
-  double modes = 0.0;           ///< fixed-interface modes
-  double matrix_entries = 0.0;  ///< of mass and stiffness
-  double factor_entries = 0.0;  ///< of the Cholesky factor of the stiffness inside
-  double assembly_bytes = 0.0;  ///< while the matrices are assembled
-};
-
-/// That of a beam or an elastic pad.
-/// @param interface_nodes kept, with two unknowns each
-ReductionSize size_of(const MeshParameters& mesh, const ReductionParameters& reduction,
-                      double interface_nodes);
-
-/// The key of a body that makes it large, and what to do about it.
-struct SizeKey {
-  std::string key;  ///< below that of the body, e.g. ".mesh.along"
-  std::string remedy;
-};
+/// Of a reduction.
 /// @param key of the body, e.g. "substructures.plate"
 SetUpEstimate estimate_reduction(const ReductionSize& size, const std::string& key,
                                  const SizeKey& of_size);

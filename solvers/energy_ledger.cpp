@@ -11,7 +11,7 @@
 namespace stridor {
 namespace {
 
-/// A height of the rough surface that no step has told yet.
+/// A height of the rough surface, or a force, that no step has told yet.
 constexpr double not_yet = std::numeric_limits<double>::infinity();
 
 /// Numbers that are worked on together; split by the compiler where the instruction set has shorter
@@ -158,7 +158,7 @@ EnergyLedger::EnergyLedger(const System& system, const TimeParameters& time)
     };
     contacts_.push_back({point.slave_body, surface.body, point.slave_rows, surface.rows,
                          surface.kind, follows(point.slave_body) - follows(surface.body),
-                         point.compliance(), 0.0, 0.0, not_yet, not_yet});
+                         point.compliance(), not_yet, not_yet, not_yet, not_yet});
   }
   initial_ = kinetic + strain;
   enter_stored(kinetic, strain);
@@ -236,9 +236,8 @@ void EnergyLedger::add(double time, std::span<const ContactAction> contacts,
     damping_loss_.add((body.damping.alpha_at(time) * forms.mass_damping +
                        body.damping.beta * forms.stiffness_damping) /
                       step_);
-    if (!body.follows_drive) continue;
-    load_work_.add(load * mean_increment(body, body.load_row));
-    if (acceleration != 0.0) {
+    if (body.load_row >= 0) load_work_.add(load * mean_increment(body, body.load_row));
+    if (body.follows_drive && acceleration != 0.0) {
       drive_work_.add(-acceleration *
                       dot(body.base_inertia.data(), body.mean_increment.data(), body.padded_size));
     }
@@ -279,6 +278,8 @@ double EnergyLedger::roughness_increment(Contact& contact, double roughness) {
 /// along the mean increments, −λ_n (λ_n − λ_{n−2})/(2k), is never positive.
 /// @param force at t_n
 double EnergyLedger::stored_increment(Contact& contact, double force) {
+  // What is stored at the start was put there by nobody.
+  if (contact.last_force == not_yet) contact.force_before_last = contact.last_force = force;
   const double before = contact.force_before_last;
   contact.force_before_last = contact.last_force;
   contact.last_force = force;

@@ -171,8 +171,8 @@ class EnergyLedger {
     double driven;  ///< +1, −1 or 0: how the drive moves the slave against the master
     double compliance;  ///< of its spring, 1/k, m/N; 0 where it is rigid
     /// Of the last two steps, t_{n−1} and t_n, N.
-    double force_before_last = 0.0;
-    double last_force = 0.0;
+    double force_before_last = std::numeric_limits<double>::quiet_NaN();
+    double last_force = std::numeric_limits<double>::quiet_NaN();
     /// Of the last two steps, t_{n−1} and t_n, m.
     double roughness_before_last = std::numeric_limits<double>::quiet_NaN();
     double last_roughness = std::numeric_limits<double>::quiet_NaN();

@@ -12,12 +12,13 @@ namespace stridor {
 namespace {
 
 /// Load patterns of a body in given coordinates: the drive's load, and the inertia of its motion.
+/// None of a body that feels neither.
 Eigen::MatrixXd load_patterns(const SystemBody& body, const Eigen::MatrixXd& rows,
                               const Eigen::VectorXd& base_inertia) {
-  if (!body.follows_drive) return Eigen::MatrixXd(rows.cols(), 0);
-  Eigen::MatrixXd patterns(rows.cols(), 2);
-  patterns.col(0) = rows.row(body.load_row).transpose();
-  patterns.col(1) = -base_inertia;
+  if (!body.feels_drive()) return Eigen::MatrixXd(rows.cols(), 0);
+  Eigen::MatrixXd patterns = Eigen::MatrixXd::Zero(rows.cols(), 2);
+  if (body.load_row >= 0) patterns.col(0) = rows.row(body.load_row).transpose();
+  if (body.follows_drive) patterns.col(1) = -base_inertia;
   return patterns;
 }
 

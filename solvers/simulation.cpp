@@ -89,11 +89,12 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
     const SystemBody& body = system.bodies[b];
     run.bodies.push_back(make_propagator(
         body, time, surplus, num_slots[b],
-        body.follows_drive ? std::span<const double>(loads) : std::span<const double>()));
+        body.feels_drive() ? std::span<const double>(loads) : std::span<const double>()));
     const bool is_modal = time.coordinates == Coordinates::modal;
     run.shapes.push_back(is_modal ? body.modal.shapes : Eigen::MatrixXd());
     run.names.push_back(body.name);
     run.follows_drive.push_back(body.follows_drive);
+    run.feels_drive.push_back(body.feels_drive());
     run.damping.push_back(body.modal.damping);
     run.forces.emplace_back(static_cast<std::size_t>(num_slots[b]), 0.0);
   }

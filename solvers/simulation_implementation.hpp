@@ -79,6 +79,7 @@ struct Simulation::Implementation {
   std::vector<MasterSurface> surfaces;
   std::vector<std::string> names;  ///< of the bodies
   std::vector<bool> follows_drive;
+  std::vector<bool> feels_drive;
   std::vector<RayleighDamping> damping;
   Drive drive;
   double step;
@@ -127,7 +128,7 @@ struct Simulation::Implementation {
   void set_loads(double at) {
     const double amplitudes[] = {drive.load.value(at), drive.acceleration(at)};
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      if (follows_drive[b]) bodies[b]->set_loads(amplitudes);
+      if (feels_drive[b]) bodies[b]->set_loads(amplitudes);
     }
   }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -334,6 +335,71 @@ std::vector<std::array<int, 8>> beam_elements(const MeshParameters& mesh) {
   for (int column = 0; column < mesh.along; ++column)
     for (int row = 0; row < mesh.through; ++row) elements.push_back(grid.element(column, row));
   return elements;
+}
+
+BodyMatrices BeamParameters::make() const {
+  return make_beam(*this);
+}
+
+std::vector<std::array<int, 8>> BeamParameters::elements() const {
+  return beam_elements(mesh);
+}
+
+double BeamParameters::num_slave_nodes(const std::string& name) const {
+  if (name == "top" || name == "bottom") return 2.0 * mesh.along + 1.0;
+  if (name == "start_face" || name == "end_face") return 2.0 * mesh.through + 1.0;
+  return 1.0;
+}
+
+double BeamParameters::num_master_nodes(const std::string& name) const {
+  const double nodes = num_slave_nodes(name);
+  return interface.spacing ? std::min(nodes, 1.0 + std::ceil(length / *interface.spacing)) : nodes;
+}
+
+ReductionSize BeamParameters::reduction_size(double interface_nodes) const {
+  return size_of(mesh, reduction, interface_nodes);
+}
+
+SizeKey BeamParameters::size_key() const {
+  return {".mesh.along", "take fewer elements, or keep fewer master nodes (interface.spacing)"};
+}
+
+std::vector<Problem> BeamParameters::warnings() const {
+  constexpr double most_slender = 1e4;
+  const double ratio = length / thickness;
+  if (ratio >= 1.0 && ratio <= most_slender) return {};
+  return {{"thickness",
+           fmt::format("is {:g} m on a length of {:g} m: {}; check the units of both", thickness,
+                       length,
+                       ratio < 1.0 ? "thicker than long"
+                                   : fmt::format("{:.3g} times slender", ratio)),
+           {},
+           0,
+           0}};
+}
+
+ReductionSize size_of(const MeshParameters& mesh, const ReductionParameters& reduction,
+                      double interface_nodes) {
+  const double a = mesh.along;
+  const double t = mesh.through;
+  const double nodes = (a + 1.0) * (2.0 * t + 1.0) + a * (t + 1.0);
+  // Pairs of nodes that share an element: 64 of each element; those of a shared edge (9) count
+  // twice, that of an inner corner four times less four edges.
+  const double pairs = 64.0 * a * t - 9.0 * ((a - 1.0) * t + a * (t - 1.0)) + (a - 1.0) * (t - 1.0);
+  ReductionSize size;
+  size.interface = 2.0 * interface_nodes;
+  size.watched = size.interface;
+  size.unknowns = std::max(2.0 * nodes - size.interface, 0.0);
+  size.modes = reduction.fixed_interface_modes;
+  size.matrix_entries = (4.0 + 2.0) * pairs;  // the mass does not couple x and y
+  // A row of a band matrix reaches over an element; of broad meshes nested dissection leaves less.
+  const double shorter = std::min(a, t);
+  const double band = 6.0 * shorter + 12.0;
+  const double dissected = 12.0 * std::log2(size.unknowns + 2.0);
+  size.factor_entries = size.unknowns * std::min(band, dissected);
+  // Triplets of all element matrices, and the same sorted into columns.
+  size.assembly_bytes = 256.0 * a * t * (16.0 + sparse_entry_bytes);
+  return size;
 }
 
 }  // namespace stridor

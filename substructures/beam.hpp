@@ -3,6 +3,7 @@
 
 #include "core/schema.hpp"
 #include "substructures/body_matrices.hpp"
+#include "substructures/body_parameters.hpp"
 
 namespace stridor {
 
@@ -43,7 +44,9 @@ struct ReductionParameters {
   static const Schema& schema();
 };
 
-struct BeamParameters {
+struct BeamParameters : BodyParametersOf<BeamParameters> {
+  static constexpr const char* type_name = "beam";
+
   double length = 0.0;     ///< along the axis, m, > 0
   double thickness = 0.0;  ///< in the plane, m, > 0
   double width = 0.0;      ///< out of the plane, m, > 0
@@ -55,7 +58,24 @@ struct BeamParameters {
   InterfaceParameters interface;
   ReductionParameters reduction;
   static const Schema& schema();
+
+  BodyMatrices make() const override;
+  RayleighDamping* own_damping() override { return &damping; }
+  std::optional<int> num_modes() const override { return reduction.fixed_interface_modes; }
+  std::optional<double> interface_spacing() const override { return interface.spacing; }
+  bool is_filled() const override { return true; }
+  std::vector<std::array<int, 8>> elements() const override;
+  double num_slave_nodes(const std::string& name) const override;
+  double num_master_nodes(const std::string& name) const override;
+  ReductionSize reduction_size(double interface_nodes) const override;
+  SizeKey size_key() const override;
+  std::vector<Problem> warnings() const override;
 };
+
+/// Size of the reduction of a mesh of a beam or an elastic pad.
+/// @param interface_nodes kept, with two unknowns each
+ReductionSize size_of(const MeshParameters& mesh, const ReductionParameters& reduction,
+                      double interface_nodes);
 
 /// Structured mesh of Q8 elements, supports applied.
 ///

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "core/errors.hpp"
@@ -208,6 +209,39 @@ BodyMatrices make_matrix_body(const TouchedMatrixBodyParameters& parameters) {
   }
   body.base_inertia = body.mass * Eigen::Map<const Eigen::VectorXd>(guide.translation.data(), n);
   return body;
+}
+
+BodyMatrices TouchedMatrixBodyParameters::make() const {
+  return make_matrix_body(*this);
+}
+
+std::optional<int> TouchedMatrixBodyParameters::num_modes() const {
+  if (!reduction) return std::nullopt;
+  return reduction->fixed_interface_modes;
+}
+
+double TouchedMatrixBodyParameters::num_slave_nodes(const std::string& name) const {
+  const auto surface = surfaces.find(name);
+  return surface == surfaces.end() ? 1.0 : static_cast<double>(surface->second.points.size());
+}
+
+ReductionSize TouchedMatrixBodyParameters::reduction_size(double interface_nodes) const {
+  ReductionSize size;
+  if (!matrices || !reduction) return size;
+  const auto n = static_cast<double>(matrices->mass.rows());
+  const auto entries = static_cast<double>(matrices->stiffness.nonZeros());
+  size.interface = size.watched = std::min(2.0 * interface_nodes, n);
+  size.unknowns = n - size.interface;
+  size.modes = reduction->fixed_interface_modes;
+  size.matrix_entries = static_cast<double>(matrices->mass.nonZeros()) + entries;
+  // As of a solid body under nested dissection.
+  size.factor_entries =
+      std::max(0.5 * entries, std::min(0.5 * n * n, 4.0 * std::pow(n, 4.0 / 3.0)));
+  return size;
+}
+
+SizeKey TouchedMatrixBodyParameters::size_key() const {
+  return {".mass", "give smaller matrices, or fewer points"};
 }
 
 }  // namespace stridor

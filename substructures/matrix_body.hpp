@@ -77,7 +77,9 @@ struct MatrixGuideParameters {
 };
 
 /// A body given by its matrices with the points and surfaces at which others touch it.
-struct TouchedMatrixBodyParameters {
+struct TouchedMatrixBodyParameters : BodyParametersOf<TouchedMatrixBodyParameters> {
+  static constexpr const char* type_name = "matrices";
+
   MatrixBodyParameters body;
   std::map<std::string, MatrixPointParameters> points;
   std::map<std::string, MatrixSurfaceParameters> surfaces;
@@ -85,6 +87,12 @@ struct TouchedMatrixBodyParameters {
   std::optional<ReductionParameters> reduction;   ///< absent: every unknown is kept
   std::shared_ptr<const NamedMatrices> matrices;  ///< the matrices that `body` names, read
   static const Schema& schema();
+
+  BodyMatrices make() const override;
+  std::optional<int> num_modes() const override;
+  double num_slave_nodes(const std::string& name) const override;
+  ReductionSize reduction_size(double interface_nodes) const override;
+  SizeKey size_key() const override;
 };
 
 /// The body. Its stiffness is the symmetric part of the matrix of q. The matrix of q̇ is its

@@ -256,6 +256,38 @@ Strings unlisted_sources(const fs::path& folder) {
   return unlisted;
 }
 
+/// The struct of a type of body and the files that may name it.
+struct BodyType {
+  std::string name;
+  Strings files;
+};
+
+/// Lines of code that name a type of body outside its own files and its registration.
+/// @return "file:line: names <struct>"
+Strings strangers_to_body_types(const fs::path& root, const std::vector<BodyType>& types) {
+  Strings found;
+  for (const std::string& folder : folders_in_order) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      if (!is_header(entry.path()) && !is_source(entry.path())) continue;
+      const std::string name = entry.path().lexically_relative(root).generic_string();
+      std::ifstream stream(entry.path(), std::ios::binary);
+      const std::string text{std::istreambuf_iterator<char>(stream),
+                             std::istreambuf_iterator<char>()};
+      const std::vector<SourceLine> lines = lines_without_comments(text);
+      for (const BodyType& type : types) {
+        if (contains(type.files, name)) continue;
+        const std::regex word("\\b" + type.name + "\\b");
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+          if (std::regex_search(lines[i].text, word))
+            found.push_back(name + ":" + std::to_string(i + 1) + ": names " + type.name);
+        }
+      }
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
 /// A source tree in a temporary folder, removed at the end of the test.
 class SourceText : public testing::Test {
  protected:
@@ -285,6 +317,27 @@ using testing::IsEmpty;
 
 TEST(IncludeOrder, HoldsInThisSourceTree) {
   EXPECT_THAT(check_tree(STRIDOR_SOURCE_DIR, folders_in_order), IsEmpty());
+}
+
+TEST(BodyTypes, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
+  const std::string list = "substructures/body_types.cpp";
+  const std::vector<BodyType> types{
+      // Elastic pads are meshed as beams are.
+      {"BeamParameters",
+       {list, "substructures/beam.hpp", "substructures/beam.cpp", "substructures/brake_pad.cpp"}},
+      {"LumpedParameters",
+       {list, "substructures/lumped_body.hpp", "substructures/lumped_body.cpp"}},
+      {"TouchedMatrixBodyParameters",
+       {list, "substructures/matrix_body.hpp", "substructures/matrix_body.cpp",
+        "io/matrix_reader.cpp"}}};
+  EXPECT_THAT(strangers_to_body_types(STRIDOR_SOURCE_DIR, types), IsEmpty());
+}
+
+TEST_F(SourceText, StrangersThatNameABodyAreFound) {
+  write("substructures/rod.hpp", "#pragma once\nstruct RodParameters {};\n");
+  write("models/model.cpp", "// RodParameters\nint RodParametersOfOld;\nRodParameters rod;\n");
+  EXPECT_THAT(strangers_to_body_types(root_, {{"RodParameters", {"substructures/rod.hpp"}}}),
+              ElementsAre("models/model.cpp:3: names RodParameters"));
 }
 
 TEST(SourceLists, NameEverySource) {

@@ -310,15 +310,15 @@ TEST(FrictionParameters, CoefficientsMayBeZeroButNotNegativeAndTheDecayVelocityI
 
 TEST(FrictionParameters, BecomeTheLawThatTheyName) {
   const FrictionLaw constant = make_friction_law({Kind::constant, 0.3, {}, {}, {}});
-  EXPECT_EQ(constant.kind, Kind::constant);
+  EXPECT_EQ(constant.kind, FrictionLaw::Kind::constant);
   EXPECT_EQ(constant.static_coefficient, 0.3);
   EXPECT_EQ(constant.dynamic_coefficient, 0.3);
   const FrictionLaw jump = make_friction_law({Kind::static_dynamic, {}, 0.4, 0.3, {}});
-  EXPECT_EQ(jump.kind, Kind::static_dynamic);
+  EXPECT_EQ(jump.kind, FrictionLaw::Kind::static_dynamic);
   EXPECT_EQ(jump.static_coefficient, 0.4);
   EXPECT_EQ(jump.dynamic_coefficient, 0.3);
   const FrictionLaw stribeck = make_friction_law({Kind::stribeck, {}, 0.4, 0.3, 0.01});
-  EXPECT_EQ(stribeck.kind, Kind::stribeck);
+  EXPECT_EQ(stribeck.kind, FrictionLaw::Kind::stribeck);
   EXPECT_EQ(stribeck.static_coefficient, 0.4);
   EXPECT_EQ(stribeck.dynamic_coefficient, 0.3);
   EXPECT_EQ(stribeck.decay_velocity, 0.01);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "solvers/march.hpp"
+#include "substructures/beam.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 #include "tests/support/program.hpp"
@@ -234,7 +235,7 @@ TEST(Recorder, StrideFollowsTheRingingModesAndTheRatio) {
   EXPECT_EQ(sampling_stride(model.system, 2e-7, 10), 2);
   ModelParameters undamped = paper_model();
   for (auto& [name, body] : undamped.substructures)
-    std::get<BeamParameters>(body).damping.beta = 0.0;
+    body.get<BeamParameters>().damping.beta = 0.0;
   // 967 kHz ring on, so 967 + 60 kHz are needed: of the divisors 1, 2, 5, 10 of 50 only 2 gives it.
   EXPECT_EQ(sampling_stride(make_paper_model(undamped).system, 2e-7, 50), 2);
 }

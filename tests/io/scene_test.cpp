@@ -5,6 +5,7 @@
 
 #include "core/errors.hpp"
 #include "io/scene_reader.hpp"
+#include "substructures/beam.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {
@@ -15,7 +16,7 @@ using ::testing::HasSubstr;
 
 TEST(Scene, MainSceneHoldsThePublishedModel) {
   const Scene scene = load_scene(scene_path("beam_on_beam.yaml"), {}).scene;
-  const auto& oblique = std::get<BeamParameters>(scene.model.substructures.at("oblique"));
+  const auto& oblique = scene.model.substructures.at("oblique").get<BeamParameters>();
   EXPECT_DOUBLE_EQ(oblique.length, 0.075);
   EXPECT_NEAR(oblique.angle, 0.52359877559829887, 1e-15);
   EXPECT_DOUBLE_EQ(oblique.material.youngs_modulus, 71e9);

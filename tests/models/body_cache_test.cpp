@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "models/mode_shape.hpp"
+#include "substructures/beam.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 
@@ -20,8 +21,8 @@ Model cached_model(const ModelParameters& parameters, BodyCache& cache) {
 /// The paper's beams on coarser meshes: what is tested does not depend on it.
 ModelParameters small_model() {
   ModelParameters parameters = paper_model();
-  auto& oblique = std::get<BeamParameters>(parameters.substructures["oblique"]);
-  auto& cantilever = std::get<BeamParameters>(parameters.substructures["cantilever"]);
+  auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();
+  auto& cantilever = parameters.substructures["cantilever"].get<BeamParameters>();
   oblique.mesh.along = 6;
   cantilever.mesh.along = 10;
   cantilever.interface.spacing = 0.005;
@@ -57,7 +58,7 @@ TEST(BodyCache, ReducesOnlyWhatAKeyChanges) {
   parameters.drive.load = TimeCurve(-1.0);
   cached_model(parameters, cache);
   EXPECT_EQ(cache.num_reductions(), 2);
-  auto& oblique = std::get<BeamParameters>(parameters.substructures["oblique"]);
+  auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();
   oblique.thickness = 0.0016;
   expect_same(cached_model(parameters, cache), make_paper_model(parameters));
   EXPECT_EQ(cache.num_reductions(), 3);
@@ -70,7 +71,7 @@ TEST(BodyCache, DampingNeedsNoReductionButTakesEffect) {
   BodyCache cache;
   ModelParameters parameters = small_model();
   cached_model(parameters, cache);
-  auto& cantilever = std::get<BeamParameters>(parameters.substructures["cantilever"]);
+  auto& cantilever = parameters.substructures["cantilever"].get<BeamParameters>();
   cantilever.damping.alpha = 7.0;
   cantilever.damping.beta = 1e-7;
   const Model model = cached_model(parameters, cache);
@@ -84,7 +85,7 @@ TEST(BodyCache, ForgetsWhatWasNotUsedForLongest) {
   BodyCache cache(2);
   ModelParameters parameters = small_model();
   cached_model(parameters, cache);
-  auto& oblique = std::get<BeamParameters>(parameters.substructures["oblique"]);
+  auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();
   oblique.thickness = 0.0016;
   cached_model(parameters, cache);  // the first oblique beam goes, the cantilever stays
   EXPECT_EQ(cache.num_reductions(), 3);
@@ -115,7 +116,7 @@ TEST(ModeShape, AgreesWithTheRowsOfWatchedPoints) {
   EXPECT_EQ(shapes[0].name, "cantilever");
 
   const SystemBody& cantilever = model.system.bodies[0];
-  const BodyMatrices matrices = cache.matrices(parameters.substructures.at("cantilever"));
+  const BodyMatrices matrices = cache.matrices(*parameters.substructures.at("cantilever"));
   const int node = matrices.points.at("free_end");
   const Model::Point point = model.points.at(free_end);
   const std::complex<double> expected =
@@ -124,7 +125,7 @@ TEST(ModeShape, AgreesWithTheRowsOfWatchedPoints) {
               1e-12 * std::abs(expected));
   // The clamp holds; the tip is at the start of the contact, moved by the drive.
   EXPECT_EQ(shapes[0].displacement.row(matrices.points.at("start")).norm(), 0.0);
-  const BodyMatrices oblique = cache.matrices(parameters.substructures.at("oblique"));
+  const BodyMatrices oblique = cache.matrices(*parameters.substructures.at("oblique"));
   EXPECT_NEAR(shapes[1].nodes(oblique.points.at("tip"), 0), 0.030 + 0.02, 1e-12);
 }
 

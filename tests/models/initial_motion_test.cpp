@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
+#include "substructures/beam.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
@@ -111,11 +112,11 @@ constexpr std::size_t oblique = 1;
 /// The paper's beams with coarse meshes.
 ModelParameters coarse_model() {
   ModelParameters parameters = paper_model();
-  auto& lower = std::get<BeamParameters>(parameters.substructures["cantilever"]);
+  auto& lower = parameters.substructures["cantilever"].get<BeamParameters>();
   lower.mesh.along = 10;
   lower.interface.spacing = 0.005;
   lower.reduction = {4};
-  auto& upper = std::get<BeamParameters>(parameters.substructures["oblique"]);
+  auto& upper = parameters.substructures["oblique"].get<BeamParameters>();
   upper.mesh.along = 8;
   upper.reduction = {4};
   return parameters;

@@ -8,6 +8,7 @@
 
 #include "core/errors.hpp"
 #include "models/model.hpp"
+#include "substructures/beam.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 
@@ -102,7 +103,7 @@ TEST(MatrixBody, RefusesWhatIsNotThere) {
 /// are points.
 ModelParameters paper_model_by_matrices(int num_elements = 50) {
   ModelParameters parameters = paper_model();
-  auto beam = std::get<BeamParameters>(parameters.substructures["cantilever"]);
+  auto beam = parameters.substructures["cantilever"].get<BeamParameters>();
   beam.mesh.along = num_elements;
   const BodyMatrices mesh = make_beam(beam);
   NamedMatrices matrices;
@@ -127,7 +128,7 @@ ModelParameters paper_model_by_matrices(int num_elements = 50) {
 
 TEST(MatrixBody, OfAMeshIsTheBeamOfThatMesh) {
   ModelParameters beams = paper_model();
-  std::get<BeamParameters>(beams.substructures["cantilever"]).interface.spacing.reset();
+  beams.substructures["cantilever"].get<BeamParameters>().interface.spacing.reset();
   const Model expected = make_model(beams, {});
   const Model found = make_model(paper_model_by_matrices(), {});
   const ModalBody& beam = expected.system.bodies[0].modal;
@@ -161,7 +162,7 @@ TEST(MatrixBody, KeepsEveryUnknownWhereNoReductionIsGiven) {
 
 TEST(MatrixBody, RefusesToBeReducedAsItCannotBe) {
   ModelParameters parameters = paper_model_by_matrices(100);
-  auto& body = std::get<TouchedMatrixBodyParameters>(parameters.substructures["cantilever"]);
+  auto& body = parameters.substructures["cantilever"].get<TouchedMatrixBodyParameters>();
   body.reduction.reset();
   EXPECT_THAT(message_of<ConfigError>([&] { make_model(parameters, {}); }),
               HasSubstr("substructures.cantilever.reduction: missing"));

@@ -5,6 +5,7 @@
 
 #include "core/errors.hpp"
 #include "solvers/make_propagator.hpp"
+#include "substructures/beam.hpp"
 #include "tests/support/paper_model.hpp"
 
 namespace stridor {
@@ -75,7 +76,7 @@ TEST(Model, RoughnessNeedsAMasterWithEndsAndALengthThatItsTableCanHold) {
                  "9e-08 m is too small for a master of 0.1 m, on which it takes 1e-07 m at least");
   parameters.contact->roughness->correlation_length = 1e-4;
   parameters.contact->master = "rigid";
-  expect_refusal(parameters, "contact.roughness", "the rigid master has no end");
+  expect_refusal(parameters, "contact.roughness", "the master `rigid` has no end");
   // No height, no table.
   parameters = paper_model();
   parameters.contact->roughness = RoughnessParameters{0.0, 1e-12, 5};
@@ -84,7 +85,7 @@ TEST(Model, RoughnessNeedsAMasterWithEndsAndALengthThatItsTableCanHold) {
 
 TEST(Model, InterfaceSpacingKeepsEveryKthNode) {
   ModelParameters parameters = paper_model();
-  auto& cantilever = std::get<BeamParameters>(parameters.substructures["cantilever"]);
+  auto& cantilever = parameters.substructures["cantilever"].get<BeamParameters>();
   cantilever.interface.spacing = 0.005;
   const Model model = make_paper_model(parameters);
   EXPECT_EQ(model.system.surfaces[0].num_segments(), 20);
@@ -93,7 +94,7 @@ TEST(Model, InterfaceSpacingKeepsEveryKthNode) {
 
 TEST(Model, InterfaceSpacingMustFitTheMesh) {
   ModelParameters parameters = paper_model();
-  auto& cantilever = std::get<BeamParameters>(parameters.substructures["cantilever"]);
+  auto& cantilever = parameters.substructures["cantilever"].get<BeamParameters>();
   cantilever.interface.spacing = 0.0015;
   expect_refusal(parameters, "substructures.cantilever.interface.spacing",
                  "must be a whole multiple of the node distance 0.001 m");
@@ -145,7 +146,7 @@ TEST(Model, StartOffTheMasterIsRefusedWithTheAllowedRange) {
 
 TEST(Model, SecondSlavePointOffTheEndOfTheMasterIsRefused) {
   ModelParameters parameters = paper_model();
-  std::get<BeamParameters>(parameters.substructures["oblique"]).angle = 0.0;
+  parameters.substructures["oblique"].get<BeamParameters>().angle = 0.0;
   parameters.contact->slave = {"oblique.start_bottom", "oblique.end_bottom"};
   parameters.contact->start = 0.050;
   expect_refusal(parameters, "contact.start",
@@ -211,16 +212,16 @@ TEST(Model, PairsInACircleAreRefused) {
 
 TEST(Model, TooManyModesAreRefusedWithTheNumberThereIs) {
   ModelParameters parameters = paper_model();
-  std::get<BeamParameters>(parameters.substructures["cantilever"]).reduction.fixed_interface_modes =
+  parameters.substructures["cantilever"].get<BeamParameters>().reduction.fixed_interface_modes =
       301;
   // 253 nodes, 3 of them clamped: 500 DoFs, 200 of them in the interface.
   expect_refusal(parameters, "substructures.cantilever.reduction.fixed_interface_modes",
-                 "301 modes asked, but the beam has only 300 DoFs besides its interface");
+                 "301 modes asked, but 'cantilever' has only 300 DoFs besides its interface");
 }
 
 TEST(Model, ABodyThatIsFreeToTurnIsRefused) {
   ModelParameters parameters = paper_model();
-  std::get<BeamParameters>(parameters.substructures["oblique"]).supports.end = Support::free;
+  parameters.substructures["oblique"].get<BeamParameters>().supports.end = Support::free;
   expect_refusal(parameters, "substructures.oblique",
                  "cannot be reduced: the stiffness of the interior");
 }
@@ -269,7 +270,7 @@ TEST(Model, OnRigidGroundTheContactCarriesTheLoadInEveryForm) {
   ModelParameters parameters = on_rigid_ground();
   parameters.contact->assumption = ContactAssumption::film;
   parameters.contact->friction->coefficient = 0.0;
-  auto& oblique = std::get<BeamParameters>(parameters.substructures["oblique"]);
+  auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();
   oblique.damping.alpha = 2000.0;
   oblique.damping.alpha_start.reset();
   oblique.damping.hold = oblique.damping.fade = 0.0;

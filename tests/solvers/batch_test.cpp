@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "substructures/beam.hpp"
 #include "tests/support/paper_model.hpp"
 
 namespace stridor {
@@ -34,7 +35,7 @@ Model model_of_kind(int kind, ContactAssumption assumption = ContactAssumption::
   parameters.drive.load = TimeCurve(-0.2 - 0.01 * kind);
   parameters.drive.velocity = TimeCurve(0.3 + 0.02 * kind);
   parameters.drive.ramp = 1e-3;
-  auto& oblique = std::get<BeamParameters>(parameters.substructures["oblique"]);
+  auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();
   oblique.damping.hold = 3e-3;
   oblique.damping.fade = 1e-3;
   return make_paper_model(parameters);

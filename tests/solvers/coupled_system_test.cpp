@@ -16,6 +16,7 @@
 #include "solvers/linearise.hpp"
 #include "solvers/secular_eigenvalues.hpp"
 #include "solvers/simulation.hpp"
+#include "substructures/beam.hpp"
 #include "tests/support/paper_model.hpp"
 
 namespace stridor {
@@ -27,15 +28,15 @@ using Complex = std::complex<double>;
 Model small_model(SlidingMode sliding) {
   ModelParameters parameters = test::paper_model();
   for (auto& [name, body] : parameters.substructures) {
-    auto& beam = std::get<BeamParameters>(body);
+    auto& beam = body.get<BeamParameters>();
     beam.reduction.fixed_interface_modes = 4;
     beam.damping.alpha_start.reset();
     beam.damping.hold = beam.damping.fade = 0.0;
   }
-  auto& cantilever = std::get<BeamParameters>(parameters.substructures["cantilever"]);
+  auto& cantilever = parameters.substructures["cantilever"].get<BeamParameters>();
   cantilever.mesh.along = 10;
   cantilever.interface.spacing = 0.02;
-  auto& oblique = std::get<BeamParameters>(parameters.substructures["oblique"]);
+  auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();
   oblique.mesh.along = 8;
   parameters.contact->sliding = sliding;
   parameters.contact->start = 0.05;

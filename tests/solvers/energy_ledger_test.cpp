@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "solvers/make_propagator.hpp"
+#include "substructures/beam.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 #include "tests/support/small_systems.hpp"
@@ -374,7 +375,7 @@ TEST(EnergyLedger, BalancesInTheDenseForms) {
 
 TEST(EnergyLedger, BalancesThroughTheDampingSchedule) {
   ModelParameters parameters = lively_model();
-  auto& oblique = std::get<BeamParameters>(parameters.substructures["oblique"]);
+  auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();
   oblique.damping.alpha = 20.0;
   oblique.damping.alpha_start = 4000.0;
   oblique.damping.hold = 5e-4;

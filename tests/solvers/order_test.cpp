@@ -4,6 +4,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "substructures/beam.hpp"
 #include "tests/support/paper_model.hpp"
 #include "tests/support/relative_difference.hpp"
 
@@ -38,7 +39,7 @@ Model sliding_model(ContactAssumption assumption, SurfaceKind surface, bool is_d
   parameters.contact->armed_from = 1.0;
   parameters.contact->surface = surface;
   if (!is_damped) {
-    for (auto& [name, body] : parameters.substructures) std::get<BeamParameters>(body).damping = {};
+    for (auto& [name, body] : parameters.substructures) body.get<BeamParameters>().damping = {};
   }
   return make_paper_model(parameters);
 }
@@ -94,9 +95,9 @@ Model eventful_model(SurfaceKind surface) {
   parameters.contact->surface = surface;
   parameters.drive.ramp = 0.0;
   parameters.drive.velocity = TimeCurve(TimeTable{{0.0, 3e-3, 4e-3}, {0.03, 0.03, -0.03}});
-  auto& oblique = std::get<BeamParameters>(parameters.substructures["oblique"]);
+  auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();
   oblique.mesh = {15, 1};
-  auto& cantilever = std::get<BeamParameters>(parameters.substructures["cantilever"]);
+  auto& cantilever = parameters.substructures["cantilever"].get<BeamParameters>();
   cantilever.mesh = {20, 1};
   cantilever.interface = {0.005};
   for (BeamParameters* beam : {&oblique, &cantilever}) {

@@ -9,6 +9,7 @@
 #include "core/errors.hpp"
 #include "solvers/make_propagator.hpp"
 #include "solvers/retained_modes.hpp"
+#include "substructures/beam.hpp"
 #include "tests/support/paper_model.hpp"
 #include "tests/support/relative_difference.hpp"
 
@@ -106,7 +107,7 @@ TEST(Simulation, ResumesBitwiseInTheMiddleOfTheDampingSchedule) {
   ModelParameters parameters = paper_model(leading_angle);
   parameters.drive.ramp = 1e-3;
   parameters.contact->armed_from = 1.0;
-  auto& oblique = std::get<BeamParameters>(parameters.substructures["oblique"]);
+  auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();
   oblique.damping.hold = 2e-3;
   oblique.damping.fade = 2e-3;
   expect_bitwise_resume(parameters, paper_time(), 15'000, 25'000);  // 3 ms of a fade from 2 to 4 ms
@@ -261,8 +262,8 @@ TEST(Simulation, AnEdgeOfManySlavePointsCarriesTheWholeLoad) {
   parameters.contact->slave = {"oblique.bottom"};
   parameters.contact->start = 0.060;  // the bottom runs from the end of the beam to its start
   // Fewer and larger elements: with all of its edge in the interface a body is stiff.
-  std::get<BeamParameters>(parameters.substructures["oblique"]).mesh.along = 5;
-  std::get<BeamParameters>(parameters.substructures["oblique"]).material.youngs_modulus = 2e9;
+  parameters.substructures["oblique"].get<BeamParameters>().mesh.along = 5;
+  parameters.substructures["oblique"].get<BeamParameters>().material.youngs_modulus = 2e9;
   const Model model = make_paper_model(parameters);
   ASSERT_EQ(model.system.contacts.size(), 11u);
   Simulation simulation(model.system, paper_time());
@@ -281,9 +282,9 @@ TEST(Simulation, StaticForceOfSubsBBalancesTheLoadOnTheSaggedMaster) {
   parameters.contact->armed_from = 1e9;
   parameters.drive.ramp = 0.05;
   for (auto& [name, body] : parameters.substructures) {
-    std::get<BeamParameters>(body).damping.alpha = 400.0;
-    std::get<BeamParameters>(body).damping.alpha_start.reset();
-    std::get<BeamParameters>(body).damping.hold = std::get<BeamParameters>(body).damping.fade = 0.0;
+    body.get<BeamParameters>().damping.alpha = 400.0;
+    body.get<BeamParameters>().damping.alpha_start.reset();
+    body.get<BeamParameters>().damping.hold = body.get<BeamParameters>().damping.fade = 0.0;
   }
   const Model model = make_paper_model(parameters);
   Simulation simulation(model.system, paper_time());
@@ -505,7 +506,7 @@ TEST(ExactSimulation, ResumesBitwiseAcrossNodesAndInTheMiddleOfTheDampingSchedul
     parameters.drive.velocity = TimeCurve(10.0);  // a node every 40 steps
     parameters.drive.ramp = 5e-4;
     parameters.contact->armed_from = 1.0;
-    auto& oblique = std::get<BeamParameters>(parameters.substructures["oblique"]);
+    auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();
     oblique.damping.hold = 1e-3;
     oblique.damping.fade = 1e-3;
     for (const int middle : {600, 601, 639, 640, 641})

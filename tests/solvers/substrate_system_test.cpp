@@ -14,6 +14,7 @@
 #include "solvers/secular_eigenvalues.hpp"
 #include "solvers/substrate_motion.hpp"
 #include "solvers/substrate_stepper.hpp"
+#include "substructures/beam.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_sphere.hpp"
 #include "tests/support/small_systems.hpp"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "models/model.hpp"
+#include "substructures/beam.hpp"
 
 namespace stridor::test {
 

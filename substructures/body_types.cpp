@@ -1,0 +1,31 @@
+// The types of bodies that scenes can name, a line each.
+#include <algorithm>
+#include <stdexcept>
+#include <string_view>
+
+#include "substructures/beam.hpp"
+#include "substructures/body_parameters.hpp"
+#include "substructures/lumped_body.hpp"
+#include "substructures/matrix_body.hpp"
+
+namespace stridor {
+
+const std::vector<Substructure::Type>& Substructure::types() {
+  static const std::vector<Type> all{
+      body_type<BeamParameters>(),
+      body_type<LumpedParameters>(),
+      body_type<TouchedMatrixBodyParameters>(),
+  };
+  return all;
+}
+
+std::size_t Substructure::type_index() const {
+  const std::vector<Type>& all = types();
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const Type& type) { return type.name == body_->type(); });
+  if (found == all.end())
+    throw std::logic_error(std::string("Substructure: not registered: ") + body_->type());
+  return static_cast<std::size_t>(found - all.begin());
+}
+
+}  // namespace stridor

@@ -1,0 +1,160 @@
+// Scenes of lumped bodies, moving masters, penalties and regularised friction, as a user would run
+// them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+using Arguments = std::vector<std::string>;
+
+Json json_of(const Arguments& arguments) {
+  const ProgramResult result = Program(arguments).run();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return Json::parse(result.out);
+}
+
+const std::string sphere_scene = "viscoelastic_sphere.yaml";
+const std::string body_scene = "examples/sphere_on_rubber.yaml";
+constexpr double sphere_omega = 40.0;  // rad/s, the unit of the other scene's results
+
+TEST(LawsProgram, SphereAsABodyVibratesAsByItself) {
+  for (const auto& [tau0, v] : {std::pair("1e-2", "5e-3"), std::pair("3e-2", "1e-3")}) {
+    const Json own = json_of({"eig", scene_path(sphere_scene), "--json", "--set",
+                              std::string("sphere.shear_strength=") + tau0, "--set",
+                              std::string("sphere.speed=") + v});
+    const Json body = json_of({"eig", scene_path(body_scene), "--about", "deformed", "--json",
+                               "--set", std::string("parameters.tau0=") + tau0, "--set",
+                               std::string("parameters.v=") + v});
+    ASSERT_FALSE(own["eigenvalues"].empty());
+    ASSERT_EQ(body["eigenvalues"].size(), own["eigenvalues"].size());
+    for (std::size_t i = 0; i < own["eigenvalues"].size(); ++i) {
+      for (std::size_t part = 0; part < 2; ++part) {
+        const double expected = sphere_omega * own["eigenvalues"][i][part].get<double>();
+        EXPECT_NEAR(body["eigenvalues"][i][part].get<double>(), expected, 1e-8 * sphere_omega);
+      }
+    }
+  }
+}
+
+TEST(LawsProgram, SphereAsABodyHasTheSameThreshold) {
+  const Json own = json_of({"threshold", scene_path(sphere_scene), "--json", "--parameter",
+                            "sphere.speed", "--from", "1e-3", "--to", "1"});
+  const Json body = json_of({"threshold", scene_path(body_scene), "--about", "deformed", "--json",
+                             "--parameter", "parameters.v", "--from", "1e-3", "--to", "1"});
+  ASSERT_EQ(own["roots"].size(), body["roots"].size());
+  ASSERT_FALSE(own["roots"].empty());
+  for (std::size_t i = 0; i < own["roots"].size(); ++i) {
+    const double expected = own["roots"][i]["value"];
+    EXPECT_NEAR(body["roots"][i]["value"].get<double>(), expected, 1e-6 * expected);
+  }
+}
+
+TEST(LawsProgram, SphereAsABodyComesToTheSameLimitCycle) {
+  // Steps of 2e-3/omega_x err by 2e-3 of the period and of the stick.
+  const TemporaryFolder folder;
+  const Json cycle = json_of({"cycle", scene_path(sphere_scene), "--json"});
+  const Json run = json_of({"run", scene_path(body_scene), "-o", folder / "sphere.h5", "--json"});
+  EXPECT_NEAR(run["stick_fraction"].get<double>(), cycle["stick_fraction"].get<double>(), 5e-3);
+}
+
+TEST(LawsProgram, MassOnABeltSticksAndSlipsAsInClosedForm) {
+  const TemporaryFolder folder;
+  const ProgramResult result = Program({"run", scene_path("examples/mass_on_belt.yaml"), "-o",
+                                        folder / "belt.h5", "--verify"})
+                                   .run();
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+}
+
+TEST(LawsProgram, RegularisedBeltHasTheEquilibriumOfItsLaw) {
+  // With friction that creeps there is no stick, and the mass rests where the spring holds it.
+  const TemporaryFolder folder;
+  const Json run =
+      json_of({"run", scene_path("examples/mass_on_belt.yaml"), "-o", folder / "belt.h5", "--json",
+               "--set", "contact.friction={coefficient: 0.3, regularisation: {speed: 0.2}}",
+               "--set", "substructures.slider.damping.alpha=3"});
+  EXPECT_EQ(run["stick_fraction"].get<double>(), 0.0);
+  const Json eig =
+      json_of({"eig", scene_path("examples/mass_on_belt.yaml"), "--about", "deformed", "--json",
+               "--set", "contact.friction={coefficient: 0.3, regularisation: {speed: 0.2}}"});
+  // s² + (μ N s'(v)/m) s + k/m = 0 with v = 0.1, v_ε = 0.2.
+  const double slope = 3.0 * (1.0 - std::pow(std::tanh(0.5), 2)) / 0.2;
+  const std::complex<double> root =
+      -0.5 * slope + std::sqrt(std::complex<double>(0.25 * slope * slope - 100.0, 0.0));
+  double nearest = 1e300;
+  for (const Json& one : eig["eigenvalues"]) {
+    nearest = std::min(
+        nearest, std::abs(std::complex<double>(one[0].get<double>(), one[1].get<double>()) - root));
+  }
+  EXPECT_LT(nearest, 1e-8);
+}
+
+TEST(LawsProgram, PenaltyOnBeamsGivesTheSpringsCompression) {
+  const std::string scene = scene_path("beam_on_beam.yaml");
+  const Arguments penalty{"--set", "contact.normal={law: penalty, stiffness: 1 MN/m}"};
+  Arguments eig{"eig", scene, "--about", "deformed", "--json"};
+  eig.insert(eig.end(), penalty.begin(), penalty.end());
+  const Json state = json_of(eig)["equilibrium"];
+  EXPECT_NEAR(state["gap"].get<double>(), -state["force"].get<double>() / 1e6, 1e-15);
+  const TemporaryFolder folder;
+  Arguments run{"run",
+                scene,
+                "-o",
+                folder / "beams.h5",
+                "--json",
+                "--set",
+                "time.end=0.02",
+                "--set",
+                "contact.armed_from=0.01",
+                "--set",
+                "measure.from=0.01",
+                "--set",
+                "time.step=2e-7"};
+  Arguments rigid = run;
+  rigid[3] = folder / "rigid.h5";
+  run.insert(run.end(), penalty.begin(), penalty.end());
+  const double sprung_force = json_of(run)["contact_force"]["max"];
+  const double rigid_force = json_of(rigid)["contact_force"]["max"];
+  EXPECT_NEAR(sprung_force, rigid_force, 0.1 * rigid_force);
+  EXPECT_NE(sprung_force, rigid_force);
+}
+
+TEST(LawsProgram, LawsThatDoNotGoTogetherAreRefusedWithTheReason) {
+  const auto refusal = [](const std::string& scene, const Arguments& sets) {
+    Arguments arguments{"check", scene_path(scene)};
+    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 2) << result.out;
+    return result.out + result.err;
+  };
+  EXPECT_THAT(refusal("examples/mass_on_belt.yaml", {"contact.friction={law: shear, strength: 1}"}),
+              HasSubstr("shear is friction per area of contact, and this normal law has no area"));
+  EXPECT_THAT(refusal("examples/mass_on_belt.yaml", {"drive.moves=contact.slave"}),
+              HasSubstr("there is no 'contact.slave' to move"));
+  EXPECT_THAT(refusal("beam_on_beam.yaml", {"drive.moves=contact.master"}),
+              HasSubstr("'cantilever.top' is the surface of a body"));
+  EXPECT_THAT(refusal("beam_on_beam.yaml", {"drive.load_on=oblique.tipp"}),
+              HasSubstr("did you mean 'tip'"));
+  EXPECT_THAT(refusal("examples/beam_on_substrate.yaml", {"contact.master=rigid"}),
+              HasSubstr("must be `half_space` with the viscoelastic normal law"));
+  EXPECT_THAT(refusal("examples/beam_on_substrate.yaml", {"contact.substrate={radius: 2 mm}"}),
+              HasSubstr("substrate"));
+}
+
+}  // namespace
+}  // namespace stridor

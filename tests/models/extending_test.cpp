@@ -1,0 +1,116 @@
+// The worked example of docs/extending.md: a type of body of one's own.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "models/model.hpp"
+#include "solvers/equilibrium.hpp"
+#include "solvers/simulation.hpp"
+// example: includes
+#include "core/schema.hpp"
+#include "substructures/body_parameters.hpp"
+#include "substructures/lumped_body.hpp"
+// end of example
+
+namespace stridor {
+namespace {
+
+// example: a type
+/// Equal masses above each other, joined by equal springs.
+struct ColumnParameters : BodyParametersOf<ColumnParameters> {
+  static constexpr const char* type_name = "column";
+
+  int masses = 2;          ///< >= 2
+  double mass = 0.0;       ///< of each, kg, > 0
+  double stiffness = 0.0;  ///< of each spring, N/m, > 0
+  static const Schema& schema();
+
+  BodyMatrices make() const override;
+};
+
+const Schema& ColumnParameters::schema() {
+  using P = ColumnParameters;
+  static const Schema keys =
+      SchemaOf<P>("column")
+          .integer("masses", &P::masses,
+                   {.doc = "Number of masses.", .range = Range::between(2, 1000)})
+          .real("mass", &P::mass, {.doc = "Of each.", .unit = "kg", .range = Range::positive()})
+          .real("stiffness", &P::stiffness,
+                {.doc = "Of each spring.", .unit = "N m-1", .range = Range::positive()});
+  return keys;
+}
+
+/// K and M of the chain; `foot` and `head` are its ends.
+BodyMatrices ColumnParameters::make() const {
+  LumpedParameters chain;
+  chain.moves = {"y"};
+  std::string below;
+  for (int i = 0; i < masses; ++i) {
+    const std::string name = i == 0 ? "foot" : i + 1 == masses ? "head" : std::to_string(i);
+    chain.masses[name] = {mass, {0.0, 0.01 * i}};
+    if (i > 0) chain.springs[name] = {{below, name}, stiffness, 0.0, {}};
+    below = name;
+  }
+  return chain.make();
+}
+// end of example
+
+TEST(Extending, BodyOfOnesOwnStandsOnTheGroundUnderALoad) {
+  ColumnParameters column;
+  column.masses = 4;
+  column.mass = 0.1;
+  column.stiffness = 1000.0;
+  ModelParameters parameters;
+  parameters.substructures["column"] = column;
+  ContactParameters contact;
+  contact.slave = {"column.foot"};
+  contact.master = rigid_master;
+  contact.assumption = ContactAssumption::film;
+  contact.friction.emplace().coefficient = 0.3;
+  parameters.contact = contact;
+  parameters.drive.velocity = TimeCurve(0.0);
+  parameters.drive.load = TimeCurve(-5.0);
+  parameters.drive.load_on = {"column.head"};
+  const Model model = make_model(parameters, {{{"column", "head"}, "record.channels.0"}});
+  const Equilibrium rest = find_equilibrium(model.system, sliding_state(model.system, 0.0));
+  ASSERT_EQ(rest.status, EquilibriumStatus::converged) << rest.failure;
+  EXPECT_NEAR(rest.contacts[0].force, 5.0, 1e-12);
+  const SystemBody& body = model.system.bodies[0];
+  const Model::Point& head = model.points.at({"column", "head"});
+  // Three springs in a row.
+  EXPECT_NEAR(body.modal.rows.row(head.rows.y) * rest.displacement[0], -5.0 * 3.0 / 1000.0, 1e-13);
+  TimeParameters time;
+  time.step = 1e-4;
+  Simulation simulation(model.system, time);
+  EXPECT_EQ(simulation.step_until(1000), StepOutcome::done) << simulation.failure();
+}
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+TEST(Extending, PageShowsWhatIsCompiledHere) {
+  const std::filesystem::path root = STRIDOR_SOURCE_DIR;
+  const std::string page = text_of(root / "docs" / "extending.md");
+  const std::string source = text_of(root / "tests" / "models" / "extending_test.cpp");
+  int shown = 0;
+  const std::string begin = "\n// example: ";
+  for (std::size_t at = source.find(begin); at != std::string::npos;
+       at = source.find(begin, at + 1)) {
+    const std::size_t first = source.find('\n', at + 1) + 1;
+    const std::size_t last = source.find("// end of example", first);
+    ASSERT_NE(last, std::string::npos);
+    const std::string example = source.substr(first, last - first);
+    EXPECT_NE(page.find(example), std::string::npos) << example;
+    ++shown;
+  }
+  EXPECT_EQ(shown, 2);
+}
+
+}  // namespace
+}  // namespace stridor
