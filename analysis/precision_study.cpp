@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "analysis/step_guard.hpp"
 #include "core/errors.hpp"
 #include "solvers/make_propagator.hpp"
 #include "solvers/retained_modes.hpp"
@@ -142,7 +143,7 @@ TimedRun::TimedRun(const System& system, const TimeParameters& time, ObservedRow
   for (std::vector<double>& force : samples_.forces)
     force.reserve(static_cast<std::size_t>(num_samples) + 1);
   try {
-    simulation_.emplace(system, time);
+    simulation_ = make_run_simulation(system, time);
   } catch (const ConfigError& error) {
     failure_ = error.what();
     return;

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <cstddef>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "core/errors.hpp"
 #include "solvers/contact_path.hpp"
@@ -15,72 +18,134 @@
 namespace stridor {
 namespace {
 
+using Complex = std::complex<double>;
+
 /// Of a radius.
 constexpr double rounding = 1e-10;
-/// Share of the growth that may be the error of the scheme.
-constexpr double growth_error = 0.1;
+/// How far the motion of a step may be from that of the bodies, relative to |s|.
+constexpr double largest_shift = 0.2;
 
 /// The bodies in contact with the same rows, without what turns them.
 class BodiesInContact {
  public:
   explicit BodiesInContact(const Pencil& contacts) : contacts_(&contacts) {}
 
-  /// Largest real part of the eigenvalues that may belong to a motion of the steps; nothing where
-  /// there are none. The central difference makes frequencies too high, at its limit by π/2.
-  std::optional<double> growth_near(double frequency) {
-    const double highest = 1.1 * frequency;
-    if (searched_ < highest) search(highest);
-    std::optional<double> growth;
-    for (const Eigenvalue& eigenvalue : eigenvalues_) {
-      const double own = eigenvalue.frequency();
-      if (own < frequency / 1.6 || own > highest) continue;
-      growth = std::max(growth.value_or(eigenvalue.growth()), eigenvalue.growth());
-    }
-    return growth;
+  /// Eigenvalues s with Im s >= 0, at least those up to a size.
+  const std::vector<Complex>& up_to(double size) {
+    if (searched_ < size) search(size);
+    return eigenvalues_;
   }
 
  private:
-  /// All eigenvalues up to a frequency.
-  void search(double frequency) {
+  void search(double size) {
     Pencil rows = *contacts_;
     drop_contact_terms(rows);
     rows = with_springs(rows);
     SecularFunction function(rows);
+    const double frequency = size / (2.0 * std::numbers::pi);
     SecularSpectrum found = secular_spectrum(function, SpectrumWindow::below(frequency));
-    eigenvalues_ = found.is_complete ? std::move(found.eigenvalues)
-                                     : dense_eigenvalues(rows, DenseWork::eigenvalues);
-    searched_ = found.is_complete ? frequency : std::numeric_limits<double>::infinity();
+    if (!found.is_complete) found.eigenvalues = dense_eigenvalues(rows, DenseWork::eigenvalues);
+    searched_ = found.is_complete ? size : std::numeric_limits<double>::infinity();
+    eigenvalues_.clear();
+    for (const Eigenvalue& one : found.eigenvalues)
+      if (one.s.imag() >= 0.0) eigenvalues_.push_back(one.s);
   }
 
   const Pencil* contacts_;
-  std::vector<Eigenvalue> eigenvalues_;
-  double searched_ = -1.0;  ///< Hz, up to which they are known
+  std::vector<Complex> eigenvalues_;
+  double searched_ = -1.0;  ///< |s| up to which they are known
 };
 
-StepStability stability_of(const FrozenStep& step, const Pencil& contacts,
-                           BodiesInContact& bodies) {
-  const std::vector<std::complex<double>> factors = step.factors(contacts);
+/// A motion that grows from step to step.
+struct GrowingMotion {
+  double growth = 0.0;     ///< ln|z|/h, 1/s
+  double frequency = 0.0;  ///< Hz
+  Complex represented;     ///< s of the bodies that it stands for
+  std::optional<double> growth_of_bodies{};
+
+  double own_growth() const { return growth - std::max(0.0, growth_of_bodies.value_or(0.0)); }
+};
+
+GrowingMotion motion_of(Complex z, const FrozenStep& step) {
+  const double h = step.step();
+  GrowingMotion motion{std::log(std::abs(z)) / h,
+                       std::abs(std::arg(z)) / (2.0 * std::numbers::pi * h), std::log(z) / h};
+  if (step.integrator() == Integrator::central_difference)
+    motion.represented = std::sqrt((z - 1.0) * (z - 1.0) / z) / h;
+  if (motion.represented.imag() < 0.0) motion.represented = std::conj(motion.represented);
+  return motion;
+}
+
+/// Gives an eigenvalue to every motion that has none, the nearest pairs first.
+void match(std::vector<GrowingMotion>& motions, std::vector<Complex> eigenvalues) {
+  while (!eigenvalues.empty()) {
+    double least = largest_shift;
+    GrowingMotion* nearest = nullptr;
+    std::size_t taken = 0;
+    for (GrowingMotion& motion : motions) {
+      if (motion.growth_of_bodies) continue;
+      for (std::size_t j = 0; j < eigenvalues.size(); ++j) {
+        const double distance =
+            std::abs(eigenvalues[j] - motion.represented) / std::abs(motion.represented);
+        if (!(distance < least)) continue;
+        least = distance;
+        nearest = &motion;
+        taken = j;
+      }
+    }
+    if (nearest == nullptr) return;
+    nearest->growth_of_bodies = eigenvalues[taken].real();
+    eigenvalues.erase(eigenvalues.begin() + static_cast<std::ptrdiff_t>(taken));
+  }
+}
+
+StepStability stability_of(const FrozenStep& step, const Pencil& contacts, BodiesInContact& bodies,
+                           const GrowthTolerance& tolerance) {
+  const std::vector<Complex> factors = step.factors(contacts);
   StepStability found;
-  const auto largest =
-      std::max_element(factors.begin(), factors.end(),
-                       [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); });
-  if (largest == factors.end()) return found;
-  found.radius = std::abs(*largest);
-  found.growth = std::log(found.radius) / step.step();
-  found.frequency = std::abs(std::arg(*largest)) / (2.0 * std::numbers::pi * step.step());
-  if (found.radius <= 1.0 + rounding) return found;
-  found.growth_of_bodies = bodies.growth_near(found.frequency);
-  const double own = found.growth - std::max(0.0, found.growth_of_bodies.value_or(0.0));
-  found.verdict =
-      own > growth_error * found.growth ? StepVerdict::step_grows : StepVerdict::bodies_grow;
+  std::vector<GrowingMotion> growing;
+  double highest = 0.0;
+  for (const Complex z : factors) {
+    const double radius = std::abs(z);
+    if (radius > found.radius) {
+      const GrowingMotion motion = motion_of(z, step);
+      found.radius = radius;
+      found.growth = motion.growth;
+      found.frequency = motion.frequency;
+    }
+    if (!(radius > 1.0 + rounding) || z.imag() < 0.0) continue;
+    growing.push_back(motion_of(z, step));
+    highest = std::max(highest, std::abs(growing.back().represented));
+  }
+  if (growing.empty()) return found;
+  std::vector<Complex> of_bodies = bodies.up_to((1.0 + largest_shift) * highest);
+  const auto decaying = std::stable_partition(of_bodies.begin(), of_bodies.end(),
+                                              [](Complex s) { return s.real() > 0.0; });
+  match(growing, {of_bodies.begin(), decaying});
+  match(growing, {decaying, of_bodies.end()});
+  const auto by_step = [&](const GrowingMotion& motion) {
+    return motion.own_growth() > std::max(tolerance.share * motion.growth, tolerance.least);
+  };
+  const auto worst = std::max_element(
+      growing.begin(), growing.end(), [&](const GrowingMotion& a, const GrowingMotion& b) {
+        const auto rank = [&](const GrowingMotion& motion) {
+          return std::pair(by_step(motion), by_step(motion) ? motion.own_growth() : motion.growth);
+        };
+        return rank(a) < rank(b);
+      });
+  found.verdict = by_step(*worst) ? StepVerdict::step_grows : StepVerdict::bodies_grow;
+  found.growth = worst->growth;
+  found.frequency = worst->frequency;
+  found.growth_of_bodies = worst->growth_of_bodies;
   return found;
 }
 
 }  // namespace
 
-StepStability step_stability(const FrozenStep& step, const Pencil& contacts) {
+StepStability step_stability(const FrozenStep& step, const Pencil& contacts,
+                             const GrowthTolerance& tolerance) {
   BodiesInContact bodies(contacts);
-  return stability_of(step, contacts, bodies);
+  return stability_of(step, contacts, bodies, tolerance);
 }
 
 std::optional<double> stable_step(const System& system, const TimeParameters& time,
@@ -89,7 +154,7 @@ std::optional<double> stable_step(const System& system, const TimeParameters& ti
   const auto grows = [&](double step) {
     TimeParameters at = time;
     at.step = step;
-    return stability_of(FrozenStep(system, at), contacts, bodies).verdict ==
+    return stability_of(FrozenStep(system, at), contacts, bodies, {}).verdict ==
            StepVerdict::step_grows;
   };
   double high = time.step;

@@ -1,6 +1,7 @@
 // Whether the steps of a run are stable, and where along its path they are not.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
@@ -17,27 +18,43 @@ enum class StepVerdict {
   no_equilibrium,  ///< there is no state of sliding there
 };
 
+/// Growth of its own that a step may have before it is said to grow by itself.
+struct GrowthTolerance {
+  double share = 0.1;  ///< of the growth of a motion: the error of the scheme
+  double least = 0.0;  ///< 1/s
+};
+
 /// What the steps do at one place, the sliding held.
 struct StepStability {
   StepVerdict verdict = StepVerdict::stable;
-  double radius = 0.0;     ///< largest |z| of FrozenStep::factors()
-  double growth = 0.0;     ///< ln(radius)/h, 1/s
+  double radius = 0.0;  ///< largest |z| of FrozenStep::factors()
+  /// ln|z|/h, 1/s, of the motion that grows most by itself, or, where none does, of the largest
+  /// |z|.
+  double growth = 0.0;
   double frequency = 0.0;  ///< of that motion, |arg z|/(2πh), Hz
-  /// Largest real part of the eigenvalues of the bodies in contact about that frequency, 1/s; not
-  /// asked for where the steps are stable, and nothing where there are none.
+  /// Of the same motion of the bodies in contact, Re s, 1/s; nothing where they have none such, or
+  /// where nothing grows from step to step.
   std::optional<double> growth_of_bodies;
+
+  /// What of the growth does not belong to the bodies, 1/s.
+  double own_growth() const { return growth - std::max(0.0, growth_of_bodies.value_or(0.0)); }
 };
 
 /// Growth from step to step against that of the bodies, exp(h Re s), with the same rows.
 ///
-/// What grows fastest is compared with the eigenvalues at its frequency, or up to π/2 below it, by
-/// which the central difference raises frequencies. Rounding makes a radius uncertain by about
-/// 1e-10. A tenth of the growth may be the error of the scheme; what is beyond that does not belong
-/// to the bodies.
+/// Every motion that grows from step to step stands for a motion of the bodies: for the s of
+///
+///   z = exp(s h),   or   z − 2 + 1/z = (s h)²   of the central difference,
+///
+/// or for the eigenvalue nearest to it, at most 0.2 |s| away. Growing eigenvalues are given first,
+/// nearest pairs before others, and each answers for one motion only. Rounding makes a radius
+/// uncertain by about 1e-10.
 /// @param contacts as FrozenStep::factors()
 /// @throws NumericalError as FrozenStep::factors() and dense_eigenvalues()
-/// Cost: two dense eigenvalue problems of twice the number of modes.
-StepStability step_stability(const FrozenStep& step, const Pencil& contacts);
+/// Cost: that of FrozenStep::factors(), and, where something grows, of the eigenvalues up to its
+/// frequency.
+StepStability step_stability(const FrozenStep& step, const Pencil& contacts,
+                             const GrowthTolerance& tolerance = {});
 
 /// Largest step up to time.step at which nothing grows by itself, s, by bisection to 1e-4; nothing
 /// where that is less than a hundredth of time.step.

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "analysis/step_guard.hpp"
 #include "app/body_report.hpp"
 #include "app/command.hpp"
 #include "app/step_stability_report.hpp"
@@ -70,6 +71,8 @@ Report check_scene(const CheckOptions& options) {
     const Activity preparing("preparing the first step");
     set_initial_state(model.system, loaded);
     const Simulation simulation(model.system, loaded.scene.time, accounts_of(loaded.scene));
+    // The report on stability shows what a run would be refused for.
+    if (!options.stability) require_no_own_growth(model.system, loaded.scene.time);
   } catch (const ConfigError& error) {
     throw loaded.located(error);
   }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "analysis/step_guard.hpp"
 #include "app/transient_results.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
@@ -119,7 +120,7 @@ Transient::Transient(const LoadedScene& loaded, const InterruptedRun& interrupte
 
 void Transient::make_simulation() {
   const Scene& scene = loaded_->scene;
-  simulation_.emplace(model_.system, scene.time, accounts_of(scene));
+  simulation_ = make_run_simulation(model_.system, scene.time, accounts_of(scene));
   if (scene.record) channels_ = parse_channels(*scene.record, scene.model);
   interval_ = scene.record ? scene.record->interval : scene.time.step;
 }

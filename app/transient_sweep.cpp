@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "analysis/step_guard.hpp"
 #include "app/axis_units.hpp"
 #include "app/progress.hpp"
 #include "app/run_keeping.hpp"
@@ -98,7 +99,7 @@ struct Transit {
     const double step = given.time.step;
     set_initial_state(model.system, loaded);
     try {
-      simulation.emplace(model.system, given.time, accounts_of(given));
+      simulation = make_run_simulation(model.system, given.time, accounts_of(given));
     } catch (const ConfigError& error) {
       throw loaded.located(error);
     }

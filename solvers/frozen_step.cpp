@@ -32,13 +32,14 @@ struct MovingModes {
 };
 
 MovingModes moving_modes(const Pencil& contacts, const System& system, const TimeParameters& time,
-                         std::optional<double> surplus, double cutoff) {
+                         std::optional<double> surplus, double cutoff,
+                         const std::vector<CoupledStep>& coupled_steps) {
   std::vector<Eigen::Index> moving;
-  std::vector<std::pair<Eigen::Index, const SystemBody*>> coupled;  // first of the moving modes
+  std::vector<Eigen::Index> coupled;  // first moving mode of every coupled body
   Eigen::Index first = 0;
   for (const SystemBody& body : system.bodies) {
     const bool is_coupled = !body.modal.coupled.is_empty();
-    if (is_coupled) coupled.emplace_back(static_cast<Eigen::Index>(moving.size()), &body);
+    if (is_coupled) coupled.push_back(static_cast<Eigen::Index>(moving.size()));
     for (Eigen::Index i = first; i < first + body.modal.size(); ++i)
       if (is_coupled || contacts.omega(i) <= cutoff) moving.push_back(i);
     first += body.modal.size();
@@ -61,10 +62,10 @@ MovingModes moving_modes(const Pencil& contacts, const System& system, const Tim
     modes.by_force(i, i) = modes.by_force(n + i, i) = c.gain;
     prompt(i, i) = c.prompt;
   }
-  for (const auto& [at, body] : coupled) {
-    const Eigen::Index m = body->modal.size();
-    const CoupledStep step =
-        make_coupled_step(body->modal, time.step, surplus, body->modal.damping.alpha, body->name);
+  for (std::size_t b = 0; b < coupled.size(); ++b) {
+    const CoupledStep& step = coupled_steps[b];
+    const Eigen::Index at = coupled[b];
+    const Eigen::Index m = step.position.rows();
     for (const Eigen::Index to : {Eigen::Index{0}, Eigen::Index{1}}) {
       modes.by_force.block(to * n + at, at, m, m) = step.by_force.middleRows(to * m, m);
       for (const Eigen::Index from : {Eigen::Index{0}, Eigen::Index{1}}) {
@@ -142,16 +143,26 @@ std::vector<LeftOut> left_out_modes(const Pencil& contacts, const System& system
   return found;
 }
 
+std::optional<double> surplus_of(const System& system, const TimeParameters& time) {
+  // A copy of all bodies is worth avoiding.
+  if (time.integrator == Integrator::central_difference && !time.retain) return std::nullopt;
+  return prompt_surplus(retained(system, time), time);
+}
+
 }  // namespace
 
 FrozenStep::FrozenStep(const System& system, const TimeParameters& time)
-    : FrozenStep(system, time, prompt_surplus(retained(system, time), time)) {}
+    : FrozenStep(system, time, surplus_of(system, time)) {}
 
 FrozenStep::FrozenStep(const System& system, const TimeParameters& time,
                        std::optional<double> surplus)
     : system_(&system), time_(time), surplus_(surplus), cutoff_(retained_frequency(system, time)) {
-  for (const SystemBody& body : system.bodies)
-    if (!body.modal.coupled.is_empty()) require_exact(body.name, time);
+  for (const SystemBody& body : system.bodies) {
+    if (body.modal.coupled.is_empty()) continue;
+    require_exact(body.name, time);
+    coupled_.push_back(
+        make_coupled_step(body.modal, time.step, surplus, body.modal.damping.alpha, body.name));
+  }
 }
 
 std::vector<std::complex<double>> FrozenStep::factors(const Pencil& contacts) const {
@@ -159,20 +170,17 @@ std::vector<std::complex<double>> FrozenStep::factors(const Pencil& contacts) co
   if (contacts.num_modes() != make_modal_pencil(*system_).num_modes())
     throw std::invalid_argument("FrozenStep: the contacts are on other modes than the system has");
   const std::vector<LeftOut> left_out = left_out_modes(contacts, *system_, time_.step, cutoff_);
-  const bool is_uncoupled =
-      std::all_of(system_->bodies.begin(), system_->bodies.end(),
-                  [](const SystemBody& body) { return body.modal.coupled.is_empty(); });
-  if (is_uncoupled) {
+  if (coupled_.empty()) {
     FrozenModes uncoupled = frozen_modes(contacts, time_, surplus_, cutoff_);
     uncoupled.left_out = left_out;
     // A dense decomposition of few modes takes less than the search for zeros.
-    constexpr Eigen::Index most_dense = 30;
+    constexpr Eigen::Index most_dense = 12;
     if (uncoupled.gaps.cols() > most_dense) {
       check_closed(uncoupled.closed());
       if (auto found = step_factors(uncoupled)) return std::move(*found);
     }
   }
-  const MovingModes modes = moving_modes(contacts, *system_, time_, surplus_, cutoff_);
+  const MovingModes modes = moving_modes(contacts, *system_, time_, surplus_, cutoff_, coupled_);
   Eigen::MatrixXd closed = modes.closed;
   for (const LeftOut& body : left_out) closed += body.share * body.closed;
   if (contacts.compliance.size() > 0) closed.diagonal() += contacts.compliance;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "coupling/system.hpp"
+#include "solvers/coupled_step.hpp"
 #include "solvers/pencil.hpp"
 #include "solvers/time_parameters.hpp"
 
@@ -38,6 +39,7 @@ class FrozenStep {
   FrozenStep(const System& system, const TimeParameters& time, std::optional<double> surplus);
 
   double step() const { return time_.step; }
+  Integrator integrator() const { return time_.integrator; }
 
   /// All factors by which motions change in a step, conjugates one by one, in no order; those of
   /// rigid gaps, which one step closes, are 0.
@@ -54,7 +56,8 @@ class FrozenStep {
   const System* system_;
   TimeParameters time_;
   std::optional<double> surplus_;
-  double cutoff_;  ///< ω of the last mode that moves, rad/s
+  double cutoff_;                     ///< ω of the last mode that moves, rad/s
+  std::vector<CoupledStep> coupled_;  ///< of the bodies with coupled terms, in their order
 };
 
 /// The largest of some factors, |z|.

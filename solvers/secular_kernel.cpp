@@ -144,32 +144,58 @@ STRIDOR_INLINE void pole_slopes(const SecularModes& modes, const double* mask, d
   *sum_im = sum_of(total_im);
 }
 
+template <class Vector>
+STRIDOR_INLINE Repulsion repulsion(const double* re, const double* im, std::size_t size, double x,
+                                   double y) {
+  Vector sum_re{}, sum_im{};
+  const Vector far = padding_omega * padding_omega + Vector{};
+  Vector least = far;
+  for (std::size_t i = 0; i < size; i += lanes<Vector>) {
+    const Vector away_re = x - at<Vector>(re, i);
+    const Vector away_im = y - at<Vector>(im, i);
+    const Vector square = away_re * away_re + away_im * away_im;
+    // Nothing where they are equal.
+    const Vector apart = square == 0.0 ? far : square;
+    const Vector scale = 1.0 / apart;
+    sum_re += away_re * scale;
+    sum_im -= away_im * scale;
+    least = apart < least ? apart : least;
+  }
+  return {sum_of(sum_re), sum_of(sum_im), least_of(least)};
+}
+
 struct Kernel {
   SecularSums (*sums)(const SecularModes&, const double*, double, double);
   double (*invert)(const SecularModes&, double, double, const InverseModes&);
   void (*weigh)(const double*, const double*, const double*, std::size_t, double*, double*);
   void (*pole_slopes)(const SecularModes&, const double*, double, double, double*, double*);
+  Repulsion (*repulsion)(const double*, const double*, std::size_t, double, double);
 };
 
-// The four loops compiled for one instruction set.
-#define STRIDOR_SECULAR_KERNEL(name, target, Vector)                                         \
-  target SecularSums sums_##name(const SecularModes& modes, const double* weights, double x, \
-                                 double y) {                                                 \
-    return sums<Vector>(modes, weights, x, y);                                               \
-  }                                                                                          \
-  target double invert_##name(const SecularModes& modes, double x, double y,                 \
-                              const InverseModes& inverse) {                                 \
-    return invert_all<Vector>(modes, x, y, inverse);                                         \
-  }                                                                                          \
-  target void weigh_##name(const double* weights, const double* re, const double* im,        \
-                           std::size_t size, double* sum_re, double* sum_im) {               \
-    weigh_all<Vector>(weights, re, im, size, sum_re, sum_im);                                \
-  }                                                                                          \
-  target void pole_slopes_##name(const SecularModes& modes, const double* mask, double x,    \
-                                 double y, double* sum_re, double* sum_im) {                 \
-    pole_slopes<Vector>(modes, mask, x, y, sum_re, sum_im);                                  \
-  }                                                                                          \
-  constexpr Kernel kernel_##name{sums_##name, invert_##name, weigh_##name, pole_slopes_##name};
+// The five loops compiled for one instruction set.
+#define STRIDOR_SECULAR_KERNEL(name, target, Vector)                                           \
+  target SecularSums sums_##name(const SecularModes& modes, const double* weights, double x,   \
+                                 double y) {                                                   \
+    return sums<Vector>(modes, weights, x, y);                                                 \
+  }                                                                                            \
+  target double invert_##name(const SecularModes& modes, double x, double y,                   \
+                              const InverseModes& inverse) {                                   \
+    return invert_all<Vector>(modes, x, y, inverse);                                           \
+  }                                                                                            \
+  target void weigh_##name(const double* weights, const double* re, const double* im,          \
+                           std::size_t size, double* sum_re, double* sum_im) {                 \
+    weigh_all<Vector>(weights, re, im, size, sum_re, sum_im);                                  \
+  }                                                                                            \
+  target void pole_slopes_##name(const SecularModes& modes, const double* mask, double x,      \
+                                 double y, double* sum_re, double* sum_im) {                   \
+    pole_slopes<Vector>(modes, mask, x, y, sum_re, sum_im);                                    \
+  }                                                                                            \
+  target Repulsion repulsion_##name(const double* re, const double* im, std::size_t size,      \
+                                    double x, double y) {                                      \
+    return repulsion<Vector>(re, im, size, x, y);                                              \
+  }                                                                                            \
+  constexpr Kernel kernel_##name{sums_##name, invert_##name, weigh_##name, pole_slopes_##name, \
+                                 repulsion_##name};
 
 STRIDOR_SECULAR_KERNEL(portable, , Vector4)
 #if defined(__x86_64__)
@@ -208,6 +234,10 @@ void weigh(const double* weights, const double* re, const double* im, std::size_
 void sum_pole_slopes(const SecularModes& modes, const double* mask, double x, double y,
                      double* sum_re, double* sum_im) {
   kernel.pole_slopes(modes, mask, x, y, sum_re, sum_im);
+}
+
+Repulsion sum_repulsion(const double* re, const double* im, std::size_t size, double x, double y) {
+  return kernel.repulsion(re, im, size, x, y);
 }
 
 }  // namespace stridor

@@ -51,4 +51,15 @@ void weigh(const double* weights, const double* re, const double* im, std::size_
 void sum_pole_slopes(const SecularModes& modes, const double* mask, double x, double y,
                      double* sum_re, double* sum_im);
 
+/// What repels an iterate of Ehrlich and Aberth's search.
+struct Repulsion {
+  double re = 0.0;  ///< Σ 1/(z − z_i)
+  double im = 0.0;
+  double least = padding_omega * padding_omega;  ///< min |z − z_i|²
+};
+
+/// Of all z_i but those that equal z = x + iy.
+/// @param re, im 64-byte aligned and padded with numbers far away
+Repulsion sum_repulsion(const double* re, const double* im, std::size_t size, double x, double y);
+
 }  // namespace stridor

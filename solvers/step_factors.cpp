@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "solvers/aligned_array.hpp"
 #include "solvers/secular_kernel.hpp"
 #include "solvers/small_matrices.hpp"
+#include "solvers/zero_iterates.hpp"
 
 namespace stridor {
 namespace {
@@ -24,8 +26,7 @@ class StepFunction {
       : given_(given),
         n_(given.keep.size()),
         k_(given.gaps.rows()),
-        padded_((static_cast<std::size_t>(n_) + secular_block - 1) / secular_block *
-                secular_block),
+        padded_((static_cast<std::size_t>(n_) + secular_block - 1) / secular_block * secular_block),
         omega_(padded_),
         damping_(padded_),
         mask_(padded_),
@@ -77,7 +78,8 @@ class StepFunction {
   std::array<Complex, 2> poles(std::size_t i) const {
     const double half = 0.5 * damping_[i];
     const double square = (omega_[i] - half) * (omega_[i] + half);
-    if (square >= 0.0) return {Complex(-half, std::sqrt(square)), Complex(-half, -std::sqrt(square))};
+    if (square >= 0.0)
+      return {Complex(-half, std::sqrt(square)), Complex(-half, -std::sqrt(square))};
     const double far = -half - std::copysign(std::sqrt(-square), half);
     return {Complex(far, 0.0), Complex(far == 0.0 ? 0.0 : omega_[i] * omega_[i] / far, 0.0)};
   }
@@ -85,11 +87,12 @@ class StepFunction {
   /// P′/P; infinite at a zero.
   Complex log_slope(Complex w) {
     const SecularModes modes{omega_.data(), damping_.data(), padded_};
-    invert_modes(modes, w.real(), w.imag(),
-                 {value_re_.data(), value_im_.data(), slope_re_.data(), slope_im_.data(),
-                  norm_.data()});
-    const auto nearest = static_cast<std::size_t>(
-        std::min_element(norm_.data(), norm_.data() + n_) - norm_.data());
+    const double least = invert_modes(
+        modes, w.real(), w.imag(),
+        {value_re_.data(), value_im_.data(), slope_re_.data(), slope_im_.data(), norm_.data()});
+    const double* const end = norm_.data() + n_ - 1;  // the last where none is least: not a number
+    const auto nearest =
+        static_cast<std::size_t>(std::find(std::as_const(norm_).data(), end, least) - norm_.data());
     near_.assign(1, nearest);
     near_.insert(near_.end(), clusters_[nearest].begin(), clusters_[nearest].end());
     for (const std::size_t i : near_)
@@ -167,50 +170,69 @@ class StepFunction {
   Eigen::MatrixXcd bordered_, bordered_slope_;
 };
 
-/// As many starts as there are zeros, beside the poles, none of them the conjugate of another.
-std::vector<Complex> starts_of(const StepFunction& function, const FrozenModes& modes) {
-  std::vector<Complex> starts;
-  const auto add = [&](Complex pole) {
-    const double turn = 0.5 + static_cast<double>(starts.size());
-    starts.push_back(pole + std::polar(1e-3 * std::abs(pole) + 1e-9, turn));
-  };
-  for (const FrozenModes::LeftOut& body : modes.left_out)
-    for (Eigen::Index i = 0; i < modes.gaps.rows(); ++i) add(-body.share);
-  std::vector<Complex> poles;
-  for (Eigen::Index i = 0; i < modes.keep.size(); ++i)
-    for (const Complex pole : function.poles(static_cast<std::size_t>(i))) poles.push_back(pole);
-  std::sort(poles.begin(), poles.end(),
-            [](Complex a, Complex b) { return std::abs(a) < std::abs(b); });
-  const auto size = static_cast<std::size_t>(function.num_zeros());
-  for (std::size_t i = 0; starts.size() < size; ++i) add(poles[i]);
-  return starts;
+/// Beside a pole, the count-th of the starts.
+Complex start_beside(Complex pole, std::size_t count) {
+  const double turn = 0.5 + static_cast<double>(count);
+  return pole + std::polar(1e-3 * std::abs(pole) + 1e-9, turn);
 }
 
+/// As many starts as there are zeros, beside the smallest poles and those of the modes left out.
+struct Starts {
+  std::vector<Complex> upper;  ///< beside the poles of oscillations, of positive imaginary part
+  std::vector<Complex> alone;
+
+  Starts(const StepFunction& function, const FrozenModes& modes) {
+    const auto size = static_cast<std::size_t>(function.num_zeros());
+    for (const FrozenModes::LeftOut& body : modes.left_out) {
+      for (Eigen::Index i = 0; i < modes.gaps.rows(); ++i)
+        alone.push_back(start_beside(-body.share, count()));
+    }
+    std::vector<Complex> poles;  // one of two conjugates
+    for (Eigen::Index i = 0; i < modes.keep.size(); ++i) {
+      const auto [first, second] = function.poles(static_cast<std::size_t>(i));
+      poles.push_back(first);
+      if (first.imag() == 0.0) poles.push_back(second);
+    }
+    std::sort(poles.begin(), poles.end(),
+              [](Complex a, Complex b) { return std::abs(a) < std::abs(b); });
+    for (std::size_t i = 0; count() < size; ++i) {
+      const Complex start = start_beside(poles[i], count());
+      const bool has_conjugate = poles[i].imag() > 0.0 && count() + 2 <= size;
+      (has_conjugate ? upper : alone).push_back(start);
+    }
+  }
+
+  std::size_t count() const { return 2 * upper.size() + alone.size(); }
+
+  /// None of them the conjugate of another.
+  Starts apart() const {
+    Starts other = *this;
+    for (std::size_t j = 0; j < upper.size(); ++j) {
+      const Complex mirrored = std::conj(upper[j]);
+      other.alone.push_back(upper[j]);
+      other.alone.push_back(start_beside(mirrored, other.alone.size()));
+    }
+    other.upper.clear();
+    return other;
+  }
+};
+
 /// Ehrlich and Aberth's iteration (docs/theory.md, 7.3); whether all have converged.
-bool improve(StepFunction& function, std::vector<Complex>& zeros) {
+bool improve(StepFunction& function, ZeroIterates& zeros) {
   constexpr int max_sweeps = 60;
   constexpr int num_expected = 20;
-  std::vector<bool> is_done(zeros.size(), false);
-  std::vector<double> last(zeros.size(), std::numeric_limits<double>::infinity());
+  std::vector<bool> is_done(zeros.num_free(), false);
+  std::vector<double> last(zeros.num_free(), std::numeric_limits<double>::infinity());
   for (int sweep = 0; sweep < max_sweeps; ++sweep) {
     bool all_done = true;
-    for (std::size_t j = 0; j < zeros.size(); ++j) {
+    for (std::size_t j = 0; j < zeros.num_free(); ++j) {
       if (is_done[j]) continue;
       const Complex slope = function.log_slope(zeros[j]);
       if (slope == StepFunction::at_zero) {
         is_done[j] = true;
         continue;
       }
-      Complex repulsion = 0.0;
-      double spacing = std::numeric_limits<double>::infinity();
-      for (std::size_t i = 0; i < zeros.size(); ++i) {
-        const Complex difference = zeros[j] - zeros[i];
-        const double square = std::norm(difference);
-        if (square == 0.0) continue;  // itself, or one that is as good
-        spacing = std::min(spacing, square);
-        repulsion += std::conj(difference) / square;
-      }
-      spacing = std::sqrt(spacing);
+      const auto [repulsion, spacing] = zeros.around(j);
       Complex step = -reciprocal(slope - repulsion);
       double length = std::abs(step);
       if (!std::isfinite(length)) return false;
@@ -218,14 +240,15 @@ bool improve(StepFunction& function, std::vector<Complex>& zeros) {
       constexpr double farthest = 0.5;
       if (length > farthest) step *= farthest / length;
       length = std::min(length, farthest);
-      zeros[j] += step;
-      const double rounding = eps * std::abs(zeros[j]);
+      const Complex zero = zeros[j] + step;
+      zeros.set(j, zero);
+      const double rounding = eps * std::abs(zero);
       const bool has_stalled =
-          sweep > num_expected && length >= 0.9 * last[j] && length <= 1e-7 * std::abs(zeros[j]);
+          sweep > num_expected && length >= 0.9 * last[j] && length <= 1e-7 * std::abs(zero);
       // A small step next to another iterate is the other's doing, unless a zero is as close.
       is_done[j] = (length * length <= 1e-2 * rounding * spacing || length <= 4.0 * rounding ||
                     has_stalled) &&
-                   1.0 <= std::abs(slope) * std::max(spacing, 1e-6 * std::abs(zeros[j]));
+                   1.0 <= std::abs(slope) * std::max(spacing, 1e-6 * std::abs(zero));
       last[j] = length;
       all_done = all_done && is_done[j];
     }
@@ -272,24 +295,12 @@ Traces traces_of(const FrozenModes& modes) {
   return traces;
 }
 
-}  // namespace
-
-Eigen::MatrixXd FrozenModes::closed() const {
-  Eigen::MatrixXd sum =
-      gaps * (is_instantaneous ? prompt : gain).asDiagonal() * forces.transpose();
-  for (const LeftOut& body : left_out) sum += body.share * body.closed;
-  if (compliance.size() > 0) sum.diagonal() += compliance;
-  return sum;
-}
-
-std::optional<std::vector<Complex>> step_factors(const FrozenModes& modes) {
-  if (modes.gaps.rows() == 0 || modes.keep.size() <= modes.gaps.rows()) return std::nullopt;
-  if (!modes.is_instantaneous && (!modes.left_out.empty() || modes.compliance.size() > 0))
-    return std::nullopt;
-  if ((modes.pull.array() < 0.0).any()) return std::nullopt;
-  StepFunction function(modes);
-  std::vector<Complex> factors = starts_of(function, modes);
-  if (!improve(function, factors)) return std::nullopt;
+/// The factors, if the iteration ends at as many as the traces ask for.
+std::optional<std::vector<Complex>> factors_from(const Starts& starts, StepFunction& function,
+                                                 const FrozenModes& modes) {
+  ZeroIterates iterates(starts.upper, starts.alone);
+  if (!improve(function, iterates)) return std::nullopt;
+  std::vector<Complex> factors = iterates.all();
   Complex found = 0.0;
   Complex found_squares = 0.0;
   for (Complex& factor : factors) {
@@ -303,8 +314,30 @@ std::optional<std::vector<Complex>> step_factors(const FrozenModes& modes) {
   if (!(std::abs(found - traces.of_step) <= largest &&
         std::abs(found_squares - traces.of_square) <= largest))
     return std::nullopt;
-  if (!modes.is_instantaneous)
-    factors.insert(factors.end(), 2 * static_cast<std::size_t>(modes.gaps.rows()), 0.0);
+  return factors;
+}
+
+}  // namespace
+
+Eigen::MatrixXd FrozenModes::closed() const {
+  Eigen::MatrixXd sum = gaps * (is_instantaneous ? prompt : gain).asDiagonal() * forces.transpose();
+  for (const LeftOut& body : left_out) sum += body.share * body.closed;
+  if (compliance.size() > 0) sum.diagonal() += compliance;
+  return sum;
+}
+
+std::optional<std::vector<Complex>> step_factors(const FrozenModes& modes) {
+  if (modes.gaps.rows() == 0 || modes.keep.size() <= modes.gaps.rows()) return std::nullopt;
+  if (!modes.is_instantaneous && (!modes.left_out.empty() || modes.compliance.size() > 0))
+    return std::nullopt;
+  if ((modes.pull.array() < 0.0).any()) return std::nullopt;
+  StepFunction function(modes);
+  const Starts starts(function, modes);
+  // Conjugates cannot part; where two become real, all iterates go their own ways.
+  auto factors = factors_from(starts, function, modes);
+  if (!factors) factors = factors_from(starts.apart(), function, modes);
+  if (factors && !modes.is_instantaneous)
+    factors->insert(factors->end(), 2 * static_cast<std::size_t>(modes.gaps.rows()), 0.0);
   return factors;
 }
 

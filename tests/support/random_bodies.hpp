@@ -37,13 +37,14 @@ inline SystemBody random_body(std::string name, std::mt19937& engine, int num_po
   return body;
 }
 
-/// One point on the straight line y = 0 through the four nodes of the other body, at one of them or
-/// in the middle between two. It slides forward for ever where it is, by Subs-a: with rows that
-/// nothing changes.
-inline System random_sliding_bodies(unsigned seed, double friction, bool is_damped) {
+/// Points on the straight line y = 0 through the four nodes of the other body, each at one of them
+/// or in the middle between two. They slide forward for ever where they are, by Subs-a: with rows
+/// that nothing changes.
+inline System random_sliding_bodies(unsigned seed, double friction, bool is_damped,
+                                    int num_points = 1) {
   std::mt19937 engine(seed);
   System system;
-  system.bodies.push_back(random_body("slave", engine, 1, is_damped));
+  system.bodies.push_back(random_body("slave", engine, num_points, is_damped));
   system.bodies.push_back(random_body("master", engine, 4, is_damped));
   system.bodies[1].follows_drive = false;
   system.bodies[1].load_row = -1;
@@ -56,15 +57,17 @@ inline System random_sliding_bodies(unsigned seed, double friction, bool is_damp
     surface.arc_length.push_back(node);
   }
   system.surfaces.push_back(surface);
-  ContactPoint contact;
-  contact.name = "contact";
-  contact.slave_rows = {0, 1};
-  contact.slave_position = {0.5 * static_cast<double>(1 + engine() % 5), 0.0};
-  contact.first_segment = static_cast<int>(contact.slave_position.x());
-  contact.assumption = ContactAssumption::subs_a;
-  contact.friction = constant_friction(friction);
-  contact.armed_from = 1e9;
-  system.contacts.push_back(contact);
+  for (int point = 0; point < num_points; ++point) {
+    ContactPoint contact;
+    contact.name = "contact";
+    contact.slave_rows = {2 * point, 2 * point + 1};
+    contact.slave_position = {0.5 * static_cast<double>(1 + engine() % 5), 0.0};
+    contact.first_segment = static_cast<int>(contact.slave_position.x());
+    contact.assumption = ContactAssumption::subs_a;
+    contact.friction = constant_friction(friction);
+    contact.armed_from = 1e9;
+    system.contacts.push_back(contact);
+  }
   system.drive.velocity = TimeCurve(1e9);
   system.drive.load = TimeCurve(0.0);
   system.drive.is_frozen = true;
@@ -88,8 +91,7 @@ inline System with_coupling(System system, unsigned seed, const RandomCoupling& 
       const Eigen::MatrixXd a = Eigen::MatrixXd::NullaryExpr(n, n, [&] { return normal(engine); });
       return Eigen::MatrixXd(0.5 * (a - a.transpose()));
     };
-    const Eigen::VectorXd moved =
-        Eigen::VectorXd::NullaryExpr(n, [&] { return normal(engine); });
+    const Eigen::VectorXd moved = Eigen::VectorXd::NullaryExpr(n, [&] { return normal(engine); });
     const double fastest = body.modal.omega.maxCoeff();
     const double slowest = body.modal.omega.minCoeff();
     const Eigen::MatrixXd to_modal = body.modal.shapes.transpose() * body.reduced.mass;
