@@ -16,7 +16,6 @@
 #include "io/scene_files.hpp"
 #include "io/scene_reader.hpp"
 #include "io/sphere_scene.hpp"
-#include "io/summary_memory.hpp"
 #include "models/set_up_estimate.hpp"
 
 namespace stridor {
@@ -281,16 +280,6 @@ LoadedScene load_resolved_scene(const std::string& text, const std::string& sour
   loaded.tree = read_scene_text(text, source);
   loaded.scene = read_as<Scene>(loaded.tree);
   return loaded;
-}
-
-void require_summary_memory(const LoadedScene& loaded) {
-  const Scene& scene = loaded.scene;
-  if (!scene.record) return;
-  try {
-    require_memory(estimate_summary(scene.time.end, scene.record->interval), memory_limit());
-  } catch (const ConfigError& error) {
-    throw loaded.located(error);
-  }
 }
 
 Model build_model(const LoadedScene& loaded) {
