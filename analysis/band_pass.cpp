@@ -59,17 +59,48 @@ double decay_samples(double interval, Band band) {
   return 1.33 * 12.0 * std::numbers::ln10 / -std::log(largest);
 }
 
-/// Samples by which a signal of `count` is continued at each end; more than memory holds is
-/// refused.
-double padding(std::size_t count, double interval, Band band) {
-  const double wanted = std::ceil(decay_samples(interval, band));
-  const double length = static_cast<double>(count) + 2.0 * wanted;
+/// Length of a transform that holds `count` samples and `pad` more at each end; more than memory
+/// holds is refused.
+std::size_t transform_length(std::size_t count, double pad, Band band) {
+  const double length = static_cast<double>(count) + 2.0 * pad;
   if (!(length <= std::numeric_limits<int>::max())) {
     throw std::invalid_argument(
         fmt::format("band_pass: the band {:g} to {:g} Hz needs {:g} samples, too many", band.lower,
                     band.upper, length));
   }
-  return wanted;
+  return fast_fft_length(static_cast<std::size_t>(length));
+}
+
+/// Samples `begin` … of a signal that is continued oddly about both its end values, by the last
+/// reflected value beyond its length.
+void read_continued(const SampleSource& samples, std::ptrdiff_t begin, std::span<double> target) {
+  const auto count = static_cast<std::ptrdiff_t>(samples.size());
+  const std::ptrdiff_t end = begin + static_cast<std::ptrdiff_t>(target.size());
+  const std::ptrdiff_t first = std::clamp<std::ptrdiff_t>(begin, 0, count);
+  const std::ptrdiff_t last = std::clamp<std::ptrdiff_t>(end, first, count);
+  const auto piece = [&](std::ptrdiff_t from, std::ptrdiff_t to) {
+    return target.subspan(static_cast<std::size_t>(from - begin),
+                          static_cast<std::size_t>(to - from));
+  };
+  if (last > first) samples.read(static_cast<std::size_t>(first), piece(first, last));
+  std::vector<double> mirrored;
+  const auto reflect = [&](std::ptrdiff_t from, std::ptrdiff_t to, std::ptrdiff_t about) {
+    // Distances from the end value, at most the length of the signal.
+    const auto distance = [&](std::ptrdiff_t i) {
+      return std::min(std::abs(i - about), count - 1);
+    };
+    const std::ptrdiff_t furthest = std::max(distance(from), distance(to - 1));
+    mirrored.resize(static_cast<std::size_t>(furthest) + 1);
+    samples.read(static_cast<std::size_t>(about == 0 ? 0 : about - furthest), mirrored);
+    if (about != 0) std::reverse(mirrored.begin(), mirrored.end());
+    const std::span<double> values = piece(from, to);
+    for (std::ptrdiff_t i = from; i < to; ++i) {
+      values[static_cast<std::size_t>(i - from)] =
+          2.0 * mirrored[0] - mirrored[static_cast<std::size_t>(distance(i))];
+    }
+  };
+  if (begin < 0) reflect(begin, std::min<std::ptrdiff_t>(end, 0), 0);
+  if (end > count) reflect(std::max(begin, count), end, count - 1);
 }
 
 /// What band_pass_gain() computes from the tangent: with s and c the sine and cosine of π f dt, the
@@ -143,51 +174,64 @@ double band_pass_gain(double frequency, double interval, Band band) {
   return 1.0 / (1.0 + std::pow(distance, 2 * order));
 }
 
+double band_pass_decay(double interval, Band band) {
+  check(interval, band);
+  return std::ceil(decay_samples(interval, band));
+}
+
 std::vector<double> band_pass(std::span<const double> samples, double interval, Band band) {
   check(interval, band);
-  check(samples);
   if (samples.empty()) return {};
-  return BandSpectrum(samples, interval, band).in(band);
+  const SampleSpan source(samples);
+  return BandSpectrum(source, {0, samples.size()}, interval, band).in(band);
 }
 
-BandSpectrum::BandSpectrum(std::span<const double> samples, double interval, Band band)
-    : samples_(samples), interval_(interval) {
-  check(interval, band);
-  check(samples);
-  if (samples.empty()) throw std::invalid_argument("BandSpectrum: there are no samples");
-  continue_for(padding(samples.size(), interval, band));
+BandSpectrum::BandSpectrum(const SampleSource& samples, IndexRange part, double interval, Band band)
+    : samples_(&samples), part_(part), interval_(interval), slowest_(band) {
+  if (part.is_empty()) throw std::invalid_argument("BandSpectrum: there are no samples");
+  decay_ = band_pass_decay(interval, band);
+  transform();
 }
 
-/// Takes the spectrum of the signal, continued by `pad` samples or more to both sides.
-void BandSpectrum::continue_for(double pad) {
-  pad_ = pad;
-  const auto wanted = static_cast<std::size_t>(static_cast<double>(samples_.size()) + 2.0 * pad);
-  const std::size_t n = fast_fft_length(wanted);
-  forward_.emplace(n);
-  backward_.emplace(n);
+void BandSpectrum::move_to(IndexRange part) {
+  if (part.begin == part_.begin && part.end == part_.end) return;
+  part_ = part;
+  transform();
+}
 
-  // The signal from the start of the buffer, then its continuation to the right, then that to the
-  // left: the spectrum is periodic, so the left one ends where the signal begins.
-  const std::span<double> buffer = forward_->input();
-  const std::size_t last = samples_.size() - 1;
-  std::copy(samples_.begin(), samples_.end(), buffer.begin());
-  const std::size_t right = (n - samples_.size()) / 2;
-  const std::size_t left = n - samples_.size() - right;
-  for (std::size_t i = 1; i <= right; ++i) {
-    buffer[last + i] = 2.0 * samples_[last] - samples_[last - std::min(i, last)];
+/// Takes the spectrum of the part with what is to both sides of it.
+void BandSpectrum::transform() {
+  const bool is_whole = part_.size() == samples_->size();
+  const double pad = is_whole ? decay_ : std::ceil(1.5 * decay_);
+  const std::size_t n = transform_length(part_.size(), pad, slowest_);
+  if (!forward_ || forward_->length() != n) {
+    forward_.emplace(n);
+    backward_.emplace(n);
+    prepared_.clear();
   }
-  for (std::size_t i = 1; i <= left; ++i)
-    buffer[n - i] = 2.0 * samples_[0] - samples_[std::min(i, last)];
+  // The part from the start of the buffer, then what follows on it, then what comes before: the
+  // spectrum is periodic, so the latter ends where the part begins.
+  const std::span<double> buffer = forward_->input();
+  const std::size_t left = n - part_.size() - (n - part_.size()) / 2;
+  const auto begin = static_cast<std::ptrdiff_t>(part_.begin);
+  read_continued(*samples_, begin, buffer.first(n - left));
+  read_continued(*samples_, begin - static_cast<std::ptrdiff_t>(left), buffer.last(left));
+  check(buffer);
   forward_->execute();
 }
 
 /// Gains of some bands together, over the length of the transform.
-void BandSpectrum::prepare(std::initializer_list<Band> bands) {
+void BandSpectrum::prepare(const std::vector<Band>& bands) {
   for (const Band& band : bands) {
-    check(interval_, band);
-    const double pad = padding(samples_.size(), interval_, band);
-    if (pad > pad_) continue_for(pad);
+    const double decay = band_pass_decay(interval_, band);
+    if (decay > decay_) {
+      decay_ = decay;
+      slowest_ = band;
+      transform();
+    }
   }
+  if (prepared_ == bands) return;
+  prepared_ = bands;
   const std::size_t n = forward_->length();
   gains_.assign(n / 2 + 1, 1.0 / static_cast<double>(n));
   for (const Band& band : bands) multiply_by_gains(interval_, band, gains_);
@@ -207,18 +251,18 @@ void BandSpectrum::invert(Part part) {
 std::vector<double> BandSpectrum::in(Band band) {
   prepare({band});
   invert(Part::itself);
-  const std::span<const double> filtered = backward_->output().first(samples_.size());
+  const std::span<const double> filtered = backward_->output().first(part_.size());
   return {filtered.begin(), filtered.end()};
 }
 
-PassedSignal BandSpectrum::pass(std::initializer_list<Band> bands) {
+PassedSignal BandSpectrum::pass(const std::vector<Band>& bands) {
   prepare(bands);
   PassedSignal passed;
   invert(Part::itself);
-  const auto values = backward_->output().first(samples_.size());
+  const auto values = backward_->output().first(part_.size());
   passed.samples.assign(values.begin(), values.end());
   invert(Part::hilbert);
-  passed.squared_amplitude.resize(samples_.size());
+  passed.squared_amplitude.resize(part_.size());
   for (std::size_t i = 0; i < passed.samples.size(); ++i) {
     const double x = passed.samples[i];
     passed.squared_amplitude[i] = 0.5 * (x * x + values[i] * values[i]);

@@ -1,11 +1,12 @@
 // Zero-phase Butterworth band-pass.
 #pragma once
 
-#include <initializer_list>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "analysis/sample_source.hpp"
+#include "analysis/statistics.hpp"
 #include "core/fft_plan.hpp"
 
 namespace stridor {
@@ -14,6 +15,8 @@ namespace stridor {
 struct Band {
   double lower;  ///< positive
   double upper;  ///< above `lower`, below the Nyquist frequency of the samples
+
+  bool operator==(const Band&) const = default;
 };
 
 /// Gain of band_pass() at a frequency.
@@ -46,22 +49,34 @@ double band_pass_gain(double frequency, double interval, Band band);
 /// Cost: two FFTs of the padded length, about 32 bytes of memory per padded sample.
 std::vector<double> band_pass(std::span<const double> samples, double interval, Band band);
 
+/// Samples over which the response of band_pass() decays to 10⁻¹². @throws as band_pass()
+double band_pass_decay(double interval, Band band);
+
 /// What bands let through of a signal.
 struct PassedSignal {
   std::vector<double> samples;            ///< x
   std::vector<double> squared_amplitude;  ///< |x + i H x|²/2 with H the Hilbert transform
 };
 
-/// The spectrum of a signal, for what several bands let through of it.
+/// The spectrum of a part of a signal, for what several bands let through of it.
+///
+/// The part is filtered together with the samples to both sides of it, over 1.5 times the time in
+/// which the response of the filter decays to 10⁻¹² (to 10⁻¹⁸ then), and with the continuation of
+/// band_pass() beyond the ends of the signal. So the parts of a signal fit together but for
+/// rounding. A part that is the whole signal is filtered as by band_pass(), bitwise.
 class BandSpectrum {
  public:
-  /// @param samples  equidistant, finite, not empty; must live as long
+  /// @param samples  finite, not empty; must live as long
+  /// @param part     of them, not empty
   /// @param interval dt in s
   /// @param band     the first to be asked for
   /// @throws std::invalid_argument as band_pass(), or if there are no samples
-  BandSpectrum(std::span<const double> samples, double interval, Band band);
+  BandSpectrum(const SampleSource& samples, IndexRange part, double interval, Band band);
 
-  /// As band_pass().
+  /// Goes on with another part; nothing is done where it is the present one.
+  void move_to(IndexRange part);
+
+  /// The part in a band.
   std::vector<double> in(Band band);
   /// What some bands, one after the other, let through, with its amplitude.
   ///
@@ -71,17 +86,20 @@ class BandSpectrum {
   ///
   /// Cost: two Fourier transforms, and another one for the first band that takes longer to decay
   /// than those before.
-  PassedSignal pass(std::initializer_list<Band> bands);
+  PassedSignal pass(const std::vector<Band>& bands);
 
  private:
-  void prepare(std::initializer_list<Band> bands);
-  void continue_for(double pad);
+  void prepare(const std::vector<Band>& bands);
+  void transform();
   enum class Part { itself, hilbert };
   void invert(Part part);
 
-  std::span<const double> samples_;
+  const SampleSource* samples_;
+  IndexRange part_;
   double interval_;
-  double pad_ = 0.0;  ///< samples at each end, at least
+  Band slowest_;                ///< of those asked for
+  double decay_ = 0.0;          ///< of it, samples
+  std::vector<Band> prepared_;  ///< whose gains are at hand
   std::optional<RealFft> forward_;
   std::optional<InverseRealFft> backward_;
   std::vector<double> gains_;  ///< of every line

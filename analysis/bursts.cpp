@@ -4,23 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <cstddef>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
+#include "analysis/quiet_level.hpp"
 #include "analysis/spectrogram.hpp"
+#include "analysis/vibration_blocks.hpp"
 #include "core/fft_plan.hpp"
 
 namespace stridor {
 namespace {
-
-// Of a burst in a record of noise: half for the largest value, half for the level.
-constexpr double false_alarm = 1e-4;
-// Of the largest sample: what rounding leaves of a signal outside the band.
-constexpr double rounding = 1e-13;
 
 void check_smoothing(double interval, Band band, double smoothing) {
   band_pass_gain(0.0, interval, band);  // its checks of interval and band
@@ -47,272 +44,98 @@ void check(double interval, const BurstParameters& parameters, double first) {
   }
 }
 
-// γ_k ≤ x and γ_k > x, each without cancellation where it is the smaller.
-struct Tails {
-  double lower;
-  double upper;
-};
-
-// Regularised incomplete gamma functions: power series below the mean, Legendre's continued
-// fraction (modified Lentz) above.
-Tails gamma_tails(double k, double x) {
-  const double scale = std::exp(k * std::log(x) - x - std::lgamma(k));
-  constexpr double precision = 1e-14;
-  constexpr int limit = 100000;
-  if (x < k + 1.0) {
-    double term = 1.0 / k;
-    double sum = term;
-    for (int i = 1; i < limit && term > precision * sum; ++i) {
-      term *= x / (k + i);
-      sum += term;
-    }
-    return {scale * sum, 1.0 - scale * sum};
-  }
-  double b = x + 1.0 - k;
-  double c = std::numeric_limits<double>::max();
-  double d = 1.0 / b;
-  double h = d;
-  for (int i = 1; i < limit; ++i) {
-    const double a = -i * (i - k);
-    b += 2.0;
-    d = 1.0 / (a * d + b);
-    c = b + a / c;
-    h *= c * d;
-    if (std::abs(c * d - 1.0) < precision) break;
-  }
-  return {1.0 - scale * h, scale * h};
-}
-
-// The x between 10⁻³⁰⁰ and k·10⁶ where is_below(x) turns false.
-template <class Predicate>
-double bisect(double k, Predicate is_below) {
-  double low = std::log(1e-300);
-  double high = std::log(k * 1e6);
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (is_below(std::exp(middle)) ? low : high) = middle;
-  }
-  return std::exp(high);
-}
-
-double lower_quantile(double k, double probability) {
-  return bisect(k, [&](double x) { return gamma_tails(k, x).lower < probability; });
-}
-
-double upper_quantile(double k, double probability) {
-  return bisect(k, [&](double x) { return gamma_tails(k, x).upper > probability; });
-}
-
-// The shape k in [1, largest] at which quartile and decile of γ_k have the given ratio, which falls
-// with k.
-double shape_from_ratio(double ratio, double largest) {
-  const auto ratio_at = [](double k) { return lower_quantile(k, 0.25) / lower_quantile(k, 0.1); };
-  if (!(ratio < ratio_at(1.0))) return 1.0;
-  if (ratio <= ratio_at(largest)) return largest;
-  double low = 0.0;
-  double high = std::log(largest);
-  for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (low + high);
-    (ratio_at(std::exp(middle)) > ratio ? low : high) = middle;
-  }
-  return std::exp(low);
-}
-
-// The u below which the quartile of n independent values lies with at most the given probability.
-double quartile_bound(double n, double probability) {
-  const double wanted = -std::log(probability) / n;
-  double low = std::log(1e-300);
-  double high = std::log(0.25);
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    const double divergence =
-        0.25 * (std::log(0.25) - middle) + 0.75 * std::log(0.75 / (1.0 - std::exp(middle)));
-    (divergence > wanted ? low : high) = middle;
-  }
-  return std::exp(low);
-}
-
-// (∫g²df)²/∫g⁴df over where g² is above 10⁻⁸.
-double noise_bandwidth(double interval, Band band) {
-  const double nyquist = 0.5 / interval;
-  const double width = band.upper - band.lower;
-  const double from = std::max(0.0, band.lower - 2.0 * width);
-  const double to = std::min(nyquist, band.upper + 2.0 * width);
-  constexpr int points = 4000;
-  double second = 0.0;
-  double fourth = 0.0;
-  const double step = (to - from) / points;
-  for (int i = 0; i < points; ++i) {
-    const double gain = band_pass_gain(from + (i + 0.5) * step, interval, band);
-    const double power = gain * gain;
-    second += power * step;
-    fourth += power * power * step;
-  }
-  return second * second / fourth;
-}
-
-std::size_t half_width(double interval, double smoothing) {
-  return static_cast<std::size_t>(std::llround(0.5 * smoothing / interval));
-}
-
-// Means over i − half … i + half, as far as there are values. Sums of neighbours, not differences
-// of one running sum: a quiet stretch after a burst of 10⁸ times its power must not drown in the
-// rounding of the latter. Blocks of the window's length carry sums from both their ends, so that
-// every window is the end of one block and the start of the next.
-std::vector<double> running_mean(std::span<const double> values, std::size_t half) {
-  const std::size_t count = values.size();
-  const std::size_t width = 2 * half + 1;
-  std::vector<double> from_left(count);
-  std::vector<double> from_right(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    from_left[i] = values[i] + (i % width == 0 ? 0.0 : from_left[i - 1]);
-  }
-  for (std::size_t i = count; i-- > 0;) {
-    const bool is_last = i + 1 == count || (i + 1) % width == 0;
-    from_right[i] = values[i] + (is_last ? 0.0 : from_right[i + 1]);
-  }
-  std::vector<double> means(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t begin = i < half ? 0 : i - half;
-    const std::size_t last = std::min(i + half, count - 1);
-    double sum = 0.0;
-    if (begin % width == 0) {
-      sum = from_left[last];
-    } else if (last / width != begin / width) {
-      sum = from_right[begin] + from_left[last];
-    } else {
-      // Cut off by the right end, inside the last block.
-      sum = from_right[begin];
-    }
-    means[i] = sum / static_cast<double>(last - begin + 1);
-  }
-  return means;
-}
-
-std::vector<double> smoothed_envelope(std::span<const double> squared_amplitude, double interval,
-                                      double smoothing) {
-  std::vector<double> envelope = running_mean(squared_amplitude, half_width(interval, smoothing));
-  for (double& e : envelope) e = std::sqrt(e);
-  return envelope;
-}
-
-double squared_quantile(std::span<const double> envelope, double probability) {
-  std::vector<double> values(envelope.begin(), envelope.end());
-  const auto rank =
-      static_cast<std::ptrdiff_t>(std::floor(probability * static_cast<double>(values.size() - 1)));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  const double value = values[static_cast<std::size_t>(rank)];
-  return value * value;
-}
-
-// `measured` is not empty.
-QuietLevel quiet_level(std::span<const double> samples, std::span<const double> envelope,
-                       double interval, const BurstParameters& parameters, double first,
-                       IndexRange measured) {
-  const double bandwidth = noise_bandwidth(interval, parameters.band);
-  const double largest_shape = std::max(1.0, bandwidth * parameters.smoothing);
-  const double floor = rounding * peak(samples);
-
-  double square = 0.0;
-  double bound = 0.0;  // σ₊²/σ²
-  double shape = 1.0;
-  if (parameters.quiet) {
-    const IndexRange quiet = samples_in(*parameters.quiet, first, interval, samples.size());
-    if (quiet.is_empty()) {
-      throw std::invalid_argument(
-          fmt::format("bursts: no sample lies in the quiet window {:g} to {:g} s",
-                      parameters.quiet->from, parameters.quiet->to));
-    }
-    const auto values = quiet.of(envelope);
-    const auto count = static_cast<double>(values.size());
-    for (const double e : values) square += e * e / count;
-    double variance = 0.0;
-    for (const double e : values) variance += (e * e - square) * (e * e - square) / count;
-    shape =
-        variance > 0.0 ? std::clamp(square * square / variance, 1.0, largest_shape) : largest_shape;
-    const double freedom = std::max(1.0, bandwidth * count * interval * shape / largest_shape);
-    bound = freedom / lower_quantile(freedom, 0.5 * false_alarm);
-  } else {
-    const double decile = squared_quantile(measured.of(envelope), 0.1);
-    const double quartile = squared_quantile(measured.of(envelope), 0.25);
-    shape = decile > 0.0 ? shape_from_ratio(quartile / decile, largest_shape) : 1.0;
-    const double middle = lower_quantile(shape, 0.25);
-    square = quartile * shape / middle;
-    const double independent =
-        static_cast<double>(measured.size()) * interval / (parameters.smoothing + 1.0 / bandwidth);
-    bound = middle / lower_quantile(shape, quartile_bound(independent, 0.5 * false_alarm));
-  }
-  const double trials =
-      std::max(1.0, 4.0 * bandwidth * static_cast<double>(measured.size()) * interval);
-  const double extreme = bound * upper_quantile(shape, 0.5 * false_alarm / trials) / shape;
-
-  QuietLevel level{};
-  level.rms = std::max(std::sqrt(square), floor);
-  level.threshold = level.rms * std::max(parameters.threshold, std::sqrt(extreme));
-  level.freedom = shape;
-  return level;
-}
-
-// A rise and fall of c = max(e, σ), as indices into the measured part.
+/// A rise and fall of c = max(e, σ), as indices of the whole signal.
 struct Swell {
-  std::size_t low;       // last minimum before the rise
-  std::size_t crossing;  // first value above it by the ratio
-  std::size_t high;      // maximum
+  std::size_t low;       ///< last minimum before the rise
+  std::size_t crossing;  ///< first value above it by the ratio
+  std::size_t high;      ///< maximum
+  double before;         ///< c at the minimum
 };
 
-// Turning points of a series with hysteresis.
-std::vector<Swell> find_swells(std::span<const double> values, double floor, double ratio) {
-  std::vector<Swell> swells;
-  const auto value = [&](std::size_t i) { return std::max(values[i], floor); };
-  Swell swell{0, 0, 0};
-  bool is_up = false;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double c = value(i);
-    if (is_up) {
-      if (c > value(swell.high)) {
-        swell.high = i;
-      } else if (c * ratio <= value(swell.high)) {
-        swells.push_back(swell);
-        swell = {i, i, i};
-        is_up = false;
+/// Turning points of a series with hysteresis.
+class SwellFinder {
+ public:
+  /// @param begin index of the first value
+  SwellFinder(std::size_t begin, double floor, double ratio)
+      : swell_{begin, begin, begin, infinity}, floor_(floor), ratio_(ratio), next_(begin) {}
+
+  void take(std::span<const double> values) {
+    for (const double value : values) take(std::max(value, floor_));
+  }
+  /// All of them, once all values have been taken.
+  std::vector<Swell> finish() && {
+    if (is_up_) swells_.push_back(swell_);
+    return std::move(swells_);
+  }
+
+ private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  void take(double c) {
+    const std::size_t i = next_++;
+    if (is_up_) {
+      if (c > high_) {
+        swell_.high = i;
+        high_ = c;
+      } else if (c * ratio_ <= high_) {
+        swells_.push_back(swell_);
+        swell_ = {i, i, i, c};
+        is_up_ = false;
       }
-    } else if (c <= value(swell.low)) {
-      swell.low = i;
-    } else if (c >= ratio * value(swell.low)) {
-      swell.crossing = swell.high = i;
-      is_up = true;
+    } else if (c <= swell_.before) {
+      swell_.low = i;
+      swell_.before = c;
+    } else if (c >= ratio_ * swell_.before) {
+      swell_.crossing = swell_.high = i;
+      high_ = c;
+      is_up_ = true;
     }
   }
-  if (is_up) swells.push_back(swell);
-  return swells;
-}
+
+  Swell swell_;
+  double floor_;
+  double ratio_;
+  std::size_t next_;
+  double high_ = 0.0;
+  bool is_up_ = false;
+  std::vector<Swell> swells_;
+};
+
+/// Growth of an envelope, not counted below a floor, within the measured part of a signal.
+struct Slopes {
+  IndexRange measured;
+  double interval;
+  double floor;
+
+  /// Over i − half … i + half, as far as that is measured; 1/s.
+  double at(const VibrationPiece& piece, std::size_t i, std::size_t half) const {
+    const std::size_t left = i < measured.begin + half ? measured.begin : i - half;
+    const std::size_t right = std::min(i + half, measured.end - 1);
+    if (left == right) return -std::numeric_limits<double>::infinity();
+    return std::log(std::max(piece.envelope(right), floor) /
+                    std::max(piece.envelope(left), floor)) /
+           (static_cast<double>(right - left) * interval);
+  }
+};
 
 struct Rise {
   std::size_t at;
-  double slope;  // 1/s
+  double slope;  ///< 1/s
 };
 
-// Growth of the envelope, not counted below a floor, over i − half … i + half; 1/s.
-double growth_at(std::span<const double> envelope, std::size_t i, std::size_t half, double interval,
-                 double floor) {
-  const std::size_t left = i < half ? 0 : i - half;
-  const std::size_t right = std::min(i + half, envelope.size() - 1);
-  if (left == right) return -std::numeric_limits<double>::infinity();
-  return std::log(std::max(envelope[right], floor) / std::max(envelope[left], floor)) /
-         (static_cast<double>(right - left) * interval);
-}
-
-Rise steepest_rise(std::span<const double> envelope, std::size_t from, std::size_t to,
-                   std::size_t half, double interval, double floor) {
-  Rise steepest{to, -std::numeric_limits<double>::infinity()};
-  for (std::size_t i = from; i <= to; ++i) {
-    const double slope = growth_at(envelope, i, half, interval, floor);
-    if (slope > steepest.slope) steepest = {i, slope};
-  }
+Rise steepest_rise(VibrationBlocks& vibration, IndexRange range, std::size_t half,
+                   const Slopes& slopes) {
+  Rise steepest{range.end - 1, -std::numeric_limits<double>::infinity()};
+  vibration.for_each(range, [&](const VibrationPiece& piece, IndexRange part) {
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      const double slope = slopes.at(piece, i, half);
+      if (slope > steepest.slope) steepest = {i, slope};
+    }
+  });
   return steepest;
 }
 
-// The band in which a vibration can grow and change its frequency within T/2.
+/// The band in which a vibration can grow and change its frequency within T/2.
 Band own_band(double frequency, double interval, double smoothing) {
   const double width = 2.0 / smoothing;
   const double nyquist = 0.5 / interval;
@@ -321,37 +144,45 @@ Band own_band(double frequency, double interval, double smoothing) {
 }
 
 struct Growth {
-  double steepest;  // 1/s
+  double steepest;  ///< 1/s
   double gain;
 };
 
-// Growth of the envelope of a burst's own frequency. Its steepest rise is sought from `seen` to
-// `high`, where the burst is stronger than anything else in the band; it sets in where, going back
-// from there, half of that is left.
-Growth growth_of(std::span<const double> own, std::size_t seen, std::size_t high, std::size_t end,
-                 std::size_t half, double interval, double floor) {
-  const Rise rise = steepest_rise(own, seen, high, 2 * half, interval, floor);
+/// Growth of the envelope of a burst's own frequency. Its steepest rise is sought in `rising`,
+/// where the burst is stronger than anything else in the band; it sets in where, going back from
+/// there, half of that is left.
+/// @param end the last sample of the burst
+Growth growth_of(VibrationBlocks& own, IndexRange rising, std::size_t end, std::size_t half,
+                 const Slopes& slopes) {
+  const Rise rise = steepest_rise(own, rising, 2 * half, slopes);
   std::size_t onset = rise.at;
-  while (onset > 0 && growth_at(own, onset, half, interval, floor) > 0.5 * rise.slope) --onset;
-  const auto begin = own.begin() + static_cast<std::ptrdiff_t>(onset);
-  const double largest =
-      *std::max_element(begin, own.begin() + static_cast<std::ptrdiff_t>(end) + 1);
-  return {rise.slope, std::log(largest / std::max(own[onset], floor))};
+  while (onset > slopes.measured.begin && slopes.at(own.at(onset), onset, half) > 0.5 * rise.slope)
+    --onset;
+  const double before = own.at(onset).envelope(onset);
+  double largest = before;
+  own.for_each({onset, end + 1}, [&](const VibrationPiece& piece, IndexRange part) {
+    for (const double e : piece.envelope(part)) largest = std::max(largest, e);
+  });
+  return {rise.slope, std::log(largest / std::max(before, slopes.floor))};
 }
 
-// Frequency of the strongest line in the band around a sample of the whole signal.
-double dominant_frequency(std::span<const double> filtered, double interval,
-                          const BurstParameters& parameters, std::size_t at) {
+/// Frequency of the strongest line in the band around a sample of the whole signal.
+double dominant_frequency(VibrationBlocks& vibration, const BurstParameters& parameters,
+                          std::size_t at) {
+  const double interval = vibration.interval();
   const double duration = std::max(2.0 * parameters.smoothing, 8.0 / parameters.band.lower);
   const std::size_t wanted = 2 * half_width(interval, duration);
-  const std::size_t length = std::min(std::max<std::size_t>(wanted, 2), filtered.size());
+  const std::size_t length = std::min(std::max<std::size_t>(wanted, 2), vibration.size());
   const std::size_t begin =
-      std::min(at < length / 2 ? 0 : at - length / 2, filtered.size() - length);
+      std::min(at < length / 2 ? 0 : at - length / 2, vibration.size() - length);
   // Zeros to four times the length: the parabola through three lines is then good to 10⁻³ of the
   // resolution 1/duration.
   RealFft fft(fast_fft_length(4 * length));
   const std::vector<double> window = make_window(WindowKind::hann, length);
-  for (std::size_t i = 0; i < length; ++i) fft.input()[i] = window[i] * filtered[begin + i];
+  vibration.for_each({begin, begin + length}, [&](const VibrationPiece& piece, IndexRange part) {
+    for (std::size_t i = part.begin; i < part.end; ++i)
+      fft.input()[i - begin] = window[i - begin] * piece.filtered(i);
+  });
   fft.execute();
 
   const auto lines = fft.output();
@@ -372,14 +203,117 @@ double dominant_frequency(std::span<const double> filtered, double interval,
   return resolution * (static_cast<double>(best) + std::clamp(offset, -0.5, 0.5));
 }
 
+/// The largest absolute sample of a signal. @throws std::invalid_argument unless all are finite
+double largest_of(const SampleSource& samples) {
+  constexpr std::size_t at_a_time = std::size_t{1} << 16;
+  std::vector<double> piece;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < samples.size(); i += piece.size()) {
+    piece.resize(std::min(at_a_time, samples.size() - i));
+    samples.read(i, piece);
+    const double here = peak(piece);
+    if (!std::isfinite(here)) throw std::invalid_argument("bursts: the samples must be finite");
+    largest = std::max(largest, here);
+  }
+  return largest;
+}
+
+/// What the bursts of a signal are found in.
+struct Measured {
+  VibrationBlocks& vibration;
+  const BurstParameters& parameters;
+  double first;    ///< time of sample 0, s
+  double largest;  ///< absolute sample
+  QuietLevel level;
+  IndexRange range;
+
+  double time_at(std::size_t i) const {
+    return first + static_cast<double>(i) * vibration.interval();
+  }
+  double envelope(std::size_t i) const { return vibration.at(i).envelope(i); }
+};
+
+/// Frequency, growth and gain of a burst from its rise.
+/// @param end its last sample
+void follow_growth(SignalBlocks& blocks, const Measured& measured, const Swell& swell,
+                   std::size_t end, Burst& burst) {
+  const double interval = blocks.interval();
+  const double smoothing = measured.parameters.smoothing;
+  const std::size_t half = half_width(interval, smoothing);
+  const IndexRange rising{swell.crossing, swell.high + 1};
+  const Rise rise = steepest_rise(measured.vibration, rising, 2 * half,
+                                  {measured.range, interval, measured.level.rms});
+  burst.frequency = dominant_frequency(measured.vibration, measured.parameters, rise.at);
+  const Band own = own_band(burst.frequency, interval, smoothing);
+  VibrationBlocks vibration(blocks, {measured.parameters.band, own}, 0.5 * smoothing);
+  const Growth growth = growth_of(vibration, rising, end, half,
+                                  {measured.range, interval, rounding_level * measured.largest});
+  burst.growth = growth.steepest;
+  burst.gain = growth.gain;
+}
+
+/// The burst of a swell; nothing where it is too short.
+/// @param limit the last sample that it may have
+std::optional<Burst> burst_of(SignalBlocks& blocks, const Measured& measured, const Swell& swell,
+                              std::size_t limit) {
+  const double edge = std::numbers::sqrt2 * swell.before;
+  std::size_t start = swell.crossing;
+  while (start > swell.low && measured.envelope(start) > edge) --start;
+  std::size_t end = swell.high;
+  while (end < limit && measured.envelope(end) > edge) ++end;
+
+  Burst burst{};
+  burst.start = measured.time_at(start);
+  burst.end = measured.time_at(end);
+  if (burst.end - burst.start < measured.parameters.minimum_duration) return std::nullopt;
+  std::size_t highest = start;
+  burst.peak = -1.0;
+  measured.vibration.for_each({start, end + 1}, [&](const VibrationPiece& piece, IndexRange part) {
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      const double value = std::abs(piece.filtered(i));
+      if (value > burst.peak) {
+        burst.peak = value;
+        highest = i;
+      }
+    }
+  });
+  burst.peak_time = measured.time_at(highest);
+  follow_growth(blocks, measured, swell, end, burst);
+  return burst;
+}
+
+std::vector<Burst> bursts_of(SignalBlocks& blocks, const Measured& measured) {
+  const QuietLevel& level = measured.level;
+  if (!(level.rms > 0.0) || !std::isfinite(level.threshold)) return {};
+  SwellFinder finder(measured.range.begin, level.rms, level.threshold / level.rms);
+  measured.vibration.for_each(measured.range, [&](const VibrationPiece& piece, IndexRange part) {
+    finder.take(piece.envelope(part));
+  });
+  const std::vector<Swell> swells = std::move(finder).finish();
+  std::vector<Burst> bursts;
+  for (std::size_t j = 0; j < swells.size(); ++j) {
+    const std::size_t limit = j + 1 < swells.size() ? swells[j + 1].low : measured.range.end - 1;
+    if (const auto burst = burst_of(blocks, measured, swells[j], limit)) bursts.push_back(*burst);
+  }
+  return bursts;
+}
+
 }  // namespace
 
 std::vector<double> burst_envelope(std::span<const double> samples, double interval, Band band,
                                    double smoothing) {
   check_smoothing(interval, band, smoothing);
   if (samples.empty()) return {};
-  const PassedSignal passed = BandSpectrum(samples, interval, band).pass({band});
-  return smoothed_envelope(passed.squared_amplitude, interval, smoothing);
+  const SampleSpan source(samples);
+  SignalBlocks blocks(source, interval, band, smoothing);
+  VibrationBlocks vibration(blocks, {band}, smoothing);
+  std::vector<double> envelope;
+  envelope.reserve(samples.size());
+  vibration.for_each({0, samples.size()}, [&](const VibrationPiece& piece, IndexRange part) {
+    const std::span<const double> values = piece.envelope(part);
+    envelope.insert(envelope.end(), values.begin(), values.end());
+  });
+  return envelope;
 }
 
 QuietLevel find_quiet_level(std::span<const double> samples, double interval,
@@ -389,71 +323,36 @@ QuietLevel find_quiet_level(std::span<const double> samples, double interval,
   if (measured.is_empty()) {
     throw std::invalid_argument("bursts: no sample lies in the measured window");
   }
-  const std::vector<double> envelope =
-      burst_envelope(samples, interval, parameters.band, parameters.smoothing);
-  return quiet_level(samples, envelope, interval, parameters, first, measured);
+  const SampleSpan source(samples);
+  const double largest = largest_of(source);
+  SignalBlocks blocks(source, interval, parameters.band, parameters.smoothing);
+  VibrationBlocks vibration(blocks, {parameters.band}, parameters.smoothing);
+  return quiet_level(vibration, largest, parameters, first, measured);
 }
 
 std::vector<Burst> find_bursts(std::span<const double> samples, double interval,
                                const BurstParameters& parameters, double first) {
-  return find_vibration(samples, interval, parameters, first).bursts;
+  return find_vibration(SampleSpan(samples), interval, parameters, first).bursts;
 }
 
-Vibration find_vibration(std::span<const double> samples, double interval,
-                         const BurstParameters& parameters, double first) {
+Vibration find_vibration(const SampleSource& samples, double interval,
+                         const BurstParameters& parameters, double first,
+                         std::optional<std::size_t> block) {
   check(interval, parameters, first);
-  if (samples.empty()) return {};
-  const Band band = parameters.band;
-  const double smoothing = parameters.smoothing;
-  BandSpectrum spectrum(samples, interval, band);
-  PassedSignal passed = spectrum.pass({band});
-  Vibration vibration{std::move(passed.samples), {}};
-  const std::span<const double> filtered = vibration.filtered;
-  const IndexRange measured = samples_in(parameters.measured, first, interval, samples.size());
-  if (measured.is_empty()) return vibration;
-  const std::vector<double> whole =
-      smoothed_envelope(passed.squared_amplitude, interval, smoothing);
-  const QuietLevel level = quiet_level(samples, whole, interval, parameters, first, measured);
-  if (!(level.rms > 0.0) || !std::isfinite(level.threshold)) return vibration;
-
-  const auto envelope = measured.of(whole);
-  const std::size_t half = half_width(interval, smoothing);
-  const auto time_at = [&](std::size_t i) {
-    return first + static_cast<double>(measured.begin + i) * interval;
-  };
-  const std::vector<Swell> swells = find_swells(envelope, level.rms, level.threshold / level.rms);
-  for (std::size_t j = 0; j < swells.size(); ++j) {
-    const Swell& swell = swells[j];
-    const double before = std::max(envelope[swell.low], level.rms);
-    const double edge = std::numbers::sqrt2 * before;
-    std::size_t start = swell.crossing;
-    while (start > swell.low && envelope[start] > edge) --start;
-    const std::size_t limit = j + 1 < swells.size() ? swells[j + 1].low : envelope.size() - 1;
-    std::size_t end = swell.high;
-    while (end < limit && envelope[end] > edge) ++end;
-
-    Burst burst{};
-    burst.start = time_at(start);
-    burst.end = time_at(end);
-    if (burst.end - burst.start < parameters.minimum_duration) continue;
-    const auto part = measured.of(filtered).subspan(start, end - start + 1);
-    const auto largest = std::max_element(
-        part.begin(), part.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-    burst.peak = std::abs(*largest);
-    burst.peak_time = time_at(start + static_cast<std::size_t>(largest - part.begin()));
-    const Rise rise =
-        steepest_rise(envelope, swell.crossing, swell.high, 2 * half, interval, level.rms);
-    burst.frequency = dominant_frequency(filtered, interval, parameters, measured.begin + rise.at);
-    const Band own = own_band(burst.frequency, interval, smoothing);
-    const std::vector<double> own_envelope =
-        smoothed_envelope(spectrum.pass({band, own}).squared_amplitude, interval, 0.5 * smoothing);
-    const Growth growth = growth_of(measured.of(own_envelope), swell.crossing, swell.high, end,
-                                    half, interval, rounding * peak(samples));
-    burst.growth = growth.steepest;
-    burst.gain = growth.gain;
-    vibration.bursts.push_back(burst);
-  }
-  return vibration;
+  const IndexRange range = samples_in(parameters.measured, first, interval, samples.size());
+  const double largest = largest_of(samples);
+  Vibration found;
+  if (range.is_empty()) return found;
+  SignalBlocks blocks(samples, interval, parameters.band, parameters.smoothing, block);
+  VibrationBlocks vibration(blocks, {parameters.band}, parameters.smoothing);
+  double square = 0.0;
+  vibration.for_each(range, [&](const VibrationPiece& piece, IndexRange part) {
+    for (const double x : piece.filtered(part)) square += x * x;
+  });
+  found.rms = std::sqrt(square / static_cast<double>(range.size()));
+  const QuietLevel level = quiet_level(vibration, largest, parameters, first, range);
+  found.bursts = bursts_of(blocks, {vibration, parameters, first, largest, level, range});
+  return found;
 }
 
 }  // namespace stridor

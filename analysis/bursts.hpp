@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/band_pass.hpp"
+#include "analysis/sample_source.hpp"
 #include "analysis/statistics.hpp"
 
 namespace stridor {
@@ -126,14 +127,22 @@ QuietLevel find_quiet_level(std::span<const double> samples, double interval,
 std::vector<Burst> find_bursts(std::span<const double> samples, double interval,
                                const BurstParameters& parameters, double first = 0.0);
 
-/// A signal in the band of its bursts, and these.
+/// What vibrates in the band of the bursts, where it is measured.
 struct Vibration {
-  std::vector<double> filtered;  ///< band_pass()
-  std::vector<Burst> bursts;
+  double rms = 0.0;  ///< of band_pass() over parameters.measured; 0 where that holds no sample
+  std::vector<Burst> bursts{};
 };
 
-/// find_bursts() with what it filters on the way.
-Vibration find_vibration(std::span<const double> samples, double interval,
-                         const BurstParameters& parameters, double first = 0.0);
+/// find_bursts() of a signal that need not fit into memory, and its r.m.s. value in their band.
+///
+/// The signal is read and filtered in blocks (SignalBlocks), three to four times as a whole and
+/// about six times where there are bursts; a signal of one block once. The length of a block does
+/// not change the result but for rounding.
+///
+/// @param block samples to a block; about a million where it is not given
+/// @throws std::invalid_argument as find_bursts()
+Vibration find_vibration(const SampleSource& samples, double interval,
+                         const BurstParameters& parameters, double first = 0.0,
+                         std::optional<std::size_t> block = std::nullopt);
 
 }  // namespace stridor

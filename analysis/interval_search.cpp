@@ -1,5 +1,7 @@
 #include "analysis/interval_search.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +12,7 @@
 #include <utility>
 
 #include "analysis/pair_model.hpp"
+#include "core/activity.hpp"
 
 namespace stridor {
 namespace {
@@ -352,6 +355,7 @@ IntervalSearch search_intervals(const SpectrumSampler& sampler, std::vector<Samp
     for (std::size_t i = 0; i + 1 < whole.size(); ++i) {
       const std::pair ends(whole[i].value, whole[i + 1].value);
       if (resolved.contains(ends)) continue;
+      const Activity refining(fmt::format("interval {} of {}", i + 1, whole.size() - 1));
       if (one.search(i) == Outcome::resolved) {
         resolved.insert(ends);
         continue;
@@ -363,7 +367,10 @@ IntervalSearch search_intervals(const SpectrumSampler& sampler, std::vector<Samp
       break;
     most_values -= static_cast<int>(values.size());
     result.unresolved = 0.0;
-    for (const double value : values) whole.push_back(sampler.at(value));
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const Activity halving(fmt::format("halved interval {} of {}", k + 1, values.size()));
+      whole.push_back(sampler.at(values[k]));
+    }
     std::sort(whole.begin(), whole.end(),
               [](const Sample& a, const Sample& b) { return a.value < b.value; });
   }

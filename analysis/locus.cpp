@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "analysis/window_finder.hpp"
+#include "core/activity.hpp"
 
 namespace stridor {
 namespace {
@@ -112,6 +113,8 @@ Locus trace_locus(const PencilFamily& family, const std::vector<double>& values,
   const Grid grid = make_grid(values, family.kinks);
   std::vector<Track> tracks = follow_branches(*source, options, grid, locus);
   for (std::size_t b = 0; b < tracks.size(); ++b) {
+    Activity refining(fmt::format("branch {} of {}", b + 1, tracks.size()));
+    refining.report(static_cast<double>(b) / static_cast<double>(tracks.size()));
     find_windows(*source, options, grid, tracks[b], static_cast<int>(b), locus);
     locus.branches.push_back(std::move(tracks[b].branch));
   }

@@ -1,5 +1,7 @@
 #include "analysis/sampled_windows.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -9,6 +11,8 @@
 #include <limits>
 #include <numbers>
 #include <utility>
+
+#include "core/activity.hpp"
 
 namespace stridor {
 namespace {
@@ -242,6 +246,8 @@ void find_sampled_windows(const SpectrumSampler& sampler, const WindowEffort& ef
   for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
     const std::size_t before = samples[i].num_growing();
     const std::size_t after = samples[i + 1].num_growing();
+    const Activity narrowing(
+        fmt::format("ends of windows, interval {} of {}", i + 1, samples.size() - 1));
     for (std::size_t rank = std::min(before, after) + 1; rank <= std::max(before, after); ++rank) {
       Sample stable = before < after ? samples[i] : samples[i + 1];
       Sample growing = before < after ? samples[i + 1] : samples[i];

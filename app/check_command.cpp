@@ -15,7 +15,6 @@
 #include "io/scene.hpp"
 #include "io/scene_warnings.hpp"
 #include "io/sphere_scene.hpp"
-#include "io/summary_memory.hpp"
 #include "solvers/simulation.hpp"
 
 namespace stridor {
@@ -65,7 +64,6 @@ Report check_scene(const CheckOptions& options) {
     return {key_warnings(SphereScene::schema(), &loaded.scene, tree)};
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
-  require_summary_memory(loaded);
   Model model = build_model(loaded);
   try {
     const Activity preparing("preparing the first step");

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/activity.hpp"
+
 namespace stridor {
 
 LocusProgress::LocusProgress(const std::string& verb, StabilityFamily& family,
@@ -26,7 +28,14 @@ void LocusProgress::look_at(double value) {
     return;
   }
   if (num_refined_++ == 0) progress_.begin("refining windows");
-  progress_.report(fmt::format("{} values, {}", num_refined_, place));
+  const CurrentActivity part = current_activity();
+  if (part.what.empty()) {
+    progress_.report(fmt::format("{} values, {}", num_refined_, place));
+  } else if (part.fraction > 0.0) {
+    progress_.report(part.fraction, fmt::format("{}, {}", part.what, place));
+  } else {
+    progress_.report(fmt::format("{}, {}", part.what, place));
+  }
 }
 
 }  // namespace stridor

@@ -6,8 +6,10 @@
 
 namespace stridor {
 
-/// Reports the progress of a family along its range and then, as windows are refined, the number of
-/// values computed: the total is not known beforehand.
+/// Reports the progress of a family along its range and then, as windows are refined, which of the
+/// parts known so far is at work (Activity: a branch, an interval). The time left is told where
+/// their number stays, as that of branches; intervals are halved, so that more of them come. Where
+/// no part is named, the number of values computed.
 class LocusProgress {
  public:
   /// @param family, range must live longer

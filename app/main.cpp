@@ -153,10 +153,14 @@ int run_verb(int argc, char** argv) {
 }
 
 int run_program(int argc, char** argv) {
-  wants_json = std::any_of(argv, argv + argc,
-                           [](const char* argument) { return std::string_view(argument) == "--json"; });
+  wants_json = std::any_of(argv, argv + argc, [](const char* argument) {
+    return std::string_view(argument) == "--json";
+  });
   try {
-    if (wants_json) tell_stop_as_json();
+    if (wants_json) {
+      tell_stop_as_json();
+      DamageGuard::tell_as_json();
+    }
     install_stop_signals();
     // A reader that goes away, or a file that may not grow, are errors to report, not deaths.
     std::signal(SIGPIPE, SIG_IGN);

@@ -11,7 +11,6 @@
 #include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "io/initial_state.hpp"
-#include "io/summary_memory.hpp"
 
 namespace stridor {
 namespace {
@@ -79,7 +78,6 @@ void load_start(const State& state, System& system) {
 Transient::Transient(const LoadedScene& loaded, const RunOutput& output)
     : loaded_(&loaded), file_(output.file), keeper_(loaded.scene.checkpoint.every) {
   check_output(file_, output.overwrite);
-  require_summary_memory(loaded);
   model_ = build_model(loaded);
   const Activity preparing("preparing the first step");
   set_initial_state(model_.system, loaded);

@@ -37,10 +37,12 @@ using Clock = std::chrono::steady_clock;
 class ChannelMemory : public RowSink {
  public:
   void append(double time, std::span<const double> row) override {
-    times.push_back(time);
+    if (values.empty()) first = time;
+    last = time;
     values.push_back(row[0]);
   }
-  std::vector<double> times;
+  double first = 0.0;  ///< time, s
+  double last = 0.0;
   std::vector<double> values;
 };
 
@@ -122,9 +124,11 @@ struct Transit {
     if (end == MarchEnd::failed && simulation->step_index() >= end_step) end = MarchEnd::finished;
     if (end == MarchEnd::failed) point.failure = simulation->failure();
     std::optional<AccelerationSummary> acceleration;
-    if (!channels.empty()) {
-      acceleration = summarise_acceleration(channels.front().name, memory.times, memory.values,
-                                            loaded.scene.measure);
+    if (!channels.empty() && memory.values.size() > 1) {
+      const double interval =
+          (memory.last - memory.first) / static_cast<double>(memory.values.size() - 1);
+      acceleration = summarise_acceleration(channels.front().name, memory.first, interval,
+                                            SampleSpan(memory.values), loaded.scene.measure);
     }
     point.results = transient_results(*simulation, model.system, loaded.scene.time, end,
                                       march->statistics(), acceleration);

@@ -178,7 +178,9 @@ class RunFileReader {
   RunFileReader& operator=(RunFileReader&&) noexcept;
 
   const RunFileHeader& header() const;
-  /// Times in s as they were when the file was opened; their number is the length of every series.
+  /// Length of every series, as it was when the file was opened.
+  std::size_t num_rows() const;
+  /// Times of all rows in s; read when they are asked for first. @throws FileError as series()
   const std::vector<double>& times() const;
 
   /// Paths of all series and of all other one-dimensional arrays but checkpoints, in alphabetical
@@ -187,10 +189,13 @@ class RunFileReader {
   std::vector<std::string> static_names() const;
   bool has(const std::string& path) const;
 
-  /// A series, cut to the length of times(); states as numbers.
+  /// A series, cut to num_rows(); states as numbers.
   /// @throws FileError naming the dataset if it is missing, not numeric, not one-dimensional or
   ///         shorter than /time
   std::vector<double> series(const std::string& path) const;
+  /// The rows `begin` … `begin + target.size() − 1` of a series or of /time.
+  /// @throws FileError as series(); std::invalid_argument if there are no such rows
+  void read(const std::string& path, std::size_t begin, std::span<double> target) const;
   /// An array that does not depend on time. @throws FileError as series()
   std::vector<double> static_array(const std::string& path) const;
 

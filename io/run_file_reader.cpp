@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <stdexcept>
+#include <utility>
 
 #include "core/errors.hpp"
 #include "io/hdf5_input.hpp"
@@ -69,13 +71,16 @@ struct RunFileReader::Impl {
 
   void read_header();
   std::string text(const std::string& path) const;
-  std::vector<double> read_rows(const std::string& path, const std::uint64_t* wanted) const;
+  Hdf5Array rows_of(const std::string& path) const;
+  std::vector<double> read_all(const std::string& path) const;
+  void read_part(const std::string& path, std::uint64_t begin, std::span<double> target) const;
   std::vector<std::string> arrays(bool series) const;
 
   Checker at;
   Handle file;
   RunFileHeader header;
-  std::vector<double> times;
+  std::uint64_t num_rows = 0;
+  std::optional<std::vector<double>> times{};  ///< once they were asked for
 };
 
 void RunFileReader::Impl::read_header() {
@@ -110,7 +115,7 @@ void RunFileReader::Impl::read_header() {
   // Files of earlier versions have none.
   if (H5LTpath_valid(file.id(), "/scene/digests", true) > 0)
     header.scene_digests = text("/scene/digests");
-  times = read_rows("/time", nullptr);
+  num_rows = open_array(at, file.id(), "/time", 1).shape.front();
 }
 
 std::string RunFileReader::Impl::text(const std::string& path) const {
@@ -128,27 +133,35 @@ std::string RunFileReader::Impl::text(const std::string& path) const {
   });
 }
 
-std::vector<double> RunFileReader::Impl::read_rows(const std::string& path,
-                                                   const std::uint64_t* wanted) const {
-  const Hdf5Array array = open_array(at, file.id(), path, 1);
+/// A series, which has a value for every row.
+Hdf5Array RunFileReader::Impl::rows_of(const std::string& path) const {
+  Hdf5Array array = open_array(at, file.id(), path, 1);
   const hsize_t length = array.shape.front();
-  if (wanted == nullptr || length == *wanted) return read_array(at, array, path);
-  if (length < *wanted) {
-    throw FileError(at.path(), path, fmt::format("has {} rows, but /time has {}", length, *wanted));
+  if (length < num_rows) {
+    throw FileError(at.path(), path,
+                    fmt::format("has {} rows, but /time has {}", length, num_rows));
   }
-  const hsize_t count = *wanted;
-  const hsize_t offset = 0;
-  std::vector<double> values(count);
-  if (count == 0) return values;
+  return array;
+}
+
+std::vector<double> RunFileReader::Impl::read_all(const std::string& path) const {
+  return read_array(at, open_array(at, file.id(), path, 1), path);
+}
+
+void RunFileReader::Impl::read_part(const std::string& path, std::uint64_t begin,
+                                    std::span<double> target) const {
+  const Hdf5Array array = rows_of(path);
+  const hsize_t offset = begin;
+  const hsize_t count = target.size();
+  if (count == 0) return;
   const Handle source = at.own(H5Dget_space(array.dataset.id()), H5Sclose, path, "cannot be read");
   at.check(H5Sselect_hyperslab(source.id(), H5S_SELECT_SET, &offset, nullptr, &count, nullptr),
            path, "cannot be read");
-  const Handle target =
+  const Handle memory =
       at.own(H5Screate_simple(1, &count, nullptr), H5Sclose, path, "cannot be read");
-  at.check(H5Dread(array.dataset.id(), H5T_NATIVE_DOUBLE, target.id(), source.id(), H5P_DEFAULT,
-                   values.data()),
+  at.check(H5Dread(array.dataset.id(), H5T_NATIVE_DOUBLE, memory.id(), source.id(), H5P_DEFAULT,
+                   target.data()),
            path, "cannot be read");
-  return values;
 }
 
 std::vector<std::string> RunFileReader::Impl::arrays(bool series) const {
@@ -184,7 +197,16 @@ const RunFileHeader& RunFileReader::header() const {
   return impl_->header;
 }
 const std::vector<double>& RunFileReader::times() const {
-  return impl_->times;
+  if (!impl_->times) {
+    std::vector<double> values(num_rows());
+    read("/time", 0, values);
+    impl_->times = std::move(values);
+  }
+  return *impl_->times;
+}
+
+std::size_t RunFileReader::num_rows() const {
+  return impl_->num_rows;
 }
 
 std::vector<std::string> RunFileReader::series_names() const {
@@ -204,13 +226,23 @@ bool RunFileReader::has(const std::string& path) const {
 
 std::vector<double> RunFileReader::series(const std::string& path) const {
   const QuietErrors quiet;
-  const std::uint64_t count = impl_->times.size();
-  return impl_->read_rows(path, &count);
+  impl_->rows_of(path);  // before memory is taken
+  std::vector<double> values(num_rows());
+  impl_->read_part(path, 0, values);
+  return values;
+}
+
+void RunFileReader::read(const std::string& path, std::size_t begin,
+                         std::span<double> target) const {
+  if (begin > num_rows() || target.size() > num_rows() - begin)
+    throw std::invalid_argument("RunFileReader: there are no such rows");
+  const QuietErrors quiet;
+  impl_->read_part(path, begin, target);
 }
 
 std::vector<double> RunFileReader::static_array(const std::string& path) const {
   const QuietErrors quiet;
-  return impl_->read_rows(path, nullptr);
+  return impl_->read_all(path);
 }
 
 std::string RunFileReader::units(const std::string& path) const {
@@ -235,13 +267,13 @@ std::optional<Checkpoint> RunFileReader::checkpoint() const {
   for (const char* path : checkpoint_paths) {
     if (!has(path)) continue;
     const QuietErrors quiet;
-    const std::vector<double> stored = impl_->read_rows(path, nullptr);
+    const std::vector<double> stored = impl_->read_all(path);
     const bool holds_bytes =
         std::all_of(stored.begin(), stored.end(), [](double b) { return b >= 0.0 && b <= 255.0; });
     if (!holds_bytes) continue;
     const std::vector<unsigned char> bytes(stored.begin(), stored.end());
     std::optional<Checkpoint> found = decode(bytes);
-    if (found && found->rows <= impl_->times.size() && (!latest || found->number > latest->number))
+    if (found && found->rows <= impl_->num_rows && (!latest || found->number > latest->number))
       latest = std::move(found);
   }
   return latest;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "analysis/bursts.hpp"
+#include "analysis/sample_source.hpp"
 #include "analysis/statistics.hpp"
 #include "core/errors.hpp"
 #include "io/scene_reader.hpp"
@@ -29,6 +30,51 @@ std::optional<std::string> acceleration_among(const std::vector<std::string>& na
   return any;
 }
 
+/// A series of a run file, which must live as long.
+class RecordedSamples final : public SampleSource {
+ public:
+  RecordedSamples(const RunFileReader& file, std::string path)
+      : file_(&file), path_(std::move(path)) {}
+  std::size_t size() const override { return file_->num_rows(); }
+  void read(std::size_t begin, std::span<double> target) const override {
+    file_->read(path_, begin, target);
+  }
+
+ private:
+  const RunFileReader* file_;
+  std::string path_;
+};
+
+/// Calls `visit(piece)` with a range of samples in turn.
+template <class Visit>
+void for_each_piece(const SampleSource& samples, IndexRange range, Visit&& visit) {
+  constexpr std::size_t at_a_time = std::size_t{1} << 16;
+  std::vector<double> piece;
+  for (std::size_t i = range.begin; i < range.end; i += piece.size()) {
+    piece.resize(std::min(at_a_time, range.end - i));
+    samples.read(i, piece);
+    visit(std::span<const double>(piece));
+  }
+}
+
+struct Size {
+  double peak = 0.0;
+  double rms = 0.0;
+};
+
+/// peak() and rms() of a range of samples, which is not empty.
+Size size_in(const SampleSource& samples, IndexRange range) {
+  Size size;
+  double square = 0.0;
+  for_each_piece(samples, range, [&](std::span<const double> piece) {
+    const double here = peak(piece);
+    if (std::isnan(here) || here > size.peak) size.peak = here;
+    for (const double x : piece) square += x * x;
+  });
+  size.rms = std::sqrt(square / static_cast<double>(range.size()));
+  return size;
+}
+
 /// Fills `section` where the scene has it.
 template <class Section, class Member>
 void read_if_present(const SceneNode& scene, const char* name, Member& section) {
@@ -48,26 +94,23 @@ std::optional<std::string> acceleration_channel(const RecordParameters& record) 
   return acceleration_among(names);
 }
 
-std::optional<AccelerationSummary> summarise_acceleration(const std::string& channel,
-                                                          const std::vector<double>& times,
-                                                          const std::vector<double>& values,
+std::optional<AccelerationSummary> summarise_acceleration(const std::string& channel, double first,
+                                                          double interval,
+                                                          const SampleSource& values,
                                                           const MeasureParameters& measure) {
-  if (times.size() < 2) return std::nullopt;
-  const double interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
   const Window window{measure.from, measure.to.value_or(std::numeric_limits<double>::infinity())};
-  const IndexRange range = samples_in(window, times.front(), interval, times.size());
+  const IndexRange range = samples_in(window, first, interval, values.size());
   if (range.is_empty()) return std::nullopt;
-  AccelerationSummary summary{channel, peak(range.of(values)), 0.0, std::nullopt};
-  if (measure.band.empty()) {
-    summary.rms = rms(range.of(values));
-  } else {
+  const Size size = size_in(values, range);
+  AccelerationSummary summary{channel, size.peak, size.rms, std::nullopt};
+  if (!measure.band.empty()) {
     const Band band{measure.band[0], measure.band[1]};
     BurstParameters parameters;
     parameters.band = band;
     parameters.measured = window;
     parameters.smoothing = std::max(parameters.smoothing, 1.0 / band.lower);
-    Vibration vibration = find_vibration(values, interval, parameters, times.front());
-    summary.rms = rms(range.of(vibration.filtered));
+    Vibration vibration = find_vibration(values, interval, parameters, first);
+    summary.rms = vibration.rms;
     summary.bursts = std::move(vibration.bursts);
   }
   return summary;
@@ -76,9 +119,15 @@ std::optional<AccelerationSummary> summarise_acceleration(const std::string& cha
 std::optional<AccelerationSummary> summarise_acceleration(const RunFileReader& file,
                                                           const MeasureParameters& measure) {
   const auto channel = acceleration_channel(file);
-  if (!channel) return std::nullopt;
-  return summarise_acceleration(channel->substr(channel->rfind('/') + 1), file.times(),
-                                file.series(*channel), measure);
+  const std::size_t count = file.num_rows();
+  if (!channel || count < 2) return std::nullopt;
+  double first = 0.0;
+  double last = 0.0;
+  file.read("/time", 0, {&first, 1});
+  file.read("/time", count - 1, {&last, 1});
+  const double interval = (last - first) / static_cast<double>(count - 1);
+  return summarise_acceleration(channel->substr(channel->rfind('/') + 1), first, interval,
+                                RecordedSamples(file, *channel), measure);
 }
 
 std::vector<Burst> recorded_bursts(const RunFileReader& file, const std::string& path) {
@@ -112,8 +161,10 @@ std::vector<Burst> recorded_bursts(const RunFileReader& file, const std::string&
 std::optional<std::vector<Burst>> bursts_in_band(const RunFileReader& file, const std::string& path,
                                                  MeasureParameters measure, Band band) {
   if (const auto channel = acceleration_channel(file)) {
-    for (const double value : file.series(*channel))
-      if (!std::isfinite(value)) throw FileError(path, *channel, "is not finite everywhere");
+    const RecordedSamples samples(file, *channel);
+    for_each_piece(samples, {0, samples.size()}, [&](std::span<const double> piece) {
+      if (!std::isfinite(peak(piece))) throw FileError(path, *channel, "is not finite everywhere");
+    });
   }
   measure.band = {band.lower, band.upper};
   const auto summary = summarise_acceleration(file, measure);

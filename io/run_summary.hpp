@@ -27,14 +27,16 @@ std::optional<std::string> acceleration_channel(const RunFileReader& file);
 /// The same channel of the run that a scene will make, "<body>.<point>.<x|y>.acceleration".
 std::optional<std::string> acceleration_channel(const RecordParameters& record);
 
-/// Sums up an acceleration.
+/// Sums up an acceleration, in blocks (find_vibration()): what it takes does not grow with its
+/// length.
 /// @param channel  its name
-/// @param times    equidistant, s
-/// @param values   as many, m/s²
+/// @param first    time of the first sample, s
+/// @param interval of the samples, s
+/// @param values   m/s²
 /// @return nothing where the window of `measure` holds no sample
-std::optional<AccelerationSummary> summarise_acceleration(const std::string& channel,
-                                                          const std::vector<double>& times,
-                                                          const std::vector<double>& values,
+std::optional<AccelerationSummary> summarise_acceleration(const std::string& channel, double first,
+                                                          double interval,
+                                                          const SampleSource& values,
                                                           const MeasureParameters& measure);
 
 /// Reads the acceleration_channel() of a run file.

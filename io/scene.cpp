@@ -19,7 +19,6 @@
 #include "io/scene_files.hpp"
 #include "io/scene_reader.hpp"
 #include "io/sphere_scene.hpp"
-#include "io/summary_memory.hpp"
 #include "models/set_up_estimate.hpp"
 
 namespace stridor {
@@ -308,16 +307,6 @@ LoadedScene load_resolved_scene(const std::string& text, const std::string& sour
   loaded.scene = read_as<Scene>(loaded.tree);
   read_named_files(loaded);
   return loaded;
-}
-
-void require_summary_memory(const LoadedScene& loaded) {
-  const Scene& scene = loaded.scene;
-  if (!scene.record) return;
-  try {
-    require_memory(estimate_summary(scene.time.end, scene.record->interval), memory_limit());
-  } catch (const ConfigError& error) {
-    throw loaded.located(error);
-  }
 }
 
 Model build_model(const LoadedScene& loaded) {

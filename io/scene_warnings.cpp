@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "io/channels.hpp"
+
 namespace stridor {
 namespace {
 
@@ -76,8 +78,7 @@ void visit_numbers(const Schema& schema, const void* object, const std::string& 
     if (!key.visit) continue;
     std::size_t index = 0;
     key.visit(object, [&](const std::string& name, std::size_t alternative, const void* nested) {
-      const std::string entry =
-          key.kind == KeyKind::section_list ? std::to_string(index++) : name;
+      const std::string entry = key.kind == KeyKind::section_list ? std::to_string(index++) : name;
       visit_numbers(key.alternatives[alternative].schema(), nested, join_path(key_path, entry),
                     look);
     });
@@ -93,8 +94,7 @@ std::optional<double> leaving_time(const System& system, const ContactPoint& con
   };
   const Projection start =
       surface.project_undeformed(contact.first_segment, contact.slave_position);
-  const double rate =
-      (driven(contact.slave_body) - driven(surface.body)) * start.tangent.x();
+  const double rate = (driven(contact.slave_body) - driven(surface.body)) * start.tangent.x();
   const double begin = surface.arc_at(contact.first_segment, start.weights);
   const double length = surface.arc_length.back();
   const double rounding = 1e-9 * length;
@@ -124,16 +124,41 @@ void look_at_paths(const LoadedScene& loaded, const System& system,
   }
 }
 
+/// Whether nothing moves a row of a body: the supports hold it.
+bool is_held(const SystemBody& body, int row) {
+  return body.modal.size() > 0 && body.modal.rows.row(row).isZero(0.0) &&
+         (body.modal.residual.num_modes == 0 ||
+          body.modal.residual.flexibility.row(row).isZero(0.0));
+}
+
+void look_at_channels(const Scene& scene, const Model& model, std::vector<Problem>& warnings) {
+  if (!scene.record) return;
+  for (const Channel& channel : parse_channels(*scene.record, scene.model)) {
+    if (!channel.point) continue;
+    const Model::Point& point = model.points.at(*channel.point);
+    const SystemBody& body = model.system.bodies[static_cast<std::size_t>(point.body)];
+    // What the drive carries along moves with it.
+    const bool is_driven = body.follows_drive && !channel.is_vertical;
+    if (is_driven || !is_held(body, channel.is_vertical ? point.rows.y : point.rows.x)) continue;
+    warnings.push_back(
+        {channel.key,
+         fmt::format("'{}' will be recorded as zeros: the supports of '{}' hold this point in {} "
+                     "(substructures.{}.supports); record another point or direction",
+                     channel.name, body.name, channel.is_vertical ? "y" : "x", body.name),
+         {},
+         0,
+         0});
+  }
+}
+
 }  // namespace
 
-std::vector<Problem> key_warnings(const Schema& schema, const void* object,
-                                  const SceneNode& tree) {
+std::vector<Problem> key_warnings(const Schema& schema, const void* object, const SceneNode& tree) {
   std::vector<Problem> warnings;
   look_at_parameters(schema, object, warnings);
-  visit_numbers(schema, object, "",
-                [&](const Key& key, double value, const std::string& path) {
-                  look_at_number(key, value, path, tree, warnings);
-                });
+  visit_numbers(schema, object, "", [&](const Key& key, double value, const std::string& path) {
+    look_at_number(key, value, path, tree, warnings);
+  });
   locate(warnings, tree);
   return warnings;
 }
@@ -157,6 +182,7 @@ std::vector<Problem> scene_warnings(const LoadedScene& loaded, const Model& mode
                         0});
   }
   look_at_paths(loaded, model.system, warnings);
+  look_at_channels(scene, model, warnings);
   locate(warnings, loaded.tree);
   sort_by_place(warnings);
   return warnings;

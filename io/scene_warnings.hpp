@@ -14,8 +14,8 @@ namespace stridor {
 std::vector<Problem> key_warnings(const Schema& schema, const void* object, const SceneNode& tree);
 
 /// key_warnings() of a scene of bodies in contact, a window of the statistics that begins after
-/// the end of the run, and paths that lead off the end of a master within the run (of the
-/// undeformed bodies).
+/// the end of the run, paths that lead off the end of a master within the run (of the undeformed
+/// bodies), and channels of points that supports hold.
 std::vector<Problem> scene_warnings(const LoadedScene& loaded, const Model& model);
 
 }  // namespace stridor

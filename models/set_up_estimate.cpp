@@ -173,19 +173,6 @@ SetUpEstimate estimate_set_up(const SlidingContactParameters& contact) {
   return estimate;
 }
 
-SetUpEstimate estimate_summary(double end, double interval) {
-  // Time and acceleration, its transform and envelope in the band.
-  constexpr double numbers_per_sample = 12.0;
-  const double samples = end / interval;
-  SetUpEstimate estimate;
-  estimate.parts.push_back({"record.interval",
-                            fmt::format("the series of {} samples, {:g} s apart over {:g} s",
-                                        count_text(samples), interval, end),
-                            "record at a longer interval, or end earlier",
-                            number * numbers_per_sample * samples});
-  return estimate;
-}
-
 void require_memory(const SetUpEstimate& estimate, const MemoryLimit& limit) {
   const double needed = estimate.bytes();
   if (estimate.parts.empty() || needed <= limit.bytes) return;

@@ -42,10 +42,6 @@ SetUpEstimate estimate_set_up(const DiscModelParameters& model);
 /// Of boundary elements.
 SetUpEstimate estimate_set_up(const SlidingContactParameters& contact);
 
-/// Of the series of a run as they are read back to be summed up.
-/// @param end, interval of the samples, s
-SetUpEstimate estimate_summary(double end, double interval);
-
 /// @throws ConfigError naming the largest part, if all of them do not fit
 void require_memory(const SetUpEstimate& estimate, const MemoryLimit& limit);
 

@@ -121,7 +121,8 @@ TEST(BandPass, BandsNearTheEndsOfTheSpectrumHaveTheirGain) {
 
 TEST(BandSpectrum, GivesWhatTheBandPassGivesWhateverIsAskedBefore) {
   const auto input = sine(6.0e3, 3000);
-  BandSpectrum spectrum(input, dt, band);
+  const SampleSpan source(input);
+  BandSpectrum spectrum(source, {0, input.size()}, dt, band);
   const Band narrow{5.9e3, 6.1e3};  // takes longer to decay
   for (const Band& one : {band, narrow, band}) {
     const auto output = spectrum.in(one);
@@ -136,7 +137,8 @@ TEST(BandSpectrum, TellsTheAmplitudeOfASineAfterAllBands) {
   const Band narrow{5.8e3, 6.0e3};  // the gain at its edge is 1/2
   // The ends are felt for 1/(2π·100·sin π/8) = 4 ms, here 40 times that ago.
   const auto input = sine(frequency, 40000);
-  BandSpectrum spectrum(input, dt, band);
+  const SampleSpan source(input);
+  BandSpectrum spectrum(source, {0, input.size()}, dt, band);
   const PassedSignal passed = spectrum.pass({band, narrow});
   const double gain = 0.5 * band_pass_gain(frequency, dt, band);
   for (std::size_t i = 17000; i < 23000; ++i) {
@@ -146,8 +148,12 @@ TEST(BandSpectrum, TellsTheAmplitudeOfASineAfterAllBands) {
 }
 
 TEST(BandSpectrum, NoSamplesAreRejected) {
-  EXPECT_THAT([] { BandSpectrum({}, dt, band); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("there are no samples")));
+  const SampleSpan none({});
+  EXPECT_THAT(
+      [&] {
+        BandSpectrum(none, {0, 0}, dt, band);
+      },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("there are no samples")));
 }
 
 TEST(BandPass, ShortSignalsWork) {

@@ -230,9 +230,8 @@ TEST(CheckStart, ABilateralContactStartsWithoutAnyGap) {
   const std::string plain = scene_path("extreme/plain.yaml");
   for (const char* assumption : {"subs_a", "subs_b", "subs_c"}) {
     const std::string set = std::string("contact.assumption=") + assumption;
-    EXPECT_THAT(
-        refused_start(plain, {set, "initial={displacement: [{at: oblique, y: 1 um}]}"}).err,
-        AllOf(HasSubstr("starts 1e-06 m away from its master"), HasSubstr("y: -1e-06 m")));
+    EXPECT_THAT(refused_start(plain, {set, "initial={displacement: [{at: oblique, y: 1 um}]}"}).err,
+                AllOf(HasSubstr("starts 1e-06 m away from its master"), HasSubstr("y: -1e-06 m")));
     EXPECT_THAT(
         refused_start(plain, {set, "initial={displacement: [{at: oblique, y: -1 um}]}"}).err,
         HasSubstr("starts 1e-06 m inside its master"));
@@ -293,6 +292,10 @@ TEST(Check, WarnsOfWhatIsHardlyMeantWithoutRefusing) {
       {"beam_on_beam.yaml",
        {"substructures.oblique.material.youngs_modulus=71"},
        "substructures.oblique.material.youngs_modulus: is 71 Pa"},
+      {"beam_on_beam.yaml",
+       {"record.channels=[cantilever.start.y.displacement, cantilever.free_end.y.acceleration]"},
+       "record.channels.0: 'cantilever.start.y.displacement' will be recorded as zeros: the "
+       "supports of 'cantilever' hold this point in y (substructures.cantilever.supports)"},
       {"disc_and_pads.yaml",
        {"disc.outer_radius=160"},
        "disc.outer_radius: is 160 m, since bare numbers are in SI units"},
@@ -315,18 +318,19 @@ TEST(Check, WarnsOfWhatIsHardlyMeantWithoutRefusing) {
                 HasSubstr(message));
   }
   // A unit that is written is meant.
-  const ProgramResult meant = Program({"check", scene_path("disc_and_pads.yaml"), "--set",
-                                       "disc.outer_radius=160 m"})
-                                  .run();
+  const ProgramResult meant =
+      Program({"check", scene_path("disc_and_pads.yaml"), "--set", "disc.outer_radius=160 m"})
+          .run();
   EXPECT_THAT(meant.err, ::testing::Not(HasSubstr("warning")));
 }
 
 TEST(Check, ScenesOfTheProgramRaiseNoWarning) {
   for (const char* scene :
        {"beam_on_beam_leading.yaml", "disc_and_pads.yaml", "viscoelastic_contact.yaml",
-        "viscoelastic_sphere.yaml", "examples/beam_on_substrate.yaml", "examples/flutter.yaml",
-        "examples/landing.yaml", "examples/rough_surface.yaml", "examples/slave_edge.yaml",
-        "examples/thrown_bar.yaml", "examples/two_feet.yaml", "examples/two_pairs.yaml"}) {
+        "viscoelastic_sphere.yaml", "examples/beam_on_substrate.yaml",
+        "examples/clamped_bridge.yaml", "examples/flutter.yaml", "examples/landing.yaml",
+        "examples/rough_surface.yaml", "examples/slave_edge.yaml", "examples/thrown_bar.yaml",
+        "examples/two_feet.yaml", "examples/two_pairs.yaml"}) {
     const ProgramResult result = Program({"check", scene_path(scene)}).run();
     EXPECT_EQ(result.exit_code, 0) << scene;
     EXPECT_EQ(result.err, "") << scene;

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/activity.hpp"
+
 namespace stridor {
 namespace {
 
@@ -42,6 +44,20 @@ TEST_F(LocusProgressTest, PromisesNoEndWhileWindowsAreRefined) {
               HasSubstr("locus, refining windows: 3 values, contact.start = 0.305 m, 0 s so far"));
   EXPECT_THAT(refining, Not(HasSubstr("%")));
   EXPECT_THAT(refining, Not(HasSubstr("left")));
+}
+
+TEST_F(LocusProgressTest, TellsThePartAtWorkWhileWindowsAreRefined) {
+  EXPECT_THAT(text_after({0.5, 1.0}), HasSubstr("100 %"));
+  {
+    const Activity refining("interval 3 of 7");
+    const std::string text = text_after({0.3});
+    EXPECT_THAT(text, HasSubstr("refining windows: interval 3 of 7, contact.start = 0.3 m, 0 s"));
+    EXPECT_THAT(text, Not(HasSubstr("%")));
+  }
+  // That many branches stay that many: the share of them is told.
+  Activity refining("branch 4 of 6");
+  refining.report(0.5);
+  EXPECT_THAT(text_after({0.31}), HasSubstr("branch 4 of 6, contact.start = 0.31 m, 50 %"));
 }
 
 TEST(Progress, OfTheNextPhaseBeginsAnew) {

@@ -453,8 +453,8 @@ TEST_F(Pictures, MorePanelsThanAPictureHoldsAreRefused) {
   contents.rows = 10;
   contents.has_bursts = false;
   contents.channels.clear();
-  std::vector<std::string> arguments{"plot", path("run.h5"), "--kind", "history",
-                                     "-o",   path("a.png")};
+  std::vector<std::string> arguments{"plot",    path("run.h5"), "--kind",
+                                     "history", "-o",           path("a.png")};
   for (int i = 0; i < 41; ++i) {
     contents.channels.push_back("/contact/pad[" + std::to_string(i) + "]/force");
     arguments.insert(arguments.end(), {"--channel", "pad[" + std::to_string(i) + "].force"});
@@ -474,8 +474,7 @@ TEST_F(Pictures, ForcesAreDrawnWithTheirExtremesAndTheirSpectraFromTheLowPassedS
   const std::string run = make_run(contents);
   const Json history = json_of({"plot", run, "--kind", "history", "-o", path("a.svg")});
   EXPECT_EQ(history["panels"], 2);
-  EXPECT_THAT(contents_of(path("a.svg")),
-              HasSubstr("band: extremes of all steps"));
+  EXPECT_THAT(contents_of(path("a.svg")), HasSubstr("band: extremes of all steps"));
   const Json spectrum = json_of({"plot", run, "--kind", "spectrum", "-o", path("b.svg")});
   ASSERT_EQ(spectrum["channels"].size(), 2u);
   EXPECT_EQ(spectrum["channels"][0]["channel"], "contact.force_low_passed");
@@ -768,6 +767,27 @@ TEST(DamageGuardDeathTest, CrashWhileAFileIsOpenIsFileTrouble) {
     raise(SIGSEGV);
   };
   EXPECT_EXIT(crash_later(), ::testing::KilledBySignal(SIGSEGV), "");
+}
+
+TEST(DamageGuardDeathTest, WithJsonTheCrashIsToldAsOneObject) {
+  // A name with a quote and a byte that is no UTF-8. Output goes where the test sees it.
+  const auto crash = [] {
+    DamageGuard::tell_as_json();
+    dup2(STDERR_FILENO, STDOUT_FILENO);
+    const DamageGuard outer("other.h5");
+    { const DamageGuard over("good.h5"); }
+    const DamageGuard guard("a\"b\xff.h5");
+    raise(SIGSEGV);
+  };
+  const auto is_one_object = [](const std::string& told) {
+    const std::size_t begin = told.find('{');
+    const Json object = Json::parse(told.substr(std::min(begin, told.size())), nullptr, false);
+    return !object.is_discarded() && object.size() == 1 && object["errors"].size() == 1 &&
+           object["errors"][0]["message"] ==
+               "a\"b\xef\xbf\xbd.h5: is damaged, as it seems: the program crashed while it had "
+               "this file open";
+  };
+  EXPECT_EXIT(crash(), ::testing::ExitedWithCode(4), ::testing::Truly(is_one_object));
 }
 
 TEST_F(Pictures, BytesChangedAnywhereNeverEndInAnInternalError) {

@@ -74,10 +74,6 @@ TEST(SetUpEstimate, OfBoundaryElementsGrowsWithTheSquareOfTheGrid) {
   EXPECT_EQ(estimate_set_up(contact).bytes(), 0.25 * whole);
 }
 
-TEST(SetUpEstimate, OfASummaryGrowsWithTheSamples) {
-  EXPECT_DOUBLE_EQ(estimate_summary(10.0, 1e-6).bytes(), 1e7 * 12.0 * 8.0);
-}
-
 TEST(RequireMemory, AllowsWhatFits) {
   EXPECT_NO_THROW(require_memory(of_bytes(1e9), {1e9, "the memory"}));
   EXPECT_NO_THROW(require_memory({}, {0.0, "the memory"}));
