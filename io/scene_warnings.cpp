@@ -142,9 +142,9 @@ void look_at_channels(const Scene& scene, const Model& model, std::vector<Proble
     if (is_driven || !is_held(body, channel.is_vertical ? point.rows.y : point.rows.x)) continue;
     warnings.push_back(
         {channel.key,
-         fmt::format("'{}' will be recorded as zeros: the supports of '{}' hold this point in {} "
-                     "(substructures.{}.supports); record another point or direction",
-                     channel.name, body.name, channel.is_vertical ? "y" : "x", body.name),
+         fmt::format("'{}' will be recorded as zeros: '{}' is held in {} at this point; record "
+                     "another point or direction",
+                     channel.name, body.name, channel.is_vertical ? "y" : "x"),
          {},
          0,
          0});
