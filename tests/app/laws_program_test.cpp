@@ -81,6 +81,48 @@ TEST(LawsProgram, MassOnABeltSticksAndSlipsAsInClosedForm) {
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
 }
 
+TEST(LawsProgram, ABeltBelowABeamDoesWhatDraggingTheBeamDoes) {
+  const TemporaryFolder folder;
+  const auto run = [&](const std::string& file, const Arguments& more) {
+    Arguments arguments{"run",
+                        scene_path("examples/stick_slip.yaml"),
+                        "-o",
+                        folder / file,
+                        "--json",
+                        "--set",
+                        "drive.ramp=0",
+                        "--set",
+                        "time.end=0.05",
+                        "--set",
+                        "measure.from=0.01"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return json_of(arguments);
+  };
+  const Json dragged = run("dragged.h5", {"--set", "drive.velocity=50 mm/s"});
+  const Json belt =
+      run("belt.h5", {"--set", "drive.moves=contact.master", "--set", "drive.velocity=-50 mm/s"});
+  for (const char* extreme : {"min", "max"}) {
+    const double force = dragged["contact_force"][extreme];
+    EXPECT_NEAR(belt["contact_force"][extreme].get<double>(), force, 1e-6 * force);
+  }
+  EXPECT_NEAR(belt["stick_fraction"].get<double>(), dragged["stick_fraction"].get<double>(), 1e-5);
+  EXPECT_GT(dragged["stick_fraction"].get<double>(), 0.1);
+  EXPECT_LT(dragged["stick_fraction"].get<double>(), 1.0);
+}
+
+TEST(LawsProgram, ALoadOnAPointBendsTheBodyThere) {
+  // The guided end carries no load then, and the tip presses with its own weightless beam alone.
+  const std::string scene = scene_path("beam_on_beam.yaml");
+  const auto tip_of = [&](const Arguments& more) {
+    Arguments arguments{
+        "eig", scene, "--about", "deformed", "--json", "--set", "contact.friction.coefficient=0"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return json_of(arguments)["equilibrium"]["force"].get<double>();
+  };
+  // A force on the tip itself, which is held by the contact alone, goes into the contact.
+  EXPECT_NEAR(tip_of({"--set", "drive.load_on=oblique.tip"}), tip_of({}), 2e-3 * tip_of({}));
+}
+
 TEST(LawsProgram, RegularisedBeltHasTheEquilibriumOfItsLaw) {
   // With friction that creeps there is no stick, and the mass rests where the spring holds it.
   const TemporaryFolder folder;
