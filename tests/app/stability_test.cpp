@@ -7,7 +7,6 @@
 
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
-#include "tests/support/pencils.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {
@@ -49,45 +48,6 @@ TEST(StabilityChanges, AreWhereTheFirstBeginsAndTheLastEnds) {
   EXPECT_EQ(changes[2].value, 0.6);
   EXPECT_FALSE(changes[2].is_unstable_beyond);
   EXPECT_TRUE(stability_changes({{0.0, 1.0}, {}, {}, {}, {}, {}, 0, 0}).empty());
-}
-
-/// A contact whose friction just jams two modes, so that one pair of eigenvalues is at infinity,
-/// beside two free modes of which one varies.
-class JammedFamily : public StabilityFamily {
- public:
-  Pencil pencil(std::span<const double> values) override {
-    return constrained_modes(
-        Eigen::Vector4d(1.0, 2.0, values[0], 4.5), Eigen::Vector4d(0.0, 0.0, 0.02, 0.03),
-        Eigen::RowVector4d(1.0, 1.0, 0.0, 0.0), Eigen::RowVector4d(1.0, -1.0, 0.0, 0.0));
-  }
-  double trusted_frequency(std::span<const double>) override {
-    return std::numeric_limits<double>::infinity();
-  }
-};
-
-TEST(LocusAlong, FallsBackToTheDenseMethodAndSaysSo) {
-  JammedFamily family;
-  const NumericKey key{"stiffness", "", {}, false};
-  const std::vector<double> range{3.0, 3.2, 3.5};
-  ::testing::internal::CaptureStderr();
-  const Locus fallen = locus_along(family, key, 0, {3.0}, range, {});
-  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
-              ::testing::AllOf(HasSubstr("did not converge at stiffness = 3: all "),
-                               HasSubstr("eigenvalues by the dense method")));
-  ::testing::internal::CaptureStderr();
-  LocusOptions dense;
-  dense.method = LocusMethod::dense;
-  const Locus asked = locus_along(family, key, 0, {3.0}, range, dense);
-  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-  EXPECT_EQ(fallen.eigenvalues, asked.eigenvalues);
-  ASSERT_EQ(fallen.eigenvalues.size(), range.size());
-  // s² + c s + ω² = 0 of the free modes.
-  for (std::size_t i = 0; i < range.size(); ++i) {
-    ASSERT_FALSE(fallen.eigenvalues[i].empty());
-    const std::complex<double> s = fallen.eigenvalues[i].front();
-    EXPECT_NEAR(s.real(), -0.01, 1e-9);
-    EXPECT_NEAR(s.imag(), std::sqrt(range[i] * range[i] - 1e-4), 1e-9);
-  }
 }
 
 TEST(TrustedFrequency, IsHalfThatOfTheHighestFixedInterfaceModeKept) {
