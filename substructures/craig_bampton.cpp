@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -180,6 +182,11 @@ ReducedBody make_craig_bampton(const BodyMatrices& body, std::span<const int> in
   });
   mirror(reduced.stiffness);
   mirror(reduced.mass);
+  if (partition.num_interior > 0 && nb > 0) {
+    constexpr double eps = std::numeric_limits<double>::epsilon();
+    reduced.interface_rounding = 16.0 * std::sqrt(static_cast<double>(body.num_dofs())) * eps *
+                                 stiffness.bb.diagonal().maxCoeff();
+  }
 
   // Rows of T.
   const auto rows_of = [&](std::span<const int> dofs) {

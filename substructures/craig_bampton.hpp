@@ -19,6 +19,9 @@ struct ReducedBody {
   /// Tᵀ M r of BodyMatrices::base_inertia; empty where the body does not follow the drive.
   Eigen::VectorXd base_inertia;
   Eigen::Index num_interface = 0;  ///< leading coordinates that are interface DoFs
+  /// Rounding of the entries of `stiffness` between interface DoFs, N/m: what is left of entries of
+  /// the full stiffness that cancel in the motion of a soft or free body. 0 where nothing cancels.
+  double interface_rounding = 0.0;
   CoupledTerms coupled;            ///< empty where there are none
 
   Eigen::Index size() const { return mass.rows(); }

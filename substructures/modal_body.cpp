@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -23,7 +25,9 @@ ModalBody make_modal(const ReducedBody& body) {
   modal.damping = body.damping;
   modal.omega.resize(squares.size());
   for (Eigen::Index i = 0; i < squares.size(); ++i) {
-    if (squares(i) < -rigid_below) {
+    const double rounding =
+        body.interface_rounding * pairs.vectors.col(i).head(body.num_interface).squaredNorm();
+    if (squares(i) < -std::max(rigid_below, rounding)) {
       throw NumericalError(fmt::format("modal form: mode {} has the negative stiffness {:.3e} 1/s²",
                                        i + 1, squares(i)));
     }

@@ -37,7 +37,9 @@ struct ModalBody {
 
 /// Diagonalises a reduced body: q_reduced = Φ q_modal with ΦᵀMΦ = I, ΦᵀKΦ = diag(ω²).
 ///
-/// Frequencies below 1e-6 of the largest are rounding of rigid modes and are set to 0 exactly.
+/// Frequencies below 1e-6 of the largest, and squares of frequencies that are negative by no more
+/// than the rounding of the reduced stiffness (ReducedBody::interface_rounding), are rounding of
+/// rigid modes and are set to 0 exactly.
 /// @throws NumericalError if the mass is not positive definite or a stiffness is negative beyond
 /// rounding
 ModalBody make_modal(const ReducedBody& body);

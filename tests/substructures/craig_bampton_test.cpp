@@ -231,7 +231,8 @@ TEST(CraigBampton, AllModesKeptGivesTheFullSpectrum) {
     const Eigen::VectorXd full =
         test::dense_spectrum(Eigen::MatrixXd(body.stiffness), Eigen::MatrixXd(body.mass));
     const Eigen::VectorXd kept = test::dense_spectrum(reduced.stiffness, reduced.mass);
-    EXPECT_LE((kept - full).cwiseAbs().maxCoeff(), spectrum_tolerance(body, full.maxCoeff()));
+    // Of one reduction and two eigenproblems.
+    EXPECT_LE((kept - full).cwiseAbs().maxCoeff(), 3.0 * spectrum_tolerance(body, full.maxCoeff()));
   }
 }
 
