@@ -98,8 +98,8 @@ enum class Outcome { resolved, halve };
 class Pass {
  public:
   Pass(const SpectrumSampler& sampler, const std::vector<Sample>& whole,
-       std::vector<Sample>& between)
-      : sampler_(sampler), whole_(whole), between_(between), chains_(whole) {}
+       std::vector<Sample>& between, SearchFor wanted)
+      : sampler_(sampler), whole_(whole), between_(between), wanted_(wanted), chains_(whole) {}
 
   Outcome search(std::size_t i);
 
@@ -128,11 +128,14 @@ class Pass {
   std::optional<double> slope(std::ptrdiff_t interval, std::size_t b) const;
   std::optional<double> tip_of(std::size_t i, std::size_t b, double sign) const;
   Outcome climb(std::size_t i, std::size_t b, double sign);
+  bool grows_throughout(std::size_t i, std::size_t b) const;
+  bool needs_search(std::size_t i) const;
   void keep(Sample sample, bool is_growing);
 
   const SpectrumSampler& sampler_;
   const std::vector<Sample>& whole_;
   std::vector<Sample>& between_;
+  SearchFor wanted_;
   Chains chains_;
 };
 
@@ -204,7 +207,10 @@ Outcome Pass::approach(std::size_t i, std::size_t b, std::size_t c) {
   // A change of stability that the ends show is solved for elsewhere.
   if (grows_at(i) != grows_at(i + 1)) return Outcome::resolved;
   const bool is_growing = grows_at(i);
-  PairSearch search(looks_around(i, b, c), whole_[i].value, whole_[i + 1].value, scale_of(i),
+  const std::vector<PairLook> looks = looks_around(i, b, c);
+  if (!is_growing && growth_bound(looks, whole_[i].value, whole_[i + 1].value) < 0.0)
+    return Outcome::resolved;
+  PairSearch search(looks, whole_[i].value, whole_[i + 1].value, scale_of(i),
                     is_growing ? PairSearch::Aim::gap : PairSearch::Aim::growth);
   for (int k = 0; k < most_looks; ++k) {
     const std::optional<double> next = search.next();
@@ -304,7 +310,27 @@ Outcome Pass::climb(std::size_t i, std::size_t b, double sign) {
   return Outcome::halve;
 }
 
+/// Whether an eigenvalue grows all over an interval: at both ends, with no minimum below zero and
+/// no other near enough to change that.
+bool Pass::grows_throughout(std::size_t i, std::size_t b) const {
+  if (!(chains_.excess(i, b) > 0.0 && chains_.excess(i + 1, b) > 0.0)) return false;
+  const auto here = static_cast<std::ptrdiff_t>(i);
+  const bool has_slope = slope(here - 1, b) || slope(here + 1, b);
+  if (!has_slope || tip_of(i, b, -1.0)) return false;
+  for (std::size_t c = 0; c < chains_.size(); ++c)
+    if (is_in(i, c) && may_meet(i, b, c) && !passes_by(i, b, c)) return false;
+  return true;
+}
+
+bool Pass::needs_search(std::size_t i) const {
+  if (wanted_ == SearchFor::every_window) return true;
+  for (std::size_t b = 0; b < chains_.size(); ++b)
+    if (is_in(i, b) && grows_throughout(i, b)) return false;
+  return true;
+}
+
 Outcome Pass::search(std::size_t i) {
+  if (!needs_search(i)) return Outcome::resolved;
   std::vector<std::size_t> present;
   for (std::size_t b = 0; b < chains_.size(); ++b)
     if (is_in(i, b)) present.push_back(b);
@@ -345,13 +371,13 @@ Outcome Pass::search(std::size_t i) {
 }  // namespace
 
 IntervalSearch search_intervals(const SpectrumSampler& sampler, std::vector<Sample>& whole,
-                                int most_values) {
+                                int most_values, SearchFor wanted) {
   constexpr int most_passes = 8;
   IntervalSearch result;
   std::set<std::pair<double, double>> resolved;
   for (int pass = 0; whole.size() > 1; ++pass) {
     std::vector<double> values;
-    Pass one(sampler, whole, result.between);
+    Pass one(sampler, whole, result.between, wanted);
     for (std::size_t i = 0; i + 1 < whole.size(); ++i) {
       const std::pair ends(whole[i].value, whole[i + 1].value);
       if (resolved.contains(ends)) continue;

@@ -7,6 +7,12 @@
 
 namespace stridor {
 
+/// What is looked for along a parameter.
+enum class SearchFor {
+  every_window,  ///< windows of each eigenvalue that grows
+  stability,     ///< where the system as a whole becomes stable or unstable
+};
+
 /// Result of a search between samples.
 struct IntervalSearch {
   std::vector<Sample> between;  ///< samples of any kind, in any order
@@ -32,12 +38,14 @@ struct IntervalSearch {
 /// zero, it is climbed, likewise a minimum.
 ///
 /// Intervals in which eigenvalues cannot be connected without doubt are halved, as are those where
-/// the parabola of a pair does not agree with both ends.
+/// the parabola of a pair does not agree with both ends. No spectrum is spent on a pair that its
+/// damping keeps stable by the samples at hand, growth_bound() < 0, nor, where stability is looked
+/// for, on an interval throughout which one eigenvalue grows.
 ///
 /// @param whole       samples with all eigenvalues, ascending values; more of them are added
 /// @param most_values that may be added
 /// Cost: three to six samples for every approach of two eigenvalues.
 IntervalSearch search_intervals(const SpectrumSampler& sampler, std::vector<Sample>& whole,
-                                int most_values);
+                                int most_values, SearchFor wanted = SearchFor::every_window);
 
 }  // namespace stridor

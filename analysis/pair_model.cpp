@@ -67,6 +67,29 @@ std::optional<FoundPair> closest_pair(const std::vector<Complex>& eigenvalues,
   return closest;
 }
 
+double growth_bound(const std::vector<PairLook>& looks, double from, double to) {
+  constexpr int parts = 64;
+  constexpr double safety = 4.0;
+  double bound = std::numeric_limits<double>::infinity();
+  if (looks.size() != 4 || looks[1].value != from || looks[2].value != to) return bound;
+  bound = -bound;
+  const auto at = [&](std::size_t first, double x, auto&& member) {
+    const PairLook* look = &looks[first];
+    return interpolate({look[0].value, look[1].value, look[2].value},
+                       {look[0].*member, look[1].*member, look[2].*member}, 3, x);
+  };
+  for (int i = 0; i <= parts; ++i) {
+    const double x = from + (to - from) * i / parts;
+    const Complex mean = at(0, x, &PairLook::mean);
+    const Complex square = at(0, x, &PairLook::square);
+    const double mean_error = safety * std::abs(at(1, x, &PairLook::mean) - mean);
+    const double square_error = safety * std::abs(at(1, x, &PairLook::square) - square);
+    const double root = 0.5 * (std::abs(square) + square.real()) + square_error;
+    bound = std::max(bound, mean.real() + mean_error + std::sqrt(root));
+  }
+  return bound;
+}
+
 PairSearch::PairSearch(std::vector<PairLook> looks, double from, double to, double scale, Aim aim)
     : looks_(std::move(looks)),
       num_given_(looks_.size()),

@@ -34,6 +34,16 @@ struct FoundPair {
 std::optional<FoundPair> closest_pair(const std::vector<std::complex<double>>& eigenvalues,
                                       const PairLook& expected);
 
+/// Bound of the growth of a pair between two values, by the parabolas through mean and square:
+///
+///   max Re m + δm + √((|D| + Re D)/2 + δD),
+///
+/// δ four times the difference of the parabolas through the first and the last three looks.
+///
+/// @param looks ascending values, two of them `from` and `to`
+/// @return +∞ unless there is one look on either side besides
+double growth_bound(const std::vector<PairLook>& looks, double from, double to);
+
 /// Solves for the value between two others at which a pair grows most, or grows least.
 ///
 /// Mean and square are interpolated by parabolas through three looks. Proposed is the extremum of

@@ -108,8 +108,13 @@ void check(bool has_family, const std::vector<double>& values, const LocusOption
 
 Locus sample_locus(const PencilFamily& family, const std::vector<double>& values,
                    const LocusOptions& options) {
+  return sample_locus(family, values, options, SamplingEffort{});
+}
+
+Locus sample_locus(const PencilFamily& family, const std::vector<double>& values,
+                   const LocusOptions& options, const SamplingEffort& effort) {
   check(family.place != nullptr, values, options);
-  return sample_locus(dense_spectra(family), values, options, SamplingEffort{});
+  return sample_locus(dense_spectra(family), values, options, effort);
 }
 
 Locus sample_locus(const SpectrumFamily& family, const std::vector<double>& values,
@@ -130,7 +135,7 @@ Locus sample_locus(const SpectrumFamily& family, const std::vector<double>& valu
     }
     whole.push_back(std::move(sample));
   }
-  IntervalSearch search = search_intervals(sampler, whole, effort.most_added);
+  IntervalSearch search = search_intervals(sampler, whole, effort.most_added, effort.wanted);
   locus.unresolved = search.unresolved;
   locus.num_places = static_cast<int>(whole.size());
   auto wanted = values.begin();
@@ -143,7 +148,11 @@ Locus sample_locus(const SpectrumFamily& family, const std::vector<double>& valu
     std::move(more->begin(), more->end(), std::back_inserter(samples));
   std::stable_sort(samples.begin(), samples.end(),
                    [](const Sample& a, const Sample& b) { return a.value < b.value; });
-  find_sampled_windows(sampler, effort.windows, std::move(samples), locus);
+  if (effort.wanted == SearchFor::stability) {
+    find_unstable_stretches(sampler, effort.windows, std::move(samples), locus);
+  } else {
+    find_sampled_windows(sampler, effort.windows, std::move(samples), locus);
+  }
   return locus;
 }
 

@@ -88,6 +88,63 @@ class SignChange {
   int num_growing_ = 0, num_stable_ = 0;  ///< in a row
 };
 
+/// The same by inverse quadratic interpolation, halving where the excess is not monotonic and
+/// smooth (Chandrupatla, Advances in Engineering Software 28, 1997).
+class SmoothSignChange {
+ public:
+  SmoothSignChange(const SpectrumSampler& sampler, double tolerance, std::size_t rank)
+      : sampler_(sampler), tolerance_(tolerance), rank_(rank) {}
+
+  void narrow(Sample& stable, Sample& growing) const {
+    constexpr int max_steps = 100;
+    const double range = std::abs(growing.value - stable.value);
+    Place last = place_of(stable), other = place_of(growing), before = other;
+    double share = last.excess / (last.excess - other.excess);
+    for (int i = 0; i < max_steps; ++i) {
+      const double width = std::abs(other.value - last.value);
+      const double least = (tolerance_ * std::abs(last.value) + 1e-3 * tolerance_ * range) / width;
+      if (!(least < 0.5)) return;
+      if (!std::isfinite(share)) share = 0.5;
+      share = std::clamp(share, least, 1.0 - least);
+      const double next = last.value + share * (other.value - last.value);
+      if (next == last.value || next == other.value) return;
+      Sample sample = sampler_.near(next);
+      const Place place = place_of(sample);
+      const bool is_growing = place.excess > 0.0;
+      before = last;
+      if (is_growing != (last.excess > 0.0)) {
+        before = other;
+        other = last;
+      }
+      last = place;
+      (is_growing ? growing : stable) = std::move(sample);
+      share = next_share(last, other, before);
+    }
+  }
+
+ private:
+  struct Place {
+    double value, excess;
+  };
+
+  Place place_of(const Sample& sample) const { return {sample.value, sample.ranked_excess(rank_)}; }
+
+  /// @param other on the other side of the change than `last`
+  static double next_share(const Place& last, const Place& other, const Place& before) {
+    const double along = (last.value - other.value) / (before.value - other.value);
+    const double up = (last.excess - other.excess) / (before.excess - other.excess);
+    const bool is_smooth = up * up < along && (1.0 - up) * (1.0 - up) < 1.0 - along;
+    if (!is_smooth) return 0.5;
+    const double a = last.excess, b = other.excess, c = before.excess;
+    return a / (b - a) * c / (b - c) +
+           (before.value - last.value) / (other.value - last.value) * a / (c - a) * b / (c - b);
+  }
+
+  const SpectrumSampler& sampler_;
+  double tolerance_;
+  std::size_t rank_;
+};
+
 /// An eigenvalue that grows.
 struct Point {
   double value;
@@ -237,6 +294,29 @@ void split_exchanges(const SpectrumSampler& sampler, std::vector<Sample>& sample
   }
 }
 
+void sort_samples(std::vector<Sample>& samples) {
+  std::stable_sort(samples.begin(), samples.end(),
+                   [](const Sample& a, const Sample& b) { return a.value < b.value; });
+  const auto is_same = [](const Sample& a, const Sample& b) { return a.value == b.value; };
+  samples.erase(std::unique(samples.begin(), samples.end(), is_same), samples.end());
+}
+
+void sort_by_place(Locus& locus) {
+  std::sort(locus.unstable.begin(), locus.unstable.end(),
+            [](const auto& a, const auto& b) { return a.from < b.from; });
+  std::sort(locus.crossings.begin(), locus.crossings.end(),
+            [](const auto& a, const auto& b) { return a.value < b.value; });
+}
+
+void narrow(const SpectrumSampler& sampler, const WindowEffort& effort, std::size_t rank,
+            Sample& stable, Sample& growing) {
+  if (effort.ends == WindowEffort::Ends::parabolas) {
+    SmoothSignChange(sampler, effort.tolerance, rank).narrow(stable, growing);
+  } else {
+    SignChange(sampler, effort, rank).narrow(stable, growing);
+  }
+}
+
 }  // namespace
 
 void find_sampled_windows(const SpectrumSampler& sampler, const WindowEffort& effort,
@@ -251,21 +331,53 @@ void find_sampled_windows(const SpectrumSampler& sampler, const WindowEffort& ef
     for (std::size_t rank = std::min(before, after) + 1; rank <= std::max(before, after); ++rank) {
       Sample stable = before < after ? samples[i] : samples[i + 1];
       Sample growing = before < after ? samples[i + 1] : samples[i];
-      SignChange(sampler, effort, rank).narrow(stable, growing);
+      narrow(sampler, effort, rank, stable, growing);
       ends.push_back(std::move(stable));
       ends.push_back(std::move(growing));
     }
   }
   std::move(ends.begin(), ends.end(), std::back_inserter(samples));
-  std::stable_sort(samples.begin(), samples.end(),
-                   [](const Sample& a, const Sample& b) { return a.value < b.value; });
-  const auto is_same = [](const Sample& a, const Sample& b) { return a.value == b.value; };
-  samples.erase(std::unique(samples.begin(), samples.end(), is_same), samples.end());
+  sort_samples(samples);
   WindowBuilder(sampler, effort, locus).build(samples);
-  std::sort(locus.unstable.begin(), locus.unstable.end(),
-            [](const auto& a, const auto& b) { return a.from < b.from; });
-  std::sort(locus.crossings.begin(), locus.crossings.end(),
-            [](const auto& a, const auto& b) { return a.value < b.value; });
+  sort_by_place(locus);
+}
+
+void find_unstable_stretches(const SpectrumSampler& sampler, const WindowEffort& effort,
+                             std::vector<Sample> samples, Locus& locus) {
+  sort_samples(samples);
+  std::vector<Sample> ends;
+  const auto is_growing = [](const Sample& sample) { return sample.num_growing() > 0; };
+  for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
+    if (is_growing(samples[i]) == is_growing(samples[i + 1])) continue;
+    const bool begins = is_growing(samples[i + 1]);
+    Sample stable = samples[begins ? i : i + 1];
+    Sample growing = samples[begins ? i + 1 : i];
+    narrow(sampler, effort, 1, stable, growing);
+    locus.crossings.push_back(
+        {growing.value, growing.fastest().imag() / (2.0 * std::numbers::pi), begins ? 1 : -1, 0});
+    ends.push_back(std::move(stable));
+    ends.push_back(std::move(growing));
+  }
+  std::move(ends.begin(), ends.end(), std::back_inserter(samples));
+  sort_samples(samples);
+  bool was_growing = false;
+  for (const Sample& sample : samples) {
+    const bool grows = is_growing(sample);
+    if (grows) {
+      const Complex s = sample.fastest();
+      if (!was_growing)
+        locus.unstable.push_back({sample.value, sample.value, 0.0, 0.0, 0.0, 0.0, 0});
+      UnstableWindow& window = locus.unstable.back();
+      window.to = sample.value;
+      if (s.real() > window.growth_max) {
+        window.growth_max = s.real();
+        window.frequency = s.imag() / (2.0 * std::numbers::pi);
+        window.value_max = sample.value;
+      }
+    }
+    was_growing = grows;
+  }
+  sort_by_place(locus);
 }
 
 }  // namespace stridor

@@ -11,7 +11,8 @@ namespace stridor {
 struct WindowEffort {
   double tolerance = 1e-13;  ///< of the ends, relative
   int climbing_steps = 40;   ///< of golden sections towards the largest growth
-  enum class Ends { halving, secants } ends = Ends::halving;
+  /// How ends are approached: parabolas where the growth is smooth and spectra dear.
+  enum class Ends { halving, secants, parabolas } ends = Ends::halving;
 };
 
 /// Solves for all changes in the number of eigenvalues that grow, and appends a window for each
@@ -24,5 +25,12 @@ struct WindowEffort {
 /// @param samples ascending values
 void find_sampled_windows(const SpectrumSampler& sampler, const WindowEffort& effort,
                           std::vector<Sample> samples, Locus& locus);
+
+/// Solves for the changes of stability alone: a window for every stretch in which anything grows,
+/// with the fastest eigenvalue of the samples at hand, and its ends as crossings.
+///
+/// @param samples ascending values
+void find_unstable_stretches(const SpectrumSampler& sampler, const WindowEffort& effort,
+                             std::vector<Sample> samples, Locus& locus);
 
 }  // namespace stridor

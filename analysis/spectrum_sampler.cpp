@@ -32,10 +32,7 @@ class DenseSpectra {
 
   SampledSpectrum compute(double value) {
     family_->place(value, pencil_);
-    // Eigenvalues without doubt need no condition numbers.
-    DenseSpectrum all = dense_spectrum(pencil_, DenseWork::eigenvalues);
-    if (std::any_of(all.eigenvalues.begin(), all.eigenvalues.end(), is_doubtful))
-      all = dense_spectrum(pencil_, DenseWork::conditions);
+    const DenseSpectrum all = dense_spectrum(pencil_, DenseWork::near_axis);
     SampledSpectrum spectrum;
     for (std::size_t i = 0; i < all.eigenvalues.size(); ++i) {
       spectrum.eigenvalues.push_back(all.eigenvalues[i].s);
@@ -44,16 +41,13 @@ class DenseSpectra {
     return spectrum;
   }
 
-  static bool is_doubtful(const Eigenvalue& one) {
-    return std::abs(one.s.real()) <= largest_rounding * std::abs(one.s);
-  }
-
   /// Possible rounding error of the real part.
   static double rounding_of(const DenseSpectrum& all, std::size_t i) {
-    if (!is_doubtful(all.eigenvalues[i])) return 0.0;
+    if (!is_near_axis(all.eigenvalues[i].s)) return 0.0;
     const double rounding = 20.0 * std::numeric_limits<double>::epsilon() * all.norm;
-    return std::min(rounding * all.conditions[i],
-                    largest_rounding * std::abs(all.eigenvalues[i].s));
+    // In this order NaN, of an eigenvalue without condition, gives the largest.
+    return std::min(largest_rounding * std::abs(all.eigenvalues[i].s),
+                    rounding * all.conditions[i]);
   }
 
   const PencilFamily* family_;

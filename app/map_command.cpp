@@ -128,7 +128,8 @@ LineResult trace_broken_line(StabilityFamily& family, const Axis& axis, std::siz
     values[varied] = part.front();
     try {
       if (part.size() > 1) {
-        const Locus locus = locus_along(family, axis.key, varied, values, part, options);
+        const Locus locus =
+            locus_along(family, axis.key, varied, values, part, options, SearchFor::stability);
         add_changes(result, axis, locus);
         add_resolution(result.resolution, locus);
       }
@@ -147,7 +148,8 @@ LineResult trace_line(StabilityFamily& family, const std::array<Axis, 2>& axes, 
   std::vector<double> values(2, other);
   values[varied] = axis.values.front();
   try {
-    const Locus locus = locus_along(family, axis.key, varied, values, axis.values, options);
+    const Locus locus =
+        locus_along(family, axis.key, varied, values, axis.values, options, SearchFor::stability);
     LineResult result;
     result.highest =
         verdict_limit(locus, {options.count, options.frequency}, family.trusted_frequency(values));
@@ -249,8 +251,8 @@ void draw(const MapOptions& options, const std::array<Axis, 2>& axes, const Stab
   picture.growth = map.growth;
   for (const BoundaryLine& line : map.boundary) {
     picture.boundary.emplace_back();
-    for (const auto& point : line) picture.boundary.back().push_back(
-          {x_unit.number(point[0]), y_unit.number(point[1])});
+    for (const auto& point : line)
+      picture.boundary.back().push_back({x_unit.number(point[0]), y_unit.number(point[1])});
   }
   picture.caption = fmt::format(
       "Largest growth rate{}, {} by {} values; line: boundary of stability. {}, scene {}.",

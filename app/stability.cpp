@@ -508,7 +508,7 @@ Locus trace(const PencilFamily& family, const NumericKey& varied, const std::vec
 
 Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t key,
                   const std::vector<double>& values, const std::vector<double>& range,
-                  const LocusOptions& options) {
+                  const LocusOptions& options, SearchFor wanted) {
   // An end that is not allowed is named as it was given, before anything is computed in between.
   std::vector<double> ends = values;
   double trusted = std::numeric_limits<double>::infinity();
@@ -524,7 +524,8 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
   const PencilFamily pencils = family.along(key, values, range.front(), range.back());
   if (varied.is_integer) return locus_at(pencils, range, options);
   if (!family.is_sampled()) return trace(pencils, varied, range, options);
-  return sample_locus(pencils, range, within);
+  return sample_locus(pencils, range, within,
+                      wanted == SearchFor::stability ? stability_effort : SamplingEffort{});
 }
 
 std::vector<StabilityChange> stability_changes(const Locus& locus) {

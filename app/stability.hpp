@@ -205,10 +205,12 @@ KeyRange make_range(const StabilityScene& scene, const RangeOptions& options);
 /// @param key    index of the one that varies
 /// @param values of all keys
 /// @param range  values of that key, strictly ascending
+/// @param wanted where stability alone is wanted, sampled loci have a window for every stretch in
+///               which anything grows
 /// @throws ConfigError, NumericalError
 Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t key,
                   const std::vector<double>& values, const std::vector<double>& range,
-                  const LocusOptions& options);
+                  const LocusOptions& options, SearchFor wanted = SearchFor::every_window);
 
 /// A value at which the system as a whole becomes stable or unstable.
 struct StabilityChange {

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/errors.hpp"
+#include "solvers/hessenberg_eigenvalues.hpp"
 #include "solvers/matrix_modes.hpp"
 
 extern "C" void dgeevx_(const char* balance, const char* left, const char* right, const char* sense,
@@ -91,6 +92,21 @@ LapackResult eigenvalues_of(Eigen::MatrixXd matrix, DenseWork wanted_work) {
   return result;
 }
 
+/// Those of eigenvalues near the axis; condition numbers of all where hessenberg_eigenvalues()
+/// gives none.
+LapackResult eigenvalues_near_axis(const Eigen::MatrixXd& matrix) {
+  constexpr int most = 8;
+  std::optional<HessenbergEigenvalues> found = hessenberg_eigenvalues(matrix, is_near_axis, most);
+  if (!found) return eigenvalues_of(matrix, DenseWork::conditions);
+  LapackResult result;
+  result.re = found->values.real();
+  result.im = found->values.imag();
+  result.vectors.resize(1, 1);
+  result.reciprocal_condition = std::move(found->reciprocal_condition);
+  result.norm = found->norm;
+  return result;
+}
+
 /// Copies eigenvalue i of one result, with all that belongs to it, to place j of another.
 void copy_eigenvalue(const LapackResult& from, Eigen::Index i, LapackResult& to, Eigen::Index j) {
   to.re(j) = from.re(i);
@@ -115,8 +131,11 @@ void undo_inversion(LapackResult& result, double shift) {
 /// @param slowest order of the slowest that matter, 1/s
 LapackResult graded_eigenvalues_of(const Eigen::MatrixXd& matrix, double slowest, DenseWork work) {
   constexpr double wide = 1e10;
-  LapackResult fast = eigenvalues_of(matrix, work);
+  LapackResult fast =
+      work == DenseWork::near_axis ? eigenvalues_near_axis(matrix) : eigenvalues_of(matrix, work);
   if (!(fast.norm > wide * slowest)) return fast;
+  if (work == DenseWork::near_axis)
+    return graded_eigenvalues_of(matrix, slowest, DenseWork::conditions);
   Eigen::MatrixXd shifted = matrix;
   shifted.diagonal().array() -= slowest;
   const Eigen::MatrixXd inverse = shifted.partialPivLu().inverse();
@@ -139,6 +158,11 @@ LapackResult graded_eigenvalues_of(const Eigen::MatrixXd& matrix, double slowest
 }
 
 }  // namespace
+
+bool is_near_axis(Complex s) {
+  constexpr double near = 1e-6;
+  return std::abs(s.real()) <= near * std::abs(s);
+}
 
 DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work) {
   check_pencil(pencil);
@@ -172,7 +196,8 @@ DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work) {
       -mass.solve(L_E.transpose() * (K * (inverse_W.asDiagonal() * L_p)));
   matrix.bottomRightCorner(size, size) = -mass.solve(L_E.transpose() * (C * L_C));
 
-  const bool with_vectors = work != DenseWork::eigenvalues;
+  const bool with_vectors = work == DenseWork::residuals || work == DenseWork::conditions;
+  const bool with_conditions = work == DenseWork::near_axis || work == DenseWork::conditions;
   const LapackResult found = graded_eigenvalues_of(matrix, W.minCoeff(), work);
   // Two equal real ones come out as a pair by rounding.
   Eigen::VectorXd im = found.im;
@@ -204,8 +229,7 @@ DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work) {
       eigenvalue.residual = relative_residual(pencil, eigenvalue.s, q);
       spectrum.right.col(static_cast<Eigen::Index>(spectrum.eigenvalues.size())) = q;
     }
-    if (work == DenseWork::conditions)
-      spectrum.conditions.push_back(1.0 / found.reciprocal_condition(i));
+    if (with_conditions) spectrum.conditions.push_back(1.0 / found.reciprocal_condition(i));
     spectrum.eigenvalues.push_back(eigenvalue);
   }
   return spectrum;

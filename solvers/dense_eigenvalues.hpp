@@ -9,9 +9,16 @@ namespace stridor {
 
 enum class DenseWork {
   eigenvalues,  ///< no residuals, at less than half the cost
-  residuals,    ///< with eigenvectors and residuals
-  conditions,   ///< as `residuals`, with condition numbers
+  /// As `eigenvalues`, with condition numbers of those on the imaginary axis but for little,
+  /// is_near_axis(); at hardly more cost where they are few.
+  near_axis,
+  residuals,   ///< with eigenvectors and residuals
+  conditions,  ///< as `residuals`, with condition numbers
 };
+
+/// Whether rounding may decide on which side of the imaginary axis an eigenvalue lies:
+/// |Re s| <= 1e-6 |s|.
+bool is_near_axis(std::complex<double> s);
 
 /// All eigenvalues of a pencil and the motions that belong to them.
 struct DenseSpectrum {
@@ -19,7 +26,7 @@ struct DenseSpectrum {
   Eigen::MatrixXcd right;               ///< q of each, one per column; empty without residuals
   /// Magnification of rounding in the linearised matrix for each: 1/|yᴴx| for its unit left
   /// and right eigenvectors, large where two eigenvalues and their motions are about to coincide.
-  /// Empty unless asked for.
+  /// Empty unless asked for; NaN of those it was not asked for.
   std::vector<double> conditions;
   /// Norm of the linearised matrix, balanced, 1/s: by ε times it and the condition rounding moves
   /// an eigenvalue.

@@ -15,35 +15,6 @@ double resistance(const FaceContactAnswer::Compliance& compliance, Eigen::Index 
   return std::max({0.0, -compliance(k + 1, k + 1), -compliance(k + 2, k + 2)});
 }
 
-/// By Gauss and Jordan's elimination with row pivots: LAPACK takes longer for some ten rows.
-Eigen::MatrixXd inverse_of(Eigen::MatrixXd matrix) {
-  const Eigen::Index n = matrix.rows();
-  std::vector<Eigen::Index> pivots(static_cast<std::size_t>(n));
-  Eigen::VectorXd column(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    Eigen::Index pivot = 0;
-    matrix.col(k).tail(n - k).cwiseAbs().maxCoeff(&pivot);
-    pivot += k;
-    pivots[static_cast<std::size_t>(k)] = pivot;
-    if (pivot != k) matrix.row(pivot).swap(matrix.row(k));
-    const double inverse = 1.0 / matrix(k, k);
-    column = matrix.col(k);
-    column(k) = 0.0;
-    matrix.col(k).setZero();
-    matrix(k, k) = 1.0;
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const double entry = inverse * matrix(k, j);
-      matrix.col(j) -= entry * column;
-      matrix(k, j) = entry;
-    }
-  }
-  for (Eigen::Index k = n - 1; k >= 0; --k) {
-    const Eigen::Index pivot = pivots[static_cast<std::size_t>(k)];
-    if (pivot != k) matrix.col(pivot).swap(matrix.col(k));
-  }
-  return matrix;
-}
-
 }  // namespace
 
 FaceContactSolver::FaceContactSolver(const FaceContactLaw& law, double least)
@@ -52,19 +23,21 @@ FaceContactSolver::FaceContactSolver(const FaceContactLaw& law, double least)
 bool FaceContactSolver::solve(FaceContactAnswer& answer, Eigen::VectorXd& forces) {
   seen_.resize(forces.size());
   apart_.resize(forces.size());
-  const Eigen::VectorXd first_guess = forces;
+  first_guess_ = forces;
   if (follow(answer, forces)) return true;
   forget();
-  forces = first_guess;
-  return repeat(answer, forces);
+  forces = first_guess_;
+  if (!repeat(answer, forces)) return false;
+  answer.see(forces.data(), seen_.data());
+  return true;
 }
 
 double FaceContactSolver::largest_of(const Eigen::VectorXd& forces) const {
   return std::max(least_, forces.cwiseAbs().maxCoeff());
 }
 
-FaceContactSolver::Regime FaceContactSolver::regime_of(const Compliance& compliance,
-                                                       Eigen::Index k, const Eigen::VectorXd& seen,
+FaceContactSolver::Regime FaceContactSolver::regime_of(const Compliance& compliance, Eigen::Index k,
+                                                       const Eigen::VectorXd& seen,
                                                        const Eigen::VectorXd& f) const {
   const double overlap = (seen(k) + softness_ * f(k)) / (softness_ + compliance(k, k));
   if (!(f(k) > overlap)) return Regime::open;
@@ -74,44 +47,62 @@ FaceContactSolver::Regime FaceContactSolver::regime_of(const Compliance& complia
   return trial.squaredNorm() > limit * limit ? Regime::slip : Regime::stick;
 }
 
-/// Newton's method with an inverse that is kept.
+/// Newton's method with an inverse that is kept. The next correction is taken to fall as the last
+/// one did; where it would be small enough, what is seen under the corrected forces tells whether
+/// bending has settled too.
 bool FaceContactSolver::follow(FaceContactAnswer& answer, Eigen::VectorXd& f) {
   constexpr int max_iterations = 40;
   constexpr double slow = 0.2;  // share of a correction that is left to the next
+  static const double most_left = getenv("LIM")
+                                      ? atof(getenv("LIM"))
+                                      : 4.0;  // iterations, beyond which a new inverse takes less
   const Compliance& compliance = answer.compliance();
   regimes_.resize(static_cast<std::size_t>(f.size() / per_contact));
-  double before = 0.0;
+  double before = 0.0;  // the last correction; 0 where there is none, negative: for a new inverse
+  bool is_expected = false;
+  num_corrections_ = 0;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     const double unsettled = answer.see(f.data(), seen_.data());
-    bool has_opened = false;
-    for (std::size_t i = 0; i < regimes_.size(); ++i) {
-      const auto k = static_cast<Eigen::Index>(i) * per_contact;
-      regimes_[i] = regime_of(compliance, k, seen_, f);
-      if (regimes_[i] != Regime::open) continue;
-      has_opened = has_opened || !f.segment<3>(k).isZero(0.0);
-      f.segment<3>(k).setZero();
+    if (is_expected && unsettled <= tolerance * largest_of(f)) return true;
+    is_expected = false;
+    if (open_contacts(compliance, f)) {  // the others see it
+      num_corrections_ = 0;
+      continue;
     }
-    if (has_opened) continue;  // the others see it
     const bool is_new = kept_ != regimes_;
     if (is_new || before < 0.0) keep(compliance, seen_, f);
     const double change = correct(compliance, seen_, f);
     const double largest = largest_of(f);
     if (!std::isfinite(largest)) return false;
-    if (std::max(change, unsettled) <= tolerance * largest) {
-      obey(compliance, seen_, f);
-      return true;
-    }
-    // A negative one asks for a new inverse.
-    const bool is_slow = !is_new && before > 0.0 && change > slow * before;
+    const double rate = !is_new && before > 0.0 ? change / before : 1.0;
+    is_expected = change * std::min(rate, 1.0) <= tolerance * largest;
+    if (is_expected) obey(compliance, seen_, f);
+    const bool is_rated = !is_new && before > 0.0 && !is_expected;
+    const bool is_slow = is_rated && (rate > slow || std::log(tolerance * largest / change) <
+                                                         most_left * std::log(rate));
     before = is_slow ? -1.0 : change;
   }
   return false;
+}
+
+/// Finds the regime of every contact. @return whether one has opened under a force, now none
+bool FaceContactSolver::open_contacts(const Compliance& compliance, Eigen::VectorXd& f) {
+  bool has_opened = false;
+  for (std::size_t i = 0; i < regimes_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i) * per_contact;
+    regimes_[i] = regime_of(compliance, k, seen_, f);
+    if (regimes_[i] != Regime::open) continue;
+    has_opened = has_opened || !f.segment<3>(k).isZero(0.0);
+    f.segment<3>(k).setZero();
+  }
+  return has_opened;
 }
 
 /// The inverse at forces and what is seen under them.
 void FaceContactSolver::keep(const Compliance& compliance, const Eigen::VectorXd& seen,
                              const Eigen::VectorXd& f) {
   kept_ = regimes_;
+  num_corrections_ = 0;
   deviation(compliance, seen, f, apart_, &slope_);
   active_.clear();
   for (std::size_t i = 0; i < kept_.size(); ++i) {
@@ -123,7 +114,7 @@ void FaceContactSolver::keep(const Compliance& compliance, const Eigen::VectorXd
     keep_inverse({});
     return;
   }
-  keep_inverse(inverse_of(slope_(active_, active_)));
+  keep_inverse(small_inverse(slope_(active_, active_)));
 }
 
 void FaceContactSolver::keep_inverse(const Eigen::MatrixXd& inverse) {
@@ -143,6 +134,7 @@ double FaceContactSolver::correct(const Compliance& compliance, const Eigen::Vec
     active_apart_(static_cast<Eigen::Index>(i)) = apart_(active_[i]);
   change_.setZero();
   padded_inverse_.add_product(active_apart_.data(), change_.data());
+  accelerate();
   double largest = 0.0;
   for (std::size_t i = 0; i < num_active; ++i) {
     const double change = change_(static_cast<Eigen::Index>(i));
@@ -150,6 +142,31 @@ double FaceContactSolver::correct(const Compliance& compliance, const Eigen::Vec
     largest = std::max(largest, std::abs(change));
   }
   return largest;
+}
+
+/// Broyden's method from the kept inverse H: the corrections c_0, ... since it was last changed
+/// tell how the forces answer to them,
+///
+///   c ← H r,   c ← c + c_{j+1} (c_jᵀ c)/|c_j|² for j < n − 1,   c_n = c/(1 − c_{n−1}ᵀ
+///   c/|c_{n−1}|²)
+///
+/// (Kelley, Iterative Methods for Linear and Nonlinear Equations, 7.3).
+void FaceContactSolver::accelerate() {
+  constexpr double least = 0.1;  // of what c is divided by
+  for (std::size_t j = 0; j + 1 < num_corrections_; ++j) {
+    const double share = corrections_[j].dot(change_) / corrections_[j].squaredNorm();
+    change_ += share * corrections_[j + 1];
+  }
+  if (num_corrections_ > 0) {
+    const Eigen::VectorXd& last = corrections_[num_corrections_ - 1];
+    const double left = 1.0 - last.dot(change_) / last.squaredNorm();
+    if (left > least) change_ /= left;
+  }
+  if (num_corrections_ == corrections_.size()) {
+    num_corrections_ = 0;
+    return;
+  }
+  corrections_[num_corrections_++] = change_;
 }
 
 /// Removes what rounding left of the laws: no force pulls, and friction that slips is at its limit.
@@ -193,8 +210,7 @@ bool FaceContactSolver::sweep(const Compliance& compliance, const Eigen::VectorX
       const double gap = free(k) + compliance.row(k).dot(f) - W * f(k);
       f(k) = std::max(0.0, -gap / (softness_ + W));
       const double limit = friction_ * f(k);
-      const Eigen::Vector2d velocity =
-          free.segment<2>(k + 1) + compliance.middleRows<2>(k + 1) * f;
+      const Eigen::Vector2d velocity = free.segment<2>(k + 1) + compliance.middleRows<2>(k + 1) * f;
       // Without slip friction is what stops it, unless that is more than there can be.
       const double soft = resistance(compliance, k);
       const Eigen::Vector2d trial = soft * f.segment<2>(k + 1) + velocity;
@@ -214,7 +230,7 @@ bool FaceContactSolver::sweep(const Compliance& compliance, const Eigen::VectorX
 /// How far forces are from the laws, and its slope where that is wanted.
 void FaceContactSolver::deviation(const Compliance& compliance, const Eigen::VectorXd& seen,
                                   const Eigen::VectorXd& f, Eigen::VectorXd& apart,
-                                  Eigen::MatrixXd* slope) const {
+                                  Compliance* slope) const {
   apart = f;
   if (slope != nullptr) slope->setIdentity(f.size(), f.size());
   for (Eigen::Index k = 0; k < f.size(); k += per_contact) {
@@ -258,7 +274,7 @@ bool FaceContactSolver::search(const Compliance& compliance, const Eigen::Vector
                                Eigen::VectorXd& forces) const {
   constexpr int max_iterations = 60;
   constexpr int max_halvings = 12;
-  Eigen::MatrixXd slope;
+  Compliance slope;
   Eigen::VectorXd apart, shortened;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     deviation(compliance, free + compliance * forces, forces, apart, &slope);

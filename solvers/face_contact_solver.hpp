@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -33,10 +34,10 @@ class FaceContactAnswer {
 ///   τ = μ λ v/|v|,  or |τ| <= μ λ where v = 0,
 ///
 /// with the gap g and the velocities v of a FaceContactAnswer, and 1/k_C = 0 without a penalty
-/// (docs/theory.md, 10.6). Newton's method on the closed contacts, whose inverse matrix is kept from
-/// step to step until a contact opens, closes, sticks or slips, or it converges slowly; where it
-/// fails, Gauss and Seidel's sweeps over the contacts, or Newton's method with shortened steps where
-/// those go round in circles.
+/// (docs/theory.md, 10.6). Newton's method on the closed contacts, whose inverse matrix is kept
+/// from step to step until a contact opens, closes, sticks or slips, or more than six further
+/// corrections would be needed with it; where it fails, Gauss and Seidel's sweeps over the
+/// contacts, or Newton's method with shortened steps where those go round in circles.
 class FaceContactSolver {
  public:
   /// @param least force that counts as large, N, >= 0: convergence is relative to it, or to the
@@ -46,6 +47,8 @@ class FaceContactSolver {
   /// @param forces 3k; a first guess, and the forces found
   /// @return whether it has converged
   bool solve(FaceContactAnswer& answer, Eigen::VectorXd& forces);
+  /// Gap and velocities under the forces found, 3k; the answer was asked for them last.
+  const Eigen::VectorXd& seen() const { return seen_; }
   /// To be called where the compliance changes.
   void forget() { kept_.clear(); }
 
@@ -61,6 +64,7 @@ class FaceContactSolver {
   enum class Regime : unsigned char { open, slip, stick };
 
   bool follow(FaceContactAnswer& answer, Eigen::VectorXd& forces);
+  bool open_contacts(const Compliance& compliance, Eigen::VectorXd& forces);
   bool repeat(FaceContactAnswer& answer, Eigen::VectorXd& forces);
   Regime regime_of(const Compliance& compliance, Eigen::Index k, const Eigen::VectorXd& seen,
                    const Eigen::VectorXd& forces) const;
@@ -69,6 +73,7 @@ class FaceContactSolver {
   void keep_inverse(const Eigen::MatrixXd& inverse);
   double correct(const Compliance& compliance, const Eigen::VectorXd& seen,
                  Eigen::VectorXd& forces);
+  void accelerate();
   void obey(const Compliance& compliance, const Eigen::VectorXd& seen,
             Eigen::VectorXd& forces) const;
   double largest_of(const Eigen::VectorXd& forces) const;
@@ -77,8 +82,7 @@ class FaceContactSolver {
   bool search(const Compliance& compliance, const Eigen::VectorXd& free,
               Eigen::VectorXd& forces) const;
   void deviation(const Compliance& compliance, const Eigen::VectorXd& seen,
-                 const Eigen::VectorXd& forces, Eigen::VectorXd& apart,
-                 Eigen::MatrixXd* slope) const;
+                 const Eigen::VectorXd& forces, Eigen::VectorXd& apart, Compliance* slope) const;
 
   double friction_;
   double softness_;  ///< 1/k_C, m/N
@@ -88,8 +92,10 @@ class FaceContactSolver {
   std::vector<Eigen::Index> active_;  ///< forces of closed contacts, where the inverse is of
   Eigen::MatrixXd inverse_;           ///< of the deviation by the active forces
   PaddedMatrix padded_inverse_;
-  Eigen::MatrixXd slope_;
-  Eigen::VectorXd seen_, apart_, active_apart_, change_;
+  Compliance slope_;
+  std::array<Eigen::VectorXd, 8> corrections_;  ///< by the present inverse, in one solution
+  std::size_t num_corrections_ = 0;
+  Eigen::VectorXd first_guess_, seen_, apart_, active_apart_, change_;
 };
 
 }  // namespace stridor

@@ -1,6 +1,7 @@
 #include "solvers/padded_matrix.hpp"
 
 #include <cstddef>
+#include <vector>
 
 #include "core/clones.hpp"
 
@@ -28,7 +29,41 @@ STRIDOR_CLONES void multiply(const double* __restrict matrix, std::ptrdiff_t row
     for (std::ptrdiff_t i = 0; i < rows; ++i) y[i] += matrix[i] * x[j];
 }
 
+/// All columns less `column` times their entry in row k.
+STRIDOR_CLONES void eliminate(double* __restrict matrix, std::ptrdiff_t n, std::ptrdiff_t k,
+                              double inverse, const double* __restrict column) {
+  for (std::ptrdiff_t j = 0; j < n; ++j, matrix += n) {
+    const double entry = inverse * matrix[k];
+    for (std::ptrdiff_t i = 0; i < n; ++i) matrix[i] -= entry * column[i];
+    matrix[k] = entry;
+  }
+}
+
 }  // namespace
+
+Eigen::MatrixXd small_inverse(Eigen::MatrixXd matrix) {
+  const Eigen::Index n = matrix.rows();
+  std::vector<Eigen::Index> pivots(static_cast<std::size_t>(n));
+  Eigen::VectorXd column(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    Eigen::Index pivot = 0;
+    matrix.col(k).tail(n - k).cwiseAbs().maxCoeff(&pivot);
+    pivot += k;
+    pivots[static_cast<std::size_t>(k)] = pivot;
+    if (pivot != k) matrix.row(pivot).swap(matrix.row(k));
+    const double inverse = 1.0 / matrix(k, k);
+    column = matrix.col(k);
+    column(k) = 0.0;
+    matrix.col(k).setZero();
+    matrix(k, k) = 1.0;
+    eliminate(matrix.data(), n, k, inverse, column.data());
+  }
+  for (Eigen::Index k = n - 1; k >= 0; --k) {
+    const Eigen::Index pivot = pivots[static_cast<std::size_t>(k)];
+    if (pivot != k) matrix.col(pivot).swap(matrix.col(k));
+  }
+  return matrix;
+}
 
 PaddedMatrix::PaddedMatrix(const Eigen::MatrixXd& matrix)
     : rows_(matrix.rows()),

@@ -12,6 +12,10 @@ inline std::size_t padded_size(Eigen::Index size) {
   return static_cast<std::size_t>(size) + 8;
 }
 
+/// A⁻¹ by Gauss and Jordan's elimination with row pivots; not finite where A is singular. LAPACK
+/// takes longer for some ten rows.
+Eigen::MatrixXd small_inverse(Eigen::MatrixXd matrix);
+
 /// A by columns, each filled up with zeros to a multiple of eight rows.
 class PaddedMatrix {
  public:

@@ -267,7 +267,7 @@ bool RigidContactMotion::solve(double share) {
   Answer answer(*this, share, next_y_, lag);
   if (!solver_.solve(answer, forces_)) return false;
   slip_.resize(forces_.size());
-  answer.see(forces_.data(), slip_.data());
+  slip_ = solver_.seen();
   ahead_ = slip_ + lag;
   port_forces(forces_.data(), port_force_.data());
   port_force_ *= share;

@@ -41,76 +41,84 @@ void check_step(const LinearSystem& closed, const FaceSlidingState& state, doubl
 
 }  // namespace
 
+namespace {
+
+/// A over B of a contact on its ports.
+Eigen::MatrixXd turns_of(const FaceContactPorts& ports, int contact) {
+  constexpr int size = FaceContactPorts::per_contact;
+  Eigen::MatrixXd turns(2 * size, size);
+  for (int j = 0; j < size; ++j) {
+    const FaceContactPorts::Local unit = FaceContactPorts::Local::Unit(j);
+    turns.col(j) << ports.normal_turn(contact, unit), ports.friction_turn(contact, unit);
+  }
+  return turns;
+}
+
+}  // namespace
+
 class SpringContactMotion::Answer final : public FaceContactAnswer {
  public:
-  /// @param free_y, free_rates ports and their rates at the end of a step without forces there
-  Answer(const SpringContactMotion& motion, const Eigen::VectorXd& free_y,
-         const Eigen::VectorXd& free_rates)
-      : motion_(motion), free_y_(free_y), y_(motion.y_) {
-    const auto size = static_cast<Eigen::Index>(padded_size(motion.forces_.size()));
-    free_.setZero(size);
-    relative_.setZero(size);
-    const Eigen::VectorXd free = motion.relative(free_y, free_rates);
-    motion.answering_.add_product(free.data(), free_.data());
-    bending_.setZero(y_.size());
-    port_force_.setZero(y_.size());
-    gap_bending_.setZero(motion.num_contacts());
+  /// @param scratch with the ports and their rates at the end of a step without forces there, and
+  ///                the ports expected
+  Answer(const SpringContactMotion& motion, Scratch& scratch) : motion_(motion), of_(scratch) {
+    motion.set_relative(of_.free_y, of_.free_rates, of_.relative);
+    of_.free.setZero();
+    motion.answering_.add_product(of_.relative.data(), of_.free.data());
+    of_.bending.setZero();
+    of_.gap_bending.setZero();
+    if (!motion.ports_.bends()) return;
+    motion.set_turns(of_.y.data(), of_.turns.data());
   }
 
   /// The bending is that of the ports when last asked.
   double see(const double* forces, double* seen) override {
     const FaceContactPorts& ports = motion_.ports_;
     const Eigen::Index size = motion_.forces_.size();
-    const Eigen::VectorXd change =
-        Eigen::Map<const Eigen::VectorXd>(forces, size) - ports.preload();
+    of_.change = Eigen::Map<const Eigen::VectorXd>(forces, size) - ports.preload();
     double unsettled = 0.0;
-    relative_ = free_;
-    motion_.force_answer_.add_product(change.data(), relative_.data());
+    of_.relative = of_.free;
+    motion_.force_answer_.add_product(of_.change.data(), of_.relative.data());
     if (ports.bends()) {
-      unsettled = bend(change);
-      motion_.bending_answer_.add_product(bending_.data(), relative_.data());
+      unsettled = bend();
+      motion_.bending_answer_.add_product(of_.bending.data(), of_.relative.data());
     }
-    port_force_ = bending_;
-    motion_.add_inputs(change, relative_, port_force_.data());
-    y_ = free_y_;
-    motion_.port_answer_.add_product(port_force_.data(), y_.data());
+    of_.port_force = of_.bending;
+    motion_.add_inputs(of_.change, of_.relative, of_.port_force.data());
+    of_.y = of_.free_y;
+    motion_.port_answer_.add_product(of_.port_force.data(), of_.y.data());
     Eigen::Map<Eigen::VectorXd> sees(seen, size);
-    sees = ports.drive() + relative_.head(size);
+    sees = ports.drive() + of_.relative.head(size);
+    if (!ports.bends()) return unsettled;
+    motion_.set_turns(of_.y.data(), of_.turns.data());
     double gap_change = 0.0;
-    for (int i = 0; ports.bends() && i < motion_.num_contacts(); ++i) {
-      const double bent = ports.gap_bending(i, ports.of(i, y_.data()));
-      gap_change = std::max(gap_change, std::abs(bent - gap_bending_(i)));
-      gap_bending_(i) = bent;
+    for (int i = 0; i < motion_.num_contacts(); ++i) {
+      const double bent = motion_.gap_bending(i, of_.y.data(), of_.turns.data());
+      gap_change = std::max(gap_change, std::abs(bent - of_.gap_bending(i)));
+      of_.gap_bending(i) = bent;
       sees(3 * i) += bent;
     }
     return unsettled + *motion_.law_.penalty * gap_change;
   }
   const Compliance& compliance() const override { return motion_.compliance_; }
 
-  const Eigen::VectorXd& ports() const { return y_; }
-  const Eigen::VectorXd& port_force() const { return port_force_; }
-
  private:
   /// @return the largest change of a force on a pad
-  double bend(const Eigen::VectorXd& change) {
+  double bend() {
     const FaceContactPorts& ports = motion_.ports_;
-    const Eigen::VectorXd before = bending_;
-    bending_.setZero();
-    motion_.add_bending(change.data(), y_.data(), bending_.data());
+    of_.last_bending.swap(of_.bending);
+    of_.bending.setZero();
+    motion_.add_bending(of_.change.data(), of_.turns.data(), of_.bending.data());
     double largest = 0.0;
     for (int i = 0; i < motion_.num_contacts(); ++i)
       for (const FacePort port : {FacePort::pad_r, FacePort::pad_phi, FacePort::pad_z}) {
-        largest = std::max(largest, std::abs(ports.at(i, port, bending_.data()) -
-                                             ports.at(i, port, before.data())));
+        largest = std::max(largest, std::abs(ports.at(i, port, of_.bending.data()) -
+                                             ports.at(i, port, of_.last_bending.data())));
       }
     return largest;
   }
 
   const SpringContactMotion& motion_;
-  Eigen::VectorXd free_y_, y_;
-  Eigen::VectorXd free_, relative_;  ///< 3k
-  Eigen::VectorXd bending_, port_force_;
-  Eigen::VectorXd gap_bending_;
+  Scratch& of_;
 };
 
 SpringContactMotion::SpringContactMotion(const LinearSystem& bodies,
@@ -142,12 +150,10 @@ SpringContactMotion::SpringContactMotion(const LinearSystem& bodies,
   const Eigen::MatrixXd& R = ports_.rows();
   const Eigen::MatrixXd slope = propagator_.slope_response() * R.transpose();
   const Eigen::MatrixXd fall = propagator_.constant_response() * R.transpose() - slope;
-  const Eigen::MatrixXd answer =
-      ports_.placed(displacement) * (R * slope.topRows(n)) +
-      ports_.placed(velocity) * (R * slope.bottomRows(n));
+  const Eigen::MatrixXd answer = ports_.placed(displacement) * (R * slope.topRows(n)) +
+                                 ports_.placed(velocity) * (R * slope.bottomRows(n));
   const Eigen::MatrixXd bare = answer * ports_.inputs();
-  const Eigen::MatrixXd answering =
-      (Eigen::MatrixXd::Identity(m, m) + bare * linear).inverse();
+  const Eigen::MatrixXd answering = (Eigen::MatrixXd::Identity(m, m) + bare * linear).inverse();
   compliance_ = answering * bare;
   answering_ = PaddedMatrix(answering);
   force_answer_ = PaddedMatrix(compliance_);
@@ -161,31 +167,54 @@ SpringContactMotion::SpringContactMotion(const LinearSystem& bodies,
   v_after_ = PaddedMatrix(apart.inverse * slope.bottomRows(n));
   for (Eigen::VectorXd* values : {&z_, &v_, &next_z_, &next_v_})
     values->setZero(static_cast<Eigen::Index>(padded_size(n)));
-  for (Eigen::VectorXd* values : {&y_, &port_force_})
+  for (Eigen::VectorXd* values :
+       {&y_, &last_y_, &port_force_, &scratch_.free_y, &scratch_.free_rates, &scratch_.y,
+        &scratch_.bending, &scratch_.last_bending, &scratch_.port_force})
     values->setZero(static_cast<Eigen::Index>(padded_size(ports_.num_ports())));
+  for (Eigen::VectorXd* values : {&scratch_.free, &scratch_.relative})
+    values->setZero(static_cast<Eigen::Index>(padded_size(m)));
+  scratch_.turns.setZero(2 * FaceContactPorts::per_contact * num_contacts());
+  scratch_.gap_bending.setZero(num_contacts());
+  for (int i = 0; i < num_contacts(); ++i) bending_.emplace_back(turns_of(ports_, i));
   start(Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n));
 }
 
 /// Gap and velocities, as far as they are linear, from those of the sliding state.
-Eigen::VectorXd SpringContactMotion::relative(const Eigen::VectorXd& y,
-                                              const Eigen::VectorXd& rates) const {
-  Eigen::VectorXd relative(3 * num_contacts());
+/// @param relative 3k numbers or more
+void SpringContactMotion::set_relative(const Eigen::VectorXd& y, const Eigen::VectorXd& rates,
+                                       Eigen::VectorXd& relative) const {
   for (int i = 0; i < num_contacts(); ++i) {
-    relative.segment<3>(3 * i) = ports_.displacement(i) * ports_.of(i, y.data()) +
-                                 ports_.velocity(i) * ports_.of(i, rates.data());
+    relative.segment<3>(3 * i) = ports_.displacement(i).lazyProduct(ports_.of(i, y.data())) +
+                                 ports_.velocity(i).lazyProduct(ports_.of(i, rates.data()));
   }
-  return relative;
+}
+
+/// A y and B y of every contact, one after the other.
+void SpringContactMotion::set_turns(const double* y, double* turns) const {
+  std::fill_n(turns, 2 * FaceContactPorts::per_contact * num_contacts(), 0.0);
+  for (int i = 0; i < num_contacts(); ++i) {
+    const FaceContactPorts::Local local = ports_.of(i, y);
+    bending_[static_cast<std::size_t>(i)].add_product(
+        local.data(), turns + 2 * FaceContactPorts::per_contact * i);
+  }
+}
+
+/// ½ yᵀ A y, m.
+double SpringContactMotion::gap_bending(int contact, const double* y, const double* turns) const {
+  const Eigen::Map<const FaceContactPorts::Local> normal(turns + 2 * FaceContactPorts::per_contact *
+                                                                     contact);
+  return 0.5 * ports_.of(contact, y).dot(normal);
 }
 
 /// What forces beside those of the sliding state do by bending, on the ports; those of the sliding
 /// state are in the linear part.
-void SpringContactMotion::add_bending(const double* forces, const double* y, double* ports) const {
+void SpringContactMotion::add_bending(const double* forces, const double* turns,
+                                      double* ports) const {
   for (int i = 0; i < num_contacts(); ++i) {
-    const FaceContactPorts::Local local = ports_.of(i, y);
-    ports_.add(i,
-               forces[3 * i] * ports_.normal_turn(i, local) +
-                   forces[3 * i + 1] * ports_.friction_turn(i, local),
-               ports);
+    const double* normal = turns + 2 * FaceContactPorts::per_contact * i;
+    const Eigen::Map<const FaceContactPorts::Local> A(normal);
+    const Eigen::Map<const FaceContactPorts::Local> B(normal + FaceContactPorts::per_contact);
+    ports_.add(i, forces[3 * i] * A + forces[3 * i + 1] * B, ports);
   }
 }
 
@@ -195,8 +224,8 @@ void SpringContactMotion::add_inputs(const Eigen::VectorXd& forces, const Eigen:
   for (int i = 0; i < num_contacts(); ++i) {
     const Eigen::Vector3d rest =
         forces.segment<3>(3 * i) -
-        linear_[static_cast<std::size_t>(i)] * relative.segment<3>(3 * i);
-    ports_.add(i, ports_.inputs(i) * rest, ports);
+        linear_[static_cast<std::size_t>(i)].lazyProduct(relative.segment<3>(3 * i));
+    ports_.add(i, ports_.inputs(i).lazyProduct(rest), ports);
   }
 }
 
@@ -208,27 +237,31 @@ void SpringContactMotion::start(const Eigen::VectorXd& displacement,
   rows_.gather(z_.data(), y_.data());
   Eigen::VectorXd rates = y_;
   rows_.gather(v_.data(), rates.data());
-  const Eigen::VectorXd moved = relative(y_, rates);
+  Eigen::VectorXd moved(3 * num_contacts());
+  set_relative(y_, rates, moved);
+  set_turns(y_.data(), scratch_.turns.data());
   seen_ = ports_.drive() + moved;
   forces_.setZero(seen_.size());
   for (int i = 0; i < num_contacts(); ++i) {
     const Eigen::Index k = 3 * i;
-    seen_(k) += ports_.gap_bending(i, ports_.of(i, y_.data()));
+    seen_(k) += gap_bending(i, y_.data(), scratch_.turns.data());
     forces_(k) = std::max(0.0, -*law_.penalty * seen_(k));
     const double speed = seen_.segment<2>(k + 1).norm();
     const double limit = law_.friction * forces_(k);
     if (speed > 0.0) {
       forces_.segment<2>(k + 1) = limit / speed * seen_.segment<2>(k + 1);
     } else {
-      forces_.segment<2>(k + 1) = ports_.preload().segment<2>(k + 1) +
-                                  (linear_[static_cast<std::size_t>(i)] * moved.segment<3>(k))
-                                      .tail<2>();
+      forces_.segment<2>(k + 1) =
+          ports_.preload().segment<2>(k + 1) +
+          (linear_[static_cast<std::size_t>(i)] * moved.segment<3>(k)).tail<2>();
     }
   }
   const Eigen::VectorXd change = forces_ - ports_.preload();
   port_force_.setZero();
-  add_bending(change.data(), y_.data(), port_force_.data());
+  add_bending(change.data(), scratch_.turns.data(), port_force_.data());
   add_inputs(change, moved, port_force_.data());
+  last_y_ = y_;
+  last_forces_ = forces_;
   solver_.forget();
 }
 
@@ -238,14 +271,18 @@ bool SpringContactMotion::step() {
   v_before_.add_product(port_force_.data(), next_v_.data());
   z_.swap(next_z_);
   v_.swap(next_v_);
-  Eigen::VectorXd free_y = y_, free_rates = y_;
-  rows_.gather(z_.data(), free_y.data());
-  rows_.gather(v_.data(), free_rates.data());
-  Answer answer(*this, free_y, free_rates);
+  rows_.gather(z_.data(), scratch_.free_y.data());
+  rows_.gather(v_.data(), scratch_.free_rates.data());
+  scratch_.y = 2.0 * y_ - last_y_;
+  scratch_.guess = 2.0 * forces_ - last_forces_;
+  last_y_.swap(y_);
+  last_forces_.swap(forces_);
+  forces_.swap(scratch_.guess);
+  Answer answer(*this, scratch_);
   if (!solver_.solve(answer, forces_)) return false;
-  answer.see(forces_.data(), seen_.data());
-  y_ = answer.ports();
-  port_force_ = answer.port_force();
+  seen_ = solver_.seen();
+  y_ = scratch_.y;
+  port_force_ = scratch_.port_force;
   z_after_.add_product(port_force_.data(), z_.data());
   v_after_.add_product(port_force_.data(), v_.data());
   return std::isfinite(z_.squaredNorm() + v_.squaredNorm());
@@ -272,6 +309,8 @@ void SpringContactMotion::save(State& state, const std::string& prefix) const {
   put("velocity", v_);
   put("ports", y_);
   put("forces", forces_);
+  put("last_ports", last_y_);
+  put("last_forces", last_forces_);
   put("seen", seen_);
   put("port_force", port_force_);
   solver_.save(state, prefix + "solver/");
@@ -285,6 +324,8 @@ void SpringContactMotion::load(const State& state, const std::string& prefix) {
   get("velocity", v_);
   get("ports", y_);
   get("forces", forces_);
+  get("last_ports", last_y_);
+  get("last_forces", last_forces_);
   get("seen", seen_);
   get("port_force", port_force_);
   solver_.load(state, prefix + "solver/");

@@ -43,10 +43,13 @@ class SpringContactMotion final : public FaceContactMotion {
   /// What contacts see at the end of a step under forces there.
   class Answer;
 
-  void add_bending(const double* forces, const double* y, double* ports) const;
+  void set_turns(const double* y, double* turns) const;
+  void add_bending(const double* forces, const double* turns, double* ports) const;
+  double gap_bending(int contact, const double* y, const double* turns) const;
   void add_inputs(const Eigen::VectorXd& forces, const Eigen::VectorXd& relative,
                   double* ports) const;
-  Eigen::VectorXd relative(const Eigen::VectorXd& y, const Eigen::VectorXd& rates) const;
+  void set_relative(const Eigen::VectorXd& y, const Eigen::VectorXd& rates,
+                    Eigen::VectorXd& relative) const;
 
   std::vector<FaceContact> contacts_;
   FaceContactLaw law_;
@@ -56,6 +59,8 @@ class SpringContactMotion final : public FaceContactMotion {
   PortRows rows_;  ///< of the ports on z
   /// L, of the linear forces on gap and velocities, 3 x 3 of every contact.
   std::vector<Eigen::Matrix3d> linear_;
+  /// A over B of every contact on its ports: by how much its unit forces turn.
+  std::vector<PaddedMatrix> bending_;
   Compliance compliance_;        ///< (1 + W L)⁻¹ W, 3k x 3k
   PaddedMatrix answering_;       ///< (1 + W L)⁻¹
   PaddedMatrix force_answer_;    ///< (1 + W L)⁻¹ W
@@ -66,10 +71,21 @@ class SpringContactMotion final : public FaceContactMotion {
   PaddedMatrix z_after_, v_after_;  ///< per force on the ports that grows from none
 
   Eigen::VectorXd z_, v_, next_z_, next_v_;
-  Eigen::VectorXd y_;           ///< ports
-  Eigen::VectorXd forces_;      ///< 3k
+  Eigen::VectorXd y_;       ///< ports
+  Eigen::VectorXd forces_;  ///< 3k
+  /// Ports and forces one step before: what they change goes on in the first guess of the next.
+  Eigen::VectorXd last_y_, last_forces_;
   Eigen::VectorXd seen_;        ///< gap and velocities, 3k
   Eigen::VectorXd port_force_;  ///< ρ: what acts on the ports besides the linear part
+
+  /// Of a step: at its end without forces there, and as last seen by the contacts.
+  struct Scratch {
+    Eigen::VectorXd free_y, free_rates, free;
+    Eigen::VectorXd guess, change, relative, bending, last_bending, port_force, y;
+    Eigen::VectorXd turns;  ///< 16 numbers of every contact, set_turns()
+    Eigen::VectorXd gap_bending;
+  };
+  Scratch scratch_;
 };
 
 }  // namespace stridor

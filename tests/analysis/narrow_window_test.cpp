@@ -153,10 +153,11 @@ KnownSystem Generator::next() {
   }
 }
 
-Locus locus_of(const KnownSystem& known, const std::vector<double>& values) {
+Locus locus_of(const KnownSystem& known, const std::vector<double>& values,
+               const SamplingEffort& effort = {}) {
   PencilFamily family;
   family.place = [&](double value, Pencil& pencil) { pencil = make_pencil(known.at(value)); };
-  return sample_locus(family, values);
+  return sample_locus(family, values, {}, effort);
 }
 
 TEST(NarrowWindow, AThousandRandomSystemsHideNone) {
@@ -178,6 +179,26 @@ TEST(NarrowWindow, AThousandRandomSystemsHideNone) {
     const double tolerance = 1e-3 * (known.to - known.from) + 1e-9;
     EXPECT_NEAR(locus.unstable[0].from, known.from, tolerance);
     EXPECT_NEAR(locus.unstable[0].to, known.to, tolerance);
+    ++num_found;
+  }
+  EXPECT_GT(num_found, 800);
+}
+
+TEST(NarrowWindow, AThousandRandomSystemsHideNoneWhereStabilityAloneIsWanted) {
+  Generator generator(20);
+  int num_found = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const KnownSystem known = generator.next();
+    const Locus locus = locus_of(known, {0.0, 0.5, 1.0}, stability_effort);
+    SCOPED_TRACE(testing::Message() << "system " << i << ", " << known.kind << ", from "
+                                    << known.from << " to " << known.to);
+    EXPECT_EQ(locus.unresolved, 0.0);
+    EXPECT_EQ(locus.unstable.size(), known.is_unstable ? 1U : 0U);
+    EXPECT_EQ(locus.crossings.size(), known.is_unstable ? 2U : 0U);
+    if (locus.crossings.size() != 2) continue;
+    const double tolerance = 1e-3 * (known.to - known.from) + 1e-9;
+    EXPECT_NEAR(locus.crossings[0].value, known.from, tolerance);
+    EXPECT_NEAR(locus.crossings[1].value, known.to, tolerance);
     ++num_found;
   }
   EXPECT_GT(num_found, 800);

@@ -146,6 +146,32 @@ TEST(DenseEigenvalues, ConditionsTellEigenvaluesThatAreAboutToMeet) {
   EXPECT_NEAR(near / far, 10.0, 0.1);
 }
 
+TEST(DenseEigenvalues, ConditionsNearTheAxisAreThoseOfAllVectors) {
+  // Modes with damping but for two, and forces that make their motions differ from the left ones.
+  Pencil pencil = test::random_pencil(5, 25, 1, test::ContactTerms::with_stiffness);
+  pencil.damping.setConstant(20.0);
+  pencil.damping(3) = pencil.damping(11) = 0.0;
+  pencil.slots.col(3) *= 1e-5;
+  pencil.slots.col(11) *= 1e-5;
+  const DenseSpectrum some = dense_spectrum(pencil, DenseWork::near_axis);
+  const DenseSpectrum all = dense_spectrum(pencil, DenseWork::conditions);
+  ASSERT_EQ(some.conditions.size(), all.conditions.size());
+  EXPECT_EQ(some.right.size(), 0);
+  EXPECT_NEAR(some.norm, all.norm, 1e-12 * all.norm);
+  int num_near = 0;
+  for (std::size_t i = 0; i < all.conditions.size(); ++i) {
+    const std::complex<double> s = all.eigenvalues[i].s;
+    EXPECT_LT(std::abs(some.eigenvalues[i].s - s), 1e-9);
+    if (!is_near_axis(s)) {
+      EXPECT_TRUE(std::isnan(some.conditions[i]));
+      continue;
+    }
+    ++num_near;
+    EXPECT_NEAR(some.conditions[i], all.conditions[i], 1e-6 * all.conditions[i]);
+  }
+  EXPECT_EQ(num_near, 2);
+}
+
 TEST(DenseEigenvalues, SaysWhyItFails) {
   Pencil pencil = test::random_pencil(5, 10, 2, test::ContactTerms::rows_only);
   pencil.compatibility.row(1) = 2.0 * pencil.compatibility.row(0);
