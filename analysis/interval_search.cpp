@@ -123,7 +123,8 @@ class Pass {
   bool may_meet(std::size_t i, std::size_t b, std::size_t c) const;
   bool passes_by(std::size_t i, std::size_t b, std::size_t c) const;
   std::optional<PairLook> look_of(std::ptrdiff_t i, std::size_t b, std::size_t c) const;
-  std::vector<PairLook> looks_around(std::size_t i, std::size_t b, std::size_t c) const;
+  std::vector<PairLook> looks_around(std::size_t i, std::size_t b, std::size_t c,
+                                     std::ptrdiff_t reach) const;
   Outcome approach(std::size_t i, std::size_t b, std::size_t c);
   std::optional<double> slope(std::ptrdiff_t interval, std::size_t b) const;
   std::optional<double> tip_of(std::size_t i, std::size_t b, double sign) const;
@@ -182,11 +183,13 @@ std::optional<PairLook> Pass::look_of(std::ptrdiff_t i, std::size_t b, std::size
   return PairLook::of(value, s, std::conj(s));
 }
 
-/// Both ends, and the samples next to them.
-std::vector<PairLook> Pass::looks_around(std::size_t i, std::size_t b, std::size_t c) const {
+/// Both ends, and the samples beside them.
+/// @param reach how many on either side
+std::vector<PairLook> Pass::looks_around(std::size_t i, std::size_t b, std::size_t c,
+                                         std::ptrdiff_t reach) const {
   std::vector<PairLook> looks;
-  const auto first = static_cast<std::ptrdiff_t>(i) - 1;
-  for (std::ptrdiff_t k = first; k <= first + 3; ++k)
+  const auto here = static_cast<std::ptrdiff_t>(i);
+  for (std::ptrdiff_t k = here - reach; k <= here + 1 + reach; ++k)
     if (const auto look = look_of(k, b, c)) looks.push_back(*look);
   return looks;
 }
@@ -207,10 +210,11 @@ Outcome Pass::approach(std::size_t i, std::size_t b, std::size_t c) {
   // A change of stability that the ends show is solved for elsewhere.
   if (grows_at(i) != grows_at(i + 1)) return Outcome::resolved;
   const bool is_growing = grows_at(i);
-  const std::vector<PairLook> looks = looks_around(i, b, c);
-  if (!is_growing && growth_bound(looks, whole_[i].value, whole_[i + 1].value) < 0.0)
+  const double from = whole_[i].value;
+  const double to = whole_[i + 1].value;
+  if (!is_growing && growth_bound(looks_around(i, b, c, 2), from, to) < 0.0)
     return Outcome::resolved;
-  PairSearch search(looks, whole_[i].value, whole_[i + 1].value, scale_of(i),
+  PairSearch search(looks_around(i, b, c, 1), from, to, scale_of(i),
                     is_growing ? PairSearch::Aim::gap : PairSearch::Aim::growth);
   for (int k = 0; k < most_looks; ++k) {
     const std::optional<double> next = search.next();

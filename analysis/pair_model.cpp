@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <tuple>
 #include <utility>
 
 namespace stridor {
@@ -19,6 +21,19 @@ Complex interpolate(const std::array<double, 3>& at, const std::array<Complex, 3
   if (count == 2) return f[0] + first * (x - at[0]);
   const Complex second = ((f[2] - f[1]) / (at[2] - at[1]) - first) / (at[2] - at[0]);
   return f[0] + (x - at[0]) * (first + second * (x - at[1]));
+}
+
+/// Mean and square at x of the polynomials through all looks, in Lagrange's form.
+PairLook polynomial(std::span<const PairLook> looks, double x) {
+  PairLook sum{x, 0.0, 0.0};
+  for (const PairLook& one : looks) {
+    double weight = 1.0;
+    for (const PairLook& other : looks)
+      if (&other != &one) weight *= (x - other.value) / (one.value - other.value);
+    sum.mean += weight * one.mean;
+    sum.square += weight * one.square;
+  }
+  return sum;
 }
 
 }  // namespace
@@ -70,22 +85,32 @@ std::optional<FoundPair> closest_pair(const std::vector<Complex>& eigenvalues,
 double growth_bound(const std::vector<PairLook>& looks, double from, double to) {
   constexpr int parts = 64;
   constexpr double safety = 4.0;
-  double bound = std::numeric_limits<double>::infinity();
-  if (looks.size() != 4 || looks[1].value != from || looks[2].value != to) return bound;
-  bound = -bound;
-  const auto at = [&](std::size_t first, double x, auto&& member) {
-    const PairLook* look = &looks[first];
-    return interpolate({look[0].value, look[1].value, look[2].value},
-                       {look[0].*member, look[1].*member, look[2].*member}, 3, x);
-  };
+  const double inf = std::numeric_limits<double>::infinity();
+  if (looks.size() != 6 || looks[2].value != from || looks[3].value != to) return inf;
+  std::array<PairLook, parts + 1> found;
+  double mean_error = 0.0;
+  double square_error = 0.0;
   for (int i = 0; i <= parts; ++i) {
-    const double x = from + (to - from) * i / parts;
-    const Complex mean = at(0, x, &PairLook::mean);
-    const Complex square = at(0, x, &PairLook::square);
-    const double mean_error = safety * std::abs(at(1, x, &PairLook::mean) - mean);
-    const double square_error = safety * std::abs(at(1, x, &PairLook::square) - square);
-    const double root = 0.5 * (std::abs(square) + square.real()) + square_error;
-    bound = std::max(bound, mean.real() + mean_error + std::sqrt(root));
+    PairLook& look = found[static_cast<std::size_t>(i)];
+    look = polynomial({looks.data(), 6}, from + (to - from) * i / parts);
+    const PairLook lower = polynomial({looks.data() + 1, 4}, look.value);
+    mean_error = std::max(mean_error, safety * std::abs(look.mean - lower.mean));
+    square_error = std::max(square_error, safety * std::abs(look.square - lower.square));
+  }
+  // What lies above both neighbours between two of the places, by the curvature.
+  double mean_rise = 0.0;
+  double square_rise = 0.0;
+  for (std::size_t i = 1; i < parts; ++i) {
+    const auto& [before, here, after] = std::tie(found[i - 1], found[i], found[i + 1]);
+    mean_rise = std::max(mean_rise, std::abs(before.mean - 2.0 * here.mean + after.mean));
+    square_rise = std::max(square_rise, std::abs(before.square - 2.0 * here.square + after.square));
+  }
+  mean_error += 0.25 * mean_rise;
+  square_error += 0.25 * square_rise;
+  double bound = -inf;
+  for (const PairLook& look : found) {
+    const double root = 0.5 * (std::abs(look.square) + look.square.real()) + square_error;
+    bound = std::max(bound, look.mean.real() + mean_error + std::sqrt(root));
   }
   return bound;
 }

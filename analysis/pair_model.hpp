@@ -34,14 +34,16 @@ struct FoundPair {
 std::optional<FoundPair> closest_pair(const std::vector<std::complex<double>>& eigenvalues,
                                       const PairLook& expected);
 
-/// Bound of the growth of a pair between two values, by the parabolas through mean and square:
+/// Bound of the growth of a pair between two values, by polynomials through mean and square:
 ///
-///   max Re m + δm + √((|D| + Re D)/2 + δD),
+///   max Re m + δm + √((|D| + Re D)/2 + δD)
 ///
-/// δ four times the difference of the parabolas through the first and the last three looks.
+/// of those of degree 5 through six looks; δ is four times the largest difference to those of
+/// degree 3 through the four in the middle, and twice what a parabola rises above the 65 places in
+/// the interval at which they are compared.
 ///
-/// @param looks ascending values, two of them `from` and `to`
-/// @return +∞ unless there is one look on either side besides
+/// @param looks ascending values, the third and the fourth at `from` and `to`
+/// @return +∞ where there are not six
 double growth_bound(const std::vector<PairLook>& looks, double from, double to);
 
 /// Solves for the value between two others at which a pair grows most, or grows least.

@@ -27,9 +27,7 @@ bool FaceContactSolver::solve(FaceContactAnswer& answer, Eigen::VectorXd& forces
   if (follow(answer, forces)) return true;
   forget();
   forces = first_guess_;
-  if (!repeat(answer, forces)) return false;
-  answer.see(forces.data(), seen_.data());
-  return true;
+  return repeat(answer, forces);
 }
 
 double FaceContactSolver::largest_of(const Eigen::VectorXd& forces) const {
@@ -47,24 +45,17 @@ FaceContactSolver::Regime FaceContactSolver::regime_of(const Compliance& complia
   return trial.squaredNorm() > limit * limit ? Regime::slip : Regime::stick;
 }
 
-/// Newton's method with an inverse that is kept. The next correction is taken to fall as the last
-/// one did; where it would be small enough, what is seen under the corrected forces tells whether
-/// bending has settled too.
+/// Newton's method with an inverse that is kept.
 bool FaceContactSolver::follow(FaceContactAnswer& answer, Eigen::VectorXd& f) {
   constexpr int max_iterations = 40;
-  constexpr double slow = 0.2;  // share of a correction that is left to the next
-  static const double most_left = getenv("LIM")
-                                      ? atof(getenv("LIM"))
-                                      : 4.0;  // iterations, beyond which a new inverse takes less
+  constexpr double slow = 0.2;       // share of a correction that is left to the next
+  constexpr double most_left = 6.0;  // iterations, beyond which a new inverse takes less
   const Compliance& compliance = answer.compliance();
   regimes_.resize(static_cast<std::size_t>(f.size() / per_contact));
   double before = 0.0;  // the last correction; 0 where there is none, negative: for a new inverse
-  bool is_expected = false;
   num_corrections_ = 0;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     const double unsettled = answer.see(f.data(), seen_.data());
-    if (is_expected && unsettled <= tolerance * largest_of(f)) return true;
-    is_expected = false;
     if (open_contacts(compliance, f)) {  // the others see it
       num_corrections_ = 0;
       continue;
@@ -74,12 +65,13 @@ bool FaceContactSolver::follow(FaceContactAnswer& answer, Eigen::VectorXd& f) {
     const double change = correct(compliance, seen_, f);
     const double largest = largest_of(f);
     if (!std::isfinite(largest)) return false;
-    const double rate = !is_new && before > 0.0 ? change / before : 1.0;
-    is_expected = change * std::min(rate, 1.0) <= tolerance * largest;
-    if (is_expected) obey(compliance, seen_, f);
-    const bool is_rated = !is_new && before > 0.0 && !is_expected;
-    const bool is_slow = is_rated && (rate > slow || std::log(tolerance * largest / change) <
-                                                         most_left * std::log(rate));
+    if (std::max(change, unsettled) <= tolerance * largest) {
+      obey(compliance, seen_, f);
+      return true;
+    }
+    const double rate = !is_new && before > 0.0 ? change / before : 0.0;
+    const bool is_slow = rate > slow || (rate > 0.0 && std::log(tolerance * largest / change) <
+                                                           most_left * std::log(rate));
     before = is_slow ? -1.0 : change;
   }
   return false;

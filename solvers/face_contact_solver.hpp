@@ -47,7 +47,8 @@ class FaceContactSolver {
   /// @param forces 3k; a first guess, and the forces found
   /// @return whether it has converged
   bool solve(FaceContactAnswer& answer, Eigen::VectorXd& forces);
-  /// Gap and velocities under the forces found, 3k; the answer was asked for them last.
+  /// Gap and velocities under the forces found but for the last correction, 3k, for which the
+  /// answer was asked last.
   const Eigen::VectorXd& seen() const { return seen_; }
   /// To be called where the compliance changes.
   void forget() { kept_.clear(); }

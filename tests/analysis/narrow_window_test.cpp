@@ -4,8 +4,10 @@
 #include <Eigen/QR>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <random>
 
+#include "analysis/pair_model.hpp"
 #include "analysis/sampled_locus.hpp"
 #include "solvers/linear_pencil.hpp"
 
@@ -268,6 +270,42 @@ TEST(NarrowWindow, EveryEigenvalueThatGrowsHasItsOwn) {
   expect_window(2, 0.3, 0.7, 0.02);
   expect_window(3, 0.5, 1.0, 0.25);
   EXPECT_EQ(locus.crossings.size(), 5U);
+}
+
+/// D = e² − 40² u² + c u⁴ with u from the middle between 2 and 3.
+double square_at(double x, double e, double c) {
+  const double u2 = (x - 2.5) * (x - 2.5);
+  return e * e - 1600.0 * u2 + c * u2 * u2;
+}
+
+/// Looks at 0 to 5 of such a pair with Re m = −5.
+std::vector<PairLook> looks_of(double e, double c) {
+  std::vector<PairLook> looks;
+  for (int i = 0; i < 6; ++i)
+    looks.push_back({static_cast<double>(i), {-5.0, 100.0}, {square_at(i, e, c), 0.0}});
+  return looks;
+}
+
+TEST(GrowthBound, IsCloseToTheLargestGrowthWhereParabolasAreExact) {
+  // The rise between two of 65 places is 1600/64² · 2 · 0.25 at most.
+  const double rise = 1600.0 / (64.0 * 64.0) * 0.5;
+  EXPECT_NEAR(growth_bound(looks_of(3.0, 0.0), 2.0, 3.0), -5.0 + std::sqrt(9.0 + rise), 1e-5);
+  EXPECT_NEAR(growth_bound(looks_of(6.0, 0.0), 2.0, 3.0), -5.0 + std::sqrt(36.0 + rise), 1e-5);
+}
+
+TEST(GrowthBound, LeavesRoomForWhatIsEvenAboutTheMiddle) {
+  // Polynomials of degree 3 through four looks would see nothing of u⁴; those of degree 5 do.
+  for (const double c : {-20.0, 20.0}) {
+    const double bound = growth_bound(looks_of(3.0, c), 2.0, 3.0);
+    EXPECT_GT(bound, -5.0 + std::sqrt(square_at(2.5, 3.0, c)) + 1.0);
+    EXPECT_LT(bound, 100.0);
+  }
+}
+
+TEST(GrowthBound, IsInfiniteWithoutSixLooks) {
+  std::vector<PairLook> few = looks_of(3.0, 0.0);
+  few.pop_back();
+  EXPECT_EQ(growth_bound(few, 2.0, 3.0), std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

@@ -47,7 +47,8 @@ Crossing limit_of(const DiscModelParameters& brake) {
 }
 
 TEST(SampledLocus, StabilityAloneTakesFewSpectra) {
-  const DiscModelParameters brake = reference_brake();
+  DiscModelParameters brake = reference_brake({"friction", "structural_damping"});
+  brake.disc.damping.alpha = brake.pads.damping.alpha = 50.0;
   int num_spectra = 0;
   PencilFamily family = brake_family(brake);
   family.place = [&num_spectra, place = family.place](double value, Pencil& pencil) {
@@ -55,12 +56,13 @@ TEST(SampledLocus, StabilityAloneTakesFewSpectra) {
     place(value, pencil);
   };
   const Locus found = sample_locus(family, {0.2, 0.45}, {}, stability_effort);
-  EXPECT_LE(num_spectra, 40);
-  // The first change and the largest growth are those of all windows.
-  const Locus all = sample_locus(brake_family(brake), {0.2, 0.45});
-  ASSERT_FALSE(found.crossings.empty());
-  EXPECT_NEAR(found.crossings.front().value, all.crossings.front().value, 1e-9);
-  EXPECT_NEAR(found.crossings.front().frequency, all.crossings.front().frequency, 1e-4);
+  const int num_few = num_spectra;
+  num_spectra = 0;
+  const Locus all = sample_locus(family, {0.2, 0.45});
+  EXPECT_LT(3 * num_few, num_spectra);
+  ASSERT_EQ(found.crossings.size(), 1U);
+  EXPECT_NEAR(found.crossings[0].value, all.crossings.front().value, 1e-9);
+  EXPECT_NEAR(found.crossings[0].frequency, all.crossings.front().frequency, 1e-4);
   EXPECT_EQ(found.eigenvalues, all.eigenvalues);
   ASSERT_EQ(found.unstable.size(), 1U);
   EXPECT_EQ(found.unstable[0].to, 0.45);
