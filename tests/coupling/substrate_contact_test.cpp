@@ -17,7 +17,7 @@ double derivative(const std::function<double(double)>& f, double x, double h) {
 
 SubstrateContact contact_with(RegularisedSign sign, FrictionLoad load) {
   static const auto law = std::make_shared<FittedLaw>(published_coefficients());
-  return {law, 5.0, 12.5, 1.0 / 7.5e-4, 0.3, 1.0, load, sign};
+  return {law, 5.0, 12.5, 1.0 / 7.5e-4, 0.3, 1.0, load, {}, sign};
 }
 
 TEST(RegularisedSign, NoneIsOneFromZeroOn) {
