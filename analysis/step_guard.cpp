@@ -24,7 +24,7 @@ namespace {
 GrowthTolerance tolerance_of(const TimeParameters& time) {
   constexpr double share = 0.5;
   constexpr double by_the_end = 0.1;
-  return {share, by_the_end / time.end};
+  return {share, by_the_end / time.end, false};
 }
 
 bool has_coupled_modes(const System& system) {
@@ -160,8 +160,7 @@ void add_states(const System& system, const SlidingContacts& at, double displace
     const auto row = static_cast<Eigen::Index>(c);
     alone.compatibility = at.rows.compatibility.row(row).eval();
     alone.equilibrium = at.rows.equilibrium.row(row).eval();
-    if (at.rows.compliance.size() > 0)
-      alone.compliance = at.rows.compliance.segment(row, 1).eval();
+    if (at.rows.compliance.size() > 0) alone.compliance = at.rows.compliance.segment(row, 1).eval();
     states.push_back({fmt::format("{} sliding alone {}", name_of(c), at.place(c, displacement)),
                       std::move(alone)});
   }
@@ -270,13 +269,11 @@ void require_no_own_growth(const System& system, const TimeParameters& time) {
   const std::optional<OwnGrowth> found = own_growth(system, time, contacts);
   if (!found) return;
   const StepStability& stability = found->stability;
-  const double of_bodies = std::max(0.0, stability.growth_of_bodies.value_or(0.0));
   throw NumericalError(fmt::format(
       "time.step: with a step of {:.6g} s a motion of {:.4g} Hz grows by {:.4g} 1/s, {}, where "
-      "{}. Remedy: {}; stridor check --stability shows the whole path.",
+      "the bodies in contact do not grow at about that frequency. Remedy: {}; stridor check "
+      "--stability shows the whole path.",
       time.step, stability.frequency, stability.growth, found->name,
-      of_bodies > 0.0 ? fmt::format("the bodies in contact grow by {:.4g} 1/s", of_bodies)
-                      : "the bodies in contact do not grow at about that frequency",
       remedy_text(step_remedy(system, time, contacts), time)));
 }
 

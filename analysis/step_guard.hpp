@@ -26,8 +26,9 @@ struct HeldContacts {
 /// substrate.
 std::vector<HeldContacts> held_contacts(const System& system, const TimeParameters& time);
 
-/// Growth of a step that is not that of the bodies: more than half of ln|z|/h of some motion, and
-/// enough for a tenth until the end of the run.
+/// Growth of a step in a motion with which the bodies do not grow: more than half of ln|z|/h of it,
+/// and enough for a tenth until the end of the run. Where the bodies grow too, the step only makes
+/// growth faster that is there.
 struct OwnGrowth {
   std::string name;  ///< HeldContacts::name
   StepStability stability;

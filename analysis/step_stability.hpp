@@ -22,6 +22,8 @@ enum class StepVerdict {
 struct GrowthTolerance {
   double share = 0.1;  ///< of the growth of a motion: the error of the scheme
   double least = 0.0;  ///< 1/s
+  /// Whether a step counts that only adds to the growth of bodies that grow by themselves.
+  bool counts_growing_bodies = true;
 };
 
 /// What the steps do at one place, the sliding held.

@@ -78,9 +78,9 @@ void check_laws(const ContactParameters& contact, std::vector<Problem>& problems
   if (!contact.friction && !is_viscoelastic)
     refuse("friction", "is missing: this normal law brings none of its own");
   if (contact.friction && contact.friction->law == FrictionKind::shear && !is_viscoelastic) {
-    refuse("friction.law",
-           "shear is friction per area of contact, and this normal law has no area; take `normal: "
-           "{law: viscoelastic, ...}`, or a coefficient");
+    refuse("normal.law",
+           "has no area of contact, with which the friction law shear is in proportion; take {law: "
+           "viscoelastic, ...}, or a friction coefficient");
   }
   if (contact.friction && contact.friction->viscoelastic == FrictionLoad::applied &&
       !is_viscoelastic) {
@@ -89,7 +89,7 @@ void check_laws(const ContactParameters& contact, std::vector<Problem>& problems
   if (is_viscoelastic && contact.master != half_space_master)
     refuse("master", "must be `half_space` with the viscoelastic normal law, which is that of one");
   if (!is_viscoelastic && contact.master == half_space_master)
-    refuse("normal", "must be {law: viscoelastic, ...} on a half_space");
+    refuse("master", "`half_space` takes the normal law viscoelastic, which `normal` must be");
   if (is_viscoelastic && contact.assumption != ContactAssumption::film) {
     refuse("assumption",
            "must be `film` with the viscoelastic normal law: it sticks, slips and lifts off");

@@ -184,8 +184,9 @@ TEST(LawsProgram, LawsThatDoNotGoTogetherAreRefusedWithTheReason) {
     EXPECT_EQ(result.exit_code, 2) << result.out;
     return result.out + result.err;
   };
-  EXPECT_THAT(refusal("examples/mass_on_belt.yaml", {"contact.friction={law: shear, strength: 1}"}),
-              HasSubstr("shear is friction per area of contact, and this normal law has no area"));
+  EXPECT_THAT(
+      refusal("examples/mass_on_belt.yaml", {"contact.friction={law: shear, strength: 1}"}),
+      HasSubstr("has no area of contact, with which the friction law shear is in proportion"));
   EXPECT_THAT(refusal("examples/mass_on_belt.yaml", {"drive.moves=contact.slave"}),
               HasSubstr("there is no 'contact.slave' to move"));
   EXPECT_THAT(refusal("beam_on_beam.yaml", {"drive.moves=contact.master"}),

@@ -191,10 +191,10 @@ TEST(ContactParameters, LawsThatDoNotGoTogetherAreRefused) {
   EXPECT_THAT(complaints(contact),
               ElementsAre("friction: is missing: this normal law brings none of its own"));
   contact.friction.emplace().law = FrictionKind::shear;
-  EXPECT_THAT(complaints(contact),
-              ElementsAre("friction.law: shear is friction per area of contact, and this normal "
-                          "law has no area; take `normal: {law: viscoelastic, ...}`, or a "
-                          "coefficient"));
+  EXPECT_THAT(
+      complaints(contact),
+      ElementsAre("normal.law: has no area of contact, with which the friction law shear is in "
+                  "proportion; take {law: viscoelastic, ...}, or a friction coefficient"));
   contact.normal = sphere_of_2_mm();
   EXPECT_THAT(complaints(contact),
               ElementsAre("master: must be `half_space` with the viscoelastic normal law, which is "
@@ -208,8 +208,10 @@ TEST(ContactParameters, LawsThatDoNotGoTogetherAreRefused) {
   EXPECT_THAT(complaints(contact), IsEmpty());
   contact.normal = {};
   contact.friction.emplace().coefficient = 0.3;
-  EXPECT_THAT(complaints(contact),
-              ElementsAre("normal: must be {law: viscoelastic, ...} on a half_space"));
+  EXPECT_THAT(
+      complaints(contact),
+      ElementsAre(
+          "master: `half_space` takes the normal law viscoelastic, which `normal` must be"));
 }
 
 TEST(ViscoelasticNormalLaw, IsInSiUnits) {
@@ -221,7 +223,7 @@ TEST(ViscoelasticNormalLaw, IsInSiUnits) {
 }
 
 TEST(ViscoelasticNormalLaw, FrictionOfTheInterfaceAddsToItsOwn) {
-  FrictionLaw interface{FrictionLaw::Kind::stribeck, 0.5, 0.2, 0.03};
+  FrictionLaw interface { FrictionLaw::Kind::stribeck, 0.5, 0.2, 0.03 };
   const SubstrateContact bare = make_substrate_contact(sphere_of_2_mm(), 0.0);
   const SubstrateContact rubbing = make_substrate_contact(sphere_of_2_mm(), 0.0, interface);
   const double y = 2e-5;

@@ -270,9 +270,15 @@ std::vector<CompleteScene> make_complete_scenes() {
   std::vector<CompleteScene> scenes;
   while (!missing.empty()) {
     const auto [wanted, wanted_path] = *missing.begin();
-    CompleteScene scene{scenes.empty() ? all : scenes.back().draft, {}};
-    take_over(all, scene.draft, wanted_path);
-    const std::vector<Problem> problems = Repair(objections_of_checks<T>, wanted)(scene.draft);
+    // From the last scene there may be no way that changes one key after the other.
+    CompleteScene scene;
+    std::vector<Problem> problems;
+    for (std::size_t start = 0; start <= scenes.size(); ++start) {
+      scene.draft = start < scenes.size() ? scenes[scenes.size() - 1 - start].draft : all;
+      take_over(all, scene.draft, wanted_path);
+      problems = Repair(objections_of_checks<T>, wanted)(scene.draft);
+      if (problems.empty()) break;
+    }
     visit(scene.draft, "", [&](const Draft& draft, const std::string& path) {
       if (!missing.contains(draft.pattern) || missing[draft.pattern] != path) return;
       missing.erase(draft.pattern);
