@@ -24,7 +24,8 @@ namespace {
 GrowthTolerance tolerance_of(const TimeParameters& time) {
   constexpr double share = 0.5;
   constexpr double by_the_end = 0.1;
-  return {share, by_the_end / time.end, false};
+  constexpr double share_of_bodies = 0.1;
+  return {share, by_the_end / time.end, share_of_bodies};
 }
 
 bool has_coupled_modes(const System& system) {
@@ -271,8 +272,8 @@ void require_no_own_growth(const System& system, const TimeParameters& time) {
   const StepStability& stability = found->stability;
   throw NumericalError(fmt::format(
       "time.step: with a step of {:.6g} s a motion of {:.4g} Hz grows by {:.4g} 1/s, {}, where "
-      "the bodies in contact do not grow at about that frequency. Remedy: {}; stridor check "
-      "--stability shows the whole path.",
+      "the bodies in contact do not grow at about that frequency, or less than a tenth as fast. "
+      "Remedy: {}; stridor check --stability shows the whole path.",
       time.step, stability.frequency, stability.growth, found->name,
       remedy_text(step_remedy(system, time, contacts), time)));
 }

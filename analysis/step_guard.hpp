@@ -26,9 +26,9 @@ struct HeldContacts {
 /// substrate.
 std::vector<HeldContacts> held_contacts(const System& system, const TimeParameters& time);
 
-/// Growth of a step in a motion with which the bodies do not grow: more than half of ln|z|/h of it,
-/// and enough for a tenth until the end of the run. Where the bodies grow too, the step only makes
-/// growth faster that is there.
+/// Growth of a step in a motion with which the bodies do not grow, or by less than a tenth of
+/// ln|z|/h: more than half of that, and enough for a tenth until the end of the run. Where the
+/// bodies grow too, the step only makes growth faster that is there.
 struct OwnGrowth {
   std::string name;  ///< HeldContacts::name
   StepStability stability;

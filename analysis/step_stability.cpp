@@ -124,8 +124,8 @@ StepStability stability_of(const FrozenStep& step, const Pencil& contacts, Bodie
   match(growing, {of_bodies.begin(), decaying});
   match(growing, {decaying, of_bodies.end()});
   const auto by_step = [&](const GrowingMotion& motion) {
-    if (!tolerance.counts_growing_bodies && motion.growth_of_bodies.value_or(0.0) > 0.0)
-      return false;
+    const double of_bodies = motion.growth_of_bodies.value_or(0.0);
+    if (of_bodies > tolerance.share_of_bodies * motion.growth) return false;
     return motion.own_growth() > std::max(tolerance.share * motion.growth, tolerance.least);
   };
   const auto worst = std::max_element(
