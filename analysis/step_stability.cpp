@@ -24,6 +24,9 @@ using Complex = std::complex<double>;
 constexpr double rounding = 1e-10;
 /// How far the motion of a step may be from that of the bodies, relative to |s|.
 constexpr double largest_shift = 0.2;
+/// The same where the growth of the bodies excuses that of the step: another motion that grows may
+/// be as near as the above.
+constexpr double shift_of_excuse = 0.02;
 
 /// The bodies in contact with the same rows, without what turns them.
 class BodiesInContact {
@@ -62,6 +65,7 @@ struct GrowingMotion {
   double frequency = 0.0;  ///< Hz
   Complex represented;     ///< s of the bodies that it stands for
   std::optional<double> growth_of_bodies{};
+  double shift = 0.0;  ///< from their eigenvalue, relative to |s|
 
   double own_growth() const { return growth - std::max(0.0, growth_of_bodies.value_or(0.0)); }
 };
@@ -95,6 +99,7 @@ void match(std::vector<GrowingMotion>& motions, std::vector<Complex> eigenvalues
     }
     if (nearest == nullptr) return;
     nearest->growth_of_bodies = eigenvalues[taken].real();
+    nearest->shift = least;
     eigenvalues.erase(eigenvalues.begin() + static_cast<std::ptrdiff_t>(taken));
   }
 }
@@ -125,7 +130,8 @@ StepStability stability_of(const FrozenStep& step, const Pencil& contacts, Bodie
   match(growing, {decaying, of_bodies.end()});
   const auto by_step = [&](const GrowingMotion& motion) {
     const double of_bodies = motion.growth_of_bodies.value_or(0.0);
-    if (of_bodies > tolerance.share_of_bodies * motion.growth) return false;
+    const bool is_near = motion.shift < shift_of_excuse;
+    if (is_near && of_bodies > tolerance.share_of_bodies * motion.growth) return false;
     return motion.own_growth() > std::max(tolerance.share * motion.growth, tolerance.least);
   };
   const auto worst = std::max_element(

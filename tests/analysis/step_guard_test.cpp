@@ -70,6 +70,8 @@ TEST(StepGuard, GrowthOfBodiesElsewhereExcusesNothing) {
         if (truth(fluttering) != StepTruth::bodies) continue;
         EXPECT_FALSE(own_growth(fluttering, time, held_contacts(fluttering, time)));
         const System both = beside(growing, fluttering);
+        // Of several contacts the instantaneous response gets more, which may cure the step.
+        if (truth(both) != StepTruth::by_itself) continue;
         EXPECT_TRUE(own_growth(both, time, held_contacts(both, time)))
             << "seeds " << seed << " and " << other;
         ++hidden;
