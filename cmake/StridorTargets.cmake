@@ -74,7 +74,7 @@ function(stridor_test name)
     add_dependencies(long_tests ${name})
   endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
-    PROPERTIES LABELS ${arg_LABEL} TIMEOUT 600)
+    PROPERTIES LABELS ${arg_LABEL} TIMEOUT 1200)
   if(arg_LABEL STREQUAL long)
     # CTest has a test of its own for a program that is not there; it fails with those of the program.
     set(label_file "${CMAKE_CURRENT_BINARY_DIR}/${name}_label.cmake")
