@@ -103,8 +103,8 @@ void read_continued(const SampleSource& samples, std::ptrdiff_t begin, std::span
   if (end > count) reflect(std::max(begin, count), end, count - 1);
 }
 
-/// What band_pass_gain() computes from the tangent: with s and c the sine and cosine of π f dt, the
-/// root of (distance²) is (s² − w₁w₂ c²)/(s c (w₂ − w₁)).
+/// The gain of band_pass_gain() by the sine s and the cosine c of π f dt in the place of the
+/// tangent: the root of (distance²) is (s² − w₁w₂ c²)/(s c (w₂ − w₁)).
 struct Gain {
   double product;  ///< w₁w₂
   double width;    ///< w₂ − w₁

@@ -52,7 +52,7 @@ std::vector<double> band_pass(std::span<const double> samples, double interval, 
 /// Samples over which the response of band_pass() decays to 10⁻¹². @throws as band_pass()
 double band_pass_decay(double interval, Band band);
 
-/// What bands let through of a signal.
+/// Part of a signal that bands let through.
 struct PassedSignal {
   std::vector<double> samples;            ///< x
   std::vector<double> squared_amplitude;  ///< |x + i H x|²/2 with H the Hilbert transform
@@ -78,7 +78,7 @@ class BandSpectrum {
 
   /// The part in a band.
   std::vector<double> in(Band band);
-  /// What some bands, one after the other, let through, with its amplitude.
+  /// The part that some bands, one after the other, let through, with its amplitude.
   ///
   /// H x comes from the same spectrum as x, with the same continuation at the ends. The gain
   /// vanishes at frequency 0 with its first seven derivatives, so that H x decays as x does: one

@@ -218,7 +218,7 @@ double largest_of(const SampleSource& samples) {
   return largest;
 }
 
-/// What the bursts of a signal are found in.
+/// A signal in which bursts are sought, with its parameters.
 struct Measured {
   VibrationBlocks& vibration;
   const BurstParameters& parameters;

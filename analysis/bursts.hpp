@@ -11,7 +11,7 @@
 
 namespace stridor {
 
-/// What counts as a burst; see find_bursts().
+/// Definition of a burst; see find_bursts().
 struct BurstParameters {
   Band band;                      ///< Hz, in which the vibration is sought; must be given
   Window measured{};              ///< s, where bursts are sought; by default everywhere
@@ -33,7 +33,7 @@ struct Burst {
   double gain;       ///< ln of the rise of the envelope of its own frequency
 };
 
-/// What the envelope of a signal without bursts may do.
+/// Level that the envelope of a signal without bursts keeps to.
 struct QuietLevel {
   double rms;        ///< of the band-passed signal
   double threshold;  ///< the envelope that counts as a burst, ≥ F·rms; infinite if the signal is
@@ -127,7 +127,7 @@ QuietLevel find_quiet_level(std::span<const double> samples, double interval,
 std::vector<Burst> find_bursts(std::span<const double> samples, double interval,
                                const BurstParameters& parameters, double first = 0.0);
 
-/// What vibrates in the band of the bursts, where it is measured.
+/// Vibration in the band of the bursts, where it is measured.
 struct Vibration {
   double rms = 0.0;  ///< of band_pass() over parameters.measured; 0 where that holds no sample
   std::vector<Burst> bursts{};

@@ -7,7 +7,7 @@
 
 namespace stridor {
 
-/// What is looked for along a parameter.
+/// Aim of a search along a parameter.
 enum class SearchFor {
   every_window,  ///< windows of each eigenvalue that grows
   stability,     ///< where the system as a whole becomes stable or unstable

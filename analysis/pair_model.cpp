@@ -97,7 +97,7 @@ double growth_bound(const std::vector<PairLook>& looks, double from, double to) 
     mean_error = std::max(mean_error, safety * std::abs(look.mean - lower.mean));
     square_error = std::max(square_error, safety * std::abs(look.square - lower.square));
   }
-  // What lies above both neighbours between two of the places, by the curvature.
+  // A maximum between two of the places, by the curvature.
   double mean_rise = 0.0;
   double square_rise = 0.0;
   for (std::size_t i = 1; i < parts; ++i) {

@@ -20,7 +20,7 @@
 namespace stridor {
 namespace {
 
-/// What a run tolerates: its accuracy is another matter than its stability.
+/// Growth that a run tolerates: its accuracy is another matter than its stability.
 GrowthTolerance tolerance_of(const TimeParameters& time) {
   constexpr double share = 0.5;
   constexpr double by_the_end = 0.1;

@@ -22,8 +22,9 @@ enum class StepVerdict {
 struct GrowthTolerance {
   double share = 0.1;  ///< of the growth of a motion: the error of the scheme
   double least = 0.0;  ///< 1/s
-  /// Share of the growth of a motion from which on the bodies are taken to grow as well, so that
-  /// the step only makes their growth faster, which does not count; 1: it always counts.
+  /// Share of the growth of a motion from which on the bodies, with an eigenvalue close to it, are
+  /// taken to grow as well, so that the step only makes their growth faster, which does not count;
+  /// 1: it always counts.
   double share_of_bodies = 1.0;
 };
 
