@@ -89,7 +89,8 @@ struct Locus {
   /// Values at which it could not be verified that the eigenvalues are all there are.
   std::vector<double> unverified;
   /// Largest distance of two values between which a window may have been missed: where spectra are
-  /// sampled and could not be told to hold nothing between (search_intervals()); 0 if none.
+  /// sampled and could not be told to hold nothing between (search_intervals()), or where rounding
+  /// errors make a branch jump from value to value; 0 if none.
   double unresolved = 0.0;
   int num_places = 0;   ///< values at which all eigenvalues were computed and counted
   int num_refined = 0;  ///< values at which one branch was computed for windows and crossings

@@ -186,7 +186,9 @@ class DenseSource : public SpectrumSource {
   }
 
   Eigen::VectorXcd shape(Complex s) override { return shape_of(pencil_, s); }
-  double magnitude(Complex) const override { return pencil_.omega.maxCoeff(); }
+  double magnitude(Complex s) const override {
+    return std::max(std::abs(s), pencil_.omega.maxCoeff());
+  }
 
  private:
   const PencilFamily& family_;

@@ -23,6 +23,7 @@ class WindowFinder {
   /// Refines the samples of a track and appends its windows and crossings to the locus.
   void search(Track& track, int branch) {
     track_ = &track;
+    num_looks_ = 0;
     growth_.clear();
     for (std::size_t i = 0; i < values().size(); ++i) {
       growth_.push_back(growth_of(track.branch.s[i], track.nearest[i]));
@@ -30,6 +31,8 @@ class WindowFinder {
     for (std::size_t i = 0; i + 1 < values().size();) {
       if (is_resolved(i)) {
         ++i;
+      } else if (is_spent()) {
+        note_unresolved(i++);
       } else {
         insert_middle(i);
       }
@@ -53,6 +56,15 @@ class WindowFinder {
   }
 
  private:
+  /// Values at which one branch is looked at. Smooth branches take some hundred; one whose rounding
+  /// errors are larger than its changes, as beside jamming, would take all of them down to the
+  /// smallest interval.
+  static constexpr int most_looks = 20'000;
+  bool is_spent() const { return num_looks_ >= most_looks; }
+  void note_unresolved(std::size_t i) {
+    locus_.unresolved = std::max(locus_.unresolved, values()[i + 1] - values()[i]);
+  }
+
   const std::vector<double>& values() const { return track_->branch.values; }
   double growth(std::size_t i) const { return growth_[i]; }
 
@@ -88,6 +100,11 @@ class WindowFinder {
     const Complex guess = (1.0 - fraction) * s[i] + fraction * s[i + 1];
     // Two eigenvalues meet there; the line between the samples is all that is known.
     if (values()[i + 1] - values()[i] <= 2.0 * smallest_) return guess;
+    if (is_spent()) {
+      note_unresolved(i);
+      return guess;
+    }
+    ++num_looks_;
     const double spacing = spacing_in(i);
     source_.move_to(value);
     ++locus_.num_refined;
@@ -272,6 +289,7 @@ class WindowFinder {
   const Grid& grid_;
   Locus& locus_;
   double smallest_;
+  int num_looks_ = 0;  ///< at the present branch
   Track* track_ = nullptr;
   std::vector<double> growth_;  ///< growth_of() of the samples
 };

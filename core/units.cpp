@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <udunits2.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -10,6 +11,8 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -86,11 +89,88 @@ ut_status see_galilean(const ut_unit*, double scale, const ut_unit* underlying, 
   return ut_accept_visitor(underlying, &visitor, arg);
 }
 
+/// A unit that scenes use often.
+struct CommonUnit {
+  std::string_view symbol;
+  double factor;
+  std::array<std::pair<const char*, int>, 3> powers;  ///< those of no name count nothing
+};
+
+constexpr std::pair<const char*, int> no_power{nullptr, 0};
+constexpr std::array<CommonUnit, 21> common_units{{
+    {"m", 1.0, {{{"m", 1}, no_power, no_power}}},
+    {"cm", 1e-2, {{{"m", 1}, no_power, no_power}}},
+    {"mm", 1e-3, {{{"m", 1}, no_power, no_power}}},
+    {"um", 1e-6, {{{"m", 1}, no_power, no_power}}},
+    {"s", 1.0, {{{"s", 1}, no_power, no_power}}},
+    {"ms", 1e-3, {{{"s", 1}, no_power, no_power}}},
+    {"us", 1e-6, {{{"s", 1}, no_power, no_power}}},
+    {"kg", 1.0, {{{"kg", 1}, no_power, no_power}}},
+    {"g", 1e-3, {{{"kg", 1}, no_power, no_power}}},
+    {"N", 1.0, {{{"kg", 1}, {"m", 1}, {"s", -2}}}},
+    {"mN", 1e-3, {{{"kg", 1}, {"m", 1}, {"s", -2}}}},
+    {"kN", 1e3, {{{"kg", 1}, {"m", 1}, {"s", -2}}}},
+    {"Pa", 1.0, {{{"kg", 1}, {"m", -1}, {"s", -2}}}},
+    {"kPa", 1e3, {{{"kg", 1}, {"m", -1}, {"s", -2}}}},
+    {"MPa", 1e6, {{{"kg", 1}, {"m", -1}, {"s", -2}}}},
+    {"GPa", 1e9, {{{"kg", 1}, {"m", -1}, {"s", -2}}}},
+    {"Hz", 1.0, {{{"s", -1}, no_power, no_power}}},
+    {"kHz", 1e3, {{{"s", -1}, no_power, no_power}}},
+    {"MHz", 1e6, {{{"s", -1}, no_power, no_power}}},
+    {"rad", 1.0, {{{"rad", 1}, no_power, no_power}}},
+    {"deg", std::numbers::pi / 180.0, {{{"rad", 1}, no_power, no_power}}},
+}};
+
+/// "m", "m2", "s-1": multiplies a meaning by a common unit to a power. @return false if it is none
+bool multiply(UnitMeaning& meaning, std::string_view factor, int sign) {
+  const std::size_t letters = factor.find_first_of("-123");
+  int power = 1;
+  if (letters != std::string_view::npos) {
+    const std::string_view exponent = factor.substr(letters);
+    const auto [end, status] =
+        std::from_chars(exponent.data(), exponent.data() + exponent.size(), power);
+    if (status != std::errc() || end != exponent.data() + exponent.size()) return false;
+  }
+  const std::string_view symbol = factor.substr(0, letters);
+  const auto* const unit =
+      std::find_if(common_units.begin(), common_units.end(),
+                   [&](const CommonUnit& common) { return common.symbol == symbol; });
+  if (unit == common_units.end()) return false;
+  power *= sign;
+  meaning.factor *= std::pow(unit->factor, power);
+  for (const auto& [name, basic_power] : unit->powers)
+    if (name != nullptr) meaning.powers[name] += power * basic_power;
+  return true;
+}
+
+/// A product of common units, perhaps over one of them, without the database, whose 200 kB take
+/// longer to read than a scene. @return nothing for any other text
+std::optional<UnitMeaning> common_meaning(std::string_view unit) {
+  UnitMeaning meaning;
+  const std::size_t slash = unit.find('/');
+  std::string_view rest = unit.substr(0, slash);
+  if (rest == "1" && slash != std::string_view::npos) rest = {};
+  while (!rest.empty()) {
+    const std::size_t blank = std::min(rest.find(' '), rest.size());
+    if (!multiply(meaning, rest.substr(0, blank), 1)) return std::nullopt;
+    rest.remove_prefix(std::min(blank + 1, rest.size()));
+  }
+  if (slash != std::string_view::npos && !multiply(meaning, unit.substr(slash + 1), -1))
+    return std::nullopt;
+  if (unit.empty()) return std::nullopt;
+  std::erase_if(meaning.powers, [](const auto& power) { return power.second == 0; });
+  return meaning;
+}
+
 /// The unit database. UDUNITS keeps global state while it parses, hence one lock for all of it.
 class UnitSystem {
  public:
   /// @returns false where the text is no unit.
   bool read(const std::string& unit, UnitMeaning& meaning) {
+    if (const auto common = common_meaning(unit)) {
+      meaning = *common;
+      return true;
+    }
     const std::lock_guard<std::mutex> lock(mutex_);
     load();
     const UnitHandle parsed(ut_parse(system_.get(), unit.c_str(), UT_UTF8));

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <span>
 #include <stdexcept>
+#include <tuple>
 
 namespace stridor {
 namespace {
 
-constexpr std::size_t numbers_per_contact = 5;
+constexpr std::size_t numbers_per_contact = std::tuple_size_v<ContactStatistics::Numbers>;
 constexpr const char* unfiltered = "none";
 
 double share(std::int64_t part, std::int64_t whole) {
@@ -16,17 +18,16 @@ double share(std::int64_t part, std::int64_t whole) {
 
 void append(std::vector<double>& numbers, const std::vector<ContactStatistics>& interval) {
   for (const ContactStatistics& one : interval) {
-    numbers.insert(numbers.end(),
-                   {one.force_min, one.force_max, static_cast<double>(one.steps),
-                    static_cast<double>(one.sticking), static_cast<double>(one.open)});
+    const ContactStatistics::Numbers own = one.numbers();
+    numbers.insert(numbers.end(), own.begin(), own.end());
   }
 }
 
 std::vector<ContactStatistics> take(const double* numbers, std::size_t num_contacts) {
   std::vector<ContactStatistics> interval;
-  const auto count = [&](std::size_t k) { return static_cast<std::int64_t>(numbers[k]); };
   for (std::size_t i = 0; i < num_contacts; ++i, numbers += numbers_per_contact)
-    interval.push_back({numbers[0], numbers[1], count(2), count(3), count(4)});
+    interval.push_back(ContactStatistics::of(
+        std::span<const double, numbers_per_contact>(numbers, numbers_per_contact)));
   return interval;
 }
 
@@ -63,12 +64,22 @@ std::vector<ContactSeries> contact_columns(const std::string& contact, const std
         .of_interval = [](const ContactStatistics& one) { return share(one.open, one.steps); };
     return columns;
   }
-  if (quantity == "force") {
-    add("force_min", units, "least contact force of all steps since the row before", unfiltered)
-        .of_interval = [](const ContactStatistics& one) { return one.force_min; };
-    add("force_max", units, "largest contact force of all steps since the row before", unfiltered)
-        .of_interval = [](const ContactStatistics& one) { return one.force_max; };
-  }
+  const bool is_normal = quantity == "force";
+  const auto add_extreme = [&](const char* suffix, const char* which,
+                               double (*of_interval)(const ContactStatistics&)) {
+    add(quantity + suffix, units,
+        fmt::format("{} {} of all steps since the row before", which, words), unfiltered)
+        .of_interval = of_interval;
+  };
+  using Statistics = const ContactStatistics&;
+  add_extreme(
+      "_min", "least",
+      is_normal ? [](Statistics one) { return one.force_min; }
+                : [](Statistics one) { return one.friction_min; });
+  add_extreme(
+      "_max", "largest",
+      is_normal ? [](Statistics one) { return one.force_max; }
+                : [](Statistics one) { return one.friction_max; });
   add(quantity + "_low_passed", units, words + ", low-passed before it is thinned: for spectra",
       low_pass)
       .is_low_passed = true;

@@ -148,7 +148,12 @@ void DiscRecorder::sample(const FaceContactMotion& motion, RunFileWriter& writer
                           std::int64_t last) {
   for (std::size_t i = 0; i < of_step_.size(); ++i) {
     const FaceContactState contact = motion.contact(static_cast<int>(i));
-    of_step_[i] = {contact.force, contact.force, 1, contact.state == ContactState::stick ? 1 : 0,
+    of_step_[i] = {contact.force,
+                   contact.force,
+                   contact.friction_force,
+                   contact.friction_force,
+                   1,
+                   contact.state == ContactState::stick ? 1 : 0,
                    contact.state == ContactState::open ? 1 : 0};
   }
   intervals_.add(of_step_);

@@ -6,7 +6,7 @@
 //     /time                  s; dimension scale of every series
 //     /channels/<name>       recorded quantities, thinned
 //     /contact/<name>/…      force, gap, slip_velocity, position, state; force_min, force_max,
-//                            stick_fraction, open_fraction: over every step since the row before;
+//                            friction_force_min, friction_force_max, stick_fraction, open_fraction: over every step since the row before;
 //                            the attribute `filter` states which are low-passed
 //     /energy/…              energy ledger
 //     /modal/<body>/…        static arrays

@@ -20,12 +20,10 @@ constexpr std::array<const char*, 10> ranked_quantities{
     "acceleration", "force",    "slip_velocity", "state",    "friction_force",
     "gap",          "velocity", "displacement",  "position", "area"};
 
-constexpr std::array<const char*, 6> accompanying{"force_min",
-                                                  "force_max",
-                                                  "force_low_passed",
-                                                  "friction_force_low_passed",
-                                                  "stick_fraction",
-                                                  "open_fraction"};
+constexpr std::array<const char*, 8> accompanying{"force_min",          "force_max",
+                                                  "friction_force_min", "friction_force_max",
+                                                  "force_low_passed",   "friction_force_low_passed",
+                                                  "stick_fraction",     "open_fraction"};
 
 std::size_t rank_of(const std::string& series) {
   if (series.starts_with("/energy/")) return ranked_quantities.size() + 1;
@@ -73,12 +71,10 @@ bool has_spectrum(const std::string& series) {
   return !series.starts_with("/energy/") && quantity != "state" && quantity != "position";
 }
 
-std::string text_attribute(const RunFileReader& file, const std::string& series,
-                           const char* name) {
+std::string text_attribute(const RunFileReader& file, const std::string& series, const char* name) {
   const auto all = file.attributes(series);
   const auto found = all.find(name);
-  const std::string* text =
-      found == all.end() ? nullptr : std::get_if<std::string>(&found->second);
+  const std::string* text = found == all.end() ? nullptr : std::get_if<std::string>(&found->second);
   return text == nullptr ? "" : *text;
 }
 
@@ -142,8 +138,7 @@ std::vector<std::string> series_by_use(const RunFileReader& file, SeriesUse use)
   return series;
 }
 
-std::vector<std::string> chosen_series(const RunFileReader& file, SeriesUse use,
-                                       std::size_t most) {
+std::vector<std::string> chosen_series(const RunFileReader& file, SeriesUse use, std::size_t most) {
   const std::vector<std::string> all = series_by_use(file, use);
   // How many of its quantity come before each; the first of all before the second of any.
   std::map<std::size_t, std::size_t> num_seen;

@@ -167,6 +167,8 @@ struct LaneAccess {
                               RunningContact& contact) {
     copy(lanes.contact.force_min, 0, contact.statistics.force_min);
     copy(lanes.contact.force_max, 0, contact.statistics.force_max);
+    copy(lanes.contact.friction_min, 0, contact.statistics.friction_min);
+    copy(lanes.contact.friction_max, 0, contact.statistics.friction_max);
   }
 };
 
@@ -188,9 +190,9 @@ std::optional<Shape> shape_of(Run& run) {
   const RunningContact& contact = run.contacts.front();
   const ContactPoint& point = contact.point();
   const MasterSurface& surface = contact.sliding.surface();
-  if (!run.slides_only || point.substrate || point.penalty || point.friction.kind == FrictionLaw::Kind::stribeck ||
-      surface.stencil_size() != 2 || !surface.roughness.is_smooth() ||
-      point.slave_body == surface.body) {
+  if (!run.slides_only || point.substrate || point.penalty ||
+      point.friction.kind == FrictionLaw::Kind::stribeck || surface.stencil_size() != 2 ||
+      !surface.roughness.is_smooth() || point.slave_body == surface.body) {
     return std::nullopt;
   }
   const ModalRecurrence* const slave = LaneAccess::modal(run, point.slave_body);
@@ -368,8 +370,9 @@ class LaneGroup {
     for (double** entries :
          {&contact.length, &contact.drive_share, &contact.friction, &contact.xi, &contact.force,
           &contact.friction_force, &contact.slip_velocity, &contact.force_min, &contact.force_max,
-          &contact.drive_displacement, &contact.drive_velocity, &contact.drive_from,
-          &contact.sliding_velocity, &lanes_.step, &lanes_.index, &lanes_.is_used, &flagged_})
+          &contact.friction_min, &contact.friction_max, &contact.drive_displacement,
+          &contact.drive_velocity, &contact.drive_from, &contact.sliding_velocity, &lanes_.step,
+          &lanes_.index, &lanes_.is_used, &flagged_})
       take(*entries, 1);
     take(lanes_.trace, max_traced);
     return used;

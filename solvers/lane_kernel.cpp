@@ -207,10 +207,15 @@ STRIDOR_INLINE V solve_contact(const Lanes& lanes) {
   take(c.xi, 0, xi);
   take(c.found_tangent, 0, tx);
   take(c.found_tangent, 1, ty);
+  const auto extend = [&](double* least, double* largest, const V& value) STRIDOR_INLINE_LAMBDA {
+    take(least, 0, value < at<V>(least, 0) ? value : at<V>(least, 0));
+    take(largest, 0, value > at<V>(largest, 0) ? value : at<V>(largest, 0));
+  };
+  const V friction_force = friction * force;
   take(c.force, 0, force);
-  take(c.friction_force, 0, friction * force);
-  take(c.force_min, 0, force < at<V>(c.force_min, 0) ? force : at<V>(c.force_min, 0));
-  take(c.force_max, 0, force > at<V>(c.force_max, 0) ? force : at<V>(c.force_max, 0));
+  take(c.friction_force, 0, friction_force);
+  extend(c.force_min, c.force_max, force);
+  extend(c.friction_min, c.friction_max, friction_force);
   for (std::size_t s = 0; s < 2; ++s) take(slave.forces, s, slave_force[s]);
   for (std::size_t s = 0; s < 4; ++s) take(master.forces, s, master_force[s]);
   if constexpr (is_prompt) {

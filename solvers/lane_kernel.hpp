@@ -62,6 +62,8 @@ struct ContactLanes {
   double* slip_velocity = nullptr;
   double* force_min = nullptr;
   double* force_max = nullptr;
+  double* friction_min = nullptr;  ///< of friction_force
+  double* friction_max = nullptr;
 
   // Drive: displacement = drive_displacement + drive_velocity (t − drive_from), moving or not.
   double* drive_displacement = nullptr;

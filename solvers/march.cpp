@@ -48,25 +48,19 @@ void March::save(State& state, const std::string& prefix) const {
   state.put(prefix + "window", static_cast<double>(window_));
   for (std::size_t i = 0; i < closed_statistics_.size(); ++i) {
     const ContactStatistics one = closed_statistics_[i].value_or(ContactStatistics{});
-    const double values[] = {closed_statistics_[i] ? 1.0 : 0.0,
-                             one.force_min,
-                             one.force_max,
-                             static_cast<double>(one.steps),
-                             static_cast<double>(one.sticking),
-                             static_cast<double>(one.open)};
-    state.put(fmt::format("{}closed/{}", prefix, i), values);
+    state.put(fmt::format("{}is_closed/{}", prefix, i), closed_statistics_[i] ? 1.0 : 0.0);
+    state.put(fmt::format("{}closed/{}", prefix, i), one.numbers());
   }
 }
 
 void March::load(const State& state, const std::string& prefix) {
   window_ = static_cast<Window>(static_cast<int>(state.get(prefix + "window")));
   for (std::size_t i = 0; i < closed_statistics_.size(); ++i) {
-    double values[6];
-    state.get(fmt::format("{}closed/{}", prefix, i), values);
-    const auto count = [&](int k) { return static_cast<std::int64_t>(values[k]); };
+    ContactStatistics::Numbers numbers;
+    state.get(fmt::format("{}closed/{}", prefix, i), numbers);
     closed_statistics_[i].reset();
-    if (values[0] != 0.0)
-      closed_statistics_[i] = ContactStatistics{values[1], values[2], count(3), count(4), count(5)};
+    if (state.get(fmt::format("{}is_closed/{}", prefix, i)) != 0.0)
+      closed_statistics_[i] = ContactStatistics::of(numbers);
   }
   if (sink_ != nullptr) sink_next_ = sink_->next_step();
 }

@@ -12,16 +12,11 @@
 namespace stridor {
 namespace {
 
-using StatisticsNumbers = std::array<double, 5>;
-
-StatisticsNumbers numbers_of(const ContactStatistics& one) {
-  return {one.force_min, one.force_max, static_cast<double>(one.steps),
-          static_cast<double>(one.sticking), static_cast<double>(one.open)};
-}
-
-ContactStatistics statistics_from(const StatisticsNumbers& numbers) {
-  const auto count = [&](std::size_t k) { return static_cast<std::int64_t>(numbers[k]); };
-  return {numbers[0], numbers[1], count(2), count(3), count(4)};
+/// Statistics of a contact that a saved state holds, by name.
+auto saved_statistics(auto& contact) {
+  using Entry = std::pair<const char*, decltype(&contact.statistics)>;
+  return std::array{Entry{"statistics", &contact.statistics}, Entry{"earlier", &contact.earlier},
+                    Entry{"open_interval", &contact.open_interval}};
 }
 
 }  // namespace
@@ -260,18 +255,13 @@ State Simulation::save() const {
                              c.slip_velocity,
                              c.anchor,
                              static_cast<double>(c.steady_steps),
-                             c.statistics.force_min,
-                             c.statistics.force_max,
-                             static_cast<double>(c.statistics.steps),
-                             static_cast<double>(c.statistics.sticking),
-                             static_cast<double>(c.statistics.open),
                              static_cast<double>(c.violations.negative_force),
                              static_cast<double>(c.violations.reversed_sliding),
                              static_cast<double>(c.violations.before_armed),
                              c.violations.last_time};
     state.put(fmt::format("contacts/{}", i), values);
-    state.put(fmt::format("contacts/{}/earlier", i), numbers_of(c.earlier));
-    state.put(fmt::format("contacts/{}/open_interval", i), numbers_of(c.open_interval));
+    for (const auto& [name, statistics] : saved_statistics(c))
+      state.put(fmt::format("contacts/{}/{}", i, name), statistics->numbers());
   }
   if (run.ledger) run.ledger->save(state, "energy/");
   return state;
@@ -292,7 +282,7 @@ void Simulation::load(const State& state) {
   }
   for (std::size_t i = 0; i < run.contacts.size(); ++i) {
     RunningContact& c = run.contacts[i];
-    double values[19];
+    double values[14];
     state.get(fmt::format("contacts/{}", i), values);
     const auto count = [&](int k) { return static_cast<std::int64_t>(values[k]); };
     c.sliding.restore(static_cast<int>(values[0]), values[1], {values[2], values[3]});
@@ -302,15 +292,12 @@ void Simulation::load(const State& state) {
     c.slip_velocity = values[7];
     c.anchor = values[8];
     c.steady_steps = static_cast<int>(values[9]);
-    c.statistics = {values[10], values[11], count(12), count(13), count(14)};
-    c.violations = {count(15), count(16), count(17), values[18]};
-    const auto statistics_of = [&](const char* name) {
-      StatisticsNumbers numbers;
+    c.violations = {count(10), count(11), count(12), values[13]};
+    for (const auto& [name, statistics] : saved_statistics(c)) {
+      ContactStatistics::Numbers numbers;
       state.get(fmt::format("contacts/{}/{}", i, name), numbers);
-      return statistics_from(numbers);
-    };
-    c.earlier = statistics_of("earlier");
-    c.open_interval = statistics_of("open_interval");
+      *statistics = ContactStatistics::of(numbers);
+    }
     c.interval = {};
     // The guess that the next step starts from.
     run.local[i].normal = c.force;

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,8 +48,10 @@ struct ViolationCount {
 
 /// Statistics of a contact over a stretch of steps.
 struct ContactStatistics {
-  double force_min = std::numeric_limits<double>::infinity();   ///< of λ, N
-  double force_max = -std::numeric_limits<double>::infinity();  ///< of λ, N
+  double force_min = std::numeric_limits<double>::infinity();      ///< of λ, N
+  double force_max = -std::numeric_limits<double>::infinity();     ///< of λ, N
+  double friction_min = std::numeric_limits<double>::infinity();   ///< of λ_t, N
+  double friction_max = -std::numeric_limits<double>::infinity();  ///< of λ_t, N
   std::int64_t steps = 0;
   std::int64_t sticking = 0;  ///< steps that ended in stick
   std::int64_t open = 0;      ///< steps without contact
@@ -56,9 +60,27 @@ struct ContactStatistics {
   void add(const ContactStatistics& other) {
     force_min = std::min(force_min, other.force_min);
     force_max = std::max(force_max, other.force_max);
+    friction_min = std::min(friction_min, other.friction_min);
+    friction_max = std::max(friction_max, other.friction_max);
     steps += other.steps;
     sticking += other.sticking;
     open += other.open;
+  }
+
+  /// The same as numbers, for a saved state.
+  using Numbers = std::array<double, 7>;
+  Numbers numbers() const {
+    return {force_min,
+            force_max,
+            friction_min,
+            friction_max,
+            static_cast<double>(steps),
+            static_cast<double>(sticking),
+            static_cast<double>(open)};
+  }
+  static ContactStatistics of(std::span<const double, std::tuple_size_v<Numbers>> numbers) {
+    const auto count = [&](std::size_t k) { return static_cast<std::int64_t>(numbers[k]); };
+    return {numbers[0], numbers[1], numbers[2], numbers[3], count(4), count(5), count(6)};
   }
 };
 

@@ -415,6 +415,8 @@ struct Simulation::Implementation {
     ContactStatistics& statistics = contact.statistics;
     statistics.force_min = std::min(statistics.force_min, contact.force);
     statistics.force_max = std::max(statistics.force_max, contact.force);
+    statistics.friction_min = std::min(statistics.friction_min, contact.friction_force);
+    statistics.friction_max = std::max(statistics.friction_max, contact.friction_force);
     ++statistics.steps;
     if (contact.state == ContactState::slip) return;
     ++(contact.state == ContactState::stick ? statistics.sticking : statistics.open);

@@ -513,5 +513,25 @@ TEST_F(PaperLocus, IsTheSameByTheDenseMethod) {
   }
 }
 
+TEST(LocusDense, EndsWhereRoundingMovesAnEigenvalueFromValueToValue) {
+  // b_C b_Eᵀ = 6e-14: one eigenvalue, near 7e6 j, is known to three digits only, and its real part
+  // has no sign. Without a limit the search for its windows would go down to 1e-9 of the range.
+  const PencilFamily family{
+      [](double v, Pencil& pencil) {
+        pencil = test::constrained_modes(
+            Eigen::Vector4d(0.3, 0.45, 1.0, 2.0), Eigen::Vector4d(0.02, 0.03, 0.0, 0.0),
+            Eigen::RowVector4d(0.0, 0.0, 1.0, 1.0), Eigen::RowVector4d(0.0, 0.0, 1.0, 6e-14 - 1.0));
+        pencil.slot_stiffness = Eigen::Matrix4d::Zero();
+        pencil.slot_stiffness.topLeftCorner<2, 2>() = test::circulatory(v);
+      },
+      {}};
+  LocusOptions options;
+  options.method = LocusMethod::dense;
+  const Locus locus = trace_locus(family, {0.0, 0.05, 0.1}, options);
+  EXPECT_LE(locus.num_refined, 60'000);
+  EXPECT_GT(locus.unresolved, 0.0) << "what has not been resolved is named";
+  EXPECT_EQ(locus.eigenvalues[0].size(), 3u);
+}
+
 }  // namespace
 }  // namespace stridor

@@ -3,10 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numbers>
 
+#include "solvers/dense_eigenvalues.hpp"
+#include "solvers/search_failure.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
+#include "tests/support/pencils.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {
@@ -113,6 +117,67 @@ TEST(BodyStabilityFamily, KinksAreTheMasterNodes) {
       loaded, {find_stability_key(loaded.scene, "contact.friction.coefficient", "--parameter")},
       ContactGeometry::undeformed);
   EXPECT_TRUE(friction.along(0, {0.3}, 0.1, 0.4).kinks.empty());
+}
+
+constexpr double jammed_rounding = 1e-3;
+
+/// Two modes that a circulatory term v couples, and two more whose contact almost jams:
+/// b_C b_Eᵀ = 6e-14, so that the secular function has zeros too far away to be found, and rounding
+/// in the dense method is magnified by the inverse of that.
+class NearlyJammed : public StabilityFamily {
+ public:
+  Pencil pencil(std::span<const double> values) override { return of(values[0]); }
+  double trusted_frequency(std::span<const double>) override {
+    return std::numeric_limits<double>::infinity();
+  }
+  static Pencil of(double v) {
+    Pencil pencil = constrained_modes(
+        Eigen::Vector4d(0.3, 0.45, 1.0, 2.0), Eigen::Vector4d(0.02, 0.03, 0.0, 0.0),
+        Eigen::RowVector4d(0.0, 0.0, 1.0, 1.0), Eigen::RowVector4d(0.0, 0.0, 1.0, 6e-14 - 1.0));
+    pencil.slot_stiffness = Eigen::Matrix4d::Zero();
+    pencil.slot_stiffness.topLeftCorner<2, 2>() = circulatory(v);
+    return pencil;
+  }
+  /// The two modes alone.
+  static Pencil coupled_modes_of(double v) {
+    Pencil pencil = two_masses({0.09, 0.2025}, {0.02, 0.03});
+    pencil.slot_stiffness = circulatory(v);
+    return pencil;
+  }
+};
+
+TEST(DenseFallback, FindsWhatTheSearchForZerosMisses) {
+  EXPECT_THROW(secular_eigenvalues(NearlyJammed::of(0.05), {}), SearchFailure);
+  const LowestEigenvalues found =
+      find_lowest(NearlyJammed::of(0.05), EigenvalueMethod::secular, {2, 1.0});
+  EXPECT_EQ(found.method, EigenvalueMethod::dense);
+  EXPECT_THAT(found.remark, HasSubstr("did not converge: all 6 eigenvalues by the dense method"));
+  const auto expected = dense_eigenvalues(NearlyJammed::coupled_modes_of(0.05));
+  ASSERT_EQ(found.eigenvalues.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_LT(std::abs(found.eigenvalues[i].s - expected[i].s), jammed_rounding);
+}
+
+TEST(DenseFallback, LocusHasTheWindowOfTheModesThatAreCoupled) {
+  const NumericKey coupling{"parameters.v", "", {}, false};
+  NearlyJammed family;
+  LocusOptions options;
+  options.frequency = 1.0;
+  const std::vector<double> range{0.0, 0.05, 0.1};
+  const Locus locus = locus_along(family, coupling, 0, {0.0}, range, options);
+  const Locus expected = trace_locus(
+      {[](double v, Pencil& pencil) { pencil = NearlyJammed::coupled_modes_of(v); }, {}}, range,
+      options);
+  ASSERT_EQ(expected.unstable.size(), 1u);
+  ASSERT_EQ(locus.unstable.size(), 1u);
+  EXPECT_NEAR(locus.unstable[0].from, expected.unstable[0].from, jammed_rounding);
+  EXPECT_NEAR(locus.unstable[0].growth_max, expected.unstable[0].growth_max, jammed_rounding);
+  EXPECT_EQ(stability_changes(locus).size(), 1u);
+  for (std::size_t i = 0; i < range.size(); ++i) {
+    ASSERT_EQ(locus.eigenvalues[i].size(), expected.eigenvalues[i].size());
+    for (std::size_t k = 0; k < expected.eigenvalues[i].size(); ++k)
+      EXPECT_LT(std::abs(locus.eigenvalues[i][k] - expected.eigenvalues[i][k]), jammed_rounding);
+  }
 }
 
 }  // namespace

@@ -195,6 +195,32 @@ TEST(ParseQuantity, ShortestDecimalIsReadBackExactly) {
   }
 }
 
+TEST(ParseQuantity, CommonUnitsMeanWhatTheDatabaseSays) {
+  // In parentheses a unit is read from the database.
+  const std::vector<std::string> units{
+      "m",     "cm",    "mm",     "um",    "s",    "ms",    "us",    "kg",     "g",
+      "N",     "mN",    "kN",     "Pa",    "kPa",  "MPa",   "GPa",   "Hz",     "kHz",
+      "MHz",   "rad",   "deg",    "m/s",   "m2",   "s-1",   "1/s",   "m-3",    "N/m",
+      "N/mm",  "kg/m3", "kg m-3", "g/cm3", "N m",  "mm/s2", "rad/s", "deg/ms", "N s/m",
+      "kg m2", "Pa s",  "m s-1",  "mm-2",  "1/ms2"};
+  for (const std::string& unit : units) {
+    for (const char* number : {"1", "0.3", "2.38", "7.77e-5"}) {
+      const Quantity common = parse_any_quantity(std::string(number) + " " + unit);
+      const std::string inner =
+          unit.starts_with("1/") ? "1/(" + unit.substr(2) + ")" : "(" + unit + ")";
+      const Quantity expected = parse_any_quantity(std::string(number) + " " + inner);
+      EXPECT_EQ(common.unit, expected.unit) << unit;
+      EXPECT_EQ(common.value, expected.value) << number << " " << unit;
+    }
+  }
+  // Beside them: units that look like common ones.
+  EXPECT_EQ(parse_quantity("2 min", "s"), 120.0);
+  EXPECT_EQ(parse_quantity("1 N/m/s", "kg s-3"), 1.0);
+  EXPECT_EQ(parse_quantity("6 N m2/kg", "m3 s-2"), 6.0);
+  EXPECT_THROW(parse_quantity("1 m--2", "m-2"), std::invalid_argument);
+  EXPECT_THROW(parse_quantity("1 m/", "m"), std::invalid_argument);
+}
+
 TEST(ParseQuantity, ManyThreadsReadTheSame) {
   std::vector<std::thread> threads;
   std::vector<int> wrong(4, 0);

@@ -157,6 +157,8 @@ TEST(Recorder, ForcesStatesAndEnergiesStandUnfilteredBesideFilteredRows) {
   EXPECT_NE(text("/contact/contact/friction_force_low_passed", "filter"), "none");
   EXPECT_EQ(text("/contact/contact/force_max", "long_name"),
             "largest contact force of all steps since the row before");
+  EXPECT_EQ(text("/contact/contact/friction_force_min", "long_name"),
+            "least friction force of all steps since the row before");
   EXPECT_EQ(text("/contact/contact/friction_force", "acts_at"),
             "the time of the same row of /time");
 }
@@ -172,6 +174,8 @@ TEST(Recorder, IntervalsHoldEveryStepBetweenTheRows) {
       record_run(model, channels, 1e-5, 25'000, (folder / "film.h5").string());
   const auto least = file.series("/contact/contact/force_min");
   const auto largest = file.series("/contact/contact/force_max");
+  const auto least_friction = file.series("/contact/contact/friction_force_min");
+  const auto largest_friction = file.series("/contact/contact/friction_force_max");
   const auto sticking = file.series("/contact/contact/stick_fraction");
   const auto open = file.series("/contact/contact/open_fraction");
   Simulation simulation(model.system, paper_time(), Accounts::energy);
@@ -183,12 +187,15 @@ TEST(Recorder, IntervalsHoldEveryStepBetweenTheRows) {
         ASSERT_EQ(simulation.step(), StepOutcome::done);
       }
       const double force = simulation.contact_force(0);
+      const double friction = simulation.friction_force(0);
       const ContactState state = simulation.contact_state(0);
-      expected.add({force, force, 1, state == ContactState::stick ? 1 : 0,
+      expected.add({force, force, friction, friction, 1, state == ContactState::stick ? 1 : 0,
                     state == ContactState::open ? 1 : 0});
     } while (simulation.step_index() % 50 != 0);
     ASSERT_EQ(least[k], expected.force_min) << k;
     ASSERT_EQ(largest[k], expected.force_max) << k;
+    ASSERT_EQ(least_friction[k], expected.friction_min) << k;
+    ASSERT_EQ(largest_friction[k], expected.friction_max) << k;
     const auto steps = static_cast<double>(expected.steps);
     ASSERT_EQ(sticking[k], static_cast<double>(expected.sticking) / steps) << k;
     ASSERT_EQ(open[k], static_cast<double>(expected.open) / steps) << k;
@@ -234,8 +241,7 @@ TEST(Recorder, StrideFollowsTheRingingModesAndTheRatio) {
   // At least five looks per sample.
   EXPECT_EQ(sampling_stride(model.system, 2e-7, 10), 2);
   ModelParameters undamped = paper_model();
-  for (auto& [name, body] : undamped.substructures)
-    body.get<BeamParameters>().damping.beta = 0.0;
+  for (auto& [name, body] : undamped.substructures) body.get<BeamParameters>().damping.beta = 0.0;
   // 967 kHz ring on, so 967 + 60 kHz are needed: of the divisors 1, 2, 5, 10 of 50 only 2 gives it.
   EXPECT_EQ(sampling_stride(make_paper_model(undamped).system, 2e-7, 50), 2);
 }

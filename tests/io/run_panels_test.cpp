@@ -20,7 +20,8 @@ RunFileReader run_of(const test::TemporaryFolder& folder, const std::vector<std:
   for (const std::string& one : paths) {
     SeriesSpec spec{one, "N", SeriesKind::real, {{"filter", "none"}}};
     if (one.ends_with("gap")) {
-      spec.attributes = {{"filter", "linear phase, pass band to 40000 Hz, stop band from 60000 Hz"}};
+      spec.attributes = {
+          {"filter", "linear phase, pass band to 40000 Hz, stop band from 60000 Hz"}};
     }
     if (one.ends_with("state")) {
       spec.kind = SeriesKind::state;
@@ -59,11 +60,16 @@ TEST(RunPanels, SayWhatIsFilteredAndWhatValuesMean) {
   const test::TemporaryFolder folder;
   const RunFileReader file =
       run_of(folder, {"/contact/pad/force", "/contact/pad/force_min", "/contact/pad/force_max",
-                      "/contact/pad/gap", "/contact/pad/state"});
+                      "/contact/pad/friction_force", "/contact/pad/friction_force_min",
+                      "/contact/pad/friction_force_max", "/contact/pad/gap", "/contact/pad/state"});
   EXPECT_EQ(panel_of(file, "/contact/pad/gap", {0, 3}).title, "pad (low-passed to 40 kHz)");
   const Panel force = panel_of(file, "/contact/pad/force", {1, 3});
   EXPECT_EQ(force.band.times.size(), 2u);
   EXPECT_EQ(force.title, "pad (band: extremes of all steps)");
+  EXPECT_EQ(panel_of(file, "/contact/pad/friction_force", {1, 3}).band.times.size(), 2u);
+  EXPECT_THAT(series_by_use(file, SeriesUse::history),
+              ElementsAre("/contact/pad/force", "/contact/pad/state", "/contact/pad/friction_force",
+                          "/contact/pad/gap"));
   const Panel state = panel_of(file, "/contact/pad/state", {0, 3});
   ASSERT_EQ(state.named_values.size(), 3u);
   EXPECT_EQ(state.named_values[2].value, 2.0);

@@ -404,7 +404,8 @@ TEST(Simulation, IntervalsHoldEveryStepOnceWhateverResetsTheStatistics) {
   for (int n = 0; n < 50; ++n) {
     ASSERT_EQ(simulation.step(), StepOutcome::done);
     const double force = simulation.contact_force(0);
-    expected.add({force, force, 1, 0, 0});
+    const double friction = simulation.friction_force(0);
+    expected.add({force, force, friction, friction, 1, 0, 0});
     if (n == 20) simulation.reset_statistics();
   }
   const State state = simulation.save();
@@ -416,6 +417,8 @@ TEST(Simulation, IntervalsHoldEveryStepOnceWhateverResetsTheStatistics) {
     EXPECT_EQ(one->interval_statistics(0).steps, 50);
     EXPECT_EQ(one->interval_statistics(0).force_min, expected.force_min);
     EXPECT_EQ(one->interval_statistics(0).force_max, expected.force_max);
+    EXPECT_EQ(one->interval_statistics(0).friction_min, expected.friction_min);
+    EXPECT_EQ(one->interval_statistics(0).friction_max, expected.friction_max);
     EXPECT_EQ(one->statistics(0).steps, 30);
   }
 }
