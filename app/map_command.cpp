@@ -14,11 +14,13 @@
 #include "app/stability.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
+#include "core/memory.hpp"
 #include "core/tasks.hpp"
 #include "core/version.hpp"
 #include "io/gnuplot.hpp"
 #include "io/locus_file.hpp"
 #include "io/locus_plot.hpp"
+#include "models/set_up_estimate.hpp"
 
 namespace stridor {
 namespace {
@@ -277,6 +279,14 @@ ExitCode map(MapOptions options) {
       make_axis(loaded, options.y, "--y", options.y_scale.value_or(options.scale))};
   if (axes[0].key.path == axes[1].key.path)
     throw ConfigError("--y", fmt::format("'{}' is the key of --x already", axes[1].key.path));
+  constexpr double bytes_per_point = 125.0;  // measured, with JSON
+  require_memory(
+      {"--x",
+       fmt::format("a map of {} times {} points", axes[0].values.size(), axes[1].values.size()),
+       "ask for fewer points along x or y",
+       bytes_per_point * static_cast<double>(axes[0].values.size()) *
+           static_cast<double>(axes[1].values.size())},
+      memory_limit());
   std::array<Locus, 2> resolution;
   const StabilityMap found = make_map(loaded, axes, stability, resolution);
 

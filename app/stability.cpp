@@ -13,7 +13,9 @@
 #include "app/sphere_stability.hpp"
 #include "core/blas.hpp"
 #include "core/errors.hpp"
+#include "core/memory.hpp"
 #include "core/stop_token.hpp"
+#include "models/set_up_estimate.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/retained_modes.hpp"
 #include "solvers/search_failure.hpp"
@@ -512,11 +514,22 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
   // An end that is not allowed is named as it was given, before anything is computed in between.
   std::vector<double> ends = values;
   double trusted = std::numeric_limits<double>::infinity();
+  Eigen::Index num_wanted = 0;
   for (const double end : {range.front(), range.back()}) {
     ends[key] = end;
-    if (!family.is_sparse()) family.pencil(ends);
+    if (!family.is_sparse())
+      num_wanted = std::max(num_wanted, family.pencil(ends).num_eigenvalues() / 2);
     trusted = std::min(trusted, family.trusted_frequency(ends));
   }
+  if (family.is_sparse()) num_wanted = options.count;
+  num_wanted = std::min<Eigen::Index>(num_wanted, options.count);
+  // Measured: tracks, results and their JSON.
+  constexpr double bytes_per_eigenvalue = 500.0;
+  const auto num_values = static_cast<double>(range.size());
+  require_memory(
+      {"--points", fmt::format("{} eigenvalues at {} values", num_wanted, range.size()),
+       "ask for fewer", bytes_per_eigenvalue * num_values * static_cast<double>(num_wanted)},
+      memory_limit());
   LocusOptions within = options;
   within.trusted = trusted;
   if (family.is_sparse())

@@ -188,4 +188,11 @@ void require_memory(const SetUpEstimate& estimate, const MemoryLimit& limit) {
                   largest->remedy));
 }
 
+void require_memory(const MemoryPart& results, const MemoryLimit& limit) {
+  if (results.bytes <= limit.bytes) return;
+  throw ConfigError(results.key, fmt::format("{} would take about {} of memory, but {} is {}; {}",
+                                             results.what, memory_text(results.bytes), limit.source,
+                                             memory_text(limit.bytes), results.remedy));
+}
+
 }  // namespace stridor

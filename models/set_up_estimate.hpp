@@ -44,5 +44,8 @@ SetUpEstimate estimate_set_up(const SlidingContactParameters& contact);
 
 /// @throws ConfigError naming the largest part, if all of them do not fit
 void require_memory(const SetUpEstimate& estimate, const MemoryLimit& limit);
+/// The same for results that are held until the end.
+/// @throws ConfigError naming the key of the part, if it does not fit
+void require_memory(const MemoryPart& results, const MemoryLimit& limit);
 
 }  // namespace stridor

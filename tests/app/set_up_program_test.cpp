@@ -44,6 +44,26 @@ TEST(SetUpProgram, WhatDoesNotFitIntoMemoryIsRefusedBeforeItBegins) {
   }
 }
 
+TEST(SetUpProgram, ResultsThatDoNotFitIntoMemoryAreRefusedBeforeTheFirst) {
+  const auto refusal = [](Strings command) {
+    command.insert(command.begin() + 1, scene_path("examples/flutter.yaml"));
+    const ProgramResult result =
+        Program(std::move(command)).with_memory_limit(gigabyte * 9 / 10).run();
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    return result.err;
+  };
+  const std::string load = "substructures.oscillator.load";
+  const std::string damping = "substructures.oscillator.factors.damping";
+  for (const char* verb : {"locus", "threshold"}) {
+    EXPECT_THAT(
+        refusal({verb, "--parameter", load, "--from", "0", "--to", "0.3", "--points", "1000000"}),
+        AllOf(HasSubstr("--points: 2 eigenvalues at 1000000 values would take about 1 GB"),
+              HasSubstr("ask for fewer")));
+  }
+  EXPECT_THAT(refusal({"map", "--x", load, "0", "0.3", "30000", "--y", damping, "0", "1", "30000"}),
+              HasSubstr("--x: a map of 30000 times 30000 points would take about"));
+}
+
 TEST(SetUpProgram, DiscsAndContactsAreRefusedLikewise) {
   const auto refusal = [](Strings command) {
     const ProgramResult result = Program(std::move(command)).with_memory_limit(3 * gigabyte).run();

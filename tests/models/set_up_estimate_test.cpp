@@ -91,5 +91,19 @@ TEST(RequireMemory, RefusesTheRestWithTheNumbersAndWhatToDo) {
   }
 }
 
+TEST(RequireMemory, RefusesResultsThatDoNotFit) {
+  const MemoryPart results{"--points", "20 eigenvalues at 1000000 values", "ask for fewer", 10e9};
+  EXPECT_NO_THROW(require_memory(results, {16e9, "the memory of this machine"}));
+  try {
+    require_memory(results, {8e9, "the memory of this machine"});
+    FAIL() << "nothing was refused";
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(error.problems().front().key, "--points");
+    EXPECT_EQ(error.problems().front().message,
+              "20 eigenvalues at 1000000 values would take about 10 GB of memory, but the memory "
+              "of this machine is 8 GB; ask for fewer");
+  }
+}
+
 }  // namespace
 }  // namespace stridor
