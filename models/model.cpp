@@ -515,6 +515,27 @@ bool names_guided(const std::vector<std::string>& list) {
   return list.empty() || std::find(list.begin(), list.end(), guided_supports) != list.end();
 }
 
+bool follows_drive(const Body& body, const DriveParameters& drive) {
+  return body.matrices.follows_drive() && names_guided(drive.moves);
+}
+
+/// Refuses a velocity that nothing follows: contacts would be taken to slide and do not.
+void check_something_follows(const DriveParameters& parameters, const Drive& drive,
+                             const std::vector<Body>& bodies, const EndlessMasters& endless) {
+  const std::vector<double>& velocities = drive.velocity.table().values;
+  const bool is_at_rest =
+      std::all_of(velocities.begin(), velocities.end(), [](double v) { return v == 0.0; });
+  const bool is_followed = std::any_of(bodies.begin(), bodies.end(), [&](const Body& body) {
+    return body.parameters != nullptr && follows_drive(body, parameters);
+  });
+  if (is_at_rest || is_followed || endless.moving >= 0) return;
+  throw ConfigError("drive.velocity",
+                    fmt::format("moves nothing: no body has a support that is guided{}, and no "
+                                "master is named in drive.moves; give the body that is to slide a "
+                                "guided support, or move a rigid or half_space master",
+                                names_guided(parameters.moves) ? "" : " and named in drive.moves"));
+}
+
 /// Size of the drive's load in the end, N.
 double final_load(const DriveParameters& drive) {
   return std::abs(drive.load.value(std::numeric_limits<double>::infinity()));
@@ -679,6 +700,7 @@ Model make_model(const ModelParameters& parameters,
   System& system = model.system;
   system.drive = make_drive(parameters.drive,
                             pairs.empty() ? SlidingMode::moving : pairs.begin()->second.sliding);
+  if (!pairs.empty()) check_something_follows(parameters.drive, system.drive, bodies, endless);
   std::vector<ResolvedPair*> waiting;
   waiting.reserve(resolved.size());
   for (ResolvedPair& pair : resolved) waiting.push_back(&pair);
@@ -763,8 +785,7 @@ Model make_model(const ModelParameters& parameters,
     const std::string key = "substructures." + body.name;
     SystemBody finished;
     finished.name = body.name;
-    finished.follows_drive =
-        body.matrices.follows_drive() && names_guided(parameters.drive.moves);
+    finished.follows_drive = follows_drive(body, parameters.drive);
     finished.load_row = load_row_of(body, parameters.drive);
     const int num_modes = modes_of(body, key);
     const auto num_interior =

@@ -105,12 +105,42 @@ class Aberth {
   int evaluations_ = 0;
 };
 
-/// Starts between the poles below a line, for so many zeros.
+/// Whether a pole is far from the imaginary axis, as those of high modes under damping in
+/// proportion to stiffness: its height says little about where it is.
+bool is_strongly_damped(Complex pole) {
+  return pole.imag() > 0.0 && std::abs(pole.real()) > 0.3 * pole.imag();
+}
+
+/// Modes whose poles are within the wedge, rigid ones left out.
+std::size_t num_heavily_damped(const SecularFunction& function) {
+  std::size_t num = 0;
+  for (Eigen::Index i = 0; i < function.num_modes(); ++i) {
+    const auto poles = function.poles(i);
+    if (poles[1] != 0.0 && SecularFunction::height_of(poles[0]) <= 0.0) ++num;
+  }
+  return num;
+}
+
+/// Starts for so many zeros below a line: between the heights of the poles, beside those that are
+/// strongly damped.
 std::vector<Complex> starts_below(const SecularFunction& function, double height, int count) {
-  const std::vector<double>& heights = function.pole_heights();
-  const double top = std::isfinite(height) ? height : 1.5 * heights.back();
+  std::vector<Complex> aside;
+  std::vector<double> heights;
+  for (Eigen::Index i = 0; i < function.num_modes(); ++i) {
+    const Complex pole = function.poles(i).front();
+    const double own = SecularFunction::height_of(pole);
+    if (!is_strongly_damped(pole)) {
+      heights.push_back(std::max(0.0, own));
+    } else if (own < height) {
+      aside.push_back(pole * Complex(1.0, 1e-3 * (1.0 + 0.37 * static_cast<double>(i % 7))));
+    }
+  }
+  std::sort(heights.begin(), heights.end());
+  const auto num_real = static_cast<std::size_t>(std::count(heights.begin(), heights.end(), 0.0));
+  const double top = std::isfinite(height) ? height : 1.5 * function.pole_heights().back();
   std::vector<Complex> starts;
   for (std::size_t j = 0; starts.size() < static_cast<std::size_t>(count); ++j) {
+    if (j == num_real) starts.insert(starts.end(), aside.begin(), aside.end());
     const double lower = j < heights.size() ? std::min(heights[j], top) : top;
     const double upper = j + 1 < heights.size() ? std::min(heights[j + 1], top) : top;
     const double middle = std::sqrt(0.5 * (lower * lower + upper * upper));
@@ -119,6 +149,7 @@ std::vector<Complex> starts_below(const SecularFunction& function, double height
     const double width = std::max({upper - lower, 1e-3 * top, 1e-6 * function.extent()});
     starts.emplace_back(-shift * width, middle + shift * width);
   }
+  starts.resize(static_cast<std::size_t>(count));
   return starts;
 }
 
@@ -185,6 +216,21 @@ Complex loneliest(const std::vector<Complex>& starts, const std::vector<Complex>
   return best;
 }
 
+/// P_h has zeros above the line as well. Those below that were found are divided out, so another
+/// start is drawn towards the one that is missing.
+/// @return whether any was above
+bool send_back(std::vector<Complex>& found, std::vector<bool>& is_done,
+               const std::vector<Complex>& starts, double height, int attempt) {
+  bool is_any = false;
+  for (std::size_t j = 0; j < found.size(); ++j) {
+    if (SecularFunction::height_of(found[j]) < height) continue;
+    is_any = true;
+    is_done[j] = false;
+    found[j] = loneliest(starts, found) * Complex(1.0, 1e-3 * (attempt + 1));
+  }
+  return is_any;
+}
+
 /// Zeros of P_h as conjugate pairs, `number` of them with one on the real axis where it is odd.
 bool find_pairs(SecularFunction& function, double height, int number, std::vector<Complex>& zeros,
                 int& evaluations) {
@@ -200,22 +246,26 @@ bool find_pairs(SecularFunction& function, double height, int number, std::vecto
     const bool is_converged = aberth.run(iterates, is_done);
     evaluations += aberth.evaluations();
     if (!is_converged) return false;
-    bool all_below = true;
-    for (std::size_t j = 0; j < iterates.pairs.size(); ++j) {
-      Complex& s = iterates.pairs[j];
+    for (Complex& s : iterates.pairs)
       if (!turn_up(function, s)) return false;
-      if (SecularFunction::height_of(s) < height) continue;
-      // P_h has zeros above the line as well. Those below that were found are divided out, so
-      // another start is drawn towards the one that is missing.
-      all_below = false;
-      is_done[j] = false;
-      s = loneliest(starts, iterates.pairs) * Complex(1.0, 1e-3 * (attempt + 1));
-    }
+    const bool all_below = !send_back(iterates.pairs, is_done, starts, height, attempt);
     zeros = iterates.pairs;
     zeros.insert(zeros.end(), iterates.singles.begin(), iterates.singles.end());
     if (all_below) return true;
   }
   return false;
+}
+
+/// Those of rigid and overdamped modes, ascending.
+std::vector<double> real_poles(const SecularFunction& function) {
+  std::vector<double> real;
+  for (Eigen::Index i = 0; i < function.num_modes(); ++i) {
+    const auto poles = function.poles(i);
+    if (poles[0].imag() > 0.0) continue;
+    for (const Complex pole : poles) real.push_back(pole.real());
+  }
+  std::sort(real.begin(), real.end());
+  return real;
 }
 
 /// So many zeros of P_h; false where the iteration does not settle on a conjugate set.
@@ -226,14 +276,14 @@ bool find_zeros(SecularFunction& function, double height, int number, std::vecto
   // Two real zeros cannot come out of a pair: all on their own, from starts that are not conjugate.
   Iterates iterates;
   std::vector<Complex>& starts = iterates.singles;
-  for (Eigen::Index i = 0; i < function.num_modes(); ++i) {
-    const auto poles = function.poles(i);
-    if (poles[0].imag() > 0.0) continue;
-    for (const Complex pole : poles) {
-      // Poles may coincide, as those of two rigid modes; starts must not, or they move as one.
-      const Complex aside = std::polar(1.0, 0.5 + static_cast<double>(starts.size()));
-      starts.push_back(pole + 1e-3 * (std::abs(pole) + 1e-3 * function.extent()) * aside);
-    }
+  const std::vector<double> real = real_poles(function);
+  for (std::size_t j = 0; j < real.size(); ++j) {
+    const double far = 1e-3 * (std::abs(real[j]) + 1e-3 * function.extent());
+    const double gap = j + 1 < real.size() ? real[j + 1] - real[j] : far;
+    // Poles may coincide, as those of two rigid modes; starts must not, or they move as one.
+    constexpr double coincident = 1e-4;
+    const double distance = gap > coincident * far ? std::min(far, 0.25 * gap) : far;
+    starts.push_back(real[j] + std::polar(distance, 0.5 + static_cast<double>(starts.size())));
   }
   // The starts between the lowest poles would stand beside these.
   const std::vector<Complex> pairs = starts_below(function, height, number / 2 + 1);
@@ -243,10 +293,19 @@ bool find_zeros(SecularFunction& function, double height, int number, std::vecto
   }
   starts.resize(static_cast<std::size_t>(number));
   std::vector<bool> is_done(iterates.singles.size(), false);
-  Aberth aberth(function, height);
-  const bool is_converged = aberth.run(iterates, is_done);
-  evaluations += aberth.evaluations();
-  return fold(function, iterates.singles, zeros) && is_converged;
+  const std::vector<Complex> others =
+      starts_below(function, height, static_cast<int>(function.pole_heights().size()));
+  constexpr int max_attempts = 8;
+  for (int attempt = 0; attempt < max_attempts; ++attempt) {
+    Aberth aberth(function, height);
+    const bool is_converged = aberth.run(iterates, is_done);
+    evaluations += aberth.evaluations();
+    if (!is_converged) break;
+    if (!send_back(iterates.singles, is_done, others, height, attempt))
+      return fold(function, iterates.singles, zeros);
+  }
+  fold(function, iterates.singles, zeros);
+  return false;
 }
 
 /// A line above a height, between two poles, below which zeros can be counted.
@@ -295,9 +354,12 @@ SecularSpectrum secular_spectrum(SecularFunction& function, const SpectrumWindow
     return spectrum.height > top || (window.count && num_pairs >= *window.count);
   };
 
-  // The zeros lie between the poles, more or less: so many poles and a little more.
-  auto wanted = static_cast<std::size_t>(
-      window.count ? *window.count + static_cast<int>(function.num_constraints()) : 0);
+  // The zeros lie between the poles, more or less: so many poles and a little more, besides those
+  // that are below every line.
+  std::size_t wanted = num_heavily_damped(function);
+  if (window.count)
+    wanted +=
+        static_cast<std::size_t>(*window.count + static_cast<int>(function.num_constraints()));
   double start = top;
   while (!spectrum.is_complete) {
     if (window.count) start = wanted < heights.size() ? std::min(top, heights[wanted]) : top;

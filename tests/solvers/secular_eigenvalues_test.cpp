@@ -486,6 +486,39 @@ TEST(SecularEigenvalues, EmptyWindowsAreRefused) {
             "pencil: 0 constraints leave nothing of 0 modes");
 }
 
+TEST(SecularEigenvalues, LowestOnesAreFoundBesideStronglyDampedHighModes) {
+  // Damping in proportion to stiffness, as of a fine mesh: ζ of the highest mode from 0.5 to 2.
+  constexpr Eigen::Index n = 200;
+  Eigen::VectorXd omega(n);
+  Eigen::MatrixXd row(1, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto x = static_cast<double>(i);
+    omega(i) = 500.0 * std::pow(1.0 + x, 1.9);
+    row(0, i) = std::sin(1.0 + 2.7 * x);
+  }
+  const Eigen::MatrixXd forces = row + 0.3 * row.reverse();
+  for (const double ratio : {0.5, 0.6, 0.7, 0.72, 0.8, 0.9, 1.0, 1.3, 2.0}) {
+    const double beta = 2.0 * ratio / omega(n - 1);
+    const Pencil pencil =
+        test::constrained_modes(omega, beta * omega.array().square().matrix(), row, forces);
+    SecularFunction function(pencil);
+    const SecularSpectrum spectrum = secular_spectrum(function, SpectrumWindow::lowest(10));
+    ASSERT_TRUE(spectrum.is_complete) << ratio;
+    if (ratio < 1.0) {
+      EXPECT_LT(spectrum.evaluations, 4000) << ratio;
+    }
+    std::vector<Eigenvalue> dense;
+    for (const Eigenvalue& one : dense_eigenvalues(pencil, DenseWork::eigenvalues))
+      if (one.s.imag() > 0.0) dense.push_back(one);
+    std::vector<Eigenvalue> found;
+    for (const Eigenvalue& one : spectrum.eigenvalues)
+      if (one.s.imag() > 0.0) found.push_back(one);
+    ASSERT_EQ(found.size(), 10u) << ratio;
+    for (std::size_t i = 0; i < 10; ++i)
+      EXPECT_LT(std::abs(found[i].s - dense[i].s), 1e-12 * omega(n - 1)) << ratio << ", " << i;
+  }
+}
+
 TEST(SecularEigenvalues, SaysWhereThereAreFewerThanThereShouldBe) {
   // f = 1/(s² + 1) − 1/(s² + 4) has no zeros: the contact jams, and one pair is at infinity.
   const Pencil jammed =
