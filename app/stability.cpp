@@ -229,8 +229,7 @@ LowestEigenvalues find_lowest(const Pencil& pencil, EigenvalueMethod method,
       }
       found.remark = fmt::format(
           "the search for zeros of the secular function did not converge: all {} eigenvalues by "
-          "the "
-          "dense method, as for any up to {}",
+          "the dense method, as for any up to {}; fewer modes (time.retain) are faster",
           pencil.num_eigenvalues(), most_dense);
     }
   }
@@ -498,7 +497,7 @@ Locus trace(const PencilFamily& family, const NumericKey& varied, const std::vec
     if (first.num_eigenvalues() > most_dense) throw;
     print_remark(
         "the search for zeros of the secular function did not converge at {}: all {} eigenvalues "
-        "by the dense method\n",
+        "by the dense method; fewer modes (time.retain) are faster\n",
         value_text(varied, range.front()), first.num_eigenvalues());
   }
   LocusOptions dense = options;

@@ -6,6 +6,7 @@
 #include "core/errors.hpp"
 #include "solvers/make_propagator.hpp"
 #include "substructures/beam.hpp"
+#include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 
 namespace stridor {
@@ -264,6 +265,20 @@ TEST(Model, TheRigidMasterIsAnEndlessLineUnderTheSlave) {
   EXPECT_NEAR(contact.slave_position.y(), 0.0, 1e-15);
   // The ground sets no limit to the step.
   EXPECT_EQ(step_limit(system).body, "oblique");
+}
+
+TEST(Model, RefusesAVelocityThatNothingFollows) {
+  ModelParameters parameters = paper_model();
+  SupportParameters& supports = parameters.substructures["oblique"].get<BeamParameters>().supports;
+  for (Support* end : {&supports.start, &supports.end})
+    if (*end == Support::guided) *end = Support::clamped;
+  EXPECT_EQ(
+      message_of<ConfigError>([&] { make_model(parameters, {}); }),
+      "drive.velocity: moves nothing: no body has a support that is guided, and no master is "
+      "named in drive.moves; give the body that is to slide a guided support, or move a rigid "
+      "or half_space master");
+  parameters.drive.velocity = TimeCurve(0.0);
+  EXPECT_NO_THROW(make_model(parameters, {}));
 }
 
 TEST(Model, OnRigidGroundTheContactCarriesTheLoadInEveryForm) {
