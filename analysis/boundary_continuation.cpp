@@ -13,7 +13,7 @@
 namespace stridor {
 namespace {
 
-using Point = Eigen::Vector2d;  ///< in cells of the grid from its first corner
+using CellPoint = Eigen::Vector2d;  ///< in cells of the grid from its first corner
 
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr double first_radius = 0.5;
@@ -64,49 +64,49 @@ class Tracer {
   Tracer(const std::function<double(double, double)>& margin, const MapGrid& grid)
       : margin_(margin), x_(grid.x, grid.spacing[0]), y_(grid.y, grid.spacing[1]) {}
 
-  Point to_cells(const std::array<double, 2>& place) const {
+  CellPoint to_cells(const std::array<double, 2>& place) const {
     return {x_.cell_of(place[0]), y_.cell_of(place[1])};
   }
 
   /// The whole line through a point of it; empty where the margin does not change its sign there.
-  std::vector<Point> line_through(const Point& start) const {
+  std::vector<CellPoint> line_through(const CellPoint& start) const {
     const std::optional<double> direction = direction_at(start, 1.0);
     if (!direction) return {};
     bool is_closed = false;
-    std::vector<Point> line = follow(start, *direction, 1.0, is_closed);
+    std::vector<CellPoint> line = follow(start, *direction, 1.0, is_closed);
     if (is_closed) return line;
     // The other way the unstable side is on the right.
     const std::optional<double> back = direction_at(start, -1.0);
     if (!back) return line;
-    std::vector<Point> before = follow(start, *back, -1.0, is_closed);
+    std::vector<CellPoint> before = follow(start, *back, -1.0, is_closed);
     std::reverse(before.begin(), before.end());
     before.insert(before.end(), line.begin() + 1, line.end());
     return before;
   }
 
-  BoundaryLine to_values(const std::vector<Point>& line) const {
+  BoundaryLine to_values(const std::vector<CellPoint>& line) const {
     BoundaryLine values;
     values.reserve(line.size());
-    for (const Point& point : line)
+    for (const CellPoint& point : line)
       values.push_back({x_.value_at(point.x()), y_.value_at(point.y())});
     return values;
   }
 
  private:
   /// Beyond the edge the margin keeps its value there, so that the line leaves at right angles.
-  double margin_at(const Point& at) const {
+  double margin_at(const CellPoint& at) const {
     return margin_(x_.value_at(at.x()), y_.value_at(at.y()));
   }
-  bool is_inside(const Point& at) const {
+  bool is_inside(const CellPoint& at) const {
     return at.x() >= 0.0 && at.x() <= x_.num_cells() && at.y() >= 0.0 && at.y() <= y_.num_cells();
   }
-  static Point on_circle(const Point& centre, double radius, double angle) {
-    return centre + radius * Point(std::cos(angle), std::sin(angle));
+  static CellPoint on_circle(const CellPoint& centre, double radius, double angle) {
+    return centre + radius * CellPoint(std::cos(angle), std::sin(angle));
   }
 
   /// Direction of the line from a point.
   /// @param side 1: unstable on the left, −1: on the right
-  std::optional<double> direction_at(const Point& centre, double side) const {
+  std::optional<double> direction_at(const CellPoint& centre, double side) const {
     std::vector<double> angles;
     constexpr int num_angles = 36;
     for (int k = 0; k <= num_angles; ++k) angles.push_back((10.0 * k - 180.0) * degree);
@@ -121,7 +121,7 @@ class Tracer {
   }
 
   /// The angle at which the line cuts a circle, next to an expected one.
-  std::optional<double> next_angle(const Point& centre, double radius, double expected,
+  std::optional<double> next_angle(const CellPoint& centre, double radius, double expected,
                                    double side) const {
     const auto along = [&](double angle) {
       return side * margin_at(on_circle(centre, radius, angle));
@@ -136,14 +136,14 @@ class Tracer {
     return std::nullopt;
   }
 
-  std::vector<Point> follow(const Point& start, double direction, double side,
-                            bool& is_closed) const {
-    std::vector<Point> line{start};
+  std::vector<CellPoint> follow(const CellPoint& start, double direction, double side,
+                                bool& is_closed) const {
+    std::vector<CellPoint> line{start};
     double radius = first_radius;
     double farthest = 0.0;
     is_closed = false;
     while (line.size() < most_points) {
-      const Point& here = line.back();
+      const CellPoint& here = line.back();
       const std::optional<double> angle = next_angle(here, radius, direction, side);
       const double turn = angle ? std::abs(*angle - direction) : 180.0 * degree;
       if (turn > sharp_turn && radius > least_radius) {
@@ -151,7 +151,7 @@ class Tracer {
         continue;
       }
       if (!angle) break;
-      const Point next = on_circle(here, radius, *angle);
+      const CellPoint next = on_circle(here, radius, *angle);
       if (!is_inside(next)) {
         line.push_back(
             {std::clamp(next.x(), 0.0, x_.num_cells()), std::clamp(next.y(), 0.0, y_.num_cells())});
@@ -183,10 +183,10 @@ struct Foot {
   double share = 0.0;  ///< of the segment, 0 to 1
 };
 
-Foot foot_on(const std::vector<Point>& line, const Point& point) {
+Foot foot_on(const std::vector<CellPoint>& line, const CellPoint& point) {
   Foot least;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    const Point along = line[i + 1] - line[i];
+    const CellPoint along = line[i + 1] - line[i];
     const double share = std::clamp(along.dot(point - line[i]) / along.squaredNorm(), 0.0, 1.0);
     const double distance = (point - line[i] - share * along).norm();
     if (distance < least.distance) least = {distance, i, share};
@@ -227,15 +227,15 @@ std::vector<BoundaryLine> trace_boundary(const std::function<double(double, doub
   const Tracer tracer(margin, grid);
   // A chord of the largest radius that turns by a sharp angle is this far from its arc.
   constexpr double near = 0.05;
-  std::vector<std::vector<Point>> lines;
+  std::vector<std::vector<CellPoint>> lines;
   for (const BoundaryLine& seed : seeds) {
     for (const auto& place : seed) {
-      const Point start = tracer.to_cells(place);
+      const CellPoint start = tracer.to_cells(place);
       const bool is_known = std::any_of(lines.begin(), lines.end(), [&](const auto& line) {
         return foot_on(line, start).distance < near;
       });
       if (is_known) continue;
-      std::vector<Point> line = tracer.line_through(start);
+      std::vector<CellPoint> line = tracer.line_through(start);
       if (line.size() > 1) lines.push_back(std::move(line));
     }
   }

@@ -17,7 +17,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double inf = std::numeric_limits<double>::infinity();
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void sort_eigenvalues(std::vector<Complex>& values) {
   std::sort(values.begin(), values.end(), [](Complex a, Complex b) {
@@ -62,7 +62,7 @@ class Tracker {
  private:
   void start() {
     value_ = grid_.values.front();
-    last_kink_ = -inf;
+    last_kink_ = -infinity;
     source_.move_to(value_);
     const auto found = source_.search();
     if (!found) {
@@ -416,8 +416,8 @@ class Tracker {
   std::vector<Complex> before_, next_, newcomers_;
   /// Squares of Track::spacing and Track::nearest.
   struct Spacing {
-    double spacing = inf;
-    double nearest = inf;
+    double spacing = infinity;
+    double nearest = infinity;
     bool is_tied = false;
   };
   std::vector<double> heights_;    ///< scratch

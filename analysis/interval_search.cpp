@@ -19,7 +19,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double inf = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 constexpr double tie = 1e-7;  ///< of the largest |s|: eigenvalues closer than this are one
 
 /// Eigenvalues connected from sample to sample.
@@ -342,7 +342,7 @@ Outcome Pass::search(std::size_t i) {
   Outcome outcome = Outcome::resolved;
   for (std::size_t k = 0; k < present.size(); ++k) {
     const std::size_t b = present[k];
-    double nearest = inf;  // of those that it cannot meet
+    double nearest = unbounded;  // of those that it cannot meet
     for (std::size_t l = 0; l < present.size(); ++l) {
       const std::size_t c = present[l];
       const double at_left = std::abs(difference(i, b, c));

@@ -23,23 +23,23 @@ double longest_loop(const SubstrateOscillator& oscillator) {
   return std::clamp(10.0 * winding, 200.0, 5e3);
 }
 
-using Point = Eigen::Vector3d;
+using CyclePoint = Eigen::Vector3d;
 
-Point point_of(const SubstrateMotion& motion) {
+CyclePoint point_of(const SubstrateMotion& motion) {
   return {motion.state()[0], motion.state()[1], motion.state()[3]};
 }
 
-void start_at(SubstrateMotion& motion, const Point& z) {
+void start_at(SubstrateMotion& motion, const CyclePoint& z) {
   motion.start({z[0], z[1]}, {0.0, z[2]});
 }
 
 /// P(z) after some turns, and the time that takes; nothing where the motion never gets there.
 struct Return {
-  Point point;
+  CyclePoint point;
   double period = 0.0;
 };
-std::optional<Return> return_map(SubstrateMotion& motion, const Point& z, const LimitCycle& cycle,
-                                 double longest) {
+std::optional<Return> return_map(SubstrateMotion& motion, const CyclePoint& z,
+                                 const LimitCycle& cycle, double longest) {
   start_at(motion, z);
   for (int i = 0; i < cycle.loops; ++i) {
     if (motion.advance(motion.time() + longest, true) != SubstrateMotion::Stop::turn)
@@ -82,7 +82,7 @@ LimitCycle failed(const SubstrateMotion& motion) {
 
 /// Whether each of the later turns is nearer to x than the one before it, or each farther off. Of
 /// an irregular motion that is next to impossible.
-bool is_settling(const std::vector<Point>& turns, double x) {
+bool is_settling(const std::vector<CyclePoint>& turns, double x) {
   const std::size_t first = turns.size() / 2;  // faster motions die down before
   const auto all = static_cast<int>(turns.size() - first) - 1;
   int shrinking = 0;
@@ -97,22 +97,22 @@ bool is_settling(const std::vector<Point>& turns, double x) {
 }
 
 /// Newton's method for P(z) = z. @return whether it came to a fixed point
-bool solve(SubstrateMotion& motion, const Point& scale, double longest, LimitCycle& cycle,
-           Point z) {
+bool solve(SubstrateMotion& motion, const CyclePoint& scale, double longest, LimitCycle& cycle,
+           CyclePoint z) {
   Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
   constexpr int most_steps = 12;
   double last_residual = 1e300;
   for (int step = 0; step < most_steps; ++step) {
     const auto found = return_map(motion, z, cycle, longest);
     if (!found) return false;
-    const Point miss = (found->point - z).cwiseQuotient(scale);
+    const CyclePoint miss = (found->point - z).cwiseQuotient(scale);
     const double residual = miss.norm();
     const bool is_done = residual < 1e-11 || (residual < 1e-8 && residual > 0.3 * last_residual);
     if (step == 0 || (!is_done && residual > 1e-6)) {
       constexpr double change = 3e-5;
       for (int k = 0; k < 3; ++k) {
-        Point ahead = z;
-        Point behind = z;
+        CyclePoint ahead = z;
+        CyclePoint behind = z;
         ahead[k] += change * scale[k];
         behind[k] -= change * scale[k];
         const auto after = return_map(motion, ahead, cycle, longest);
@@ -133,7 +133,7 @@ bool solve(SubstrateMotion& motion, const Point& scale, double longest, LimitCyc
       return true;
     }
     last_residual = residual;
-    const Point correction =
+    const CyclePoint correction =
         (jacobian - Eigen::Matrix3d::Identity()).fullPivLu().solve(miss).cwiseProduct(scale);
     z -= correction;
   }
@@ -170,7 +170,7 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
 
   // The last turns of the settled motion.
   const double longest = longest_loop(oscillator);
-  std::vector<Point> turns;
+  std::vector<CyclePoint> turns;
   motion.restart_statistics();
   const double from = motion.time();
   const auto num_turns = static_cast<std::size_t>(2 * options.most_loops + 1);
@@ -194,9 +194,9 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
     cycle.status = CycleStatus::at_rest;
     return cycle;
   }
-  const Point scale{width, std::max(cycle.y_max, 1e-6 * width), width};
+  const CyclePoint scale{width, std::max(cycle.y_max, 1e-6 * width), width};
   for (int loops = 1; loops <= options.most_loops && !is_still; ++loops) {
-    const Point& last = turns.back();
+    const CyclePoint& last = turns.back();
     const auto back = turns.size() - 1 - static_cast<std::size_t>(loops);
     if ((turns[back] - last).cwiseQuotient(scale).norm() > 1e-3) continue;
     LimitCycle found = cycle;

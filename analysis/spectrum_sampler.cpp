@@ -14,7 +14,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double inf = std::numeric_limits<double>::infinity();
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// All eigenvalues of the dense problem, and their possible rounding errors.
 class DenseSpectra {
@@ -74,7 +74,7 @@ std::vector<Complex> Sample::growing() const {
 }
 
 double Sample::ranked_excess(std::size_t rank) const {
-  if (rank > excess.size()) return -inf;
+  if (rank > excess.size()) return -infinite;
   std::vector<double> sorted = excess;
   const auto place = sorted.begin() + static_cast<std::ptrdiff_t>(rank) - 1;
   std::nth_element(sorted.begin(), place, sorted.end(), std::greater<>());
@@ -96,7 +96,7 @@ Sample SpectrumSampler::sample_of(double value, SampledSpectrum all) const {
     const Complex s = all.eigenvalues[i];
     if (s.imag() > top || (s.imag() > 0.0 && ++num_pairs > options_.count)) break;
     sample.eigenvalues.push_back(s);
-    sample.excess.push_back(s.imag() > trusted ? -inf : s.real() - all.rounding[i]);
+    sample.excess.push_back(s.imag() > trusted ? -infinite : s.real() - all.rounding[i]);
   }
   return sample;
 }

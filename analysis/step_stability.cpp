@@ -21,7 +21,7 @@ namespace {
 using Complex = std::complex<double>;
 
 /// Of a radius.
-constexpr double rounding = 1e-10;
+constexpr double radius_rounding = 1e-10;
 /// How far the motion of a step may be from that of the bodies, relative to |s|.
 constexpr double largest_shift = 0.2;
 /// The same where the growth of the bodies excuses that of the step: another motion that grows may
@@ -118,7 +118,7 @@ StepStability stability_of(const FrozenStep& step, const Pencil& contacts, Bodie
       found.growth = motion.growth;
       found.frequency = motion.frequency;
     }
-    if (!(radius > 1.0 + rounding) || z.imag() < 0.0) continue;
+    if (!(radius > 1.0 + radius_rounding) || z.imag() < 0.0) continue;
     growing.push_back(motion_of(z, step));
     highest = std::max(highest, std::abs(growing.back().represented));
   }

@@ -7,6 +7,8 @@ target_compile_options(stridor_options INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow
   # Eigen and fmt headers trip these two in g++ 12 at -O3; both are false positives there.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-array-bounds>
+  # g++ frees what it no longer needs once it holds a gigabyte, instead of again and again.
+  $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>
   $<$<BOOL:${STRIDOR_WERROR}>:-Werror>)
 target_include_directories(stridor_options INTERFACE "${PROJECT_SOURCE_DIR}")
 # Dense products of Eigen go to BLAS, which picks the instruction set of the machine at run time.
@@ -19,30 +21,34 @@ target_include_directories(stridor_options SYSTEM INTERFACE
 # for the libraries, and once more for the tests, which are compiled with other options. Each source
 # still includes what it uses; the dev preset compiles without these.
 set(STRIDOR_HEADERS <algorithm> <array> <cmath> <complex> <filesystem> <functional> <map> <memory>
-  <optional> <span> <string> <vector> <Eigen/Dense> <Eigen/Sparse> <fmt/format.h>)
+  <optional> <span> <string> <vector> <Eigen/Dense> <Eigen/Sparse> <fmt/format.h>
+  "${PROJECT_SOURCE_DIR}/substructures/dense_factors.hpp" "${PROJECT_SOURCE_DIR}/substructures/dense_spectra.hpp")
 add_library(stridor_headers OBJECT "${PROJECT_SOURCE_DIR}/cmake/headers.cpp")
 target_link_libraries(stridor_headers PRIVATE stridor_options Eigen3::Eigen fmt::fmt)
 target_precompile_headers(stridor_headers PRIVATE ${STRIDOR_HEADERS})
 
 # stridor_unity(TARGET NUM_SOURCES): lets the compiler read that many sources at a time, with the headers
 # that they share once. So names without linkage differ within a folder; a source that cannot be read
-# with others has the property SKIP_UNITY_BUILD_INCLUSION.
+# with others has the property SKIP_UNITY_BUILD_INCLUSION. With sanitizers it is half as many: what they
+# add to the code takes memory.
 function(stridor_unity target num_sources)
+  if(NOT CMAKE_BUILD_TYPE STREQUAL "Release")
+    math(EXPR num_sources "(${num_sources} + 1) / 2")
+  endif()
   set_target_properties(${target} PROPERTIES
     UNITY_BUILD ${STRIDOR_UNITY} UNITY_BUILD_MODE BATCH UNITY_BUILD_BATCH_SIZE ${num_sources})
 endfunction()
 
 # stridor_library(FOLDER SOURCES ... LINKS ... [TOGETHER <number of sources>])
-# TOGETHER says how many sources the compiler reads at a time; such a folder needs no precompiled headers.
+# TOGETHER says how many sources the compiler reads at a time.
 function(stridor_library folder)
   cmake_parse_arguments(arg "" "TOGETHER" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
   add_library(stridor_${folder} STATIC ${arg_SOURCES})
   target_link_libraries(stridor_${folder}
     PUBLIC stridor_options ${arg_LINKS} PRIVATE ${arg_PRIVATE_LINKS})
+  target_precompile_headers(stridor_${folder} REUSE_FROM stridor_headers)
   if(arg_TOGETHER)
     stridor_unity(stridor_${folder} ${arg_TOGETHER})
-  else()
-    target_precompile_headers(stridor_${folder} REUSE_FROM stridor_headers)
   endif()
 endfunction()
 
@@ -54,10 +60,14 @@ set(STRIDOR_TEST_OPTIONS -O1)
 add_custom_target(unit_tests)
 add_custom_target(long_tests)
 
-# stridor_test(NAME LABEL unit|verification|scene|long SOURCES ... LINKS ... [TOGETHER <number of sources>])
+# stridor_test(NAME LABEL unit|verification|scene|long SOURCES ... LINKS ... [TOGETHER <number of sources>] [COST <cost>])
 # One program per call; every TEST in it becomes a ctest with that label. TOGETHER: see stridor_library().
+# ctest starts tests of a higher COST first, so that a long one is not left to run alone at the end.
 function(stridor_test name)
-  cmake_parse_arguments(arg "" "LABEL;TOGETHER" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(arg "" "LABEL;TOGETHER;COST" "SOURCES;LINKS" ${ARGN})
+  if(NOT arg_COST)
+    set(arg_COST 0)
+  endif()
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE stridor_options ${arg_LINKS} Eigen3::Eigen fmt::fmt GTest::gtest GTest::gmock GTest::gtest_main)
   target_compile_options(${name} PRIVATE ${STRIDOR_TEST_OPTIONS})
@@ -74,7 +84,7 @@ function(stridor_test name)
     add_dependencies(long_tests ${name})
   endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
-    PROPERTIES LABELS ${arg_LABEL} TIMEOUT 1200)
+    PROPERTIES LABELS ${arg_LABEL} TIMEOUT 1200 COST ${arg_COST})
   if(arg_LABEL STREQUAL long)
     # CTest has a test of its own for a program that is not there; it fails with those of the program.
     set(label_file "${CMAKE_CURRENT_BINARY_DIR}/${name}_label.cmake")

@@ -14,7 +14,7 @@
 namespace stridor {
 namespace {
 
-Eigen::MatrixXd null_space(const Eigen::MatrixXd& rows, const char* what) {
+Eigen::MatrixXd null_space_of(const Eigen::MatrixXd& rows, const char* what) {
   const Eigen::Index n = rows.cols();
   if (rows.rows() == 0) return Eigen::MatrixXd::Identity(n, n);
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(rows.transpose());
@@ -75,8 +75,8 @@ GroupResponse response_of(const LinearSystem& system, const CoordinateGroup& gro
 }  // namespace
 
 EliminatedSystem eliminate_constraints(const LinearSystem& system) {
-  const Eigen::MatrixXd Z = null_space(system.gaps, "gaps");
-  const Eigen::MatrixXd Y = null_space(system.forces, "forces");
+  const Eigen::MatrixXd Z = null_space_of(system.gaps, "gaps");
+  const Eigen::MatrixXd Y = null_space_of(system.forces, "forces");
   EliminatedSystem eliminated;
   eliminated.motion = Z;
   eliminated.system.mass = Y.transpose() * system.mass * Z;
@@ -86,7 +86,8 @@ EliminatedSystem eliminate_constraints(const LinearSystem& system) {
   return eliminated;
 }
 
-ExponentialPropagator::ExponentialPropagator(const LinearSystem& system, double step) : step_(step) {
+ExponentialPropagator::ExponentialPropagator(const LinearSystem& system, double step)
+    : step_(step) {
   check(system, step);
   apart_ = decouple(system);
   const Eigen::Index n = system.size();

@@ -15,7 +15,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
+constexpr double unit_roundoff = std::numeric_limits<double>::epsilon();
 
 /// Iterates of one search. A pair stands for itself and its conjugate.
 struct Iterates {
@@ -84,7 +84,7 @@ class Aberth {
     s += step;
     length = std::abs(step);
     const double size = function_.size_of(s);
-    const double rounding = eps * size;
+    const double rounding = unit_roundoff * size;
     // A small step next to another iterate is the other's doing, unless a zero is as close.
     constexpr double nearby = 1e-6;
     const bool is_near_zero = 1.0 <= std::abs(slope.value) * std::max(spacing, nearby * size);

@@ -10,7 +10,7 @@
 namespace stridor {
 namespace {
 
-const FaceContactLaw& checked(const FaceContactLaw& law) {
+const FaceContactLaw& checked_for_springs(const FaceContactLaw& law) {
   if (!law.penalty || !(law.speed > 0.0)) {
     throw std::invalid_argument(
         "motion of face contacts: takes contacts with a penalty, and a plate that turns");
@@ -126,7 +126,7 @@ SpringContactMotion::SpringContactMotion(const LinearSystem& bodies,
                                          const FaceContactLaw& law, const FaceSlidingState& state,
                                          double step)
     : contacts_(std::move(contacts)),
-      law_(checked(law)),
+      law_(checked_for_springs(law)),
       ports_(contacts_, law_, state),
       propagator_(linearise(bodies, contacts_, law_, state), step),
       solver_(law_, ports_.preload().cwiseAbs().maxCoeff()) {

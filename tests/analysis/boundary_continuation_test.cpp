@@ -15,7 +15,7 @@ namespace {
 using test::message_of;
 using ::testing::HasSubstr;
 
-std::vector<double> grid(double from, double to, int cells) {
+std::vector<double> cell_edges(double from, double to, int cells) {
   std::vector<double> values;
   for (int i = 0; i <= cells; ++i) values.push_back(from + (to - from) * i / cells);
   return values;
@@ -31,8 +31,8 @@ double area(const BoundaryLine& line) {
 
 TEST(BoundaryContinuation, CircleClosesWithTheUnstableSideOnItsLeft) {
   const auto margin = [](double x, double y) { return 0.49 - x * x - y * y; };
-  const auto lines =
-      trace_boundary(margin, {grid(-1, 1, 10), grid(-1, 1, 10), {}}, {{{0.7, 0.0}, {0.0, 0.7}}});
+  const auto lines = trace_boundary(margin, {cell_edges(-1, 1, 10), cell_edges(-1, 1, 10), {}},
+                                    {{{0.7, 0.0}, {0.0, 0.7}}});
   ASSERT_EQ(lines.size(), 1u);
   const BoundaryLine& line = lines[0];
   EXPECT_EQ(line.front(), line.back());
@@ -50,7 +50,7 @@ TEST(BoundaryContinuation, LineThatTurnsBackGoesFromEdgeToEdge) {
   const double seed_y = 0.31;
   const double seed_x = 0.5 + 0.4 * std::sin(2.0 * M_PI * seed_y) + 0.02 * seed_y;
   const auto lines =
-      trace_boundary(margin, {grid(0, 1, 8), grid(0, 1, 8), {}}, {{{seed_x, seed_y}}});
+      trace_boundary(margin, {cell_edges(0, 1, 8), cell_edges(0, 1, 8), {}}, {{{seed_x, seed_y}}});
   ASSERT_EQ(lines.size(), 1u);
   const auto [low, high] = std::minmax(lines[0].front()[1], lines[0].back()[1]);
   EXPECT_EQ(low, 0.0);
@@ -61,7 +61,8 @@ TEST(BoundaryContinuation, LineThatTurnsBackGoesFromEdgeToEdge) {
 TEST(BoundaryContinuation, CornersArePassed) {
   // A square on its point: the margin has a kink at every corner.
   const auto margin = [](double x, double y) { return 0.6 - std::abs(x) - std::abs(y); };
-  const auto lines = trace_boundary(margin, {grid(-1, 1, 10), grid(-1, 1, 10), {}}, {{{0.4, 0.2}}});
+  const auto lines =
+      trace_boundary(margin, {cell_edges(-1, 1, 10), cell_edges(-1, 1, 10), {}}, {{{0.4, 0.2}}});
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_EQ(lines[0].front(), lines[0].back());
   EXPECT_NEAR(area(lines[0]), 0.72, 1e-3);
@@ -91,7 +92,7 @@ TEST(BoundaryContinuation, SeveralLinesAreEachFoundOnce) {
   std::vector<BoundaryLine> seeds;
   for (const double y : {0.1, 0.5, 0.9})
     for (const double k : {1.0, 2.0, 3.0}) seeds.push_back({{(k * M_PI - 0.1) / (3.0 * M_PI), y}});
-  const auto lines = trace_boundary(margin, {grid(0, 1, 9), grid(0, 1, 9), {}}, seeds);
+  const auto lines = trace_boundary(margin, {cell_edges(0, 1, 9), cell_edges(0, 1, 9), {}}, seeds);
   EXPECT_EQ(lines.size(), 3u);
 }
 
@@ -99,7 +100,8 @@ TEST(BoundaryContinuation, EndsWhereNothingIsKnown) {
   const auto margin = [](double x, double y) {
     return x > 0.6 ? std::numeric_limits<double>::quiet_NaN() : y - 0.5;
   };
-  const auto lines = trace_boundary(margin, {grid(0, 1, 10), grid(0, 1, 10), {}}, {{{0.3, 0.5}}});
+  const auto lines =
+      trace_boundary(margin, {cell_edges(0, 1, 10), cell_edges(0, 1, 10), {}}, {{{0.3, 0.5}}});
   ASSERT_EQ(lines.size(), 1u);
   for (const auto& point : lines[0]) EXPECT_LE(point[0], 0.6);
   const auto [low, high] = std::minmax(lines[0].front()[0], lines[0].back()[0]);

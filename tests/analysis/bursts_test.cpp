@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "tests/support/constants.hpp"
 #include "tests/support/rejection.hpp"
 
 namespace stridor {
@@ -17,7 +18,7 @@ namespace {
 using test::expect_rejection;
 using ::testing::SizeIs;
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
+using test::two_pi;
 constexpr double dt = 1.0e-5;
 constexpr BurstParameters wide{.band = {2.5e3, 15.0e3}};
 

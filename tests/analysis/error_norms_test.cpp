@@ -20,7 +20,7 @@ constexpr double pi = std::numbers::pi;
 constexpr double interval = 1e-5;
 constexpr double frequency = 4000.0;
 
-std::vector<double> sine(std::size_t count, double amplitude, double phase = 0.0) {
+std::vector<double> sampled_sine(std::size_t count, double amplitude, double phase = 0.0) {
   std::vector<double> values(count);
   for (std::size_t i = 0; i < count; ++i) {
     values[i] =
@@ -31,7 +31,7 @@ std::vector<double> sine(std::size_t count, double amplitude, double phase = 0.0
 
 SampledRun run_of(double amplitude, double phase, double force) {
   constexpr std::size_t count = 10'001;
-  return {interval, sine(count, amplitude, phase), {std::vector<double>(count, force)}};
+  return {interval, sampled_sine(count, amplitude, phase), {std::vector<double>(count, force)}};
 }
 
 const NormParameters norms{{0.03, 0.07}, {1000.0, 15000.0}};
@@ -54,7 +54,7 @@ TEST(RunningRms, IsTakenOverWhatThereIs) {
 
 TEST(RunningRms, OfASineOverWholePeriodsIsItsAmplitudeByRootTwo) {
   // 4 kHz at 1e-5 s has 25 samples a period; 2·37 + 1 = 3 periods.
-  const std::vector<double> envelope = running_rms(sine(400, 2.0), 37);
+  const std::vector<double> envelope = running_rms(sampled_sine(400, 2.0), 37);
   for (std::size_t i = 37; i + 37 < envelope.size(); ++i)
     ASSERT_NEAR(envelope[i], std::sqrt(2.0), 1e-12) << i;
 }

@@ -9,6 +9,7 @@
 
 #include "core/errors.hpp"
 #include "solvers/secular_eigenvalues.hpp"
+#include "tests/support/constants.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
@@ -24,7 +25,7 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 using Complex = std::complex<double>;
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
+using test::two_pi;
 
 std::vector<double> range(double from, double to, int number) {
   std::vector<double> values;

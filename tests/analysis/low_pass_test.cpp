@@ -1,4 +1,5 @@
 #include "analysis/low_pass.hpp"
+#include "tests/support/constants.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
+using test::two_pi;
 constexpr double dt_in = 2.0e-7;
 constexpr int ratio = 50;
 constexpr double dt_out = dt_in * ratio;

@@ -16,7 +16,7 @@ using namespace test;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr double interval = 0.01;
+constexpr double study_interval = 0.01;
 
 /// ω = 10 rad/s, started 1 m out, sliding without friction.
 MassOnGround oscillator() {
@@ -69,8 +69,8 @@ TEST(WithAssumption, ChangesEveryContactAndNothingElse) {
 
 TEST(TimedRun, SamplesTheMotionAtTheInterval) {
   for (const int steps : {1, 4}) {
-    TimedRun run(oscillator().system(), time_with(Integrator::exact, interval / steps),
-                 {0, MassOnGround::x_row}, interval, 100);
+    TimedRun run(oscillator().system(), time_with(Integrator::exact, study_interval / steps),
+                 {0, MassOnGround::x_row}, study_interval, 100);
     EXPECT_EQ(run.run_until(30), MarchEnd::finished);
     EXPECT_EQ(run.run_until(100), MarchEnd::finished);
     EXPECT_EQ(run.failure(), "");
@@ -89,7 +89,7 @@ TEST(TimedRun, SamplesTheMotionAtTheInterval) {
 TEST(TimedRun, StretchesChangeNothing) {
   const auto samples_of = [](const std::vector<std::int64_t>& stops) {
     TimedRun run(oscillator().system(), time_with(Integrator::central_difference, 0.005),
-                 {0, MassOnGround::x_row}, interval, 50);
+                 {0, MassOnGround::x_row}, study_interval, 50);
     for (const std::int64_t stop : stops) run.run_until(stop);
     return run.samples().displacement;
   };
@@ -98,7 +98,7 @@ TEST(TimedRun, StretchesChangeNothing) {
 
 TEST(TimedRun, CountsWhatItTook) {
   TimedRun run(oscillator().system(), time_with(Integrator::exact, 0.0025),
-               {0, MassOnGround::x_row}, interval, 1000);
+               {0, MassOnGround::x_row}, study_interval, 1000);
   EXPECT_EQ(run.cost().steps, 0);
   for (int turn = 1; turn <= 10; ++turn) run.run_until(100 * turn);
   const RunCost cost = run.cost();
@@ -127,8 +127,8 @@ TEST(TimedRun, ALossOfSlidingIsAResult) {
   mass.belt_velocity = 0.1;
   System system = mass.system();
   system.contacts[0].armed_from = 0.0;
-  TimedRun run(system, time_with(Integrator::exact, interval), {0, MassOnGround::x_row}, interval,
-               100);
+  TimedRun run(system, time_with(Integrator::exact, study_interval), {0, MassOnGround::x_row},
+               study_interval, 100);
   EXPECT_EQ(run.run_until(100), MarchEnd::failed);
   EXPECT_THAT(run.failure(), HasSubstr("sliding"));
   EXPECT_LT(run.samples().displacement.size(), 101u);

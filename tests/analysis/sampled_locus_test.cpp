@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "solvers/dense_eigenvalues.hpp"
+#include "tests/support/constants.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/reference_brake.hpp"
 
@@ -18,7 +19,7 @@ using test::message_of;
 using test::pencil_of;
 using test::reference_brake;
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
+using test::two_pi;
 
 PencilFamily brake_family(const DiscModelParameters& brake) {
   PencilFamily family;
@@ -180,7 +181,7 @@ TEST(SampledLocus, EveryModeOfTheBrakeThatGrowsHasItsOwnWindow) {
 }
 
 /// k1 = 1, k2 = 1.4 with M = 1, and p [[0, 1], [−1, 0]].
-PencilFamily flutter_family(const Eigen::Matrix2d& velocity) {
+PencilFamily sampled_flutter(const Eigen::Matrix2d& velocity) {
   PencilFamily family;
   family.place = [velocity](double load, Pencil& pencil) {
     LinearSystem system;
@@ -194,7 +195,7 @@ PencilFamily flutter_family(const Eigen::Matrix2d& velocity) {
 }
 
 double flutter_limit(const Eigen::Matrix2d& velocity) {
-  const Locus locus = sample_locus(flutter_family(velocity), hundred_values(0.0, 0.4));
+  const Locus locus = sample_locus(sampled_flutter(velocity), hundred_values(0.0, 0.4));
   EXPECT_EQ(locus.crossings.size(), 1U);
   return locus.crossings.empty() ? 0.0 : locus.crossings.front().value;
 }
@@ -212,7 +213,7 @@ TEST(SampledLocus, TwoDegreesOfFreedomFlutterAsTheirClosedForms) {
 TEST(SampledLocus, EigenvaluesOfTwoDegreesOfFreedom) {
   const auto growth = [](const Eigen::Matrix2d& velocity, double load) {
     Pencil pencil;
-    flutter_family(velocity).place(load, pencil);
+    sampled_flutter(velocity).place(load, pencil);
     const auto found = dense_eigenvalues(pencil);
     return std::pair(std::min(found[0].growth(), found[1].growth()),
                      std::max(found[0].growth(), found[1].growth()));
@@ -265,7 +266,7 @@ TEST(SampledLocus, ANarrowWindowBetweenTwoValuesIsFound) {
 TEST(SampledLocus, RejectsWhatIsNoRange) {
   EXPECT_EQ(message_of<std::invalid_argument>([] { sample_locus({}, {1.0}); }),
             "locus: there is no family");
-  const PencilFamily family = flutter_family(Eigen::Matrix2d::Zero());
+  const PencilFamily family = sampled_flutter(Eigen::Matrix2d::Zero());
   EXPECT_EQ(message_of<std::invalid_argument>([&] { sample_locus(family, {}); }),
             "locus: there are no values");
   EXPECT_EQ(message_of<std::invalid_argument>([&] {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "tests/support/constants.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/rejection.hpp"
 
@@ -16,15 +17,16 @@ namespace {
 using test::expect_rejection;
 using test::noise;
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
-constexpr double dt = 1.0e-4;
+using test::two_pi;
+constexpr double signal_dt = 1.0e-4;
 constexpr auto all_windows = {WindowKind::hann, WindowKind::blackman_harris,
                               WindowKind::rectangular};
 
 std::vector<double> sine(double amplitude, double frequency, std::size_t count) {
   std::vector<double> samples(count);
   for (std::size_t i = 0; i < count; ++i) {
-    samples[i] = amplitude * std::sin(two_pi * frequency * static_cast<double>(i) * dt + 0.7);
+    samples[i] =
+        amplitude * std::sin(two_pi * frequency * static_cast<double>(i) * signal_dt + 0.7);
   }
   return samples;
 }
@@ -34,8 +36,8 @@ TEST(Spectrogram, SineOnALineHasItsAmplitudeThere) {
   // all others are rounding for a cosine-sum window.
   for (const WindowKind kind : all_windows) {
     for (const std::size_t n : {500U, 501U}) {
-      const double frequency = 50.0 / (static_cast<double>(n) * dt);
-      const Spectrogram s = make_spectrogram(sine(2.5, frequency, 1600), dt, {kind, n, 0.5});
+      const double frequency = 50.0 / (static_cast<double>(n) * signal_dt);
+      const Spectrogram s = make_spectrogram(sine(2.5, frequency, 1600), signal_dt, {kind, n, 0.5});
       ASSERT_EQ(s.frequencies.size(), n / 2 + 1);
       ASSERT_EQ(s.amplitude.rows(), static_cast<Eigen::Index>(n / 2 + 1));
       ASSERT_EQ(s.amplitude.cols(), static_cast<Eigen::Index>(s.times.size()));
@@ -62,12 +64,12 @@ TEST(Spectrogram, SineBetweenLinesLosesAtMostTheScallopingOfTheWindow) {
                {WindowKind::rectangular, 2.0 / std::numbers::pi, 4e-3}};
   for (const auto& c : cases) {
     const Spectrum s =
-        make_spectrum(sine(1.0, 50.5 / (1000.0 * dt), 1000), dt, {c.kind, 1000, 0.0});
+        make_spectrum(sine(1.0, 50.5 / (1000.0 * signal_dt), 1000), signal_dt, {c.kind, 1000, 0.0});
     EXPECT_NEAR(s.amplitude[50], c.loss, c.image + 1e-5);
     EXPECT_NEAR(s.amplitude[51], c.loss, c.image + 1e-5);
     for (const double part : {0.1, 0.25, 0.4}) {
-      const Spectrum t =
-          make_spectrum(sine(1.0, (50.0 + part) / (1000.0 * dt), 1000), dt, {c.kind, 1000, 0.0});
+      const Spectrum t = make_spectrum(sine(1.0, (50.0 + part) / (1000.0 * signal_dt), 1000),
+                                       signal_dt, {c.kind, 1000, 0.0});
       EXPECT_GE(t.amplitude[50], c.loss - c.image);
       EXPECT_LE(t.amplitude[50], 1.0 + c.image);
     }
@@ -78,34 +80,36 @@ TEST(Spectrogram, ConstantAndNyquistReadTheirAmplitudeOnce) {
   std::vector<double> samples(64);
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = -1.5 + (i % 2 == 0 ? 0.5 : -0.5);
   for (const WindowKind kind : all_windows) {
-    const Spectrum s = make_spectrum(samples, dt, {kind, 32, 0.5});
+    const Spectrum s = make_spectrum(samples, signal_dt, {kind, 32, 0.5});
     EXPECT_TRUE(s.ends_at_nyquist);
     EXPECT_EQ(s.num_pieces, 3U);
     EXPECT_NEAR(s.amplitude.front(), 1.5, 1e-14);
     EXPECT_NEAR(s.amplitude.back(), 0.5, 1e-14);
-    EXPECT_NEAR(s.frequencies.back(), 0.5 / dt, 1e-9);
+    EXPECT_NEAR(s.frequencies.back(), 0.5 / signal_dt, 1e-9);
   }
-  EXPECT_FALSE(make_spectrum(samples, dt, {WindowKind::hann, 33, 0.0}).ends_at_nyquist);
+  EXPECT_FALSE(make_spectrum(samples, signal_dt, {WindowKind::hann, 33, 0.0}).ends_at_nyquist);
 }
 
 TEST(Spectrogram, TimesAreTheCentresOfTheWindows) {
-  const Spectrogram hann = make_spectrogram(noise(1000), dt, {WindowKind::hann, 100, 0.75}, 2.0);
+  const Spectrogram hann =
+      make_spectrogram(noise(1000), signal_dt, {WindowKind::hann, 100, 0.75}, 2.0);
   ASSERT_EQ(hann.times.size(), 37U);  // 1 + 900/25
-  EXPECT_NEAR(hann.times.front(), 2.0 + 50.0 * dt, 1e-14);
-  EXPECT_NEAR(hann.times.back(), 2.0 + 950.0 * dt, 1e-14);
-  const Spectrogram flat = make_spectrogram(noise(1024), dt, {WindowKind::rectangular, 100, 0.0});
+  EXPECT_NEAR(hann.times.front(), 2.0 + 50.0 * signal_dt, 1e-14);
+  EXPECT_NEAR(hann.times.back(), 2.0 + 950.0 * signal_dt, 1e-14);
+  const Spectrogram flat =
+      make_spectrogram(noise(1024), signal_dt, {WindowKind::rectangular, 100, 0.0});
   ASSERT_EQ(flat.times.size(), 10U);
-  EXPECT_NEAR(flat.times.front(), 49.5 * dt, 1e-14);
-  EXPECT_EQ(make_spectrogram(noise(100), dt, {WindowKind::hann, 100, 0.5}).times.size(), 1U);
+  EXPECT_NEAR(flat.times.front(), 49.5 * signal_dt, 1e-14);
+  EXPECT_EQ(make_spectrogram(noise(100), signal_dt, {WindowKind::hann, 100, 0.5}).times.size(), 1U);
 }
 
 TEST(Spectrogram, AClickStandsInTheColumnOfItsTime) {
   std::vector<double> samples(1000);
   samples[500] = 1.0;
-  const Spectrogram s = make_spectrogram(samples, dt, {WindowKind::hann, 100, 0.99});
+  const Spectrogram s = make_spectrogram(samples, signal_dt, {WindowKind::hann, 100, 0.99});
   Eigen::Index column = 0;
   s.amplitude.row(20).maxCoeff(&column);
-  EXPECT_NEAR(s.times[static_cast<std::size_t>(column)], 500.0 * dt, 1e-12);
+  EXPECT_NEAR(s.times[static_cast<std::size_t>(column)], 500.0 * signal_dt, 1e-12);
 }
 
 TEST(Spectrogram, RidgeOfAChirpFollowsItsFrequency) {
@@ -114,10 +118,10 @@ TEST(Spectrogram, RidgeOfAChirpFollowsItsFrequency) {
   // at most 25 Hz off, and a Hann column's parabola is a few hertz off.
   std::vector<double> samples(10000);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double t = static_cast<double>(i) * dt;
+    const double t = static_cast<double>(i) * signal_dt;
     samples[i] = std::cos(two_pi * (500.0 * t + 1000.0 * t * t));
   }
-  const Spectrogram s = make_spectrogram(samples, dt, {WindowKind::hann, 200, 0.5});
+  const Spectrogram s = make_spectrogram(samples, signal_dt, {WindowKind::hann, 200, 0.5});
   for (std::size_t j = 0; j < s.times.size(); ++j) {
     Eigen::Index line = 0;
     s.amplitude.col(static_cast<Eigen::Index>(j)).maxCoeff(&line);
@@ -131,8 +135,8 @@ TEST(Spectrogram, DensityIntegratesToTheMeanSquareUnderTheWindow) {
       const std::vector<double> samples = noise(3 * n);
       const std::vector<double> window = make_window(kind, n);
       const SpectrogramParameters parameters{kind, n, 0.0};
-      const Spectrogram s = make_spectrogram(samples, dt, parameters);
-      const double resolution = 1.0 / (static_cast<double>(n) * dt);
+      const Spectrogram s = make_spectrogram(samples, signal_dt, parameters);
+      const double resolution = 1.0 / (static_cast<double>(n) * signal_dt);
       const Eigen::MatrixXd density = power_spectral_density(s);
       ASSERT_EQ(density.cols(), 3);
       double mean = 0.0;
@@ -149,7 +153,7 @@ TEST(Spectrogram, DensityIntegratesToTheMeanSquareUnderTheWindow) {
       }
       // The average over the pieces, which for the rectangular window is the signal's mean square.
       double integral = 0.0;
-      for (const double d : power_spectral_density(make_spectrum(samples, dt, parameters))) {
+      for (const double d : power_spectral_density(make_spectrum(samples, signal_dt, parameters))) {
         integral += d * resolution;
       }
       EXPECT_NEAR(integral, mean, 1e-12);
@@ -160,7 +164,7 @@ TEST(Spectrogram, DensityIntegratesToTheMeanSquareUnderTheWindow) {
 TEST(Spectrogram, WelchDensityOfWhiteNoiseIsItsVarianceOverTheBand) {
   // Variance 1 over 0 to 5 kHz: 2·10⁻⁴/Hz at every line. With about 400 independent pieces a line
   // scatters by 5 %; six of that over 100 lines.
-  const Spectrum s = make_spectrum(noise(80000), dt, {WindowKind::hann, 200, 0.5});
+  const Spectrum s = make_spectrum(noise(80000), signal_dt, {WindowKind::hann, 200, 0.5});
   const std::vector<double> density = power_spectral_density(s);
   for (std::size_t k = 3; k + 1 < density.size(); ++k) EXPECT_NEAR(density[k], 2e-4, 0.6e-4);
 }
@@ -177,26 +181,29 @@ TEST(Spectrogram, RejectsWhatItCannotUse) {
     expect_rejection(call(interval, good), "the sampling interval must be positive and finite");
   }
   for (const std::size_t length : {0U, 1U}) {
-    expect_rejection(call(dt, {WindowKind::hann, length, 0.5}), "must have at least 2 samples");
+    expect_rejection(call(signal_dt, {WindowKind::hann, length, 0.5}),
+                     "must have at least 2 samples");
     expect_rejection([&] { make_window(WindowKind::hann, length); }, "at least 2 samples");
   }
   for (const double overlap : {-0.1, 0.996, 1.0, 2.0, infinity, nan}) {
-    expect_rejection(call(dt, {WindowKind::hann, 100, overlap}),
+    expect_rejection(call(signal_dt, {WindowKind::hann, 100, overlap}),
                      "is not 0 to 0.99 (a window of 100");
   }
-  expect_rejection(call(dt, {WindowKind::hann, 1001, 0.5}),
+  expect_rejection(call(signal_dt, {WindowKind::hann, 1001, 0.5}),
                    "the signal of 1000 samples (0.1 s) is shorter than one window of 1001 samples "
                    "(0.1001 s)");
   expect_rejection(
       [] {
-        make_spectrum({}, dt, {WindowKind::hann, 10, 0.5});
+        make_spectrum({}, signal_dt, {WindowKind::hann, 10, 0.5});
       },
       "make_spectrum: the signal of 0 samples");
-  expect_rejection([&] { make_spectrogram(samples, dt, good, nan); }, "time of the first sample");
+  expect_rejection([&] { make_spectrogram(samples, signal_dt, good, nan); },
+                   "time of the first sample");
   std::vector<double> broken = samples;
   broken[999] = nan;
-  expect_rejection([&] { make_spectrogram(broken, dt, good); }, "the samples must be finite");
-  expect_rejection([&] { make_spectrum(broken, dt, good); }, "the samples must be finite");
+  expect_rejection([&] { make_spectrogram(broken, signal_dt, good); },
+                   "the samples must be finite");
+  expect_rejection([&] { make_spectrum(broken, signal_dt, good); }, "the samples must be finite");
 }
 
 TEST(Spectrogram, WindowsHaveNamesAndMainLobes) {
@@ -204,7 +211,7 @@ TEST(Spectrogram, WindowsHaveNamesAndMainLobes) {
   for (const auto& [name, kind] : window_names()) EXPECT_EQ(window_name(kind), name);
   // A constant stands in the main lobe about 0 Hz and nowhere else, down to the side lobes.
   for (const WindowKind kind : all_windows) {
-    const Spectrum s = make_spectrum(std::vector<double>(600, 1.0), dt, {kind, 600, 0.0});
+    const Spectrum s = make_spectrum(std::vector<double>(600, 1.0), signal_dt, {kind, 600, 0.0});
     const std::size_t lobe = main_lobe_lines(kind);
     EXPECT_GT(s.amplitude[lobe - 1], 1e-3);
     for (std::size_t k = lobe; k < s.amplitude.size(); ++k) EXPECT_NEAR(s.amplitude[k], 0.0, 1e-13);

@@ -10,13 +10,14 @@
 #include <vector>
 
 #include "analysis/bursts.hpp"
+#include "tests/support/constants.hpp"
 #include "tests/support/rejection.hpp"
 
 namespace stridor {
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
-constexpr double dt = 1.0e-5;
+using test::two_pi;
+constexpr double block_dt = 1.0e-5;
 constexpr BurstParameters wide{.band = {2.5e3, 15.0e3}};
 constexpr std::size_t count = 60000;
 // Shorter than the smoothing of 500 samples, and than the filter's response; primes; one that ends
@@ -29,7 +30,7 @@ std::vector<double> with_bursts() {
   std::normal_distribution<double> normal(0.0, 1e-3);
   std::vector<double> samples(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const double t = static_cast<double>(i) * dt;
+    const double t = static_cast<double>(i) * block_dt;
     double sum = 20.0 + normal(generator);  // and an offset far above the band's noise
     for (const auto& [peak, frequency, amplitude] :
          {std::tuple{0.12, 6.0e3, 1.0}, std::tuple{0.3, 4.1e3, 30.0}, std::tuple{0.62, 9e3, 5.0}}) {
@@ -67,12 +68,12 @@ TEST(BandSpectrum, PartsOfASignalFitTogether) {
   const SampleSpan source(samples);
   const Band own{5.6e3, 6.4e3};
   const std::vector<Band> bands{wide.band, own};
-  const PassedSignal whole = BandSpectrum(source, {0, count}, dt, wide.band).pass(bands);
+  const PassedSignal whole = BandSpectrum(source, {0, count}, block_dt, wide.band).pass(bands);
   // Where the signal ends the whole differs from the parts by what the filter's response keeps
   // after the continuation of the whole, 10⁻¹² of the samples.
   const double tolerance = 1e-12 * largest(samples);
   for (const std::size_t length : lengths) {
-    BandSpectrum parts(source, {0, std::min(length, count)}, dt, wide.band);
+    BandSpectrum parts(source, {0, std::min(length, count)}, block_dt, wide.band);
     double apart = 0.0;
     for (std::size_t begin = 0; begin < count; begin += length) {
       const IndexRange part{begin, std::min(begin + length, count)};
@@ -92,9 +93,9 @@ TEST(BandSpectrum, PartsOfASignalFitTogether) {
 TEST(VibrationBlocks, EnvelopesAreThoseOfTheWhole) {
   const std::vector<double> samples = with_bursts();
   const SampleSpan source(samples);
-  const std::vector<double> whole = burst_envelope(samples, dt, wide.band, wide.smoothing);
+  const std::vector<double> whole = burst_envelope(samples, block_dt, wide.band, wide.smoothing);
   for (const std::size_t length : lengths) {
-    SignalBlocks blocks(source, dt, wide.band, wide.smoothing, length);
+    SignalBlocks blocks(source, block_dt, wide.band, wide.smoothing, length);
     VibrationBlocks vibration(blocks, {wide.band}, wide.smoothing);
     std::size_t next = 0;
     double apart = 0.0;
@@ -118,9 +119,9 @@ TEST(VibrationBlocks, AQuietStretchIsNotDrownedByAStrongBlockBeforeIt) {
   // As BurstEnvelope.AStrongEndDoesNotLeakIntoAQuietStart, at the border of two blocks.
   std::vector<double> samples(20000);
   for (std::size_t i = 10000; i < samples.size(); ++i)
-    samples[i] = 1e6 * std::sin(two_pi * 3.5e3 * static_cast<double>(i) * dt);
+    samples[i] = 1e6 * std::sin(two_pi * 3.5e3 * static_cast<double>(i) * block_dt);
   const SampleSpan source(samples);
-  SignalBlocks blocks(source, dt, wide.band, wide.smoothing, 10000);
+  SignalBlocks blocks(source, block_dt, wide.band, wide.smoothing, 10000);
   VibrationBlocks vibration(blocks, {wide.band}, wide.smoothing);
   vibration.for_each({0, 5000}, [](const VibrationPiece& piece, IndexRange part) {
     for (const double e : piece.envelope(part)) EXPECT_LT(e, 1e-3);
@@ -152,10 +153,10 @@ TEST(Bursts, OfASignalInBlocksAreThoseOfTheWhole) {
   BurstParameters given = wide;
   given.quiet = Window{10.4, 10.52};
   for (const BurstParameters& parameters : {wide, late, given}) {
-    const Vibration whole = find_vibration(source, dt, parameters, 10.0);
+    const Vibration whole = find_vibration(source, block_dt, parameters, 10.0);
     ASSERT_EQ(whole.bursts.size(), parameters.measured.to < 10.6 ? 2u : 3u);
     for (const std::size_t length : lengths) {
-      expect_same(find_vibration(source, dt, parameters, 10.0, length), whole, length);
+      expect_same(find_vibration(source, block_dt, parameters, 10.0, length), whole, length);
     }
   }
 }
@@ -164,9 +165,9 @@ TEST(Bursts, ABorderMayLieAnywhereInABurst) {
   // The burst of 0.3 s grows from about 0.23 s on and is over at 0.33 s.
   const std::vector<double> samples = with_bursts();
   const SampleSpan source(samples);
-  const Vibration whole = find_vibration(source, dt, wide);
+  const Vibration whole = find_vibration(source, block_dt, wide);
   for (std::size_t border = 22000; border < 34000; border += 731)
-    expect_same(find_vibration(source, dt, wide, 0.0, border), whole, border);
+    expect_same(find_vibration(source, block_dt, wide, 0.0, border), whole, border);
 }
 
 TEST(Bursts, ASignalIsNeverReadAsAWhole) {
@@ -177,11 +178,11 @@ TEST(Bursts, ASignalIsNeverReadAsAWhole) {
   }
   const Counting source(samples);
   constexpr std::size_t length = 20000;
-  const Vibration found = find_vibration(source, dt, wide, 0.0, length);
+  const Vibration found = find_vibration(source, block_dt, wide, 0.0, length);
   EXPECT_GE(found.bursts.size(), 12u);
   // Blocks with twice the margin and 1.5 times the response, rounded up to a fast length, at both
   // ends; or 2^16 at a time where nothing is filtered.
-  const double decay = band_pass_decay(dt, {5.6e3, 6.4e3});
+  const double decay = band_pass_decay(block_dt, {5.6e3, 6.4e3});
   const std::size_t at_most = length + 2 * static_cast<std::size_t>(2.0 * 501.0 + 1.5 * decay);
   EXPECT_LT(source.most, std::max<std::size_t>(65537, at_most * 6 / 5));
   EXPECT_LT(source.most, samples.size() / 4);
@@ -191,14 +192,14 @@ TEST(Bursts, OfASignalThatFillsOneBlockAreThoseOfItsWhole) {
   // The usual length is not reached: one block, of which the spectrum is that of band_pass().
   const std::vector<double> samples = with_bursts();
   const SampleSpan source(samples);
-  const std::vector<double> filtered = band_pass(samples, dt, wide.band);
-  EXPECT_EQ(find_vibration(source, dt, wide).rms, rms(filtered));
+  const std::vector<double> filtered = band_pass(samples, block_dt, wide.band);
+  EXPECT_EQ(find_vibration(source, block_dt, wide).rms, rms(filtered));
 }
 
 TEST(SignalBlocks, AnEmptyBlockIsRejected) {
   const std::vector<double> samples(100, 1.0);
   const SampleSpan source(samples);
-  test::expect_rejection([&] { SignalBlocks(source, dt, wide.band, wide.smoothing, 0); },
+  test::expect_rejection([&] { SignalBlocks(source, block_dt, wide.band, wide.smoothing, 0); },
                          "must hold a sample");
 }
 

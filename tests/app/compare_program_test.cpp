@@ -15,12 +15,12 @@ using namespace test;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
-const std::string main_scene = scene_path("beam_on_beam.yaml");
+const std::string compared_scene = scene_path("beam_on_beam.yaml");
 
 /// Arguments of a comparison over 10 ms.
 std::vector<std::string> short_comparison(std::vector<std::string> more) {
-  std::vector<std::string> arguments{"compare",       main_scene, "--set",
-                                     "time.end=0.01", "--set",    "measure.from=0.005"};
+  std::vector<std::string> arguments{"compare",       compared_scene, "--set",
+                                     "time.end=0.01", "--set",        "measure.from=0.005"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }
@@ -98,7 +98,7 @@ TEST(CompareProgram, TakesExactPropagationWhereThePublishedFormIsNotAskedFor) {
 TEST(CompareProgram, AnAssumptionThatFailsIsARowAndTheOthersGoOn) {
   // A load that lifts: contacts that cannot part end, FiLM parts.
   const ProgramResult result =
-      Program({"compare", main_scene, "--set", "drive.load=+0.2", "--set", "drive.ramp=1e-4",
+      Program({"compare", compared_scene, "--set", "drive.load=+0.2", "--set", "drive.ramp=1e-4",
                "--set", "contact.armed_from=2e-4", "--set", "time.end=2e-3", "--set",
                "measure.from=1e-3", "--published-window", "0"})
           .run();
@@ -115,7 +115,7 @@ TEST(CompareProgram, RunsThatEndedBeforeTheWindowHaveNoEmptyPanels) {
   const TemporaryFolder folder;
   const std::filesystem::path kept = folder / "comparison";
   const ProgramResult result =
-      Program({"compare", main_scene, "--set", "drive.load=+0.2", "--set", "drive.ramp=1e-4",
+      Program({"compare", compared_scene, "--set", "drive.load=+0.2", "--set", "drive.ramp=1e-4",
                "--set", "contact.armed_from=2e-4", "--set", "time.end=2e-3", "--set",
                "measure.from=1e-3", "-o", kept.string()})
           .run();
@@ -132,7 +132,7 @@ TEST(CompareProgram, RunsThatEndedBeforeTheWindowHaveNoEmptyPanels) {
 
 TEST(CompareProgram, NeedsChannelsToCompareBy) {
   const TemporaryFolder folder;
-  std::string text = contents_of(main_scene);
+  std::string text = contents_of(compared_scene);
   const std::size_t record = text.find("\nrecord:");
   ASSERT_NE(record, std::string::npos);
   text.erase(record, text.find("\nmeasure:") - record);
@@ -150,7 +150,7 @@ TEST(CompareProgram, RefusesBadInput) {
                {{"--set", "time.stepp=1e-7"}, "did you mean 'step'"},
                {{"--set", "record=null"}, "record"}};
   for (const auto& [more, message] : cases) {
-    std::vector<std::string> arguments{"compare", main_scene};
+    std::vector<std::string> arguments{"compare", compared_scene};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const ProgramResult result = Program(arguments).run();
     EXPECT_EQ(result.exit_code, 2) << message;
@@ -159,7 +159,7 @@ TEST(CompareProgram, RefusesBadInput) {
 }
 
 TEST(CompareProgram, StopsOnRequestAndSaysHowFarItCame) {
-  Program program({"compare", main_scene});
+  Program program({"compare", compared_scene});
   program.start();
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   program.send(SIGINT);

@@ -18,8 +18,8 @@ using namespace test;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
-const std::string scene = scene_path("viscoelastic_contact.yaml");
-const std::vector<std::string> small{"contact", scene, "--set", "contact_solver.grid=32"};
+const std::string contact_scene = scene_path("viscoelastic_contact.yaml");
+const std::vector<std::string> small{"contact", contact_scene, "--set", "contact_solver.grid=32"};
 
 ProgramResult run_with(std::vector<std::string> more) {
   std::vector<std::string> arguments = small;
@@ -108,15 +108,15 @@ TEST(ContactProgram, RefusesWrongInput) {
   result = Program({"contact", scene_path("beam_on_beam.yaml")}).run();
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("belongs to a scene of bodies"));
-  result = Program({"eig", scene}).run();
+  result = Program({"eig", contact_scene}).run();
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("which the verb `contact` computes"));
 }
 
 TEST(ContactProgram, CheckKnowsBothKindsOfScenes) {
-  EXPECT_EQ(Program({"check", scene}).run().exit_code, 0);
+  EXPECT_EQ(Program({"check", contact_scene}).run().exit_code, 0);
   const ProgramResult result =
-      Program({"check", scene, "--json", "--set", "material.creep_times=[]"}).run();
+      Program({"check", contact_scene, "--json", "--set", "material.creep_times=[]"}).run();
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(Json::parse(result.out)["errors"][0]["key"], "material.creep_times");
 }
@@ -143,8 +143,8 @@ TEST(ContactProgram, TableOfAParaboloidIsTheLawOfTheMasterCurve) {
   const TemporaryFolder folder;
   const std::string file = folder / "law.h5";
   const ProgramResult made =
-      Program({"contact", scene, "--set", "contact_solver.grid=128", "--table", file, "--speeds",
-               "1e-3", "1", "25", "--indentations", "1e-3", "0.1", "9", "--json"})
+      Program({"contact", contact_scene, "--set", "contact_solver.grid=128", "--table", file,
+               "--speeds", "1e-3", "1", "25", "--indentations", "1e-3", "0.1", "9", "--json"})
           .run();
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const Json table = Json::parse(made.out);

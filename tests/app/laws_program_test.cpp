@@ -23,24 +23,24 @@ using ::testing::HasSubstr;
 using Json = nlohmann::json;
 using Arguments = std::vector<std::string>;
 
-Json json_of(const Arguments& arguments) {
+Json law_json(const Arguments& arguments) {
   const ProgramResult result = Program(arguments).run();
   EXPECT_EQ(result.exit_code, 0) << result.err;
   return Json::parse(result.out);
 }
 
-const std::string sphere_scene = "viscoelastic_sphere.yaml";
+const std::string law_scene = "viscoelastic_sphere.yaml";
 const std::string body_scene = "examples/sphere_on_rubber.yaml";
 constexpr double sphere_omega = 40.0;  // rad/s, the unit of the other scene's results
 
 TEST(LawsProgram, SphereAsABodyVibratesAsByItself) {
   for (const auto& [tau0, v] : {std::pair("1e-2", "5e-3"), std::pair("3e-2", "1e-3")}) {
-    const Json own = json_of({"eig", scene_path(sphere_scene), "--json", "--set",
-                              std::string("sphere.shear_strength=") + tau0, "--set",
-                              std::string("sphere.speed=") + v});
-    const Json body = json_of({"eig", scene_path(body_scene), "--about", "deformed", "--json",
-                               "--set", std::string("parameters.tau0=") + tau0, "--set",
-                               std::string("parameters.v=") + v});
+    const Json own = law_json({"eig", scene_path(law_scene), "--json", "--set",
+                               std::string("sphere.shear_strength=") + tau0, "--set",
+                               std::string("sphere.speed=") + v});
+    const Json body = law_json({"eig", scene_path(body_scene), "--about", "deformed", "--json",
+                                "--set", std::string("parameters.tau0=") + tau0, "--set",
+                                std::string("parameters.v=") + v});
     ASSERT_FALSE(own["eigenvalues"].empty());
     ASSERT_EQ(body["eigenvalues"].size(), own["eigenvalues"].size());
     for (std::size_t i = 0; i < own["eigenvalues"].size(); ++i) {
@@ -53,10 +53,10 @@ TEST(LawsProgram, SphereAsABodyVibratesAsByItself) {
 }
 
 TEST(LawsProgram, SphereAsABodyHasTheSameThreshold) {
-  const Json own = json_of({"threshold", scene_path(sphere_scene), "--json", "--parameter",
-                            "sphere.speed", "--from", "1e-3", "--to", "1"});
-  const Json body = json_of({"threshold", scene_path(body_scene), "--about", "deformed", "--json",
-                             "--parameter", "parameters.v", "--from", "1e-3", "--to", "1"});
+  const Json own = law_json({"threshold", scene_path(law_scene), "--json", "--parameter",
+                             "sphere.speed", "--from", "1e-3", "--to", "1"});
+  const Json body = law_json({"threshold", scene_path(body_scene), "--about", "deformed", "--json",
+                              "--parameter", "parameters.v", "--from", "1e-3", "--to", "1"});
   ASSERT_EQ(own["roots"].size(), body["roots"].size());
   ASSERT_FALSE(own["roots"].empty());
   for (std::size_t i = 0; i < own["roots"].size(); ++i) {
@@ -68,8 +68,8 @@ TEST(LawsProgram, SphereAsABodyHasTheSameThreshold) {
 TEST(LawsProgram, SphereAsABodyComesToTheSameLimitCycle) {
   // Steps of 2e-3/omega_x err by 2e-3 of the period and of the stick.
   const TemporaryFolder folder;
-  const Json cycle = json_of({"cycle", scene_path(sphere_scene), "--json"});
-  const Json run = json_of({"run", scene_path(body_scene), "-o", folder / "sphere.h5", "--json"});
+  const Json cycle = law_json({"cycle", scene_path(law_scene), "--json"});
+  const Json run = law_json({"run", scene_path(body_scene), "-o", folder / "sphere.h5", "--json"});
   EXPECT_NEAR(run["stick_fraction"].get<double>(), cycle["stick_fraction"].get<double>(), 5e-3);
 }
 
@@ -96,7 +96,7 @@ TEST(LawsProgram, ABeltBelowABeamDoesWhatDraggingTheBeamDoes) {
                         "--set",
                         "measure.from=0.01"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return json_of(arguments);
+    return law_json(arguments);
   };
   const Json dragged = run("dragged.h5", {"--set", "drive.velocity=50 mm/s"});
   const Json belt =
@@ -117,7 +117,7 @@ TEST(LawsProgram, ALoadOnAPointBendsTheBodyThere) {
     Arguments arguments{
         "eig", scene, "--about", "deformed", "--json", "--set", "contact.friction.coefficient=0"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return json_of(arguments)["equilibrium"]["force"].get<double>();
+    return law_json(arguments)["equilibrium"]["force"].get<double>();
   };
   // A force on the tip itself, which is held by the contact alone, goes into the contact.
   EXPECT_NEAR(tip_of({"--set", "drive.load_on=oblique.tip"}), tip_of({}), 2e-3 * tip_of({}));
@@ -127,13 +127,13 @@ TEST(LawsProgram, RegularisedBeltHasTheEquilibriumOfItsLaw) {
   // With friction that creeps there is no stick, and the mass rests where the spring holds it.
   const TemporaryFolder folder;
   const Json run =
-      json_of({"run", scene_path("examples/mass_on_belt.yaml"), "-o", folder / "belt.h5", "--json",
-               "--set", "contact.friction={coefficient: 0.3, regularisation: {speed: 0.2}}",
-               "--set", "substructures.slider.damping.alpha=3"});
+      law_json({"run", scene_path("examples/mass_on_belt.yaml"), "-o", folder / "belt.h5", "--json",
+                "--set", "contact.friction={coefficient: 0.3, regularisation: {speed: 0.2}}",
+                "--set", "substructures.slider.damping.alpha=3"});
   EXPECT_EQ(run["stick_fraction"].get<double>(), 0.0);
   const Json eig =
-      json_of({"eig", scene_path("examples/mass_on_belt.yaml"), "--about", "deformed", "--json",
-               "--set", "contact.friction={coefficient: 0.3, regularisation: {speed: 0.2}}"});
+      law_json({"eig", scene_path("examples/mass_on_belt.yaml"), "--about", "deformed", "--json",
+                "--set", "contact.friction={coefficient: 0.3, regularisation: {speed: 0.2}}"});
   // s² + (μ N s'(v)/m) s + k/m = 0 with v = 0.1, v_ε = 0.2.
   const double slope = 3.0 * (1.0 - std::pow(std::tanh(0.5), 2)) / 0.2;
   const std::complex<double> root =
@@ -151,7 +151,7 @@ TEST(LawsProgram, PenaltyOnBeamsGivesTheSpringsCompression) {
   const Arguments penalty{"--set", "contact.normal={law: penalty, stiffness: 1 MN/m}"};
   Arguments eig{"eig", scene, "--about", "deformed", "--json"};
   eig.insert(eig.end(), penalty.begin(), penalty.end());
-  const Json state = json_of(eig)["equilibrium"];
+  const Json state = law_json(eig)["equilibrium"];
   EXPECT_NEAR(state["gap"].get<double>(), -state["force"].get<double>() / 1e6, 1e-15);
   const TemporaryFolder folder;
   Arguments run{"run",
@@ -170,8 +170,8 @@ TEST(LawsProgram, PenaltyOnBeamsGivesTheSpringsCompression) {
   Arguments rigid = run;
   rigid[3] = folder / "rigid.h5";
   run.insert(run.end(), penalty.begin(), penalty.end());
-  const double sprung_force = json_of(run)["contact_force"]["max"];
-  const double rigid_force = json_of(rigid)["contact_force"]["max"];
+  const double sprung_force = law_json(run)["contact_force"]["max"];
+  const double rigid_force = law_json(rigid)["contact_force"]["max"];
   EXPECT_NEAR(sprung_force, rigid_force, 0.1 * rigid_force);
   EXPECT_NE(sprung_force, rigid_force);
 }

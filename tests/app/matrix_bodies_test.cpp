@@ -17,11 +17,11 @@ namespace {
 using namespace test;
 using ::testing::HasSubstr;
 
-const std::string scene = scene_path("examples/rotating_support.yaml");
+const std::string support_scene = scene_path("examples/rotating_support.yaml");
 
 /// The scene with its gyroscopic matrix in a file beside it.
 std::string scene_with_file(const std::filesystem::path& folder) {
-  std::string text = contents_of(scene);
+  std::string text = contents_of(support_scene);
   const std::size_t from = text.find("    gyroscopic:\n");
   const std::size_t to = text.find("    stiffness:\n");
   text.replace(from, to - from, "    gyroscopic: G.mtx\n");
@@ -36,7 +36,8 @@ TEST(MatrixBodies, OfFilesAreThoseOfRowsAndGoOnBitwise) {
   const std::string by_rows = (folder / "rows.h5").string();
   const TemporaryFolder elsewhere;
   const std::string by_file = (elsewhere / "file.h5").string();
-  ASSERT_EQ(Program({"run", scene, "-o", by_rows, "--set", "time.step=5e-7"}).run().exit_code, 0);
+  ASSERT_EQ(
+      Program({"run", support_scene, "-o", by_rows, "--set", "time.step=5e-7"}).run().exit_code, 0);
   ProgramResult result = Program({"run", scene_with_file(folder.path()), "-o", by_file, "--set",
                                   "time.step=5e-7", "--max-wall", "0.001"})
                              .run();
@@ -49,7 +50,8 @@ TEST(MatrixBodies, OfFilesAreThoseOfRowsAndGoOnBitwise) {
 TEST(MatrixBodies, SayWhatTheirCoupledTermsAddToTheGrowth) {
   const std::vector<std::string> held{
       "--set", "contact.sliding=frozen", "--set", "contact.start=90 mm", "--set", "drive.ramp=0"};
-  std::vector<std::string> command{"eig", scene, "--about", "undeformed", "--explain", "--json"};
+  std::vector<std::string> command{"eig",        support_scene, "--about",
+                                   "undeformed", "--explain",   "--json"};
   command.insert(command.end(), held.begin(), held.end());
   const ProgramResult eig = Program(command).run();
   ASSERT_EQ(eig.exit_code, 0) << eig.err;
@@ -66,7 +68,7 @@ TEST(MatrixBodies, SayWhatTheirCoupledTermsAddToTheGrowth) {
 
 TEST(MatrixBodies, HaveOneSpectrumByBothMethods) {
   const auto eigenvalues = [](std::vector<std::string> more) {
-    std::vector<std::string> command{"eig", scene, "--json"};
+    std::vector<std::string> command{"eig", support_scene, "--json"};
     command.insert(command.end(), more.begin(), more.end());
     const ProgramResult result = Program(command).run();
     EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -87,13 +89,13 @@ TEST(MatrixBodies, HaveOneSpectrumByBothMethods) {
 }
 
 TEST(MatrixBodies, TellWhatTheirDampingIsWhenChecked) {
-  ProgramResult result = Program({"check", scene}).run();
+  ProgramResult result = Program({"check", support_scene}).run();
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("support: damping that is not proportional, gyroscopic or "
                                     "circulatory terms couple its 6 modes"));
   // Five times the mass in place of the damper, and no rotation.
   const TemporaryFolder folder;
-  std::string text = contents_of(scene);
+  std::string text = contents_of(support_scene);
   const std::size_t from = text.find("    damping:\n      -");
   const std::size_t to = text.find("    gyroscopic:\n");
   std::string rows;
@@ -116,7 +118,7 @@ TEST(MatrixBodies, TellWhatTheirDampingIsWhenChecked) {
 }
 
 TEST(MatrixBodies, HaveStepsWhoseStabilityIsChecked) {
-  const ProgramResult result = Program({"check", "--stability", scene}).run();
+  const ProgramResult result = Program({"check", "--stability", support_scene}).run();
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
 }
 
@@ -137,7 +139,7 @@ TEST(MatrixBodies, AreRefusedWhereTheyDoNotFit) {
       {{"record.channels=[support.below.y.acceleration]"}, "'support' has no point 'below'"},
       {{"contact.master=support.bottom"}, "'support' has no surface 'bottom'"}};
   for (const auto& [sets, message] : cases) {
-    std::vector<std::string> command{"check", scene};
+    std::vector<std::string> command{"check", support_scene};
     for (const std::string& set : sets) command.insert(command.end(), {"--set", set});
     const ProgramResult result = Program(command).run();
     EXPECT_EQ(result.exit_code, 2) << message;

@@ -62,10 +62,10 @@ TEST(ParametersProgram, VaryingOneThatContactsAndBodiesShareEqualsVaryingAllThei
   };
   const Json plain = eigenvalues({});
   const Json shared = eigenvalues({"parameters.mu=0.1", "parameters.h=2 mm"});
-  EXPECT_EQ(shared,
-            eigenvalues({"contacts.front.friction.coefficient=0.1",
-                         "contacts.rear.friction.coefficient=0.1",
-                         "substructures.front.thickness=2 mm", "substructures.rear.thickness=2 mm"}));
+  EXPECT_EQ(shared, eigenvalues({"contacts.front.friction.coefficient=0.1",
+                                 "contacts.rear.friction.coefficient=0.1",
+                                 "substructures.front.thickness=2 mm",
+                                 "substructures.rear.thickness=2 mm"}));
   EXPECT_NE(shared, plain);
   EXPECT_EQ(eigenvalues({"contacts.front.friction.coefficient==mu/3",
                          "contacts.rear.friction.coefficient==0.1", "parameters.h==0.004/2"}),
@@ -94,7 +94,8 @@ TEST(ParametersProgram, LocusAlongOneIsMadeOfTheEigenvaluesOfItsValues) {
 TEST(ParametersProgram, WhatCannotBeVariedIsRefusedWithAdvice) {
   const TemporaryFolder folder;
   const std::string scene = pairs_with_parameters(folder);
-  const auto refusal = [&](const std::string& parameter, const std::vector<std::string>& more = {}) {
+  const auto refusal = [&](const std::string& parameter,
+                           const std::vector<std::string>& more = {}) {
     std::vector<std::string> arguments{"locus",  scene, "--parameter", parameter,
                                        "--from", "0.1", "--to",        "0.2"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -114,10 +115,9 @@ TEST(ParametersProgram, WhatCannotBeVariedIsRefusedWithAdvice) {
 
 TEST(ParametersProgram, ThresholdOfTheSphereIsThatOfTheKey) {
   const TemporaryFolder folder;
-  const std::string scene =
-      scene_with(folder, "viscoelastic_sphere.yaml", "{tau0: 0.01, v: 2.5e-3}",
-                 {{"shear_strength: 1.0e-2", "shear_strength: =tau0"},
-                  {"speed: 5.0e-3", "speed: =2*v"}});
+  const std::string scene = scene_with(
+      folder, "viscoelastic_sphere.yaml", "{tau0: 0.01, v: 2.5e-3}",
+      {{"shear_strength: 1.0e-2", "shear_strength: =tau0"}, {"speed: 5.0e-3", "speed: =2*v"}});
   const Json key = json_of({"threshold", scene_path("viscoelastic_sphere.yaml"), "--parameter",
                             "sphere.speed", "--from", "1e-2", "--to", "0.1"});
   const Json parameter = json_of(
@@ -137,8 +137,8 @@ TEST(ParametersProgram, ThresholdOfTheSphereIsThatOfTheKey) {
   };
   EXPECT_EQ(growth(scene, {"--x", "parameters.tau0", "1e-3", "1e-1", "3", "--y", "sphere.angle",
                            "0.5", "1", "2"}),
-            growth(scene, {"--x", "sphere.shear_strength", "1e-3", "1e-1", "3", "--y", "sphere.angle",
-                           "0.5", "1", "2"}));
+            growth(scene, {"--x", "sphere.shear_strength", "1e-3", "1e-1", "3", "--y",
+                           "sphere.angle", "0.5", "1", "2"}));
 }
 
 TEST(ParametersProgram, NumbersOfThePaperGiveTheDimensionalSphere) {
@@ -170,13 +170,14 @@ TEST(ParametersProgram, MapOfTheDiscIsThatOfTheKeys) {
       scene_with(folder, "disc_and_pads.yaml", "{mu: 0.3, k: 6.0e7}",
                  {{"coefficient: 0.3", "coefficient: =mu"}, {"radial: 6.0e+7", "radial: =k"}});
   const auto growth = [&](const std::string& x, const std::string& y) {
-    return json_of({"map", scene, "--x", x, "0", "0.6", "3", "--y", y, "5e7", "7e7", "2"})["growth"];
+    return json_of(
+        {"map", scene, "--x", x, "0", "0.6", "3", "--y", y, "5e7", "7e7", "2"})["growth"];
   };
   EXPECT_EQ(growth("parameters.mu", "parameters.k"),
             growth("contact.friction.coefficient", "pads.stiffness.radial"));
 }
 
-std::vector<std::string> short_run(const std::string& scene, const std::string& output) {
+std::vector<std::string> shortened(const std::string& scene, const std::string& output) {
   return {"run",   scene,
           "-o",    output,
           "--set", "time.end=0.02",
@@ -195,8 +196,8 @@ TEST(ParametersProgram, RunWithExpressionsIsTheRunOfTheirValues) {
                   {"fixed_interface_modes: 20", "fixed_interface_modes: =2*n"}});
   const std::string with_values = (folder / "values.h5").string();
   const std::string with_expressions = (folder / "expressions.h5").string();
-  EXPECT_EQ(Program(short_run(scene_path("beam_on_beam.yaml"), with_values)).run().exit_code, 0);
-  const ProgramResult result = Program(short_run(scene, with_expressions)).run();
+  EXPECT_EQ(Program(shortened(scene_path("beam_on_beam.yaml"), with_values)).run().exit_code, 0);
+  const ProgramResult result = Program(shortened(scene, with_expressions)).run();
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(difference(with_values, with_expressions), "");
 
@@ -238,11 +239,11 @@ TEST(ParametersProgram, SweepAlongOneIsMadeOfTheRunsOfItsValues) {
   const std::string scene = scene_with(folder, "beam_on_beam.yaml", "{mu: 0.15}",
                                        {{"coefficient: 0.30", "coefficient: =2*mu"}});
   const auto rows = [&](const std::string& key, const std::string& from, const std::string& to) {
-    std::vector<std::string> arguments = short_run(scene, "");
+    std::vector<std::string> arguments = shortened(scene, "");
     arguments[0] = "sweep";
     arguments.erase(arguments.begin() + 2, arguments.begin() + 4);
-    arguments.insert(arguments.end(), {"--parameter", key, "--from", from, "--to", to, "--points",
-                                       "2"});
+    arguments.insert(arguments.end(),
+                     {"--parameter", key, "--from", from, "--to", to, "--points", "2"});
     return json_of(arguments)["rows"];
   };
   const Json parameter = rows("parameters.mu", "0.05", "0.1");

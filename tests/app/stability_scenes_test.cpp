@@ -29,7 +29,7 @@ using Complex = std::complex<double>;
 using Strings = std::vector<std::string>;
 
 /// The JSON object that the program prints; null, with a failure, where it does not end well.
-Json run_json(Strings arguments, const Strings& sets = {}) {
+Json scene_json(Strings arguments, const Strings& sets = {}) {
   for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
   arguments.push_back("--json");
   const ProgramResult result = Program(arguments).run();
@@ -86,7 +86,7 @@ TEST_P(FrozenGrowth, IsTheRealPartOfTheEigenvalue) {
     Strings sets = of.sets;
     sets.insert(sets.end(), {"drive.ramp=0", "initial.state=equilibrium", "measure={from: 0}"});
     sets.insert(sets.end(), more.begin(), more.end());
-    run_json({"run", scene, "-o", file, "--force"}, sets);
+    scene_json({"run", scene, "-o", file, "--force"}, sets);
   };
   Strings eig{"eig", scene, "--about", "deformed", "--count", "16"};
   if (of.has_one_contact) {
@@ -95,7 +95,7 @@ TEST_P(FrozenGrowth, IsTheRealPartOfTheEigenvalue) {
     const double position = dataset(file, "/contact/contact/position").front();
     eig.insert(eig.end(), {"--at", fmt::format("{:.12g}", position)});
   }
-  const std::vector<Complex> modes = vibrations(run_json(eig, of.sets)["eigenvalues"]);
+  const std::vector<Complex> modes = vibrations(scene_json(eig, of.sets)["eigenvalues"]);
   const auto fastest = std::max_element(modes.begin(), modes.end(),
                                         [](Complex a, Complex b) { return a.real() < b.real(); });
   ASSERT_NE(fastest, modes.end());
@@ -157,8 +157,9 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(UndeformedGeometry, DoesNotKnowTheGrowthOfTheSagged) {
   // Where runs under Subs-b and Subs-c grow by 90 and 94 1/s, above.
   for (const char* assumption : {"subs_b", "subs_c"}) {
-    const Json eig = run_json({"eig", scene_path("beam_on_beam.yaml"), "--about", "undeformed"},
-                              with(main_frozen, {std::string("contact.assumption=") + assumption}));
+    const Json eig =
+        scene_json({"eig", scene_path("beam_on_beam.yaml"), "--about", "undeformed"},
+                   with(main_frozen, {std::string("contact.assumption=") + assumption}));
     EXPECT_TRUE(eig["stable"].get<bool>());
     for (const Complex s : vibrations(eig["eigenvalues"])) EXPECT_LT(s.real(), 0.0);
   }
@@ -190,7 +191,7 @@ class BothMethods : public ::testing::TestWithParam<Range> {};
 TEST_P(BothMethods, FindTheSameLocus) {
   const Range& of = GetParam();
   const auto locus = [&](const char* method) {
-    return run_json(
+    return scene_json(
         {"locus", scene_path(of.scene), "--parameter", of.parameter, "--from", of.from, "--to",
          of.to, "--points", "5", "--count", "16", "--about", "deformed", "--method", method},
         of.sets);
@@ -284,9 +285,9 @@ TEST(SimilarScenes, HaveTheSameLocusInTheirOwnUnits) {
   for (const char* about : {"undeformed", "deformed"}) {
     const auto locus = [&](const Units& of) {
       std::ofstream(scene) << scaled_scene(of.length, of.mass, of.time);
-      return run_json({"locus", scene, "--about", about, "--from",
-                       fmt::format("{}", 0.07 * of.length), "--to",
-                       fmt::format("{}", 0.098 * of.length), "--points", "15"});
+      return scene_json({"locus", scene, "--about", about, "--from",
+                         fmt::format("{}", 0.07 * of.length), "--to",
+                         fmt::format("{}", 0.098 * of.length), "--points", "15"});
     };
     const Json one = locus({1.0, 1.0, 1.0});
     ASSERT_THAT(one["unstable"], Not(IsEmpty()));
@@ -327,9 +328,9 @@ TEST(PassedWindows, AddUpToTheWholeWhereARunEndsAndAnotherOneStarts) {
   const auto locus = [](const Strings& more) {
     Strings sets{"drive.ramp=0"};
     sets.insert(sets.end(), more.begin(), more.end());
-    return run_json({"locus", scene_path("beam_on_beam.yaml"), "--about", "deformed", "--from",
-                     "80 mm", "--to", "83 mm", "--points", "4"},
-                    sets);
+    return scene_json({"locus", scene_path("beam_on_beam.yaml"), "--about", "deformed", "--from",
+                       "80 mm", "--to", "83 mm", "--points", "4"},
+                      sets);
   };
   const Json whole = locus({"contact.start=79 mm", "time.end=1"});
   const Json first = locus({"contact.start=79 mm", "time.end=0.09"});
@@ -352,7 +353,7 @@ TEST(PassedWindows, HaveTheSameTimesAlongTheDriveAsAlongTheMaster) {
       Strings arguments{"locus", scene_path("beam_on_beam.yaml"), "--about", about, "--points",
                         "9"};
       arguments.insert(arguments.end(), range.begin(), range.end());
-      return run_json(arguments)["unstable"];
+      return scene_json(arguments)["unstable"];
     };
     const Json position = windows({"--from", "90.2 mm", "--to", "96 mm"});
     const Json drive =
@@ -370,12 +371,12 @@ TEST(PassedWindows, HaveTheSameTimesAlongTheDriveAsAlongTheMaster) {
 
 TEST(SeveralPairs, HaveALocusAlongTheDrive) {
   const std::string scene = scene_path("examples/two_pairs.yaml");
-  const Json locus = run_json({"locus", scene, "--from", "0", "--to", "30 mm", "--points", "4"});
+  const Json locus = scene_json({"locus", scene, "--from", "0", "--to", "30 mm", "--points", "4"});
   EXPECT_EQ(locus["parameter"], "drive.displacement");
   for (std::size_t i = 0; i < 4; ++i) {
     const Json eig =
-        run_json({"eig", scene}, {fmt::format("contacts.front.start={} mm", 50 + 10 * i),
-                                  fmt::format("contacts.rear.start={} mm", 20 + 10 * i)});
+        scene_json({"eig", scene}, {fmt::format("contacts.front.start={} mm", 50 + 10 * i),
+                                    fmt::format("contacts.rear.start={} mm", 20 + 10 * i)});
     const std::vector<Complex> a = vibrations(locus["eigenvalues"][i]);
     const std::vector<Complex> b = vibrations(eig["eigenvalues"]);
     ASSERT_EQ(a.size(), b.size());
@@ -389,9 +390,9 @@ TEST(SeveralPairs, HaveALocusAlongTheDrive) {
 }
 
 TEST(PassedWindows, HaveAGainWhereTheDriveGoesBackwards) {
-  const Json locus = run_json({"locus", scene_path("beam_on_beam_leading.yaml"), "--about",
-                               "deformed", "--from", "95 mm", "--to", "97 mm", "--points", "3"},
-                              {"drive.velocity=-0.03", "contact.start=97.5 mm"});
+  const Json locus = scene_json({"locus", scene_path("beam_on_beam_leading.yaml"), "--about",
+                                 "deformed", "--from", "95 mm", "--to", "97 mm", "--points", "3"},
+                                {"drive.velocity=-0.03", "contact.start=97.5 mm"});
   ASSERT_EQ(locus["unstable"].size(), 1u);
   const Json& window = locus["unstable"][0];
   EXPECT_LT(window["from_time"].get<double>(), window["to_time"].get<double>());
@@ -403,16 +404,16 @@ TEST(MapProgram, HasItsBoundaryUpToWhereThereIsNoEquilibrium) {
   // Without a load that presses it down, a beam that may lift off is free. The growth changes its
   // sign at -0.0358 N, with mu 0.3.
   const Strings sets{"contact.assumption=film", "contact.start=75.2 mm"};
-  const Json map =
-      run_json({"map", scene_path("beam_on_beam.yaml"), "--about", "deformed", "--x", "drive.load",
-                "-0.1", "0.05", "16", "--y", "contact.friction.coefficient", "0.29", "0.3", "2"},
-               sets);
+  const Json map = scene_json(
+      {"map", scene_path("beam_on_beam.yaml"), "--about", "deformed", "--x", "drive.load", "-0.1",
+       "0.05", "16", "--y", "contact.friction.coefficient", "0.29", "0.3", "2"},
+      sets);
   EXPECT_FALSE(map["growth"][1][9].is_null());  // -0.01 N
   EXPECT_TRUE(map["growth"][1][12].is_null());  // 0.02 N
   const Json threshold =
-      run_json({"threshold", scene_path("beam_on_beam.yaml"), "--about", "deformed", "--parameter",
-                "drive.load", "--from", "-0.1", "--to", "-0.01"},
-               sets);
+      scene_json({"threshold", scene_path("beam_on_beam.yaml"), "--about", "deformed",
+                  "--parameter", "drive.load", "--from", "-0.1", "--to", "-0.01"},
+                 sets);
   ASSERT_EQ(threshold["roots"].size(), 1u);
   std::vector<double> at_top;
   for (const Json& line : map["boundary"]) {
@@ -449,8 +450,8 @@ record: {interval: 1.0e-6, channels: [one.force]}
 )";
   for (const char* method : {"secular", "dense"}) {
     const Json locus =
-        run_json({"locus", scene, "--parameter", "drive.velocity", "--from", "0.06", "--to", "0.1",
-                  "--points", "6", "--count", "6", "--method", method});
+        scene_json({"locus", scene, "--parameter", "drive.velocity", "--from", "0.06", "--to",
+                    "0.1", "--points", "6", "--count", "6", "--method", method});
     ASSERT_THAT(locus["unstable"], SizeIs(2)) << method;
     for (const char* key : {"from", "to", "growth_max"}) {
       EXPECT_NEAR(locus["unstable"][0][key].get<double>(), locus["unstable"][1][key].get<double>(),
@@ -466,14 +467,14 @@ record: {interval: 1.0e-6, channels: [one.force]}
   // Equal real ones are real by either.
   for (const char* method : {"secular", "dense"}) {
     const Json eig =
-        run_json({"eig", scene, "--count", "2", "--method", method}, {"drive.velocity=0.004"});
+        scene_json({"eig", scene, "--count", "2", "--method", method}, {"drive.velocity=0.004"});
     EXPECT_EQ(eig["eigenvalues"].size(), 6u) << method;
     EXPECT_THAT(vibrations(eig["eigenvalues"]), SizeIs(2)) << method;
   }
   // Friction that falls this steeply drives a real eigenvalue far beyond all frequencies, in both.
   const auto fastest = [&](const char* method) {
     const Json eig =
-        run_json({"eig", scene, "--count", "2", "--method", method}, {"drive.velocity=0.01"});
+        scene_json({"eig", scene, "--count", "2", "--method", method}, {"drive.velocity=0.01"});
     std::vector<double> growing;
     for (const Json& one : eig["eigenvalues"])
       if (one[0] > 1e7) growing.push_back(one[0]);

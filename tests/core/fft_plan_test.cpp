@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/support/constants.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/rejection.hpp"
 
@@ -17,7 +18,7 @@ namespace {
 using test::expect_rejection;
 using test::noise;
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
+using test::two_pi;
 
 TEST(Fft, TransformsAsDefinedAndBackForEvenAndOddLengths) {
   for (const std::size_t n : {1U, 2U, 7U, 12U}) {

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/support/constants.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace stridor {
@@ -18,9 +19,9 @@ namespace {
 using test::message_of;
 using testing::HasSubstr;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+using test::eps;
+using test::infinity;
+using test::not_a_number;
 
 /// Rises, falls below zero, stays, on intervals of different widths, partly before t = 0.
 TimeCurve sample_curve() {

@@ -1,4 +1,5 @@
 #include "coupling/contact_parameters.hpp"
+#include "tests/support/constants.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
+using test::eps;
 
 /// The drive of the paper.
 DriveParameters paper_drive() {

@@ -1,4 +1,5 @@
 #include "coupling/contact.hpp"
+#include "tests/support/constants.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
+using test::eps;
 
 /// Slave point and ends of the master segment: positions, displacements, velocities or forces.
 struct Triple {

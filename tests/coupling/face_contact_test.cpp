@@ -139,8 +139,8 @@ FaceContactLaw law_of(const Place& at) {
 
 /// Derivative of forces along a direction, of eighth order.
 template <class Forces>
-Eigen::VectorXd derivative(const Forces& forces, const Motion& about, const Motion& along,
-                           double step) {
+Eigen::VectorXd force_derivative(const Forces& forces, const Motion& about, const Motion& along,
+                                 double step) {
   constexpr std::array weights{4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0};
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(along.q.size());
   for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -194,13 +194,13 @@ TEST(FaceContact, LinearForcesAreTheDerivativesOfTheExactOnes) {
 
     const Eigen::VectorXd q = random_direction(generator, at.plate);
     const auto forces = [&](const Motion& motion) { return exact_forces(at, motion); };
-    const Eigen::VectorXd by_position = derivative(forces, {zero, zero}, {q, zero}, 1e-4);
+    const Eigen::VectorXd by_position = force_derivative(forces, {zero, zero}, {q, zero}, 1e-4);
     const Eigen::VectorXd expected = -stiffness * q;
     EXPECT_LT((by_position - expected).norm(), 1e-9 * expected.norm()) << "trial " << trial;
 
     const Eigen::VectorXd v = random_direction(generator, at.plate);
     const Eigen::VectorXd by_velocity =
-        derivative(forces, {zero, zero}, {zero, v}, 1e-3 * at.speed);
+        force_derivative(forces, {zero, zero}, {zero, v}, 1e-3 * at.speed);
     const Eigen::VectorXd braked = -damping * v;
     EXPECT_LT((by_velocity - braked).norm(), 1e-9 * braked.norm()) << "trial " << trial;
   }
@@ -276,11 +276,12 @@ TEST(FaceContact, LinearForcesAboutDeformedStatesAreDerivativesToo) {
               1e-12 * expected.norm());
     const Eigen::VectorXd q = random_direction(generator, at.plate);
     const Eigen::VectorXd turned = -system.position * q;
-    EXPECT_LT((derivative(forces, rest, {q, zero}, 1e-4) - turned).norm(), 1e-9 * turned.norm())
+    EXPECT_LT((force_derivative(forces, rest, {q, zero}, 1e-4) - turned).norm(),
+              1e-9 * turned.norm())
         << trial;
     const Eigen::VectorXd v = random_direction(generator, at.plate);
     const Eigen::VectorXd braked = -system.velocity * v;
-    EXPECT_LT((derivative(forces, rest, {zero, v}, 1e-3 * at.speed) - braked).norm(),
+    EXPECT_LT((force_derivative(forces, rest, {zero, v}, 1e-3 * at.speed) - braked).norm(),
               1e-9 * braked.norm())
         << trial;
     // The row of the constraint is the slope of the gap.
@@ -289,7 +290,7 @@ TEST(FaceContact, LinearForcesAboutDeformedStatesAreDerivativesToo) {
                                        face_contact_point(contacts[0], law, motion.q, 0.0).gap);
     };
     const double slope = system.gaps.row(0).dot(q);
-    EXPECT_NEAR(derivative(gap, rest, {q, zero}, 1e-4)(0), slope, 1e-9 * std::abs(slope));
+    EXPECT_NEAR(force_derivative(gap, rest, {q, zero}, 1e-4)(0), slope, 1e-9 * std::abs(slope));
   }
 }
 

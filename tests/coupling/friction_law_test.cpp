@@ -1,4 +1,5 @@
 #include "coupling/friction_law.hpp"
+#include "tests/support/constants.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +8,7 @@
 namespace stridor {
 namespace {
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
+using test::eps;
 
 constexpr FrictionLaw falling{FrictionLaw::Kind::stribeck, 0.5, 0.2, 0.01};
 constexpr FrictionLaw rising{FrictionLaw::Kind::stribeck, 0.2, 0.5, 0.01};

@@ -9,7 +9,7 @@
 namespace stridor {
 namespace {
 
-using Kind = RegularisedSign::Kind;
+using SignKind = RegularisedSign::Kind;
 
 double derivative(const std::function<double(double)>& f, double x, double h) {
   return (8.0 * (f(x + h) - f(x - h)) - (f(x + 2 * h) - f(x - 2 * h))) / (12.0 * h);
@@ -22,14 +22,15 @@ SubstrateContact contact_with(RegularisedSign sign, FrictionLoad load) {
 
 TEST(RegularisedSign, NoneIsOneFromZeroOn) {
   for (const double v : {0.0, 0.1, 1e9}) {
-    const RegularisedSign::Value found = RegularisedSign{Kind::none, 0.2}.at(v);
+    const RegularisedSign::Value found = RegularisedSign{SignKind::none, 0.2}.at(v);
     EXPECT_EQ(found.value, 1.0);
     EXPECT_EQ(found.slope, 0.0);
   }
 }
 
 TEST(RegularisedSign, FunctionsRiseFromZeroToOne) {
-  for (const Kind kind : {Kind::tanh, Kind::linear, Kind::square_root, Kind::atan}) {
+  for (const SignKind kind :
+       {SignKind::tanh, SignKind::linear, SignKind::square_root, SignKind::atan}) {
     const RegularisedSign sign{kind, 0.2};
     EXPECT_EQ(sign.at(0.0).value, 0.0);
     EXPECT_NEAR(sign.at(2e9).value, 1.0, 1e-9);
@@ -44,14 +45,15 @@ TEST(RegularisedSign, FunctionsRiseFromZeroToOne) {
     }
   }
   // tanh 1, 1/√2, and half of one where arctan 1 = π/4.
-  EXPECT_NEAR((RegularisedSign{Kind::tanh, 0.2}.at(0.2).value), 0.7615941559557649, 1e-15);
-  EXPECT_NEAR((RegularisedSign{Kind::square_root, 0.2}.at(0.2).value), std::sqrt(0.5), 1e-15);
-  EXPECT_NEAR((RegularisedSign{Kind::atan, 0.2}.at(0.2).value), 0.5, 1e-15);
-  EXPECT_NEAR((RegularisedSign{Kind::linear, 0.2}.at(0.1).value), 0.5, 1e-15);
+  EXPECT_NEAR((RegularisedSign{SignKind::tanh, 0.2}.at(0.2).value), 0.7615941559557649, 1e-15);
+  EXPECT_NEAR((RegularisedSign{SignKind::square_root, 0.2}.at(0.2).value), std::sqrt(0.5), 1e-15);
+  EXPECT_NEAR((RegularisedSign{SignKind::atan, 0.2}.at(0.2).value), 0.5, 1e-15);
+  EXPECT_NEAR((RegularisedSign{SignKind::linear, 0.2}.at(0.1).value), 0.5, 1e-15);
 }
 
 TEST(SubstrateContact, DerivativesAreThoseOfTheForces) {
-  for (const Kind kind : {Kind::none, Kind::tanh, Kind::linear, Kind::square_root, Kind::atan}) {
+  for (const SignKind kind :
+       {SignKind::none, SignKind::tanh, SignKind::linear, SignKind::square_root, SignKind::atan}) {
     for (const FrictionLoad load : {FrictionLoad::applied, FrictionLoad::contact}) {
       const SubstrateContact contact = contact_with({kind, 0.05}, load);
       for (const double direction : {1.0, -1.0}) {
@@ -87,14 +89,14 @@ TEST(SubstrateContact, OnlySetValuedFrictionHasStaticStrength) {
   const SubstrateContact set_valued = contact_with({}, FrictionLoad::applied);
   // The area without speed is b_1 b_2 ŷ in the published fit.
   EXPECT_NEAR(set_valued.static_strength(y).value, 0.3 * 1.440 * 2.118 * y / 5.0, 1e-15);
-  const SubstrateContact smooth = contact_with({Kind::tanh, 0.05}, FrictionLoad::applied);
+  const SubstrateContact smooth = contact_with({SignKind::tanh, 0.05}, FrictionLoad::applied);
   EXPECT_EQ(smooth.static_strength(y).value, 0.0);
   EXPECT_EQ(smooth.at(y, 0.0, 1.0).tangential.value, 0.0);
 }
 
 TEST(SubstrateContact, NothingActsOutOfContact) {
   for (const double y : {0.0, -1.0}) {
-    for (const Kind kind : {Kind::none, Kind::atan}) {
+    for (const SignKind kind : {SignKind::none, SignKind::atan}) {
       const SubstrateForces forces =
           contact_with({kind, 0.05}, FrictionLoad::contact).at(y, 0.0, 1.0);
       EXPECT_EQ(forces.range, LawRange::no_contact);

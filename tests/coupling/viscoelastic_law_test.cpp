@@ -18,7 +18,7 @@ using test::message_of;
 using ::testing::HasSubstr;
 
 /// The derivative of f at x by central differences of sixth order.
-double derivative(const std::function<double(double)>& f, double x, double h) {
+double law_derivative(const std::function<double(double)>& f, double x, double h) {
   return (45.0 * (f(x + h) - f(x - h)) - 9.0 * (f(x + 2 * h) - f(x - 2 * h)) +
           (f(x + 3 * h) - f(x - 3 * h))) /
          (60.0 * h);
@@ -31,9 +31,9 @@ void expect_derivatives(const ViscoelasticContactLaw& law, double y, double v, d
        {&ViscoelasticContact::force, &ViscoelasticContact::area, &ViscoelasticContact::friction}) {
     const LawValue& found = contact.*member;
     const double by_y =
-        derivative([&](double at) { return (law.at(at, v).*member).value; }, y, 1e-3 * y);
+        law_derivative([&](double at) { return (law.at(at, v).*member).value; }, y, 1e-3 * y);
     const double by_v =
-        derivative([&](double at) { return (law.at(y, at).*member).value; }, v, 1e-3 * v);
+        law_derivative([&](double at) { return (law.at(y, at).*member).value; }, v, 1e-3 * v);
     // Relative to the size of the quantity over the variable.
     EXPECT_NEAR(found.by_indentation, by_y, tolerance * found.value / y) << y << ' ' << v;
     EXPECT_NEAR(found.by_speed, by_v, tolerance * found.value / v) << y << ' ' << v;
@@ -143,7 +143,8 @@ TEST(LimitedSpline, GoesThroughItsPointsAndToItsLimits) {
   for (double x = -10.0; x < 10.0; x += 0.37) {
     const double at = std::exp(x);
     EXPECT_NEAR(spline.at(at).value, q(at), 5e-4);
-    const double slope = derivative([&](double b) { return spline.at(b).value; }, at, 1e-4 * at);
+    const double slope =
+        law_derivative([&](double b) { return spline.at(b).value; }, at, 1e-4 * at);
     EXPECT_NEAR(spline.at(at).slope * at, slope * at, 1e-7);
   }
   EXPECT_EQ(spline.at(0.0).value, 1.0);

@@ -30,7 +30,7 @@ using namespace test;
 enum class Checks { all, none };
 
 template <class T>
-std::vector<Problem> problems_in(const std::string& text, Checks checks = Checks::all) {
+std::vector<Problem> problems_with(const std::string& text, Checks checks = Checks::all) {
   const SceneNode root = read_scene_text(text, "s.yaml");
   std::vector<Problem> problems;
   if (checks == Checks::none) {
@@ -394,8 +394,7 @@ class MutantMaker {
     const bool takes_list = key.kind == KeyKind::real_list || key.kind == KeyKind::text_list ||
                             key.kind == KeyKind::section_list;
     const bool takes_map = key.kind == KeyKind::curve || key.kind == KeyKind::section ||
-                           key.kind == KeyKind::named_sections ||
-                           key.kind == KeyKind::parameters;
+                           key.kind == KeyKind::named_sections || key.kind == KeyKind::parameters;
     if (!takes_list) refuse("[1]", "a list");
     if (!takes_map) refuse("{zz: 1}", "a map");
   }
@@ -448,7 +447,7 @@ std::string objection(const Mutant& mutant, YamlStyle style) {
   const WrittenScene written(mutant.scene, style);
   const std::vector<std::string> lines = lines_of(written.text());
   const std::vector<Problem> problems =
-      problems_in<T>(written.text(), mutant.answers.empty() ? Checks::none : Checks::all);
+      problems_with<T>(written.text(), mutant.answers.empty() ? Checks::none : Checks::all);
   std::string said;
   for (const Answer& answer : mutant.answers) {
     const WrittenScene::Spot& spot = written.spot(answer.path);
@@ -492,7 +491,7 @@ std::string loneliness(const Mutant& mutant, const Draft& valid) {
     problems = Repair(objections_of_checks<T>, wanted, path)(scene);
   }
   const std::string text = WrittenScene(scene, YamlStyle::block).text();
-  if (problems.empty()) problems = problems_in<T>(text);
+  if (problems.empty()) problems = problems_with<T>(text);
   return problems.empty() ? "" : "no valid scene has it; nearest\n" + text + joined(problems);
 }
 
@@ -507,7 +506,7 @@ TYPED_TEST(SceneMutation, ScenesMadeFromTheSchemaAreRead) {
   for (const CompleteScene& scene : complete_scenes<TypeParam>()) {
     for (const YamlStyle style : {YamlStyle::block, YamlStyle::flow}) {
       const std::string text = WrittenScene(scene.draft, style).text();
-      EXPECT_EQ(joined(problems_in<TypeParam>(text)), "nothing") << text;
+      EXPECT_EQ(joined(problems_with<TypeParam>(text)), "nothing") << text;
     }
   }
 }
@@ -549,7 +548,8 @@ TYPED_TEST(SceneMutation, EveryValueSpoiltAtOnceIsAnsweredOnce) {
       value.text = "[[[1]]]";
     });
     std::set<std::string> answered;
-    for (Problem& problem : problems_in<TypeParam>(WrittenScene(spoilt, YamlStyle::block).text())) {
+    for (Problem& problem :
+         problems_with<TypeParam>(WrittenScene(spoilt, YamlStyle::block).text())) {
       // A list in a list is wrong by its entry where the key takes a list, or a list of rows.
       while (!problem.key.empty() && !values.contains(problem.key))
         problem.key = parent_path(problem.key);

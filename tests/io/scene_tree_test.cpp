@@ -32,7 +32,7 @@ Problem fatal(const std::string& text) {
 }
 
 /// The problems that leave the rest readable.
-std::vector<Problem> problems_of(const std::string& text) {
+std::vector<Problem> problems_of_text(const std::string& text) {
   std::vector<Problem> problems;
   collect_text_problems(read_scene_text(text, "s.yaml"), "", problems);
   return problems;
@@ -79,7 +79,7 @@ TEST(SceneTree, MapsListsAndScalarsKeepTheirPlaces) {
   EXPECT_TRUE(c->items.at(1).is_quoted);
   EXPECT_EQ(c->items.at(1).place, (Place{"s.yaml", 3, 10}));
   EXPECT_EQ(find(root, "b.d.e")->text, "f");
-  EXPECT_TRUE(problems_of("a: 1\n").empty());
+  EXPECT_TRUE(problems_of_text("a: 1\n").empty());
 }
 
 TEST(SceneTree, IndentedMapHasThePlaceOfItsKey) {
@@ -127,7 +127,7 @@ TEST(SceneTree, ByteOrderMarkAndCarriageReturnsAreRead) {
 // ---------------------------------------------------------------------
 
 TEST(SceneTree, DuplicateKeyNamesBothLines) {
-  const auto problems = problems_of("a:\n  x: 1\n  y: 2\n  x: 3\n");
+  const auto problems = problems_of_text("a:\n  x: 1\n  y: 2\n  x: 3\n");
   ASSERT_THAT(problems, SizeIs(1));
   expect_at(problems[0], 4, 3, "a.x", "is given twice, first in line 2; remove one of them");
 }
@@ -139,31 +139,31 @@ TEST(SceneTree, FirstOfDuplicateKeysIsKept) {
 }
 
 TEST(SceneTree, DuplicateKeyInFlowMapIsFoundThoughQuotedDifferently) {
-  const auto problems = problems_of("a: {x: 1, \"x\": 2}\n");
+  const auto problems = problems_of_text("a: {x: 1, \"x\": 2}\n");
   ASSERT_THAT(problems, SizeIs(1));
   expect_at(problems[0], 1, 11, "a.x", "is given twice");
 }
 
 TEST(SceneTree, MergeKeyIsRefused) {
-  const auto problems = problems_of("a: &m {x: 1}\nb:\n  <<: *m\n  y: 2\n");
+  const auto problems = problems_of_text("a: &m {x: 1}\nb:\n  <<: *m\n  y: 2\n");
   ASSERT_THAT(problems, SizeIs(1));
   expect_at(problems[0], 3, 3, "b.<<", "merge keys are not read");
 }
 
 TEST(SceneTree, KeyThatIsNoNameIsRefused) {
-  auto problems = problems_of("a:\n  ? [1, 2]\n  : 3\n");
+  auto problems = problems_of_text("a:\n  ? [1, 2]\n  : 3\n");
   ASSERT_THAT(problems, SizeIs(1));
   expect_at(problems[0], 2, 5, "a", "a key must be a plain name");
-  problems = problems_of("a:\n  {x: 1}: 3\n");
+  problems = problems_of_text("a:\n  {x: 1}: 3\n");
   ASSERT_THAT(problems, SizeIs(1));
   expect_at(problems[0], 2, 3, "a", "a key must be a plain name");
-  problems = problems_of("null: 3\n");
+  problems = problems_of_text("null: 3\n");
   ASSERT_THAT(problems, SizeIs(1));
   expect_at(problems[0], 1, 1, "", "a key must be a plain name");
 }
 
 TEST(SceneTree, KeyWithALineBreakIsRefused) {
-  const auto problems = problems_of("\"a\\nb\": 1\n");
+  const auto problems = problems_of_text("\"a\\nb\": 1\n");
   ASSERT_THAT(problems, SizeIs(1));
   expect_at(problems[0], 1, 1, "", "a key must be a plain name");
 }
@@ -173,14 +173,14 @@ TEST(SceneTree, MessagesAreUtf8WhateverTheParserQuotes) {
 }
 
 TEST(SceneTree, TagIsRefused) {
-  const auto problems = problems_of("a:\n  b: !!float 3\nc: !mine {d: 1}\n");
+  const auto problems = problems_of_text("a:\n  b: !!float 3\nc: !mine {d: 1}\n");
   ASSERT_THAT(problems, SizeIs(2));
   expect_at(problems[0], 2, 6, "a.b", "the YAML tag 'tag:yaml.org,2002:float' has no meaning");
   expect_at(problems[1], 3, 4, "c", "the YAML tag '!mine' has no meaning");
 }
 
 TEST(SceneTree, AllProblemsAreCollected) {
-  EXPECT_THAT(problems_of("a: 1\na: 2\nb:\n  - {c: 1, c: 2}\n  - {<<: 3}\nb: 4\n"), SizeIs(4));
+  EXPECT_THAT(problems_of_text("a: 1\na: 2\nb:\n  - {c: 1, c: 2}\n  - {<<: 3}\nb: 4\n"), SizeIs(4));
 }
 
 // --- errors that refuse the text as a whole

@@ -54,7 +54,7 @@ TimeParameters time_of_scheme(Scheme scheme) {
   return time;
 }
 
-constexpr double end = 8e-3;  ///< s; start-up, 2 mm and the damping schedule
+constexpr double run_end = 8e-3;  ///< s; start-up, 2 mm and the damping schedule
 
 /// Steps these kinds in one batch, looking in between.
 std::vector<Fate> fates(const std::vector<int>& kinds, const TimeParameters& time,
@@ -68,7 +68,7 @@ std::vector<Fate> fates(const std::vector<int>& kinds, const TimeParameters& tim
     runs.push_back(simulations.back().get());
   }
   Batch batch(runs);
-  const auto num_steps = static_cast<std::int64_t>(std::llround(end / time.step));
+  const auto num_steps = static_cast<std::int64_t>(std::llround(run_end / time.step));
   for (int part = 1; part <= 7; ++part) batch.step_until(num_steps * part / 7);
   batch.synchronise();
   std::vector<Fate> fates;
@@ -88,7 +88,7 @@ TEST_P(BatchTest, EndsAsWithoutABatchButForRounding) {
   for (int kind = 0; kind < 8; ++kind) {
     const Model model = model_of_kind(kind);
     Simulation alone(model.system, time);
-    ASSERT_EQ(alone.step_until(std::llround(end / time.step)), StepOutcome::done);
+    ASSERT_EQ(alone.step_until(std::llround(run_end / time.step)), StepOutcome::done);
     const Fate& fate = together[static_cast<std::size_t>(kind)];
     EXPECT_EQ(fate.outcome, StepOutcome::done);
     const Model::Point tip = model.points.at(free_end);
@@ -151,7 +151,7 @@ std::vector<std::vector<double>> tips(const std::vector<int>& kinds, const TimeP
   }
   Batch batch(runs);
   for (std::size_t i = 0; i < runs.size(); ++i) batch.watch(i, sinks[i]);
-  const auto num_steps = static_cast<std::int64_t>(std::llround(end / time.step));
+  const auto num_steps = static_cast<std::int64_t>(std::llround(run_end / time.step));
   for (int part = 1; part <= num_parts; ++part) batch.step_until(num_steps * part / num_parts);
   std::vector<std::vector<double>> all;
   for (TipSink& sink : sinks) all.push_back(std::move(sink.displacements));
@@ -165,7 +165,7 @@ TEST_P(BatchTest, ShowsARowOnTheWayAsTheSimulationWould) {
     const Model model = model_of_kind(kind);
     Simulation alone(model.system, time);
     TipSink sink(model);
-    const auto num_steps = static_cast<std::int64_t>(std::llround(end / time.step));
+    const auto num_steps = static_cast<std::int64_t>(std::llround(run_end / time.step));
     sink.sample(alone);
     while (sink.next_step() <= num_steps) {
       ASSERT_EQ(alone.step_until(sink.next_step()), StepOutcome::done);
@@ -203,7 +203,7 @@ TEST(Batch, TakesEveryAssumptionOfPersistentSliding) {
       Simulation alone(model.system, time);
       Batch lanes({&alone});
       EXPECT_TRUE(lanes.steps_in_lanes(0));
-      ASSERT_EQ(alone.step_until(std::llround(end / time.step)), StepOutcome::done);
+      ASSERT_EQ(alone.step_until(std::llround(run_end / time.step)), StepOutcome::done);
       const Model::Point tip = model.points.at(free_end);
       const double place = alone.displacement(tip.body, tip.rows.y);
       EXPECT_NEAR(pair[static_cast<std::size_t>(kind - 1)].tip, place, 1e-11 * std::abs(place));

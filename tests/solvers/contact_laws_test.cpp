@@ -37,7 +37,7 @@ System mass_on_spring(double height, ContactAssumption assumption = ContactAssum
   return system;
 }
 
-TimeParameters exact(double step) {
+TimeParameters exact_time(double step) {
   TimeParameters time = time_of(step);
   time.integrator = Integrator::exact;
   return time;
@@ -48,7 +48,7 @@ double height_of(const Simulation& simulation) {
 }
 
 TEST(Penalty, CarriesTheLoadAtItsCompression) {
-  for (const TimeParameters& time : {time_of(1e-4), exact(1e-4)}) {
+  for (const TimeParameters& time : {time_of(1e-4), exact_time(1e-4)}) {
     Simulation simulation(mass_on_spring(-10.0 / stiffness), time);
     for (int n = 0; n < 1000; ++n) {
       ASSERT_NEAR(simulation.contact_force(0), 10.0, 1e-9) << n;
@@ -62,7 +62,7 @@ TEST(Penalty, SwingsAsASpringDoesWithSecondOrderWhereTheForceIsInstantaneous) {
   // From y = 0 under a load of 10 N: y = −(F/k) (1 − cos ωt), the force up to 2 F and down to 0.
   double last = 0.0;
   for (const double step : {4e-4, 2e-4, 1e-4}) {
-    Simulation simulation(mass_on_spring(0.0, ContactAssumption::subs_b), exact(step));
+    Simulation simulation(mass_on_spring(0.0, ContactAssumption::subs_b), exact_time(step));
     double error = 0.0;
     while (simulation.time() < 0.1) {
       const double expected = -10.0 / stiffness * (1.0 - std::cos(omega * simulation.time()));
@@ -85,7 +85,7 @@ TEST(Penalty, LetsTheBodyFlyOffAndCatchesIt) {
   const double half_contact = (std::numbers::pi - std::acos(0.25)) / omega;
   const double flight = 2.0 * velocity / 10.0;
   const double step = 1e-5;
-  Simulation simulation(mass_on_spring(-5.0 * sag), exact(step));
+  Simulation simulation(mass_on_spring(-5.0 * sag), exact_time(step));
   std::vector<double> changes;
   ContactState last = simulation.contact_state(0);
   double highest = 0.0;
@@ -194,7 +194,7 @@ TEST(Penalty, DenseAndSecularSpectraAgree) {
 
 TEST(Penalty, FrozenStepIsThatOfTheSimulation) {
   // The height about its rest obeys the recurrence whose roots are the factors of the step.
-  for (const TimeParameters& time : {time_of(2e-3), exact(2e-3)}) {
+  for (const TimeParameters& time : {time_of(2e-3), exact_time(2e-3)}) {
     const System system = mass_on_spring(0.0, ContactAssumption::subs_b);
     const Equilibrium rest = find_equilibrium(system, sliding_state(system, 0.0));
     ASSERT_EQ(rest.status, EquilibriumStatus::converged) << rest.failure;
@@ -220,7 +220,7 @@ TEST(Penalty, FrozenStepIsThatOfTheSimulation) {
 }
 
 /// A mass on a belt with friction that is smooth in the slip.
-MassOnGround belt_scene(RegularisedSign::Kind kind, double speed, double belt) {
+MassOnGround regularised_belt(RegularisedSign::Kind kind, double speed, double belt) {
   MassOnGround scene;
   scene.alpha = 2.0;
   scene.belt_velocity = belt;
@@ -234,13 +234,13 @@ TEST(RegularisedFriction, HoldsTheSpringWithItsShareAtTheVelocityOfTheBelt) {
   using Kind = RegularisedSign::Kind;
   for (const Kind kind : {Kind::tanh, Kind::linear, Kind::square_root, Kind::atan}) {
     for (const double belt : {0.02, 0.5}) {
-      const MassOnGround scene = belt_scene(kind, 0.1, belt);
+      const MassOnGround scene = regularised_belt(kind, 0.1, belt);
       const double share = scene.friction.sign.at(belt).value;
       const System system = scene.system();
       const Equilibrium rest = find_equilibrium(system, sliding_state(system, 0.0));
       ASSERT_EQ(rest.status, EquilibriumStatus::converged) << rest.failure;
       EXPECT_NEAR(rest.contacts[0].friction_force, -3.0 * share, 1e-11);
-      for (const TimeParameters& time : {time_of(1e-3), exact(1e-3)}) {
+      for (const TimeParameters& time : {time_of(1e-3), exact_time(1e-3)}) {
         Simulation simulation(system, time);
         ASSERT_EQ(simulation.step_until(20000), StepOutcome::done) << simulation.failure();
         EXPECT_NEAR(simulation.displacement(0, MassOnGround::x_row), 0.03 * share, 1e-9);
@@ -253,7 +253,7 @@ TEST(RegularisedFriction, HoldsTheSpringWithItsShareAtTheVelocityOfTheBelt) {
 
 TEST(RegularisedFriction, DampsSmallMotionByItsSlope) {
   // m ẍ + (c + μ N s'(v)) ẋ + k x = 0.
-  const MassOnGround scene = belt_scene(RegularisedSign::Kind::tanh, 0.1, 0.05);
+  const MassOnGround scene = regularised_belt(RegularisedSign::Kind::tanh, 0.1, 0.05);
   const System system = scene.system();
   const Equilibrium rest = find_equilibrium(system, sliding_state(system, 0.0));
   ASSERT_EQ(rest.status, EquilibriumStatus::converged);

@@ -1,4 +1,5 @@
 #include "solvers/contact_solver.hpp"
+#include "tests/support/constants.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,7 @@
 namespace stridor {
 namespace {
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
+using test::eps;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// What the solver is given, and what follows from its forces.
@@ -364,7 +365,8 @@ TEST(ContactSolver, ContactsThatJamTogetherAreFound) {
 /// n bilateral contacts whose sliding operator is S: unit compliances, friction makes the rest.
 Case with_sliding_operator(const Eigen::MatrixXd& S) {
   const Eigen::Index n = S.rows();
-  Case problem{Eigen::MatrixXd::Zero(2 * n, 2 * n), std::vector<LocalProblem>(static_cast<std::size_t>(n))};
+  Case problem{Eigen::MatrixXd::Zero(2 * n, 2 * n),
+               std::vector<LocalProblem>(static_cast<std::size_t>(n))};
   for (Eigen::Index i = 0; i < n; ++i) {
     problem.delassus(2 * i, 2 * i) = 1.0;
     problem.delassus(2 * i + 1, 2 * i + 1) = 100.0;
@@ -396,10 +398,10 @@ TEST(ContactSolver, PairsThatJamApartFromEachOtherAreFound) {
   for (const Eigen::Index i : {Eigen::Index{0}, Eigen::Index{1}}) {
     S.setZero();
     // Side by side, and interleaved.
-    const std::vector<Eigen::Index> first = i == 0 ? std::vector<Eigen::Index>{0, 1}
-                                                   : std::vector<Eigen::Index>{0, 2};
-    const std::vector<Eigen::Index> second = i == 0 ? std::vector<Eigen::Index>{2, 3}
-                                                    : std::vector<Eigen::Index>{1, 3};
+    const std::vector<Eigen::Index> first =
+        i == 0 ? std::vector<Eigen::Index>{0, 1} : std::vector<Eigen::Index>{0, 2};
+    const std::vector<Eigen::Index> second =
+        i == 0 ? std::vector<Eigen::Index>{2, 3} : std::vector<Eigen::Index>{1, 3};
     S(first, first) = pair;
     S(second, second) = pair;
     ASSERT_GT(S.determinant(), 0.0);
@@ -418,7 +420,8 @@ TEST(ContactSolver, BilateralContactsJamExactlyWhereAPrincipalMinorIsNotPositive
   for (int trial = 0; trial < 2000; ++trial) {
     const Eigen::Index n = 2 + trial % 6;
     Eigen::MatrixXd S(n, n);
-    for (double& entry : S.reshaped()) entry = 1.2 * draw.normal() / std::sqrt(static_cast<double>(n));
+    for (double& entry : S.reshaped())
+      entry = 1.2 * draw.normal() / std::sqrt(static_cast<double>(n));
     S.diagonal().setOnes();
     // Some act on few others only.
     if (trial % 3 == 0) S.topRightCorner(n / 2, n - n / 2).setZero();

@@ -23,7 +23,7 @@ using Complex = std::complex<double>;
 
 /// Four masses between springs, watched each; the first carries a load. Free motions up to
 /// 28 rad/s.
-ReducedBody chain(double alpha, double beta) {
+ReducedBody damped_chain(double alpha, double beta) {
   ReducedBody body;
   body.mass = Eigen::Vector4d(1.0, 2.0, 0.5, 1.5).asDiagonal();
   body.stiffness = Eigen::Matrix4d{
@@ -49,7 +49,7 @@ Eigen::Matrix4d skew(double scale, std::uint32_t seed) {
 
 /// Gyroscopic and circulatory terms, and damping of one spring only.
 ReducedBody coupled_chain(double gyroscopic, double circulatory) {
-  ReducedBody body = chain(0.1, 0.0);
+  ReducedBody body = damped_chain(0.1, 0.0);
   Eigen::Matrix4d damper = Eigen::Matrix4d::Zero();
   damper(3, 3) = 1.2;
   body.coupled = {damper + skew(gyroscopic, 1), skew(circulatory, 2)};
@@ -77,7 +77,7 @@ struct FullMatrices {
   }
 };
 
-constexpr double surplus = 0.02;
+constexpr double added = 0.02;
 
 /// Slots on masses 0 and 2, which then move to 1 and 3; loads, damping and motion change too.
 struct Driven {
@@ -132,8 +132,8 @@ class WithoutCoupling : public ::testing::TestWithParam<std::optional<double>> {
 
 TEST_P(WithoutCoupling, EveryNumberIsThatOfTheModes) {
   const double step = 0.03;
-  const ReducedBody proportional = chain(0.4, 2e-3);
-  ReducedBody body = chain(0.4, 0.0);
+  const ReducedBody proportional = damped_chain(0.4, 2e-3);
+  ReducedBody body = damped_chain(0.4, 0.0);
   body.coupled = {2e-3 * body.stiffness, Eigen::Matrix4d::Zero()};
   const ModalBody modes = make_modal(proportional);
   const ModalBody coupled = make_modal(body);
@@ -153,15 +153,14 @@ TEST_P(WithoutCoupling, EveryNumberIsThatOfTheModes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Prompt, WithoutCoupling,
-                         ::testing::Values(std::nullopt, std::optional(0.0),
-                                           std::optional(surplus)));
+                         ::testing::Values(std::nullopt, std::optional(0.0), std::optional(added)));
 
 /// A body without forces, in its modes, and where it is after `num_steps`.
 Eigen::Vector4d free_motion(const ReducedBody& body, double step, int num_steps,
                             const Eigen::Vector4d& u, const Eigen::Vector4d& v) {
   const ModalBody modal = make_modal(body);
-  CoupledPropagator propagator(modal, Eigen::MatrixXd(4, 0), step, surplus, 0, body.damping.alpha,
-                               {}, "body");
+  CoupledPropagator propagator(modal, Eigen::MatrixXd(4, 0), step, added, 0, body.damping.alpha, {},
+                               "body");
   const Eigen::Matrix4d to_modal = modal.shapes.transpose() * body.mass;
   propagator.set_motion(to_modal * u, to_modal * v, nullptr);
   for (int n = 0; n < num_steps; ++n) {
@@ -267,7 +266,7 @@ TEST(CoupledPropagator, AnswersAConstantForceAsTheStatics) {
   const Eigen::Matrix4d flexibility = FullMatrices(body).position.inverse();
   const Eigen::MatrixXd pattern = modal.shapes.transpose().col(0);
   const double load[] = {2.0};
-  for (const std::optional<double>& delta : {std::optional<double>(), std::optional(surplus)}) {
+  for (const std::optional<double>& delta : {std::optional<double>(), std::optional(added)}) {
     CoupledPropagator propagator(modal, pattern, 0.05, delta, 1, body.damping.alpha, load, "body");
     propagator.watch(0, 3);
     const double force[] = {-5.0};
@@ -286,10 +285,10 @@ TEST(CoupledPropagator, AnswersAConstantForceAsTheStatics) {
 }
 
 TEST(CoupledPropagator, GyroscopicTermsDoNoWork) {
-  ReducedBody body = chain(0.0, 0.0);
+  ReducedBody body = damped_chain(0.0, 0.0);
   body.coupled = {skew(8.0, 3), Eigen::Matrix4d::Zero()};
   const ModalBody modal = make_modal(body);
-  CoupledPropagator propagator(modal, Eigen::MatrixXd(4, 0), 0.06, surplus, 0, 0.0, {}, "body");
+  CoupledPropagator propagator(modal, Eigen::MatrixXd(4, 0), 0.06, added, 0, 0.0, {}, "body");
   const auto energy = [&] {
     propagator.settle(nullptr);
     const Propagator::Motion motion = propagator.motion(nullptr);
@@ -308,7 +307,7 @@ TEST(CoupledPropagator, GoesOnBitwiseFromItsState) {
   const ModalBody modal = make_modal(body);
   const auto make = [&] {
     auto made =
-        std::make_unique<CoupledPropagator>(modal, Eigen::MatrixXd(4, 0), 0.02, surplus, 2,
+        std::make_unique<CoupledPropagator>(modal, Eigen::MatrixXd(4, 0), 0.02, added, 2,
                                             body.damping.alpha, std::span<const double>(), "body");
     made->watch(1, 3);
     return made;
@@ -334,10 +333,10 @@ TEST(CoupledPropagator, GoesOnBitwiseFromItsState) {
   EXPECT_EQ(whole->predicted(1), resumed->predicted(1));
 }
 
-/// G of two directions with the impulse that r takes at once, and the answer to a force that changes
-/// its sign with every step.
+/// G of two directions with the impulse that r takes at once, and the answer to a force that
+/// changes its sign with every step.
 TEST(CoupledStep, KeepsTheSymplecticFormOfAGyroscopicBody) {
-  ReducedBody body = chain(0.0, 0.0);
+  ReducedBody body = damped_chain(0.0, 0.0);
   body.coupled = {skew(8.0, 3), Eigen::Matrix4d::Zero()};
   const ModalBody modal = make_modal(body);
   for (const double delta : {0.0, 0.1, 0.2}) {
@@ -355,8 +354,7 @@ TEST(CoupledStep, KeepsTheSymplecticFormOfAGyroscopicBody) {
     const Eigen::Matrix4d at_once = impulse.topRows(4);
     EXPECT_GT(at_once.norm(), 1e-3 * step.prompt.norm());
     EXPECT_LT((at_once + at_once.transpose()).norm(), 1e-12 * step.prompt.norm());
-    EXPECT_LT((step.prompt - step.prompt.transpose() - at_once).norm(),
-              1e-12 * step.prompt.norm());
+    EXPECT_LT((step.prompt - step.prompt.transpose() - at_once).norm(), 1e-12 * step.prompt.norm());
     const Eigen::MatrixXd excess = step.prompt - step.alternating();
     EXPECT_LT((excess - excess.transpose()).norm(), 1e-11 * step.prompt.norm());
   }
@@ -365,7 +363,7 @@ TEST(CoupledStep, KeepsTheSymplecticFormOfAGyroscopicBody) {
 TEST(CoupledPropagator, RefusesAStepThatItsFastestMotionOutruns) {
   const ReducedBody body = coupled_chain(3.0, 10.0);
   try {
-    CoupledPropagator(make_modal(body), Eigen::MatrixXd(4, 0), 0.1, surplus, 0, 0.1, {}, "rotor");
+    CoupledPropagator(make_modal(body), Eigen::MatrixXd(4, 0), 0.1, added, 0, 0.1, {}, "rotor");
     FAIL() << "the fastest motion has 28 rad/s";
   } catch (const ConfigError& error) {
     EXPECT_EQ(error.problems().front().key, "time.step");

@@ -25,7 +25,7 @@ namespace {
 using Complex = std::complex<double>;
 
 /// The main scene with few modes and damping that is switched off nowhere, moving or held.
-Model small_model(SlidingMode sliding) {
+Model sliding_model(SlidingMode sliding) {
   ModelParameters parameters = test::paper_model();
   for (auto& [name, body] : parameters.substructures) {
     auto& beam = body.get<BeamParameters>();
@@ -72,7 +72,7 @@ TimeParameters resolving_time(const System& system) {
 }
 
 TEST(CoupledSystem, MovesAsTheModesDoWhereNothingIsCoupled) {
-  const Model model = small_model(SlidingMode::moving);
+  const Model model = sliding_model(SlidingMode::moving);
   const TimeParameters time = resolving_time(model.system);
   Simulation modes(model.system, time);
   Simulation coupled(with_damping_coupled(model.system), time);
@@ -93,7 +93,7 @@ TEST(CoupledSystem, MovesAsTheModesDoWhereNothingIsCoupled) {
 }
 
 /// Values next to each other in frequency and growth, relative to the largest.
-void expect_same(std::vector<Complex> a, std::vector<Complex> b, double tolerance) {
+void expect_same_spectrum(std::vector<Complex> a, std::vector<Complex> b, double tolerance) {
   ASSERT_EQ(a.size(), b.size());
   double scale = 0.0;
   for (const Complex& value : a) scale = std::max(scale, std::abs(value));
@@ -113,7 +113,7 @@ std::vector<Complex> values_of(const std::vector<Eigenvalue>& eigenvalues) {
 }
 
 TEST(CoupledSystem, HasTheEigenvaluesAndStepsOfTheModesWhereNothingIsCoupled) {
-  const Model model = small_model(SlidingMode::frozen);
+  const Model model = sliding_model(SlidingMode::frozen);
   const System coupled = with_damping_coupled(model.system);
   const Equilibrium equilibrium = find_equilibrium(model.system, sliding_state(model.system, 0.0));
   const Equilibrium same = find_equilibrium(coupled, sliding_state(coupled, 0.0));
@@ -122,10 +122,11 @@ TEST(CoupledSystem, HasTheEigenvaluesAndStepsOfTheModesWhereNothingIsCoupled) {
   const Pencil pencil = linearise(model.system, equilibrium);
   const Pencil other = linearise(coupled, same);
   EXPECT_GT(other.num_body_slots, 0);
-  expect_same(values_of(dense_eigenvalues(other)), values_of(dense_eigenvalues(pencil)), 1e-12);
+  expect_same_spectrum(values_of(dense_eigenvalues(other)), values_of(dense_eigenvalues(pencil)),
+                       1e-12);
   const TimeParameters time = resolving_time(model.system);
-  expect_same(FrozenStep(coupled, time).factors(other),
-              FrozenStep(model.system, time).factors(pencil), 1e-9);
+  expect_same_spectrum(FrozenStep(coupled, time).factors(other),
+                       FrozenStep(model.system, time).factors(pencil), 1e-9);
 }
 
 /// Gyroscopic and circulatory terms on the cantilever, and a damper at its end.
@@ -148,7 +149,7 @@ System with_coupled_terms(System system) {
 }
 
 TEST(CoupledSystem, EquilibriumBalancesTheCirculatoryForces) {
-  const System system = with_coupled_terms(small_model(SlidingMode::frozen).system);
+  const System system = with_coupled_terms(sliding_model(SlidingMode::frozen).system);
   const Equilibrium found = find_equilibrium(system, sliding_state(system, 0.0));
   ASSERT_EQ(found.status, EquilibriumStatus::converged);
   // The remainder of K u + N u is a force of the contact on its own rows alone.
@@ -174,7 +175,7 @@ TEST(CoupledSystem, EquilibriumBalancesTheCirculatoryForces) {
 }
 
 TEST(CoupledSystem, SecularAndDenseEigenvaluesAgree) {
-  const System system = with_coupled_terms(small_model(SlidingMode::frozen).system);
+  const System system = with_coupled_terms(sliding_model(SlidingMode::frozen).system);
   const Equilibrium equilibrium = find_equilibrium(system, sliding_state(system, 0.0));
   const Pencil pencil = linearise(system, equilibrium);
   std::vector<Complex> dense;
@@ -183,7 +184,7 @@ TEST(CoupledSystem, SecularAndDenseEigenvaluesAgree) {
   std::vector<Complex> secular;
   for (const Complex& s : values_of(secular_eigenvalues(pencil, SpectrumWindow::below(1e7))))
     if (s.imag() > 0.0) secular.push_back(s);
-  expect_same(secular, dense, 1e-9);
+  expect_same_spectrum(secular, dense, 1e-9);
 }
 
 /// Growth of a held system from one of its eigenvectors, from the amplitude of the slave point at
@@ -218,7 +219,7 @@ double growth_in_steps(const System& held, const Equilibrium& equilibrium, const
 }
 
 TEST(CoupledSystem, GrowsFromItsEigenvectorAsTheEigenvalueSays) {
-  const System system = with_coupled_terms(small_model(SlidingMode::frozen).system);
+  const System system = with_coupled_terms(sliding_model(SlidingMode::frozen).system);
   const Equilibrium equilibrium = find_equilibrium(system, sliding_state(system, 0.0));
   const Pencil pencil = linearise(system, equilibrium);
   Eigenvalue fastest;
@@ -242,7 +243,7 @@ TEST(CoupledSystem, GrowsFromItsEigenvectorAsTheEigenvalueSays) {
 }
 
 TEST(CoupledSystem, IsMarchedExactlyOnly) {
-  const System system = with_coupled_terms(small_model(SlidingMode::frozen).system);
+  const System system = with_coupled_terms(sliding_model(SlidingMode::frozen).system);
   TimeParameters time = resolving_time(system);
   time.step *= 0.1;
   time.integrator = Integrator::central_difference;

@@ -19,13 +19,13 @@ Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index cols, unsigned see
   return Eigen::MatrixXd::NullaryExpr(rows, cols, [&] { return uniform(generator); });
 }
 
-DiscModel elastic_brake() {
+DiscModel decoupled_brake() {
   DiscModelParameters brake = test::with_elastic_pads(test::squealing_brake());
   return make_disc_model(brake);
 }
 
 TEST(Decoupling, SpinningPlateFallsIntoPairsAndPadsIntoModes) {
-  const LinearSystem bodies = elastic_brake().bodies;
+  const LinearSystem bodies = decoupled_brake().bodies;
   const DecoupledSystem apart = decouple(bodies);
   const Eigen::Index n = bodies.size();
   Eigen::Index pairs = 0, single = 0, next = 0;
@@ -68,7 +68,7 @@ TEST(Decoupling, WhatIsCoupledStaysTogether) {
 }
 
 TEST(Decoupling, PropagationOfGroupsIsThatOfTheWhole) {
-  const LinearSystem bodies = elastic_brake().bodies;
+  const LinearSystem bodies = decoupled_brake().bodies;
   const Eigen::Index n = bodies.size();
   constexpr double step = 1e-6;
   const ExponentialPropagator propagator(bodies, step);

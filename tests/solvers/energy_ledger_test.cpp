@@ -26,7 +26,7 @@ constexpr double rounding = 2e-11;
 // ---------------------------------------------------------------- bodies without contact
 
 /// Three masses between springs, damped in proportion, set in motion.
-SystemBody chain(double alpha, double beta) {
+SystemBody chain_body(double alpha, double beta) {
   SystemBody body;
   body.name = "chain";
   body.reduced.mass = Eigen::Vector3d(1.0, 2.0, 0.5).asDiagonal();
@@ -109,10 +109,10 @@ TEST(EnergyLedger, EveryEntryIsThatOfTheSchemeWrittenOut) {
 
 TEST(EnergyLedger, UndampedFreeVibrationKeepsItsEnergy) {
   for (const Coordinates coordinates : all_coordinates) {
-    FreeBody free(chain(0.0, 0.0), time_of(0.01, coordinates));
+    FreeBody free(chain_body(0.0, 0.0), time_of(0.01, coordinates));
     const Eigen::Vector3d displacement(0.01, -0.02, 0.03);
     const Eigen::Vector3d velocity(0.5, 0.1, -0.3);
-    const ReducedBody& body = chain(0.0, 0.0).reduced;
+    const ReducedBody& body = chain_body(0.0, 0.0).reduced;
     EXPECT_NEAR(free.ledger.initial(),
                 0.5 * velocity.dot(body.mass * velocity) +
                     0.5 * displacement.dot(body.stiffness * (displacement - 0.01 * velocity)),
@@ -131,7 +131,7 @@ TEST(EnergyLedger, UndampedFreeVibrationKeepsItsEnergy) {
 
 TEST(EnergyLedger, DampedVibrationEndsWithAllOfItsEnergyInTheDamping) {
   for (const Coordinates coordinates : all_coordinates) {
-    FreeBody free(chain(2.0, 1e-3), time_of(0.01, coordinates));
+    FreeBody free(chain_body(2.0, 1e-3), time_of(0.01, coordinates));
     free.march(4000);  // 40 s at no less than 1 1/s in amplitude
     EXPECT_NEAR(free.ledger.balance().damping_loss, free.ledger.initial(),
                 1e-12 * free.ledger.initial());
@@ -461,8 +461,7 @@ TEST(EnergyLedger, ContactsThatCloseAnOverlapFeedEnergyToItsFullAmount) {
   ASSERT_EQ(simulation.step_until(100), StepOutcome::done) << simulation.failure();
   const EnergyLedger& ledger = *simulation.energy();
   EXPECT_LT(ledger.relative_error(), rounding);
-  EXPECT_NEAR(ledger.contact_gain().energy, 0.5 * ground.mass * std::pow(overlap / step, 2),
-              1e-9);
+  EXPECT_NEAR(ledger.contact_gain().energy, 0.5 * ground.mass * std::pow(overlap / step, 2), 1e-9);
   EXPECT_EQ(ledger.contact_gain().last_time, 0.0);
   EXPECT_TRUE(ledger.contacts_feed());
 }

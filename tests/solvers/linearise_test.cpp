@@ -24,7 +24,7 @@ using namespace test;
 using ::testing::HasSubstr;
 
 using Complex = std::complex<double>;
-constexpr double load = 0.20;  ///< |F_y| of the paper, N
+constexpr double paper_load = 0.20;  ///< |F_y| of the paper, N
 constexpr LinearisationTerms no_terms{false, false, false, false, false, false};
 
 constexpr std::array all_assumptions{ContactAssumption::subs_a, ContactAssumption::subs_b,
@@ -400,7 +400,7 @@ TEST(ContactLinearisation, TermsAddUpToTheWhole) {
 }
 
 /// The system of the paper; built once for each angle.
-System paper_system(double angle, ContactAssumption assumption = ContactAssumption::subs_b) {
+System linearised_system(double angle, ContactAssumption assumption = ContactAssumption::subs_b) {
   static const System trailing = make_paper_model(paper_model(trailing_angle)).system;
   static const System leading = make_paper_model(paper_model(leading_angle)).system;
   System system = angle == trailing_angle ? trailing : leading;
@@ -427,7 +427,7 @@ TEST(Linearise, IsTheTangentOfTheEquilibrium) {
                                     std::pair(leading_angle, SurfaceKind::polyline),
                                     std::pair(trailing_angle, SurfaceKind::smooth)}) {
     for (const ContactAssumption assumption : all_assumptions) {
-      System system = paper_system(angle, assumption);
+      System system = linearised_system(angle, assumption);
       system.surfaces[0].kind = kind;
       EquilibriumState state = sliding_state(system, drive_displacement_at(system, 0, 0.0905));
       const Equilibrium equilibrium = find_equilibrium(system, state);
@@ -449,7 +449,7 @@ TEST(Linearise, IsTheTangentOfTheEquilibrium) {
       const Eigen::VectorXd tangent = matrix.partialPivLu().solve(right_side);
 
       // Central difference: error (step/load)² ~ 1e-8 times the curvature, of order 1 at most.
-      const double step = 1e-4 * load;
+      const double step = 1e-4 * paper_load;
       state.load += step;
       const Equilibrium more = find_equilibrium(system, state);
       state.load -= 2.0 * step;
@@ -524,7 +524,7 @@ TEST(Linearise, AboutTheDeformedEquilibriumItPredictsTheBursts) {
   // Growth by an independent calculation, 3 %. For the leading beam the position is that of the
   // undeformed slave, for the trailing one that of the contact itself: they differ by what friction
   // bends the tip, 0.04 and 0.1 mm.
-  const System leading = paper_system(leading_angle);
+  const System leading = linearised_system(leading_angle);
   for (const Growth& expected :
        {Growth{0.0635, 36.0, 3529.0}, Growth{0.074, 87.0, 3529.0}, Growth{0.083, 87.0, 3520.0},
         Growth{0.091, 133.0, 3530.0}, Growth{0.0935, 98.0, 10569.0}}) {
@@ -534,7 +534,7 @@ TEST(Linearise, AboutTheDeformedEquilibriumItPredictsTheBursts) {
                                       at_frequency(expected.growth, expected.frequency));
     EXPECT_NEAR(s.real(), expected.growth, 0.03 * expected.growth) << expected.position;
   }
-  const System trailing = paper_system(trailing_angle);
+  const System trailing = linearised_system(trailing_angle);
   for (const Growth& expected :
        {Growth{0.0625, 43.0, 3524.0}, Growth{0.075, 90.0, 3521.0}, Growth{0.0815, 86.0, 3525.0},
         Growth{0.092, 129.0, 3530.0}, Growth{0.048, 45.0, 10572.0}, Growth{0.0935, 71.0, 10581.0},
@@ -549,7 +549,7 @@ TEST(Linearise, AboutTheDeformedEquilibriumItPredictsTheBursts) {
 
 TEST(Linearise, TheForceInEquilibriumChangesGrowthLittle) {
   // What λ adds where the contact turns and shifts; 1.3 % at the weakest maximum, 36 1/s.
-  const System system = paper_system(leading_angle);
+  const System system = linearised_system(leading_angle);
   for (const auto& [position, growth, frequency] :
        {Growth{0.0635, 36.0, 3529.0}, Growth{0.083, 87.0, 3520.0}, Growth{0.091, 133.0, 3530.0}}) {
     const Equilibrium equilibrium =
@@ -570,7 +570,7 @@ TEST(Linearise, AboutTheUndeformedGeometryItIsThePublishedLocus) {
                {trailing_angle, 0.0955, 41.79, 6950.6}, {trailing_angle, 0.0955, -5.85, 24.79},
                {leading_angle, 0.048, 6.79, 10556.4},   {leading_angle, 0.0565, -13.36, 37.43}};
   for (const auto& [angle, position, growth, frequency] : cases) {
-    const System system = paper_system(angle);
+    const System system = linearised_system(angle);
     const Equilibrium equilibrium =
         find_equilibrium(system, sliding_state(system, drive_displacement_at(system, 0, position),
                                                ContactGeometry::undeformed));
@@ -592,7 +592,7 @@ TEST(Linearise, AboutTheUndeformedGeometryItIsThePublishedLocus) {
 
 TEST(Linearise, FrictionThatFallsWithTheVelocityFeedsTheTangentialMotion) {
   for (const auto geometry : {ContactGeometry::undeformed, ContactGeometry::deformed}) {
-    System system = paper_system(trailing_angle);
+    System system = linearised_system(trailing_angle);
     system.contacts[0].friction = {FrictionLaw::Kind::stribeck, 0.5, 0.2, 0.05};
     const Equilibrium equilibrium =
         find_equilibrium(system, sliding_state(system, 0.010, geometry));
@@ -646,13 +646,13 @@ TEST(Linearise, OpenContactsDoNotAppear) {
 }
 
 TEST(Linearise, AnEquilibriumThatHasNotConvergedIsRefused) {
-  const System system = paper_system(trailing_angle);
+  const System system = linearised_system(trailing_angle);
   EXPECT_THAT(message_of<std::invalid_argument>([&] { linearise(system, Equilibrium{}); }),
               HasSubstr("linearise: the equilibrium has not converged"));
 }
 
 TEST(Perturbation, IsAddedToTheStartAndScaledToTheAmplitude) {
-  System system = paper_system(trailing_angle);
+  System system = linearised_system(trailing_angle);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   Eigen::VectorXcd vector(243);
@@ -695,14 +695,14 @@ TEST(Perturbation, IsAddedToTheStartAndScaledToTheAmplitude) {
 }
 
 TEST(Perturbation, StartsABodyAtRestAsWell) {
-  System system = paper_system(trailing_angle);
+  System system = linearised_system(trailing_angle);
   add_perturbation(system, Eigen::VectorXcd::Ones(243), {0.0, 1.0}, 1e-6);
   EXPECT_EQ(system.bodies[0].initial_displacement.size(), 220);
   EXPECT_EQ(system.bodies[1].initial_velocity.size(), 23);
 }
 
 TEST(Perturbation, AVectorThatDoesNotFitIsRefused) {
-  System system = paper_system(trailing_angle);
+  System system = linearised_system(trailing_angle);
   EXPECT_THAT(message_of<std::invalid_argument>(
                   [&] { add_perturbation(system, Eigen::VectorXcd::Ones(242), 1.0, 1e-6); }),
               HasSubstr("the eigenvector has 242 entries, the bodies have 243 modes"));
@@ -753,7 +753,7 @@ TEST(Perturbation, GrowsAsItsEigenvalueSays) {
       {leading_angle, 0.0743, ContactAssumption::film, smooth, constant, 47.00, 0.2},
       {trailing_angle, 0.0752, ContactAssumption::subs_b, smooth, constant, 102.26, 0.2, 2e-7}};
   for (const auto& [angle, start, assumption, kind, law, growth, tolerance, rms] : cases) {
-    System system = paper_system(angle, assumption);
+    System system = linearised_system(angle, assumption);
     system.surfaces[0].kind = kind;
     if (rms > 0.0) system.surfaces[0].roughness = Roughness({rms, 1e-4, 1}, 0.1);
     // The bodies stand where the slave is wanted; from there the drive is held.
@@ -763,7 +763,7 @@ TEST(Perturbation, GrowsAsItsEigenvalueSays) {
     point.first_segment = static_cast<int>(start / 0.001);
     point.friction = law;
     point.friction_rise = TimeCurve(1.0);
-    system.drive = {TimeCurve(0.030), TimeCurve(-load), true};
+    system.drive = {TimeCurve(0.030), TimeCurve(-paper_load), true};
     for (SystemBody& body : system.bodies) body.modal.damping.alpha_start.reset();
 
     const Equilibrium equilibrium = find_equilibrium(system, sliding_state(system, 0.0));

@@ -17,7 +17,7 @@ constexpr double interval = 2e-5;
 constexpr double end = 8e-3;
 
 /// Displacements of the free end at every multiple of the interval.
-std::vector<double> free_end_motion(const Model& model, const TimeParameters& time) {
+std::vector<double> end_motion(const Model& model, const TimeParameters& time) {
   Simulation simulation(model.system, time);
   const Model::Point tip = model.points.at(free_end);
   std::vector<double> motion;
@@ -64,9 +64,9 @@ double order(double coarse, double fine) {
 
 TEST_P(OrderTest, OfExactPropagationIsTwo) {
   const Model damped = model(true);
-  const std::vector<double> reference = free_end_motion(damped, exact(2.5e-7, 50e3));
+  const std::vector<double> reference = end_motion(damped, exact(2.5e-7, 50e3));
   const auto error = [&](double step) {
-    return relative_difference(free_end_motion(damped, exact(step, 50e3)), reference);
+    return relative_difference(end_motion(damped, exact(step, 50e3)), reference);
   };
   const double coarse = error(4e-6);
   const double fine = error(1e-6);
@@ -79,9 +79,9 @@ TEST_P(OrderTest, OfExactPropagationIsTwo) {
 TEST_P(OrderTest, OfTheCentralDifferenceIsOne) {
   for (const bool is_damped : {true, false}) {
     const Model beams = model(is_damped);
-    const std::vector<double> reference = free_end_motion(beams, paper_time(1.5625e-8));
+    const std::vector<double> reference = end_motion(beams, paper_time(1.5625e-8));
     const auto error = [&](double step) {
-      return relative_difference(free_end_motion(beams, paper_time(step)), reference);
+      return relative_difference(end_motion(beams, paper_time(step)), reference);
     };
     const double found = order(error(2.5e-7), error(1.25e-7));
     EXPECT_NEAR(found, 1.05, 0.1) << is_damped;
@@ -122,7 +122,7 @@ TEST_P(OrderWithEvents, OfExactPropagationIsTwo) {
 
   const auto motion = [&](double step) {
     time.step = step;
-    return free_end_motion(model, time);
+    return end_motion(model, time);
   };
   const std::vector<double> reference = motion(1.25e-7);
   const double coarse = relative_difference(motion(4e-6), reference);
@@ -130,7 +130,7 @@ TEST_P(OrderWithEvents, OfExactPropagationIsTwo) {
   EXPECT_LT(coarse, 3e-4);
   EXPECT_GT(order(coarse, fine) / 4.0, 1.8);
   // The central difference has an error of first order, 1.3e-5 at this step.
-  const std::vector<double> independent = free_end_motion(model, paper_time(5e-8));
+  const std::vector<double> independent = end_motion(model, paper_time(5e-8));
   EXPECT_LT(relative_difference(reference, independent), 3e-5);
 }
 

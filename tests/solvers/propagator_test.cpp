@@ -30,7 +30,7 @@ ReducedBody chain(double alpha, double beta) {
   return body;
 }
 
-ReducedBody oscillator(double mass, double stiffness, double alpha, double beta) {
+ReducedBody single_mass(double mass, double stiffness, double alpha, double beta) {
   ReducedBody body;
   body.mass = Eigen::MatrixXd::Constant(1, 1, mass);
   body.stiffness = Eigen::MatrixXd::Constant(1, 1, stiffness);
@@ -141,7 +141,7 @@ double error_at_one(double alpha, double beta, int num_steps) {
     return std::exp(-t) * (a + c * v + stiffness * u);
   };
   const double start[] = {0.0};
-  const auto body = Form::make(oscillator(1.0, stiffness, alpha, beta),
+  const auto body = Form::make(single_mass(1.0, stiffness, alpha, beta),
                                Eigen::MatrixXd::Identity(1, 1), step, 0, start);
   for (int n = 1; n <= num_steps; ++n) {
     const double load[] = {force(n * step)};
@@ -177,7 +177,7 @@ TYPED_TEST(PropagatorTest, MatchesTheSchemeWrittenOutForOneOscillator) {
   constexpr double stiffness = 25.0;
   constexpr double c = 0.3 + 0.002 * stiffness;
   const double amplitude[] = {2.0};
-  const auto body = TypeParam::make(oscillator(1.0, stiffness, 0.3, 0.002),
+  const auto body = TypeParam::make(single_mass(1.0, stiffness, 0.3, 0.002),
                                     Eigen::MatrixXd::Identity(1, 1), step, 1, amplitude);
   body->watch(0, 0);
   double previous = 0.0;
@@ -348,7 +348,7 @@ TYPED_TEST(AnyPropagatorTest, GoesOnBitwiseAfterSaveAndLoad) {
 
 TYPED_TEST(AnyPropagatorTest, RefusesTheStateOfAnotherBody) {
   const auto body = TypeParam::make(chain(0.5, 1e-3), Eigen::MatrixXd(3, 0), 0.01, 1, {});
-  const auto other = TypeParam::make(oscillator(1.0, 10.0, 0.0, 0.0), no_patterns, 0.01, 1, {});
+  const auto other = TypeParam::make(single_mass(1.0, 10.0, 0.0, 0.0), no_patterns, 0.01, 1, {});
   State state;
   other->save(state, "");
   EXPECT_THROW(body->load(state, ""), std::invalid_argument);
@@ -358,7 +358,7 @@ TYPED_TEST(AnyPropagatorTest, RefusesTheStateOfAnotherBody) {
 TYPED_TEST(PropagatorTest, MassDampingCanChangeOnTheWay) {
   constexpr double step = 0.01;
   const auto body =
-      TypeParam::make(oscillator(1.0, 25.0, 4.0, 0.0), Eigen::MatrixXd(1, 0), step, 1, {});
+      TypeParam::make(single_mass(1.0, 25.0, 4.0, 0.0), Eigen::MatrixXd(1, 0), step, 1, {});
   body->watch(0, 0);
   double previous = 0.0;
   double current = 0.0;
@@ -386,7 +386,7 @@ TEST(ExactPropagation, FreeMotionFromAnyStartIsExactAtAnyStep) {
     for (const double stiffness : {0.0, 25.0}) {
       for (const double step : {0.02, 0.3, 6.0}) {
         const auto body =
-            ExactForm::make(oscillator(1.0, stiffness, damping, 0.0), no_patterns, step, 1, {});
+            ExactForm::make(single_mass(1.0, stiffness, damping, 0.0), no_patterns, step, 1, {});
         body->watch(0, 0);
         const double none = 0.0;
         body->set_motion(Eigen::VectorXd::Constant(1, 0.3), Eigen::VectorXd::Constant(1, -2.0),
@@ -418,7 +418,7 @@ TEST(ExactPropagation, FreeMotionFromAnyStartIsExactAtAnyStep) {
 TEST(ExactPropagation, AConstantForceIsFollowedExactly) {
   const double load[] = {7.0};
   for (const double step : {0.01, 0.5, 3.0}) {
-    const auto body = ExactForm::make(oscillator(1.0, 25.0, 0.6, 0.0),
+    const auto body = ExactForm::make(single_mass(1.0, 25.0, 0.6, 0.0),
                                       Eigen::MatrixXd::Identity(1, 1), step, 0, load);
     // At rest until t = 0, where the force sets in: the first step starts from there.
     body->set_motion(Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1), nullptr);
@@ -436,7 +436,7 @@ TEST(ExactPropagation, AConstantForceIsFollowedExactly) {
 }
 
 TEST(ExactPropagation, TheVelocityIsThatOfTheMotion) {
-  const auto body = ExactForm::make(oscillator(2.0, 50.0, 0.4, 0.0), no_patterns, 0.1, 1, {});
+  const auto body = ExactForm::make(single_mass(2.0, 50.0, 0.4, 0.0), no_patterns, 0.1, 1, {});
   body->watch(0, 0);
   const double force = 3.0;
   body->set_motion(Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, 1.5), &force);

@@ -80,8 +80,8 @@ TEST(Simulation, StepJustBelowTheLimitStaysBounded) {
 }
 
 /// Runs straight to `end` and by way of a saved state, and compares every number of both ends.
-void expect_bitwise_resume(const ModelParameters& parameters, const TimeParameters& time,
-                           std::int64_t stop, std::int64_t end) {
+void expect_same_after_resume(const ModelParameters& parameters, const TimeParameters& time,
+                              std::int64_t stop, std::int64_t end) {
   const Model model = make_paper_model(parameters);
   Simulation straight(model.system, time);
   ASSERT_EQ(straight.step_until(stop), StepOutcome::done) << straight.failure();
@@ -99,7 +99,7 @@ TEST(Simulation, SaveLoadAndGoOnIsBitwiseTheUninterruptedRun) {
   // In the ramp, and in every form.
   for (const auto coordinates :
        {Coordinates::modal, Coordinates::craig_bampton, Coordinates::craig_bampton_fused}) {
-    expect_bitwise_resume(paper_model(), paper_time(paper_step, coordinates), 1500, 3000);
+    expect_same_after_resume(paper_model(), paper_time(paper_step, coordinates), 1500, 3000);
   }
 }
 
@@ -110,7 +110,8 @@ TEST(Simulation, ResumesBitwiseInTheMiddleOfTheDampingSchedule) {
   auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();
   oblique.damping.hold = 2e-3;
   oblique.damping.fade = 2e-3;
-  expect_bitwise_resume(parameters, paper_time(), 15'000, 25'000);  // 3 ms of a fade from 2 to 4 ms
+  expect_same_after_resume(parameters, paper_time(), 15'000,
+                           25'000);  // 3 ms of a fade from 2 to 4 ms
 }
 
 TEST(Simulation, ResumesBitwiseAcrossTheNodesOfTheMaster) {
@@ -121,7 +122,7 @@ TEST(Simulation, ResumesBitwiseAcrossTheNodesOfTheMaster) {
     parameters.drive.velocity = TimeCurve(10.0);
     parameters.drive.ramp = 5e-4;
     parameters.contact->armed_from = 1.0;
-    expect_bitwise_resume(parameters, paper_time(), 6000, 9000);
+    expect_same_after_resume(parameters, paper_time(), 6000, 9000);
   }
 }
 
@@ -513,7 +514,7 @@ TEST(ExactSimulation, ResumesBitwiseAcrossNodesAndInTheMiddleOfTheDampingSchedul
     oblique.damping.hold = 1e-3;
     oblique.damping.fade = 1e-3;
     for (const int middle : {600, 601, 639, 640, 641})
-      expect_bitwise_resume(parameters, exact_time(2.5e-6, 50e3), middle, 900);
+      expect_same_after_resume(parameters, exact_time(2.5e-6, 50e3), middle, 900);
   }
 }
 

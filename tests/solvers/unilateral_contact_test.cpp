@@ -7,6 +7,7 @@
 
 #include "core/errors.hpp"
 #include "solvers/simulation.hpp"
+#include "tests/support/constants.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 #include "tests/support/pressed_beams.hpp"
@@ -20,7 +21,7 @@ using namespace test;
 
 using ::testing::HasSubstr;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
+using test::eps;
 constexpr Coordinates all_forms[] = {Coordinates::modal, Coordinates::craig_bampton,
                                      Coordinates::craig_bampton_fused};
 

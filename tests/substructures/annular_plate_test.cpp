@@ -10,6 +10,7 @@
 #include <complex>
 #include <numbers>
 
+#include "tests/support/constants.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace stridor {
@@ -17,7 +18,7 @@ namespace {
 
 using test::message_of;
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
+using test::two_pi;
 
 /// The disc whose frequencies an independent program has computed.
 AnnularPlateParameters reference_disc() {

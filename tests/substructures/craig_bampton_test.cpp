@@ -28,7 +28,7 @@ using test::paper_cantilever;
 using test::paper_oblique;
 using testing::StartsWith;
 
-BeamParameters small_beam(Support start, Support end) {
+BeamParameters coarse_beam(Support start, Support end) {
   BeamParameters beam = paper_oblique();
   beam.mesh = {6, 1};
   beam.supports = {start, end};
@@ -83,7 +83,7 @@ TEST(CraigBampton, StaticInterfaceLoadIsExactWithZeroModes) {
 }
 
 TEST(CraigBampton, StaticInterfaceLoadStaysExactWhateverModesAreKept) {
-  const BodyMatrices body = make_beam(small_beam(Support::free, Support::clamped));
+  const BodyMatrices body = make_beam(coarse_beam(Support::free, Support::clamped));
   const std::vector<int> interface = test::slave_interface(body);
   const std::vector<int> watched = all_dofs(body);
   const SparseCholesky factor(body.stiffness, "the beam");
@@ -101,7 +101,7 @@ TEST(CraigBampton, StaticInterfaceLoadStaysExactWhateverModesAreKept) {
 }
 
 TEST(CraigBampton, RowOfAnInteriorDoFRecoversTheStaticDeflection) {
-  const BodyMatrices body = make_beam(small_beam(Support::clamped, Support::free));
+  const BodyMatrices body = make_beam(coarse_beam(Support::clamped, Support::free));
   const std::vector<int> interface = test::point_dofs(body, "end_top");
   const int interior = test::point_dofs(body, "end_bottom")[1];
   const ReducedBody reduced = make_craig_bampton(body, interface, 0, std::vector<int>{interior});
@@ -156,7 +156,7 @@ TEST(CraigBampton, MatricesAreTheFullOnesBetweenTheBasisVectors) {
 }
 
 TEST(CraigBampton, RigidMotionsKeepTheirMassAndGiveNoForce) {
-  const BeamParameters beam = small_beam(Support::free, Support::free);
+  const BeamParameters beam = coarse_beam(Support::free, Support::free);
   const BodyMatrices body = make_beam(beam);
   const std::vector<int> interface = corner_interface(body);
   const double total = beam.material.density * beam.length * beam.thickness * beam.width;
@@ -186,7 +186,7 @@ TEST(CraigBampton, RigidMotionsKeepTheirMassAndGiveNoForce) {
 
 TEST(CraigBampton, BaseInertiaOfARigidMotionIsThatOfTheFullBody) {
   // A free beam that is told to follow: the whole of it is accelerated.
-  const BeamParameters beam = small_beam(Support::free, Support::free);
+  const BeamParameters beam = coarse_beam(Support::free, Support::free);
   BodyMatrices body = make_beam(beam);
   const Eigen::VectorXd translation = test::rigid_motion(body, {1.0, 0.0});
   const Eigen::VectorXd rotation = test::rigid_motion(body, {0.0, 0.0}, 1.0);
@@ -215,7 +215,7 @@ TEST(CraigBampton, LiftingAGuidedBeamMeetsNoBaseInertia) {
 }
 
 TEST(CraigBampton, BodyThatDoesNotFollowHasNoBaseInertia) {
-  const BodyMatrices body = make_beam(small_beam(Support::clamped, Support::free));
+  const BodyMatrices body = make_beam(coarse_beam(Support::clamped, Support::free));
   EXPECT_EQ(make_craig_bampton(body, test::point_dofs(body, "end_top"), 0, {}).base_inertia.size(),
             0);
 }
@@ -223,7 +223,7 @@ TEST(CraigBampton, BodyThatDoesNotFollowHasNoBaseInertia) {
 TEST(CraigBampton, AllModesKeptGivesTheFullSpectrum) {
   for (const auto& [start, end] :
        {std::pair{Support::free, Support::clamped}, {Support::free, Support::guided}}) {
-    const BodyMatrices body = make_beam(small_beam(start, end));
+    const BodyMatrices body = make_beam(coarse_beam(start, end));
     const std::vector<int> interface = test::slave_interface(body);
     const Eigen::Index num_interior = body.num_dofs() - static_cast<Eigen::Index>(interface.size());
     const ReducedBody reduced = make_craig_bampton(body, interface, num_interior, {});
@@ -238,7 +238,7 @@ TEST(CraigBampton, AllModesKeptGivesTheFullSpectrum) {
 
 TEST(CraigBampton, FrequenciesLieAboveTheFullOnesAndFallAsModesAreAdded) {
   // Rayleigh-Ritz on growing subspaces.
-  const BodyMatrices body = make_beam(small_beam(Support::free, Support::clamped));
+  const BodyMatrices body = make_beam(coarse_beam(Support::free, Support::clamped));
   const std::vector<int> interface = test::slave_interface(body);
   const Eigen::VectorXd full =
       test::dense_spectrum(Eigen::MatrixXd(body.stiffness), Eigen::MatrixXd(body.mass));
@@ -259,7 +259,7 @@ TEST(CraigBampton, FrequenciesLieAboveTheFullOnesAndFallAsModesAreAdded) {
 }
 
 TEST(CraigBampton, InterfaceDoFsComeFirstInTheGivenOrder) {
-  const BodyMatrices body = make_beam(small_beam(Support::free, Support::clamped));
+  const BodyMatrices body = make_beam(coarse_beam(Support::free, Support::clamped));
   std::vector<int> interface = test::point_dofs(body, "tip");
   const ReducedBody forward = make_craig_bampton(body, interface, 3, interface);
   Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(2, 5);
@@ -275,7 +275,7 @@ TEST(CraigBampton, InterfaceDoFsComeFirstInTheGivenOrder) {
 }
 
 TEST(CraigBampton, HeldDoFHasARowOfZeros) {
-  const BodyMatrices body = make_beam(small_beam(Support::free, Support::clamped));
+  const BodyMatrices body = make_beam(coarse_beam(Support::free, Support::clamped));
   const std::vector<int> watched{BodyMatrices::held, 4, BodyMatrices::held};
   const ReducedBody reduced = make_craig_bampton(body, test::slave_interface(body), 3, watched);
   ASSERT_EQ(reduced.rows.rows(), 3);
@@ -345,7 +345,7 @@ TEST(CraigBampton, WatchedDoFOutOfRangeThrows) {
 }
 
 TEST(CraigBampton, InterfaceThatLeavesARigidMotionThrows) {
-  const BodyMatrices body = make_beam(small_beam(Support::free, Support::free));
+  const BodyMatrices body = make_beam(coarse_beam(Support::free, Support::free));
   for (const std::vector<int>& interface :
        {std::vector<int>{}, test::point_dofs(body, "start_bottom")}) {
     EXPECT_THAT(message_of<NumericalError>([&] { make_craig_bampton(body, interface, 2, {}); }),

@@ -1,4 +1,5 @@
 #include "substructures/damping.hpp"
+#include "tests/support/constants.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,14 +14,14 @@ namespace {
 using testing::IsEmpty;
 using testing::SizeIs;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
+using test::eps;
 
 /// Beam 1 of the paper: from 40 to 0.2 between 0.2 and 0.25 s.
 RayleighDamping oblique_damping() {
   return {0.2, 4e-8, 40.0, 0.2, 0.05};
 }
 
-std::vector<Problem> problems_of(const RayleighDamping& damping) {
+std::vector<Problem> problems_of_damping(const RayleighDamping& damping) {
   std::vector<Problem> problems;
   for (const auto& check : RayleighDamping::schema().checks) check(&damping, problems);
   return problems;
@@ -92,13 +93,13 @@ TEST(RayleighDamping, SchemaRefusesAHoldOrFadeOfNothing) {
       "alpha_start: missing: `hold` and `fade` say how long it lasts; give it or drop them";
   for (const RayleighDamping& damping :
        {RayleighDamping{1.0, 0.0, {}, 0.2, 0.0}, RayleighDamping{1.0, 0.0, {}, 0.0, 0.05}}) {
-    const std::vector<Problem> problems = problems_of(damping);
+    const std::vector<Problem> problems = problems_of_damping(damping);
     ASSERT_THAT(problems, SizeIs(1));
     EXPECT_EQ(problems[0].text(), message);
   }
-  EXPECT_THAT(problems_of(oblique_damping()), IsEmpty());
-  EXPECT_THAT(problems_of({40.0, 4e-8, {}, 0.0, 0.0}), IsEmpty());
-  EXPECT_THAT(problems_of({0.2, 4e-8, 40.0, 0.0, 0.0}), IsEmpty());
+  EXPECT_THAT(problems_of_damping(oblique_damping()), IsEmpty());
+  EXPECT_THAT(problems_of_damping({40.0, 4e-8, {}, 0.0, 0.0}), IsEmpty());
+  EXPECT_THAT(problems_of_damping({0.2, 4e-8, 40.0, 0.0, 0.0}), IsEmpty());
 }
 
 }  // namespace

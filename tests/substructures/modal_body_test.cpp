@@ -46,7 +46,7 @@ ReducedBody two_masses(double k11, double k22) {
   return body;
 }
 
-ModalBody oscillator(double omega, double alpha, double beta) {
+ModalBody modal_oscillator(double omega, double alpha, double beta) {
   ModalBody body;
   body.omega = Eigen::VectorXd::Constant(1, omega);
   body.damping.alpha = alpha;
@@ -195,38 +195,39 @@ TEST(ModalBody, MassThatIsNotPositiveDefiniteThrows) {
 }
 
 TEST(CentralDifferenceLimit, OfAnUndampedOscillatorIsTwoOverOmega) {
-  EXPECT_DOUBLE_EQ(central_difference_limit(oscillator(5.0, 0.0, 0.0)), 0.4);
+  EXPECT_DOUBLE_EQ(central_difference_limit(modal_oscillator(5.0, 0.0, 0.0)), 0.4);
 }
 
 TEST(CentralDifferenceLimit, OfADampedOscillatorSolvesItsQuadratic) {
   // h² ω² + 2 h c = 4: (−c + √(c² + 4 ω²))/ω².
   const double omega = 3.0;
   const double c = 0.7 + 0.05 * 9.0;
-  const double h = central_difference_limit(oscillator(omega, 0.7, 0.05));
+  const double h = central_difference_limit(modal_oscillator(omega, 0.7, 0.05));
   EXPECT_NEAR(h * h * omega * omega + 2.0 * h * c, 4.0, 16.0 * eps * 4.0);
   EXPECT_NEAR(h, (-c + std::sqrt(c * c + 4.0 * omega * omega)) / (omega * omega), 16.0 * eps * h);
 }
 
 TEST(CentralDifferenceLimit, OfADampedRigidModeIsTwoOverC) {
-  EXPECT_DOUBLE_EQ(central_difference_limit(oscillator(0.0, 8.0, 1e-3)), 0.25);
+  EXPECT_DOUBLE_EQ(central_difference_limit(modal_oscillator(0.0, 8.0, 1e-3)), 0.25);
 }
 
 TEST(CentralDifferenceLimit, OfNothingIsInfinite) {
-  EXPECT_EQ(central_difference_limit(oscillator(0.0, 0.0, 1e-3)),
+  EXPECT_EQ(central_difference_limit(modal_oscillator(0.0, 0.0, 1e-3)),
             std::numeric_limits<double>::infinity());
   EXPECT_EQ(central_difference_limit(ModalBody{}), std::numeric_limits<double>::infinity());
 }
 
 TEST(CentralDifferenceLimit, IsThatOfTheLargestDampingOfTheSchedule) {
-  ModalBody body = oscillator(3.0, 0.2, 0.0);
+  ModalBody body = modal_oscillator(3.0, 0.2, 0.0);
   const double calm = central_difference_limit(body);
   body.damping.alpha_start = 4.0;
-  EXPECT_EQ(central_difference_limit(body), central_difference_limit(oscillator(3.0, 4.0, 0.0)));
+  EXPECT_EQ(central_difference_limit(body),
+            central_difference_limit(modal_oscillator(3.0, 4.0, 0.0)));
   EXPECT_LT(central_difference_limit(body), calm);
 }
 
 TEST(CentralDifferenceLimit, IsTheSmallestOfAllModes) {
-  ModalBody body = oscillator(1.0, 0.0, 0.0);
+  ModalBody body = modal_oscillator(1.0, 0.0, 0.0);
   body.omega.resize(3);
   body.omega << 0.0, 2.0, 10.0;
   EXPECT_DOUBLE_EQ(central_difference_limit(body), 0.2);
@@ -260,7 +261,7 @@ TEST(CentralDifferenceLimit, SeparatesStableFromUnstableSteps) {
                                            {3.0, 0.0, 0.3},
                                            {3.0, 40.0, 0.1},
                                            {6.07534e6, 40.0, 4e-8}}) {
-    const double limit = central_difference_limit(oscillator(omega, alpha, beta));
+    const double limit = central_difference_limit(modal_oscillator(omega, alpha, beta));
     const double c = alpha + beta * omega * omega;
     EXPECT_LT(largest_motion(omega, c, 0.999 * limit), 25.0) << omega << ", " << c;
     EXPECT_GE(largest_motion(omega, c, 1.001 * limit), 1e6) << omega << ", " << c;

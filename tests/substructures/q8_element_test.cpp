@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/support/constants.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace stridor {
@@ -18,7 +19,7 @@ namespace {
 using test::message_of;
 using Q8Vector = Eigen::Matrix<double, 16, 1>;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
+using test::eps;
 constexpr ElasticMaterial material{71e9, 0.33, 2770.0};
 constexpr double width = 0.01;
 

@@ -11,14 +11,14 @@ namespace {
 
 using namespace test;
 
-BodyMatrices small_beam() {
+BodyMatrices short_beam() {
   BeamParameters parameters = paper_oblique();
   parameters.mesh.along = 4;
   return make_beam(parameters);
 }
 
 TEST(Recovery, GivesBackTheMatricesOfTheReduction) {
-  const BodyMatrices body = small_beam();
+  const BodyMatrices body = short_beam();
   const std::vector<int> interface = slave_interface(body);
   const Eigen::MatrixXd T = recovery_matrix(body, interface, 6);
   const ReducedBody reduced = make_craig_bampton(body, interface, 6, {});
@@ -32,7 +32,7 @@ TEST(Recovery, GivesBackTheMatricesOfTheReduction) {
 }
 
 TEST(Recovery, TranslationMovesEveryNodeAlikeAndHeldOnesNot) {
-  const BodyMatrices body = small_beam();
+  const BodyMatrices body = short_beam();
   const Eigen::VectorXcd up = rigid_motion(body, {0.0, 2.0}).cast<std::complex<double>>();
   const Eigen::MatrixX2cd displacement = node_displacements(body, up);
   ASSERT_EQ(displacement.rows(), body.nodes.rows());

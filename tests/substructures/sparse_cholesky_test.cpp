@@ -20,7 +20,7 @@ namespace {
 using test::eps;
 using test::message_of;
 
-std::string refusal(const SparseMatrix& matrix) {
+std::string factor_refusal(const SparseMatrix& matrix) {
   return message_of<NumericalError>([&] { SparseCholesky(matrix, "the stiffness"); });
 }
 
@@ -167,7 +167,7 @@ TEST(SparseCholesky, FreeBeamThrows) {
     BeamParameters beam = test::paper_oblique(angle);
     beam.supports = {};
     const BodyMatrices body = make_beam(beam);
-    EXPECT_EQ(refusal(body.stiffness), not_positive_definite(body.num_dofs())) << angle;
+    EXPECT_EQ(factor_refusal(body.stiffness), not_positive_definite(body.num_dofs())) << angle;
   }
 }
 
@@ -178,11 +178,11 @@ TEST(SparseCholesky, BeamWithOneRigidMotionLeftThrows) {
       BeamParameters beam = test::paper_oblique(angle);
       beam.mesh = {along, 1};
       const BodyMatrices guided = make_beam(beam);
-      EXPECT_EQ(refusal(guided.stiffness), not_positive_definite(guided.num_dofs()))
+      EXPECT_EQ(factor_refusal(guided.stiffness), not_positive_definite(guided.num_dofs()))
           << along << " elements at " << angle;
       beam.supports = {Support::pinned, Support::free};
       const BodyMatrices pinned = make_beam(beam);
-      EXPECT_EQ(refusal(pinned.stiffness), not_positive_definite(pinned.num_dofs()))
+      EXPECT_EQ(factor_refusal(pinned.stiffness), not_positive_definite(pinned.num_dofs()))
           << along << " elements at " << angle;
     }
   }
@@ -195,24 +195,24 @@ TEST(SparseCholesky, SlenderCantileverIsAcceptedWhileItsBendingIsKnown) {
     BeamParameters beam = test::paper_cantilever();
     beam.angle = angle;
     beam.thickness = 1e-3 * beam.length;
-    EXPECT_EQ(refusal(make_beam(beam).stiffness), "<no exception>") << angle;
+    EXPECT_EQ(factor_refusal(make_beam(beam).stiffness), "<no exception>") << angle;
     beam.thickness = 1e-4 * beam.length;
-    EXPECT_EQ(refusal(make_beam(beam).stiffness), not_positive_definite(500)) << angle;
+    EXPECT_EQ(factor_refusal(make_beam(beam).stiffness), not_positive_definite(500)) << angle;
   }
 }
 
 TEST(SparseCholesky, IndefiniteMatrixThrows) {
-  EXPECT_EQ(refusal(diagonal(Eigen::Vector3d(1.0, -1.0, 2.0))), not_positive_definite(3));
+  EXPECT_EQ(factor_refusal(diagonal(Eigen::Vector3d(1.0, -1.0, 2.0))), not_positive_definite(3));
 }
 
 TEST(SparseCholesky, ZeroMatrixThrows) {
-  EXPECT_EQ(refusal(diagonal(Eigen::Vector2d::Zero())), not_positive_definite(2));
+  EXPECT_EQ(factor_refusal(diagonal(Eigen::Vector2d::Zero())), not_positive_definite(2));
 }
 
 TEST(SparseCholesky, MatrixThatIsNotANumberThrows) {
   const double bad = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(refusal(diagonal(Eigen::Vector2d(1.0, bad))), not_positive_definite(2));
-  EXPECT_EQ(refusal(diagonal(Eigen::Vector2d(bad, 1.0))), not_positive_definite(2));
+  EXPECT_EQ(factor_refusal(diagonal(Eigen::Vector2d(1.0, bad))), not_positive_definite(2));
+  EXPECT_EQ(factor_refusal(diagonal(Eigen::Vector2d(bad, 1.0))), not_positive_definite(2));
 }
 
 }  // namespace

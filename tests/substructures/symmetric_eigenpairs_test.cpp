@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/errors.hpp"
+#include "tests/support/constants.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace stridor {
@@ -14,7 +15,7 @@ namespace {
 
 using test::message_of;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
+using test::eps;
 
 Eigen::MatrixXd random_matrix(Eigen::Index n, unsigned seed) {
   std::mt19937 generator(seed);

@@ -35,7 +35,7 @@ TEST(ViscoelasticMaterial, OneTimeHasItsLossPeakBetweenCreepAndRelaxation) {
   EXPECT_GT(modulus.imag(), 0.0);
 }
 
-std::vector<Problem> problems_of(const ViscoelasticMaterial& material) {
+std::vector<Problem> problems_of_material(const ViscoelasticMaterial& material) {
   std::vector<Problem> problems;
   for (const auto& check : ViscoelasticMaterial::schema().checks) check(&material, problems);
   return problems;
@@ -43,10 +43,10 @@ std::vector<Problem> problems_of(const ViscoelasticMaterial& material) {
 
 TEST(ViscoelasticMaterial, SchemaChecksModuliAndShares) {
   ViscoelasticMaterial material = rubber();
-  EXPECT_TRUE(problems_of(material).empty());
+  EXPECT_TRUE(problems_of_material(material).empty());
   EXPECT_DOUBLE_EQ(material.creep_weight(0), 0.9);
   const auto only_problem = [&] {
-    const std::vector<Problem> problems = problems_of(material);
+    const std::vector<Problem> problems = problems_of_material(material);
     return problems.size() == 1 ? problems[0].key + ": " + problems[0].message : "not one problem";
   };
   material.glassy_modulus = 1e6;
@@ -59,7 +59,7 @@ TEST(ViscoelasticMaterial, SchemaChecksModuliAndShares) {
   material.creep_shares = {0.5, 0.6};
   EXPECT_EQ(only_problem(), "creep_shares: must sum to 1, is 1.1");
   material.creep_shares = {0.4, 0.6};
-  EXPECT_TRUE(problems_of(material).empty());
+  EXPECT_TRUE(problems_of_material(material).empty());
   EXPECT_DOUBLE_EQ(material.creep_weight(1), 0.9 * 0.6);
 }
 

@@ -5,6 +5,7 @@
 // test that asked fails with the scene that came nearest and its remaining errors.
 #pragma once
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -104,12 +105,17 @@ class Repair {
   }
 
   /// True where the draft is to be kept.
-  bool accepts(const Draft& root, const IsBetter& is_better) {
-    return is_better(problems_of_(root)) &&
+  ///
+  /// @param attempt name of the change that made it
+  bool accepts(const Draft& root, const IsBetter& is_better, const std::string& attempt) {
+    const auto [found, is_new] = problems_after_.try_emplace(attempt);
+    if (is_new) found->second = problems_of_(root);
+    return is_better(found->second) &&
            visited_.insert(WrittenScene(root, YamlStyle::block).text()).second;
   }
 
   bool improve(Draft& root, const std::vector<Problem>& problems) {
+    problems_after_.clear();
     for (const bool must_be_fewer : {true, false}) {
       bool is_at_top = false;
       for (int distance = 0; !is_at_top; ++distance) {
@@ -118,6 +124,7 @@ class Repair {
           const auto path = ancestor(problem.key, distance);
           if (!path) continue;
           is_at_top = false;
+          named_ = problem.key;
           const IsBetter is_better = [&](const std::vector<Problem>& left) {
             if (must_be_fewer) return left.size() < problems.size();
             return !any_of(left, [&](const Problem& one) { return one.key == problem.key; });
@@ -163,7 +170,7 @@ class Repair {
     const Key* key = map->schema->find(last_name(path));
     if (key == nullptr) return false;
     map->children.push_back(complete_draft(*key, map->pattern));
-    if (accepts(root, is_better) || change(root, path, is_better)) return true;
+    if (accepts(root, is_better, "in " + path) || change(root, path, is_better)) return true;
     map->children.pop_back();
     return false;
   }
@@ -179,11 +186,14 @@ class Repair {
     Draft* draft = find_draft(root, path);
     if (draft == nullptr || draft->key == nullptr) return false;
     const Draft before = *draft;
-    for (const Draft& candidate : candidates(*before.key)) {
+    const bool is_named = (named_ + ".").starts_with(path + ".");
+    const WordPairs pairs = is_named ? WordPairs::tried : WordPairs::left_out;
+    int index = 0;
+    for (const Draft& candidate : candidates(*before.key, pairs)) {
       draft->form = candidate.form;
       draft->text = candidate.text;
       draft->children = candidate.children;
-      if (accepts(root, is_better)) return true;
+      if (accepts(root, is_better, fmt::format("{} {}", path, index++))) return true;
     }
     *draft = before;
     return false;
@@ -199,7 +209,7 @@ class Repair {
     Draft* map = find_draft(root, parent_path(path));
     const std::vector<Draft> before = map->children;
     std::erase_if(map->children, [&](const Draft& child) { return child.name == last_name(path); });
-    if (accepts(root, is_better)) return true;
+    if (accepts(root, is_better, "out " + path)) return true;
     map->children = before;
     return false;
   }
@@ -208,6 +218,9 @@ class Repair {
   std::string wanted_;
   std::string fixed_;
   std::set<std::string> visited_;
+  std::string named_;  ///< path that a check names, for which the changes are tried
+  /// Of the changes tried in one improvement, most of which are tried again from further away.
+  std::map<std::string, std::vector<Problem>> problems_after_;
 };
 
 /// Errors of the checks between keys of a struct and of those below it. The reader runs them from

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "substructures/body_matrices.hpp"
+#include "tests/support/constants.hpp"
 
 namespace stridor::test {
-
-inline constexpr double eps = std::numeric_limits<double>::epsilon();
 
 /// Displacement of the free DoFs when every node moves by `translation` and turns by `rotation`
 /// (linearised) about `centre`. A DoF shared by several nodes takes that of the last one.

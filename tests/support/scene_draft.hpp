@@ -88,6 +88,7 @@ inline std::vector<double> allowed_numbers(const Key& key) {
   return numbers;
 }
 
+/// Each once, in the order in which they come.
 inline std::vector<std::string> words_of(const std::string& sentence) {
   std::vector<std::string> words(1);
   for (const char c : sentence) {
@@ -98,12 +99,18 @@ inline std::vector<std::string> words_of(const std::string& sentence) {
     }
   }
   if (words.back().empty()) words.pop_back();
+  std::set<std::string> known;
+  std::erase_if(words, [&](const std::string& word) { return !known.insert(word).second; });
   return words;
 }
 
+/// Whether a list of texts may be two words of the documentation with a dot between: there are
+/// thousands.
+enum class WordPairs { tried, left_out };
+
 /// What the value of a key that holds no maps may be; a check between keys may want another than
 /// the first.
-inline std::vector<Draft> candidates(const Key& key) {
+inline std::vector<Draft> candidates(const Key& key, WordPairs pairs = WordPairs::tried) {
   std::vector<Draft> drafts;
   switch (key.kind) {
     case KeyKind::flag:
@@ -139,6 +146,7 @@ inline std::vector<Draft> candidates(const Key& key) {
       drafts = {list_draft({"a", "b"}), list_draft({"a.b", "c.d"}), list_draft({"a"}),
                 text_draft("a")};
       for (const std::string& word : words_of(key.doc)) drafts.push_back(list_draft({word}));
+      if (pairs == WordPairs::left_out) return drafts;
       for (const std::string& first : words_of(key.doc)) {
         for (const std::string& second : words_of(key.doc))
           drafts.push_back(list_draft({first + "." + second}));

@@ -13,13 +13,14 @@
 #include "solvers/equilibrium.hpp"
 #include "solvers/frozen_step.hpp"
 #include "solvers/prompt_surplus.hpp"
+#include "tests/support/constants.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {
 namespace {
 
 using test::scene_path;
-constexpr double two_pi = 2.0 * std::numbers::pi;
+using test::two_pi;
 
 struct Loaded {
   TimeParameters time;

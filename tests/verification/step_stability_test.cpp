@@ -24,7 +24,7 @@ namespace {
 
 using namespace test;
 
-TimeParameters time_of(Integrator integrator, double step) {
+TimeParameters stepping(Integrator integrator, double step) {
   TimeParameters time;
   time.integrator = integrator;
   time.step = step;
@@ -112,7 +112,7 @@ TEST(FrozenStep, FactorsAreThoseOfTheSimulation) {
             {Integrator::exact, 2.0 * limit, 0.0},
             {Integrator::exact, 0.5 * limit, 3.0},
             {Integrator::central_difference, 0.3 * limit, 3.0}}) {
-        TimeParameters time = time_of(integrator, step);
+        TimeParameters time = stepping(integrator, step);
         if (cutoff > 0.0) time.retain = RetainParameters{cutoff * lowest_frequency(system), {}};
         SCOPED_TRACE(testing::Message() << "seed " << seed << ", damped " << is_damped << ", "
                                         << (integrator == Integrator::exact ? "exact " : "central ")
@@ -145,7 +145,7 @@ TEST(FrozenStep, FactorsOfCoupledBodiesAreThoseOfTheSimulation) {
     const System system = with_coupling(random_sliding_bodies(seed, 0.3, true), seed,
                                         {.gyroscopic = 0.5, .damper = 0.1, .circulatory = 0.1});
     for (const double turn : {0.3, 1.5}) {
-      const TimeParameters time = time_of(Integrator::exact, turn / fastest_motion(system));
+      const TimeParameters time = stepping(Integrator::exact, turn / fastest_motion(system));
       std::vector<double> seen;
       std::vector<std::complex<double>> factors;
       try {
@@ -170,7 +170,7 @@ TEST(StepStability, GyroscopicBodiesWithoutDampingAreStableWithoutFriction) {
     const System system = with_coupling(random_sliding_bodies(seed, 0.0, false), seed,
                                         {.gyroscopic = 0.05 * (seed % 20)});
     for (const double turn : {0.05, 0.2, 0.5, 1.0, 1.5, 1.999}) {
-      const TimeParameters time = time_of(Integrator::exact, turn / fastest_motion(system));
+      const TimeParameters time = stepping(Integrator::exact, turn / fastest_motion(system));
       const FrozenStep step(system, time);
       for (const Pencil& contacts : {rows_of_contact(system, 0.0), sticking(system)}) {
         EXPECT_LT(spectral_radius(step.factors(contacts)), 1.0 + 1e-9)
@@ -199,7 +199,7 @@ struct CoupledCases {
       const System system =
           with_coupling(random_sliding_bodies(seed, friction, true), seed, coupling);
       const double turn = least_turn + (largest_turn - least_turn) * (seed % 10) / 9.0;
-      const TimeParameters time = time_of(Integrator::exact, turn / fastest_motion(system));
+      const TimeParameters time = stepping(Integrator::exact, turn / fastest_motion(system));
       std::vector<Pencil> places{rows_of_contact(system, friction)};
       if (friction == 0.0) places.push_back(sticking(system));
       for (const Pencil& contacts : places) {
@@ -240,11 +240,11 @@ TEST(StepStability, WithoutFrictionCouplingDoesNotLowerTheLimit) {
           EXPECT_LT(spectral_radius(step.factors(contacts)), 1.0 + 1e-9);
       };
       for (const double share : {0.01, 0.5, 0.9, 0.999})
-        expect_stable(time_of(Integrator::central_difference, share * limit));
+        expect_stable(stepping(Integrator::central_difference, share * limit));
       for (const double share : {0.01, 0.5, 1.0, 3.0, 10.0, 50.0})
-        expect_stable(time_of(Integrator::exact, share * limit));
+        expect_stable(stepping(Integrator::exact, share * limit));
       for (const double cutoff : {1.5, 5.0}) {
-        TimeParameters time = time_of(Integrator::exact, 0.7 * limit);
+        TimeParameters time = stepping(Integrator::exact, 0.7 * limit);
         time.retain = RetainParameters{cutoff * lowest_frequency(system), {}};
         expect_stable(time);
         time.integrator = Integrator::central_difference;
@@ -261,7 +261,7 @@ TEST(StepStability, HeavilyDampedBodiesBesideUndampedOnesAreStableWithoutFrictio
   for (unsigned seed = 1; seed <= 100; ++seed) {
     System system = random_sliding_bodies(seed, 0.0, false);
     const TimeParameters time =
-        time_of(Integrator::exact, 1.99 / system.bodies[1].modal.omega.maxCoeff());
+        stepping(Integrator::exact, 1.99 / system.bodies[1].modal.omega.maxCoeff());
     system.bodies[0].reduced.damping.alpha = 2.14 / time.step;
     system.bodies[0].modal = make_modal(system.bodies[0].reduced);
     const FrozenStep step(system, time, 0.309);
@@ -280,7 +280,7 @@ TEST(StepStability, BodiesApartAreUnstableBeyondTheLimit) {
       const double limit = step_limit(system).step;
       const auto radius = [&](double share) {
         return spectral_radius(
-            FrozenStep(system, time_of(Integrator::central_difference, share * limit))
+            FrozenStep(system, stepping(Integrator::central_difference, share * limit))
                 .factors(apart));
       };
       EXPECT_LT(radius(0.9999), 1.0 + 1e-9);
@@ -313,7 +313,7 @@ TEST(StepStability, FrictionLowersTheLimitAsInClosedForm) {
   const double coupled = 2.0 / std::sqrt(100.0 + friction * 20.0);
   ASSERT_LT(coupled, 0.999 * announced);
 
-  const TimeParameters time = time_of(Integrator::central_difference, 0.9995 * announced);
+  const TimeParameters time = stepping(Integrator::central_difference, 0.9995 * announced);
   const std::vector<PathStability> path = stability_along_path(system, time, 5);
   ASSERT_EQ(path.size(), 1u) << "the drive is frozen";
   const StepStability& found = path.front().stability;
@@ -327,7 +327,7 @@ TEST(StepStability, FrictionLowersTheLimitAsInClosedForm) {
 
   // And so it goes: the simulation runs away at the one step and not at the other.
   const auto largest = [&](double step) {
-    Simulation simulation(system, time_of(Integrator::central_difference, step));
+    Simulation simulation(system, stepping(Integrator::central_difference, step));
     double size = 0.0;
     for (int n = 0; n < 1000; ++n) {
       EXPECT_EQ(simulation.step(), StepOutcome::done) << simulation.failure();
@@ -346,7 +346,7 @@ TEST(StepStability, FlutterIsNotTakenForAStepTooLarge) {
     const Pencil contacts = rows_of_contact(system, 0.6);
     try {
       const TimeParameters time =
-          time_of(Integrator::central_difference, 0.02 * step_limit(system).step);
+          stepping(Integrator::central_difference, 0.02 * step_limit(system).step);
       const StepStability found = step_stability(FrozenStep(system, time), contacts);
       if (found.verdict == StepVerdict::stable) continue;
       EXPECT_EQ(found.verdict, StepVerdict::bodies_grow) << "seed " << seed;
