@@ -11,7 +11,7 @@
 #include "core/errors.hpp"
 #include "io/contact_scene.hpp"
 #include "io/initial_state.hpp"
-#include "io/linear_scene.hpp"
+#include "io/disc_scene.hpp"
 #include "io/scene.hpp"
 #include "io/scene_warnings.hpp"
 #include "io/sphere_scene.hpp"
@@ -52,11 +52,11 @@ Report check_scene(const CheckOptions& options) {
     refuse_stability(options);
     return {key_warnings(ContactScene::schema(), &loaded.scene, tree)};
   }
-  if (is_linear_scene(tree)) {
-    const LoadedLinearScene loaded = load_linear_scene(options.scene, options.common.sets);
+  if (is_disc_scene(tree)) {
+    const LoadedDiscScene loaded = load_disc_scene(options.scene, options.common.sets);
     (void)loaded.model();
     refuse_stability(options);
-    return {key_warnings(schema_of(loaded.scene), object_of(loaded.scene), tree)};
+    return {key_warnings(DiscScene::schema(), &loaded.scene, tree)};
   }
   if (is_sphere_scene(tree)) {
     const LoadedSphereScene loaded = load_sphere_scene(options.scene, options.common.sets);
@@ -64,19 +64,24 @@ Report check_scene(const CheckOptions& options) {
     return {key_warnings(SphereScene::schema(), &loaded.scene, tree)};
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
-  Model model = build_model(loaded);
+  if (options.stability) loaded.require_section("time", "check --stability");
+  BodyCache cache;
+  Model model = build_model(loaded, cache);
+  if (!loaded.scene.time)
+    return {scene_warnings(loaded, model), {}, matrix_bodies_json(model)};
   try {
+    require_modes(model);
     const Activity preparing("preparing the first step");
     set_initial_state(model.system, loaded);
-    const Simulation simulation(model.system, loaded.scene.time, accounts_of(loaded.scene));
+    const Simulation simulation(model.system, *loaded.scene.time, accounts_of(loaded.scene));
     // The report on stability shows what a run would be refused for.
-    if (!options.stability) require_no_own_growth(model.system, loaded.scene.time);
+    if (!options.stability) require_no_own_growth(model.system, *loaded.scene.time);
   } catch (const ConfigError& error) {
     throw loaded.located(error);
   }
   Report report{scene_warnings(loaded, model), {}, matrix_bodies_json(model)};
   if (options.stability)
-    report.stability = check_step_stability(model, loaded.scene.time, options.places);
+    report.stability = check_step_stability(model, *loaded.scene.time, options.places);
   return report;
 }
 

@@ -110,8 +110,8 @@ Candidates run_interleaved(const LoadedScene& loaded, Coordinates coordinates, d
   for (std::size_t i = 0; i < assumptions.size(); ++i) {
     Candidate& candidate = candidates[i];
     candidate.scene = with_assumption(loaded, assumptions[i].value);
-    candidate.scene.scene.time.coordinates = coordinates;
-    candidate.scene.scene.time.end = end;
+    candidate.scene.scene.time->coordinates = coordinates;
+    candidate.scene.scene.time->end = end;
     candidate.file = (folder / fmt::format("{}{}.h5", assumptions[i].name, suffix)).string();
     try {
       candidate.transient = std::make_unique<Transient>(
@@ -239,11 +239,9 @@ ComparisonRun drawn(const Candidate& candidate, const char* title) {
 
 ExitCode compare(const CompareOptions& options) {
   LoadedScene loaded = load_scene(options.scene, options.common.sets);
-  if (!loaded.scene.record) {
-    throw loaded.located(
-        ConfigError("record", "missing: compare needs an acceleration to compare by"));
-  }
-  check_published_form(options, loaded.scene.time);
+  for (const char* section : {"time", "record", "contact"})
+    loaded.require_section(section, "compare");
+  check_published_form(options, *loaded.scene.time);
   record_contact(loaded.scene);
   const bool is_kept = !options.folder.empty();
   std::optional<ScratchFolder> scratch;
@@ -259,10 +257,10 @@ ExitCode compare(const CompareOptions& options) {
   }
 
   const Candidates modal =
-      run_interleaved(loaded, Coordinates::modal, loaded.scene.time.end, folder, options);
+      run_interleaved(loaded, Coordinates::modal, loaded.scene.time->end, folder, options);
   Json comparison{{"scene", options.scene}, {"rows", rows_of(modal, "modal")}};
   if (options.window > 0.0) {
-    const double end = std::min(options.window, loaded.scene.time.end);
+    const double end = std::min(options.window, loaded.scene.time->end);
     const Candidates published =
         run_interleaved(loaded, Coordinates::craig_bampton, end, folder, options);
     for (const Json& row : rows_of(published, "craig_bampton")) comparison["rows"].push_back(row);

@@ -32,24 +32,23 @@ void print_results(const Json& results, const std::string& file) {
   fmt::print("{:<24}{}\n", "run file", file);
 }
 
-ExitCode run_to_end(DiscTransient& transient, const LoadedLinearScene& loaded,
+ExitCode run_to_end(DiscTransient& transient, const LoadedDiscScene& loaded,
                     const std::string& file, const RunEnding& ending) {
-  const DiscScene& scene = std::get<DiscScene>(loaded.scene);
+  const DiscScene& scene = loaded.scene;
   return run_and_report(transient, scene.time->end, file, ending, scene.expect,
                         [&](const Json& results) { print_results(results, file); });
 }
 
 }  // namespace
 
-ExitCode run_disc(const LoadedLinearScene& loaded, const RunOutput& output,
-                  const RunEnding& ending) {
+ExitCode run_disc(const LoadedDiscScene& loaded, const RunOutput& output, const RunEnding& ending) {
   DiscTransient transient(loaded, output);
   return run_to_end(transient, loaded, output.file, ending);
 }
 
 ExitCode resume_disc(const InterruptedRun& interrupted, const RunEnding& ending) {
-  const LoadedLinearScene loaded =
-      load_resolved_linear_scene(interrupted.scene_text, interrupted.file + ":/scene/resolved");
+  const LoadedDiscScene loaded =
+      load_resolved_disc_scene(interrupted.scene_text, interrupted.file + ":/scene/resolved");
   DiscTransient transient(loaded, interrupted);
   return run_to_end(transient, loaded, interrupted.file, ending);
 }

@@ -16,21 +16,19 @@ namespace stridor {
 namespace {
 
 /// @throws ConfigError with what is missing or cannot be run
-void check_run(const LoadedLinearScene& loaded) {
-  const DiscScene* scene = std::get_if<DiscScene>(&loaded.scene);
-  if (scene == nullptr)
-    throw ConfigError("substructures", "a body given by matrices has no contacts to run with");
+void check_run(const LoadedDiscScene& loaded) {
+  const DiscScene& scene = loaded.scene;
   std::vector<Problem> problems;
   const auto need = [&](bool is_there, const char* key, const char* message) {
     if (!is_there) problems.push_back({key, message, {}, 0, 0});
   };
-  need(scene->time.has_value(), "time", "is required for run: {step, end}");
-  need(scene->initial.has_value(), "initial",
+  need(scene.time.has_value(), "time", "is required for run: {step, end}");
+  need(scene.initial.has_value(), "initial",
        "is required for run: {perturbation: {eigenvalue, amplitude}}");
-  need(scene->record.has_value(), "record", "is required for run: {interval}");
-  need(scene->model.contact.preload != 0.0, "contact.preload",
+  need(scene.record.has_value(), "record", "is required for run: {interval}");
+  need(scene.model.contact.preload != 0.0, "contact.preload",
        "must be positive for run, else the pads do not touch");
-  need(scene->model.disc.speed > 0.0, "disc.speed",
+  need(scene.model.disc.speed > 0.0, "disc.speed",
        "must be positive for run: it says where friction acts");
   if (problems.empty()) return;
   locate(problems, loaded.tree);
@@ -112,7 +110,7 @@ void DiscStatistics::load(const State& state, const std::string& prefix) {
   open_ = static_cast<std::int64_t>(counts[4]);
 }
 
-DiscTransient::DiscTransient(const LoadedLinearScene& loaded, const RunOutput& output)
+DiscTransient::DiscTransient(const LoadedDiscScene& loaded, const RunOutput& output)
     : loaded_(&loaded), file_(output.file) {
   check_output(file_, output.overwrite);
   check_run(loaded);
@@ -120,16 +118,16 @@ DiscTransient::DiscTransient(const LoadedLinearScene& loaded, const RunOutput& o
   const Perturbation start = perturbation();
   eigenvalue_ = start.s;
   motion_->start(start.displacement, start.velocity);
-  writer_.emplace(
-      file_, output.overwrite,
-      run_header(output.command_line, loaded.tree.document, loaded.resolved(), scene_files(loaded)),
-      recorder_->series());
+  writer_.emplace(file_, output.overwrite,
+                  run_header(output.command_line, loaded.tree.document, loaded.resolved(),
+                             std::vector<SceneFile>()),
+                  recorder_->series());
   recorder_->sample(*motion_, *writer_, last_sample_);
   write_checkpoint();
   setup_seconds_ = keeper_.seconds();
 }
 
-DiscTransient::DiscTransient(const LoadedLinearScene& loaded, const InterruptedRun& interrupted)
+DiscTransient::DiscTransient(const LoadedDiscScene& loaded, const InterruptedRun& interrupted)
     : loaded_(&loaded), file_(interrupted.file) {
   check_run(loaded);
   make_model();
@@ -146,7 +144,7 @@ void DiscTransient::make_model() {
   keeper_ = RunKeeper(scene().checkpoint.every);
   const double step = scene().time->step;
   const double end = scene().time->end;
-  model_ = *loaded_->model().disc;
+  model_ = loaded_->model();
   try {
     motion_ = make_face_contact_motion(model_->bodies, model_->contacts, model_->law, model_->state,
                                        step);

@@ -10,7 +10,7 @@
 
 #include "app/run_keeping.hpp"
 #include "io/disc_recorder.hpp"
-#include "io/linear_scene.hpp"
+#include "io/disc_scene.hpp"
 #include "solvers/march.hpp"
 
 namespace stridor {
@@ -38,10 +38,10 @@ class DiscTransient {
  public:
   /// @param loaded a scene of a disc; must live longer
   /// @throws ConfigError with what the scene lacks for a run; FileError, NumericalError
-  DiscTransient(const LoadedLinearScene& loaded, const RunOutput& output);
+  DiscTransient(const LoadedDiscScene& loaded, const RunOutput& output);
   /// Goes on with a run from the latest checkpoint of its file, bitwise as if it had not stopped.
   /// @throws FileError as Transient
-  DiscTransient(const LoadedLinearScene& loaded, const InterruptedRun& interrupted);
+  DiscTransient(const LoadedDiscScene& loaded, const InterruptedRun& interrupted);
   DiscTransient(const DiscTransient&) = delete;
   DiscTransient& operator=(const DiscTransient&) = delete;
 
@@ -67,7 +67,7 @@ class DiscTransient {
     Eigen::VectorXd displacement, velocity;
   };
 
-  const DiscScene& scene() const { return std::get<DiscScene>(loaded_->scene); }
+  const DiscScene& scene() const { return loaded_->scene; }
   void make_model();
   Perturbation perturbation() const;
   MarchEnd run_to_step(std::int64_t step);
@@ -75,7 +75,7 @@ class DiscTransient {
   State save() const;
   void load(const State& state);
 
-  const LoadedLinearScene* loaded_;
+  const LoadedDiscScene* loaded_;
   std::string file_;
   RunKeeper keeper_;
   std::optional<DiscModel> model_;

@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <numbers>
 
 #include "analysis/explanation.hpp"
+#include "app/disc_stability.hpp"
 #include "app/eigenvalue_report.hpp"
-#include "app/linear_stability.hpp"
+#include "app/found_spectrum.hpp"
 #include "app/sphere_stability.hpp"
 #include "app/stability.hpp"
 #include "core/activity.hpp"
@@ -36,6 +39,7 @@ constexpr int num_frames = 24;
 SceneFamily make_family(const LoadedScene& loaded, const EigOptions& options,
                         std::vector<double>& values) {
   if (!options.at) return SceneFamily(loaded, {});
+  loaded.require_section("contact", "eig --at");
   const auto path = start_key(loaded.scene.model);
   if (!path) {
     throw ConfigError("--at",
@@ -47,7 +51,8 @@ SceneFamily make_family(const LoadedScene& loaded, const EigOptions& options,
   return SceneFamily(loaded, {key});
 }
 
-Json explanation_json(const Pencil& pencil, const Eigenvalue& eigenvalue, std::size_t number) {
+/// Of a mode found by the problem on the ports of contacts.
+Json explanation_json(const Pencil& pencil, const Eigenvalue& eigenvalue) {
   const Eigenvector vector = eigenvector(pencil, eigenvalue.s);
   const ModeQuotients seen = mode_quotients(pencil, eigenvalue.s, vector.right);
   const ModeEnergy energy = mode_energy(pencil, eigenvalue.s, vector);
@@ -62,43 +67,69 @@ Json explanation_json(const Pencil& pencil, const Eigenvalue& eigenvalue, std::s
   Json frictionless_modes = Json::array();
   for (std::size_t i = 0; i < std::min<std::size_t>(2, shares.size()); ++i)
     frictionless_modes.push_back({{"frequency", shares[i].frequency}, {"share", shares[i].share}});
-  return {{"mode", number},
-          {"frequency", frequency},
-          {"growth", eigenvalue.growth()},
-          {"quotients", quotients_json(seen)},
-          {"energy",
-           {{"growth_from_contact", energy.from_contact},
-            {"growth_by_damping", energy.by_damping},
-            {"growth_by_coupled_terms", energy.by_coupled},
-            {"contact_per_cycle", ModeEnergy::per_cycle(energy.from_contact, frequency)},
-            {"damping_per_cycle", ModeEnergy::per_cycle(energy.by_damping, frequency)},
-            {"residual", energy.residual}}},
+  return {{"quotients", quotients_json(seen)},
+          {"energy", energy_json(energy, frequency)},
           {"frictionless_modes", frictionless_modes}};
+}
+
+/// By the problem on the ports of contacts, where it can be solved.
+/// @param whole with all modes, for shapes
+FoundSpectrum find_on_ports(const Pencil& of, const Pencil& whole, const StabilityOptions& options,
+                            double trusted) {
+  const auto pencil = std::make_shared<const Pencil>(of);
+  const LowestEigenvalues lowest = find_lowest(of, options.eigenvalue_method(), options.window());
+  FoundSpectrum found{lowest.method_name(), lowest.eigenvalues};
+  std::vector<std::complex<double>> roots;
+  for (const Eigenvalue& one : found.eigenvalues) roots.push_back(one.s);
+  found.highest = verdict_limit(roots, options.window(), trusted);
+  found.explain = [pencil, all = found.eigenvalues](std::size_t chosen) {
+    return explanation_json(*pencil, all[chosen]);
+  };
+  found.shape = [whole, all = found.eigenvalues](std::size_t chosen) {
+    return eigenvector(whole, all[chosen].s).right;
+  };
+  if (!lowest.remark.empty()) found.more["remark"] = lowest.remark;
+  return found;
+}
+
+/// The largest displacement of any node, 0 where nothing moves.
+std::complex<double> largest_displacement(const std::vector<BodyShape>& bodies) {
+  std::complex<double> largest = 0.0;
+  for (const BodyShape& body : bodies) {
+    for (const std::complex<double>& u : body.displacement.reshaped())
+      if (std::abs(u) > std::abs(largest)) largest = u;
+  }
+  return largest;
 }
 
 /// Draws one mode and writes it for ParaView. @return the files
 std::vector<std::string> write_shapes(const EigOptions& options, const LoadedScene& loaded,
                                       const SceneFamily::Member& member, const SlidingState& state,
-                                      const Eigenvalue& eigenvalue, std::size_t number) {
+                                      const Eigenvalue& eigenvalue, const Eigen::VectorXcd& right,
+                                      std::size_t number) {
   const std::filesystem::path folder = *options.shapes;
   const std::filesystem::path stem = folder / fmt::format("mode_{:02}", number);
   std::filesystem::path figure = stem;
   figure += ".png";
   check_figure(figure, options.stability.common);
+  // The largest displacement at phase 0 is real.
+  BodyCache cache;
+  ShapePicture picture;
+  picture.bodies = mode_shape(*member.model, state.equilibrium, right, cache);
+  const double of_all = std::abs(largest_displacement(picture.bodies));
+  // Points alone, as of lumped masses, make no picture.
+  std::erase_if(picture.bodies, [](const BodyShape& body) {
+    return body.outlines.empty() && body.elements.empty();
+  });
+  if (picture.bodies.empty())
+    throw ConfigError("--shapes", "needs a mesh, or surfaces, of some body to draw");
+  const std::complex<double> largest = largest_displacement(picture.bodies);
+  constexpr double rounding = 1e-9;
+  if (!(std::abs(largest) > rounding * of_all))
+    throw ConfigError("--mode", "moves none of the bodies that can be drawn");
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw FileError(folder.string(), "", "cannot be made: " + error.message());
-
-  // The largest displacement at phase 0 is real.
-  const Eigenvector vector = eigenvector(state.pencil, eigenvalue.s);
-  BodyCache cache;
-  ShapePicture picture;
-  picture.bodies = mode_shape(*member.model, state.equilibrium, vector.right, cache);
-  std::complex<double> largest = 0.0;
-  for (const BodyShape& body : picture.bodies) {
-    for (const std::complex<double>& u : body.displacement.reshaped())
-      if (std::abs(u) > std::abs(largest)) largest = u;
-  }
   for (BodyShape& body : picture.bodies) body.displacement /= largest;
   for (std::size_t i = 0; i < state.equilibrium.contacts.size(); ++i) {
     if (!state.equilibrium.contacts[i].is_closed) continue;
@@ -161,14 +192,132 @@ void print_explanation(const Json& explanation) {
   }
 }
 
+/// What eig finds out of a scene.
+struct Analysis {
+  SceneFamily::Member member;
+  SlidingState state;  ///< empty where the model is sparse
+  FoundSpectrum found;
+  double trusted = std::numeric_limits<double>::infinity();  ///< Hz
+
+  bool is_sparse() const { return member.model->sparse.has_value(); }
+  bool has_contacts() const { return !member.model->system.contacts.empty(); }
+};
+
+Analysis analyse(const EigOptions& options, const LoadedScene& loaded,
+                 const SceneFamily::Member& member) {
+  const Activity solving("equilibrium and eigenvalues");
+  Analysis analysis;
+  analysis.member = member;
+  if (analysis.is_sparse()) {
+    analysis.found = find_sparse(*member.model->sparse, options.stability.window());
+    return analysis;
+  }
+  const System& system = member.model->system;
+  analysis.state = sliding_state_of(member, options.stability.geometry(), "");
+  analysis.trusted =
+      std::min(trusted_frequency(system),
+               asked_frequency(system, loaded.scene.time) / (2.0 * std::numbers::pi));
+  const Pencil& whole = analysis.state.pencil;
+  analysis.found = has_contacts(whole)
+                       ? find_on_ports(retained(whole, system, loaded.scene.time), whole,
+                                       options.stability, analysis.trusted)
+                       : find_dense(whole, options.stability.window(), analysis.trusted);
+  return analysis;
+}
+
+/// The eigenvalue to explain or draw: of those over which the verdict is, where none is named.
+std::size_t mode_of_interest(const Analysis& analysis, const std::optional<int>& mode) {
+  const FoundSpectrum& found = analysis.found;
+  std::vector<Eigenvalue> choice = found.eigenvalues;
+  if (!mode && !analysis.has_contacts())
+    std::erase_if(choice, [&](const auto& one) { return one.frequency() > found.highest; });
+  return chosen_mode(choice, num_real_of(choice), mode);
+}
+
+void print_report(const EigOptions& options, const Analysis& analysis, const Json& object) {
+  const FoundSpectrum& found = analysis.found;
+  if (!analysis.is_sparse())
+    print_equilibrium(analysis.member.model->system, analysis.state.equilibrium);
+  if (object.contains("remark")) fmt::print("{}\n", object["remark"].get<std::string>());
+  print_eigenvalues(found.eigenvalues, analysis.trusted);
+  const char* verdict = object["stable"].get<bool>() ? "stable" : "unstable";
+  if (!analysis.has_contacts() && !std::isfinite(found.highest)) {
+    fmt::print("{} at all frequencies\n", verdict);
+  } else {
+    fmt::print("{} between 0 and {:.6g} Hz{}{}\n", verdict, found.highest,
+               limit_text(found.highest, analysis.trusted),
+               analysis.has_contacts()
+                   ? fmt::format(", about the {} geometry", options.stability.about)
+                   : "");
+  }
+  if (found.more.contains("counted")) {
+    fmt::print("{} eigenvalues with their conjugates, as the argument principle counts\n",
+               found.more["counted"].get<int>());
+  }
+  if (options.explain) {
+    const Json& explanation = object["explanation"];
+    analysis.has_contacts() ? print_explanation(explanation) : print_whole_explanation(explanation);
+  }
+  if (options.shapes) {
+    fmt::print("{} and {} files for ParaView\n", object["files"][0].get<std::string>(),
+               object["files"].size() - 1);
+  }
+}
+
+ExitCode report(const EigOptions& options, const LoadedScene& loaded, const Analysis& analysis) {
+  const FoundSpectrum& found = analysis.found;
+  const std::vector<Eigenvalue>& eigenvalues = found.eigenvalues;
+  const bool is_stable = std::none_of(
+      eigenvalues.begin(), eigenvalues.end(),
+      [&](const Eigenvalue& one) { return one.frequency() <= found.highest && is_growing(one); });
+  Json object = {
+      {"about", options.stability.about},
+      {"method", found.method},
+      {"equilibrium", analysis.is_sparse()
+                          ? Json::object()
+                          : equilibrium_json(*analysis.member.model, analysis.state.equilibrium)},
+      {"eigenvalues", eigenvalues_json(eigenvalues)},
+      {"residuals", Json::array()},
+      {"doubtful", doubtful_json(eigenvalues)},
+      {"stable", is_stable},
+      {"window", {0.0, number(found.highest)}}};
+  object.update(found.more);
+  for (const Eigenvalue& one : eigenvalues) object["residuals"].push_back(number(one.residual));
+  if (options.explain || options.shapes) {
+    const std::size_t chosen = mode_of_interest(analysis, options.mode);
+    const std::size_t number_of_mode = chosen - num_real_of(eigenvalues) + 1;
+    const Eigenvalue& one = eigenvalues[chosen];
+    if (options.explain) {
+      object["explanation"] = {
+          {"mode", number_of_mode}, {"frequency", one.frequency()}, {"growth", one.growth()}};
+      object["explanation"].update(found.explain(chosen));
+    }
+    if (options.shapes) {
+      if (!found.shape) {
+        throw ConfigError("--shapes",
+                          "needs bodies that are reduced (reduction), or fewer "
+                          "unknowns than these");
+      }
+      object["files"] = write_shapes(options, loaded, analysis.member, analysis.state, one,
+                                     found.shape(chosen), number_of_mode);
+    }
+  }
+  if (options.stability.common.json) {
+    print_json(object);
+  } else {
+    print_report(options, analysis, object);
+  }
+  return ExitCode::done;
+}
+
 ExitCode eig(EigOptions options) {
   if (options.mode && !options.explain && !options.shapes)
     throw ConfigError("--mode", "names the mode to explain or draw; add --explain or --shapes");
-  if (is_linear_scene_file(options.stability.scene)) {
+  if (is_disc_scene_file(options.stability.scene)) {
     if (options.at) throw ConfigError("--at", "needs a contact that moves along a master");
     if (options.shapes) throw ConfigError("--shapes", "needs bodies with meshes");
     choose_method(options.stability);
-    return eig_of_linear_scene(options.stability, options.explain, options.mode);
+    return eig_of_disc(options.stability, options.explain, options.mode);
   }
   if (is_sphere_scene_file(options.stability.scene)) {
     if (options.at || options.shapes || options.explain) {
@@ -184,65 +333,7 @@ ExitCode eig(EigOptions options) {
   choose_method(options.stability);
   std::vector<double> values;
   SceneFamily family = make_family(loaded, options, values);
-  const SceneFamily::Member member = family.at(values);
-  const System& system = member.model->system;
-  std::optional<Activity> solving(std::in_place, "equilibrium and eigenvalues");
-  const SlidingState state = sliding_state_of(member, options.stability.geometry(), "");
-  const Pencil pencil = retained(state.pencil, system, loaded.scene.time);
-  const LowestEigenvalues lowest =
-      find_lowest(pencil, options.stability.eigenvalue_method(), options.stability.window());
-  const std::vector<Eigenvalue>& eigenvalues = lowest.eigenvalues;
-
-  solving.reset();
-
-  const std::size_t num_real = num_real_of(eigenvalues);
-  const double trusted =
-      std::min(trusted_frequency(system),
-               asked_frequency(system, loaded.scene.time) / (2.0 * std::numbers::pi));
-  std::vector<std::complex<double>> roots;
-  roots.reserve(eigenvalues.size());
-  for (const Eigenvalue& one : eigenvalues) roots.push_back(one.s);
-  const double highest = verdict_limit(roots, options.stability.window(), trusted);
-  const bool is_stable = std::none_of(
-      eigenvalues.begin(), eigenvalues.end(),
-      [&](const Eigenvalue& one) { return one.frequency() <= highest && is_growing(one); });
-  Json object = {{"about", options.stability.about},
-                 {"method", lowest.method_name()},
-                 {"equilibrium", equilibrium_json(*member.model, state.equilibrium)},
-                 {"eigenvalues", eigenvalues_json(eigenvalues)},
-                 {"residuals", Json::array()},
-                 {"doubtful", doubtful_json(eigenvalues)},
-                 {"stable", is_stable},
-                 {"window", {0.0, number(highest)}}};
-  if (!lowest.remark.empty()) object["remark"] = lowest.remark;
-  for (const Eigenvalue& one : eigenvalues) object["residuals"].push_back(number(one.residual));
-  if (options.explain || options.shapes) {
-    const std::size_t chosen = chosen_mode(eigenvalues, num_real, options.mode);
-    const std::size_t number_of_mode = chosen - num_real + 1;
-    if (options.explain)
-      object["explanation"] = explanation_json(pencil, eigenvalues[chosen], number_of_mode);
-    if (options.shapes) {
-      object["files"] =
-          write_shapes(options, loaded, member, state, eigenvalues[chosen], number_of_mode);
-    }
-  }
-
-  if (options.stability.common.json) {
-    print_json(object);
-    return ExitCode::done;
-  }
-  print_equilibrium(system, state.equilibrium);
-  if (!lowest.remark.empty()) fmt::print("{}\n", lowest.remark);
-  print_eigenvalues(eigenvalues, trusted);
-  fmt::print("{} between 0 and {:.6g} Hz{}, about the {} geometry\n",
-             is_stable ? "stable" : "unstable", highest, limit_text(highest, trusted),
-             options.stability.about);
-  if (options.explain) print_explanation(object["explanation"]);
-  if (options.shapes) {
-    fmt::print("{} and {} files for ParaView\n", object["files"][0].get<std::string>(),
-               object["files"].size() - 1);
-  }
-  return ExitCode::done;
+  return report(options, loaded, analyse(options, loaded, family.at(values)));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace stridor {
 ErrorEstimate estimate_error(const StudiedScene& study,
                              const std::function<void(double)>& on_progress) {
   const auto start = std::chrono::steady_clock::now();
-  TimeParameters own = study.loaded.scene.time;
+  TimeParameters own = *study.loaded.scene.time;
   own.coordinates = Coordinates::modal;  // the published forms make the same numbers
   TimeParameters finer = own;
   finer.integrator = Integrator::exact;

@@ -39,8 +39,8 @@ constexpr double never = std::numeric_limits<double>::quiet_NaN();
 class PassingTimes {
  public:
   PassingTimes(const Scene& scene, BodyStabilityFamily& family)
-      : drive_(make_drive(scene.model.drive, scene.model.pairs().begin()->second.sliding)),
-        end_(scene.time.end),
+      : drive_(make_drive(scene.model.drive_or_rest(), scene.model.pairs().begin()->second.sliding)),
+        end_(scene.time->end),
         family_(&family) {}
 
   /// @param place position of the contact, or displacement of the drive
@@ -351,7 +351,7 @@ ExitCode locus(LocusCommandOptions options) {
   std::optional<PassingTimes> times;
   const bool is_path =
       range.key.path == drive_displacement_name || loaded->default_key() == range.key.path;
-  if (loaded->bodies() != nullptr && is_path) {
+  if (loaded->bodies() != nullptr && loaded->bodies()->scene.time && is_path) {
     times.emplace(loaded->bodies()->scene, dynamic_cast<BodyStabilityFamily&>(*family));
   }
   const Locus shown = in_seconds(found, *loaded, range.key);

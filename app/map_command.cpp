@@ -81,9 +81,11 @@ double largest_growth(const std::vector<std::complex<double>>& eigenvalues) {
 std::vector<std::complex<double>> eigenvalues_at(StabilityFamily& family,
                                                  const std::vector<double>& values,
                                                  const LocusOptions& options) {
-  if (family.is_sparse()) return family.spectra(0, values, options).at(values[0]).eigenvalues;
-  const EigenvalueMethod method =
-      options.method == LocusMethod::dense ? EigenvalueMethod::dense : EigenvalueMethod::secular;
+  const SpectrumMethod how = family.method(values);
+  if (how == SpectrumMethod::counted)
+    return family.spectra(0, values, options).at(values[0]).eigenvalues;
+  const bool is_dense = options.method == LocusMethod::dense || how == SpectrumMethod::sampled;
+  const EigenvalueMethod method = is_dense ? EigenvalueMethod::dense : EigenvalueMethod::secular;
   std::vector<std::complex<double>> found;
   for (const Eigenvalue& one :
        lowest_eigenvalues(family.pencil(values), method, {options.count, options.frequency}))

@@ -44,7 +44,7 @@ PrecisionRow make_row(const PrecisionStudy& study, const PrecisionMethod& method
   row.method = method;
   row.coordinates = coordinates;
   row.steps_per_sample = steps;
-  row.time = method.at(steps, study.loaded.scene.time, study.interval);
+  row.time = method.at(steps, *study.loaded.scene.time, study.interval);
   row.time.coordinates = coordinates;
   row.num_samples = num_samples.value_or(study.num_samples);
   row.modes = num_moving_modes(study.model.system, row.time);
@@ -143,12 +143,13 @@ const std::vector<std::pair<std::string, ContactAssumption>>& assumption_names()
 }
 
 PrecisionStudy make_precision_study(const PrecisionOptions& options) {
-  PrecisionStudy study{
-      study_scene(load_scene(options.scene, options.common.sets), options.until), {}, {}};
+  LoadedScene loaded = load_scene(options.scene, options.common.sets);
+  loaded.require_section("time", "precision");
+  PrecisionStudy study{study_scene(std::move(loaded), options.until), {}, {}};
   study.parameters = parameters_of(options, study.norms.band);
   try {
     study.plan =
-        make_plan(study.model.system, study.loaded.scene.time, study.interval, study.parameters);
+        make_plan(study.model.system, *study.loaded.scene.time, study.interval, study.parameters);
   } catch (const std::invalid_argument& error) {
     throw study.loaded.located(ConfigError("record.interval", error.what()));
   }

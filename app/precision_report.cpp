@@ -143,7 +143,7 @@ Json published_json(const PrecisionResult& result) {
 /// The section `time` of the scene with the setting of a row.
 std::string scene_lines(const PrecisionStudy& study, const PrecisionRow& row) {
   TimeParameters time = row.time;
-  time.end = study.loaded.scene.time.end;
+  time.end = study.loaded.scene.time->end;
   std::string text = "time:\n";
   std::string line;
   for (const char c : resolved_yaml(time)) {

@@ -18,7 +18,7 @@
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
 #include "io/damage_guard.hpp"
-#include "io/linear_scene.hpp"
+#include "io/disc_scene.hpp"
 #include "io/scene_warnings.hpp"
 #include "io/sphere_scene.hpp"
 
@@ -98,11 +98,14 @@ void print_summary(const Json& results, const std::string& output) {
     return results[name].is_null() ? std::string("-")
                                    : fmt::format("{:.4g} %", 100.0 * results[name].get<double>());
   };
-  fmt::print("{:<24}{} of the time, lifted off {}\n", "sticking", fraction_text("stick_fraction"),
-             fraction_text("free_fraction"));
-  fmt::print("{:<24}{} steps ({} of them before the contacts were armed)\n", "sliding violated",
-             results["violations"].get<std::int64_t>(),
-             results["violation_details"]["before_armed"].get<std::int64_t>());
+  const bool has_contacts = !results.contains("contacts") || !results["contacts"].empty();
+  if (has_contacts) {
+    fmt::print("{:<24}{} of the time, lifted off {}\n", "sticking",
+               fraction_text("stick_fraction"), fraction_text("free_fraction"));
+    fmt::print("{:<24}{} steps ({} of them before the contacts were armed)\n", "sliding violated",
+               results["violations"].get<std::int64_t>(),
+               results["violation_details"]["before_armed"].get<std::int64_t>());
+  }
   if (!results["energy_error"].is_null()) {
     fmt::print("{:<24}largest error {:.2g} of the energy turned over\n", "energy balance",
                results["energy_error"].get<double>());
@@ -175,7 +178,7 @@ ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::
                     const std::optional<StudiedScene>& study, const RunEnding& ending) {
   StudiedRun run(transient, study);
   const ExitCode code =
-      run_and_report(run, loaded.scene.time.end, file, ending, loaded.scene.expect,
+      run_and_report(run, loaded.scene.time->end, file, ending, loaded.scene.expect,
                      [&](const Json& results) { print_summary(results, file); });
   if (run.is_cut_short())
     throw Interrupted(file + " holds the whole run; its error was not estimated");
@@ -193,19 +196,20 @@ void refuse_error(const RunOptions& options) {
 ExitCode begin(const RunOptions& options) {
   const RunOutput output{options.output, options.common.overwrite(), options.command_line};
   const RunEnding ending{options.max_wall, options.common.json, options.verify};
-  if (is_sphere_scene_file(options.scene) || is_linear_scene_file(options.scene))
+  if (is_sphere_scene_file(options.scene) || is_disc_scene_file(options.scene))
     refuse_error(options);
   if (is_sphere_scene_file(options.scene)) {
     const LoadedSphereScene loaded = load_sphere_scene(options.scene, options.common.sets);
     print_warnings(key_warnings(SphereScene::schema(), &loaded.scene, loaded.tree));
     return run_sphere(loaded, output, ending);
   }
-  if (is_linear_scene_file(options.scene)) {
-    const LoadedLinearScene loaded = load_linear_scene(options.scene, options.common.sets);
-    print_warnings(key_warnings(schema_of(loaded.scene), object_of(loaded.scene), loaded.tree));
+  if (is_disc_scene_file(options.scene)) {
+    const LoadedDiscScene loaded = load_disc_scene(options.scene, options.common.sets);
+    print_warnings(key_warnings(DiscScene::schema(), &loaded.scene, loaded.tree));
     return run_disc(loaded, output, ending);
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
+  loaded.require_section("time", "run");
   const auto study = studied(loaded, options);
   Transient transient(loaded, output);
   print_warnings(scene_warnings(loaded, transient.model()));
@@ -215,8 +219,7 @@ ExitCode begin(const RunOptions& options) {
 std::vector<Expectation> expectations_of(const SceneNode& tree, const std::string& text,
                                          const std::string& source) {
   if (is_sphere_scene(tree)) return load_resolved_sphere_scene(text, source).scene.expect;
-  if (is_disc_scene(tree))
-    return std::get<DiscScene>(load_resolved_linear_scene(text, source).scene).expect;
+  if (is_disc_scene(tree)) return load_resolved_disc_scene(text, source).scene.expect;
   return load_resolved_scene(text, source).scene.expect;
 }
 

@@ -7,8 +7,10 @@
 #include <limits>
 #include <numbers>
 
+#include "analysis/counted_spectra.hpp"
 #include "analysis/sampled_locus.hpp"
-#include "app/linear_stability.hpp"
+#include "app/disc_stability.hpp"
+#include "app/found_spectrum.hpp"
 #include "app/remark.hpp"
 #include "app/sphere_stability.hpp"
 #include "core/blas.hpp"
@@ -113,7 +115,11 @@ void add_stability_options(CLI::App& verb, StabilityOptions& options) {
 
 NumericKey find_stability_key(const Scene& scene, const std::string& path,
                               const std::string& option) {
-  if (path == drive_displacement_name) return {path, "m", Range::any(), false};
+  if (path == drive_displacement_name) {
+    if (scene.model.pairs().empty())
+      throw ConfigError(option, "'drive.displacement' moves contacts, and the scene has none");
+    return {path, "m", Range::any(), false};
+  }
   NumericKey key = find_numeric_key(scene, path, option);
   const std::string section = path.substr(0, path.find('.'));
   const bool is_mechanical =
@@ -165,7 +171,8 @@ SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry
         fmt::format("no sliding equilibrium{}: {}", where, state.equilibrium.failure));
   }
   const auto& contacts = state.equilibrium.contacts;
-  if (std::none_of(contacts.begin(), contacts.end(),
+  if (!contacts.empty() &&
+      std::none_of(contacts.begin(), contacts.end(),
                    [](const ContactEquilibrium& contact) { return contact.is_closed; })) {
     throw NumericalError(fmt::format("every contact is open in equilibrium{}", where));
   }
@@ -174,9 +181,14 @@ SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry
   return state;
 }
 
-Pencil retained(const Pencil& pencil, const System& system, const TimeParameters& time) {
-  if (!time.retain) return pencil;
+Pencil retained(const Pencil& pencil, const System& system,
+                const std::optional<TimeParameters>& time) {
+  if (!time || !time->retain) return pencil;
   return with_residual_modes(pencil, asked_frequency(system, time));
+}
+
+double asked_frequency(const System& system, const std::optional<TimeParameters>& time) {
+  return time ? asked_frequency(system, *time) : std::numeric_limits<double>::infinity();
 }
 
 std::string printed_units(const NumericKey& key) {
@@ -306,7 +318,7 @@ double verdict_limit(const Locus& locus, const SpectrumWindow& window, double tr
 
 namespace {
 
-/// A scene of bodies in contact.
+/// A scene of bodies, in contact or not.
 class BodyStabilityScene : public StabilityScene {
  public:
   explicit BodyStabilityScene(LoadedScene loaded) : loaded_(std::move(loaded)) {}
@@ -315,8 +327,10 @@ class BodyStabilityScene : public StabilityScene {
     return find_stability_key(loaded_.scene, path, option);
   }
   std::optional<std::string> default_key() const override {
+    if (loaded_.scene.model.pairs().empty()) return std::nullopt;
     return start_key(loaded_.scene.model).value_or(drive_displacement_name);
   }
+  bool needs_one_thread() const override { return loaded_.scene.model.pairs().empty(); }
   std::unique_ptr<StabilityFamily> family(std::vector<NumericKey> keys,
                                           ContactGeometry geometry) const override {
     return std::make_unique<BodyStabilityFamily>(loaded_, std::move(keys), geometry);
@@ -332,7 +346,8 @@ class BodyStabilityScene : public StabilityScene {
 }  // namespace
 
 std::string StabilityScene::about_text(const StabilityOptions& options) const {
-  return bodies() == nullptr ? "" : fmt::format(" about the {} geometry", options.about);
+  const bool has_choice = bodies() != nullptr && !bodies()->scene.model.pairs().empty();
+  return has_choice ? fmt::format(" about the {} geometry", options.about) : "";
 }
 
 void choose_method(StabilityOptions& options) {
@@ -341,10 +356,11 @@ void choose_method(StabilityOptions& options) {
 
 std::unique_ptr<StabilityScene> load_stability_scene(StabilityOptions& options) {
   std::unique_ptr<StabilityScene> scene;
-  if (is_linear_scene_file(options.scene)) {
-    scene = std::make_unique<LinearStabilityScene>(
-        load_linear_scene(options.scene, options.common.sets));
-  } else if (is_sphere_scene_file(options.scene)) {
+  const SceneNode tree = read_scene_file(options.scene);
+  if (is_disc_scene(tree)) {
+    scene =
+        std::make_unique<DiscStabilityScene>(load_disc_scene(options.scene, options.common.sets));
+  } else if (is_sphere_scene(tree)) {
     scene = std::make_unique<SphereStabilityScene>(
         load_sphere_scene(options.scene, options.common.sets));
   } else {
@@ -361,25 +377,43 @@ BodyStabilityFamily::BodyStabilityFamily(const LoadedScene& loaded, std::vector<
       geometry_(geometry),
       start_key_(start_key(loaded.scene.model)) {}
 
+std::string BodyStabilityFamily::values_text(std::span<const double> values) const {
+  std::string text;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    text += (i > 0 ? ", " : "") + value_text(family_.keys()[i], values[i]);
+  return text;
+}
+
 SlidingState BodyStabilityFamily::at(std::span<const double> values) {
   const BlasGuard guard;
-  std::string what;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    what += (i > 0 ? ", " : "") + value_text(family_.keys()[i], values[i]);
   const SceneFamily::Member member = family_.at(values);
-  SlidingState state = sliding_state_of(member, geometry_, what);
+  SlidingState state = sliding_state_of(member, geometry_, values_text(values));
   // Once for all values: it takes much longer than a pencil, and a branch must not change its
   // modes.
   if (!asked_) asked_ = asked_frequency(member.model->system, time_);
-  if (std::isfinite(*asked_)) state.pencil = with_residual_modes(state.pencil, *asked_);
+  if (std::isfinite(*asked_) && has_contacts(state.pencil))
+    state.pencil = with_residual_modes(state.pencil, *asked_);
   return state;
 }
 
 double BodyStabilityFamily::trusted_frequency(std::span<const double> values) {
   const BlasGuard guard;
-  const System& system = family_.at(values).model->system;
+  const Model& model = *family_.at(values).model;
+  if (model.sparse) return std::numeric_limits<double>::infinity();
+  const System& system = model.system;
   if (!asked_) asked_ = asked_frequency(system, time_);
   return std::min(*asked_ / (2.0 * std::numbers::pi), stridor::trusted_frequency(system));
+}
+
+SpectrumMethod BodyStabilityFamily::method(std::span<const double> values) {
+  const BlasGuard guard;
+  const Model& model = *family_.at(values).model;
+  if (model.sparse) return SpectrumMethod::counted;
+  return model.system.contacts.empty() ? SpectrumMethod::sampled : SpectrumMethod::followed;
+}
+
+SparseSystem BodyStabilityFamily::sparse_system(std::span<const double> values) {
+  return *family_.at(values).model->sparse;
 }
 
 PencilFamily StabilityFamily::along(std::size_t key, std::vector<double> values, double from,
@@ -398,7 +432,12 @@ PencilFamily StabilityFamily::along(std::size_t key, std::vector<double> values,
 
 SpectrumFamily StabilityFamily::spectra(std::size_t key, const std::vector<double>& values,
                                         const LocusOptions& options) {
-  SpectrumFamily family = sparse_spectra(key, values, options);
+  SpectrumFamily family = counted_spectra(
+      [this, key, at = values](double value) mutable {
+        at[key] = value;
+        return sparse_system(at);
+      },
+      {options.count, options.frequency});
   for (auto* spectrum : {&family.at, &family.near, &family.glimpse}) {
     *spectrum = [this, found_at = std::move(*spectrum)](double value) {
       if (stop_requested()) throw Interrupted("nothing has been written");
@@ -512,15 +551,17 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
                   const LocusOptions& options, SearchFor wanted) {
   // An end that is not allowed is named as it was given, before anything is computed in between.
   std::vector<double> ends = values;
+  ends[key] = range.front();
+  const SpectrumMethod method = family.method(ends);
   double trusted = std::numeric_limits<double>::infinity();
   Eigen::Index num_wanted = 0;
   for (const double end : {range.front(), range.back()}) {
     ends[key] = end;
-    if (!family.is_sparse())
+    if (method != SpectrumMethod::counted)
       num_wanted = std::max(num_wanted, family.pencil(ends).num_eigenvalues() / 2);
     trusted = std::min(trusted, family.trusted_frequency(ends));
   }
-  if (family.is_sparse()) num_wanted = options.count;
+  if (method == SpectrumMethod::counted) num_wanted = options.count;
   num_wanted = std::min<Eigen::Index>(num_wanted, options.count);
   // Measured: tracks, results and their JSON.
   constexpr double bytes_per_eigenvalue = 500.0;
@@ -531,11 +572,15 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
       memory_limit());
   LocusOptions within = options;
   within.trusted = trusted;
-  if (family.is_sparse())
+  if (method == SpectrumMethod::counted)
     return sample_locus(family.spectra(key, values, within), range, within, sparing_effort);
   const PencilFamily pencils = family.along(key, values, range.front(), range.back());
-  if (varied.is_integer) return locus_at(pencils, range, options);
-  if (!family.is_sampled()) return trace(pencils, varied, range, options);
+  if (varied.is_integer) {
+    LocusOptions wholes = options;
+    if (method == SpectrumMethod::sampled) wholes.method = LocusMethod::dense;
+    return locus_at(pencils, range, wholes);
+  }
+  if (method == SpectrumMethod::followed) return trace(pencils, varied, range, options);
   return sample_locus(pencils, range, within,
                       wanted == SearchFor::stability ? stability_effort : SamplingEffort{});
 }

@@ -14,6 +14,7 @@
 #include "io/scene_family.hpp"
 #include "solvers/linearise.hpp"
 #include "solvers/secular_eigenvalues.hpp"
+#include "solvers/sparse_pencil.hpp"
 
 namespace stridor {
 
@@ -83,7 +84,11 @@ SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry
 
 /// The pencil with the modes above `time.retain` as residual modes (docs/theory.md, 7.1); all modes
 /// where the scene keeps all.
-Pencil retained(const Pencil& pencil, const System& system, const TimeParameters& time);
+Pencil retained(const Pencil& pencil, const System& system,
+                const std::optional<TimeParameters>& time);
+
+/// asked_frequency() of a scene; infinite where it has no `time`.
+double asked_frequency(const System& system, const std::optional<TimeParameters>& time);
 
 /// The unit of a key as it is printed and stored: "1/s" for "s-1", "kg/m^3" for "kg m-3", "1" where
 /// dimensionless.
@@ -98,6 +103,13 @@ struct KeyRange {
   std::vector<double> values;  ///< strictly ascending
 };
 
+/// How eigenvalues along a key are found, by what the system is.
+enum class SpectrumMethod {
+  followed,  ///< from value to value, by the problem on the ports that contacts join
+  sampled,   ///< all of the dense problem at every value (analysis/sampled_locus.hpp)
+  counted,   ///< those in a window of large sparse matrices (analysis/counted_spectra.hpp)
+};
+
 /// Small motions of a scene as some of its keys vary.
 class StabilityFamily {
  public:
@@ -108,12 +120,9 @@ class StabilityFamily {
   virtual Pencil pencil(std::span<const double> values) = 0;
   /// Frequency up to which the model responds as the bodies do, Hz; may be infinite.
   virtual double trusted_frequency(std::span<const double> values) = 0;
-  /// Whether eigenvalues are sampled rather than followed (analysis/sampled_locus.hpp).
-  virtual bool is_sampled() const { return false; }
-
-  /// Whether the system is too large for a pencil: spectra() takes its place, and there is no
-  /// pencil().
-  virtual bool is_sparse() const { return false; }
+  /// Where eigenvalues are counted there is no pencil(), and spectra() takes its place.
+  /// @throws as pencil()
+  virtual SpectrumMethod method(std::span<const double>) { return SpectrumMethod::followed; }
   /// The eigenvalues wanted along one of the keys; arguments as of along(). They throw
   /// NumericalError naming the values if one may be missing.
   SpectrumFamily spectra(std::size_t key, const std::vector<double>& values,
@@ -130,10 +139,8 @@ class StabilityFamily {
   void on_value(std::function<void(double)> report) { report_ = std::move(report); }
 
  private:
-  virtual SpectrumFamily sparse_spectra(std::size_t, const std::vector<double>&,
-                                        const LocusOptions&) {
-    return {};
-  }
+  /// M, P and Q where eigenvalues are counted.
+  virtual SparseSystem sparse_system(std::span<const double>) { return {}; }
   virtual std::vector<double> kinks(std::size_t, const std::vector<double>&, double, double) {
     return {};
   }
@@ -141,7 +148,7 @@ class StabilityFamily {
   std::function<void(double)> report_;
 };
 
-/// That of bodies in contact.
+/// That of bodies, in contact or not.
 class BodyStabilityFamily : public StabilityFamily {
  public:
   BodyStabilityFamily(const LoadedScene& loaded, std::vector<NumericKey> keys,
@@ -151,13 +158,16 @@ class BodyStabilityFamily : public StabilityFamily {
   SlidingState at(std::span<const double> values);
   Pencil pencil(std::span<const double> values) override { return at(values).pencil; }
   double trusted_frequency(std::span<const double> values) override;
+  SpectrumMethod method(std::span<const double> values) override;
 
  private:
+  std::string values_text(std::span<const double> values) const;
+  SparseSystem sparse_system(std::span<const double> values) override;
   std::vector<double> kinks(std::size_t key, const std::vector<double>& values, double from,
                             double to) override;
 
   SceneFamily family_;
-  TimeParameters time_;
+  std::optional<TimeParameters> time_;
   std::optional<double> asked_;  ///< asked_frequency() of the first values
   ContactGeometry geometry_;
   std::optional<std::string> start_key_;

@@ -63,12 +63,12 @@ StudiedScene study_scene(LoadedScene loaded, const std::optional<std::string>& u
   const Model::Point& point = study.model.points.at(*channel->point);
   study.observed = {point.body, channel->is_vertical ? point.rows.y : point.rows.x};
   study.interval = scene.record->interval;
-  double end = scene.time.end;
+  double end = scene.time->end;
   if (until) {
     end = option_value("--until", *until, "s", Range::positive());
-    if (end > scene.time.end) {
+    if (end > scene.time->end) {
       throw ConfigError("--until", fmt::format("{:.6g} s is beyond the end of the scene, {:.6g} s",
-                                               end, scene.time.end));
+                                               end, scene.time->end));
     }
   }
   study.num_samples = static_cast<std::int64_t>(std::floor(end / study.interval + 1e-6));

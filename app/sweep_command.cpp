@@ -4,7 +4,7 @@
 
 #include "app/sweep.hpp"
 #include "core/errors.hpp"
-#include "io/linear_scene.hpp"
+#include "io/disc_scene.hpp"
 #include "io/sphere_scene.hpp"
 
 namespace stridor {
@@ -15,11 +15,10 @@ ExitCode sweep(const SweepOptions& options) {
   if (options.figure) check_figure(*options.figure, options.common);
   if (options.range.parameter.empty()) throw ConfigError("--parameter", "name a key of the scene");
   if (is_sphere_scene_file(options.scene)) return sweep_spheres(options);
-  if (is_linear_scene_file(options.scene)) {
-    throw ConfigError(
-        "scene",
-        "is of small motion; sweep takes beams and spheres, and the verb locus follows "
-        "the eigenvalues of this one along a key");
+  if (is_disc_scene_file(options.scene)) {
+    throw ConfigError("scene",
+                      "is of a disc and pads; sweep takes bodies in the plane and spheres, and the "
+                      "verb locus follows the eigenvalues of this one along a key");
   }
   if (options.is_up_and_down) {
     throw ConfigError("--up-down",

@@ -118,27 +118,27 @@ Transient::Transient(const LoadedScene& loaded, const InterruptedRun& interrupte
 
 void Transient::make_simulation() {
   const Scene& scene = loaded_->scene;
-  simulation_ = make_run_simulation(model_.system, scene.time, accounts_of(scene));
+  simulation_ = make_run_simulation(model_.system, *scene.time, accounts_of(scene));
   if (scene.record) channels_ = parse_channels(*scene.record, scene.model);
-  interval_ = scene.record ? scene.record->interval : scene.time.step;
+  interval_ = scene.record ? scene.record->interval : scene.time->step;
 }
 
 std::vector<SeriesSpec> Transient::series() const {
-  return Recorder::series(model_, channels_, loaded_->scene.time.step, interval_);
+  return Recorder::series(model_, channels_, loaded_->scene.time->step, interval_);
 }
 
 void Transient::make_march() {
   const Scene& scene = loaded_->scene;
-  const double step = scene.time.step;
+  const double step = scene.time->step;
   recorder_.emplace(model_, channels_, step, interval_, *writer_);
-  end_step_ = static_cast<std::int64_t>(std::llround(scene.time.end / step));
+  end_step_ = static_cast<std::int64_t>(std::llround(scene.time->end / step));
   // The last sample needs the filter's look-ahead beyond the end.
   last_step_ = end_step_ + recorder_->latency();
   recorder_->limit_samples(
-      static_cast<std::int64_t>(std::floor(scene.time.end / interval_ + 1e-6)) + 1);
+      static_cast<std::int64_t>(std::floor(scene.time->end / interval_ + 1e-6)) + 1);
   MarchPlan plan = measured_plan(scene, last_step_);
   plan.on_progress = [this](const Simulation& running) {
-    keeper_.look_after(running.time(), loaded_->scene.time.end, *writer_,
+    keeper_.look_after(running.time(), loaded_->scene.time->end, *writer_,
                        [this] { return save(); });
   };
   march_.emplace(*simulation_, &*recorder_, std::move(plan));
@@ -185,7 +185,7 @@ MarchEnd Transient::run_to_step(std::int64_t step) {
 }
 
 MarchEnd Transient::run_until(double time) {
-  return run_to_step(static_cast<std::int64_t>(std::llround(time / loaded_->scene.time.step)));
+  return run_to_step(static_cast<std::int64_t>(std::llround(time / loaded_->scene.time->step)));
 }
 
 MarchEnd Transient::run_to_end() {
@@ -223,10 +223,10 @@ Json Transient::finish(const Json& error) {
   writer_->flush();
   const auto acceleration = summarise_acceleration(RunFileReader(file_), scene.measure);
   const std::int64_t steps = simulation_->step_index();
-  Json results = transient_results(*simulation_, model_.system, scene.time, end_,
+  Json results = transient_results(*simulation_, model_.system, *scene.time, end_,
                                    march_->statistics(), acceleration);
   results.update(
-      effort_json(steps, scene.time.step, step_limit_json(model_.system, scene.time),
+      effort_json(steps, scene.time->step, step_limit_json(model_.system, *scene.time),
                   {setup_seconds_, march_seconds_, file_seconds_ + writer_->write_seconds()}));
   results["error"] = error;
   results["file"] = file_;

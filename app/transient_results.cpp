@@ -162,11 +162,11 @@ Json step_limit_json(const System& system, const TimeParameters& time) {
 }
 
 MarchPlan measured_plan(const Scene& scene, std::int64_t last_step) {
-  const double step = scene.time.step;
+  const double step = scene.time->step;
   const auto to_step = [&](double time) {
     return static_cast<std::int64_t>(std::ceil(time / step - 1e-6));
   };
-  const auto end_step = static_cast<std::int64_t>(std::llround(scene.time.end / step));
+  const auto end_step = static_cast<std::int64_t>(std::llround(scene.time->end / step));
   MarchPlan plan;
   plan.last_step = last_step;
   plan.measure_from = to_step(scene.measure.from);

@@ -98,10 +98,10 @@ struct Transit {
       : loaded(std::move(scene)), model(build_model_with(loaded, settings, cache)) {
     const auto start = Clock::now();
     const Scene& given = loaded.scene;
-    const double step = given.time.step;
+    const double step = given.time->step;
     set_initial_state(model.system, loaded);
     try {
-      simulation = make_run_simulation(model.system, given.time, accounts_of(given));
+      simulation = make_run_simulation(model.system, *given.time, accounts_of(given));
     } catch (const ConfigError& error) {
       throw loaded.located(error);
     }
@@ -109,8 +109,8 @@ struct Transit {
     const double interval = given.record ? given.record->interval : step;
     recorder.emplace(model, channels, step, interval, memory);
     recorder->limit_samples(
-        static_cast<std::int64_t>(std::floor(given.time.end / interval + 1e-6)) + 1);
-    end_step = static_cast<std::int64_t>(std::llround(given.time.end / step));
+        static_cast<std::int64_t>(std::floor(given.time->end / interval + 1e-6)) + 1);
+    end_step = static_cast<std::int64_t>(std::llround(given.time->end / step));
     march.emplace(*simulation, &*recorder, measured_plan(given, end_step + recorder->latency()));
     setup_seconds = seconds_since(start);
   }
@@ -130,10 +130,10 @@ struct Transit {
       acceleration = summarise_acceleration(channels.front().name, memory.first, interval,
                                             SampleSpan(memory.values), loaded.scene.measure);
     }
-    point.results = transient_results(*simulation, model.system, loaded.scene.time, end,
+    point.results = transient_results(*simulation, model.system, *loaded.scene.time, end,
                                       march->statistics(), acceleration);
-    point.results.update(effort_json(simulation->step_index(), loaded.scene.time.step,
-                                     step_limit_json(model.system, loaded.scene.time),
+    point.results.update(effort_json(simulation->step_index(), loaded.scene.time->step,
+                                     step_limit_json(model.system, *loaded.scene.time),
                                      {setup_seconds, wall_seconds, 0.0}));
     return point;
   }
@@ -328,10 +328,22 @@ void print(const NumericKey& key, const Points& points) {
   }
 }
 
+/// The model of the scene as it is. @throws ConfigError where it cannot be run
+Model first_model(const LoadedScene& loaded, BodyCache& cache) {
+  Model model = build_model(loaded, cache);
+  try {
+    require_modes(model);
+  } catch (const ConfigError& error) {
+    throw loaded.located(error);
+  }
+  return model;
+}
+
 }  // namespace
 
 ExitCode sweep_transients(const SweepOptions& options) {
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
+  loaded.require_section("time", "sweep");
   const NumericKey key = find_numeric_key(loaded.scene, options.range.parameter, "--parameter");
   const std::vector<double> values = range_values(key, options.range, options.spacing());
   // The ends of the range are read first: a mistake should not show after an hour.
@@ -342,7 +354,7 @@ ExitCode sweep_transients(const SweepOptions& options) {
   // Every thread begins with the bodies of the scene: most keys leave most of them as they are.
   BodyCache cache;
   const int threads = static_cast<int>(std::min(
-      static_cast<std::size_t>(num_threads(build_model(loaded, cache), options.common.threads)),
+      static_cast<std::size_t>(num_threads(first_model(loaded, cache), options.common.threads)),
       values.size()));
   std::vector<BodyCache> caches(static_cast<std::size_t>(threads), cache);
   // As many together as vectors hold, and as much work for every thread.

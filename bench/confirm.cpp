@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
   const auto own = [&](const char* name, Integrator integrator, std::optional<double> retained,
                        int steps) {
     const TimeParameters time =
-        PrecisionMethod{integrator, retained, {}, {}}.at(steps, loaded.scene.time, interval);
+        PrecisionMethod{integrator, retained, {}, {}}.at(steps, *loaded.scene.time, interval);
     TimedRun run(model.system, time, observed, interval, num_samples);
     run.run_until(num_samples);
     if (!run.failure().empty()) fmt::print("{}\n", run.failure());

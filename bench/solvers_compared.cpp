@@ -243,7 +243,7 @@ int main(int argc, char** argv) {
   fmt::print("Zonneveld 4 at its step: force {:.1e}, acceleration {:.1e}, envelope {:.1e}\n",
              check.force, check.acceleration, check.envelope);
 
-  std::vector<Method> methods = methods_of(window, loaded.scene.time);
+  std::vector<Method> methods = methods_of(window, *loaded.scene.time);
   for (Method& method : methods) {
     for (Setting& setting : method.settings) look_at(setting, reference, method.name.c_str());
   }

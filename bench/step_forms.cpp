@@ -69,7 +69,7 @@ void compare_forms(int rounds) {
       {"craig_bampton_fused", Coordinates::craig_bampton_fused, 5'000}};
   std::vector<Simulation> simulations;
   for (const Form& form : forms) {
-    TimeParameters time = loaded.scene.time;
+    TimeParameters time = *loaded.scene.time;
     time.coordinates = form.coordinates;
     simulations.emplace_back(model.system, time);
     seconds_for(simulations.back(), 1000);  // past the start
@@ -93,7 +93,7 @@ void compare_forms(int rounds) {
 void count_instructions(const std::string& form) {
   const LoadedScene loaded = bench_scene();
   const Model model = build_model(loaded);
-  TimeParameters time = loaded.scene.time;
+  TimeParameters time = *loaded.scene.time;
   if (form == "exact_50_kHz") {
     time.integrator = Integrator::exact;
     time.retain = RetainParameters{50e3, {}};
@@ -117,10 +117,10 @@ void compare_recording(int rounds) {
   {
     RunFileWriter writer(
         path, Overwrite::yes, {},
-        Recorder::series(model, channels, scene.time.step, scene.record->interval));
-    Recorder recorder(model, channels, scene.time.step, scene.record->interval, writer);
-    Simulation bare(model.system, scene.time);
-    Simulation recorded(model.system, scene.time);
+        Recorder::series(model, channels, scene.time->step, scene.record->interval));
+    Recorder recorder(model, channels, scene.time->step, scene.record->interval, writer);
+    Simulation bare(model.system, *scene.time);
+    Simulation recorded(model.system, *scene.time);
     std::vector<double> without;
     std::vector<double> ratios;
     constexpr std::int64_t steps = 50'000;

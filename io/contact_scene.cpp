@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/linear_scene.hpp"
+#include "io/disc_scene.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_reader.hpp"
 #include "io/scene_reference.hpp"
@@ -62,15 +62,14 @@ bool is_contact_scene(const SceneNode& tree) {
 std::string all_scenes_json_schema() {
   return json_schema(Scene::schema(), {{&ContactScene::schema(), {"profile", "contact_solver"}},
                                        {&SphereScene::schema(), {"sphere"}},
-                                       {&DiscScene::schema(), {"disc"}},
-                                       {&MatrixScene::schema(), {}, "matrices"}})
+                                       {&DiscScene::schema(), {"disc"}}})
              .dump(2) +
          "\n";
 }
 
 std::string all_scenes_reference() {
-  return scene_reference({&Scene::schema(), &ContactScene::schema(), &SphereScene::schema(),
-                          &DiscScene::schema(), &MatrixScene::schema()});
+  return scene_reference(
+      {&Scene::schema(), &ContactScene::schema(), &SphereScene::schema(), &DiscScene::schema()});
 }
 
 std::string LoadedContactScene::resolved() const {

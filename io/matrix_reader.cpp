@@ -30,6 +30,12 @@ bool is_file(const MatrixText& text) {
          text.front().find_first_not_of("+-.eE0123456789 \t") != std::string::npos;
 }
 
+/// Whether two bodies name the same files and have the same rows; their factors may differ.
+bool have_same_matrices(const P& one, const P& other) {
+  return std::all_of(std::begin(matrices_of_body), std::end(matrices_of_body),
+                     [&](const auto& named) { return one.*named.second == other.*named.second; });
+}
+
 /// The matrices of one body, with checks that name their keys.
 class MatrixLoader {
  public:
@@ -105,23 +111,13 @@ NamedMatrices read_matrices(const std::string& key, const SceneNode& tree,
   return MatrixLoader(key, tree).load(body);
 }
 
-bool have_same_matrices(const MatrixBodyParameters& one, const MatrixBodyParameters& other) {
-  return std::all_of(std::begin(matrices_of_body), std::end(matrices_of_body),
-                     [&](const auto& named) { return one.*named.second == other.*named.second; });
-}
-
 std::vector<std::pair<std::string, std::string>> files_of(const std::string& key,
                                                           const BodyParameters& body) {
   const auto* given = dynamic_cast<const TouchedMatrixBodyParameters*>(&body);
   if (given == nullptr) return {};
-  return files_of(key, given->body);
-}
-
-std::vector<std::pair<std::string, std::string>> files_of(const std::string& key,
-                                                          const MatrixBodyParameters& body) {
   std::vector<std::pair<std::string, std::string>> files;
   for (const auto& [name, member] : matrices_of_body) {
-    const MatrixText& text = body.*member;
+    const MatrixText& text = given->body.*member;
     if (is_file(text)) files.emplace_back(key + "." + name, text.front());
   }
   return files;
@@ -138,10 +134,16 @@ void make_files_absolute(const std::string& key, const SceneNode& tree, BodyPara
   }
 }
 
-void read_files(const std::string& key, const SceneNode& tree, BodyParameters& body) {
+void read_files(const std::string& key, const SceneNode& tree, BodyParameters& body,
+                BodyCache& cache) {
   auto* given = dynamic_cast<TouchedMatrixBodyParameters*>(&body);
   if (given == nullptr) return;
-  given->matrices = std::make_shared<const NamedMatrices>(read_matrices(key, tree, given->body));
+  BodyCache::ReadMatrices& last = cache.read[key];
+  if (!last.matrices || !have_same_matrices(last.named, given->body)) {
+    last.matrices = std::make_shared<const NamedMatrices>(read_matrices(key, tree, given->body));
+    last.named = given->body;
+  }
+  given->matrices = last.matrices;
 }
 
 }  // namespace stridor

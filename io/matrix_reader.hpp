@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/scene_tree.hpp"
+#include "models/body_cache.hpp"
 #include "substructures/body_parameters.hpp"
 #include "substructures/matrix_body.hpp"
 
@@ -18,21 +19,18 @@ namespace stridor {
 NamedMatrices read_matrices(const std::string& key, const SceneNode& tree,
                             const MatrixBodyParameters& body);
 
-/// Whether two bodies name the same files and have the same rows; their factors may differ.
-bool have_same_matrices(const MatrixBodyParameters& one, const MatrixBodyParameters& other);
-
 /// The files that a body names: keys and names as written. None where its type names none.
 /// @param key path of the body in the scene
 std::vector<std::pair<std::string, std::string>> files_of(const std::string& key,
                                                           const BodyParameters& body);
-std::vector<std::pair<std::string, std::string>> files_of(const std::string& key,
-                                                          const MatrixBodyParameters& body);
 
 /// Names the files of a body from the root, so that a run file finds them wherever it is.
 /// Parameters as read_matrices().
 void make_files_absolute(const std::string& key, const SceneNode& tree, BodyParameters& body);
 
-/// Reads the files of a body. Parameters and errors as read_matrices().
-void read_files(const std::string& key, const SceneNode& tree, BodyParameters& body);
+/// Gives a body the matrices that it names: those that the cache has read last for the body of this
+/// key, where they are the same files and rows. Parameters and errors as read_matrices().
+void read_files(const std::string& key, const SceneNode& tree, BodyParameters& body,
+                BodyCache& cache);
 
 }  // namespace stridor

@@ -13,7 +13,7 @@
 #include "io/channels.hpp"
 #include "io/contact_scene.hpp"
 #include "io/law_table_file.hpp"
-#include "io/linear_scene.hpp"
+#include "io/disc_scene.hpp"
 #include "io/matrix_reader.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_files.hpp"
@@ -46,10 +46,11 @@ void check_spectrogram(const Scene& scene, std::vector<Problem>& problems) {
   }
   if (!scene.record) return;
   const double interval = scene.record->interval;
-  if (section.length && (*section.length < 2.0 * interval || *section.length > scene.time.end)) {
+  if (section.length && scene.time &&
+      (*section.length < 2.0 * interval || *section.length > scene.time->end)) {
     report("length", fmt::format("{:g} s must be at least two times record.interval = {:g} s and "
                                  "at most time.end = {:g} s",
-                                 *section.length, interval, scene.time.end));
+                                 *section.length, interval, scene.time->end));
   }
   if (section.max_frequency && *section.max_frequency > 0.5 / interval) {
     report("max_frequency",
@@ -177,7 +178,10 @@ const Schema& Scene::schema() {
                    {.doc = "Version of the scene language: 1.", .range = Range::between(1, 1)})
           .parameters("parameters", &Scene::parameters, parameters_key())
           .include(&Scene::model)
-          .section("time", &Scene::time, {.doc = "How the system is marched in time."})
+          .section("time", &Scene::time,
+                   {.doc = "How the system is marched in time: for run, sweep, compare and "
+                           "precision.",
+                    .optional = true})
           .section("record", &Scene::record,
                    {.doc = "What is written to the run file.", .optional = true})
           .section("measure", &Scene::measure,
@@ -193,7 +197,8 @@ const Schema& Scene::schema() {
           .check(check_spectrogram)
           .check([](const Scene& scene, std::vector<Problem>& problems) {
             if (!scene.record) return;
-            const double ratio = scene.record->interval / scene.time.step;
+            const double step = scene.time ? scene.time->step : scene.record->interval;
+            const double ratio = scene.record->interval / step;
             if (ratio < 1.0 - 1e-9 || std::abs(ratio - std::round(ratio)) > 1e-6 ||
                 std::round(ratio) > 1e5) {
               problems.push_back(
@@ -201,8 +206,8 @@ const Schema& Scene::schema() {
                    fmt::format("{:g} s must be a whole multiple (1 to 100000) of "
                                "time.step = {:g} s, is {:g} of it; the "
                                "nearest is {:g} s",
-                               scene.record->interval, scene.time.step, ratio,
-                               std::clamp(std::round(ratio), 1.0, 1e5) * scene.time.step),
+                               scene.record->interval, step, ratio,
+                               std::clamp(std::round(ratio), 1.0, 1e5) * step),
                    {},
                    0,
                    0});
@@ -270,6 +275,15 @@ ConfigError LoadedScene::located(const ConfigError& error) const {
   return ConfigError(std::move(problems));
 }
 
+void LoadedScene::require_section(const std::string& section, const std::string& verb) const {
+  const bool is_there = section == "time"     ? scene.time.has_value()
+                        : section == "record" ? scene.record.has_value()
+                                              : !scene.model.pairs().empty();
+  if (is_there) return;
+  throw located(ConfigError(
+      section, fmt::format("missing: `{}` needs this section, which the scene has not", verb)));
+}
+
 LoadedScene load_scene(const std::string& path, const std::vector<std::string>& sets) {
   LoadedScene loaded;
   loaded.path = path;
@@ -288,11 +302,10 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
         "belongs to an oscillator on a viscoelastic substrate, for the verbs eig, locus, "
         "threshold, map, cycle, sweep, precision and run"));
   }
-  if (is_linear_scene(loaded.tree)) {
-    throw loaded.located(
-        ConfigError(is_disc_scene(loaded.tree) ? "disc" : "substructures",
-                    "belongs to a scene of small motion, for the verbs eig, locus, threshold and "
-                    "map; run takes discs"));
+  if (is_disc_scene(loaded.tree)) {
+    throw loaded.located(ConfigError("disc",
+                                     "belongs to a scene of a disc and pads, for the verbs eig, "
+                                     "locus, threshold, map and run"));
   }
   loaded.scene = read_as<Scene>(loaded.tree);
   read_named_files(loaded);
@@ -311,7 +324,13 @@ LoadedScene load_resolved_scene(const std::string& text, const std::string& sour
 
 Model build_model(const LoadedScene& loaded) {
   BodyCache cache;
-  return build_model(loaded, cache);
+  Model model = build_model(loaded, cache);
+  try {
+    require_modes(model);
+  } catch (const ConfigError& error) {
+    throw loaded.located(error);
+  }
+  return model;
 }
 
 Model build_model(const LoadedScene& loaded, BodyCache& cache) {
@@ -325,7 +344,7 @@ Model build_model(const LoadedScene& loaded, BodyCache& cache) {
     }
     ModelParameters parameters = scene.model;
     for (auto& [name, substructure] : parameters.substructures)
-      read_files("substructures." + name, loaded.tree, *substructure);
+      read_files("substructures." + name, loaded.tree, *substructure, cache);
     return make_model(parameters, observed, cache);
   } catch (const ConfigError& error) {
     throw loaded.located(error);

@@ -60,7 +60,7 @@ struct Scene {
   int format = 0;
   NamedNumbers parameters;
   ModelParameters model;
-  TimeParameters time;
+  std::optional<TimeParameters> time;  ///< needed by what marches in time
   std::optional<RecordParameters> record;
   MeasureParameters measure;
   std::optional<SpectrogramSection> spectrogram;
@@ -86,6 +86,10 @@ struct LoadedScene {
   std::string hash() const;
   /// The same error with the places of its keys in this scene.
   ConfigError located(const ConfigError& error) const;
+  /// Refuses a scene without a section that a verb needs.
+  /// @param section `time`, `contact` (or `contacts`) or `record`
+  /// @throws ConfigError naming section and verb
+  void require_section(const std::string& section, const std::string& verb) const;
 };
 
 /// 16 hexadecimal digits that change with any character of a resolved scene (FNV-1a).
@@ -101,10 +105,10 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
 /// @throws ConfigError as load_scene
 LoadedScene load_resolved_scene(const std::string& text, const std::string& source);
 
-/// The model of a scene with the points that its channels ask for.
-/// @throws ConfigError with the place of the key in the scene
+/// The model of a scene with the points that its channels ask for, for a run.
+/// @throws ConfigError with the place of the key in the scene; also as require_modes()
 Model build_model(const LoadedScene& loaded);
-/// The same with bodies and reductions from a cache where it has them.
+/// The same with bodies, reductions and matrices from a cache where it has them; it may be sparse.
 Model build_model(const LoadedScene& loaded, BodyCache& cache);
 
 }  // namespace stridor

@@ -244,8 +244,10 @@ std::optional<std::string> start_key(const ModelParameters& model) {
   return "contacts." + model.contacts.begin()->first + ".start";
 }
 
-LoadedScene with_settings(const LoadedScene& scene, const Settings& settings) {
-  LoadedScene changed = scene;
+namespace {
+
+/// Sets keys of a scene anew. @throws as with_settings(), the scene half changed
+void apply_settings(LoadedScene& changed, const Settings& settings) {
   try {
     for (const auto& [path, value] : settings) {
       const std::string assignment = assignment_of(path, value);
@@ -256,6 +258,19 @@ LoadedScene with_settings(const LoadedScene& scene, const Settings& settings) {
   } catch (const ConfigError& error) {
     throw in_settings(changed.located(error), settings);
   }
+}
+
+std::vector<std::string> paths_of(const Settings& settings) {
+  std::vector<std::string> paths;
+  for (const auto& setting : settings) paths.push_back(setting.first);
+  return paths;
+}
+
+}  // namespace
+
+LoadedScene with_settings(const LoadedScene& scene, const Settings& settings) {
+  LoadedScene changed = scene;
+  apply_settings(changed, settings);
   return changed;
 }
 
@@ -333,10 +348,22 @@ std::optional<double> SceneFamily::position() const {
 void SceneFamily::build(const Settings& settings) {
   if (model_ && settings == built_) return;
   model_.reset();
-  const LoadedScene changed = with_settings(loaded_, settings);
-  model_ = build_model_with(changed, settings, cache_);
+  // The same keys are set over and over: the tree is copied once for them.
+  if (!changed_ || changed_keys_ != paths_of(settings)) {
+    changed_ = loaded_;
+    changed_keys_ = paths_of(settings);
+  }
+  changed_->sets = loaded_.sets;
+  try {
+    apply_settings(*changed_, settings);
+  } catch (...) {
+    changed_.reset();
+    throw;
+  }
+  model_ = build_model_with(*changed_, settings, cache_);
   built_ = settings;
-  start_ = changed.scene.model.pairs().begin()->second.start;
+  const auto pairs = changed_->scene.model.pairs();
+  if (!pairs.empty()) start_ = pairs.begin()->second.start;
 }
 
 }  // namespace stridor

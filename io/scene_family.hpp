@@ -97,6 +97,8 @@ class SceneFamily {
 
   LoadedScene loaded_;
   std::vector<NumericKey> keys_;
+  std::optional<LoadedScene> changed_;  ///< the scene with changed_keys_ set to some values
+  std::vector<std::string> changed_keys_;
   BodyCache cache_;
   std::optional<std::size_t> start_key_;  ///< that of the position of the only pair
   std::optional<std::size_t> drive_key_;  ///< that of the displacement of the drive

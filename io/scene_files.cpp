@@ -49,13 +49,6 @@ void add_file(std::vector<SceneFile>& files, const SceneNode& tree, const std::s
   files.push_back({key, path, digest_of_file(path)});
 }
 
-template <class Body>
-void add_files(std::vector<SceneFile>& files, const SceneNode& tree, const std::string& body,
-               const Body& parameters) {
-  for (const auto& [key, name] : files_of("substructures." + body, parameters))
-    add_file(files, tree, key, name);
-}
-
 /// A path in one line.
 std::string escaped(const std::string& path) {
   std::string text;
@@ -109,22 +102,16 @@ std::vector<SceneFile> read_digests(const std::string& digests) {
 std::vector<SceneFile> scene_files(const LoadedScene& loaded) {
   std::vector<SceneFile> files;
   const ModelParameters& model = loaded.scene.model;
-  for (const auto& [name, body] : model.substructures) add_files(files, loaded.tree, name, *body);
+  for (const auto& [body, parameters] : model.substructures) {
+    for (const auto& [key, name] : files_of("substructures." + body, *parameters))
+      add_file(files, loaded.tree, key, name);
+  }
   for (const auto& [name, pair] : model.pairs()) {
     const std::string key = model.contact ? name : "contacts." + name;
     if (pair.normal.has_table()) add_file(files, loaded.tree, key + ".normal.form", pair.normal.form);
   }
   const InitialParameters& initial = model.initial;
   if (initial.is_file()) add_file(files, loaded.tree, initial_state_key, initial.state);
-  return files;
-}
-
-std::vector<SceneFile> scene_files(const LoadedLinearScene& loaded) {
-  std::vector<SceneFile> files;
-  if (const auto* scene = std::get_if<MatrixScene>(&loaded.scene)) {
-    for (const auto& [name, substructure] : scene->substructures)
-      add_files(files, loaded.tree, name, std::get<MatrixBodyParameters>(substructure));
-  }
   return files;
 }
 

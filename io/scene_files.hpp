@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "io/linear_scene.hpp"
 #include "io/run_file.hpp"
 #include "io/scene.hpp"
 #include "io/sphere_scene.hpp"
@@ -20,8 +19,6 @@ struct SceneFile {
 
 /// Matrices, and the run file of the initial state. @throws FileError if one cannot be read
 std::vector<SceneFile> scene_files(const LoadedScene& loaded);
-/// Matrices. @throws as above
-std::vector<SceneFile> scene_files(const LoadedLinearScene& loaded);
 /// The table of the contact law. @throws as above
 std::vector<SceneFile> scene_files(const LoadedSphereScene& loaded);
 

@@ -377,6 +377,33 @@ SceneNode parse(const std::string& text, const Place& start) {
   return builder.take_root();
 }
 
+/// Whether a text is a number as programs write it, "-1.5e-7": YAML has it as it is, and verbs that
+/// vary a key set thousands of them.
+bool is_plain_number(const std::string& text) {
+  std::size_t i = text.starts_with('-') ? 1 : 0;
+  const auto skip_digits = [&] {
+    const std::size_t first = i;
+    while (i < text.size() && text[i] >= '0' && text[i] <= '9') ++i;
+    return i > first;
+  };
+  if (!skip_digits()) return false;
+  if (i < text.size() && text[i] == '.' && (++i, !skip_digits())) return false;
+  if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
+    ++i;
+    if (i < text.size() && (text[i] == '+' || text[i] == '-')) ++i;
+    if (!skip_digits()) return false;
+  }
+  return i == text.size();
+}
+
+SceneNode scalar_of(const std::string& text, const Place& place) {
+  SceneNode node;
+  node.kind = SceneNode::Kind::scalar;
+  node.text = text;
+  node.place = place;
+  return node;
+}
+
 SceneNode parse_scene(const std::string& text, const std::string& source) {
   SceneNode root = parse(text, {source, 1, 1});
   if (root.kind == SceneNode::Kind::null) {
@@ -551,7 +578,8 @@ void set_value(SceneNode& root, const std::string& assignment) {
   if (written.find_first_not_of(" \t") == std::string::npos) {
     fail(at(assignment.size()), path, "has no value; write --set key.path=value");
   }
-  SceneNode value = parse(written, at(equals + 1));
+  SceneNode value = is_plain_number(written) ? scalar_of(written, at(equals + 1))
+                                             : parse(written, at(equals + 1));
   if (names.size() + height(value) > SceneLimits::levels) {
     fail(at(0), path,
          fmt::format("maps and lists are nested deeper than {} levels", SceneLimits::levels));

@@ -109,8 +109,9 @@ std::optional<double> leaving_time(const System& system, const ContactPoint& con
 
 void look_at_paths(const LoadedScene& loaded, const System& system,
                    std::vector<Problem>& warnings) {
+  if (!loaded.scene.time) return;
   for (const ContactPoint& contact : system.contacts) {
-    const auto time = leaving_time(system, contact, loaded.scene.time.end);
+    const auto time = leaving_time(system, contact, loaded.scene.time->end);
     if (!time) continue;
     warnings.push_back(
         {"time.end",
@@ -132,7 +133,7 @@ bool is_held(const SystemBody& body, int row) {
 }
 
 void look_at_channels(const Scene& scene, const Model& model, std::vector<Problem>& warnings) {
-  if (!scene.record) return;
+  if (!scene.record || model.sparse) return;
   for (const Channel& channel : parse_channels(*scene.record, scene.model)) {
     if (!channel.point) continue;
     const Model::Point& point = model.points.at(*channel.point);
@@ -172,11 +173,11 @@ std::vector<Problem> scene_warnings(const LoadedScene& loaded, const Model& mode
       warnings.push_back(std::move(warning));
     }
   }
-  if (scene.measure.from >= scene.time.end) {
+  if (scene.time && scene.measure.from >= scene.time->end) {
     warnings.push_back({"measure.from",
                         fmt::format("{:g} s is not before time.end = {:g} s: the window of the "
                                     "statistics is empty",
-                                    scene.measure.from, scene.time.end),
+                                    scene.measure.from, scene.time->end),
                         {},
                         0,
                         0});

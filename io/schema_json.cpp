@@ -289,17 +289,6 @@ class Writer {
   std::map<std::tuple<const Schema*, std::string, std::string>, std::string> names_;
 };
 
-/// What a scene satisfies whose substructures are all of one type and touch nothing.
-Json all_bodies_of_type(const std::string& type) {
-  Json body = {{"required", Json::array({"type"})}};
-  body["properties"]["type"]["const"] = type;
-  Json scene = {{"required", Json::array({"substructures"})}};
-  scene["properties"]["substructures"]["additionalProperties"] = std::move(body);
-  for (const char* key : {"contact", "contacts", "drive", "time"})
-    scene["not"]["anyOf"].push_back({{"required", Json::array({key})}});
-  return scene;
-}
-
 Json preamble() {
   Json json = Json::object();
   json["$schema"] = "https://json-schema.org/draft/2020-12/schema";
@@ -316,8 +305,6 @@ Json json_schema(const Schema& usual, const std::vector<SpecialScene>& specials)
     Json any = Json::array();
     for (const std::string& sign : specials[i].signs)
       any.push_back({{"required", Json::array({sign})}});
-    if (!specials[i].substructure_type.empty())
-      any.push_back(all_bodies_of_type(specials[i].substructure_type));
     Json outer = Json::object();
     outer["if"]["anyOf"] = std::move(any);
     outer["then"] = writer.definition(*specials[i].schema);

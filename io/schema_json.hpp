@@ -25,12 +25,10 @@ nlohmann::ordered_json json_schema(const Schema& schema);
 /// The same as text.
 std::string json_schema_text(const Schema& schema);
 
-/// A kind of scene that is known by the keys at its top, or by the type of its substructures.
+/// A kind of scene that is known by the keys at its top.
 struct SpecialScene {
   const Schema* schema = nullptr;
-  std::vector<std::string> signs;      ///< any one of them marks this kind
-  std::string substructure_type = {};  ///< or that every substructure is of this type and there is
-                                       ///< no contact, drive or time; may be empty
+  std::vector<std::string> signs;  ///< any one of them marks this kind
 };
 
 /// The schema of scenes of several kinds: the first of `specials` whose sign is at the top,

@@ -163,10 +163,11 @@ void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure
       plot += fmt::format(", $moved_{}_{} using 1:2 with lines linewidth 1.6 linecolor '{}'", b, p,
                           colour);
     }
-    script.add(
-        "{}, $contacts using 1:2 with points pointtype 6 pointsize 1.6 linewidth 2 linecolor "
-        "'#e07b00'",
-        plot);
+    if (!picture.contacts.empty())
+      plot +=
+          ", $contacts using 1:2 with points pointtype 6 pointsize 1.6 linewidth 2 linecolor "
+          "'#e07b00'";
+    script.add("{}", plot);
   }
   script.add("unset multiplot");
   draw_figure(figure, script.text(), size);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "models/keys_text.hpp"
+#include "substructures/whole_body.hpp"
 
 namespace stridor {
 namespace {
@@ -19,6 +20,13 @@ void append(std::string& text, const Value& value) {
       text += '-';
     } else if constexpr (std::is_same_v<Content, TimeTable>) {
       text += fmt::format("{} {}", content.times, content.values);
+    } else if constexpr (std::is_same_v<Content, std::vector<std::string>>) {
+      // Rows of matrices may be long: copied as they are, with their lengths.
+      for (const std::string& line : content) {
+        text += std::to_string(line.size());
+        text += ' ';
+        text += line;
+      }
     } else if constexpr (std::is_same_v<Content, NamedNumbers>) {
       // Keys that depend on parameters hold values.
     } else {
@@ -99,23 +107,37 @@ BodyMatrices BodyCache::matrices(const BodyParameters& parameters) {
   return body;
 }
 
+template <class Make>
+BodyCache::Reduction BodyCache::reduction(const std::string& key, const BodyMatrices& body,
+                                          const Make& make) {
+  const Reduction* found = find(reductions_, key);
+  if (found == nullptr) {
+    Reduction made;
+    made.reduced = make();
+    made.modal = make_modal(made.reduced);
+    ++num_reductions_;
+    found = &keep(reductions_, key, std::move(made));
+  }
+  Reduction copied = *found;
+  copied.reduced.damping = body.damping;
+  copied.modal.damping = body.damping;
+  return copied;
+}
+
 BodyCache::Reduction BodyCache::reduce(const BodyParameters& parameters,
                                        const BodyMatrices& body, std::span<const int> interface,
                                        Eigen::Index num_modes, std::span<const int> watched) {
   const std::string key = fmt::format("{}|{}|{}|{}", key_of(parameters), fmt::join(interface, ","),
                                       num_modes, fmt::join(watched, ","));
-  const Reduction* found = find(reductions_, key);
-  if (found == nullptr) {
-    Reduction reduction;
-    reduction.reduced = make_craig_bampton(body, interface, num_modes, watched);
-    reduction.modal = make_modal(reduction.reduced);
-    ++num_reductions_;
-    found = &keep(reductions_, key, std::move(reduction));
-  }
-  Reduction reduction = *found;
-  reduction.reduced.damping = body.damping;
-  reduction.modal.damping = body.damping;
-  return reduction;
+  return reduction(key, body,
+                   [&] { return make_craig_bampton(body, interface, num_modes, watched); });
+}
+
+BodyCache::Reduction BodyCache::keep_whole(const BodyParameters& parameters,
+                                           const BodyMatrices& body,
+                                           std::span<const int> watched) {
+  return reduction(fmt::format("{}|whole|{}", key_of(parameters), fmt::join(watched, ",")), body,
+                   [&] { return make_whole(body, watched); });
 }
 
 }  // namespace stridor

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "models/model.hpp"
+#include "substructures/matrix_body.hpp"
 
 namespace stridor {
 
@@ -38,6 +41,19 @@ class BodyCache {
                    std::span<const int> interface, Eigen::Index num_modes,
                    std::span<const int> watched);
 
+  /// A body of which every unknown is kept (make_whole()) and its modes.
+  /// @throws as make_whole() and make_modal()
+  Reduction keep_whole(const BodyParameters& parameters, const BodyMatrices& body,
+                       std::span<const int> watched);
+
+  /// Matrices that were read for a body, and what it then named.
+  struct ReadMatrices {
+    MatrixBodyParameters named;
+    std::shared_ptr<const NamedMatrices> matrices;
+  };
+  /// Those read last for each body, by its name, so that a file is read once.
+  std::map<std::string, ReadMatrices> read;
+
   /// Reductions computed so far, those forgotten included.
   std::int64_t num_reductions() const { return num_reductions_; }
 
@@ -51,6 +67,8 @@ class BodyCache {
   template <class Content>
   using Store = std::vector<Entry<Content>>;
 
+  template <class Make>
+  Reduction reduction(const std::string& key, const BodyMatrices& body, const Make& make);
   template <class Content>
   Content* find(Store<Content>& store, const std::string& key);
   template <class Content>

@@ -12,6 +12,7 @@
 #include "models/body_cache.hpp"
 #include "models/initial_motion.hpp"
 #include "models/set_up_estimate.hpp"
+#include "substructures/whole_body.hpp"
 
 namespace stridor {
 namespace {
@@ -42,6 +43,7 @@ struct Body {
   BodyMatrices matrices;
   Eigen::Vector2d place = Eigen::Vector2d::Zero();
   bool is_placed = false;
+  bool is_touched = false;  ///< by a contact
   std::vector<int> interface;  ///< DoFs kept
   std::vector<int> watched;    ///< DoFs with a row, in order of the rows
 
@@ -54,6 +56,10 @@ struct Body {
   PointRows rows_of(int node) {
     const auto& dofs = matrices.node_dofs[static_cast<std::size_t>(node)];
     return {row_of(dofs[0]), row_of(dofs[1])};
+  }
+  /// Whether nothing is to be reduced of it.
+  bool is_whole() const {
+    return parameters != nullptr && !is_touched && !parameters->num_modes();
   }
   Eigen::Vector2d position(int node) const { return matrices.nodes.row(node).transpose() + place; }
   void keep(int dof) {
@@ -582,15 +588,22 @@ int load_row_of(Body& body, const DriveParameters& drive) {
 /// unknowns become interface.
 int modes_of(Body& body, const std::string& key) {
   if (const std::optional<int> asked = body.parameters->num_modes()) return *asked;
-  constexpr Eigen::Index most_unknowns = 500;
-  if (body.matrices.num_dofs() > most_unknowns) {
+  if (body.matrices.num_dofs() > largest_dense_size) {
     throw ConfigError(key + ".reduction",
                       fmt::format("missing: {} unknowns are too many to keep them all (up to {}); "
                                   "give fixed_interface_modes",
-                                  body.matrices.num_dofs(), most_unknowns));
+                                  body.matrices.num_dofs(), largest_dense_size));
   }
   for (int dof = 0; dof < body.matrices.num_dofs(); ++dof) body.keep(dof);
   return 0;
+}
+
+/// Whether the bodies of which every unknown is kept are too large for dense matrices.
+bool is_large(const std::vector<Body>& bodies) {
+  Eigen::Index size = 0;
+  for (const Body& body : bodies)
+    if (body.is_whole()) size += body.matrices.num_dofs();
+  return size > largest_dense_size;
 }
 
 /// Terms that couple modes keep no rigid motion apart, so statics know none.
@@ -616,7 +629,8 @@ const Schema& ModelParameters::schema() {
           .named_sections("contacts", &ModelParameters::contacts,
                           {.doc = "Several contact pairs, by name.", .optional = true})
           .section("drive", &ModelParameters::drive,
-                   {.doc = "What moves and loads guided supports."})
+                   {.doc = "What moves and loads guided supports; default: nothing does.",
+                    .optional = true})
           .section("initial", &ModelParameters::initial,
                    {.doc = "State at the start of a run.", .optional = true})
           .check([](const ModelParameters& model, std::vector<Problem>& problems) {
@@ -627,14 +641,6 @@ const Schema& ModelParameters::schema() {
                    {},
                    0,
                    0});
-            }
-            if (!model.contact && model.contacts.empty()) {
-              problems.push_back({"contact",
-                                  "missing: a scene needs a contact pair (`contact`, or several by "
-                                  "name under `contacts`)",
-                                  {},
-                                  0,
-                                  0});
             }
             const auto pairs = model.pairs();
             for (const auto& [name, pair] : pairs) {
@@ -653,6 +659,17 @@ const Schema& ModelParameters::schema() {
 std::map<std::string, ContactParameters> ModelParameters::pairs() const {
   if (contact) return {{"contact", *contact}};
   return contacts;
+}
+
+void require_modes(const Model& model) {
+  if (!model.sparse) return;
+  for (const auto& [name, body] : model.substructures) {
+    if (body->num_modes()) continue;
+    throw ConfigError("substructures." + name + ".reduction",
+                      fmt::format("missing: the bodies have {} unknowns, too many to keep them all "
+                                  "in a run (up to {}); give fixed_interface_modes",
+                                  model.sparse->size(), largest_dense_size));
+  }
 }
 
 Model make_model(const ModelParameters& parameters,
@@ -683,24 +700,30 @@ Model make_model(const ModelParameters& parameters,
     bodies.push_back(std::move(body));
   }
   const auto pairs = parameters.pairs();
-  check_drive(parameters.drive, pairs);
-  const EndlessMasters endless = add_endless_masters(parameters.drive, pairs, bodies);
+  const DriveParameters drive = parameters.drive_or_rest();
+  check_drive(drive, pairs);
+  const EndlessMasters endless = add_endless_masters(drive, pairs, bodies);
 
   std::vector<ResolvedPair> resolved;
   resolved.reserve(pairs.size());
   for (const auto& [name, pair] : pairs) {
     resolved.push_back(
         resolve_pair(name, parameters.contact ? name : "contacts." + name, pair, bodies,
-                     moves_master(parameters.drive, name) ? endless.moving : endless.at_rest));
+                     moves_master(drive, name) ? endless.moving : endless.at_rest));
+  }
+
+  for (const ResolvedPair& pair : resolved) {
+    for (const int body : {pair.slave_body, pair.master_body})
+      bodies[static_cast<std::size_t>(body)].is_touched = true;
   }
 
   // A body that carries others is placed before them; chains are placed in order.
   Model model;
   model.substructures = parameters.substructures;
   System& system = model.system;
-  system.drive = make_drive(parameters.drive,
+  system.drive = make_drive(drive,
                             pairs.empty() ? SlidingMode::moving : pairs.begin()->second.sliding);
-  if (!pairs.empty()) check_something_follows(parameters.drive, system.drive, bodies, endless);
+  if (!pairs.empty()) check_something_follows(drive, system.drive, bodies, endless);
   std::vector<ResolvedPair*> waiting;
   waiting.reserve(resolved.size());
   for (ResolvedPair& pair : resolved) waiting.push_back(&pair);
@@ -756,10 +779,10 @@ Model make_model(const ModelParameters& parameters,
       if (pair.parameters->friction) point.friction = make_friction_law(*pair.parameters->friction);
       point.penalty = pair.parameters->normal.stiffness;
       if (pair.parameters->normal.law == NormalLaw::viscoelastic)
-        point.substrate = make_substrate_contact(*pair.parameters, final_load(parameters.drive));
-      point.friction_rise = TimeCurve::ramp(1.0, parameters.drive.ramp);
+        point.substrate = make_substrate_contact(*pair.parameters, final_load(drive));
+      point.friction_rise = TimeCurve::ramp(1.0, drive.ramp);
       point.on_violation = pair.parameters->on_violation;
-      point.armed_from = pair.parameters->armed_from.value_or(parameters.drive.ramp);
+      point.armed_from = pair.parameters->armed_from.value_or(drive.ramp);
       system.contacts.push_back(std::move(point));
     }
     system.surfaces.push_back(std::move(surface));
@@ -773,9 +796,11 @@ Model make_model(const ModelParameters& parameters,
     model.points[name] = {b, body.rows_of(node_at(body, point, key))};
   }
 
-  check_loads(parameters.drive, bodies);
+  check_loads(drive, bodies);
   const InitialMotion displacement(parameters.initial.displacement, "initial.displacement", bodies);
   const InitialMotion velocity(parameters.initial.velocity, "initial.velocity", bodies);
+  const bool is_sparse = pairs.empty() && is_large(bodies);
+  std::vector<SparseSystem> blocks;
   for (Body& body : bodies) {
     if (body.parameters == nullptr) {
       system.bodies.push_back(make_rigid_body(body.name));
@@ -785,8 +810,12 @@ Model make_model(const ModelParameters& parameters,
     const std::string key = "substructures." + body.name;
     SystemBody finished;
     finished.name = body.name;
-    finished.follows_drive = follows_drive(body, parameters.drive);
-    finished.load_row = load_row_of(body, parameters.drive);
+    finished.follows_drive = follows_drive(body, drive);
+    finished.load_row = load_row_of(body, drive);
+    if (is_sparse && body.is_whole()) {
+      blocks.push_back(make_sparse(body.matrices));
+      continue;
+    }
     const int num_modes = modes_of(body, key);
     const auto num_interior =
         body.matrices.num_dofs() - static_cast<Eigen::Index>(body.interface.size());
@@ -799,7 +828,9 @@ Model make_model(const ModelParameters& parameters,
     const Activity reducing(fmt::format("reducing '{}'", body.name));
     try {
       BodyCache::Reduction reduction =
-          cache.reduce(*body.parameters, body.matrices, body.interface, num_modes, body.watched);
+          body.is_whole() ? cache.keep_whole(*body.parameters, body.matrices, body.watched)
+                          : cache.reduce(*body.parameters, body.matrices, body.interface,
+                                         num_modes, body.watched);
       finished.reduced = std::move(reduction.reduced);
       finished.modal = std::move(reduction.modal);
     } catch (const NumericalError& error) {
@@ -807,12 +838,19 @@ Model make_model(const ModelParameters& parameters,
           key, fmt::format("cannot be reduced: {}. Give it supports or more contact points",
                            error.what()));
     }
-    check_coupled(finished, key);
+    if (body.is_touched) check_coupled(finished, key);
     const auto number = static_cast<int>(system.bodies.size());
     finished.initial_displacement = displacement.of(number, body, finished);
     finished.initial_velocity = velocity.of(number, body, finished);
     system.bodies.push_back(std::move(finished));
     model.placements.push_back({body.place, body.interface});
+  }
+  if (is_sparse) {
+    for (const SystemBody& body : system.bodies) blocks.push_back(make_sparse(body.modal));
+    model.sparse = block_diagonal(blocks);
+    system = {};
+    model.points.clear();
+    model.placements.clear();
   }
   return model;
 }

@@ -10,6 +10,7 @@
 #include "coupling/system.hpp"
 #include "models/initial_parameters.hpp"
 #include "substructures/body_parameters.hpp"
+#include "substructures/matrix_body.hpp"
 
 namespace stridor {
 
@@ -18,12 +19,14 @@ struct ModelParameters {
   Substructures substructures;
   std::optional<ContactParameters> contact;           ///< one pair, named "contact"
   std::map<std::string, ContactParameters> contacts;  ///< several pairs by name
-  DriveParameters drive;
+  std::optional<DriveParameters> drive;               ///< absent: nothing moves or loads
   InitialParameters initial;
   static const Schema& schema();
 
   /// All pairs by name, under whichever key they are.
   std::map<std::string, ContactParameters> pairs() const;
+  /// The drive; one at rest without load where there is none.
+  DriveParameters drive_or_rest() const { return drive.value_or(DriveParameters{}); }
 };
 
 /// A point of a body whose motion is wanted: "<body>.<point>".
@@ -32,6 +35,10 @@ struct PointName {
   std::string point;
   auto operator<=>(const PointName&) const = default;
 };
+
+/// Number of unknowns up to which a body is kept whole in dense matrices, which cost its third
+/// power.
+inline constexpr Eigen::Index largest_dense_size = 1000;
 
 /// The system and where in it the wanted points are.
 struct Model {
@@ -48,11 +55,20 @@ struct Model {
   std::map<PointName, Point> points;
   std::vector<Placement> placements;                            ///< of the bodies of the system
   Substructures substructures;  ///< of which it was made
+  /// All bodies side by side where nothing touches them and those of which every unknown is kept
+  /// have more than `largest_dense_size`; then `system` is empty. It has eigenvalues, no runs.
+  std::optional<SparseSystem> sparse;
 };
+
+/// @throws ConfigError with a key path if a model is sparse, and cannot be run for that
+void require_modes(const Model& model);
 
 /// Builds, places and reduces the bodies, connects them and sets them moving. The initial state is
 /// left at rest where `initial.state` is another than that; see initial_state.hpp of io and
 /// find_equilibrium().
+///
+/// Contacts and drive may be absent. A body that nothing touches, and of which nothing says that it
+/// be reduced, keeps every unknown, may be free to move, and have negative stiffness.
 ///
 /// The first body that is only ever a master keeps its frame as the global one; a slave body is
 /// placed so that its first slave point lies on the master at `start`.

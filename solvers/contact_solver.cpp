@@ -116,6 +116,7 @@ ContactSolver::ContactSolver(int num_contacts, ContactSolverParameters parameter
       jamming_(num_contacts) {}
 
 ContactAnswer ContactSolver::solve(std::span<LocalProblem> contacts) {
+  if (contacts.empty()) return {};
   if (contacts.size() == 1) {
     const LocalCompliance w{delassus_(0, 0), delassus_(0, 1), delassus_(1, 0), delassus_(1, 1)};
     LocalProblem& contact = contacts[0];

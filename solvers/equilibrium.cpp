@@ -709,8 +709,27 @@ class Search {
 
 }  // namespace
 
+namespace {
+
+/// Bodies that nothing touches or loads: at rest where they are, even where nothing holds them.
+std::optional<Equilibrium> at_rest(const System& system, const EquilibriumState& state) {
+  const bool is_loaded =
+      state.load != 0.0 && std::any_of(system.bodies.begin(), system.bodies.end(),
+                                       [](const SystemBody& body) { return body.load_row >= 0; });
+  if (!system.contacts.empty() || is_loaded) return std::nullopt;
+  Equilibrium rest;
+  rest.status = EquilibriumStatus::converged;
+  rest.state = state;
+  for (const SystemBody& body : system.bodies)
+    rest.displacement.push_back(Eigen::VectorXd::Zero(body.modal.size()));
+  return rest;
+}
+
+}  // namespace
+
 Equilibrium find_equilibrium(const System& system, const EquilibriumState& state,
                              const EquilibriumParameters& parameters) {
+  if (std::optional<Equilibrium> rest = at_rest(system, state)) return *std::move(rest);
   return Search(system, state, parameters).run();
 }
 

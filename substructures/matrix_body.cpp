@@ -127,7 +127,8 @@ const Schema& TouchedMatrixBodyParameters::schema() {
       SchemaOf<P>("touched_matrices")
           .include(&P::body)
           .named_sections("points", &P::points,
-                          {.doc = "Points that touch others, carry a surface or are recorded."})
+                          {.doc = "Points that touch others, carry a surface or are recorded.",
+                           .optional = true})
           .named_sections("surfaces", &P::surfaces,
                           {.doc = "Outlines on which others slide.", .optional = true})
           .section("guided", &P::guided,

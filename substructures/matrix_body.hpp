@@ -76,7 +76,7 @@ struct MatrixGuideParameters {
   static const Schema& schema();
 };
 
-/// A body given by its matrices with the points and surfaces at which others touch it.
+/// A body given by its matrices, with points and surfaces at which others may touch it.
 struct TouchedMatrixBodyParameters : BodyParametersOf<TouchedMatrixBodyParameters> {
   static constexpr const char* type_name = "matrices";
 

@@ -110,7 +110,7 @@ TEST(ResumeDisc, GoesOnBitwiseAsIfTheRunHadNotStopped) {
   const std::string broken = (folder / "broken.h5").string();
   constexpr double end = 0.004;
   // From a large perturbation, so that contacts lift off and stick at every stop.
-  const LoadedLinearScene loaded = load_linear_scene(
+  const LoadedDiscScene loaded = load_disc_scene(
       scene_path("examples/elastic_pads.yaml"),
       {"time.end=0.004", "initial.perturbation.amplitude=20um", "record.interval=1e-5"});
   {
@@ -126,7 +126,7 @@ TEST(ResumeDisc, GoesOnBitwiseAsIfTheRunHadNotStopped) {
   }
   for (const double stop : {0.47, 0.66, 1.0}) {
     const InterruptedRun interrupted = find_interrupted_run(broken);
-    const LoadedLinearScene again = load_resolved_linear_scene(interrupted.scene_text, broken);
+    const LoadedDiscScene again = load_resolved_disc_scene(interrupted.scene_text, broken);
     DiscTransient transient(again, interrupted);
     if (stop == 1.0) {
       ASSERT_EQ(transient.run_to_end(), MarchEnd::finished);

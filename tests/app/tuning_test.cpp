@@ -81,7 +81,7 @@ TEST_P(Tuning, KeepsWhatItPromisesWithinAFactorOfOneAndAHalf) {
   const auto num_samples =
       static_cast<std::int64_t>(std::llround(object["end"].get<double>() / interval));
 
-  TimeParameters other = scene.scene.time;
+  TimeParameters other = *scene.scene.time;
   other.integrator = Integrator::central_difference;
   other.retain.reset();
   other.step = interval / std::ceil(2.0 * interval / step_limit(model.system).step);
@@ -90,7 +90,7 @@ TEST_P(Tuning, KeepsWhatItPromisesWithinAFactorOfOneAndAHalf) {
                              object["smoothing"].get<double>()};
   const ReferenceRun reference(sampled(model, other, observed, interval, num_samples), norms);
   const RunErrors errors =
-      reference.errors_of(sampled(model, scene.scene.time, observed, interval, num_samples));
+      reference.errors_of(sampled(model, *scene.scene.time, observed, interval, num_samples));
   EXPECT_LE(errors.envelope, 1.5 * tuned.wanted);
   RecordProperty("error", std::to_string(errors.envelope));
 }

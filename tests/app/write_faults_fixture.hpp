@@ -72,8 +72,8 @@ inline std::vector<FaultyScene> faulty_scenes() {
                        "substructures.reed.reduction.fixed_interface_modes=2"});
   };
   const auto disc = [] {
-    return load_linear_scene(scene_path("examples/disc_squeal.yaml"),
-                             {"time.end=2e-3", "record.channels=[upper.force, upper.state]"});
+    return load_disc_scene(scene_path("examples/disc_squeal.yaml"),
+                           {"time.end=2e-3", "record.channels=[upper.force, upper.state]"});
   };
   const auto sphere = [] {
     return load_sphere_scene(scene_path("viscoelastic_sphere.yaml"), {"time.end=10"});
@@ -91,7 +91,7 @@ inline std::vector<FaultyScene> faulty_scenes() {
        [=](const std::string& file) { run_half<DiscTransient>(disc(), 1e-3, file); },
        [](const std::string& file) {
          const InterruptedRun interrupted = find_interrupted_run(file);
-         const LoadedLinearScene loaded = load_resolved_linear_scene(interrupted.scene_text, file);
+         const LoadedDiscScene loaded = load_resolved_disc_scene(interrupted.scene_text, file);
          DiscTransient run(loaded, interrupted);
          go_to_end(run);
        }},

@@ -65,8 +65,7 @@ TEST(ContactScene, JsonSchemaChoosesByTheSections) {
   EXPECT_EQ(schema["else"]["if"]["anyOf"][0]["required"][0], "sphere");
   const auto& others = schema["else"]["else"];
   EXPECT_EQ(others["then"]["$ref"], "#/$defs/disc_and_pads");
-  EXPECT_EQ(others["else"]["then"]["$ref"], "#/$defs/matrix_scene");
-  EXPECT_EQ(others["else"]["else"]["$ref"], "#/$defs/scene");
+  EXPECT_EQ(others["else"]["$ref"], "#/$defs/scene");
   EXPECT_EQ(schema["if"]["anyOf"][0]["required"][0], "profile");
   const auto& keys = schema["$defs"]["viscoelastic_contact"];
   EXPECT_EQ(keys["additionalProperties"], false);

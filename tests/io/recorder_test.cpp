@@ -36,7 +36,7 @@ std::vector<Channel> all_channels(const ModelParameters& parameters) {
 /// Full load within 1 ms, so that there is something to record.
 ModelParameters lively_model() {
   ModelParameters parameters = paper_model(leading_angle);
-  parameters.drive.ramp = 1e-3;
+  parameters.drive->ramp = 1e-3;
   parameters.contact->armed_from = 1.0;
   return parameters;
 }
@@ -119,7 +119,7 @@ TEST(Recorder, ForcesStatesAndEnergiesStandUnfilteredBesideFilteredRows) {
   // holds at the time of that row, whatever the low-pass of the other columns has seen before.
   const TemporaryFolder folder;
   ModelParameters parameters = paper_model(trailing_angle, ContactAssumption::film);
-  parameters.drive.ramp = 1e-3;
+  parameters.drive->ramp = 1e-3;
   const Model model = make_paper_model(parameters);
   const auto channels = all_channels(parameters);
   const RunFileReader file =
@@ -167,7 +167,7 @@ TEST(Recorder, IntervalsHoldEveryStepBetweenTheRows) {
   // A FiLM contact that lifts off and lands between rows, recorded every 50 steps.
   const TemporaryFolder folder;
   ModelParameters parameters = paper_model(trailing_angle, ContactAssumption::film);
-  parameters.drive.ramp = 1e-3;
+  parameters.drive->ramp = 1e-3;
   const Model model = make_paper_model(parameters);
   const auto channels = all_channels(parameters);
   const RunFileReader file =
@@ -207,7 +207,7 @@ TEST(Recorder, IntervalsHoldEveryStepBetweenTheRows) {
 TEST(Recorder, UnilateralForcesAreNeverNegativeInAnySeriesButTheLowPassedOne) {
   const TemporaryFolder folder;
   ModelParameters parameters = paper_model(trailing_angle, ContactAssumption::film);
-  parameters.drive.ramp = 1e-3;
+  parameters.drive->ramp = 1e-3;
   const Model model = make_paper_model(parameters);
   const auto channels = all_channels(parameters);
   const RunFileReader file =

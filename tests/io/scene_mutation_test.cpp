@@ -14,7 +14,7 @@
 #include "core/suggestion.hpp"
 #include "core/units.hpp"
 #include "io/contact_scene.hpp"
-#include "io/linear_scene.hpp"
+#include "io/disc_scene.hpp"
 #include "io/scene.hpp"
 #include "io/scene_reader.hpp"
 #include "io/sphere_scene.hpp"
@@ -499,7 +499,7 @@ template <class T>
 class SceneMutation : public ::testing::Test {};
 
 /// The example holds every kind of key, which the scenes of the program need not do.
-using Roots = ::testing::Types<Example, Scene, ContactScene, SphereScene, DiscScene, MatrixScene>;
+using Roots = ::testing::Types<Example, Scene, ContactScene, SphereScene, DiscScene>;
 TYPED_TEST_SUITE(SceneMutation, Roots);
 
 TYPED_TEST(SceneMutation, ScenesMadeFromTheSchemaAreRead) {

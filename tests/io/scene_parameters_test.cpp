@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "io/linear_scene.hpp"
+#include "io/scene.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_family.hpp"
 #include "io/scene_reader.hpp"
@@ -201,9 +201,8 @@ TEST(SceneParameters, SettingOneThatIsNotUsedIsRefused) {
 }
 
 /// Two masses between springs, of which the rows of K depend on parameters.
-LoadedLinearScene two_masses() {
-  LoadedLinearScene loaded;
-  loaded.tree = read_scene_text(
+LoadedScene two_masses() {
+  return load_resolved_scene(
       "format: 1\n"
       "parameters: {k: 8, n: =k/4}\n"
       "substructures:\n"
@@ -213,28 +212,26 @@ LoadedLinearScene two_masses() {
       "    stiffness: [[=2*k, =-k], [=-k, =2*k]]\n"
       "    factors: {stiffness: =n}\n",
       "m.yaml");
-  loaded.scene = read_linear_scene(loaded.tree);
-  return loaded;
 }
 
 TEST(SceneParameters, RowsOfMatricesTakeExpressions) {
-  const LinearSystem system = two_masses().model().dense;
-  EXPECT_EQ(Eigen::MatrixXd(system.mass), Eigen::MatrixXd::Identity(2, 2));
-  EXPECT_EQ(Eigen::MatrixXd(system.position),
-            (Eigen::MatrixXd(2, 2) << 32.0, -16.0, -16.0, 32.0).finished());
+  const Model model = build_model(two_masses());
+  const ReducedBody& body = model.system.bodies.at(0).reduced;
+  EXPECT_EQ(body.mass, Eigen::MatrixXd::Identity(2, 2));
+  EXPECT_EQ(body.stiffness, (Eigen::MatrixXd(2, 2) << 32.0, -16.0, -16.0, 32.0).finished());
 }
 
 TEST(SceneParameters, VaryingOneReadsTheRowsOfMatricesAnew) {
-  const LoadedLinearScene loaded = two_masses();
-  (void)loaded.model();  // what has been read must not be taken for the new rows
-  const NumericKey key =
-      find_numeric_key(schema_of(loaded.scene), object_of(loaded.scene), "parameters.k", "--x");
-  for (const double k : {4.0, 16.0}) {
-    const LinearSystem system = loaded.model({key}, std::span(&k, 1)).dense;
+  const LoadedScene loaded = two_masses();
+  const NumericKey key = find_numeric_key(loaded.scene, "parameters.k", "--x");
+  SceneFamily family(loaded, {key});
+  for (const double k : {8.0, 4.0, 16.0}) {  // what has been read must not be taken for new rows
+    const Model& model = *family.at(std::span(&k, 1)).model;
+    const ReducedBody& body = model.system.bodies.at(0).reduced;
     const double n = k / 4.0;
-    EXPECT_EQ(Eigen::MatrixXd(system.position),
+    EXPECT_EQ(body.stiffness,
               (Eigen::MatrixXd(2, 2) << 2 * k, -k, -k, 2 * k).finished() * n);
-    EXPECT_EQ(Eigen::MatrixXd(system.mass)(1, 1), std::max(1.0, n / 2));
+    EXPECT_EQ(body.mass(1, 1), std::max(1.0, n / 2));
   }
 }
 
@@ -242,7 +239,7 @@ TEST(SceneParameters, WrongExpressionInARowSaysHowRowsAreWritten) {
   SceneNode tree = two_masses().tree;
   set_value(tree, "substructures.pair.mass=['=n 0', '0 1']");
   try {
-    read_linear_scene(tree);
+    read_as<Scene>(tree);
     FAIL();
   } catch (const ConfigError& error) {
     EXPECT_THAT(error.what(), HasSubstr("column 3: an operator is missing before '0'; a row of "

@@ -413,6 +413,31 @@ TEST(SetValue, ReplacesWhatWasThere) {
   EXPECT_EQ(find(root, "a")->entry("c")->place.line, 3);
 }
 
+TEST(SetValue, TakesNumbersAsYamlDoes) {
+  // Numbers as programs write them are taken without a look at YAML; with a space before them they
+  // are not.
+  for (const char* number : {"0", "-3", "1.25", "1e-07", "-2.5E+30", "007", "1e5"}) {
+    SceneNode plain = read_scene_text("a: 1\n", "x.yaml");
+    SceneNode parsed = plain;
+    set_value(plain, std::string("a=") + number);
+    set_value(parsed, std::string("a= ") + number);
+    const SceneNode& one = plain.entry("a")->value;
+    const SceneNode& other = parsed.entry("a")->value;
+    EXPECT_EQ(one.kind, other.kind) << number;
+    EXPECT_EQ(one.text, other.text);
+    EXPECT_EQ(one.is_quoted, other.is_quoted);
+    EXPECT_EQ(one.place.column + 1, other.place.column);
+  }
+  for (const char* text : {"-", "1.", ".5", "1e", "1 2", "--3", "0x10", "1_000"}) {
+    SceneNode tree = read_scene_text("a: 1\n", "x.yaml");
+    set_value(tree, std::string("a=") + text + " ");
+    SceneNode same = read_scene_text("a: 1\n", "x.yaml");
+    set_value(same, std::string("a=") + text);
+    EXPECT_EQ(same.entry("a")->value.kind, tree.entry("a")->value.kind) << text;
+    EXPECT_EQ(same.entry("a")->value.text, tree.entry("a")->value.text) << text;
+  }
+}
+
 TEST(SetValue, MakesMissingMaps) {
   SceneNode root = read_scene_text("a: 1\nempty:\n", "s.yaml");
   set_value(root, "x.y.z=true");

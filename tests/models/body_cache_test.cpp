@@ -55,7 +55,7 @@ TEST(BodyCache, ReducesOnlyWhatAKeyChanges) {
   cached_model(parameters, cache);
   parameters.contact->start = 0.05;
   parameters.contact->friction->coefficient = 0.1;
-  parameters.drive.load = TimeCurve(-1.0);
+  parameters.drive->load = TimeCurve(-1.0);
   cached_model(parameters, cache);
   EXPECT_EQ(cache.num_reductions(), 2);
   auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();

@@ -72,9 +72,9 @@ TEST(Extending, BodyOfOnesOwnStandsOnTheGroundUnderALoad) {
   contact.assumption = ContactAssumption::film;
   contact.friction.emplace().coefficient = 0.3;
   parameters.contact = contact;
-  parameters.drive.velocity = TimeCurve(0.0);
-  parameters.drive.load = TimeCurve(-5.0);
-  parameters.drive.load_on = {"column.head"};
+  parameters.drive.emplace().velocity = TimeCurve(0.0);
+  parameters.drive->load = TimeCurve(-5.0);
+  parameters.drive->load_on = {"column.head"};
   const Model model = make_model(parameters, {{{"column", "head"}, "record.channels.0"}});
   const Equilibrium rest = find_equilibrium(model.system, sliding_state(model.system, 0.0));
   ASSERT_EQ(rest.status, EquilibriumStatus::converged) << rest.failure;

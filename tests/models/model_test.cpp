@@ -289,7 +289,7 @@ TEST(Model, OnRigidGroundTheContactCarriesTheLoadInEveryForm) {
   oblique.damping.alpha = 2000.0;
   oblique.damping.alpha_start.reset();
   oblique.damping.hold = oblique.damping.fade = 0.0;
-  parameters.drive.ramp = 1e-3;
+  parameters.drive->ramp = 1e-3;
   const Model model = make_model(parameters, {});
   double force = 0.0;
   for (const Coordinates form : {Coordinates::modal, Coordinates::craig_bampton_fused}) {
@@ -309,11 +309,11 @@ TEST(Model, OnRigidGroundTheContactCarriesTheLoadInEveryForm) {
 
 TEST(Model, SlidingOnRigidGroundFindsNoEnd) {
   ModelParameters parameters = on_rigid_ground();
-  parameters.drive.velocity = TimeCurve(1000.0);
-  parameters.drive.ramp = 1e-3;
+  parameters.drive->velocity = TimeCurve(1000.0);
+  parameters.drive->ramp = 1e-3;
   parameters.contact->armed_from = 1.0;
   for (const double velocity : {1000.0, -1000.0}) {
-    parameters.drive.velocity = TimeCurve(velocity);
+    parameters.drive->velocity = TimeCurve(velocity);
     const Model model = make_model(parameters, {});
     Simulation simulation(model.system, paper_time());
     ASSERT_EQ(simulation.step_until(20'000), StepOutcome::done) << simulation.failure();
@@ -401,8 +401,7 @@ TEST(ModelParameters, ContactAndContactsTogetherAreRefused) {
   parameters.contact.reset();
   problems.clear();
   for (const auto& check : ModelParameters::schema().checks) check(&parameters, problems);
-  ASSERT_EQ(problems.size(), 1u);
-  EXPECT_THAT(problems[0].message, HasSubstr("a scene needs a contact pair"));
+  EXPECT_TRUE(problems.empty());  // bodies need not touch
 }
 
 TEST(ModelParameters, PairsMustAgreeOnSliding) {

@@ -32,9 +32,9 @@ Model model_of_kind(int kind, ContactAssumption assumption = ContactAssumption::
   parameters.contact->friction->coefficient = 0.05 + 0.04 * kind;
   parameters.contact->armed_from = 1.0;
   parameters.contact->start = 0.0302 + 1e-4 * kind;
-  parameters.drive.load = TimeCurve(-0.2 - 0.01 * kind);
-  parameters.drive.velocity = TimeCurve(0.3 + 0.02 * kind);
-  parameters.drive.ramp = 1e-3;
+  parameters.drive->load = TimeCurve(-0.2 - 0.01 * kind);
+  parameters.drive->velocity = TimeCurve(0.3 + 0.02 * kind);
+  parameters.drive->ramp = 1e-3;
   auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();
   oblique.damping.hold = 3e-3;
   oblique.damping.fade = 1e-3;
@@ -231,7 +231,7 @@ TEST(Batch, WhatCannotBeInALaneStepsByItself) {
 
 TEST(Batch, ARunThatFailsStopsWhereItFailsAndTheOthersGoOn) {
   ModelParameters parameters = paper_model();
-  parameters.drive.ramp = 0.0;
+  parameters.drive->ramp = 0.0;
   parameters.contact->start = 0.0995;
   parameters.contact->armed_from = 1.0;
   const Model leaving = make_paper_model(parameters);

@@ -131,7 +131,7 @@ TEST(Penalty, ResumesBitwise) {
 /// The main scene in small, its contact on a spring.
 Model sprung_model(std::optional<double> penalty) {
   ModelParameters parameters = paper_model();
-  parameters.drive.ramp = 0.0;
+  parameters.drive->ramp = 0.0;
   if (penalty) {
     parameters.contact->normal.law = NormalLaw::penalty;
     parameters.contact->normal.stiffness = penalty;

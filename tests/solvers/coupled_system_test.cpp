@@ -41,7 +41,7 @@ Model sliding_model(SlidingMode sliding) {
   parameters.contact->sliding = sliding;
   parameters.contact->start = 0.05;
   parameters.contact->armed_from = 1e9;
-  parameters.drive.ramp = 0.0;
+  parameters.drive->ramp = 0.0;
   return make_model(parameters, {});
 }
 

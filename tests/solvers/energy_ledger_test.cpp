@@ -309,7 +309,7 @@ TEST(EnergyLedger, AnImpactWithFrictionTakesWhatMomentumSays) {
 /// Full load and drive within 1 ms.
 ModelParameters lively_model() {
   ModelParameters parameters = paper_model(leading_angle);
-  parameters.drive.ramp = 1e-3;
+  parameters.drive->ramp = 1e-3;
   parameters.contact->armed_from = 1e9;
   return parameters;
 }
@@ -418,7 +418,7 @@ TEST(EnergyLedger, ContactThatSticksAndLiftsOffNeverFeedsEnergy) {
   // while the contact slides is of first order in h: λ_n v Δγ h with Δγ the turn of the normal,
   // which at a node is the kink.
   ModelParameters parameters = paper_model(trailing_angle, ContactAssumption::film);
-  parameters.drive.ramp = 1e-3;
+  parameters.drive->ramp = 1e-3;
   const System system = make_paper_model(parameters).system;
   Simulation simulation(system, paper_time(), Accounts::energy);
   double highest = 0.0;

@@ -55,6 +55,22 @@ Eigen::Vector2d moved(const System& system, const Equilibrium& equilibrium, int 
           matrix.row(rows.y).dot(equilibrium.displacement[b])};
 }
 
+TEST(Equilibrium, OfBodiesThatNothingTouchesOrLoadsIsRest) {
+  // Even where nothing holds them: the oblique beam's guided support lets it move as a whole.
+  System system = paper_system(trailing_angle);
+  system.contacts.clear();
+  EquilibriumState state;
+  const Equilibrium rest = find_equilibrium(system, state);
+  ASSERT_EQ(rest.status, EquilibriumStatus::converged);
+  for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+    ASSERT_EQ(rest.displacement[b].size(), system.bodies[b].modal.size());
+    EXPECT_EQ(rest.displacement[b].norm(), 0.0);
+  }
+  state.load = -load;
+  EXPECT_THAT(message_of<NumericalError>([&] { find_equilibrium(system, state); }),
+              HasSubstr("is free to move"));
+}
+
 /// A flat block pressed on the cantilever: its bottom edge carries the slave points, its raised end
 /// is guided.
 ModelParameters block_on_cantilever(ContactAssumption assumption) {

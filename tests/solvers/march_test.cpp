@@ -95,9 +95,9 @@ TEST(March, StopsOnRequest) {
 
 TEST(March, FailureOfAStepEndsTheRun) {
   ModelParameters parameters = paper_model();
-  parameters.drive.load = TimeCurve(+0.2);
+  parameters.drive->load = TimeCurve(+0.2);
   parameters.contact->armed_from = 0.0;
-  parameters.drive.ramp = 1e-3;
+  parameters.drive->ramp = 1e-3;
   const Model model = make_paper_model(parameters);
   Simulation simulation(model.system, paper_time());
   MarchPlan plan;

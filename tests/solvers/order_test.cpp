@@ -35,7 +35,7 @@ std::vector<double> end_motion(const Model& model, const TimeParameters& time) {
 /// the order.
 Model sliding_model(ContactAssumption assumption, SurfaceKind surface, bool is_damped) {
   ModelParameters parameters = paper_model(leading_angle, assumption);
-  parameters.drive.ramp = 1e-2;
+  parameters.drive->ramp = 1e-2;
   parameters.contact->armed_from = 1.0;
   parameters.contact->surface = surface;
   if (!is_damped) {
@@ -93,8 +93,8 @@ TEST_P(OrderTest, OfTheCentralDifferenceIsOne) {
 Model eventful_model(SurfaceKind surface) {
   ModelParameters parameters = paper_model(trailing_angle, ContactAssumption::film);
   parameters.contact->surface = surface;
-  parameters.drive.ramp = 0.0;
-  parameters.drive.velocity = TimeCurve(TimeTable{{0.0, 3e-3, 4e-3}, {0.03, 0.03, -0.03}});
+  parameters.drive->ramp = 0.0;
+  parameters.drive->velocity = TimeCurve(TimeTable{{0.0, 3e-3, 4e-3}, {0.03, 0.03, -0.03}});
   auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();
   oblique.mesh = {15, 1};
   auto& cantilever = parameters.substructures["cantilever"].get<BeamParameters>();

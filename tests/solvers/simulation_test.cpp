@@ -27,7 +27,7 @@ TEST(Simulation, ModalAndDenseFormsAgreeOver4000Steps) {
   for (const auto assumption :
        {ContactAssumption::subs_a, ContactAssumption::subs_b, ContactAssumption::subs_c}) {
     ModelParameters parameters = paper_model(trailing_angle, assumption);
-    parameters.drive.ramp = 1e-3;
+    parameters.drive->ramp = 1e-3;
     parameters.contact->armed_from = 1.0;
     const Model model = make_paper_model(parameters);
     const Model::Point tip = model.points.at(free_end);
@@ -105,7 +105,7 @@ TEST(Simulation, SaveLoadAndGoOnIsBitwiseTheUninterruptedRun) {
 
 TEST(Simulation, ResumesBitwiseInTheMiddleOfTheDampingSchedule) {
   ModelParameters parameters = paper_model(leading_angle);
-  parameters.drive.ramp = 1e-3;
+  parameters.drive->ramp = 1e-3;
   parameters.contact->armed_from = 1.0;
   auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();
   oblique.damping.hold = 2e-3;
@@ -119,8 +119,8 @@ TEST(Simulation, ResumesBitwiseAcrossTheNodesOfTheMaster) {
   for (const auto assumption :
        {ContactAssumption::subs_a, ContactAssumption::subs_b, ContactAssumption::subs_c}) {
     ModelParameters parameters = paper_model(leading_angle, assumption);
-    parameters.drive.velocity = TimeCurve(10.0);
-    parameters.drive.ramp = 5e-4;
+    parameters.drive->velocity = TimeCurve(10.0);
+    parameters.drive->ramp = 5e-4;
     parameters.contact->armed_from = 1.0;
     expect_same_after_resume(parameters, paper_time(), 6000, 9000);
   }
@@ -159,8 +159,8 @@ TEST(Simulation, SameSystemGivesBitwiseTheSameRun) {
 
 TEST(Simulation, ClosesTheGapOfSubsBInEveryStep) {
   ModelParameters parameters = paper_model(leading_angle);
-  parameters.drive.velocity = TimeCurve(10.0);
-  parameters.drive.ramp = 1e-3;
+  parameters.drive->velocity = TimeCurve(10.0);
+  parameters.drive->ramp = 1e-3;
   parameters.contact->armed_from = 1.0;
   const Model model = make_paper_model(parameters);
   Simulation simulation(model.system, paper_time());
@@ -195,7 +195,7 @@ ModelParameters two_point_model(double friction) {
   parameters.contact->sliding = SlidingMode::frozen;
   parameters.contact->friction->coefficient = friction;
   parameters.contact->armed_from = 1e9;
-  parameters.drive.ramp = 1e-3;
+  parameters.drive->ramp = 1e-3;
   return parameters;
 }
 
@@ -281,7 +281,7 @@ TEST(Simulation, StaticForceOfSubsBBalancesTheLoadOnTheSaggedMaster) {
   parameters.contact->sliding = SlidingMode::frozen;
   parameters.contact->start = 0.0805;
   parameters.contact->armed_from = 1e9;
-  parameters.drive.ramp = 0.05;
+  parameters.drive->ramp = 0.05;
   for (auto& [name, body] : parameters.substructures) {
     body.get<BeamParameters>().damping.alpha = 400.0;
     body.get<BeamParameters>().damping.alpha_start.reset();
@@ -307,8 +307,8 @@ TEST(Simulation, StaticForceOfSubsBBalancesTheLoadOnTheSaggedMaster) {
 TEST(Simulation, LeavingTheEndOfTheMasterIsAnOutcomeWithPlaceAndRemedy) {
   ModelParameters parameters = paper_model();
   parameters.contact->start = 0.0995;
-  parameters.drive.velocity = TimeCurve(1.0);
-  parameters.drive.ramp = 1e-4;
+  parameters.drive->velocity = TimeCurve(1.0);
+  parameters.drive->ramp = 1e-4;
   parameters.contact->armed_from = 1.0;
   const Model model = make_paper_model(parameters);
   Simulation simulation(model.system, paper_time());
@@ -325,8 +325,8 @@ TEST(Simulation, LeavingTheEndOfTheMasterIsAnOutcomeWithPlaceAndRemedy) {
 
 TEST(Simulation, PullingContactIsCountedUntilArmedAndThenAnOutcome) {
   ModelParameters parameters = paper_model();
-  parameters.drive.load = TimeCurve(+0.2);
-  parameters.drive.ramp = 1e-3;
+  parameters.drive->load = TimeCurve(+0.2);
+  parameters.drive->ramp = 1e-3;
   parameters.contact->armed_from = 2e-3;
   const Model model = make_paper_model(parameters);
   Simulation simulation(model.system, paper_time());
@@ -343,8 +343,8 @@ TEST(Simulation, ReversedSlidingIsAnOutcome) {
   // The tip of a beam that is hit by its load at once swings back faster than the drive moves it
   // on.
   ModelParameters parameters = paper_model();
-  parameters.drive.velocity = TimeCurve(1e-4);
-  parameters.drive.load = TimeCurve(TimeTable{{0.0, 1e-3, 1.1e-3}, {-0.2, -0.2, -2.0}});
+  parameters.drive->velocity = TimeCurve(1e-4);
+  parameters.drive->load = TimeCurve(TimeTable{{0.0, 1e-3, 1.1e-3}, {-0.2, -0.2, -2.0}});
   parameters.contact->armed_from = 1.05e-3;
   const Model model = make_paper_model(parameters);
   Simulation simulation(model.system, paper_time());
@@ -361,7 +361,7 @@ TEST(Simulation, JammingIsNamed) {
     ModelParameters parameters = paper_model(angle);
     parameters.contact->friction->coefficient = 50.0;
     parameters.contact->armed_from = 1e9;
-    parameters.drive.ramp = 1e-4;
+    parameters.drive->ramp = 1e-4;
     const Model model = make_paper_model(parameters);
     Simulation simulation(model.system, paper_time());
     const StepOutcome outcome = simulation.step_until(2000);
@@ -430,7 +430,7 @@ TEST(Simulation, IntervalsHoldEveryStepOnceWhateverResetsTheStatistics) {
 /// The leading scene, which slides on from the start, with a short ramp.
 Model short_ramp_model(ContactAssumption assumption = ContactAssumption::subs_b) {
   ModelParameters parameters = paper_model(leading_angle, assumption);
-  parameters.drive.ramp = 1e-2;
+  parameters.drive->ramp = 1e-2;
   parameters.contact->armed_from = 1.0;
   return make_paper_model(parameters);
 }
@@ -507,8 +507,8 @@ TEST(ExactSimulation, TheResidualConvergesToAllModesAsTheCutoffRises) {
 TEST(ExactSimulation, ResumesBitwiseAcrossNodesAndInTheMiddleOfTheDampingSchedule) {
   for (const auto assumption : {ContactAssumption::subs_b, ContactAssumption::film}) {
     ModelParameters parameters = paper_model(leading_angle, assumption);
-    parameters.drive.velocity = TimeCurve(10.0);  // a node every 40 steps
-    parameters.drive.ramp = 5e-4;
+    parameters.drive->velocity = TimeCurve(10.0);  // a node every 40 steps
+    parameters.drive->ramp = 5e-4;
     parameters.contact->armed_from = 1.0;
     auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();
     oblique.damping.hold = 1e-3;

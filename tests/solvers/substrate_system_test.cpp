@@ -167,8 +167,8 @@ ModelParameters reed(double youngs_modulus) {
   contact.friction.emplace().law = FrictionKind::shear;
   contact.friction->strength = 0.02 * 4e6 / 3.0;
   model.contact = contact;
-  model.drive.velocity = TimeCurve(1e-3);
-  model.drive.load = TimeCurve(-0.02);
+  model.drive.emplace().velocity = TimeCurve(1e-3);
+  model.drive->load = TimeCurve(-0.02);
   return model;
 }
 

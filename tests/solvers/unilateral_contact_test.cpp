@@ -313,7 +313,7 @@ TEST(UnilateralContact, ModalAndDenseFormsAgreeInStickAndSlip) {
   // differ by rounding, about 1e-9 after 4000 steps of sliding (Simulation); every landing and
   // every change between stick and slip magnifies it. The forces of landings feel it most.
   ModelParameters parameters = paper_model(trailing_angle, ContactAssumption::film);
-  parameters.drive.ramp = 1e-3;
+  parameters.drive->ramp = 1e-3;
   const Model model = make_paper_model(parameters);
   const Model::Point tip = model.points.at(free_end);
   Simulation modal(model.system, paper_time(2e-7, Coordinates::modal));
@@ -392,7 +392,7 @@ TEST(UnilateralContact, ResumesBitwiseWithManyPoints) {
 
 TEST(UnilateralContact, StartUpOfThePaperSceneResumesBitwise) {
   ModelParameters parameters = paper_model(trailing_angle, ContactAssumption::film);
-  parameters.drive.ramp = 1e-3;
+  parameters.drive->ramp = 1e-3;
   const Model model = make_paper_model(parameters);
   Simulation probe(model.system, paper_time());
   while (probe.contact_state(0) != ContactState::stick && probe.step_index() < 10'000)

@@ -19,9 +19,9 @@ inline ModelParameters paper_model(double angle = trailing_angle,
   contact.start = 0.030;
   contact.friction.emplace().coefficient = 0.30;
   model.contact = contact;
-  model.drive.velocity = TimeCurve(0.030);
-  model.drive.load = TimeCurve(-0.20);
-  model.drive.ramp = 0.1;
+  model.drive.emplace().velocity = TimeCurve(0.030);
+  model.drive->load = TimeCurve(-0.20);
+  model.drive->ramp = 0.1;
   return model;
 }
 

@@ -43,8 +43,8 @@ inline ModelParameters pressed_beams(double friction, ContactAssumption assumpti
   contact.sliding = SlidingMode::frozen;
   contact.friction.emplace().coefficient = friction;
   model.contact = contact;
-  model.drive.velocity = TimeCurve(1.0);
-  model.drive.load = TimeCurve(pressed_beams_load);
+  model.drive.emplace().velocity = TimeCurve(1.0);
+  model.drive->load = TimeCurve(pressed_beams_load);
   return model;
 }
 

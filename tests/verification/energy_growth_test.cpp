@@ -172,7 +172,7 @@ TEST(EnergyGrowth, BeamsTakeNoMoreThanLoadAndDrivePutIn) {
         "time.step=1e-7"};
     const LoadedScene loaded = load_scene(scene_path("beam_on_beam.yaml"), sets);
     const System system = build_model(loaded).system;
-    TimeParameters time = loaded.scene.time;
+    TimeParameters time = *loaded.scene.time;
     time.step = 0.9 * step_limit(system).step;
     Simulation simulation(system, time, Accounts::energy);
     double turned_over = 0.0;

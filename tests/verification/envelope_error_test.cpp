@@ -21,9 +21,9 @@ std::vector<double> banded_acceleration(const char* scene, const std::vector<std
   const LoadedScene loaded = load_scene(scene_path(scene), sets);
   const Model model = build_model(loaded);
   const Model::Point tip = model.points.at({"cantilever", "free_end"});
-  Simulation simulation(model.system, loaded.scene.time);
-  const std::int64_t stride = std::llround(interval / loaded.scene.time.step);
-  const std::int64_t samples = std::llround(loaded.scene.time.end / interval);
+  Simulation simulation(model.system, *loaded.scene.time);
+  const std::int64_t stride = std::llround(interval / loaded.scene.time->step);
+  const std::int64_t samples = std::llround(loaded.scene.time->end / interval);
   std::vector<double> u{0.0};
   for (std::int64_t n = 1; n <= samples; ++n) {
     if (simulation.step_until(n * stride) != StepOutcome::done) {

@@ -29,7 +29,7 @@ struct Loaded {
 
 Loaded load(const std::vector<std::string>& sets) {
   const LoadedScene loaded = load_scene(scene_path("beam_on_beam.yaml"), sets);
-  return {loaded.scene.time, build_model(loaded).system};
+  return {*loaded.scene.time, build_model(loaded).system};
 }
 
 /// Entries of all modes of both bodies along y, the slave above a place of the master.

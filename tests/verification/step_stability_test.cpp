@@ -373,7 +373,7 @@ TEST(StepStability, BeamsUnderEveryAssumptionKeepTheAnnouncedLimitWithoutFrictio
       for (const auto& [integrator, share] : {std::pair(Integrator::central_difference, 0.99),
                                               {Integrator::exact, 1.0},
                                               {Integrator::exact, 20.0}}) {
-        TimeParameters time = loaded.scene.time;
+        TimeParameters time = *loaded.scene.time;
         time.integrator = integrator;
         time.step = share * limit;
         for (const PathStability& place : stability_along_path(model.system, time, 4)) {

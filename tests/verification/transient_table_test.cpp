@@ -66,17 +66,17 @@ Transient run_scene(const char* name, const std::vector<std::string>& overrides,
   const LoadedScene loaded = load_scene(scene_path(name), overrides);
   const Scene& scene = loaded.scene;
   const Model model = build_model(loaded);
-  Simulation simulation(model.system, scene.time);
+  Simulation simulation(model.system, *scene.time);
   const auto channels = parse_channels(*scene.record, scene.model);
   const double interval = scene.record->interval;
   RunFileWriter writer(path, Overwrite::no, {},
-                       Recorder::series(model, channels, scene.time.step, interval));
-  Recorder recorder(model, channels, scene.time.step, interval, writer);
+                       Recorder::series(model, channels, scene.time->step, interval));
+  Recorder recorder(model, channels, scene.time->step, interval, writer);
   const auto step_at = [&](double time) {
-    return static_cast<std::int64_t>(std::llround(time / scene.time.step));
+    return static_cast<std::int64_t>(std::llround(time / scene.time->step));
   };
   MarchPlan plan;
-  plan.last_step = step_at(scene.time.end) + recorder.latency();
+  plan.last_step = step_at(scene.time->end) + recorder.latency();
   plan.measure_from = step_at(measure_from);
   plan.measure_to = plan.last_step;
   Transient transient;

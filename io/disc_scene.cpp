@@ -1,21 +1,17 @@
-#include "io/linear_scene.hpp"
+#include "io/disc_scene.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
-#include <stdexcept>
 
 #include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "core/memory.hpp"
 #include "io/disc_recorder.hpp"
-#include "io/matrix_reader.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_files.hpp"
 #include "io/scene_reader.hpp"
 #include "models/set_up_estimate.hpp"
-#include "substructures/matrix_body.hpp"
 
 namespace stridor {
 namespace {
@@ -43,46 +39,6 @@ void check_recording(const DiscScene& scene, std::vector<Problem>& problems) {
          0,
          0});
   }
-}
-
-LinearSystem dense_system(const SparseSystem& sparse) {
-  LinearSystem dense;
-  dense.mass = sparse.mass;
-  dense.velocity = sparse.velocity;
-  dense.position = sparse.position;
-  dense.gaps = dense.forces = Eigen::MatrixXd(0, sparse.size());
-  return dense;
-}
-
-LinearModel model_of(const DiscScene& scene, const LoadedLinearScene& loaded) {
-  require_memory(estimate_set_up(scene.model), memory_limit());
-  const Activity assembling("disc and pads and their steady sliding");
-  LinearModel model;
-  if (!loaded.bodies) loaded.bodies = std::make_shared<DiscBodyCache>();
-  model.disc = make_disc_model(scene.model, *loaded.bodies);
-  model.dense = model.disc->system;
-  model.highest_frequency = model.disc->highest_frequency;
-  return model;
-}
-
-/// @throws ConfigError with the key path
-LinearModel model_of(const MatrixScene& scene, const LoadedLinearScene& loaded) {
-  const auto& [name, variant] = *scene.substructures.begin();
-  const auto& body = std::get<MatrixBodyParameters>(variant);
-  if (!loaded.matrices || !have_same_matrices(loaded.matrices_of, body)) {
-    loaded.matrices = std::make_shared<const NamedMatrices>(
-        read_matrices("substructures." + name, loaded.tree, body));
-    loaded.matrices_of = body;
-  }
-  SparseSystem sparse = sum(*loaded.matrices, body);
-  LinearModel model;
-  model.highest_frequency = std::numeric_limits<double>::infinity();
-  if (sparse.size() > largest_dense_size) {
-    model.sparse = std::move(sparse);
-  } else {
-    model.dense = dense_system(sparse);
-  }
-  return model;
 }
 
 }  // namespace
@@ -146,73 +102,24 @@ const Schema& DiscRecordParameters::schema() {
   return keys;
 }
 
-const Schema& MatrixScene::schema() {
-  static const Schema keys =
-      SchemaOf<MatrixScene>("matrix_scene")
-          .integer("format", &MatrixScene::format, format_key())
-          .parameters("parameters", &MatrixScene::parameters, parameters_key())
-          .named_variants("substructures", &MatrixScene::substructures, "type", {"matrices"},
-                          {.doc = "One body, given by its matrices."})
-          .check([](const MatrixScene& scene, std::vector<Problem>& problems) {
-            if (scene.substructures.size() != 1) {
-              problems.push_back({"substructures",
-                                  "a body given by matrices stands alone; put several into the "
-                                  "blocks of one",
-                                  {},
-                                  0,
-                                  0});
-            }
-          });
-  return keys;
-}
-
 bool is_disc_scene(const SceneNode& tree) {
   return tree.entry("disc") != nullptr && tree.entry("substructures") == nullptr;
 }
 
-bool is_matrix_scene(const SceneNode& tree) {
-  const SceneEntry* bodies = tree.entry("substructures");
-  if (bodies == nullptr) return false;
-  // What these say makes them bodies that touch others.
-  for (const char* key : {"contact", "contacts", "drive", "time"})
-    if (tree.entry(key) != nullptr) return false;
-  for (const SceneEntry& body : bodies->value.entries) {
-    const SceneEntry* type = body.value.entry("type");
-    if (type != nullptr && type->value.text == "matrices") return true;
-  }
-  return false;
+std::string LoadedDiscScene::resolved() const {
+  return resolved_yaml(scene);
 }
 
-bool is_linear_scene(const SceneNode& tree) {
-  return is_disc_scene(tree) || is_matrix_scene(tree);
+std::string LoadedDiscScene::hash() const {
+  return scene_hash(resolved());
 }
 
-LinearScene read_linear_scene(const SceneNode& tree) {
-  if (is_disc_scene(tree)) return read_as<DiscScene>(tree);
-  return read_as<MatrixScene>(tree);
-}
-
-const Schema& schema_of(const LinearScene& scene) {
-  return std::visit(
-      [](const auto& one) -> const Schema& { return std::decay_t<decltype(one)>::schema(); },
-      scene);
-}
-
-const void* object_of(const LinearScene& scene) {
-  return std::visit([](const auto& one) -> const void* { return &one; }, scene);
-}
-
-std::string LoadedLinearScene::resolved() const {
-  return resolved_yaml(schema_of(scene), object_of(scene));
-}
-
-std::string LoadedLinearScene::hash() const {
-  return scene_hash(resolved(), scene_files(*this));
-}
-
-LinearModel LoadedLinearScene::model() const {
+DiscModel LoadedDiscScene::model() const {
   try {
-    return std::visit([&](const auto& one) { return model_of(one, *this); }, scene);
+    require_memory(estimate_set_up(scene.model), memory_limit());
+    const Activity assembling("disc and pads and their steady sliding");
+    if (!bodies) bodies = std::make_shared<DiscBodyCache>();
+    return make_disc_model(scene.model, *bodies);
   } catch (const ConfigError& error) {
     std::vector<Problem> problems = error.problems();
     locate(problems, tree);
@@ -220,37 +127,35 @@ LinearModel LoadedLinearScene::model() const {
   }
 }
 
-LinearModel LoadedLinearScene::model(const std::vector<NumericKey>& keys,
-                                     std::span<const double> values) const {
-  LoadedLinearScene changed = *this;
+DiscModel LoadedDiscScene::model(const std::vector<NumericKey>& keys,
+                                 std::span<const double> values) const {
+  LoadedDiscScene changed = *this;
   for (std::size_t i = 0; i < keys.size(); ++i)
     set_value(changed.tree, fmt::format("{}={}", keys[i].path, values[i]));
-  changed.scene = read_linear_scene(changed.tree);
-  LinearModel made = changed.model();
-  matrices = changed.matrices;
+  changed.scene = read_as<DiscScene>(changed.tree);
+  DiscModel made = changed.model();
   bodies = changed.bodies;
-  matrices_of = changed.matrices_of;
   return made;
 }
 
-bool is_linear_scene_file(const std::string& path) {
-  return is_linear_scene(read_scene_file(path));
+bool is_disc_scene_file(const std::string& path) {
+  return is_disc_scene(read_scene_file(path));
 }
 
-LoadedLinearScene load_resolved_linear_scene(const std::string& text, const std::string& source) {
-  LoadedLinearScene loaded;
+LoadedDiscScene load_resolved_disc_scene(const std::string& text, const std::string& source) {
+  LoadedDiscScene loaded;
   loaded.path = source;
   loaded.tree = read_scene_text(text, source);
-  loaded.scene = read_linear_scene(loaded.tree);
+  loaded.scene = read_as<DiscScene>(loaded.tree);
   return loaded;
 }
 
-LoadedLinearScene load_linear_scene(const std::string& path, const std::vector<std::string>& sets) {
-  LoadedLinearScene loaded;
+LoadedDiscScene load_disc_scene(const std::string& path, const std::vector<std::string>& sets) {
+  LoadedDiscScene loaded;
   loaded.path = path;
   loaded.tree = read_scene_file(path);
   for (const std::string& assignment : sets) set_value(loaded.tree, assignment);
-  loaded.scene = read_linear_scene(loaded.tree);
+  loaded.scene = read_as<DiscScene>(loaded.tree);
   return loaded;
 }
 

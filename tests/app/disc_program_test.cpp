@@ -1,17 +1,16 @@
-// Discs with pads and bodies given by matrices, as a user would run them.
+// Discs with pads, as a user would run them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "io/run_file.hpp"
+#include "tests/support/eigenvalue_program.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -20,32 +19,9 @@ namespace {
 
 using namespace test;
 using ::testing::HasSubstr;
-using Json = nlohmann::json;
 
 const std::string brake = scene_path("disc_and_pads.yaml");
 const std::string friction = "contact.friction.coefficient";
-
-Json json_of(std::vector<std::string> arguments) {
-  arguments.emplace_back("--json");
-  const ProgramResult result = Program(arguments).run();
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  return Json::parse(result.out);
-}
-
-struct Growth {
-  int num_unstable = 0;
-  double largest = -1e300;
-};
-
-Growth growth_of(const Json& eig) {
-  Growth growth;
-  for (const Json& s : eig["eigenvalues"]) {
-    const double re = s[0].get<double>();
-    growth.num_unstable += re > 1e-6 ? 1 : 0;
-    growth.largest = std::max(growth.largest, re);
-  }
-  return growth;
-}
 
 TEST(DiscProgram, EveryModellingStepIsARunOfOneScene) {
   const std::string all = "gyroscopic, friction, friction_damping, geometric";
@@ -138,8 +114,6 @@ TEST(DiscProgram, LocusListsEigenvaluesAndWindows) {
 }
 
 TEST(DiscProgram, RefusesWhatItHasNot) {
-  EXPECT_THAT(Program({"run", scene_path("examples/flutter.yaml"), "-o", "x.h5"}).run().err,
-              HasSubstr("has no contacts to run with"));
   EXPECT_THAT(Program({"eig", brake, "--below", "3 m"}).run().err, HasSubstr("--below"));
   EXPECT_THAT(Program({"eig", brake, "--at", "1"}).run().err, HasSubstr("--at"));
   EXPECT_THAT(Program({"eig", brake, "--shapes", "x"}).run().err, HasSubstr("--shapes"));
@@ -384,254 +358,6 @@ TEST(DiscProgram, StopsWhereAPadGoesThroughTheDisc) {
   result = run("1e160");
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("initial.perturbation.amplitude: is beyond what can be"));
-}
-
-double example_limit(const std::string& name, const std::string& key, const std::string& to,
-                     std::vector<std::string> more) {
-  std::vector<std::string> arguments{"threshold",   scene_path("examples/" + name + ".yaml"),
-                                     "--parameter", key,
-                                     "--from",      "0.05",
-                                     "--to",        to};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  const Json roots = json_of(arguments)["roots"];
-  EXPECT_EQ(roots.size(), 1U) << name;
-  return roots.empty() ? 0.0 : roots[0]["value"].get<double>();
-}
-
-/// A scene of a chain of equal masses and springs in a folder, as Matrix Market files.
-std::string chain_scene(const TemporaryFolder& folder, int n) {
-  for (const std::string name : {"M", "K"}) {
-    const bool is_mass = name == "M";
-    std::ofstream file((folder / (name + ".mtx")).string());
-    file << "%%MatrixMarket matrix coordinate real symmetric\n"
-         << n << ' ' << n << ' ' << (is_mass ? n : 2 * n - 1) << '\n';
-    for (int i = 1; i <= n; ++i) file << i << ' ' << i << (is_mass ? " 1\n" : " 2\n");
-    for (int i = 1; i < n && !is_mass; ++i) file << i + 1 << ' ' << i << " -1\n";
-  }
-  const std::string path = (folder / "chain.yaml").string();
-  std::ofstream(path) << "format: 1\nsubstructures:\n  chain: {type: matrices, mass: M.mtx, "
-                         "stiffness: K.mtx, load: 0}\n";
-  return path;
-}
-
-TEST(MatrixProgram, LargeMatricesAreCountedInTheirWindow) {
-  const TemporaryFolder folder;
-  constexpr int n = 1200;
-  const std::string scene = chain_scene(folder, n);
-  const double pi = std::acos(-1.0);
-  const auto omega = [&](int k) { return 2.0 * std::sin(0.5 * k * pi / (n + 1)); };
-  const Json all =
-      json_of({"eig", scene, "--below", std::to_string(0.5 * (omega(6) + omega(7)) / (2.0 * pi))});
-  EXPECT_EQ(all["method"], "sparse");
-  EXPECT_EQ(all["counted"], 12);
-  ASSERT_EQ(all["eigenvalues"].size(), 6U);
-  for (int k = 1; k <= 6; ++k) {
-    const auto i = static_cast<std::size_t>(k - 1);
-    EXPECT_NEAR(all["eigenvalues"][i][1].get<double>(), omega(k), 1e-9 * omega(k));
-    EXPECT_LT(all["backward_errors"][i].get<double>(), 1e-8);
-  }
-  EXPECT_TRUE(all["stable"]);
-  const Json lowest = json_of({"eig", scene, "--count", "4", "--explain", "--mode", "2"});
-  ASSERT_EQ(lowest["eigenvalues"].size(), 4U);
-  EXPECT_NEAR(lowest["window"][1].get<double>(), omega(4) / (2.0 * pi), 1e-9);
-  EXPECT_NEAR(lowest["explanation"]["quotients"]["stiffness"].get<double>(), omega(2) * omega(2),
-              1e-9 * omega(2) * omega(2));
-  EXPECT_NEAR(lowest["explanation"]["frictionless_modes"][0]["share"].get<double>(), 1.0, 1e-9);
-  const Json locus = json_of({"locus", scene, "--parameter", "substructures.chain.load", "--from",
-                              "0", "--to", "1", "--points", "2", "--count", "4"});
-  EXPECT_EQ(locus["eigenvalues"][1], lowest["eigenvalues"]);
-  EXPECT_TRUE(locus["unstable"].empty());
-  const ProgramResult too_many = Program({"eig", scene, "--below", "1 kHz"}).run();
-  EXPECT_EQ(too_many.exit_code, 3);
-  EXPECT_THAT(too_many.err, HasSubstr("ask for fewer eigenvalues or a lower frequency"));
-}
-
-/// One entry in every row: its column and its value.
-using RowEntry = std::function<std::pair<int, double>(int row)>;
-
-/// 505 oscillators of two coordinates, in a folder.
-class ManyOscillators {
- public:
-  static constexpr int size = 1010;
-
-  ManyOscillators() {
-    write("M", [](int i) { return std::pair(i, 1.0); });
-  }
-
-  void write(const std::string& name, const RowEntry& entry) const {
-    std::ofstream file((folder_ / (name + ".mtx")).string());
-    file << "%%MatrixMarket matrix coordinate real general\n"
-         << size << ' ' << size << ' ' << size << '\n';
-    for (int i = 0; i < size; ++i) {
-      const auto [column, value] = entry(i);
-      file << i + 1 << ' ' << column + 1 << ' ' << value << '\n';
-    }
-  }
-  /// The other coordinate of an oscillator, with the sign of a skew matrix.
-  static std::pair<int, double> across(int row, double value) {
-    return row % 2 == 0 ? std::pair(row + 1, value) : std::pair(row - 1, -value);
-  }
-  std::string scene(const std::string& matrices) const {
-    const std::string path = (folder_ / "pairs.yaml").string();
-    std::ofstream(path) << "format: 1\nsubstructures:\n  pairs: {type: matrices, mass: M.mtx, "
-                        << matrices << "}\n";
-    return path;
-  }
-
- private:
-  TemporaryFolder folder_;
-};
-
-TEST(MatrixProgram, LargeMatricesHaveLociAndThresholds) {
-  // With stiffness i diag(1, 1.4) and damping 0.1, each under the circulatory load: the first one
-  // flutters from 0.2280350850 on, the second one from beyond 0.4.
-  const ManyOscillators oscillators;
-  oscillators.write("D", [](int i) { return std::pair(i, 0.1); });
-  oscillators.write("K",
-                    [](int i) { return std::pair(i, (i / 2 + 1) * (i % 2 == 0 ? 1.0 : 1.4)); });
-  oscillators.write("N", [](int i) { return ManyOscillators::across(i, 1.0); });
-  const std::string scene =
-      oscillators.scene("damping: D.mtx, stiffness: K.mtx, load: 0, load_stiffness: N.mtx");
-  const std::vector<std::string> range{"--parameter", "substructures.pairs.load",
-                                       "--from",      "0",
-                                       "--to",        "0.35",
-                                       "--points",    "3",
-                                       "--below",     "0.3"};
-  std::vector<std::string> arguments{"threshold", scene};
-  arguments.insert(arguments.end(), range.begin(), range.end());
-  const Json threshold = json_of(arguments);
-  ASSERT_EQ(threshold["roots"].size(), 1U);
-  EXPECT_NEAR(threshold["roots"][0]["value"].get<double>(), 0.2280350850, 1e-8);
-  EXPECT_EQ(threshold["window"][1], 0.3);
-  arguments[0] = "locus";
-  const Json locus = json_of(arguments);
-  ASSERT_EQ(locus["unstable"].size(), 1U);
-  EXPECT_NEAR(locus["unstable"][0]["from"].get<double>(), 0.2280350850, 1e-8);
-  EXPECT_EQ(locus["unstable"][0]["to"], 0.35);
-  // At 0.35: s = −0.05 ± sqrt(...) of s² + 0.1 s + 1.2 ± i sqrt(0.35² − 0.2²) = 0.
-  const std::complex<double> root =
-      -0.05 + std::sqrt(std::complex<double>(0.0025 - 1.2, -std::sqrt(0.35 * 0.35 - 0.04)));
-  double largest = -1e300;
-  for (const Json& s : locus["eigenvalues"][2]) largest = std::max(largest, s[0].get<double>());
-  EXPECT_NEAR(largest, root.real(), 1e-9);
-}
-
-TEST(MatrixProgram, WindowsOfLargeMatricesAreFoundBetweenTheValues) {
-  // The load softens one spring of the first oscillator, which is under a circulatory force 0.02:
-  // its two frequencies pass each other, and near 0.4 they do not keep apart. With damping d = 0.01
-  // they flutter where (0.4 - p)²/4 < 0.02² - d² (2.4 - p)/2.
-  const ManyOscillators oscillators;
-  oscillators.write("D", [](int i) { return std::pair(i, 0.01); });
-  oscillators.write("K",
-                    [](int i) { return std::pair(i, (i / 2 + 1) * (i % 2 == 0 ? 1.0 : 1.4)); });
-  oscillators.write("N", [](int i) { return ManyOscillators::across(i, 0.02); });
-  oscillators.write("L", [](int i) { return std::pair(i, i == 1 ? -1.0 : 0.0); });
-  const std::string scene = oscillators.scene(
-      "damping: D.mtx, stiffness: K.mtx, circulatory: N.mtx, load: 0, load_stiffness: L.mtx");
-  const Json locus = json_of({"locus", scene, "--parameter", "substructures.pairs.load", "--from",
-                              "0", "--to", "1", "--points", "3", "--below", "0.25"});
-  ASSERT_EQ(locus["eigenvalues"].size(), 3U);
-  ASSERT_EQ(locus["unstable"].size(), 1U);
-  const double half = std::sqrt(1e-8 + 12e-4);
-  EXPECT_NEAR(locus["unstable"][0]["from"].get<double>(), 0.4001 - half, 1e-8);
-  EXPECT_NEAR(locus["unstable"][0]["to"].get<double>(), 0.4001 + half, 1e-8);
-}
-
-TEST(MatrixProgram, NarrowWindowsOfLargeMatricesAreFound) {
-  // The same without damping under a circulatory force 1e-4: flutter within 2e-4 of 0.4237,
-  // where nothing grows or decays elsewhere.
-  const ManyOscillators oscillators;
-  oscillators.write("K",
-                    [](int i) { return std::pair(i, (i / 2 + 1) * (i % 2 == 0 ? 1.0 : 1.4237)); });
-  oscillators.write("N", [](int i) { return ManyOscillators::across(i, 1e-4); });
-  oscillators.write("L", [](int i) { return std::pair(i, i == 1 ? -1.0 : 0.0); });
-  const std::string scene =
-      oscillators.scene("stiffness: K.mtx, circulatory: N.mtx, load: 0, load_stiffness: L.mtx");
-  const Json threshold = json_of({"threshold", scene, "--parameter", "substructures.pairs.load",
-                                  "--from", "0", "--to", "1", "--points", "6", "--below", "0.25"});
-  ASSERT_EQ(threshold["roots"].size(), 2U);
-  EXPECT_NEAR(threshold["roots"][0]["value"].get<double>(), 0.4237 - 2e-4, 1e-8);
-  EXPECT_NEAR(threshold["roots"][1]["value"].get<double>(), 0.4237 + 2e-4, 1e-8);
-  EXPECT_EQ(threshold["unresolved"], 0.0);
-}
-
-TEST(MatrixProgram, ARangeOverManyDecadesHidesNoLimit) {
-  const Json threshold = json_of({"threshold", scene_path("examples/flutter.yaml"), "--parameter",
-                                  "substructures.oscillator.load", "--from", "0", "--to", "1e100"});
-  ASSERT_EQ(threshold["roots"].size(), 1U);
-  EXPECT_NEAR(threshold["roots"][0]["value"].get<double>(), 0.2, 1e-12);
-}
-
-TEST(MatrixProgram, FactorsOfMatricesAreVaried) {
-  // Flutter of diag(1, 1.4) under a circulatory force n: from 0.2 on, with damping 0.1 of both from
-  // 0.2280350850.
-  const TemporaryFolder folder;
-  const std::string scene = (folder / "two.yaml").string();
-  std::ofstream(scene) << "format: 1\nsubstructures:\n  two: {type: matrices, mass: [[1, 0], [0, "
-                          "1]], stiffness: [[1, 0], [0, 1.4]], damping: [[1, 0], [0, 1]], "
-                          "circulatory: [[0, 1], [-1, 0]], factors: {damping: 0}}\n";
-  const std::string n = "substructures.two.factors.circulatory";
-  const std::string d = "substructures.two.factors.damping";
-  const auto limit = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"threshold", scene, "--parameter", n,
-                                       "--from",    "0",   "--to",        "0.4"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return json_of(arguments)["roots"].at(0)["value"].get<double>();
-  };
-  EXPECT_NEAR(limit({}), 0.2, 1e-12);
-  EXPECT_NEAR(limit({"--set", d + "=0.1"}), 0.2280350850, 1e-10);
-  EXPECT_NEAR(limit({"--set", "substructures.two.factors.stiffness=1.5"}), 0.3, 1e-12);
-  const Json map = json_of({"map", scene, "--x", n, "0", "0.4", "5", "--y", d, "0.1", "0.3", "3"});
-  // 0.2² + d² 1.2 = n².
-  const auto stable = [&](std::size_t row, std::size_t column) {
-    return map["growth"][row][column].get<double>() <= 0.0;
-  };
-  for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t column = 0; column < 5; ++column) {
-      const double at = 0.1 * static_cast<double>(column);
-      const double damping = 0.1 + 0.1 * static_cast<double>(row);
-      EXPECT_EQ(stable(row, column), at * at < 0.04 + 1.2 * damping * damping) << row << column;
-    }
-  }
-}
-
-TEST(MatrixProgram, LargeMatricesHaveMaps) {
-  const ManyOscillators oscillators;
-  oscillators.write("D", [](int i) { return std::pair(i, 1.0); });
-  oscillators.write("K",
-                    [](int i) { return std::pair(i, (i / 2 + 1) * (i % 2 == 0 ? 1.0 : 1.4)); });
-  oscillators.write("N", [](int i) { return ManyOscillators::across(i, 1.0); });
-  const std::string scene =
-      oscillators.scene("damping: D.mtx, stiffness: K.mtx, circulatory: N.mtx");
-  const std::string factors = "substructures.pairs.factors.";
-  const Json map = json_of({"map", scene, "--x", factors + "circulatory", "0.1", "0.3", "2", "--y",
-                            factors + "damping", "0.1", "0.2", "2", "--below", "0.25"});
-  const auto stable = [&](std::size_t row, std::size_t column) {
-    return map["growth"][row][column].get<double>() <= 0.0;
-  };
-  // 0.04 + 1.2 d² is 0.052 and 0.088.
-  EXPECT_TRUE(stable(0, 0));
-  EXPECT_FALSE(stable(0, 1));
-  EXPECT_TRUE(stable(1, 0));
-  EXPECT_FALSE(stable(1, 1));
-}
-
-TEST(MatrixProgram, ExamplesHaveTheirClosedForms) {
-  EXPECT_NEAR(example_limit("flutter", "substructures.oscillator.load", "0.4", {}), 0.2, 1e-12);
-  EXPECT_NEAR(example_limit("flutter_equal_damping", "substructures.oscillator.load", "0.4", {}),
-              0.2280350850, 1e-10);
-  EXPECT_NEAR(example_limit("flutter_ziegler", "substructures.oscillator.load", "0.4", {}),
-              0.1732146068, 1e-10);
-  EXPECT_NEAR(example_limit("flutter_ziegler", "substructures.oscillator.load", "0.4",
-                            {"--set", "substructures.oscillator.damping=[0.1 0, 0 0.3]"}),
-              0.2509980080, 1e-10);
-  EXPECT_NEAR(example_limit("two_springs_on_a_belt", "parameters.mu", "1.2", {}), 0.75, 1e-12);
-  const auto largest = [](const std::string& name) {
-    return growth_of(json_of({"eig", scene_path("examples/" + name + ".yaml")})).largest;
-  };
-  EXPECT_NEAR(largest("flutter"), 0.1016256896, 1e-10);
-  EXPECT_NEAR(largest("flutter_gyroscopic"), 0.0111662740, 1e-10);
-  EXPECT_NEAR(largest("gyroscopic"), 0.0, 1e-12);
 }
 
 }  // namespace

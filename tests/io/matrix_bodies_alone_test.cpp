@@ -1,13 +1,14 @@
-#include "io/linear_scene.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <filesystem>
 #include <fstream>
 
 #include "core/errors.hpp"
 #include "io/scene.hpp"
+#include "io/scene_family.hpp"
+#include "io/scene_files.hpp"
+#include "substructures/linear_system.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/program.hpp"
 
@@ -15,7 +16,6 @@ namespace stridor {
 namespace {
 
 using test::message_of;
-using test::scene_path;
 using ::testing::HasSubstr;
 
 const char* const small_scene = R"(format: 1
@@ -38,32 +38,45 @@ class MatrixFolder {
         << "%%MatrixMarket matrix array real symmetric\n2 2\n5\n1\n7\n";
   }
   std::string path() const { return (folder_ / "scene.yaml").string(); }
-  LinearModel model(const std::vector<std::string>& sets) const {
-    return load_linear_scene(path(), sets).model();
+  Model model(const std::vector<std::string>& sets) const {
+    BodyCache cache;
+    return build_model(load_scene(path(), sets), cache);
+  }
+  /// M, P and Q of its only body.
+  LinearSystem system(const std::vector<std::string>& sets) const {
+    const ReducedBody body = model(sets).system.bodies.at(0).reduced;
+    LinearSystem system;
+    system.mass = body.mass;
+    system.velocity = body.damping.alpha * body.mass + body.damping.beta * body.stiffness;
+    system.position = body.stiffness;
+    if (body.coupled.is_empty()) return system;
+    system.velocity += body.coupled.velocity;
+    system.position += body.coupled.position;
+    return system;
   }
   std::string failure(const std::vector<std::string>& sets) const {
     return message_of<ConfigError>([&] { model(sets); });
   }
 
+  void remove_file() const { std::filesystem::remove(folder_ / "K.mtx"); }
+
  private:
   test::TemporaryFolder folder_;
 };
 
-TEST(MatrixScene, AddsItsMatricesUp) {
+TEST(MatrixBodiesAlone, AddsItsMatricesUp) {
   const MatrixFolder folder;
-  const LinearSystem found = folder.model({}).dense;
+  const LinearSystem found = folder.system({});
   EXPECT_EQ(found.mass, (Eigen::MatrixXd{{2.0, 0.0}, {0.0, 1.0}}));
   EXPECT_EQ(found.velocity, (Eigen::MatrixXd{{0.0, 3.0}, {-3.0, 0.0}}));
   EXPECT_EQ(found.position, (Eigen::MatrixXd{{5.0, 2.0}, {1.0, 7.0}}));
-  EXPECT_TRUE(std::isinf(folder.model({}).highest_frequency));
 }
 
-TEST(MatrixScene, RowsAreListsOrTexts) {
+TEST(MatrixBodiesAlone, RowsAreListsOrTexts) {
   const MatrixFolder folder;
   const std::string body = "substructures.body.";
   const LinearSystem found =
-      folder.model({body + "mass=[[4, 1], [1, 2.5e0]]", body + "gyroscopic=[[0, 3], '-3 0']"})
-          .dense;
+      folder.system({body + "mass=[[4, 1], [1, 2.5e0]]", body + "gyroscopic=[[0, 3], '-3 0']"});
   EXPECT_EQ(found.mass, (Eigen::MatrixXd{{4.0, 1.0}, {1.0, 2.5}}));
   EXPECT_EQ(found.velocity, (Eigen::MatrixXd{{0.0, 3.0}, {-3.0, 0.0}}));
   EXPECT_THAT(folder.failure({body + "mass=[[1, 0], [0]]"}),
@@ -72,7 +85,7 @@ TEST(MatrixScene, RowsAreListsOrTexts) {
               HasSubstr("mass.0.1: 'x' is not a number"));
 }
 
-TEST(MatrixScene, LargeMatricesStaySparse) {
+TEST(MatrixBodiesAlone, LargeMatricesStaySparse) {
   const test::TemporaryFolder folder;
   constexpr int n = 1001;
   for (const std::string name : {"M", "K"}) {
@@ -86,13 +99,14 @@ TEST(MatrixScene, LargeMatricesStaySparse) {
   const std::string path = (folder / "scene.yaml").string();
   std::ofstream(path) << "format: 1\nsubstructures:\n  chain: {type: matrices, mass: M.mtx, "
                          "stiffness: K.mtx}\n";
-  const LinearModel model = load_linear_scene(path, {}).model();
+  BodyCache cache;
+  const Model model = build_model(load_scene(path, {}), cache);
   ASSERT_TRUE(model.sparse.has_value());
   EXPECT_EQ(model.sparse->size(), n);
   EXPECT_EQ(model.sparse->position.nonZeros(), 3 * n - 2);
 }
 
-TEST(MatrixScene, SaysWhichMatrixIsWrong) {
+TEST(MatrixBodiesAlone, SaysWhichMatrixIsWrong) {
   const MatrixFolder folder;
   const std::string body = "substructures.body.";
   EXPECT_THAT(folder.failure({body + "mass=[1 0, 0 -1]"}),
@@ -107,40 +121,32 @@ TEST(MatrixScene, SaysWhichMatrixIsWrong) {
               HasSubstr("mass: row 1: expected a finite number, got 'a'"));
   EXPECT_THAT(message_of<FileError>([&] { folder.model({body + "damping=C.mtx"}); }),
               HasSubstr("C.mtx"));
-  EXPECT_THAT(folder.failure({"substructures.other={type: matrices, mass: ['1'], "
-                              "stiffness: ['1']}"}),
-              HasSubstr("stands alone"));
 }
 
-TEST(DiscScene, ReadsTheReferenceBrake) {
-  const LoadedLinearScene loaded = load_linear_scene(scene_path("disc_and_pads.yaml"), {});
-  const LinearModel model = loaded.model();
-  EXPECT_EQ(model.dense.size(), 19);
-  EXPECT_EQ(model.dense.gaps.rows(), 2);
-  EXPECT_NEAR(model.highest_frequency, 7494.83, 0.01);
-  // A resolved scene reads back as the same.
-  const LoadedLinearScene again = load_resolved_linear_scene(loaded.resolved(), "resolved");
-  EXPECT_EQ(again.model().dense.position, model.dense.position);
-}
-
-TEST(DiscScene, SaysWhatDoesNotFit) {
-  const auto failure = [](const std::vector<std::string>& sets) {
-    return message_of<ConfigError>(
-        [&] { load_linear_scene(scene_path("disc_and_pads.yaml"), sets); });
+TEST(MatrixBodiesAlone, AreReadOnceForAllValuesOfAKey) {
+  const MatrixFolder folder;
+  LoadedScene loaded = load_scene(folder.path(), {});
+  const NumericKey key = find_numeric_key(loaded.scene, "substructures.body.load", "--parameter");
+  SceneFamily family(loaded, {key});
+  const auto position = [&](double load) {
+    const ReducedBody body = family.at({{load}}).model->system.bodies.at(0).reduced;
+    return Eigen::MatrixXd(body.stiffness + body.coupled.position);
   };
-  EXPECT_THAT(failure({"terms=[gyro]"}),
-              HasSubstr("there is no term 'gyro', did you mean 'gyroscopic'?"));
-  EXPECT_THAT(failure({"disc.speed=0"}),
-              HasSubstr("disc.speed: must be positive with the term friction_damping"));
-  EXPECT_THAT(failure({"pads.radius=0.2"}), HasSubstr("pads.radius: must lie between"));
-  EXPECT_THAT(failure({"disc.outer_radius=0.05"}),
-              HasSubstr("disc.outer_radius: must be larger than inner_radius"));
-  EXPECT_THAT(failure({"disc.radial_modes=9"}),
-              HasSubstr("disc.radial_modes: must not exceed radial_terms = 8"));
-  EXPECT_THAT(failure({"pads.stiffness.coupling=1e8"}),
-              HasSubstr("must be smaller than the geometric mean"));
-  EXPECT_THAT(message_of<ConfigError>([] { load_scene(scene_path("disc_and_pads.yaml"), {}); }),
-              HasSubstr("disc: belongs to a scene of small motion"));
+  EXPECT_EQ(position(0.5), (Eigen::MatrixXd{{5.0, 2.0}, {1.0, 7.0}}));
+  folder.remove_file();
+  EXPECT_EQ(position(1.5), (Eigen::MatrixXd{{5.0, 4.0}, {1.0, 7.0}}));
+  EXPECT_THROW(folder.model({}), FileError);
+}
+
+TEST(MatrixBodiesAlone, HaveADigestOfEveryFile) {
+  const MatrixFolder folder;
+  const LoadedScene loaded = load_scene(folder.path(), {});
+  const std::vector<SceneFile> files = scene_files(loaded);
+  ASSERT_EQ(files.size(), 1U);
+  EXPECT_EQ(files[0].key, "substructures.body.stiffness");
+  const std::string hash = loaded.hash();
+  std::ofstream(files[0].path, std::ios::app) << "\n";
+  EXPECT_NE(loaded.hash(), hash);
 }
 
 }  // namespace
