@@ -1,7 +1,5 @@
 #include "analysis/limit_cycle.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -76,7 +74,8 @@ LimitCycle failed(const SubstrateMotion& motion) {
   LimitCycle cycle;
   cycle.x_min = cycle.x_max = cycle.x_mean = cycle.x_rms = cycle.y_max = nan;
   cycle.stick_fraction = cycle.free_fraction = nan;
-  cycle.failure = fmt::format("after t = {:.6g} {}", motion.time(), motion.failure());
+  cycle.failure = motion.failure();
+  cycle.failure_time = motion.time();
   return cycle;
 }
 

@@ -35,10 +35,11 @@ struct TurningPoint {
 
 struct LimitCycle {
   CycleStatus status = CycleStatus::diverged;
-  /// Cause, time and remedy of the failure; empty unless `diverged`.
+  /// Cause and remedy of the failure; empty unless `diverged`.
   std::string failure;
-  double period = 0.0;  ///< 0 where not periodic
-  int loops = 0;        ///< turns per period
+  double failure_time = 0.0;  ///< when, in units of the oscillator
+  double period = 0.0;        ///< 0 where not periodic
+  int loops = 0;              ///< turns per period
   double x_min = 0.0;
   double x_max = 0.0;
   double x_mean = 0.0;

@@ -6,6 +6,7 @@
 #include "analysis/step_guard.hpp"
 #include "app/body_report.hpp"
 #include "app/command.hpp"
+#include "app/cycle_motion.hpp"
 #include "app/step_stability_report.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
@@ -14,7 +15,6 @@
 #include "io/disc_scene.hpp"
 #include "io/scene.hpp"
 #include "io/scene_warnings.hpp"
-#include "io/sphere_scene.hpp"
 #include "solvers/simulation.hpp"
 
 namespace stridor {
@@ -58,11 +58,6 @@ Report check_scene(const CheckOptions& options) {
     refuse_stability(options);
     return {key_warnings(DiscScene::schema(), &loaded.scene, tree)};
   }
-  if (is_sphere_scene(tree)) {
-    const LoadedSphereScene loaded = load_sphere_scene(options.scene, options.common.sets);
-    refuse_stability(options);
-    return {key_warnings(SphereScene::schema(), &loaded.scene, tree)};
-  }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   if (options.stability) loaded.require_section("time", "check --stability");
   BodyCache cache;
@@ -73,9 +68,14 @@ Report check_scene(const CheckOptions& options) {
     require_modes(model);
     const Activity preparing("preparing the first step");
     set_initial_state(model.system, loaded);
-    const Simulation simulation(model.system, *loaded.scene.time, accounts_of(loaded.scene));
-    // The report on stability shows what a run would be refused for.
-    if (!options.stability) require_no_own_growth(model.system, *loaded.scene.time);
+    if (loaded.scene.time->is_event_driven()) {
+      (void)sliding_equilibrium(oscillator_of(loaded, model.system, "time.integrator"));
+      refuse_stability(options);
+    } else {
+      const Simulation simulation(model.system, *loaded.scene.time, accounts_of(loaded.scene));
+      // The report on stability shows what a run would be refused for.
+      if (!options.stability) require_no_own_growth(model.system, *loaded.scene.time);
+    }
   } catch (const ConfigError& error) {
     throw loaded.located(error);
   }
@@ -120,7 +120,8 @@ ExitCode check(const CheckOptions& options) {
 
 void add_check_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* verb = program.add_subcommand("check", "All errors of a scene at once, and what is hardly meant");
+  CLI::App* verb =
+      program.add_subcommand("check", "All errors of a scene at once, and what is hardly meant");
   verb->add_option("scene", options->scene, "Scene file (YAML)")->required();
   add_scene_options(*verb, options->common);
   add_json_option(*verb, options->common);

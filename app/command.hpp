@@ -70,6 +70,8 @@ std::vector<double> spaced_values(const char* option, const std::vector<double>&
 using Action = std::function<ExitCode()>;
 void add_contact_command(CLI::App& program, Action& action, const std::string& command_line);
 void add_fit_command(CLI::App& program, Action& action);
+void add_cycle_command(CLI::App& program, Action& action, const std::string& command_line);
+void add_sweep_command(CLI::App& program, Action& action, const std::string& command_line);
 void add_run_command(CLI::App& program, Action& action, const std::string& command_line);
 void add_check_command(CLI::App& program, Action& action);
 void add_info_command(CLI::App& program, Action& action);

@@ -131,7 +131,7 @@ Candidates run_interleaved(const LoadedScene& loaded, Coordinates coordinates, d
                                               : candidate.transient->run_to_end();
                  if (candidate.end == MarchEnd::stopped) {
                    throw Interrupted(fmt::format("at t = {:.4g} of {:.4g} s; nothing was compared",
-                                                 candidate.transient->simulation().time(), end));
+                                                 candidate.transient->time(), end));
                  }
                  return assumptions[i].title;
                });
@@ -164,7 +164,7 @@ std::optional<double> relative_difference(const std::vector<double>& a,
 
 std::string status_of(const Candidate& candidate) {
   if (candidate.end == MarchEnd::finished) return "done";
-  return "failed: " + candidate.transient->simulation().failure();
+  return "failed: " + candidate.transient->failure();
 }
 
 Json rows_of(const Candidates& candidates, const char* coordinates) {
@@ -239,8 +239,15 @@ ComparisonRun drawn(const Candidate& candidate, const char* title) {
 
 ExitCode compare(const CompareOptions& options) {
   LoadedScene loaded = load_scene(options.scene, options.common.sets);
-  for (const char* section : {"time", "record", "contact"})
-    loaded.require_section(section, "compare");
+  for (const char* section : {"time", "contact"}) loaded.require_section(section, "compare");
+  if (!loaded.scene.record) {
+    throw loaded.located(
+        ConfigError("record", "missing: compare needs an acceleration to compare by"));
+  }
+  if (loaded.scene.time->is_event_driven()) {
+    throw loaded.located(
+        ConfigError("time.integrator", "event_driven knows no contact assumptions to compare"));
+  }
   check_published_form(options, *loaded.scene.time);
   record_contact(loaded.scene);
   const bool is_kept = !options.folder.empty();

@@ -8,12 +8,12 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <string>
 
 #include "analysis/explanation.hpp"
 #include "app/disc_stability.hpp"
 #include "app/eigenvalue_report.hpp"
 #include "app/found_spectrum.hpp"
-#include "app/sphere_stability.hpp"
 #include "app/stability.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
@@ -173,6 +173,17 @@ void print_equilibrium(const System& system, const Equilibrium& equilibrium) {
   }
 }
 
+/// Where a contact law is used beyond its range.
+void print_law_ranges(const Json& equilibrium) {
+  const auto print = [](const Json& contact) {
+    if (!contact.contains("law_range") || contact["law_range"] == "inside") return;
+    fmt::print("{:<20}is {}\n", "", contact["law_range"].get<std::string>());
+  };
+  print(equilibrium);
+  if (!equilibrium.contains("contacts")) return;
+  for (const Json& contact : equilibrium["contacts"]) print(contact);
+}
+
 void print_explanation(const Json& explanation) {
   const auto value = [](const Json& object, const char* key) { return object[key].get<double>(); };
   const Json& energy = explanation["energy"];
@@ -214,6 +225,7 @@ Analysis analyse(const EigOptions& options, const LoadedScene& loaded,
   }
   const System& system = member.model->system;
   analysis.state = sliding_state_of(member, options.stability.geometry(), "");
+  keep_terms(analysis.state.pencil, damping_terms(loaded.scene));
   analysis.trusted =
       std::min(trusted_frequency(system),
                asked_frequency(system, loaded.scene.time) / (2.0 * std::numbers::pi));
@@ -238,18 +250,18 @@ void print_report(const EigOptions& options, const Analysis& analysis, const Jso
   const FoundSpectrum& found = analysis.found;
   if (!analysis.is_sparse())
     print_equilibrium(analysis.member.model->system, analysis.state.equilibrium);
+  print_law_ranges(object["equilibrium"]);
   if (object.contains("remark")) fmt::print("{}\n", object["remark"].get<std::string>());
   print_eigenvalues(found.eigenvalues, analysis.trusted);
   const char* verdict = object["stable"].get<bool>() ? "stable" : "unstable";
-  if (!analysis.has_contacts() && !std::isfinite(found.highest)) {
-    fmt::print("{} at all frequencies\n", verdict);
-  } else {
-    fmt::print("{} between 0 and {:.6g} Hz{}{}\n", verdict, found.highest,
-               limit_text(found.highest, analysis.trusted),
-               analysis.has_contacts()
-                   ? fmt::format(", about the {} geometry", options.stability.about)
-                   : "");
-  }
+  const std::string about = analysis.has_contacts()
+                                ? fmt::format(", about the {} geometry", options.stability.about)
+                                : "";
+  const std::string reach = std::isfinite(found.highest)
+                                ? fmt::format("between 0 and {:.6g} Hz{}", found.highest,
+                                              limit_text(found.highest, analysis.trusted))
+                                : "at all frequencies";
+  fmt::print("{} {}{}\n", verdict, reach, about);
   if (found.more.contains("counted")) {
     fmt::print("{} eigenvalues with their conjugates, as the argument principle counts\n",
                found.more["counted"].get<int>());
@@ -318,16 +330,6 @@ ExitCode eig(EigOptions options) {
     if (options.shapes) throw ConfigError("--shapes", "needs bodies with meshes");
     choose_method(options.stability);
     return eig_of_disc(options.stability, options.explain, options.mode);
-  }
-  if (is_sphere_scene_file(options.stability.scene)) {
-    if (options.at || options.shapes || options.explain) {
-      throw ConfigError(options.at       ? "--at"
-                        : options.shapes ? "--shapes"
-                                         : "--explain",
-                        "is for scenes of bodies");
-    }
-    choose_method(options.stability);
-    return eig_of_sphere(options.stability);
   }
   const LoadedScene loaded = load_scene(options.stability.scene, options.stability.common.sets);
   choose_method(options.stability);

@@ -272,24 +272,6 @@ std::size_t most_eigenvalues(const Locus& locus) {
   return most;
 }
 
-/// The same in 1/s and Hz.
-Locus in_seconds(Locus locus, const StabilityScene& scene, const NumericKey& key) {
-  const auto unit = [&](double value) {
-    return scene.rate_unit({key}, std::span<const double>(&value, 1));
-  };
-  for (std::size_t i = 0; i < locus.values.size(); ++i)
-    for (std::complex<double>& s : locus.eigenvalues[i]) s *= unit(locus.values[i]);
-  for (Branch& branch : locus.branches)
-    for (std::size_t i = 0; i < branch.s.size(); ++i) branch.s[i] *= unit(branch.values[i]);
-  for (UnstableWindow& window : locus.unstable) {
-    window.frequency *= unit(window.value_max);
-    window.growth_max *= unit(window.value_max);
-    window.growth_integral *= unit(window.value_max);
-  }
-  for (Crossing& crossing : locus.crossings) crossing.frequency *= unit(crossing.value);
-  return locus;
-}
-
 /// @param trusted up to where the model answers, in the unit of the frequencies
 void print_windows(const std::vector<TimedWindow>& windows, const NumericKey& key, double trusted) {
   if (windows.empty()) {
@@ -354,11 +336,10 @@ ExitCode locus(LocusCommandOptions options) {
   if (loaded->bodies() != nullptr && loaded->bodies()->scene.time && is_path) {
     times.emplace(loaded->bodies()->scene, dynamic_cast<BodyStabilityFamily&>(*family));
   }
-  const Locus shown = in_seconds(found, *loaded, range.key);
-  const std::vector<TimedWindow> windows = timed_windows(shown, times);
+  const std::vector<TimedWindow> windows = timed_windows(found, times);
   const std::string units = printed_units(range.key);
   if (options.output) {
-    write_locus_file(*options.output, stability.common.overwrite(), shown, windows, units,
+    write_locus_file(*options.output, stability.common.overwrite(), found, windows, units,
                      {{"parameter", range.key.path},
                       {"units", units},
                       {"about", stability.about},
@@ -378,16 +359,15 @@ ExitCode locus(LocusCommandOptions options) {
                                     bodies == nullptr ? nullptr : &bodies->tree);
     picture.parameter = range.key.path;
     picture.units = unit.name;
-    picture.curves = curves_of(shown, highest_frequency(shown));
+    picture.curves = curves_of(found, highest_frequency(found));
     for (LocusCurve& curve : picture.curves) curve.parameter = unit.numbers(curve.parameter);
-    for (const UnstableWindow& window : shown.unstable) {
-      picture.windows.push_back({unit.number(window.from), unit.number(window.to),
-                                 window.frequency, window.growth_max});
+    for (const UnstableWindow& window : found.unstable) {
+      picture.windows.push_back(
+          {unit.number(window.from), unit.number(window.to), window.frequency, window.growth_max});
     }
     picture.caption = fmt::format(
         "The lowest {} eigenvalues{}, {} from {} to {}; {}, scene {}.", most_eigenvalues(found),
-        loaded->about_text(stability), range.key.path,
-        unit.number(range.values.front()),
+        loaded->about_text(stability), range.key.path, unit.number(range.values.front()),
         fmt::format("{:g}{}", unit.number(range.values.back()),
                     unit.name == "1" ? "" : " " + unit.name),
         std::filesystem::path(stability.scene).filename().string(), loaded->hash());
@@ -412,8 +392,7 @@ ExitCode locus(LocusCommandOptions options) {
     return ExitCode::done;
   }
   print_windows(windows, range.key, trusted);
-  const double shown_limit = verdict_limit(shown, stability.locus_window(), trusted);
-  fmt::print("{}{}\n", window_text(shown_limit), limit_text(shown_limit, trusted));
+  fmt::print("{}{}\n", window_text(highest), limit_text(highest, trusted));
   print_resolution(found, range.key);
   for (const auto& file : {options.output, options.figure, options.history})
     if (file) fmt::print("{}\n", *file);

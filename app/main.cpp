@@ -17,7 +17,6 @@
 #include "app/command.hpp"
 #include "app/progress.hpp"
 #include "app/remark.hpp"
-#include "app/sphere_commands.hpp"
 #include "core/blas_memory.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"

@@ -230,17 +230,6 @@ StabilityMap make_map(const StabilityScene& loaded, const std::array<Axis, 2>& a
   return map;
 }
 
-/// The same in 1/s.
-StabilityMap in_seconds(StabilityMap map, const StabilityScene& scene,
-                        const std::array<Axis, 2>& axes) {
-  for (std::size_t j = 0; j < map.y.size(); ++j) {
-    for (std::size_t i = 0; i < map.x.size(); ++i)
-      map.growth[j][i] *=
-          scene.rate_unit({axes[0].key, axes[1].key}, std::array{map.x[i], map.y[j]});
-  }
-  return map;
-}
-
 void draw(const MapOptions& options, const std::array<Axis, 2>& axes, const StabilityMap& map,
           const StabilityScene& loaded) {
   StabilityMapPicture picture;
@@ -282,7 +271,7 @@ ExitCode map(MapOptions options) {
   if (axes[0].key.path == axes[1].key.path)
     throw ConfigError("--y", fmt::format("'{}' is the key of --x already", axes[1].key.path));
   constexpr double bytes_per_point = 125.0;  // measured, with JSON
-  require_memory(
+  require_memory_for(
       {"--x",
        fmt::format("a map of {} times {} points", axes[0].values.size(), axes[1].values.size()),
        "ask for fewer points along x or y",
@@ -291,10 +280,8 @@ ExitCode map(MapOptions options) {
       memory_limit());
   std::array<Locus, 2> resolution;
   const StabilityMap found = make_map(loaded, axes, stability, resolution);
-
-  const StabilityMap shown = in_seconds(found, loaded, axes);
   if (options.output) {
-    write_map_file(*options.output, overwrite, shown, printed_units(axes[0].key),
+    write_map_file(*options.output, overwrite, found, printed_units(axes[0].key),
                    printed_units(axes[1].key),
                    {{"x", axes[0].key.path},
                     {"y", axes[1].key.path},
@@ -308,7 +295,7 @@ ExitCode map(MapOptions options) {
                     {"commit", std::string(commit)},
                     {"date", utc_now()}});
   }
-  if (options.figure) draw(options, axes, shown, loaded);
+  if (options.figure) draw(options, axes, found, loaded);
 
   if (stability.common.json) {
     Json object = {{"x_parameter", axes[0].key.path},

@@ -142,9 +142,7 @@ const std::vector<std::pair<std::string, ContactAssumption>>& assumption_names()
   return names;
 }
 
-PrecisionStudy make_precision_study(const PrecisionOptions& options) {
-  LoadedScene loaded = load_scene(options.scene, options.common.sets);
-  loaded.require_section("time", "precision");
+PrecisionStudy make_precision_study(const PrecisionOptions& options, LoadedScene loaded) {
   PrecisionStudy study{study_scene(std::move(loaded), options.until), {}, {}};
   study.parameters = parameters_of(options, study.norms.band);
   try {

@@ -43,7 +43,7 @@ struct PrecisionStudy : StudiedScene {
 };
 
 /// @throws ConfigError with places in the scene, FileError, NumericalError
-PrecisionStudy make_precision_study(const PrecisionOptions& options);
+PrecisionStudy make_precision_study(const PrecisionOptions& options, LoadedScene loaded);
 
 /// One setting, its run and what came of it.
 struct PrecisionRow {

@@ -5,12 +5,11 @@
 #include <filesystem>
 #include <memory>
 
+#include "app/event_precision.hpp"
 #include "app/output_folder.hpp"
 #include "app/pictures.hpp"
 #include "app/precision.hpp"
 #include "app/remark.hpp"
-#include "app/sphere_precision.hpp"
-#include "io/sphere_scene.hpp"
 
 namespace stridor {
 namespace {
@@ -18,10 +17,12 @@ namespace {
 namespace fs = std::filesystem;
 
 ExitCode precision(const PrecisionOptions& options) {
-  if (is_sphere_scene_file(options.scene)) return precision_of_sphere(options);
+  LoadedScene loaded = load_scene(options.scene, options.common.sets);
+  loaded.require_section("time", "precision");
+  if (loaded.scene.time->is_event_driven()) return precision_of_events(options, loaded);
   std::optional<double> wanted;
   if (options.tune) wanted = option_value("--tune", *options.tune, "", Range::inside(0.0, 1.0));
-  const PrecisionStudy study = make_precision_study(options);
+  const PrecisionStudy study = make_precision_study(options, std::move(loaded));
   const bool is_kept = !options.folder.empty();
   if (is_kept) {
     prepare_folder(options.folder, {precision_figure_name, precision_json_name},

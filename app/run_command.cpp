@@ -8,11 +8,11 @@
 #include <optional>
 
 #include "app/command.hpp"
+#include "app/cycle_motion.hpp"
 #include "app/disc_run.hpp"
 #include "app/error_estimate.hpp"
 #include "app/progress.hpp"
 #include "app/run_ending.hpp"
-#include "app/sphere_run.hpp"
 #include "app/transient.hpp"
 #include "app/transient_results.hpp"
 #include "core/errors.hpp"
@@ -20,7 +20,6 @@
 #include "io/damage_guard.hpp"
 #include "io/disc_scene.hpp"
 #include "io/scene_warnings.hpp"
-#include "io/sphere_scene.hpp"
 
 namespace stridor {
 namespace {
@@ -39,19 +38,60 @@ struct RunOptions {
 /// Only where it is a violation.
 void print_contact_gain(const Json& gain) {
   if (gain.is_null() || !gain["violated"].get<bool>()) return;
-  fmt::print("{:<24}contacts gave {:.4g} J to the bodies until {:.4g} s, {:.3g} of the energy "
-             "turned over; none can\n",
-             "CONTACT WORK VIOLATED", gain["energy"].get<double>(), gain["last_time"].get<double>(),
-             gain["share"].get<double>());
+  fmt::print(
+      "{:<24}contacts gave {:.4g} J to the bodies until {:.4g} s, {:.3g} of the energy "
+      "turned over; none can\n",
+      "CONTACT WORK VIOLATED", gain["energy"].get<double>(), gain["last_time"].get<double>(),
+      gain["share"].get<double>());
+}
+
+std::string result_text(const Json& value) {
+  if (value.is_null()) return "-";
+  return value.is_number() ? fmt::format("{:.5g}", value.get<double>()) : value.get<std::string>();
+}
+
+void print_acceleration(const Json& results) {
+  const Json& acceleration = results["free_end_acceleration"];
+  if (acceleration.is_null()) return;
+  fmt::print("{:<24}peak {} m/s^2, r.m.s. {}{} m/s^2, of {}\n", "acceleration",
+             result_text(acceleration["peak"]), results["bursts"].is_null() ? "" : "in band ",
+             result_text(acceleration["rms"]), result_text(acceleration["channel"]));
+}
+
+void print_fractions(const Json& results) {
+  const auto fraction_text = [&](const char* name) {
+    return results[name].is_null() ? std::string("-")
+                                   : fmt::format("{:.4g} %", 100.0 * results[name].get<double>());
+  };
+  fmt::print("{:<24}{} of the time, lifted off {}\n", "sticking", fraction_text("stick_fraction"),
+             fraction_text("free_fraction"));
+}
+
+/// Of a run from event to event.
+void print_cycles(const Json& results, const std::string& output) {
+  const auto print = [](const char* name, const Json& value, const char* units) {
+    const std::string number =
+        value.is_null() ? "-" : fmt::format("{:.10g} {}", value.get<double>(), units);
+    fmt::print("{:<24}{}\n", name, number);
+  };
+  fmt::print("{:<24}{}\n", "status", result_text(results["status"]));
+  fmt::print("{:<24}{} ({:.3g} s)\n", "steps", results["steps"].get<std::int64_t>(),
+             results["wall_s"].get<double>());
+  print("period", results["period"], "s");
+  print("x, r.m.s. about mean", results["x"]["rms"], "m");
+  print("x, smallest", results["x"]["min"], "m");
+  print("x, largest", results["x"]["max"], "m");
+  fmt::print("{:<23} {} to {} N\n", "contact force", result_text(results["contact_force"]["min"]),
+             result_text(results["contact_force"]["max"]));
+  print_acceleration(results);
+  print_bursts(results);
+  print_fractions(results);
+  print_law_exceeded(results);
+  fmt::print("{:<24}{}\n", "run file", output);
 }
 
 void print_summary(const Json& results, const std::string& output) {
-  const auto text = [](const Json& value) {
-    if (value.is_null()) return std::string("-");
-    return value.is_number() ? fmt::format("{:.5g}", value.get<double>())
-                             : value.get<std::string>();
-  };
-  fmt::print("{:<24}{}\n", "status", text(results["status"]));
+  fmt::print("{:<24}{}\n", "status", result_text(results["status"]));
   const std::string limit =
       results["step_limit"].is_null()
           ? "no limit by the modes"
@@ -80,28 +120,18 @@ void print_summary(const Json& results, const std::string& output) {
              results["wall_s"].get<double>(), step_time, results["setup_s"].get<double>(),
              results["output_s"].get<double>());
   const auto print_force = [&](const std::string& name, const Json& force) {
-    fmt::print("{:<23} {} to {} N\n", name, text(force["min"]), text(force["max"]));
+    fmt::print("{:<23} {} to {} N\n", name, result_text(force["min"]), result_text(force["max"]));
   };
   if (results.contains("contact_force")) print_force("contact force", results["contact_force"]);
   if (results.contains("contacts")) {
     for (const auto& [name, contact] : results["contacts"].items())
       print_force("contact force, " + name, contact["contact_force"]);
   }
-  if (!results["free_end_acceleration"].is_null()) {
-    const Json& acceleration = results["free_end_acceleration"];
-    fmt::print("{:<24}peak {} m/s^2, r.m.s. {}{} m/s^2, of {}\n", "acceleration",
-               text(acceleration["peak"]), results["bursts"].is_null() ? "" : "in band ",
-               text(acceleration["rms"]), text(acceleration["channel"]));
-  }
+  print_acceleration(results);
   print_bursts(results);
-  const auto fraction_text = [&](const char* name) {
-    return results[name].is_null() ? std::string("-")
-                                   : fmt::format("{:.4g} %", 100.0 * results[name].get<double>());
-  };
   const bool has_contacts = !results.contains("contacts") || !results["contacts"].empty();
   if (has_contacts) {
-    fmt::print("{:<24}{} of the time, lifted off {}\n", "sticking",
-               fraction_text("stick_fraction"), fraction_text("free_fraction"));
+    print_fractions(results);
     fmt::print("{:<24}{} steps ({} of them before the contacts were armed)\n", "sliding violated",
                results["violations"].get<std::int64_t>(),
                results["violation_details"]["before_armed"].get<std::int64_t>());
@@ -117,8 +147,9 @@ void print_summary(const Json& results, const std::string& output) {
       fmt::print(
           "{:<24}{} of the envelope of the acceleration, {} of the acceleration, {} of the "
           "force: {} ({:.3g} s)\n",
-          "error", text(error["envelope"]), text(error["acceleration"]), text(error["force"]),
-          error["is"].get<std::string>(), error["wall_s"].get<double>());
+          "error", result_text(error["envelope"]), result_text(error["acceleration"]),
+          result_text(error["force"]), error["is"].get<std::string>(),
+          error["wall_s"].get<double>());
     } else {
       fmt::print("{:<24}not estimated: {}\n", "error", error["failure"].get<std::string>());
     }
@@ -139,6 +170,11 @@ Json error_json(const ErrorEstimate& estimate) {
 /// What cannot be studied is refused before the run.
 std::optional<StudiedScene> studied(const LoadedScene& loaded, const RunOptions& options) {
   if (!options.error) return std::nullopt;
+  if (loaded.scene.time->is_event_driven()) {
+    throw ConfigError("--error",
+                      "is for time.step; of time.integrator: event_driven the verb "
+                      "`precision` says the error");
+  }
   return study_scene(loaded);
 }
 
@@ -151,8 +187,8 @@ class StudiedRun {
   RunKeeper& keeper() { return transient_->keeper(); }
   MarchEnd run_to_end() { return end_ = transient_->run_to_end(); }
   void write_checkpoint() { transient_->write_checkpoint(); }
-  double time() const { return transient_->simulation().time(); }
-  const std::string& failure() const { return transient_->simulation().failure(); }
+  double time() const { return transient_->time(); }
+  const std::string& failure() const { return transient_->failure(); }
 
   Json finish() {
     if (!*study_ || end_ != MarchEnd::finished) return transient_->finish();
@@ -177,9 +213,11 @@ class StudiedRun {
 ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::string& file,
                     const std::optional<StudiedScene>& study, const RunEnding& ending) {
   StudiedRun run(transient, study);
-  const ExitCode code =
-      run_and_report(run, loaded.scene.time->end, file, ending, loaded.scene.expect,
-                     [&](const Json& results) { print_summary(results, file); });
+  const ExitCode code = run_and_report(
+      run, loaded.scene.time->end, file, ending, loaded.scene.expect, [&](const Json& results) {
+        loaded.scene.time->is_event_driven() ? print_cycles(results, file)
+                                            : print_summary(results, file);
+      });
   if (run.is_cut_short())
     throw Interrupted(file + " holds the whole run; its error was not estimated");
   return code;
@@ -188,22 +226,16 @@ ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::
 /// @throws ConfigError if an error is asked for that cannot be given
 void refuse_error(const RunOptions& options) {
   if (!options.error) return;
-  throw ConfigError("--error",
-                    "is for scenes of bodies in contact; of spheres `precision` says it, of discs "
-                    "a second run at half the step");
+  throw ConfigError(
+      "--error",
+      "is for scenes of bodies in contact; of discs a second run at half the step says it");
 }
 
 ExitCode begin(const RunOptions& options) {
   const RunOutput output{options.output, options.common.overwrite(), options.command_line};
   const RunEnding ending{options.max_wall, options.common.json, options.verify};
-  if (is_sphere_scene_file(options.scene) || is_disc_scene_file(options.scene))
-    refuse_error(options);
-  if (is_sphere_scene_file(options.scene)) {
-    const LoadedSphereScene loaded = load_sphere_scene(options.scene, options.common.sets);
-    print_warnings(key_warnings(SphereScene::schema(), &loaded.scene, loaded.tree));
-    return run_sphere(loaded, output, ending);
-  }
   if (is_disc_scene_file(options.scene)) {
+    refuse_error(options);
     const LoadedDiscScene loaded = load_disc_scene(options.scene, options.common.sets);
     print_warnings(key_warnings(DiscScene::schema(), &loaded.scene, loaded.tree));
     return run_disc(loaded, output, ending);
@@ -218,7 +250,6 @@ ExitCode begin(const RunOptions& options) {
 
 std::vector<Expectation> expectations_of(const SceneNode& tree, const std::string& text,
                                          const std::string& source) {
-  if (is_sphere_scene(tree)) return load_resolved_sphere_scene(text, source).scene.expect;
   if (is_disc_scene(tree)) return load_resolved_disc_scene(text, source).scene.expect;
   return load_resolved_scene(text, source).scene.expect;
 }
@@ -256,9 +287,8 @@ ExitCode resume(const RunOptions& options) {
   const std::string source = options.resumed + ":/scene/resolved";
   const SceneNode tree = read_scene_text(interrupted.scene_text, source);
   const RunEnding ending{options.max_wall, options.common.json, options.verify};
-  if (is_disc_scene(tree) || is_sphere_scene(tree)) refuse_error(options);
+  if (is_disc_scene(tree)) refuse_error(options);
   if (is_disc_scene(tree)) return resume_disc(interrupted, ending);
-  if (is_sphere_scene(tree)) return resume_sphere(interrupted, ending);
   const LoadedScene loaded = load_resolved_scene(interrupted.scene_text, source);
   const auto study = studied(loaded, options);
   Transient transient(loaded, interrupted);

@@ -11,8 +11,8 @@
 #include "analysis/sampled_locus.hpp"
 #include "app/disc_stability.hpp"
 #include "app/found_spectrum.hpp"
+#include "app/growth_of_mass.hpp"
 #include "app/remark.hpp"
-#include "app/sphere_stability.hpp"
 #include "core/blas.hpp"
 #include "core/errors.hpp"
 #include "core/memory.hpp"
@@ -35,10 +35,24 @@ Json displacement_json(const System& system, const Equilibrium& equilibrium, int
   return {number(shapes.row(rows.x).dot(modal)), number(shapes.row(rows.y).dot(modal))};
 }
 
+const char* range_text(LawRange range) {
+  switch (range) {
+    case LawRange::inside:
+      return "inside";
+    case LawRange::no_contact:
+      return "no contact";
+    case LawRange::too_deep:
+      return "deeper than the contact law was made for (y/R > 0.3)";
+    case LawRange::beyond_data:
+      return "at a speed or indentation beyond the data of the contact law";
+  }
+  return "";
+}
+
 Json contact_json(const System& system, const Equilibrium& equilibrium, std::size_t i) {
   const ContactEquilibrium& contact = equilibrium.contacts[i];
   const ContactPoint& point = system.contacts[i];
-  return {
+  Json object = {
       {"closed", contact.is_closed},
       {"force", number(contact.force)},
       {"friction_force", number(contact.friction_force)},
@@ -49,6 +63,14 @@ Json contact_json(const System& system, const Equilibrium& equilibrium, std::siz
       {"gap", number(contact.gap)},
       {"angle", number(std::atan2(contact.projection.tangent.y(), contact.projection.tangent.x()))},
       {"displacement", displacement_json(system, equilibrium, point.slave_body, point.slave_rows)}};
+  if (!point.substrate || !contact.is_closed) return object;
+  const SubstrateContact& law = *point.substrate;
+  const SubstrateForces forces = law.at(-contact.gap, contact.slip_velocity, contact.direction);
+  object["indentation"] = number(-contact.gap / law.indentation_unit);
+  object["area"] = number(law.area(-contact.gap, contact.slip_velocity));
+  object["damping"] = number(-forces.tangential.by_slip);
+  object["law_range"] = range_text(forces.range);
+  return object;
 }
 
 }  // namespace
@@ -179,6 +201,11 @@ SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry
   state.pencil = linearise(system, state.equilibrium);
   state.is_on_the_way = member.is_on_the_way;
   return state;
+}
+
+void keep_terms(Pencil& pencil, const DampingTerms& terms) {
+  if (!terms.structural) drop_structural_damping(pencil);
+  if (!terms.friction) drop_contact_damping(pencil);
 }
 
 Pencil retained(const Pencil& pencil, const System& system,
@@ -335,6 +362,9 @@ class BodyStabilityScene : public StabilityScene {
                                           ContactGeometry geometry) const override {
     return std::make_unique<BodyStabilityFamily>(loaded_, std::move(keys), geometry);
   }
+  std::unique_ptr<GrowthField> growth_field(const std::vector<NumericKey>& keys) const override {
+    return make_growth_field(loaded_, keys);
+  }
   std::string hash() const override { return loaded_.hash(); }
   std::string resolved() const override { return loaded_.resolved(); }
   const LoadedScene* bodies() const override { return &loaded_; }
@@ -360,9 +390,6 @@ std::unique_ptr<StabilityScene> load_stability_scene(StabilityOptions& options) 
   if (is_disc_scene(tree)) {
     scene =
         std::make_unique<DiscStabilityScene>(load_disc_scene(options.scene, options.common.sets));
-  } else if (is_sphere_scene(tree)) {
-    scene = std::make_unique<SphereStabilityScene>(
-        load_sphere_scene(options.scene, options.common.sets));
   } else {
     scene = std::make_unique<BodyStabilityScene>(load_scene(options.scene, options.common.sets));
   }
@@ -374,6 +401,7 @@ BodyStabilityFamily::BodyStabilityFamily(const LoadedScene& loaded, std::vector<
                                          ContactGeometry geometry)
     : family_(loaded, std::move(keys)),
       time_(loaded.scene.time),
+      terms_(damping_terms(loaded.scene)),
       geometry_(geometry),
       start_key_(start_key(loaded.scene.model)) {}
 
@@ -388,6 +416,7 @@ SlidingState BodyStabilityFamily::at(std::span<const double> values) {
   const BlasGuard guard;
   const SceneFamily::Member member = family_.at(values);
   SlidingState state = sliding_state_of(member, geometry_, values_text(values));
+  keep_terms(state.pencil, terms_);
   // Once for all values: it takes much longer than a pencil, and a branch must not change its
   // modes.
   if (!asked_) asked_ = asked_frequency(member.model->system, time_);
@@ -566,7 +595,7 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
   // Measured: tracks, results and their JSON.
   constexpr double bytes_per_eigenvalue = 500.0;
   const auto num_values = static_cast<double>(range.size());
-  require_memory(
+  require_memory_for(
       {"--points", fmt::format("{} eigenvalues at {} values", num_wanted, range.size()),
        "ask for fewer", bytes_per_eigenvalue * num_values * static_cast<double>(num_wanted)},
       memory_limit());

@@ -82,6 +82,9 @@ struct SlidingState {
 SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry geometry,
                               const std::string& what);
 
+/// Leaves out the damping that the scene does not keep.
+void keep_terms(Pencil& pencil, const DampingTerms& terms);
+
 /// The pencil with the modes above `time.retain` as residual modes (docs/theory.md, 7.1); all modes
 /// where the scene keeps all.
 Pencil retained(const Pencil& pencil, const System& system,
@@ -168,6 +171,7 @@ class BodyStabilityFamily : public StabilityFamily {
 
   SceneFamily family_;
   std::optional<TimeParameters> time_;
+  DampingTerms terms_;
   std::optional<double> asked_;  ///< asked_frequency() of the first values
   ContactGeometry geometry_;
   std::optional<std::string> start_key_;
@@ -189,11 +193,6 @@ class StabilityScene {
   }
   /// Whether its lines must be traced by one thread: dense products go to BLAS.
   virtual bool needs_one_thread() const { return false; }
-  /// Value in 1/s of a rate of one, where some keys have other values than in the scene; files and
-  /// pictures are in 1/s and Hz.
-  virtual double rate_unit(const std::vector<NumericKey>&, std::span<const double>) const {
-    return 1.0;
-  }
   virtual std::string hash() const = 0;
   virtual std::string resolved() const = 0;
   /// The scene of bodies, if it is one.

@@ -23,9 +23,9 @@ struct SweepOptions {
   Spacing spacing() const { return scale == "log" ? Spacing::logarithmic : Spacing::linear; }
 };
 
-/// Limit cycles of a sphere on a viscoelastic substrate.
-ExitCode sweep_spheres(const SweepOptions& options);
-/// Transients of beams, each from the initial state of the scene.
-ExitCode sweep_transients(const SweepOptions& options);
+/// Limit cycles of one mass on a half-space.
+ExitCode sweep_cycles(const SweepOptions& options, const LoadedScene& loaded);
+/// Transients, each from the initial state of the scene.
+ExitCode sweep_transients(const SweepOptions& options, const LoadedScene& loaded);
 
 }  // namespace stridor

@@ -5,7 +5,6 @@
 #include "app/sweep.hpp"
 #include "core/errors.hpp"
 #include "io/disc_scene.hpp"
-#include "io/sphere_scene.hpp"
 
 namespace stridor {
 namespace {
@@ -14,17 +13,20 @@ ExitCode sweep(const SweepOptions& options) {
   if (options.output) check_output(*options.output, options.common.overwrite());
   if (options.figure) check_figure(*options.figure, options.common);
   if (options.range.parameter.empty()) throw ConfigError("--parameter", "name a key of the scene");
-  if (is_sphere_scene_file(options.scene)) return sweep_spheres(options);
   if (is_disc_scene_file(options.scene)) {
     throw ConfigError("scene",
-                      "is of a disc and pads; sweep takes bodies in the plane and spheres, and the "
-                      "verb locus follows the eigenvalues of this one along a key");
+                      "is of a disc and pads; sweep takes bodies in the plane, and the verb locus "
+                      "follows the eigenvalues of this one along a key");
   }
+  const LoadedScene loaded = load_scene(options.scene, options.common.sets);
+  loaded.require_section("time", "sweep");
+  if (loaded.scene.time->is_event_driven()) return sweep_cycles(options, loaded);
   if (options.is_up_and_down) {
     throw ConfigError("--up-down",
-                      "is for limit cycles of spheres: every transient starts as its scene says");
+                      "is for limit cycles (time.integrator: event_driven): every transient starts "
+                      "as its scene says");
   }
-  return sweep_transients(options);
+  return sweep_transients(options, loaded);
 }
 
 }  // namespace
@@ -35,7 +37,8 @@ void add_sweep_command(CLI::App& program, Action& action, const std::string& com
   options->range.points = 21;
   options->common.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   CLI::App* verb = program.add_subcommand(
-      "sweep", "Transients of beams, or limit cycles of spheres, along one key of the scene");
+      "sweep",
+      "Transients, or limit cycles of the event-driven integrator, along one key of the scene");
   verb->add_option("scene", options->scene, "Scene file (YAML)")->required();
   add_range_options(*verb, options->range);
   verb->add_option("--scale", options->scale, "Spacing of the values: linear (default) or log")

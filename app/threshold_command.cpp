@@ -58,8 +58,8 @@ ExitCode threshold(const ThresholdOptions& options, const KeyRange& range, Growt
     const double frequency = field.leading(root, 0.0).imag() / (2.0 * std::numbers::pi);
     object["roots"].push_back({{"value", root}, {"frequency", frequency}, {"beyond", beyond}});
     if (!options.stability.common.json)
-      fmt::print("{:<40}  {:>12.6g} cycles per unit of time  {} beyond\n",
-                 value_text(range.key, root), frequency, beyond);
+      fmt::print("{:<40}  {:>12.6g} Hz  {} beyond\n", value_text(range.key, root), frequency,
+                 beyond);
   }
   if (options.stability.common.json) {
     print_json(object);

@@ -6,12 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "app/command.hpp"
+#include "app/run_driver.hpp"
 #include "app/run_keeping.hpp"
-#include "io/recorder.hpp"
-#include "io/run_summary.hpp"
-#include "io/scene.hpp"
-#include "solvers/march.hpp"
 
 namespace stridor {
 
@@ -29,8 +25,8 @@ class Transient {
   Transient(const Transient&) = delete;
   Transient& operator=(const Transient&) = delete;
 
-  /// Steps until a time, or until the end of the run (including the look-ahead of its filters).
-  /// @return `failed` where a step failed before the end that was asked for
+  /// Goes to a time, or to the end of the run (including the look-ahead of its filters).
+  /// @return `failed` where it failed before the end that was asked for
   MarchEnd run_until(double time);
   MarchEnd run_to_end();
 
@@ -45,37 +41,28 @@ class Transient {
   /// @return the JSON object of `run`
   Json finish(const Json& error = nullptr);
 
-  const Simulation& simulation() const { return *simulation_; }
+  double time() const { return driver_->time(); }
+  /// Cause, time and remedy of the failure; empty unless the run has failed.
+  const std::string& failure() const { return driver_->failure(); }
   const Model& model() const { return model_; }
-  /// Time spent in stepping so far, s.
-  double march_seconds() const { return march_seconds_; }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  void make_march();
-  void make_simulation();
-  std::vector<SeriesSpec> series() const;
+  void begin();
   State save() const;
   void load(const State& state);
-  MarchEnd run_to_step(std::int64_t step);
-  void keep_final_motion();
+  template <class Advance>
+  MarchEnd timed(const Advance& advance);
   void write_final_motion();
 
   const LoadedScene* loaded_;
   std::string file_;
   RunKeeper keeper_;
   Model model_;
-  std::vector<Channel> channels_;
-  double interval_ = 0.0;  ///< of the samples, s
-  std::optional<Simulation> simulation_;
+  std::unique_ptr<RunDriver> driver_;
   std::optional<RunFileWriter> writer_;
-  std::optional<Recorder> recorder_;
-  std::optional<March> march_;
-  std::int64_t end_step_ = 0;
-  std::int64_t last_step_ = 0;
   MarchEnd end_ = MarchEnd::finished;
-  State final_motion_;  ///< by path under /final; empty before the end
   double setup_seconds_ = 0.0;
   double file_seconds_ = 0.0;
   double march_seconds_ = 0.0;

@@ -157,6 +157,16 @@ Json bursts_json(const std::vector<Burst>& bursts) {
   return list;
 }
 
+Json acceleration_json(const std::optional<AccelerationSummary>& acceleration) {
+  Json results = {{"free_end_acceleration", nullptr}, {"bursts", nullptr}};
+  if (!acceleration) return results;
+  results["free_end_acceleration"] = {{"peak", number(acceleration->peak)},
+                                      {"rms", number(acceleration->rms)},
+                                      {"channel", acceleration->channel}};
+  if (acceleration->bursts) results["bursts"] = bursts_json(*acceleration->bursts);
+  return results;
+}
+
 Json step_limit_json(const System& system, const TimeParameters& time) {
   return number(step_limit(system, time).step);
 }
@@ -184,14 +194,7 @@ Json transient_results(const Simulation& simulation, const System& system,
   results["modes"] = modes_json(system, highest);
   results["left_out"] = left_out_json(system, highest, simulation.energy() != nullptr);
   results.update(contact_json(simulation, system, measured));
-  results["free_end_acceleration"] = nullptr;
-  results["bursts"] = nullptr;
-  if (acceleration) {
-    results["free_end_acceleration"] = {{"peak", number(acceleration->peak)},
-                                        {"rms", number(acceleration->rms)},
-                                        {"channel", acceleration->channel}};
-    if (acceleration->bursts) results["bursts"] = bursts_json(*acceleration->bursts);
-  }
+  results.update(acceleration_json(acceleration));
   results.update(violations_json(simulation));
   const EnergyLedger* energy = simulation.energy();
   results["energy_error"] = energy != nullptr ? number(energy->relative_error()) : Json(nullptr);

@@ -19,6 +19,9 @@ Json bursts_json(const std::vector<Burst>& bursts);
 /// The largest stable step, s; null where there is none.
 Json step_limit_json(const System& system, const TimeParameters& time);
 
+/// free_end_acceleration and bursts; null where there are none.
+Json acceleration_json(const std::optional<AccelerationSummary>& acceleration);
+
 /// The numbers of a run, without those of its effort and its file.
 /// @param measured     of the window of `measure`
 /// @param acceleration nothing where none was recorded

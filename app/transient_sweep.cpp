@@ -341,9 +341,7 @@ Model first_model(const LoadedScene& loaded, BodyCache& cache) {
 
 }  // namespace
 
-ExitCode sweep_transients(const SweepOptions& options) {
-  const LoadedScene loaded = load_scene(options.scene, options.common.sets);
-  loaded.require_section("time", "sweep");
+ExitCode sweep_transients(const SweepOptions& options, const LoadedScene& loaded) {
   const NumericKey key = find_numeric_key(loaded.scene, options.range.parameter, "--parameter");
   const std::vector<double> values = range_values(key, options.range, options.spacing());
   // The ends of the range are read first: a mistake should not show after an hour.

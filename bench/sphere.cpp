@@ -32,17 +32,17 @@ double seconds_since(double start) {
 
 /// Equilibrium, linearisation and leading eigenvalue over speeds and shear strengths, seconds per
 /// point.
-double map_point_seconds(const char* law) {
+double map_point_seconds(SphereContactLaw law) {
   constexpr int side = 300;
-  SphereModelParameters model = paper_sphere();
+  test::PaperSphere model = paper_sphere();
   model.contact_law = law;
   double last = 1e-2;
   double sum = 0.0;
   const auto start = Clock::now();
   for (int i = 0; i < side; ++i) {
-    model.sphere.shear_strength = std::pow(10.0, -4.0 + 3.0 * i / side);
+    model.shear_strength = std::pow(10.0, -4.0 + 3.0 * i / side);
     for (int j = 0; j < side; ++j) {
-      model.sphere.speed = std::pow(10.0, -6.0 + 8.0 * j / side);
+      model.speed = std::pow(10.0, -6.0 + 8.0 * j / side);
       const SubstrateOscillator oscillator = make_sphere(model);
       const double unit = oscillator.contact.indentation_unit;
       const SubstrateEquilibrium rest = find_equilibrium(oscillator, last * unit);
@@ -204,9 +204,9 @@ Timing best_of(F&& run) {
 
 void report() {
   fmt::print("map, published fit:     {:.0f} ns per point\n",
-             1e9 * map_point_seconds(SphereModelParameters::published_fit));
+             1e9 * map_point_seconds(SphereContactLaw::published_fit));
   fmt::print("map, boundary elements: {:.0f} ns per point\n",
-             1e9 * map_point_seconds(SphereModelParameters::boundary_element));
+             1e9 * map_point_seconds(SphereContactLaw::boundary_element));
   const SubstrateOscillator oscillator = make_sphere(paper_sphere());
   // On the limit cycle, so that errors do not grow.
   SubstrateMotion settling(oscillator, 1e-12);

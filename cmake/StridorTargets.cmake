@@ -37,6 +37,10 @@ function(stridor_unity target num_sources)
   endif()
   set_target_properties(${target} PROPERTIES
     UNITY_BUILD ${STRIDOR_UNITY} UNITY_BUILD_MODE BATCH UNITY_BUILD_BATCH_SIZE ${num_sources})
+  if(STRIDOR_UNITY)
+    # A local name may hide one of another source of the batch; the preset dev warns within a source.
+    target_compile_options(${target} PRIVATE -Wno-shadow)
+  endif()
 endfunction()
 
 # stridor_library(FOLDER SOURCES ... LINKS ... [TOGETHER <number of sources>])

@@ -65,6 +65,12 @@ struct SubstrateContact {
   /// regularised.
   SubstrateForces::Force static_strength(double indentation) const;
 
+  /// Area of the contact, in units of length of the indentation.
+  double area(double indentation, double slip) const {
+    return indentation_unit * indentation_unit *
+           law->at(indentation / indentation_unit, slip / speed_unit).area.value;
+  }
+
   /// Whether the body has sunk in by more than its radius, ŷ > 1. No law goes that far: they are of
   /// indentations that are small against the radius.
   bool is_sunk(double indentation) const { return indentation > indentation_unit; }

@@ -11,8 +11,8 @@ namespace stridor {
 namespace {
 
 const std::vector<std::string> motions{"displacement", "velocity", "acceleration"};
-const std::vector<std::string> quantities{"force",          "gap",  "slip_velocity", "position",
-                                          "friction_force", "state"};
+const std::vector<std::string> quantities{"force",          "gap",   "slip_velocity", "position",
+                                          "friction_force", "state", "area"};
 
 constexpr EnergyEntry energy_entries[] = {
     {"kinetic", &EnergyBalance::kinetic,
@@ -79,12 +79,14 @@ Channel parse(const std::string& name, const ModelParameters& model) {
     const auto quantity = index_in(quantities, parts[1]);
     if (!quantity) throw one_of("contact quantity", parts[1], quantities);
     channel.pair = parts[0];
+    if (parts[1] == "area" && model.pairs().at(parts[0]).normal.law != NormalLaw::viscoelastic)
+      throw fmt::format("the normal law of '{}' has no area; the law viscoelastic has", parts[0]);
     channel.quantity = static_cast<ContactQuantity>(*quantity);
     return channel;
   }
   throw std::string(
       "is neither <body>.<point>.<x|y>.<displacement|velocity|acceleration> nor "
-      "<contact>.<force|gap|slip_velocity|position|friction_force|state>");
+      "<contact>.<force|gap|slip_velocity|position|friction_force|state|area>");
 }
 
 }  // namespace
@@ -99,7 +101,7 @@ std::string Channel::units() const {
     return units[static_cast<std::size_t>(derivative)];
   }
   if (energy != nullptr) return "J";
-  constexpr const char* units[] = {"N", "m", "m/s", "m", "N", "1"};
+  constexpr const char* units[] = {"N", "m", "m/s", "m", "N", "1", "m^2"};
   return units[static_cast<std::size_t>(quantity)];
 }
 

@@ -11,7 +11,7 @@
 
 namespace stridor {
 
-enum class ContactQuantity { force, gap, slip_velocity, position, friction_force, state };
+enum class ContactQuantity { force, gap, slip_velocity, position, friction_force, state, area };
 const std::string& name_of(ContactQuantity quantity);
 
 /// An entry of the energy ledger as it is recorded.

@@ -7,7 +7,6 @@
 #include "io/scene_reader.hpp"
 #include "io/scene_reference.hpp"
 #include "io/schema_json.hpp"
-#include "io/sphere_scene.hpp"
 #include "models/set_up_estimate.hpp"
 
 namespace stridor {
@@ -61,7 +60,6 @@ bool is_contact_scene(const SceneNode& tree) {
 
 std::string all_scenes_json_schema() {
   return json_schema(Scene::schema(), {{&ContactScene::schema(), {"profile", "contact_solver"}},
-                                       {&SphereScene::schema(), {"sphere"}},
                                        {&DiscScene::schema(), {"disc"}}})
              .dump(2) +
          "\n";
@@ -69,7 +67,7 @@ std::string all_scenes_json_schema() {
 
 std::string all_scenes_reference() {
   return scene_reference(
-      {&Scene::schema(), &ContactScene::schema(), &SphereScene::schema(), &DiscScene::schema()});
+      {&Scene::schema(), &ContactScene::schema(), &DiscScene::schema()});
 }
 
 std::string LoadedContactScene::resolved() const {

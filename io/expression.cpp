@@ -19,8 +19,8 @@ namespace stridor {
 namespace {
 
 constexpr std::size_t longest_expression = 500;  ///< bytes of an expression
-constexpr std::array<std::string_view, 11> functions{
-    "sqrt", "sin", "cos", "tan", "exp", "ln", "log10", "abs", "round", "min", "max"};
+constexpr std::array<std::string_view, 11> functions{"sqrt",  "sin", "cos",   "tan", "exp", "ln",
+                                                     "log10", "abs", "round", "min", "max"};
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
@@ -61,8 +61,8 @@ double power(double a, double b) {
   if (a == 0.0 && b < 0.0) fail(fmt::format("0^{} divides by 0", b));
   const double value = std::pow(a, b);
   if (std::isnan(value)) {
-    fail(fmt::format("({})^{} is no real number; only a whole power of a negative number is", a,
-                     b));
+    fail(
+        fmt::format("({})^{} is no real number; only a whole power of a negative number is", a, b));
   }
   return finite(value, "a power");
 }
@@ -113,8 +113,8 @@ double largest(const double* values, int count) {
 /// The number at the beginning of a text: its length and value; nothing where none begins there.
 /// The value is infinite where no double can hold it.
 std::optional<std::pair<std::size_t, double>> number_at(std::string_view text) {
-  const bool starts = !text.empty() && (is_digit(text[0]) || (text[0] == '.' && text.size() > 1 &&
-                                                              is_digit(text[1])));
+  const bool starts = !text.empty() && (is_digit(text[0]) ||
+                                        (text[0] == '.' && text.size() > 1 && is_digit(text[1])));
   if (!starts) return std::nullopt;
   double value = 0.0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -178,8 +178,9 @@ class Words {
   /// @throws std::invalid_argument for what needs no grammar to be seen
   explicit Words(const std::string& expression) : text_(expression.substr(1)) {
     if (text_.size() > longest_expression) {
-      throw std::invalid_argument(fmt::format(
-          "is longer than {} characters; compute parts of it under `parameters`", longest_expression));
+      throw std::invalid_argument(
+          fmt::format("is longer than {} characters; compute parts of it under `parameters`",
+                      longest_expression));
     }
     plain_ = text_;
     for (std::size_t at = 0; at < text_.size();) at = read_word(at);
@@ -250,7 +251,8 @@ class Words {
       return at + name.size();
     }
     if (c == '(') {
-      const std::size_t before = at == 0 ? std::string::npos : text_.find_last_not_of(" \t", at - 1);
+      const std::size_t before =
+          at == 0 ? std::string::npos : text_.find_last_not_of(" \t", at - 1);
       const bool follows_name = before != std::string::npos && is_name(text_[before]);
       if (follows_name) std::swap(plain_[before + 1], plain_[at]);
       takes_comma_.push_back(follows_name);
@@ -270,10 +272,10 @@ class Words {
     std::size_t end = at + 1;  // of the UTF-8 character
     while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xC0u) == 0x80u) ++end;
     const bool is_shown = static_cast<unsigned char>(text_[at]) >= 0x20 && text_[at] != 0x7F;
-    const std::string message =
-        fmt::format("{} means nothing in an expression, which knows + - * / ^ ( ), names, functions "
-                    "and SI numbers without units",
-                    is_shown ? "'" + text_.substr(at, end - at) + "'" : "a line break");
+    const std::string message = fmt::format(
+        "{} means nothing in an expression, which knows + - * / ^ ( ), names, functions "
+        "and SI numbers without units",
+        is_shown ? "'" + text_.substr(at, end - at) + "'" : "a line break");
     if (!is_shown) throw std::invalid_argument(fmt::format("column {}: {}", at + 1, message));
     refuse(at, message);
   }
@@ -301,10 +303,10 @@ class Words {
   std::vector<std::string> known(functions.begin(), functions.end());
   if (words.is_called(at)) {
     const std::string advice = did_you_mean(word, known);
-    words.refuse(at, fmt::format("there is no function '{}'{}", word,
-                                 advice.empty() ? fmt::format("; there are {}",
-                                                              fmt::join(functions, ", "))
-                                                : advice));
+    words.refuse(
+        at, fmt::format("there is no function '{}'{}", word,
+                        advice.empty() ? fmt::format("; there are {}", fmt::join(functions, ", "))
+                                       : advice));
   }
   known.push_back("pi");
   for (const auto& [name, value] : numbers) known.push_back(name);
@@ -394,6 +396,28 @@ double evaluate(const std::string& expression, const std::map<std::string, doubl
   } catch (const mu::ParserError& error) {
     refuse_expression(words, error, numbers);
   }
+}
+
+struct CompiledExpression::Implementation {
+  std::unique_ptr<mu::ParserBase> calculator = std::make_unique<Calculator>();
+};
+
+CompiledExpression::CompiledExpression(const std::string& expression,
+                                       std::map<std::string, double>& numbers)
+    : implementation_(std::make_unique<Implementation>()) {
+  (void)evaluate(expression, numbers);
+  const Words words(expression);
+  mu::ParserBase& calculator = *implementation_->calculator;
+  for (const std::string& name : words.names()) calculator.DefineVar(name, &numbers.at(name));
+  calculator.SetExpr(words.plain());
+}
+
+CompiledExpression::~CompiledExpression() = default;
+CompiledExpression::CompiledExpression(CompiledExpression&&) noexcept = default;
+CompiledExpression& CompiledExpression::operator=(CompiledExpression&&) noexcept = default;
+
+double CompiledExpression::value() const {
+  return finite(implementation_->calculator->Eval(), "the result");
 }
 
 }  // namespace stridor

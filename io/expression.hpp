@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,10 +20,10 @@ bool is_reserved_name(const std::string& name);
 
 /// The number that an expression stands for.
 ///
-/// + − * / with the usual precedence, ^ above them and above the sign (−2^2 = −4) and from the right
-/// (2^3^2 = 2^9), parentheses, and the functions sqrt, sin, cos, tan (of rad), exp, ln (natural),
-/// log10, abs, round (to the nearest whole number), min, max, and pi. Numbers are SI numbers without
-/// units.
+/// + − * / with the usual precedence, ^ above them and above the sign (−2^2 = −4) and from the
+/// right (2^3^2 = 2^9), parentheses, and the functions sqrt, sin, cos, tan (of rad), exp, ln
+/// (natural), log10, abs, round (to the nearest whole number), min, max, and pi. Numbers are SI
+/// numbers without units.
 ///
 /// @param expression with its '='
 /// @param numbers    the parameters
@@ -30,5 +31,25 @@ bool is_reserved_name(const std::string& name);
 ///         expression (1: the first character after the '='): no expression, an unknown name, a
 ///         unit; and where a step of the evaluation has no finite value
 double evaluate(const std::string& expression, const std::map<std::string, double>& numbers);
+
+/// An expression that is evaluated many times, with other numbers each time.
+class CompiledExpression {
+ public:
+  /// @param expression that evaluate() takes
+  /// @param numbers    are read by every value(); must live longer, and no entry may be removed
+  /// @throws std::invalid_argument as evaluate()
+  CompiledExpression(const std::string& expression, std::map<std::string, double>& numbers);
+  ~CompiledExpression();
+  CompiledExpression(CompiledExpression&&) noexcept;
+  CompiledExpression& operator=(CompiledExpression&&) noexcept;
+
+  /// The same to the last bit as evaluate().
+  /// @throws std::domain_error where a step of the evaluation has no finite value
+  double value() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
 
 }  // namespace stridor

@@ -12,6 +12,7 @@
 #include "core/errors.hpp"
 #include "io/damage_guard.hpp"
 #include "io/run_file.hpp"
+#include "models/initial_motion.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/equilibrium.hpp"
 #include "solvers/linearise.hpp"
@@ -112,6 +113,29 @@ Eigen::VectorXd sum(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return a + b;
 }
 
+/// Presses viscoelastic contacts in, or lifts them, without moving them along their half-space.
+/// @param share of the indentation in equilibrium that comes on top
+void press_in(System& system, const Equilibrium& equilibrium, double share) {
+  constexpr const char* key = "initial.indentation";
+  std::map<int, std::vector<PrescribedRow>> prescribed;  // by slave body
+  for (std::size_t i = 0; i < system.contacts.size(); ++i) {
+    const ContactPoint& contact = system.contacts[i];
+    if (!contact.substrate) continue;
+    std::vector<PrescribedRow>& rows = prescribed[contact.slave_body];
+    rows.push_back({contact.slave_rows.x, 0.0});
+    rows.push_back({contact.slave_rows.y, share * equilibrium.contacts[i].gap});
+  }
+  if (prescribed.empty()) throw ConfigError(key, "needs a contact with a viscoelastic normal law");
+  for (const auto& [b, rows] : prescribed) {
+    SystemBody& body = system.bodies[static_cast<std::size_t>(b)];
+    try {
+      body.initial_displacement = sum(body.initial_displacement, static_shape(body.modal, rows));
+    } catch (const NumericalError& error) {
+      throw ConfigError(key, error.what());
+    }
+  }
+}
+
 /// The key that is to blame for a gap at the start.
 std::string key_of_start(const LoadedScene& loaded, const ContactPoint& contact) {
   const ModelParameters& model = loaded.scene.model;
@@ -179,6 +203,7 @@ void add_state(System& system, const LoadedScene& loaded) {
       const Equilibrium equilibrium = equilibrium_at_start(system);
       apply_initial_motion(system, equilibrium);
       if (initial.perturbation) perturb(system, equilibrium, *initial.perturbation);
+      if (initial.indentation) press_in(system, equilibrium, *initial.indentation - 1.0);
     }
   } catch (const ConfigError& error) {
     throw loaded.located(error);

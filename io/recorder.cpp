@@ -77,6 +77,8 @@ double Recorder::Stream::value(const Simulation& simulation) const {
       return simulation.friction_force(contact);
     case ContactQuantity::state:
       return static_cast<double>(simulation.contact_state(contact));
+    case ContactQuantity::area:
+      return simulation.contact_area(contact);
     case ContactQuantity::position:
       break;
   }
@@ -93,8 +95,8 @@ Recorder::Recorder(const Model& model, std::vector<Channel> channels, double ste
       add_motion(model, channel, filter);
     } else if (channel.energy != nullptr) {
       columns_.push_back({streams_.size()});
-      streams_.push_back({std::nullopt, false, false, 0, channel.quantity, channel.energy,
-                          Decimator(filter)});
+      streams_.push_back(
+          {std::nullopt, false, false, 0, channel.quantity, channel.energy, Decimator(filter)});
     } else {
       for (const int contact : contacts_of(model.system, channel.pair))
         add_contact(channel, contact, filter);
@@ -141,8 +143,8 @@ void Recorder::add_contact(const Channel& channel, int contact,
     added.contact = static_cast<std::size_t>(contact);
     columns_.push_back(added);
   }
-  streams_.push_back({std::nullopt, false, false, contact, channel.quantity, nullptr,
-                      Decimator(filter)});
+  streams_.push_back(
+      {std::nullopt, false, false, contact, channel.quantity, nullptr, Decimator(filter)});
 }
 
 std::vector<SeriesSpec> Recorder::series(const Model& model, const std::vector<Channel>& channels,

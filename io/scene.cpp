@@ -12,13 +12,13 @@
 #include "core/suggestion.hpp"
 #include "io/channels.hpp"
 #include "io/contact_scene.hpp"
+#include "io/former_keys.hpp"
 #include "io/law_table_file.hpp"
 #include "io/disc_scene.hpp"
 #include "io/matrix_reader.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_files.hpp"
 #include "io/scene_reader.hpp"
-#include "io/sphere_scene.hpp"
 #include "models/set_up_estimate.hpp"
 
 namespace stridor {
@@ -60,11 +60,64 @@ void check_spectrogram(const Scene& scene, std::vector<Problem>& problems) {
   }
 }
 
+const std::vector<std::string> term_names{"gyroscopic", "friction", "friction_damping", "geometric",
+                                          "structural_damping"};
+
+bool keeps_term(const Scene& scene, const std::string& name) {
+  return !scene.terms ||
+         std::find(scene.terms->begin(), scene.terms->end(), name) != scene.terms->end();
+}
+
+void check_terms(const Scene& scene, std::vector<Problem>& problems) {
+  if (!scene.terms) return;
+  for (std::size_t i = 0; i < scene.terms->size(); ++i) {
+    const std::string& name = (*scene.terms)[i];
+    if (std::find(term_names.begin(), term_names.end(), name) != term_names.end()) continue;
+    problems.push_back({fmt::format("terms.{}", i),
+                        fmt::format("there is no term '{}'{} (there are: {})", name,
+                                    did_you_mean(name, term_names), fmt::join(term_names, ", ")),
+                        {},
+                        0,
+                        0});
+  }
+}
+
+/// Checks the rates of recording and of the band against each other.
+void check_rates(const Scene& scene, std::vector<Problem>& problems) {
+  if (!scene.record) return;
+  const double interval = scene.record->interval;
+  const auto report = [&](const char* key, std::string message) {
+    problems.push_back({key, std::move(message), {}, 0, 0});
+  };
+  const double step = scene.time ? scene.time->step : interval;
+  const double ratio = interval / step;
+  const bool is_multiple = ratio >= 1.0 - 1e-9 && std::abs(ratio - std::round(ratio)) <= 1e-6 &&
+                           std::round(ratio) <= 1e5;
+  const bool is_event_driven = scene.time && scene.time->is_event_driven();
+  if (!is_event_driven && !is_multiple) {
+    report("record.interval",
+           fmt::format("{:g} s must be a whole multiple (1 to 100000) of "
+                       "time.step = {:g} s, is {:g} of it; the "
+                       "nearest is {:g} s",
+                       interval, step, ratio, std::clamp(std::round(ratio), 1.0, 1e5) * step));
+  }
+  if (is_event_driven && scene.record->energy)
+    report("record.energy", "the energy ledger does not know what a half_space stores");
+  const double nyquist = 0.5 / interval;
+  if (!scene.measure.band.empty() && scene.measure.band.back() >= nyquist) {
+    report("measure.band",
+           fmt::format("reaches {:g} Hz, but record.interval resolves only frequencies below {:g} "
+                       "Hz",
+                       scene.measure.band.back(), nyquist));
+  }
+}
+
 }  // namespace
 
 PlainKey parameters_key() {
-  return {.doc = "Numbers with names, with or without a unit, or expressions of each other "
-                 "(`=sqrt(k/m)`), for the expressions of all other keys (`=2*mu`).",
+  return {.doc =
+              "Numbers with names, with or without a unit, or expressions of each other "
+              "(`=sqrt(k/m)`), for the expressions of all other keys (`=2*mu`).",
           .optional = true};
 }
 
@@ -74,14 +127,14 @@ const Schema& RecordParameters::schema() {
           .real("interval", &RecordParameters::interval,
                 {.doc = "Time between recorded samples; a whole multiple of time.step. Motions are "
                         "low-passed before they are thinned to it; contact forces and states are "
-                        "not.",
+                        "not. Of the integrator event_driven everything is taken at that instant.",
                  .unit = "s",
                  .range = Range::positive()})
           .text_list(
               "channels", &RecordParameters::channels,
               {.doc =
                    "What is recorded: <body>.<point>.<x|y>.<displacement|velocity|acceleration>, "
-                   "<contact>.<force|gap|slip_velocity|position|friction_force|state>."})
+                   "<contact>.<force|gap|slip_velocity|position|friction_force|state|area>."})
           .flag("energy", &RecordParameters::energy,
                 {.doc = "Whether the energy ledger is kept and recorded under /energy; a step then "
                         "costs about two and a half times as much.",
@@ -117,6 +170,15 @@ const Schema& MeasureParameters::schema() {
             if (measure.to && *measure.to <= measure.from)
               problems.push_back({"to", "must be later than `from`", {}, 0, 0});
           });
+  return keys;
+}
+
+const Schema& CycleParameters::schema() {
+  static const Schema keys = SchemaOf<CycleParameters>("cycle").real(
+      "settle", &CycleParameters::settle,
+      {.doc = "Time that passes before the motion is taken for settled.",
+       .unit = "s",
+       .range = Range::positive()});
   return keys;
 }
 
@@ -182,6 +244,16 @@ const Schema& Scene::schema() {
                    {.doc = "How the system is marched in time: for run, sweep, compare and "
                            "precision.",
                     .optional = true})
+          .text_list("terms", &Scene::terms,
+                     {.doc = "Terms of the linearised equations, of gyroscopic, friction, "
+                             "friction_damping (all damping that contacts bring), geometric and "
+                             "structural_damping (all that bodies bring): the two dampings may be "
+                             "left out; default: all.",
+                      .optional = true})
+          .section("cycle", &Scene::cycle,
+                   {.doc = "How `cycle` and sweeps of cycles seek the periodic motion of one mass "
+                           "that moves in x and y on a half_space.",
+                    .optional = true})
           .section("record", &Scene::record,
                    {.doc = "What is written to the run file.", .optional = true})
           .section("measure", &Scene::measure,
@@ -195,35 +267,13 @@ const Schema& Scene::schema() {
           .section_list("expect", &Scene::expect,
                         {.doc = "Results that `run --verify` checks.", .optional = true})
           .check(check_spectrogram)
-          .check([](const Scene& scene, std::vector<Problem>& problems) {
-            if (!scene.record) return;
-            const double step = scene.time ? scene.time->step : scene.record->interval;
-            const double ratio = scene.record->interval / step;
-            if (ratio < 1.0 - 1e-9 || std::abs(ratio - std::round(ratio)) > 1e-6 ||
-                std::round(ratio) > 1e5) {
-              problems.push_back(
-                  {"record.interval",
-                   fmt::format("{:g} s must be a whole multiple (1 to 100000) of "
-                               "time.step = {:g} s, is {:g} of it; the "
-                               "nearest is {:g} s",
-                               scene.record->interval, step, ratio,
-                               std::clamp(std::round(ratio), 1.0, 1e5) * step),
-                   {},
-                   0,
-                   0});
-            }
-            const double nyquist = 0.5 / scene.record->interval;
-            if (!scene.measure.band.empty() && scene.measure.band.back() >= nyquist) {
-              problems.push_back({"measure.band",
-                                  fmt::format("reaches {:g} Hz, but record.interval resolves only "
-                                              "frequencies below {:g} Hz",
-                                              scene.measure.band.back(), nyquist),
-                                  {},
-                                  0,
-                                  0});
-            }
-          });
+          .check(check_terms)
+          .check(check_rates);
   return keys;
+}
+
+DampingTerms damping_terms(const Scene& scene) {
+  return {keeps_term(scene, "structural_damping"), keeps_term(scene, "friction_damping")};
 }
 
 Accounts accounts_of(const Scene& scene) {
@@ -249,6 +299,17 @@ template <class Visit>
 void for_each_pair(ModelParameters& model, const Visit& visit) {
   if (model.contact) visit("contact", *model.contact);
   for (auto& [name, pair] : model.contacts) visit("contacts." + name, pair);
+}
+
+/// @throws ConfigError if a term is left out that bodies in contact cannot do without
+void require_terms(const LoadedScene& loaded) {
+  for (const char* name : {"gyroscopic", "friction", "geometric"}) {
+    if (keeps_term(loaded.scene, name)) continue;
+    throw loaded.located(ConfigError(
+        "terms", fmt::format("`{}` is missing: of bodies in contact only friction_damping and "
+                             "structural_damping can be left out",
+                             name)));
+  }
 }
 
 /// Names files from the root, as the resolved scene may be read again from anywhere, and reads the
@@ -296,18 +357,14 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
         ConfigError(loaded.tree.entry("profile") != nullptr ? "profile" : "contact_solver",
                     "belongs to a scene of a sliding contact, which the verb `contact` computes"));
   }
-  if (is_sphere_scene(loaded.tree)) {
-    throw loaded.located(ConfigError(
-        "sphere",
-        "belongs to an oscillator on a viscoelastic substrate, for the verbs eig, locus, "
-        "threshold, map, cycle, sweep, precision and run"));
-  }
+  refuse_former_keys(loaded.tree);
   if (is_disc_scene(loaded.tree)) {
     throw loaded.located(ConfigError("disc",
                                      "belongs to a scene of a disc and pads, for the verbs eig, "
                                      "locus, threshold, map and run"));
   }
   loaded.scene = read_as<Scene>(loaded.tree);
+  require_terms(loaded);
   read_named_files(loaded);
   return loaded;
 }

@@ -38,6 +38,12 @@ struct CheckpointParameters {
   static const Schema& schema();
 };
 
+/// How `cycle` seeks the periodic motion that the scene settles to.
+struct CycleParameters {
+  double settle = 0.0;  ///< s, > 0
+  static const Schema& schema();
+};
+
 /// How the spectrogram of a run is made, where its command line does not say otherwise.
 struct SpectrogramSection {
   std::optional<std::string> channel;  ///< one of record.channels
@@ -56,11 +62,19 @@ struct Expectation {
   static const Schema& schema();
 };
 
+/// Damping that the linearised equations keep.
+struct DampingTerms {
+  bool structural = true;  ///< of the bodies
+  bool friction = true;    ///< of the contacts
+};
+
 struct Scene {
   int format = 0;
   NamedNumbers parameters;
   ModelParameters model;
-  std::optional<TimeParameters> time;  ///< needed by what marches in time
+  std::optional<TimeParameters> time;             ///< needed by what marches in time
+  std::optional<std::vector<std::string>> terms;  ///< absent: all
+  std::optional<CycleParameters> cycle;
   std::optional<RecordParameters> record;
   MeasureParameters measure;
   std::optional<SpectrogramSection> spectrogram;
@@ -68,6 +82,9 @@ struct Scene {
   std::vector<Expectation> expect;
   static const Schema& schema();
 };
+
+/// What `terms` keeps.
+DampingTerms damping_terms(const Scene& scene);
 
 /// What a run of the scene keeps account of.
 Accounts accounts_of(const Scene& scene);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "core/suggestion.hpp"
 #include "core/units.hpp"
@@ -97,6 +98,17 @@ ConfigError in_settings(const ConfigError& error, const Settings& settings) {
     }
   }
   return ConfigError(std::move(problems));
+}
+
+/// Takes over the tables of contact laws, which no number changes.
+void keep_tables(const ModelParameters& from, ModelParameters& to) {
+  const auto keep = [](const NormalParameters& read, NormalParameters& kept) {
+    if (!read.has_table()) return;
+    kept.form = read.form;
+    kept.table = read.table;
+  };
+  if (to.contact) keep(from.contact->normal, to.contact->normal);
+  for (auto& [name, pair] : to.contacts) keep(from.contacts.at(name).normal, pair.normal);
 }
 
 }  // namespace
@@ -254,7 +266,8 @@ void apply_settings(LoadedScene& changed, const Settings& settings) {
       set_value(changed.tree, assignment);
       changed.sets.push_back(assignment);
     }
-    changed.scene = read_as<Scene>(changed.tree);
+    const Scene before = std::exchange(changed.scene, read_as<Scene>(changed.tree));
+    keep_tables(before.model, changed.scene.model);
   } catch (const ConfigError& error) {
     throw in_settings(changed.located(error), settings);
   }

@@ -19,7 +19,6 @@ namespace stridor {
 namespace {
 
 constexpr const char* initial_state_key = "initial.state";
-constexpr const char* contact_law_key = "contact_law";
 /// Stands for the scene itself in the list of digests; no file is named by a key like this.
 constexpr const char* text_key = "/scene/text";
 
@@ -108,17 +107,11 @@ std::vector<SceneFile> scene_files(const LoadedScene& loaded) {
   }
   for (const auto& [name, pair] : model.pairs()) {
     const std::string key = model.contact ? name : "contacts." + name;
-    if (pair.normal.has_table()) add_file(files, loaded.tree, key + ".normal.form", pair.normal.form);
+    if (pair.normal.has_table())
+      add_file(files, loaded.tree, key + ".normal.form", pair.normal.form);
   }
   const InitialParameters& initial = model.initial;
   if (initial.is_file()) add_file(files, loaded.tree, initial_state_key, initial.state);
-  return files;
-}
-
-std::vector<SceneFile> scene_files(const LoadedSphereScene& loaded) {
-  std::vector<SceneFile> files;
-  const SphereModelParameters& model = loaded.scene.model;
-  if (model.has_table()) add_file(files, loaded.tree, contact_law_key, model.contact_law);
   return files;
 }
 

@@ -6,7 +6,6 @@
 
 #include "io/run_file.hpp"
 #include "io/scene.hpp"
-#include "io/sphere_scene.hpp"
 
 namespace stridor {
 
@@ -19,8 +18,6 @@ struct SceneFile {
 
 /// Matrices, and the run file of the initial state. @throws FileError if one cannot be read
 std::vector<SceneFile> scene_files(const LoadedScene& loaded);
-/// The table of the contact law. @throws as above
-std::vector<SceneFile> scene_files(const LoadedSphereScene& loaded);
 
 /// 16 hexadecimal digits that change with any key of the resolved scene and with anything in the
 /// files that it names (FNV-1a).

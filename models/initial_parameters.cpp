@@ -53,6 +53,10 @@ const Schema& InitialParameters::schema() {
                         {.doc = "Velocities added to the state.", .optional = true})
           .section("perturbation", &InitialParameters::perturbation,
                    {.doc = "Eigenvector added to the state.", .optional = true})
+          .real("indentation", &InitialParameters::indentation,
+                {.doc = "Indentation of viscoelastic contacts at the start over that in "
+                        "equilibrium; a body takes the static shape of least strain energy.",
+                 .optional = true})
           .check([](const InitialParameters& initial, std::vector<Problem>& problems) {
             const std::string& start = initial.state;
             const bool is_run_file =
@@ -62,6 +66,14 @@ const Schema& InitialParameters::schema() {
                                   "'" + start +
                                       "' is neither rest nor equilibrium nor a run file "
                                       "(*.h5)",
+                                  {},
+                                  0,
+                                  0});
+            }
+            if (initial.indentation && start != InitialParameters::equilibrium) {
+              problems.push_back({"indentation",
+                                  "is over that of the sliding equilibrium: needs state: "
+                                  "equilibrium",
                                   {},
                                   0,
                                   0});

@@ -36,6 +36,8 @@ struct InitialParameters {
   std::vector<InitialMotionParameters<MotionKind::displacement>> displacement;
   std::vector<InitialMotionParameters<MotionKind::velocity>> velocity;
   std::optional<PerturbationParameters> perturbation;
+  /// Indentation of every viscoelastic contact over that in equilibrium.
+  std::optional<double> indentation;
   static const Schema& schema();
 
   bool is_file() const { return state != rest && state != equilibrium; }

@@ -188,7 +188,7 @@ void require_memory(const SetUpEstimate& estimate, const MemoryLimit& limit) {
                   largest->remedy));
 }
 
-void require_memory(const MemoryPart& results, const MemoryLimit& limit) {
+void require_memory_for(const MemoryPart& results, const MemoryLimit& limit) {
   if (results.bytes <= limit.bytes) return;
   throw ConfigError(results.key, fmt::format("{} would take about {} of memory, but {} is {}; {}",
                                              results.what, memory_text(results.bytes), limit.source,

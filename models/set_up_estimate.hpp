@@ -46,6 +46,6 @@ SetUpEstimate estimate_set_up(const SlidingContactParameters& contact);
 void require_memory(const SetUpEstimate& estimate, const MemoryLimit& limit);
 /// The same for results that are held until the end.
 /// @throws ConfigError naming the key of the part, if it does not fit
-void require_memory(const MemoryPart& results, const MemoryLimit& limit);
+void require_memory_for(const MemoryPart& results, const MemoryLimit& limit);
 
 }  // namespace stridor

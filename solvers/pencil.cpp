@@ -295,6 +295,20 @@ void drop_contact_terms(Pencil& pencil) {
   }
 }
 
+void drop_structural_damping(Pencil& pencil) {
+  pencil.damping.setZero();
+  const Eigen::Index n = pencil.num_body_slots;
+  if (n == 0 || pencil.slot_damping.size() == 0) return;
+  auto coupled = pencil.slot_damping.bottomRightCorner(n, n);
+  coupled = 0.5 * (coupled - coupled.transpose()).eval();
+}
+
+void drop_contact_damping(Pencil& pencil) {
+  const Eigen::Index num_contact_slots = pencil.num_slots() - pencil.num_body_slots;
+  if (pencil.slot_damping.size() > 0)
+    pencil.slot_damping.topLeftCorner(num_contact_slots, num_contact_slots).setZero();
+}
+
 Eigen::Index first_contact_slot(const System& system, int contact) {
   Eigen::Index first = 0;
   for (int i = 0; i < contact; ++i)

@@ -63,6 +63,11 @@ Pencil with_springs(const Pencil& pencil);
 /// terms of bodies.
 void drop_contact_terms(Pencil& pencil);
 
+/// Takes all damping of the bodies out; gyroscopic terms stay.
+void drop_structural_damping(Pencil& pencil);
+/// Takes all damping that contacts bring out of H.
+void drop_contact_damping(Pencil& pencil);
+
 /// First slot of a contact in the pencil of its system.
 Eigen::Index first_contact_slot(const System& system, int contact);
 

@@ -23,6 +23,11 @@ auto saved_statistics(auto& contact) {
 
 Simulation::Simulation(const System& given, const TimeParameters& time, Accounts accounts)
     : implementation_(std::make_unique<Implementation>()) {
+  if (time.is_event_driven()) {
+    throw ConfigError("time.integrator",
+                      "event_driven has no steps of a given length, which are asked for here; set "
+                      "central_difference or exact and time.step");
+  }
   if (time.coordinates != Coordinates::modal &&
       (time.integrator == Integrator::exact || time.retain)) {
     throw ConfigError("time.coordinates", "integrator: exact and retain take coordinates: modal");
@@ -177,6 +182,12 @@ double Simulation::friction_force(int contact) const {
 
 ContactState Simulation::contact_state(int contact) const {
   return implementation_->contacts[static_cast<std::size_t>(contact)].state;
+}
+
+double Simulation::contact_area(int contact) const {
+  const RunningContact& of = implementation_->contacts[static_cast<std::size_t>(contact)];
+  const std::optional<SubstrateContact>& substrate = of.point().substrate;
+  return substrate ? substrate->area(-contact_place(contact).gap, of.slip_velocity) : 0.0;
 }
 
 ContactAction Simulation::contact_action(int contact) const {

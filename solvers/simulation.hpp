@@ -129,6 +129,8 @@ class Simulation {
   /// λ_t, N, positive against sliding of the slave along +t.
   double friction_force(int contact) const;
   ContactState contact_state(int contact) const;
+  /// Area of a contact with a force law that has one, m²; 0 of any other.
+  double contact_area(int contact) const;
   /// Action of a contact on its bodies from t_n to t_{n+1}.
   ContactAction contact_action(int contact) const;
   /// Of the slave relative to the master along the tangent at t_n, m/s.

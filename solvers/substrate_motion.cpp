@@ -92,6 +92,16 @@ double SubstrateMotion::required_friction(const State& s) const {
          oscillator_->load.x();
 }
 
+SubstrateForces SubstrateMotion::forces() const {
+  if (mode_ == SubstrateMode::free) return {};
+  const bool sticks = mode_ == SubstrateMode::stick;
+  const double direction = mode_ == SubstrateMode::slip_back ? -1.0 : 1.0;
+  const double slip = sticks ? 0.0 : state_[VX] - oscillator_->substrate_speed;
+  SubstrateForces forces = oscillator_->contact.at(state_[Y], slip, direction);
+  if (sticks) forces.tangential = {required_friction(state_), 0.0, 0.0};
+  return forces;
+}
+
 void SubstrateMotion::evaluate(const State& s, State& slope) {
   ++statistics_.evaluations;
   const Eigen::Matrix2d& c = oscillator_->damping;
@@ -358,7 +368,8 @@ bool SubstrateMotion::check_motion() {
   constexpr double largest = 1e12;
   for (std::size_t k = 0; k <= VY; ++k) {
     if (std::abs(state_[k]) < largest * (1.0 + size_[0])) continue;
-    failure_ = "the motion has grown beyond all bounds; try an initial_indentation nearer to 1";
+    failure_ =
+        "the motion has grown beyond all bounds; try an initial state nearer to the equilibrium";
     return false;
   }
   return true;

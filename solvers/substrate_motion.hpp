@@ -53,6 +53,10 @@ class SubstrateMotion {
   double time() const { return time_; }
   const State& state() const { return state_; }
   SubstrateMode mode() const { return mode_; }
+  /// ẍ, ÿ; where the mode changes, after the change.
+  Eigen::Vector2d acceleration() const { return {slope_[2], slope_[3]}; }
+  /// Forces of the contact now; sticking, the tangential one is what keeps the slip at zero.
+  SubstrateForces forces() const;
 
   /// Events since start() or restart_statistics().
   struct Statistics {

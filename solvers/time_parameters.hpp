@@ -11,6 +11,7 @@ namespace stridor {
 enum class Integrator {
   central_difference,  ///< predictor-corrector of BDF: first order in h with damping
   exact,               ///< exact motion of every mode from step to step
+  event_driven,        ///< adaptive, order 8, of a SlidingOscillator: no steps of a given length
 };
 
 enum class Coordinates {
@@ -32,13 +33,17 @@ struct RetainParameters {
 struct TimeParameters {
   Integrator integrator = Integrator::central_difference;
   Coordinates coordinates = Coordinates::modal;
-  double step = 0.0;                       ///< h, s, > 0
+  double step = 0.0;                       ///< h, s, > 0; 0 of the event-driven integrator
   double end = 0.0;                        ///< s, > 0
   std::optional<RetainParameters> retain;  ///< absent: all modes
   /// Largest change of a contact force in the last sweep over several contacts, relative to the
   /// largest force, > 0.
   double contact_tolerance = 1e-12;
   std::int64_t contact_sweeps = 1000;  ///< most sweeps over several contacts in a step, ≥ 1
+  /// Error of a step of the event-driven integrator, relative to the size of the motion, > 0.
+  double tolerance = 1e-12;
+
+  bool is_event_driven() const { return integrator == Integrator::event_driven; }
   static const Schema& schema();
 };
 

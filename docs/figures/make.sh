@@ -45,9 +45,9 @@ for name in modulus cuts scatter; do cp "$work/fit/$name.png" "$here/fit_$name.p
 
 sphere=$source_folder/scenes/viscoelastic_sphere.yaml
 for law in published_fit boundary_element; do
-  "$stridor" map "$sphere" --x sphere.speed 1e-6 1e2 161 --y sphere.shear_strength 1e-4 1 121 --scale log \
-    --set contact_law=$law --figure "$here/sphere_map_$law.png" --force >/dev/null
-  "$stridor" cycle "$sphere" --set contact_law=$law --figure "$here/sphere_cycle_$law.png" --force >/dev/null
+  "$stridor" map "$sphere" --x parameters.v 1e-6 1e2 161 --y parameters.tau0 1e-4 1 121 --scale log \
+    --set contact.normal.form=$law --figure "$here/sphere_map_$law.png" --force >/dev/null
+  "$stridor" cycle "$sphere" --set contact.normal.form=$law --figure "$here/sphere_cycle_$law.png" --force >/dev/null
 done
 
 "$stridor" precision "$source_folder/scenes/beam_on_beam_leading.yaml" --until "8 ms" \

@@ -13,7 +13,7 @@ laws=(atan square_root tanh linear)
 
 # Upper threshold in shear strength at v = 4e-4; period and r.m.s. of the cycle at v = 5e-3.
 measure() {
-  "$stridor" threshold "$scene" --set sphere.speed=4e-4 --parameter sphere.shear_strength --from 1e-3 --to 0.05 \
+  "$stridor" threshold "$scene" --set parameters.v=4e-4 --parameter parameters.tau0 --from 1e-3 --to 0.05 \
     --json "$@" >"$work/threshold.json"
   "$stridor" cycle "$scene" --json "$@" >"$work/cycle.json"
   python3 -c '
@@ -21,7 +21,7 @@ import json, sys
 root = json.load(open(sys.argv[1]))["roots"][-1]["value"]
 cycle = json.load(open(sys.argv[2]))
 assert cycle["status"] == "periodic", cycle["status"]
-print(root, cycle["period"], cycle["x"]["rms"])' "$work/threshold.json" "$work/cycle.json"
+print(root, 40*cycle["period"], cycle["x"]["rms"]/2e-3)  # in units of the paper' "$work/threshold.json" "$work/cycle.json"
 }
 
 read -r threshold period rms < <(measure)
@@ -30,7 +30,7 @@ echo "|---|---|---|---|---|"
 printf '| set-valued | | %.6e | %.6f | %.7f |\n' "$threshold" "$period" "$rms"
 for law in "${laws[@]}"; do
   for speed in 0.3 0.1 0.03 0.01 0.003 0.001; do
-    read -r t p r < <(measure --set "regularisation={law: $law, speed: $speed}")
+    read -r t p r < <(measure --set "contact.friction.regularisation={law: $law, speed: =$speed*v*R/tau}")
     awk -v law="$law" -v e="$speed" -v t="$t" -v p="$p" -v r="$r" -v t0="$threshold" -v p0="$period" \
       -v r0="$rms" -v file="$work/$law" 'BEGIN {
         printf "| %s | %s | %.6e (%+.2g %%) | %.6f (%+.2g %%) | %.7f (%+.2g %%) |\n",

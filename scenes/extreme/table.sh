@@ -79,8 +79,7 @@ held to its outcome and its `expect:` block by a test of its name (`ctest -R Ext
 
 *Outcome*: `done`, or how the program refuses (before the run, exit 2) or stops (exit 3) and the words
 in its message. *Force*: smallest and largest contact force of the window of `measure`; most of these
-scenes start in sliding equilibrium under the load of 0.2 N, at which it should stay; of the sphere the
-smallest and largest displacement over its unit of length. *Energy*: largest
+scenes start in sliding equilibrium under the load of 0.2 N, at which it should stay. *Energy*: largest
 error of the energy balance over the energy turned over. *Copes*: a setting with which the same scene
 runs to its end.
 

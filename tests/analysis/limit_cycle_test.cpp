@@ -69,7 +69,7 @@ TEST(LimitCycle, SaysWhatWentWrong) {
   const SubstrateOscillator oscillator = make_sphere(paper_sphere());
   const LimitCycle cycle = find_limit_cycle(oscillator, {0.0, 1e15}, {0.0, 0.0});
   EXPECT_EQ(cycle.status, CycleStatus::diverged);
-  EXPECT_THAT(cycle.failure, HasSubstr("after t = "));
+  EXPECT_GE(cycle.failure_time, 0.0);
   EXPECT_THAT(cycle.failure, HasSubstr("; try "));
 }
 

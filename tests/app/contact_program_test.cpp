@@ -152,25 +152,26 @@ TEST(ContactProgram, TableOfAParaboloidIsTheLawOfTheMasterCurve) {
   EXPECT_GT(table["num_unresolved"], 0);
   EXPECT_EQ(table["num_touching_window"], 0);
   const auto eig = [](const std::string& law) {
-    const ProgramResult result = Program({"eig", scene_path("viscoelastic_sphere.yaml"), "--json",
-                                          "--set", "sphere.speed=0.05", "--set",
-                                          "sphere.normal_load=2e-2", "--set", "contact_law=" + law})
-                                     .run();
+    const ProgramResult result =
+        Program({"eig", scene_path("viscoelastic_sphere.yaml"), "--json", "--set",
+                 "parameters.v=0.05", "--set", "parameters.F=2e-2", "--set",
+                 "contact.normal.form=" + law})
+            .run();
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return Json::parse(result.out);
   };
   const Json expected = eig("boundary_element");
   const Json found = eig(file);
   EXPECT_EQ(found["equilibrium"]["law_range"], "inside");
-  for (const char* name : {"normal_force", "friction_force", "area", "viscous_friction"}) {
+  for (const char* name : {"force", "friction_force", "area"}) {
     EXPECT_NEAR(
         found["equilibrium"][name].get<double>() / expected["equilibrium"][name].get<double>(), 1.0,
         3e-3)
         << name;
   }
   // The growth takes derivatives of the law, in which the interpolation is one order less.
-  EXPECT_NEAR(found["equilibrium"]["equivalent_damping"].get<double>() /
-                  expected["equilibrium"]["equivalent_damping"].get<double>(),
+  EXPECT_NEAR(found["equilibrium"]["damping"].get<double>() /
+                  expected["equilibrium"]["damping"].get<double>(),
               1.0, 0.05);
 }
 
@@ -186,10 +187,10 @@ TEST(ContactProgram, TableOfASphereWithTwoCreepTimesDrivesTheOscillator) {
   // A file named in a scene is beside it.
   std::filesystem::copy_file(scene_path("viscoelastic_sphere.yaml"), folder / "sphere.yaml");
   std::string text = contents_of(folder / "sphere.yaml");
-  text.replace(text.find("contact_law: published_fit"), 26, "contact_law: law.h5       ");
+  text.replace(text.find("form: published_fit"), 19, "form: law.h5");
   write_file(folder / "sphere.yaml", text);
   const ProgramResult run = Program({"cycle", folder / "sphere.yaml", "--json", "--set",
-                                     "sphere.speed=0.05", "--set", "time.settle=100"})
+                                     "parameters.v=0.05", "--set", "cycle.settle=2.5"})
                                 .run();
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_GT(Json::parse(run.out)["x"]["rms"].get<double>(), 0.0);
@@ -219,7 +220,8 @@ TEST(ContactProgram, TablesThatCannotBeAreRefused) {
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.err, HasSubstr("of the table did not converge; nothing has been written"));
   const auto eig = [](const std::string& law) {
-    return Program({"eig", scene_path("viscoelastic_sphere.yaml"), "--set", "contact_law=" + law})
+    return Program({"eig", scene_path("viscoelastic_sphere.yaml"), "--set",
+                    "contact.normal.form=" + law})
         .run();
   };
   result = eig("nothing.h5");

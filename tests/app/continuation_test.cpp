@@ -33,7 +33,8 @@ void expect_run(const std::string& scene, const std::string& file,
 }
 
 /// Largest difference of two final motions of a body, over the largest value of the first.
-double difference(const RunFileReader& a, const RunFileReader& b, const std::string& dataset) {
+double largest_difference(const RunFileReader& a, const RunFileReader& b,
+                          const std::string& dataset) {
   const std::vector<double> x = a.static_array("/final/" + dataset);
   const std::vector<double> y = b.static_array("/final/" + dataset);
   EXPECT_EQ(x.size(), y.size());
@@ -79,7 +80,7 @@ TEST_P(ContinuationTest, GoesOnAsTheRunWouldHave) {
   // The first step of the central difference starts from a displacement and a velocity instead of
   // two displacements: an error of second order in the step, (omega h)^2 of what still vibrates.
   for (const char* body : {"arm", "bridge"})
-    EXPECT_LT(difference(a, b, std::string(body) + "/displacement"), 1e-6) << body;
+    EXPECT_LT(largest_difference(a, b, std::string(body) + "/displacement"), 1e-6) << body;
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ContinuationTest,

@@ -90,15 +90,15 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Spheres, Determinism,
     ::testing::Values(Case{"map",
-                           {"map", sphere, "--x", "sphere.speed", "1e-5", "1", "9", "--y",
-                            "sphere.shear_strength", "1e-4", "0.1", "8", "--scale", "log"}},
+                           {"map", sphere, "--x", "parameters.v", "1e-5", "1", "9", "--y",
+                            "parameters.tau0", "1e-4", "0.1", "8", "--scale", "log"}},
                       Case{"sweep",
-                           {"sweep", sphere, "--parameter", "sphere.shear_strength", "--from",
-                            "5e-3", "--to", "2e-2", "--points", "4", "--set", "time.settle=50"}},
+                           {"sweep", sphere, "--parameter", "parameters.tau0", "--from", "5e-3",
+                            "--to", "2e-2", "--points", "4", "--set", "cycle.settle=1.25"}},
                       Case{"sweep_up_and_down",
-                           {"sweep", sphere, "--parameter", "sphere.shear_strength", "--from",
-                            "5e-3", "--to", "2e-2", "--points", "3", "--up-down", "--set",
-                            "time.settle=50"}}),
+                           {"sweep", sphere, "--parameter", "parameters.tau0", "--from", "5e-3",
+                            "--to", "2e-2", "--points", "3", "--up-down", "--set",
+                            "cycle.settle=1.25"}}),
     [](const auto& test) { return test.param.name; });
 
 // Too slow for the sanitizer, or in one thread whatever is asked for.
@@ -132,10 +132,10 @@ TEST(Threads, AreStoppedByASignal) {
       coarse_beams("", {"sweep", "--parameter", "drive.load", "--from", "-0.3", "--to", "-0.1",
                         "--points", "24", "--set", "time.end=1000"})
           .arguments,
-      {"map", sphere, "--x", "sphere.speed", "1e-5", "1", "3000", "--y", "sphere.shear_strength",
-       "1e-4", "0.1", "3000", "--scale", "log"},
-      {"sweep", sphere, "--parameter", "sphere.shear_strength", "--from", "5e-3", "--to", "2e-2",
-       "--points", "1000", "--set", "time.settle=1000"}};
+      {"map", sphere, "--x", "parameters.v", "1e-5", "1", "3000", "--y", "parameters.tau0", "1e-4",
+       "0.1", "3000", "--scale", "log"},
+      {"sweep", sphere, "--parameter", "parameters.tau0", "--from", "5e-3", "--to", "2e-2",
+       "--points", "1000", "--set", "cycle.settle=25"}};
   for (std::vector<std::string> arguments : verbs) {
     arguments.insert(arguments.end(), {"--threads", "3"});
     Program program(arguments);

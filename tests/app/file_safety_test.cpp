@@ -111,7 +111,7 @@ TEST_F(FileSafety, WhatIsNoRegularFileIsRefusedWithoutWaiting) {
         std::string("info pipe"), std::string("run --resume pipe"),
         std::string("plot pipe --kind history -o a.png"),
         "run " + support + " --set substructures.support.mass=pipe -o a.h5",
-        "eig " + sphere + " --set contact_law=pipe.h5",
+        "eig " + sphere + " --set contact.normal.form=pipe.h5",
         "run " + continued + " --set initial.state=pipe.h5 -o a.h5"}) {
     EXPECT_EQ(shell("timeout 60 $S " + command + " > out"), 4) << command << said_;
     EXPECT_THAT(said_, AnyOf(HasSubstr("pipe: is a FIFO (named pipe)"),
@@ -232,14 +232,15 @@ TEST_F(ResumedScene, IsRefusedWhereTheTableOfItsLawHasChanged) {
                     std::vector<double>(table.force.size(), 50.0), {});
   };
   write_law(1.5);
-  ASSERT_EQ(shell("$S run " + scene_path("viscoelastic_sphere.yaml") +
-                  " --set contact_law=law.h5 --set time.end=1e7 --max-wall 0.05 -o run.h5 > out"),
-            5)
+  ASSERT_EQ(
+      shell("$S run " + scene_path("viscoelastic_sphere.yaml") +
+            " --set contact.normal.form=law.h5 --set time.end=2e5 --max-wall 0.05 -o run.h5 > out"),
+      5)
       << said_;
   EXPECT_EQ(resume(), 5) << said_;
   write_law(1.6);
   EXPECT_EQ(resume(), 4);
-  EXPECT_THAT(said_, HasSubstr("/law.h5 (contact_law); put the former ones back"));
+  EXPECT_THAT(said_, HasSubstr("/law.h5 (contact.normal.form); put the former ones back"));
 }
 
 TEST_F(ResumedScene, IsRefusedWhereItsInitialStateHasChangedButDoesNotNeedIt) {

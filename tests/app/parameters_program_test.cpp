@@ -114,53 +114,32 @@ TEST(ParametersProgram, WhatCannotBeVariedIsRefusedWithAdvice) {
 }
 
 TEST(ParametersProgram, ThresholdOfTheSphereIsThatOfTheKey) {
-  const TemporaryFolder folder;
-  const std::string scene = scene_with(
-      folder, "viscoelastic_sphere.yaml", "{tau0: 0.01, v: 2.5e-3}",
-      {{"shear_strength: 1.0e-2", "shear_strength: =tau0"}, {"speed: 5.0e-3", "speed: =2*v"}});
-  const Json key = json_of({"threshold", scene_path("viscoelastic_sphere.yaml"), "--parameter",
-                            "sphere.speed", "--from", "1e-2", "--to", "0.1"});
+  const std::string scene = scene_path("viscoelastic_sphere.yaml");
   const Json parameter = json_of(
-      {"threshold", scene, "--parameter", "parameters.v", "--from", "5e-3", "--to", "0.05"});
+      {"threshold", scene, "--parameter", "parameters.v", "--from", "1e-2", "--to", "0.1"});
+  // v_d = v R/tau = v m/s.
+  const Json key = json_of(
+      {"threshold", scene, "--parameter", "drive.velocity", "--from", "1e-2", "--to", "0.1"});
   ASSERT_EQ(key["roots"].size(), 1u);
   ASSERT_EQ(parameter["roots"].size(), 1u);
   const double root = key["roots"][0]["value"];
   EXPECT_NEAR(root, 0.0208030197, 1e-9);
-  EXPECT_NEAR(2.0 * parameter["roots"][0]["value"].get<double>(), root, 1e-9 * root);
+  EXPECT_NEAR(parameter["roots"][0]["value"].get<double>(), root, 1e-9 * root);
 
-  const std::vector<std::string> scale{"--scale", "log"};
-  const auto growth = [&](const std::string& file, std::vector<std::string> axes) {
-    std::vector<std::string> arguments{"map", file};
+  const auto growth = [&](const std::vector<std::string>& axes) {
+    std::vector<std::string> arguments{"map", scene, "--scale", "log"};
     arguments.insert(arguments.end(), axes.begin(), axes.end());
-    arguments.insert(arguments.end(), scale.begin(), scale.end());
     return json_of(arguments)["growth"];
   };
-  EXPECT_EQ(growth(scene, {"--x", "parameters.tau0", "1e-3", "1e-1", "3", "--y", "sphere.angle",
-                           "0.5", "1", "2"}),
-            growth(scene, {"--x", "sphere.shear_strength", "1e-3", "1e-1", "3", "--y",
-                           "sphere.angle", "0.5", "1", "2"}));
-}
-
-TEST(ParametersProgram, NumbersOfThePaperGiveTheDimensionalSphere) {
-  const TemporaryFolder folder;
-  const std::string scene = scene_with(
-      folder, "viscoelastic_sphere.yaml",
-      "{k: 50, w: 40, R: 10 mm, E: 1.3333333333333333 MPa, tau: 10 ms, F: 7.5e-4, tau0: 1.0e-2, "
-      "v: 5.0e-3, Omega: 1, eta: 1, xi: 0.01}",
-      {{"normal_load: 7.5e-4 ", "normal_force: =F*E*R^2 "},
-       {"shear_strength: 1.0e-2 ", "shear_stress: =tau0*E "},
-       {"speed: 5.0e-3 ", "substrate_speed: =v*R/tau "},
-       {"frequency_ratio: 1 ", "stiffness_y: =Omega^2*k "},
-       {"coupling_ratio: 1 ", "coupling_stiffness: =eta^2*k "},
-       {"damping_x: 0.01", "damper_x: =2*xi*k/w"},
-       {"damping_y: 0.01", "damper_y: =2*xi*k/w"}});
-  const Json plain = json_of({"eig", scene_path("viscoelastic_sphere.yaml")})["eigenvalues"];
-  const Json derived = json_of({"eig", scene})["eigenvalues"];
-  ASSERT_EQ(plain.size(), 2u);
-  ASSERT_EQ(derived.size(), 2u);
-  for (std::size_t i = 0; i < 2; ++i) {
-    for (std::size_t part = 0; part < 2; ++part)
-      EXPECT_NEAR(plain[i][part].get<double>(), derived[i][part].get<double>(), 1e-10);
+  const std::string inclined = "substructures.sphere.springs.inclined.stiffness";
+  // eta^2 k_x, at eta 0.5 and 1.
+  const Json of_key = growth({"--x", "parameters.tau0", "1e-3", "1e-1", "3", "--y", inclined,
+                              "12.5", "50", "2"});
+  const Json of_parameter = growth({"--x", "parameters.tau0", "1e-3", "1e-1", "3", "--y",
+                                    "parameters.eta", "0.5", "1", "2"});
+  for (std::size_t j = 0; j < 2; ++j) {
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_NEAR(of_key[j][i].get<double>(), of_parameter[j][i].get<double>(), 1e-9);
   }
 }
 

@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <sys/mount.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdlib>
@@ -103,7 +103,8 @@ TEST(Robustness, DamagedContactLawsAreReadOrRefused) {
                 .exit_code,
             0);
   const std::string bad = folder / "bad.h5";
-  expect_survives(contents_of(file), 60, bad, {"eig", sphere_scene, "--set", "contact_law=" + bad});
+  expect_survives(contents_of(file), 60, bad,
+                  {"eig", sphere_scene, "--set", "contact.normal.form=" + bad});
 }
 
 TEST(Robustness, EveryVerbSaysThatAFolderCannotBeWritten) {
@@ -124,8 +125,8 @@ TEST(Robustness, EveryVerbSaysThatAFolderCannotBeWritten) {
         {"contact", contact_scene, "--table", at + ".h5"},
         {"contact", contact_scene, "--master-curve", at + ".inc"},
         {"cycle", sphere_scene, "-o", at + ".h5"},
-        {"map", sphere_scene, "--x", "sphere.speed", "0.1", "1", "3", "--y",
-         "sphere.shear_strength", "0.01", "0.1", "3", "-o", at + ".h5"},
+        {"map", sphere_scene, "--x", "parameters.v", "0.1", "1", "3", "--y", "parameters.tau0",
+         "0.01", "0.1", "3", "-o", at + ".h5"},
         {"locus", disc, "--parameter", "contact.friction.coefficient", "--from", "0.1", "--to",
          "0.2", "--points", "2", "-o", at + ".h5"}}) {
     const ProgramResult result = Program(arguments).run();
@@ -170,13 +171,12 @@ TEST(Robustness, NoNumberOfASceneIsAnInternalError) {
     const char* verb;
     const char* scene;
     std::vector<const char*> keys;
-  } cases[] = {
-      {"check",
-       "examples/stick_slip.yaml",
-       {"substructures.reed.thickness", "substructures.reed.length",
-        "substructures.reed.material.density", "drive.load"}},
-      {"eig", "disc_and_pads.yaml", {"disc.speed", "disc.thickness"}},
-      {"eig", "examples/flutter.yaml", {"substructures.oscillator.factors.stiffness"}}};
+  } cases[] = {{"check",
+                "examples/stick_slip.yaml",
+                {"substructures.reed.thickness", "substructures.reed.length",
+                 "substructures.reed.material.density", "drive.load"}},
+               {"eig", "disc_and_pads.yaml", {"disc.speed", "disc.thickness"}},
+               {"eig", "examples/flutter.yaml", {"substructures.oscillator.factors.stiffness"}}};
   for (const auto& [verb, scene, keys] : cases) {
     for (const char* key : keys) {
       for (const char* value : {"1e-300", "1e-29", "1e29", "1e99"}) {
@@ -192,9 +192,9 @@ TEST(Robustness, ABrokenLinkIsCalledThat) {
   const TemporaryFolder folder;
   fs::create_symlink("nowhere/at_all.h5", folder / "link.h5");
   for (const char* force : {"--force", "--json"}) {
-    const ProgramResult result = Program({"run", scene_path("examples/landing.yaml"), "-o",
-                                          folder / "link.h5", force})
-                                     .run();
+    const ProgramResult result =
+        Program({"run", scene_path("examples/landing.yaml"), "-o", folder / "link.h5", force})
+            .run();
     EXPECT_EQ(result.exit_code, 4);
     EXPECT_THAT(result.err, HasSubstr("link.h5: is a broken link, to 'nowhere/at_all.h5'; remove"));
   }
@@ -237,8 +237,10 @@ TEST(Robustness, EveryFailureWithJsonIsOneObject) {
       {{"compare", missing}, 4, "", "missing"},
       {{"spectrogram", missing}, 4, "", "missing"},
       {{"plot", missing, "--kind", "history", "-o", folder / "a.png"}, 4, "", "missing"},
-      {{"threshold", sphere_scene, "--parameter", "sphere.sped", "--from", "0", "--to", "1"},
-       2, "", "sped"},
+      {{"threshold", sphere_scene, "--parameter", "parameters.taw0", "--from", "0", "--to", "1"},
+       2,
+       "",
+       "taw0"},
       {{"map", missing, "--x", "a", "0", "1", "3", "--y", "b", "0", "1", "3"}, 4, "", "missing"},
       {{"cycle", missing}, 4, "", "missing"},
       {{"sweep", missing, "--parameter", "a", "--from", "0", "--to", "1"}, 4, "", "missing"},
@@ -258,8 +260,7 @@ TEST(Robustness, EveryFailureWithJsonIsOneObject) {
                 HasSubstr(message));
   }
   // Where there are results, they are beside the errors.
-  const ProgramResult result =
-      Program({"run", runs_off, "-o", folder / "off.h5", "--json"}).run();
+  const ProgramResult result = Program({"run", runs_off, "-o", folder / "off.h5", "--json"}).run();
   EXPECT_EQ(result.exit_code, 3);
   const auto object = nlohmann::json::parse(result.out);
   EXPECT_EQ(object["status"], "failed");
@@ -300,8 +301,8 @@ TEST(Robustness, PathsWithSpacesAndUnicodeWorkEverywhere) {
       0);
   const std::string figure = place / "Bild é.png";
   const ProgramResult cycle =
-      Program({"cycle", place / "Kugel é.yaml", "--set", "contact_law=" + law, "--set",
-               "sphere.speed=0.05", "--set", "time.settle=20", "-o", place / "Zyklus é.h5",
+      Program({"cycle", place / "Kugel é.yaml", "--set", "contact.normal.form=" + law, "--set",
+               "parameters.v=0.05", "--set", "cycle.settle=0.5", "-o", place / "Zyklus é.h5",
                "--figure", figure})
           .run();
   EXPECT_EQ(cycle.exit_code, 0) << cycle.err;
@@ -334,9 +335,9 @@ TEST(Robustness, FullDisksAreReportedAndLeaveNoHalfFile) {
   const std::string at = folder / "disk" / "a";
   for (const Arguments& arguments :
        {Arguments{"contact", contact_scene, "-o", at + ".h5"},
-        {"cycle", sphere_scene, "--set", "time.settle=20", "-o", at + ".h5"},
-        {"map", sphere_scene, "--x", "sphere.speed", "1e-3", "1", "100", "--y",
-         "sphere.shear_strength", "0.01", "0.1", "100", "-o", at + ".h5"}}) {
+        {"cycle", sphere_scene, "--set", "cycle.settle=0.5", "-o", at + ".h5"},
+        {"map", sphere_scene, "--x", "parameters.v", "1e-3", "1", "100", "--y", "parameters.tau0",
+         "0.01", "0.1", "100", "-o", at + ".h5"}}) {
     const ProgramResult result = Program(arguments).run();
     EXPECT_EQ(result.exit_code, 4) << arguments[0] << ": " << result.err;
     EXPECT_THAT(result.err, HasSubstr("No space left on device")) << arguments[0];

@@ -494,8 +494,8 @@ TEST(StoppedVerbs, WriteNothing) {
        "deformed", "-o", output},
       {"map", scene, "--x", "contact.start", "30mm", "98mm", "1000", "--y",
        "contact.friction.coefficient", "0", "1", "1000", "-o", output},
-      {"map", scene_path("viscoelastic_sphere.yaml"), "--x", "sphere.speed", "1e-5", "1", "3000",
-       "--y", "sphere.shear_strength", "1e-4", "0.1", "3000", "--scale", "log", "-o", output},
+      {"map", scene_path("viscoelastic_sphere.yaml"), "--x", "parameters.v", "1e-5", "1", "3000",
+       "--y", "parameters.tau0", "1e-4", "0.1", "3000", "--scale", "log", "-o", output},
       {"threshold", scene, "--from", "30mm", "--to", "98mm", "--points", "100000"}};
   for (const Strings& verb : verbs) {
     Program program(verb);

@@ -87,9 +87,9 @@ TEST(VerbOutput, RunTellsOfEveryContactAndOfTheEnergy) {
 
 TEST(VerbOutput, RunsWhoseContactsOnlyTakeEnergySayNothingOfIt) {
   const TemporaryFolder folder;
-  const std::vector<std::string> run{
-      "run",   scene_path("examples/landing.yaml"), "-o", (folder / "run.h5").string(),
-      "--set", "record.energy=true"};
+  const std::vector<std::string> run{"run",   scene_path("examples/landing.yaml"),
+                                     "-o",    (folder / "run.h5").string(),
+                                     "--set", "record.energy=true"};
   EXPECT_THAT(output_of(run), Not(HasSubstr("CONTACT WORK")));
 }
 
@@ -119,16 +119,16 @@ TEST(VerbOutput, ExpectationsOfWhatIsNoNumberAreToldOf) {
 TEST(VerbOutput, MapsSweepsAndLociOfSmallSystemsAreDrawn) {
   const TemporaryFolder folder;
   const auto figure = [&](const char* name) { return (folder / name).string(); };
-  EXPECT_THAT(output_of({"map", sphere, "--x", "sphere.speed", "1e-3", "1e-1", "5", "--y",
-                         "sphere.shear_strength", "5e-3", "5e-2", "5", "--scale", "log", "--figure",
+  EXPECT_THAT(output_of({"map", sphere, "--x", "parameters.v", "1e-3", "1e-1", "5", "--y",
+                         "parameters.tau0", "5e-3", "5e-2", "5", "--scale", "log", "--figure",
                          figure("map.png")}),
               HasSubstr("points are unstable"));
   expect_picture(figure("map.png"));
   // The cycle of the paper, see SphereProgram.
-  EXPECT_THAT(output_of({"sweep", sphere, "--parameter", "sphere.shear_strength", "--from", "8e-3",
-                         "--to", "1e-2", "--points", "2", "--set", "time.settle=50", "--figure",
+  EXPECT_THAT(output_of({"sweep", sphere, "--parameter", "parameters.tau0", "--from", "8e-3",
+                         "--to", "1e-2", "--points", "2", "--set", "cycle.settle=1.25", "--figure",
                          figure("sweep.png")}),
-              HasSubstr("periodic       6.154451"));
+              HasSubstr("periodic     0.15386127"));
   expect_picture(figure("sweep.png"));
   output_of({"locus", scene_path("examples/flutter.yaml"), "--parameter",
              "substructures.oscillator.load", "--from", "0", "--to", "0.4", "--points", "9",

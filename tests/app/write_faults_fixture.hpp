@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "app/disc_transient.hpp"
-#include "app/sphere_transient.hpp"
 #include "app/transient.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
@@ -76,33 +75,33 @@ inline std::vector<FaultyScene> faulty_scenes() {
                            {"time.end=2e-3", "record.channels=[upper.force, upper.state]"});
   };
   const auto sphere = [] {
-    return load_sphere_scene(scene_path("viscoelastic_sphere.yaml"), {"time.end=10"});
+    return load_scene(scene_path("viscoelastic_sphere.yaml"), {"time.end=0.25", "measure.from=0"});
   };
-  return {
-      {"Beam", [=](const std::string& file) { run_all<Transient>(beam(), 2e-5, file); },
-       [=](const std::string& file) { run_half<Transient>(beam(), 2e-5, file); },
-       [](const std::string& file) {
-         const InterruptedRun interrupted = find_interrupted_run(file);
-         const LoadedScene loaded = load_resolved_scene(interrupted.scene_text, file);
-         Transient run(loaded, interrupted);
-         go_to_end(run);
-       }},
-      {"Disc", [=](const std::string& file) { run_all<DiscTransient>(disc(), 1e-3, file); },
-       [=](const std::string& file) { run_half<DiscTransient>(disc(), 1e-3, file); },
-       [](const std::string& file) {
-         const InterruptedRun interrupted = find_interrupted_run(file);
-         const LoadedDiscScene loaded = load_resolved_disc_scene(interrupted.scene_text, file);
-         DiscTransient run(loaded, interrupted);
-         go_to_end(run);
-       }},
-      {"Sphere", [=](const std::string& file) { run_all<SphereTransient>(sphere(), 5.0, file); },
-       [=](const std::string& file) { run_half<SphereTransient>(sphere(), 5.0, file); },
-       [](const std::string& file) {
-         const InterruptedRun interrupted = find_interrupted_run(file);
-         const LoadedSphereScene loaded = load_resolved_sphere_scene(interrupted.scene_text, file);
-         SphereTransient run(loaded, interrupted);
-         go_to_end(run);
-       }}};
+  return {{"Beam", [=](const std::string& file) { run_all<Transient>(beam(), 2e-5, file); },
+           [=](const std::string& file) { run_half<Transient>(beam(), 2e-5, file); },
+           [](const std::string& file) {
+             const InterruptedRun interrupted = find_interrupted_run(file);
+             const LoadedScene loaded = load_resolved_scene(interrupted.scene_text, file);
+             Transient run(loaded, interrupted);
+             go_to_end(run);
+           }},
+          {"Disc", [=](const std::string& file) { run_all<DiscTransient>(disc(), 1e-3, file); },
+           [=](const std::string& file) { run_half<DiscTransient>(disc(), 1e-3, file); },
+           [](const std::string& file) {
+             const InterruptedRun interrupted = find_interrupted_run(file);
+             const LoadedDiscScene loaded =
+                 load_resolved_disc_scene(interrupted.scene_text, file);
+             DiscTransient run(loaded, interrupted);
+             go_to_end(run);
+           }},
+          {"Events", [=](const std::string& file) { run_all<Transient>(sphere(), 0.125, file); },
+           [=](const std::string& file) { run_half<Transient>(sphere(), 0.125, file); },
+           [](const std::string& file) {
+             const InterruptedRun interrupted = find_interrupted_run(file);
+             const LoadedScene loaded = load_resolved_scene(interrupted.scene_text, file);
+             Transient run(loaded, interrupted);
+             go_to_end(run);
+           }}};
 }
 
 /// How a process ended that did something under a plan of faults.

@@ -86,14 +86,15 @@ struct Friction {
   }
 };
 
-struct Expectation {
+struct ExampleExpectation {
   std::string result;
   double value = 0.0;
-  bool operator==(const Expectation&) const = default;
+  bool operator==(const ExampleExpectation&) const = default;
   static const Schema& schema() {
-    static const Schema keys = SchemaOf<Expectation>("expectation")
-                                   .text("result", &Expectation::result, {.doc = "Result."})
-                                   .real("value", &Expectation::value, {.doc = "Its value."});
+    static const Schema keys =
+        SchemaOf<ExampleExpectation>("expectation")
+            .text("result", &ExampleExpectation::result, {.doc = "Result."})
+            .real("value", &ExampleExpectation::value, {.doc = "Its value."});
     return keys;
   }
 };
@@ -125,7 +126,7 @@ struct Example {
   std::map<std::string, std::variant<Beam, Lumped>> bodies;
   std::map<std::string, Material> materials;
   std::optional<Friction> friction;
-  std::vector<Expectation> expect;
+  std::vector<ExampleExpectation> expect;
   Recording recording;
 
   static const Schema& schema() {
@@ -165,8 +166,8 @@ struct Example {
     const auto same_curve = [](const TimeCurve& a, const TimeCurve& b) {
       return a.table() == b.table();
     };
-    return format == other.format && parameters == other.parameters && title == other.title && scheme == other.scheme &&
-           band == other.band && same_curve(velocity, other.velocity) &&
+    return format == other.format && parameters == other.parameters && title == other.title &&
+           scheme == other.scheme && band == other.band && same_curve(velocity, other.velocity) &&
            load.has_value() == other.load.has_value() &&
            (!load || same_curve(*load, *other.load)) && bodies == other.bodies &&
            materials == other.materials && friction == other.friction && expect == other.expect &&

@@ -17,7 +17,6 @@
 #include "io/disc_scene.hpp"
 #include "io/scene.hpp"
 #include "io/scene_reader.hpp"
-#include "io/sphere_scene.hpp"
 #include "tests/io/example_scene.hpp"
 #include "tests/support/complete_scenes.hpp"
 #include "tests/support/scene_draft.hpp"
@@ -499,7 +498,7 @@ template <class T>
 class SceneMutation : public ::testing::Test {};
 
 /// The example holds every kind of key, which the scenes of the program need not do.
-using Roots = ::testing::Types<Example, Scene, ContactScene, SphereScene, DiscScene>;
+using Roots = ::testing::Types<Example, Scene, ContactScene, DiscScene>;
 TYPED_TEST_SUITE(SceneMutation, Roots);
 
 TYPED_TEST(SceneMutation, ScenesMadeFromTheSchemaAreRead) {

@@ -161,7 +161,7 @@ TEST(MatrixBody, KeepsEveryUnknownWhereNoReductionIsGiven) {
 }
 
 TEST(MatrixBody, RefusesToBeReducedAsItCannotBe) {
-  ModelParameters parameters = paper_model_by_matrices(100);
+  ModelParameters parameters = paper_model_by_matrices(220);
   auto& body = parameters.substructures["cantilever"].get<TouchedMatrixBodyParameters>();
   body.reduction.reset();
   EXPECT_THAT(message_of<ConfigError>([&] { make_model(parameters, {}); }),

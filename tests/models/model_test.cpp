@@ -223,6 +223,7 @@ TEST(Model, TooManyModesAreRefusedWithTheNumberThereIs) {
 TEST(Model, ABodyThatIsFreeToTurnIsRefused) {
   ModelParameters parameters = paper_model();
   parameters.substructures["oblique"].get<BeamParameters>().supports.end = Support::free;
+  parameters.drive->velocity = TimeCurve(0.0);  // which no support follows any more
   expect_refusal(parameters, "substructures.oblique",
                  "cannot be reduced: the stiffness of the interior");
 }
@@ -277,7 +278,7 @@ TEST(Model, RefusesAVelocityThatNothingFollows) {
       "drive.velocity: moves nothing: no body has a support that is guided, and no master is "
       "named in drive.moves; give the body that is to slide a guided support, or move a rigid "
       "or half_space master");
-  parameters.drive.velocity = TimeCurve(0.0);
+  parameters.drive->velocity = TimeCurve(0.0);
   EXPECT_NO_THROW(make_model(parameters, {}));
 }
 

@@ -93,9 +93,9 @@ TEST(RequireMemory, RefusesTheRestWithTheNumbersAndWhatToDo) {
 
 TEST(RequireMemory, RefusesResultsThatDoNotFit) {
   const MemoryPart results{"--points", "20 eigenvalues at 1000000 values", "ask for fewer", 10e9};
-  EXPECT_NO_THROW(require_memory(results, {16e9, "the memory of this machine"}));
+  EXPECT_NO_THROW(require_memory_for(results, {16e9, "the memory of this machine"}));
   try {
-    require_memory(results, {8e9, "the memory of this machine"});
+    require_memory_for(results, {8e9, "the memory of this machine"});
     FAIL() << "nothing was refused";
   } catch (const ConfigError& error) {
     EXPECT_EQ(error.problems().front().key, "--points");

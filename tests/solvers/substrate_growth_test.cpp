@@ -10,8 +10,8 @@
 
 #include "analysis/growth_field.hpp"
 #include "analysis/limit_cycle.hpp"
-#include "solvers/substrate_stepper.hpp"
 #include "tests/support/random_spheres.hpp"
+#include "tests/support/substrate_stepper.hpp"
 
 namespace stridor {
 namespace {
@@ -88,15 +88,15 @@ TEST(SubstrateGrowth, VerdictOfTheEigenvaluesIsWhatADisturbedMotionDoes) {
 }
 
 /// No shear strength and as much as the modulus; speeds and loads from end to end, both laws.
-std::vector<SphereModelParameters> extreme_spheres() {
-  std::vector<SphereModelParameters> spheres;
+std::vector<test::PaperSphere> extreme_spheres() {
+  std::vector<test::PaperSphere> spheres;
   for (const double shear : {0.0, 1.0}) {
     for (const double speed : {1e-8, 1e-4, 1.0, 1e3}) {
       for (const double load : {1e-8, 1e-4, 0.1}) {
-        for (const char* const law :
-             {SphereModelParameters::published_fit, SphereModelParameters::boundary_element}) {
+        for (const SphereContactLaw law :
+             {SphereContactLaw::published_fit, SphereContactLaw::boundary_element}) {
           spheres.push_back(paper_sphere(speed, shear));
-          spheres.back().sphere.normal_load = load;
+          spheres.back().normal_load = load;
           spheres.back().contact_law = law;
         }
       }
@@ -107,15 +107,17 @@ std::vector<SphereModelParameters> extreme_spheres() {
 
 /// c_11 = 2 ξ_eq near 900: the damping of viscoelastic friction far below the speed where that is
 /// largest.
-SphereModelParameters stiff_sphere() {
-  SphereModelParameters model = paper_sphere(std::pow(10.0, -3.45), 0.0);
-  model.sphere.normal_load = 0.1;
+test::PaperSphere stiff_sphere() {
+  test::PaperSphere model = paper_sphere(std::pow(10.0, -3.45), 0.0);
+  model.normal_load = 0.1;
   return model;
 }
 
-std::string described(const SphereModelParameters& model) {
-  return fmt::format("shear {:g} speed {:g} load {:g} law {}", *model.sphere.shear_strength,
-                     *model.sphere.speed, *model.sphere.normal_load, model.contact_law);
+std::string described(const test::PaperSphere& model) {
+  return fmt::format(
+      "shear {:g} speed {:g} load {:g} law {}", model.shear_strength, model.speed,
+      model.normal_load,
+      model.contact_law == SphereContactLaw::published_fit ? "published" : "computed");
 }
 
 TEST(SubstrateExtremes, StiffEquilibriumHasAFastEigenvalueByItself) {
@@ -133,9 +135,9 @@ TEST(SubstrateExtremes, StiffEquilibriumHasAFastEigenvalueByItself) {
 }
 
 TEST(SubstrateExtremes, ThresholdsAreFiniteAndAscend) {
-  for (SphereModelParameters model : extreme_spheres()) {
+  for (test::PaperSphere model : extreme_spheres()) {
     const auto margin = [&](double shear) {
-      model.sphere.shear_strength = shear;
+      model.shear_strength = shear;
       const SubstrateOscillator oscillator = make_sphere(model);
       return stability_margin(small_motion(oscillator, find_equilibrium(oscillator)));
     };
@@ -154,9 +156,9 @@ TEST(SubstrateExtremes, ThresholdsAreFiniteAndAscend) {
 }
 
 TEST(SubstrateExtremes, FixedStepsGoOn) {
-  std::vector<SphereModelParameters> models = extreme_spheres();
+  std::vector<test::PaperSphere> models = extreme_spheres();
   models.push_back(stiff_sphere());
-  for (const SphereModelParameters& model : models) {
+  for (const test::PaperSphere& model : models) {
     const SubstrateOscillator oscillator = make_sphere(model);
     const SubstrateEquilibrium rest = find_equilibrium(oscillator);
     for (const Integrator integrator : {Integrator::central_difference, Integrator::exact}) {
@@ -174,9 +176,9 @@ TEST(SubstrateExtremes, FixedStepsGoOn) {
 }
 
 TEST(SubstrateExtremes, MotionsSettleToACycleOrToAStableEquilibrium) {
-  std::vector<SphereModelParameters> models = extreme_spheres();
+  std::vector<test::PaperSphere> models = extreme_spheres();
   models.push_back(stiff_sphere());
-  for (const SphereModelParameters& model : models) {
+  for (const test::PaperSphere& model : models) {
     const SubstrateOscillator oscillator = make_sphere(model);
     const SubstrateEquilibrium rest = find_equilibrium(oscillator);
     CycleOptions options;

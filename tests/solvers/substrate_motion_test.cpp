@@ -141,8 +141,8 @@ TEST(SubstrateMotion, NothingBreaksAtExtremes) {
   for (const double shear : {0.0, 1.0}) {
     for (const double speed : {1e-8, 1e-3, 1e3}) {
       for (const double load : {1e-8, 1e-4, 0.1}) {
-        SphereModelParameters model = paper_sphere(speed, shear);
-        model.sphere.normal_load = load;
+        test::PaperSphere model = paper_sphere(speed, shear);
+        model.normal_load = load;
         const SubstrateOscillator oscillator = make_sphere(model);
         const SubstrateEquilibrium rest = find_equilibrium(oscillator);
         SubstrateMotion motion(oscillator, 1e-6);

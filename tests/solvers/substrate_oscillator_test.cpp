@@ -120,11 +120,11 @@ TEST(SubstrateOscillator, EigenvaluesAreThoseOfTheCommonSolvers) {
 
 TEST(SubstrateOscillator, EquivalentDampingVanishesAtTheSpeedsOfThePaper) {
   // PPH, Fig. 4: zeros of ξ_eq over the speed at F̃_n = 7.5e-3 without shear strength.
-  SphereModelParameters model = paper_sphere();
-  model.sphere.normal_load = 7.5e-3;
-  model.sphere.shear_strength = 0.0;
+  test::PaperSphere model = paper_sphere();
+  model.normal_load = 7.5e-3;
+  model.shear_strength = 0.0;
   const auto damping = [&](double speed) {
-    model.sphere.speed = speed;
+    model.speed = speed;
     const SubstrateOscillator oscillator = make_sphere(model);
     return small_motion(oscillator, find_equilibrium(oscillator)).damping(0, 0);
   };
@@ -139,13 +139,13 @@ TEST(SubstrateOscillator, NothingBreaksAtExtremes) {
   for (const double shear : {0.0, 1e-3, 1.0}) {
     for (const double speed : {1e-8, 1e-4, 1.0, 1e3}) {
       for (const double load : {1e-8, 1e-4, 0.1}) {
-        for (const char* law :
-             {SphereModelParameters::published_fit, SphereModelParameters::boundary_element}) {
-          SphereModelParameters model = paper_sphere();
+        for (const SphereContactLaw law :
+             {SphereContactLaw::published_fit, SphereContactLaw::boundary_element}) {
+          test::PaperSphere model = paper_sphere();
           model.contact_law = law;
-          model.sphere.normal_load = load;
-          model.sphere.shear_strength = shear;
-          model.sphere.speed = speed;
+          model.normal_load = load;
+          model.shear_strength = shear;
+          model.speed = speed;
           const SubstrateOscillator oscillator = make_sphere(model);
           const SubstrateEquilibrium rest = find_equilibrium(oscillator);
           ASSERT_TRUE(rest.converged);
@@ -161,34 +161,6 @@ TEST(SubstrateOscillator, NotPressedOnMeansNoEquilibrium) {
   SubstrateOscillator oscillator = make_sphere(paper_sphere());
   oscillator.load.y() = -1.0;
   EXPECT_FALSE(find_equilibrium(oscillator).converged);
-}
-
-TEST(Sphere, DimensionalNumbersSayTheSame) {
-  const SphereModelParameters ratios = paper_sphere();
-  SphereModelParameters dimensional = ratios;
-  SphereParameters& sphere = dimensional.sphere;
-  const double mass = 50.0 / 1600.0;
-  sphere.normal_load.reset();
-  sphere.normal_force = 7.5e-4 * 4.0e6 / 3.0 * 1e-4;
-  sphere.shear_strength.reset();
-  sphere.shear_stress = 1e-2 * 4.0e6 / 3.0;
-  sphere.speed.reset();
-  sphere.substrate_speed = 5e-3 * 0.01 / 0.01;
-  sphere.frequency_ratio.reset();
-  sphere.stiffness_y = 50.0;
-  sphere.coupling_ratio.reset();
-  sphere.coupling_stiffness = 50.0;
-  sphere.damping_x.reset();
-  sphere.damper_x = 0.01 * 2.0 * std::sqrt(50.0 * mass);
-  sphere.damping_y.reset();
-  sphere.damper_y = 0.01 * 2.0 * std::sqrt(50.0 * mass);
-  const SubstrateOscillator a = make_sphere(ratios);
-  const SubstrateOscillator b = make_sphere(dimensional);
-  EXPECT_TRUE(a.damping.isApprox(b.damping, 1e-14));
-  EXPECT_TRUE(a.stiffness.isApprox(b.stiffness, 1e-14));
-  EXPECT_NEAR(a.substrate_speed, b.substrate_speed, 1e-14 * a.substrate_speed);
-  EXPECT_NEAR(find_equilibrium(a).displacement.y(), find_equilibrium(b).displacement.y(), 1e-15);
-  EXPECT_NEAR(sphere_numbers(sphere).length_unit, 0.002, 1e-17);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include "solvers/linearise.hpp"
 #include "solvers/secular_eigenvalues.hpp"
 #include "solvers/substrate_motion.hpp"
-#include "solvers/substrate_stepper.hpp"
+#include "tests/support/substrate_stepper.hpp"
 #include "substructures/beam.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_sphere.hpp"
@@ -26,7 +26,7 @@ using test::message_of;
 using ::testing::HasSubstr;
 
 SubstrateOscillator sphere(double speed, double shear) {
-  SphereModelParameters model = test::paper_sphere(speed, shear);
+  test::PaperSphere model = test::paper_sphere(speed, shear);
   model.friction_normal_force = FrictionLoad::contact;
   return make_sphere(model);
 }

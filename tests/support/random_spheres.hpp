@@ -14,9 +14,9 @@ class RandomSpheres {
  public:
   explicit RandomSpheres(unsigned seed) : engine_(seed) {}
 
-  SphereModelParameters next() {
-    SphereModelParameters model = paper_sphere();
-    SphereParameters& sphere = model.sphere;
+  PaperSphere next() {
+    PaperSphere model = paper_sphere();
+    PaperSphere& sphere = model;
     sphere.normal_load = power_of_ten(-7.0, -1.5);
     sphere.shear_strength = power_of_ten(-4.0, -0.5);
     sphere.speed = power_of_ten(-5.0, 1.0);
@@ -25,8 +25,8 @@ class RandomSpheres {
     sphere.angle = uniform(0.0, 0.5 * std::numbers::pi);
     sphere.damping_x = uniform(0.0, 0.1);
     sphere.damping_y = uniform(0.0, 0.1);
-    model.contact_law = uniform(0.0, 1.0) < 0.5 ? SphereModelParameters::published_fit
-                                                : SphereModelParameters::boundary_element;
+    model.contact_law = uniform(0.0, 1.0) < 0.5 ? SphereContactLaw::published_fit
+                                                : SphereContactLaw::boundary_element;
     model.friction_normal_force =
         uniform(0.0, 1.0) < 0.5 ? FrictionLoad::applied : FrictionLoad::contact;
     return model;

@@ -9,7 +9,7 @@
 namespace stridor {
 namespace {
 
-LimitCycle cycle_of(const SphereModelParameters& model) {
+LimitCycle cycle_of(const test::PaperSphere& model) {
   const SubstrateOscillator oscillator = make_sphere(model);
   const SubstrateEquilibrium rest = find_equilibrium(oscillator);
   return find_limit_cycle(oscillator, {rest.displacement.x(), 1.01 * rest.displacement.y()},
@@ -42,10 +42,10 @@ TEST(SphereCycles, ExtremesOfTheLargestCycle) {
 
 TEST(SphereCycles, RegularisedFrictionMovesThresholdAndAmplitude) {
   // (2/π) arctan(v/(0.1 v_d)) has the threshold at 3.05e-3 instead of 2.10e-3.
-  SphereModelParameters model = test::paper_sphere(4e-4);
+  test::PaperSphere model = test::paper_sphere(4e-4);
   model.regularisation = {RegularisedSign::Kind::atan, 0.1};
   const auto margin = [&](double shear) {
-    model.sphere.shear_strength = shear;
+    model.shear_strength = shear;
     const SubstrateOscillator oscillator = make_sphere(model);
     return stability_margin(small_motion(oscillator, find_equilibrium(oscillator)));
   };
@@ -53,7 +53,7 @@ TEST(SphereCycles, RegularisedFrictionMovesThresholdAndAmplitude) {
   EXPECT_GT(margin(3.055e-3), 0.0);
   // The amplitude is too low, in proportion to v_ε, and nothing sticks.
   const auto shortfall = [](double speed) {
-    SphereModelParameters smooth = test::paper_sphere();
+    test::PaperSphere smooth = test::paper_sphere();
     smooth.regularisation = {RegularisedSign::Kind::tanh, speed};
     const LimitCycle cycle = cycle_of(smooth);
     EXPECT_EQ(cycle.status, CycleStatus::periodic);

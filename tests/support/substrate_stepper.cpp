@@ -1,4 +1,4 @@
-#include "solvers/substrate_stepper.hpp"
+#include "tests/support/substrate_stepper.hpp"
 
 #include <fmt/format.h>
 
@@ -97,16 +97,6 @@ bool SubstrateStepper::check_motion() {
     failure_ = "the motion has grown beyond all bounds; try a shorter time.step";
   }
   return failure_.empty();
-}
-
-void SubstrateStepper::save(State& state, const std::string& prefix) const {
-  propagator_->save(state, prefix + "body/");
-  state.put(prefix + "steps", static_cast<double>(steps_));
-}
-
-void SubstrateStepper::load(const State& state, const std::string& prefix) {
-  propagator_->load(state, prefix + "body/");
-  steps_ = static_cast<std::int64_t>(state.get(prefix + "steps"));
 }
 
 }  // namespace stridor

@@ -6,7 +6,6 @@
 #include <memory>
 #include <string>
 
-#include "core/state.hpp"
 #include "solvers/make_propagator.hpp"
 #include "solvers/substrate_motion.hpp"
 #include "solvers/substrate_oscillator.hpp"
@@ -49,10 +48,6 @@ class SubstrateStepper {
 
   /// Largest stable step of the body by itself; infinite for exact propagation.
   double step_limit() const { return step_limit_; }
-
-  /// As SubstrateMotion.
-  void save(State& state, const std::string& prefix) const;
-  void load(const State& state, const std::string& prefix);
 
  private:
   /// w_{n+1} under forces of the contact.

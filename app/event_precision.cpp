@@ -1,4 +1,4 @@
-#include "app/sphere_precision.hpp"
+#include "app/event_precision.hpp"
 
 #include <fmt/format.h>
 
@@ -7,15 +7,16 @@
 #include <filesystem>
 #include <limits>
 
+#include "app/cycle_motion.hpp"
 #include "app/output_folder.hpp"
 #include "app/pictures.hpp"
 #include "app/progress.hpp"
 #include "app/remark.hpp"
-#include "app/sphere_motion.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
+#include "io/initial_state.hpp"
 #include "io/panel_plot.hpp"
-#include "solvers/substrate_stepper.hpp"
+#include "solvers/simulation.hpp"
 
 namespace stridor {
 namespace {
@@ -25,72 +26,99 @@ constexpr double reference_tolerance = 1e-13;
 constexpr double check_tolerance = 1e-12;
 constexpr int num_repeats = 3;  ///< the fastest counts
 
-/// x at the samples of a scene; shorter where the motion failed.
+/// x at the samples of a scene, m; shorter where the motion failed.
 using Samples = std::vector<double>;
 
 struct Setting {
-  SphereIntegrator integrator = SphereIntegrator::event_driven;
+  Integrator integrator = Integrator::event_driven;
   double tolerance = nan;    ///< of the event-driven integrator
   int steps_per_sample = 0;  ///< of the others
   Samples x;
   double seconds = std::numeric_limits<double>::infinity();
   double error = nan;
 
-  bool is_event_driven() const { return integrator == SphereIntegrator::event_driven; }
+  bool is_event_driven() const { return integrator == Integrator::event_driven; }
 };
 
-const char* name_of(SphereIntegrator integrator) {
+const char* name_of(Integrator integrator) {
   switch (integrator) {
-    case SphereIntegrator::event_driven:
+    case Integrator::event_driven:
       return "event_driven";
-    case SphereIntegrator::central_difference:
+    case Integrator::central_difference:
       return "central_difference";
-    case SphereIntegrator::exact:
+    case Integrator::exact:
       return "exact";
   }
   return "";
 }
 
 struct Study {
-  LoadedSphereScene loaded;
-  SubstrateOscillator oscillator;
-  Eigen::Vector2d start;
-  double interval = 0.0;
+  const LoadedScene* loaded;
+  Model model;
+  SlidingOscillator oscillator;
+  double interval = 0.0;  ///< s
   std::size_t num_samples = 0;
 
   double step(const Setting& setting) const { return interval / setting.steps_per_sample; }
 };
 
+Study make_study(const LoadedScene& loaded) {
+  Study study{&loaded, build_model(loaded), {}};
+  set_initial_state(study.model.system, loaded);
+  study.oscillator = oscillator_of(loaded, study.model.system, "time.integrator");
+  (void)sliding_equilibrium(study.oscillator);
+  const Scene& scene = loaded.scene;
+  if (!scene.record) {
+    throw loaded.located(ConfigError("record",
+                                     "missing: errors are taken at every multiple of "
+                                     "record.interval"));
+  }
+  study.interval = scene.record->interval;
+  study.num_samples = static_cast<std::size_t>(scene.time->end / study.interval * (1.0 + 1e-12));
+  if (study.num_samples < 2) {
+    throw loaded.located(ConfigError("time.end", "holds less than two samples of record.interval"));
+  }
+  return study;
+}
+
 /// @param failure says why the motion failed, where it does
 Samples run_events(const Study& study, double tolerance, std::string* failure = nullptr) {
-  SubstrateMotion motion(study.oscillator, tolerance);
-  motion.start(study.start, Eigen::Vector2d::Zero());
+  const SlidingOscillator& units = study.oscillator;
+  const System& system = study.model.system;
+  SubstrateMotion motion(units.oscillator, tolerance);
+  motion.start(units.initial_displacement(system), units.initial_velocity(system));
   Samples x;
   for (std::size_t k = 1; k <= study.num_samples && !stop_requested(); ++k) {
-    if (motion.advance(static_cast<double>(k) * study.interval, false) !=
+    if (motion.advance(static_cast<double>(k) * study.interval / units.time, false) !=
         SubstrateMotion::Stop::end) {
       if (failure != nullptr)
-        *failure = fmt::format("after t = {:.6g} {}", motion.time(), motion.failure());
+        *failure =
+            fmt::format("after t = {:.6g} s {}", units.time * motion.time(), motion.failure());
       break;
     }
-    x.push_back(motion.state()[0]);
+    x.push_back(units.direction * units.length * motion.state()[0]);
   }
   return x;
 }
 
 Samples run_steps(const Study& study, const Setting& setting) {
-  const Integrator integrator = setting.integrator == SphereIntegrator::exact
-                                    ? Integrator::exact
-                                    : Integrator::central_difference;
-  SubstrateStepper stepper(study.oscillator, integrator, study.step(setting));
-  stepper.start(study.start, Eigen::Vector2d::Zero());
+  TimeParameters time = *study.loaded->scene.time;
+  time.integrator = setting.integrator;
+  time.step = study.step(setting);
   Samples x;
-  (void)stepper.advance();  // its motion is then that at t = 0
-  for (std::size_t k = 1; k <= study.num_samples && !stop_requested(); ++k) {
-    bool is_sound = true;
-    for (int i = 0; i < setting.steps_per_sample && is_sound; ++i) is_sound = stepper.advance();
-    if (!is_sound) break;
-    x.push_back(stepper.displacement().x());
+  try {
+    Simulation simulation(study.model.system, time);
+    const int row = study.model.system.contacts.front().slave_rows.x;
+    for (std::size_t k = 1; k <= study.num_samples && !stop_requested(); ++k) {
+      if (simulation.step_until(static_cast<std::int64_t>(k) * setting.steps_per_sample) !=
+          StepOutcome::done)
+        break;
+      x.push_back(simulation.displacement(study.oscillator.mass.body, row));
+    }
+  } catch (const ConfigError&) {
+    x.clear();  // the step is beyond the limit of the springs
+  } catch (const NumericalError&) {
+    x.clear();  // or beyond that of the half-space
   }
   return x;
 }
@@ -129,8 +157,7 @@ std::vector<Setting> settings_of(int points) {
     one.tolerance = std::pow(10.0, -3.0 - 8.0 * k / (points - 1));
     settings.push_back(one);
   }
-  for (const SphereIntegrator integrator :
-       {SphereIntegrator::exact, SphereIntegrator::central_difference}) {
+  for (const Integrator integrator : {Integrator::exact, Integrator::central_difference}) {
     for (int k = 0; k < points; ++k) {
       Setting one;
       one.integrator = integrator;
@@ -159,8 +186,8 @@ void draw(const Study& study, const std::vector<Setting>& settings,
   panel.y_label = "relative error of x";
   panel.x_kind = panel.y_kind = AxisKind::logarithmic;
   int colour = 0;
-  for (const SphereIntegrator integrator : {SphereIntegrator::event_driven, SphereIntegrator::exact,
-                                            SphereIntegrator::central_difference}) {
+  for (const Integrator integrator :
+       {Integrator::event_driven, Integrator::exact, Integrator::central_difference}) {
     PanelCurve line{name_of(integrator), {}, {}, Mark::line, colour};
     for (const Setting& setting : settings) {
       if (setting.integrator != integrator || !(setting.error > 0.0)) continue;
@@ -176,17 +203,17 @@ void draw(const Study& study, const std::vector<Setting>& settings,
   }
   plot_panels(
       {panel},
-      fmt::format("Error over {:g} units of time against the time that it takes; reference: "
-                  "event-driven at {:g}. {}, scene {}.",
-                  study.loaded.scene.time.end, reference_tolerance,
-                  std::filesystem::path(study.loaded.path).filename().string(),
-                  study.loaded.hash()),
+      fmt::format("Error over {:g} s against the time that it takes; reference: event-driven at "
+                  "{:g}. {}, scene {}.",
+                  study.loaded->scene.time->end, reference_tolerance,
+                  std::filesystem::path(study.loaded->path).filename().string(),
+                  study.loaded->hash()),
       figure);
 }
 
-/// @throws ConfigError if an option is for bodies only
-void refuse_options_of_bodies(const PrecisionOptions& options) {
-  const char* reason = "is for scenes of bodies";
+/// @throws ConfigError if an option is of scenes with fixed steps
+void refuse_options_of_steps(const PrecisionOptions& options) {
+  const char* reason = "is for scenes with time.step, and this one has integrator: event_driven";
   if (options.until)
     throw ConfigError("--until", fmt::format("{}; here time.end says how far", reason));
   if (!options.retain.empty()) throw ConfigError("--retain", reason);
@@ -196,18 +223,11 @@ void refuse_options_of_bodies(const PrecisionOptions& options) {
 
 }  // namespace
 
-ExitCode precision_of_sphere(const PrecisionOptions& options) {
-  refuse_options_of_bodies(options);
+ExitCode precision_of_events(const PrecisionOptions& options, const LoadedScene& loaded) {
+  refuse_options_of_steps(options);
   std::optional<double> wanted;
   if (options.tune) wanted = option_value("--tune", *options.tune, "", Range::inside(0.0, 1.0));
-  Study study{load_sphere_scene(options.scene, options.common.sets), {}, {}, 0.0, 0};
-  const SphereTimeParameters& time = study.loaded.scene.time;
-  study.oscillator = make_sphere(study.loaded.scene.model);
-  study.start = initial_displacement(study.loaded.scene, study.oscillator);
-  study.interval = time.record_interval;
-  study.num_samples = static_cast<std::size_t>(time.end / time.record_interval * (1.0 + 1e-12));
-  if (study.num_samples < 2)
-    throw ConfigError("time.end", "holds less than two samples of `record_interval`");
+  const Study study = make_study(loaded);
   const bool is_kept = !options.folder.empty();
   if (is_kept) {
     prepare_folder(options.folder, {precision_figure_name, precision_json_name},

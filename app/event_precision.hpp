@@ -1,12 +1,13 @@
-// The verb `precision` on a sphere on a viscoelastic substrate.
+// The verb `precision` on a scene with the event-driven integrator.
 #pragma once
 
 #include "app/precision.hpp"
+#include "io/scene.hpp"
 
 namespace stridor {
 
 /// Error against run time of the fixed steps and of the event-driven integrator.
 /// @throws ConfigError, FileError, NumericalError, Interrupted
-ExitCode precision_of_sphere(const PrecisionOptions& options);
+ExitCode precision_of_events(const PrecisionOptions& options, const LoadedScene& loaded);
 
 }  // namespace stridor

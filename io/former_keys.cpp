@@ -1,0 +1,90 @@
+#include "io/former_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace stridor {
+namespace {
+
+struct FormerKey {
+  const char* path;
+  const char* now;  ///< key and, where it has another unit or is computed, value
+};
+
+/// docs/format_2.md, "Sphere on a substrate". F, tau0, v, Omega, eta, alpha, xi_x and xi_y are the
+/// numbers of the paper, k_x, omega_x, R, E and tau what they are measured in.
+constexpr FormerKey former_keys[] = {
+    {"sphere.stiffness_x", "substructures.NAME.springs.horizontal.stiffness"},
+    {"sphere.natural_frequency", "substructures.NAME.masses.center.mass: =k_x/omega_x^2"},
+    {"sphere.radius", "contact.normal.radius"},
+    {"sphere.modulus", "contact.normal.modulus"},
+    {"sphere.creep_time", "contact.normal.creep_time"},
+    {"sphere.normal_load", "drive.load: =-F*E*R^2"},
+    {"sphere.normal_force", "drive.load, with a minus"},
+    {"sphere.shear_strength", "contact.friction.strength: =tau0*E"},
+    {"sphere.shear_stress", "contact.friction.strength"},
+    {"sphere.speed", "drive.velocity: =v*R/tau"},
+    {"sphere.substrate_speed", "drive.velocity"},
+    {"sphere.frequency_ratio", "substructures.NAME.springs.vertical.stiffness: =Omega^2*k_x"},
+    {"sphere.stiffness_y", "substructures.NAME.springs.vertical.stiffness"},
+    {"sphere.coupling_ratio", "substructures.NAME.springs.inclined.stiffness: =eta^2*k_x"},
+    {"sphere.coupling_stiffness", "substructures.NAME.springs.inclined.stiffness"},
+    {"sphere.angle", "substructures.NAME.springs.inclined.direction: =-alpha"},
+    {"sphere.damping_x", "substructures.NAME.springs.horizontal.damping: =2*xi_x*k_x/omega_x"},
+    {"sphere.damper_x", "substructures.NAME.springs.horizontal.damping"},
+    {"sphere.damping_y", "substructures.NAME.springs.vertical.damping: =2*xi_y*k_x/omega_x"},
+    {"sphere.damper_y", "substructures.NAME.springs.vertical.damping"},
+    {"contact_law", "contact.normal.form"},
+    {"friction_normal_force", "contact.friction.viscoelastic"},
+    {"regularisation.law", "contact.friction.regularisation.law"},
+    {"regularisation.speed", "contact.friction.regularisation.speed, in m/s"},
+    {"small_motion", "terms: [gyroscopic, friction, geometric] for undamped"},
+    {"time.step", "time.step, in s"},
+    {"time.end", "time.end, in s: =500/omega_x for 500"},
+    {"time.record_interval", "record.interval, in s"},
+    {"time.settle", "cycle.settle, in s"},
+    {"time.initial_indentation", "initial.indentation, with initial.state: equilibrium"}};
+
+/// Key paths of all values, `expect` apart.
+void collect_paths(const SceneNode& node, const std::string& path,
+                   std::vector<std::string>& paths) {
+  if (node.kind != SceneNode::Kind::map || node.entries.empty()) {
+    paths.push_back(path);
+    return;
+  }
+  for (const SceneEntry& entry : node.entries) {
+    if (path.empty() && (entry.key == "expect" || entry.key == "parameters")) continue;
+    collect_paths(entry.value, join_path(path, entry.key), paths);
+  }
+}
+
+}  // namespace
+
+void refuse_former_keys(const SceneNode& tree) {
+  if (tree.entry("substructures") != nullptr || tree.entry("sphere") == nullptr) return;
+  std::vector<std::string> paths;
+  collect_paths(tree, "", paths);
+  std::vector<Problem> problems;
+  for (const std::string& path : paths) {
+    const auto* const former = std::find_if(std::begin(former_keys), std::end(former_keys),
+                                            [&](const FormerKey& one) { return path == one.path; });
+    if (former != std::end(former_keys)) {
+      problems.push_back({path, fmt::format("is now {}", former->now), {}, 0, 0});
+    } else if (path.starts_with("sphere")) {
+      problems.push_back({path, "is no longer read", {}, 0, 0});
+    }
+  }
+  problems.push_back({"sphere",
+                      "is no longer a kind of scene of its own: a sphere on a substrate is a "
+                      "`lumped` body on the master `half_space` (docs/format_2.md; "
+                      "scenes/viscoelastic_sphere.yaml)",
+                      {},
+                      0,
+                      0});
+  locate(problems, tree);
+  sort_by_place(problems);
+  throw ConfigError(std::move(problems));
+}
+
+}  // namespace stridor

@@ -1,0 +1,12 @@
+// Keys of scenes that are no longer read, and what has taken their place.
+#pragma once
+
+#include "io/scene_tree.hpp"
+
+namespace stridor {
+
+/// Refuses a scene with the section `sphere`, by its former keys (docs/format_2.md).
+/// @throws ConfigError with a problem for each of them that is written, naming the new one
+void refuse_former_keys(const SceneNode& tree);
+
+}  // namespace stridor
