@@ -173,6 +173,23 @@ TEST(ContactProgram, TableOfAParaboloidIsTheLawOfTheMasterCurve) {
   EXPECT_NEAR(found["equilibrium"]["damping"].get<double>() /
                   expected["equilibrium"]["damping"].get<double>(),
               1.0, 0.05);
+
+  // The table stays with a scene of which a key varies.
+  const ProgramResult varied =
+      Program({"locus", scene_path("viscoelastic_sphere.yaml"), "--json", "--parameter",
+               "parameters.tau0", "--from", "1e-2", "--to", "2e-2", "--points", "2", "--set",
+               "parameters.v=0.05", "--set", "parameters.F=2e-2", "--set",
+               "contact.normal.form=" + file})
+          .run();
+  ASSERT_EQ(varied.exit_code, 0) << varied.err;
+  const Json locus = Json::parse(varied.out);
+  ASSERT_EQ(locus["eigenvalues"][0].size(), found["eigenvalues"].size());
+  for (std::size_t i = 0; i < found["eigenvalues"].size(); ++i) {
+    for (std::size_t part = 0; part < 2; ++part) {
+      EXPECT_NEAR(locus["eigenvalues"][0][i][part].get<double>(),
+                  found["eigenvalues"][i][part].get<double>(), 1e-8);
+    }
+  }
 }
 
 TEST(ContactProgram, TableOfASphereWithTwoCreepTimesDrivesTheOscillator) {
