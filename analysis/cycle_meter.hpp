@@ -23,7 +23,7 @@ class CycleMeter {
     double free = 0.0;     ///< time
   };
 
-  /// What the window shows. Nothing where no cycle is whole.
+  /// Statistics of the window; none where no cycle is whole.
   struct Reading {
     double smallest = 0.0;  ///< x; infinite where no position has been noted
     double largest = 0.0;

@@ -28,7 +28,7 @@ struct GrowthTolerance {
   double share_of_bodies = 1.0;
 };
 
-/// What the steps do at one place, the sliding held.
+/// Stability of the steps at one place of the path, with the sliding held.
 struct StepStability {
   StepVerdict verdict = StepVerdict::stable;
   double radius = 0.0;  ///< largest |z| of FrozenStep::factors()
@@ -40,7 +40,7 @@ struct StepStability {
   /// where nothing grows from step to step.
   std::optional<double> growth_of_bodies;
 
-  /// What of the growth does not belong to the bodies, 1/s.
+  /// Growth by the step alone, beyond that of the bodies, 1/s.
   double own_growth() const { return growth - std::max(0.0, growth_of_bodies.value_or(0.0)); }
 };
 

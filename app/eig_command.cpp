@@ -203,7 +203,7 @@ void print_explanation(const Json& explanation) {
   }
 }
 
-/// What eig finds out of a scene.
+/// Sliding state and spectrum of a scene.
 struct Analysis {
   SceneFamily::Member member;
   SlidingState state;  ///< empty where the model is sparse

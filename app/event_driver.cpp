@@ -52,7 +52,8 @@ void EventDriver::begin(RowSink& rows, std::function<void()> on_progress) {
   on_progress_ = std::move(on_progress);
 }
 
-/// Between steps, where the run may stop: a state there goes on as if it had not.
+/// Called between steps, where the run may stop: from a state saved there it resumes bit-identically
+/// to an uninterrupted run.
 bool EventDriver::is_to_stop() {
   if (stop_requested()) return true;
   const auto now = std::chrono::steady_clock::now();

@@ -19,7 +19,7 @@ namespace stridor {
 inline constexpr const char* precision_figure_name = "precision.png";
 inline constexpr const char* precision_json_name = "precision.json";
 
-/// What the user asked for, as written.
+/// Options of the command line, as written.
 struct PrecisionOptions {
   CommonOptions common;
   std::string scene;
@@ -82,7 +82,7 @@ struct PrecisionResult {
   const PrecisionRow& reference() const { return rows[0]; }
 };
 
-/// Runs the reference and all settings of the plan in turns, and judges them.
+/// Runs the reference and all settings of the plan interleaved, and judges them.
 /// @throws Interrupted, and NumericalError where the reference fails
 PrecisionResult measure_precision(const PrecisionStudy& study, const PrecisionOptions& options);
 

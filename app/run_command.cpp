@@ -40,7 +40,7 @@ void print_contact_gain(const Json& gain) {
   if (gain.is_null() || !gain["violated"].get<bool>()) return;
   fmt::print(
       "{:<24}contacts gave {:.4g} J to the bodies until {:.4g} s, {:.3g} of the energy "
-      "turned over; none can\n",
+      "exchanged; none can\n",
       "CONTACT WORK VIOLATED", gain["energy"].get<double>(), gain["last_time"].get<double>(),
       gain["share"].get<double>());
 }
@@ -137,7 +137,7 @@ void print_summary(const Json& results, const std::string& output) {
                results["violation_details"]["before_armed"].get<std::int64_t>());
   }
   if (!results["energy_error"].is_null()) {
-    fmt::print("{:<24}largest error {:.2g} of the energy turned over\n", "energy balance",
+    fmt::print("{:<24}largest error {:.2g} of the energy exchanged\n", "energy balance",
                results["energy_error"].get<double>());
   }
   print_contact_gain(results["contact_gain"]);

@@ -328,17 +328,6 @@ void print(const NumericKey& key, const Points& points) {
   }
 }
 
-/// The model of the scene as it is. @throws ConfigError where it cannot be run
-Model first_model(const LoadedScene& loaded, BodyCache& cache) {
-  Model model = build_model(loaded, cache);
-  try {
-    require_modes(model);
-  } catch (const ConfigError& error) {
-    throw loaded.located(error);
-  }
-  return model;
-}
-
 }  // namespace
 
 ExitCode sweep_transients(const SweepOptions& options, const LoadedScene& loaded) {
@@ -352,7 +341,7 @@ ExitCode sweep_transients(const SweepOptions& options, const LoadedScene& loaded
   // Every thread begins with the bodies of the scene: most keys leave most of them as they are.
   BodyCache cache;
   const int threads = static_cast<int>(std::min(
-      static_cast<std::size_t>(num_threads(first_model(loaded, cache), options.common.threads)),
+      static_cast<std::size_t>(num_threads(build_runnable_model(loaded, cache), options.common.threads)),
       values.size()));
   std::vector<BodyCache> caches(static_cast<std::size_t>(threads), cache);
   // As many together as vectors hold, and as much work for every thread.

@@ -381,6 +381,10 @@ LoadedScene load_resolved_scene(const std::string& text, const std::string& sour
 
 Model build_model(const LoadedScene& loaded) {
   BodyCache cache;
+  return build_runnable_model(loaded, cache);
+}
+
+Model build_runnable_model(const LoadedScene& loaded, BodyCache& cache) {
   Model model = build_model(loaded, cache);
   try {
     require_modes(model);

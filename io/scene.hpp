@@ -125,7 +125,9 @@ LoadedScene load_resolved_scene(const std::string& text, const std::string& sour
 /// The model of a scene with the points that its channels ask for, for a run.
 /// @throws ConfigError with the place of the key in the scene; also as require_modes()
 Model build_model(const LoadedScene& loaded);
-/// The same with bodies, reductions and matrices from a cache where it has them; it may be sparse.
+/// The same with bodies, reductions and matrices from a cache where it has them.
+Model build_runnable_model(const LoadedScene& loaded, BodyCache& cache);
+/// The same for eigenvalues: it may be sparse.
 Model build_model(const LoadedScene& loaded, BodyCache& cache);
 
 }  // namespace stridor

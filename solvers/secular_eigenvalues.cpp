@@ -231,12 +231,14 @@ bool send_back(std::vector<Complex>& found, std::vector<bool>& is_done,
   return is_any;
 }
 
-/// Zeros of P_h as conjugate pairs, `number` of them with one on the real axis where it is odd.
-bool find_pairs(SecularFunction& function, double height, int number, std::vector<Complex>& zeros,
-                int& evaluations) {
-  Iterates iterates;
-  iterates.pairs = starts_below(function, height, number / 2);
-  if (number % 2 == 1) iterates.singles.emplace_back(-0.1 * function.extent(), 0.0);
+enum class Settled { all_below, some_above, not_converged };
+
+/// Iterates until every zero is below the line; those above it start anew.
+/// @param movable  pairs or singles of the iterates: those that may start anew
+/// @param is_valid called after each iteration; where it returns false, that counts as not converged
+template <class IsValid>
+Settled settle_below(SecularFunction& function, double height, Iterates& iterates,
+                     std::vector<Complex>& movable, int& evaluations, const IsValid& is_valid) {
   std::vector<bool> is_done(iterates.pairs.size() + iterates.singles.size(), false);
   const std::vector<Complex> starts =
       starts_below(function, height, static_cast<int>(function.pole_heights().size()));
@@ -245,15 +247,26 @@ bool find_pairs(SecularFunction& function, double height, int number, std::vecto
     Aberth aberth(function, height);
     const bool is_converged = aberth.run(iterates, is_done);
     evaluations += aberth.evaluations();
-    if (!is_converged) return false;
-    for (Complex& s : iterates.pairs)
-      if (!turn_up(function, s)) return false;
-    const bool all_below = !send_back(iterates.pairs, is_done, starts, height, attempt);
-    zeros = iterates.pairs;
-    zeros.insert(zeros.end(), iterates.singles.begin(), iterates.singles.end());
-    if (all_below) return true;
+    if (!is_converged || !is_valid()) return Settled::not_converged;
+    if (!send_back(movable, is_done, starts, height, attempt)) return Settled::all_below;
   }
-  return false;
+  return Settled::some_above;
+}
+
+/// Zeros of P_h as conjugate pairs, `number` of them with one on the real axis where it is odd.
+bool find_pairs(SecularFunction& function, double height, int number, std::vector<Complex>& zeros,
+                int& evaluations) {
+  Iterates iterates;
+  iterates.pairs = starts_below(function, height, number / 2);
+  if (number % 2 == 1) iterates.singles.emplace_back(-0.1 * function.extent(), 0.0);
+  const Settled settled = settle_below(function, height, iterates, iterates.pairs, evaluations, [&] {
+    return std::all_of(iterates.pairs.begin(), iterates.pairs.end(),
+                       [&](Complex& s) { return turn_up(function, s); });
+  });
+  if (settled == Settled::not_converged) return false;
+  zeros = iterates.pairs;
+  zeros.insert(zeros.end(), iterates.singles.begin(), iterates.singles.end());
+  return settled == Settled::all_below;
 }
 
 /// Those of rigid and overdamped modes, ascending.
@@ -292,20 +305,9 @@ bool find_zeros(SecularFunction& function, double height, int number, std::vecto
     starts.push_back(std::conj(pairs[j]) * Complex(1.0, 1e-3));
   }
   starts.resize(static_cast<std::size_t>(number));
-  std::vector<bool> is_done(iterates.singles.size(), false);
-  const std::vector<Complex> others =
-      starts_below(function, height, static_cast<int>(function.pole_heights().size()));
-  constexpr int max_attempts = 8;
-  for (int attempt = 0; attempt < max_attempts; ++attempt) {
-    Aberth aberth(function, height);
-    const bool is_converged = aberth.run(iterates, is_done);
-    evaluations += aberth.evaluations();
-    if (!is_converged) break;
-    if (!send_back(iterates.singles, is_done, others, height, attempt))
-      return fold(function, iterates.singles, zeros);
-  }
-  fold(function, iterates.singles, zeros);
-  return false;
+  const Settled settled = settle_below(function, height, iterates, iterates.singles, evaluations,
+                                       [] { return true; });
+  return fold(function, iterates.singles, zeros) && settled == Settled::all_below;
 }
 
 /// A line above a height, between two poles, below which zeros can be counted.

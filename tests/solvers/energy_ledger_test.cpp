@@ -18,7 +18,7 @@ namespace {
 using namespace test;
 using ::testing::HasSubstr;
 
-// How closely a balance of thousands of steps closes, relative to the energy turned over. Every
+// How closely a balance of thousands of steps closes, relative to the energy exchanged. Every
 // step rounds motion and energies by a few ε = 1e-16 of themselves, with either sign. Where 1 − h c
 // is formed, h c is rounded by ε: for α = 40 1/s and h = 2e-7 s by 1e-11 of the damping loss.
 constexpr double rounding = 2e-11;
