@@ -66,7 +66,8 @@ InterruptedRun find_interrupted_run(const std::string& file) {
     throw FileError(file, checkpoint_group,
                     "there is no whole checkpoint to go on from; run the scene anew");
   }
-  check_unchanged(header, file);
+  check_unchanged(
+      {header.scene_text, header.scene_resolved, header.scene_digests, header.scene_hash}, file);
   return {file, header.scene_resolved, *std::move(checkpoint)};
 }
 

@@ -127,16 +127,16 @@ std::string scene_digests(const std::string& text, const std::vector<SceneFile>&
   return lines;
 }
 
-void check_unchanged(const RunFileHeader& header, const std::string& run_file) {
-  std::vector<SceneFile> files = read_digests(header.scene_digests);
+void check_unchanged(const KeptScene& scene, const std::string& run_file) {
+  std::vector<SceneFile> files = read_digests(scene.digests);
   const bool has_text = !files.empty() && files.front().key == text_key;
-  if (!has_text || files.front().digest != digits(fnv1a(header.scene_text))) {
+  if (!has_text || files.front().digest != digits(fnv1a(scene.text))) {
     throw FileError(run_file, "/scene/text",
                     "is not the scene with which the run began: the text or its digest "
                     "(/scene/digests) has been changed or damaged since; run the scene anew");
   }
   files.erase(files.begin());
-  if (scene_hash(header.scene_resolved, files) != header.scene_hash) {
+  if (scene_hash(scene.resolved, files) != scene.hash) {
     throw FileError(run_file, "/scene/resolved",
                     "is not the scene with which the run began: it, the digests of the files that "
                     "it names (/scene/digests) or the attribute scene_hash has been changed or "

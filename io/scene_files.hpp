@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "io/run_file.hpp"
 #include "io/scene.hpp"
 
 namespace stridor {
@@ -27,11 +26,19 @@ std::string scene_hash(const std::string& resolved, const std::vector<SceneFile>
 /// file.
 std::string scene_digests(const std::string& text, const std::vector<SceneFile>& files);
 
+/// A scene as a run file keeps it.
+struct KeptScene {
+  const std::string& text;      ///< as given
+  const std::string& resolved;  ///< with all defaults and settings
+  const std::string& digests;   ///< scene_digests()
+  const std::string& hash;      ///< scene_hash()
+};
+
 /// Checks that a run would go on with the scene with which it began: the scene in its file by its
 /// hash and digests, and the files that the scene names where they still exist. (One that is gone
 /// is refused where it is needed; the initial state is in the checkpoints, too.)
-/// @param run_file which has this header
+/// @param run_file that keeps it
 /// @throws FileError with all that differs
-void check_unchanged(const RunFileHeader& header, const std::string& run_file);
+void check_unchanged(const KeptScene& scene, const std::string& run_file);
 
 }  // namespace stridor
