@@ -77,8 +77,8 @@ TEST(SetUpProgram, DiscsAndContactsAreRefusedLikewise) {
                        "pads.elastic.mesh.along=900000"}),
               HasSubstr("pads.elastic.mesh.along"));
   EXPECT_THAT(refusal({"contact", scene_path("viscoelastic_contact.yaml"), "--set",
-                       "contact_solver.grid=4096"}),
-              HasSubstr("contact_solver.grid"));
+                       "contacts.tip.normal.solver.grid=4096"}),
+              HasSubstr("contacts.tip.normal.solver.grid"));
 }
 
 TEST(SetUpProgram, ARecordOfAnyLengthIsAllowed) {

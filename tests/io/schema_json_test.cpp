@@ -18,7 +18,7 @@
 #include <sstream>
 
 #include "core/units.hpp"
-#include "io/contact_scene.hpp"
+#include "io/all_scenes.hpp"
 #include "io/scene.hpp"
 #include "io/scene_reference.hpp"
 #include "tests/io/example_scene.hpp"
