@@ -33,14 +33,16 @@ void check_either(const NormalParameters& normal, std::vector<Problem>& problems
     add(problems, "radius",
         fmt::format("missing: needed by the normal law {}, or `profile`", name_of(normal.law)));
   }
+  if (normal.material) {
+    if (normal.modulus || normal.creep_time)
+      add(problems, "material", "cannot stand beside `modulus` and `creep_time`, which it says");
+    return;
+  }
   for (const auto& [key, number] :
        {std::pair("modulus", &normal.modulus), std::pair("creep_time", &normal.creep_time)}) {
-    if (normal.material && *number)
-      add(problems, key, "cannot stand beside `material`, which says it");
-    if (!normal.material && !*number) {
-      add(problems, key,
-          fmt::format("missing: needed by the normal law {}, or `material`", name_of(normal.law)));
-    }
+    if (*number) continue;
+    add(problems, key,
+        fmt::format("missing: needed by the normal law {}, or `material`", name_of(normal.law)));
   }
 }
 

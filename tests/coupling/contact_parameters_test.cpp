@@ -201,7 +201,7 @@ TEST(NormalParameters, ProfileAndMaterialSayMoreThanRadiusModulusAndTime) {
   normal.modulus = 1e6;
   EXPECT_THAT(complaints(normal),
               ElementsAre("radius: cannot stand beside `profile`, which has a radius",
-                          "modulus: cannot stand beside `material`, which says it"));
+                          "material: cannot stand beside `modulus` and `creep_time`, which it says"));
   normal = rubber_sphere();
   normal.material.reset();
   normal.modulus = 1e6;
