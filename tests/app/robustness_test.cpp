@@ -177,7 +177,7 @@ TEST(Robustness, NoNumberOfASceneIsAnInternalError) {
                 {"substructures.reed.thickness", "substructures.reed.length",
                  "substructures.reed.material.density", "drive.load"}},
                {"eig", "disc_and_pads.yaml", {"disc.speed", "disc.thickness"}},
-               {"eig", "examples/flutter.yaml", {"substructures.oscillator.factors.stiffness"}}};
+               {"eig", "examples/flutter.yaml", {"parameters.load"}}};
   for (const auto& [verb, scene, keys] : cases) {
     for (const char* key : keys) {
       for (const char* value : {"1e-300", "1e-29", "1e29", "1e99"}) {
