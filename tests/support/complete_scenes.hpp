@@ -157,8 +157,14 @@ class Repair {
       return any_of(paths,
                     [&](const std::string& one) { return (this->*attempt)(root, one, is_better); });
     };
+    // A key before the map that holds it, which takes along what may still be wanted of it.
+    std::vector<std::string> inside_out = below;
+    std::stable_partition(inside_out.begin(), inside_out.end(), [&](const std::string& one) {
+      const Draft* found = find_draft(root, one);
+      return found == nullptr || found->form != Draft::Form::map;
+    });
     return try_all(below, &Repair::change) || try_all(absent, &Repair::take_in) ||
-           try_all(below, &Repair::leave_out);
+           try_all(inside_out, &Repair::leave_out);
   }
 
   /// Takes in again a key that was left out.
