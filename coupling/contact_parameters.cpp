@@ -84,7 +84,9 @@ void check_laws(const ContactParameters& contact, std::vector<Problem>& problems
   }
   if (contact.friction && contact.friction->viscoelastic == FrictionLoad::applied &&
       !is_viscoelastic) {
-    refuse("friction.viscoelastic", "is of a viscoelastic normal law, and this is none");
+    refuse("normal.law",
+           "has no friction of its own, to which friction.viscoelastic belongs; take {law: "
+           "viscoelastic, ...}, or leave that out");
   }
   if (is_viscoelastic && contact.master != half_space_master)
     refuse("master", "must be `half_space` with the viscoelastic normal law, which is that of one");
