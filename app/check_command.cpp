@@ -1,18 +1,19 @@
 // stridor check: all errors of a scene at once.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "analysis/step_guard.hpp"
 #include "app/body_report.hpp"
 #include "app/command.hpp"
+#include "app/contact_study.hpp"
 #include "app/cycle_motion.hpp"
 #include "app/step_stability_report.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
-#include "io/contact_scene.hpp"
-#include "io/initial_state.hpp"
 #include "io/disc_scene.hpp"
+#include "io/initial_state.hpp"
 #include "io/scene.hpp"
 #include "io/scene_warnings.hpp"
 #include "solvers/simulation.hpp"
@@ -42,16 +43,20 @@ void refuse_stability(const CheckOptions& options) {
                     "vibrations of this one are followed by eig and locus");
 }
 
-/// Reads the scene and does what `run` does before its first step; a scene of a sliding contact is
-/// only read.
+/// Whether only `contact` can do something with a scene.
+bool is_for_contact(const Scene& scene) {
+  const auto pairs = scene.model.pairs();
+  return scene.model.substructures.empty() ||
+         (!scene.time && std::any_of(pairs.begin(), pairs.end(), [](const auto& pair) {
+           return pair.second.slave.empty() || pair.second.normal.is_solved();
+         }));
+}
+
+/// Reads the scene and does what `run` does before its first step; a scene that is only for
+/// `contact` is only read.
 Report check_scene(const CheckOptions& options) {
   SceneNode tree = read_scene_file(options.scene);
   for (const std::string& assignment : options.common.sets) set_value(tree, assignment);
-  if (is_contact_scene(tree)) {
-    const LoadedContactScene loaded = load_contact_scene(options.scene, options.common.sets);
-    refuse_stability(options);
-    return {key_warnings(ContactScene::schema(), &loaded.scene, tree)};
-  }
   if (is_disc_scene(tree)) {
     const LoadedDiscScene loaded = load_disc_scene(options.scene, options.common.sets);
     (void)loaded.model();
@@ -59,11 +64,15 @@ Report check_scene(const CheckOptions& options) {
     return {key_warnings(DiscScene::schema(), &loaded.scene, tree)};
   }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
+  if (is_for_contact(loaded.scene)) {
+    refuse_stability(options);
+    (void)viscoelastic_contacts(loaded);
+    return {key_warnings(Scene::schema(), &loaded.scene, loaded.tree)};
+  }
   if (options.stability) loaded.require_section("time", "check --stability");
   BodyCache cache;
   Model model = build_model(loaded, cache);
-  if (!loaded.scene.time)
-    return {scene_warnings(loaded, model), {}, matrix_bodies_json(model)};
+  if (!loaded.scene.time) return {scene_warnings(loaded, model), {}, matrix_bodies_json(model)};
   try {
     require_modes(model);
     const Activity preparing("preparing the first step");

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "app/command.hpp"
-#include "io/contact_scene.hpp"
+#include "io/all_scenes.hpp"
 
 namespace stridor {
 namespace {

@@ -84,13 +84,22 @@ void check_laws(const ContactParameters& contact, std::vector<Problem>& problems
   }
   if (contact.friction && contact.friction->viscoelastic == FrictionLoad::applied &&
       !is_viscoelastic) {
-    refuse("friction.viscoelastic", "is of a viscoelastic normal law, and this is none");
+    refuse("normal.law",
+           "has no friction of its own, to which friction.viscoelastic belongs; take {law: "
+           "viscoelastic, ...}, or leave that out");
   }
   if (is_viscoelastic && contact.master != half_space_master)
     refuse("master", "must be `half_space` with the viscoelastic normal law, which is that of one");
   if (!is_viscoelastic && contact.master == half_space_master)
     refuse("master", "`half_space` takes the normal law viscoelastic, which `normal` must be");
-  if (is_viscoelastic && contact.assumption != ContactAssumption::film) {
+  if (contact.slave.empty() && !is_viscoelastic) {
+    refuse("slave",
+           "is missing: only a viscoelastic normal law, which `stridor contact` evaluates, goes "
+           "without; name at least one point");
+  }
+  if (!contact.assumption && !is_viscoelastic)
+    refuse("assumption", "is missing; take subs_a, subs_b, subs_c or film");
+  if (is_viscoelastic && contact.assumption_or_default() != ContactAssumption::film) {
     refuse("assumption",
            "must be `film` with the viscoelastic normal law: it sticks, slips and lifts off");
   }
@@ -201,13 +210,15 @@ SubstrateContact make_substrate_contact(const ContactParameters& contact, double
 const Schema& ContactParameters::schema() {
   static const Schema keys =
       SchemaOf<ContactParameters>("contact")
-          .text_list("slave", &ContactParameters::slave,
-                     {.doc = "Slave: <body>.<point>, <body>.<surface> (every node of it), or a "
-                             "list of them."})
+          .text_list(
+              "slave", &ContactParameters::slave,
+              {.doc = "Slave: <body>.<point>, <body>.<surface> (every node of it), or a "
+                      "list of them. May be absent where only `contact` evaluates the normal law.",
+               .optional = true})
           .text("master", &ContactParameters::master,
                 {.doc = "Master surface: <body>.<surface>; `rigid`: a rigid straight line along +x "
                         "without end, below the slave; or `half_space`: a viscoelastic one there, "
-                        "of which the normal law is that of a sphere at the slave point."})
+                        "of which the normal law is that of an indenter at the slave point."})
           .choice("assumption", &ContactParameters::assumption,
                   {{"subs_a", ContactAssumption::subs_a},
                    {"subs_b", ContactAssumption::subs_b},
@@ -216,7 +227,8 @@ const Schema& ContactParameters::schema() {
                   {.doc = "subs_a: prescribed sliding on the undeformed master; subs_b: deformed "
                           "positions and normal; subs_c: deformed positions, undeformed normal; "
                           "all three slide persistently. film: as subs_b, with stick, slip and "
-                          "lift-off."})
+                          "lift-off; what a viscoelastic normal law has where nothing is said.",
+                   .optional = true})
           .choice(
               "on_violation", &ContactParameters::on_violation,
               {{"stop", OnViolation::stop}, {"unilateral", OnViolation::unilateral}},
@@ -233,7 +245,8 @@ const Schema& ContactParameters::schema() {
                 {.doc = "Initial position of the first slave point along the master surface, from "
                         "its first node.",
                  .unit = "m",
-                 .range = Range::non_negative()})
+                 .range = Range::non_negative(),
+                 .optional = true})
           .choice("sliding", &ContactParameters::sliding,
                   {{"moving", SlidingMode::moving}, {"frozen", SlidingMode::frozen}},
                   {.doc = "moving: the drive slides the slave; frozen: position held, friction as "
@@ -255,10 +268,6 @@ const Schema& ContactParameters::schema() {
                    {.doc = "Friction law. A viscoelastic normal law has friction of its own, to "
                            "which this adds that of the interface.",
                     .optional = true})
-          .check([](const ContactParameters& contact, std::vector<Problem>& problems) {
-            if (contact.slave.empty())
-              problems.push_back({"slave", "is an empty list; name at least one point", {}, 0, 0});
-          })
           .check(check_laws);
   return keys;
 }

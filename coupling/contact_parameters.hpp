@@ -57,9 +57,10 @@ inline constexpr const char* guided_supports = "guided";
 
 /// One pair: slave points on a master surface.
 struct ContactParameters {
-  std::vector<std::string> slave;  ///< "<body>.<point>" or "<body>.<surface>" (every node of it)
+  /// "<body>.<point>" or "<body>.<surface>" (every node of it); empty where only its law is wanted.
+  std::vector<std::string> slave;
   std::string master;              ///< "<body>.<surface>", rigid_master or half_space_master
-  ContactAssumption assumption = ContactAssumption::subs_b;
+  std::optional<ContactAssumption> assumption;  ///< absent: film, of a viscoelastic normal law
   OnViolation on_violation = OnViolation::stop;
   std::optional<double> armed_from;  ///< s; the drive's ramp where absent
   double start = 0.0;  ///< of the first slave point, along the master from its first node, m
@@ -69,6 +70,12 @@ struct ContactParameters {
   NormalParameters normal;
   std::optional<FrictionParameters> friction;  ///< may be absent with a viscoelastic normal law
   static const Schema& schema();
+
+  /// The assumption, or the one that goes with the normal law.
+  ContactAssumption assumption_or_default() const {
+    return assumption.value_or(normal.law == NormalLaw::viscoelastic ? ContactAssumption::film
+                                                                      : ContactAssumption::subs_b);
+  }
 };
 
 struct DriveParameters {

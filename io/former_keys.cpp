@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace stridor {
 namespace {
@@ -59,10 +62,13 @@ void collect_paths(const SceneNode& node, const std::string& path,
   }
 }
 
-}  // namespace
+[[noreturn]] void refuse(std::vector<Problem> problems, const SceneNode& tree) {
+  locate(problems, tree);
+  sort_by_place(problems);
+  throw ConfigError(std::move(problems));
+}
 
-void refuse_former_keys(const SceneNode& tree) {
-  if (tree.entry("substructures") != nullptr || tree.entry("sphere") == nullptr) return;
+void refuse_sphere(const SceneNode& tree) {
   std::vector<std::string> paths;
   collect_paths(tree, "", paths);
   std::vector<Problem> problems;
@@ -82,9 +88,92 @@ void refuse_former_keys(const SceneNode& tree) {
                       {},
                       0,
                       0});
-  locate(problems, tree);
-  sort_by_place(problems);
-  throw ConfigError(std::move(problems));
+  refuse(std::move(problems), tree);
+}
+
+/// docs/format_2.md, "Sliding contact on rubber".
+constexpr std::pair<const char*, const char*> former_sections[] = {
+    {"material", "contacts.NAME.normal.material"},
+    {"profile", "contacts.NAME.normal.profile"},
+    {"contact_solver", "contacts.NAME.normal.solver"}};
+
+void refuse_sliding_contact(const SceneNode& tree) {
+  std::vector<Problem> problems;
+  for (const auto& [section, now] : former_sections) {
+    const SceneEntry* const entry = tree.entry(section);
+    if (entry == nullptr) continue;
+    std::vector<std::string> paths;
+    collect_paths(entry->value, section, paths);
+    for (const std::string& path : paths) {
+      problems.push_back({path,
+                          fmt::format("is now {}{}", now, path.substr(std::string(section).size())),
+                          {},
+                          0,
+                          0});
+    }
+  }
+  problems.push_back({problems.front().key.substr(0, problems.front().key.find('.')),
+                      "is no longer of a kind of scene of its own: NAME is a contact with `master: "
+                      "half_space` and `normal: {law: viscoelastic, form: solve}` "
+                      "(docs/format_2.md; scenes/viscoelastic_contact.yaml)",
+                      {},
+                      0,
+                      0});
+  refuse(std::move(problems), tree);
+}
+
+/// Keys of a body of type `matrices`; docs/format_2.md, "Matrices with factors".
+constexpr FormerKey former_keys_of_matrices[] = {
+    {"factors.damping", "terms: [{role: damping, matrix: ..., factor: ...}], for `damping`"},
+    {"factors.gyroscopic",
+     "terms: [{role: gyroscopic, matrix: ..., factor: ...}], for `gyroscopic`"},
+    {"factors.stiffness", "terms: [{role: stiffness, matrix: ..., factor: ...}], for `stiffness`"},
+    {"factors.circulatory",
+     "terms: [{role: circulatory, matrix: ..., factor: ...}], for `circulatory`"},
+    {"load",
+     "a parameter of the scene, `parameters: {load: ...}`, of which factors are expressions"},
+    {"load_damping", "terms: [{role: velocity, matrix: ..., factor: =load}]"},
+    {"load_stiffness", "terms: [{role: position, matrix: ..., factor: =load}]"}};
+
+void refuse_matrices(const SceneNode& bodies, const SceneNode& tree) {
+  std::vector<Problem> problems;
+  for (const SceneEntry& body : bodies.entries) {
+    const SceneEntry* const type = body.value.entry("type");
+    if (type == nullptr || type->value.text != "matrices") continue;
+    for (const char* const section : {"factors", "load", "load_damping", "load_stiffness"}) {
+      const SceneEntry* const entry = body.value.entry(section);
+      if (entry == nullptr) continue;
+      std::vector<std::string> paths;
+      collect_paths(entry->value, section, paths);
+      for (const std::string& path : paths) {
+        const auto* const former =
+            std::find_if(std::begin(former_keys_of_matrices), std::end(former_keys_of_matrices),
+                         [&](const FormerKey& one) { return path == one.path; });
+        const bool is_known = former != std::end(former_keys_of_matrices);
+        problems.push_back(
+            {join_path("substructures." + body.key, path),
+             is_known ? fmt::format("is now {}", former->now) : std::string("is no longer read"),
+             {},
+             0,
+             0});
+      }
+    }
+  }
+  if (!problems.empty()) refuse(std::move(problems), tree);
+}
+
+}  // namespace
+
+void refuse_former_keys(const SceneNode& tree) {
+  if (const SceneEntry* const bodies = tree.entry("substructures")) {
+    refuse_matrices(bodies->value, tree);
+    return;
+  }
+  if (tree.entry("sphere") != nullptr) refuse_sphere(tree);
+  const bool is_former =
+      std::any_of(std::begin(former_sections), std::end(former_sections),
+                  [&](const auto& section) { return tree.entry(section.first) != nullptr; });
+  if (is_former) refuse_sliding_contact(tree);
 }
 
 }  // namespace stridor

@@ -20,9 +20,18 @@ constexpr std::pair<const char*, MatrixText P::*> matrices_of_body[] = {
     {"damping", &P::damping},
     {"gyroscopic", &P::gyroscopic},
     {"stiffness", &P::stiffness},
-    {"circulatory", &P::circulatory},
-    {"load_damping", &P::load_damping},
-    {"load_stiffness", &P::load_stiffness}};
+    {"circulatory", &P::circulatory}};
+
+std::string key_of_term(std::size_t index) {
+  return fmt::format("terms.{}.matrix", index);
+}
+
+/// Calls with the key below the body and the text of every matrix that it may name.
+template <class Body, class Visit>
+void for_each_matrix(Body& body, const Visit& visit) {
+  for (const auto& [name, member] : matrices_of_body) visit(std::string(name), body.*member);
+  for (std::size_t i = 0; i < body.terms.size(); ++i) visit(key_of_term(i), body.terms[i].matrix);
+}
 
 /// Whether a matrix is the name of a file, not rows.
 bool is_file(const MatrixText& text) {
@@ -30,10 +39,13 @@ bool is_file(const MatrixText& text) {
          text.front().find_first_not_of("+-.eE0123456789 \t") != std::string::npos;
 }
 
-/// Whether two bodies name the same files and have the same rows; their factors may differ.
+/// Whether two bodies name the same files and have the same rows; factors may differ.
 bool have_same_matrices(const P& one, const P& other) {
   return std::all_of(std::begin(matrices_of_body), std::end(matrices_of_body),
-                     [&](const auto& named) { return one.*named.second == other.*named.second; });
+                     [&](const auto& named) { return one.*named.second == other.*named.second; }) &&
+         std::equal(
+             one.terms.begin(), one.terms.end(), other.terms.begin(), other.terms.end(),
+             [](const auto& a, const auto& b) { return a.role == b.role && a.matrix == b.matrix; });
 }
 
 /// The matrices of one body, with checks that name their keys.
@@ -59,18 +71,24 @@ class MatrixLoader {
     parts.stiffness = matrix("stiffness", body.stiffness, n);
     parts.circulatory = matrix("circulatory", body.circulatory, n);
     expect_symmetry("circulatory", parts.circulatory, -1.0);
-    parts.load_damping = matrix("load_damping", body.load_damping, n);
-    parts.load_stiffness = matrix("load_stiffness", body.load_stiffness, n);
+    for (std::size_t i = 0; i < body.terms.size(); ++i) {
+      const MatrixRole role = body.terms[i].role;
+      const std::string key = key_of_term(i);
+      if (body.terms[i].matrix.empty()) fail(key, "is empty, expected a matrix");
+      parts.terms.push_back(matrix(key, body.terms[i].matrix, n));
+      if (role == MatrixRole::gyroscopic || role == MatrixRole::circulatory)
+        expect_symmetry(key, parts.terms.back(), -1.0);
+    }
     return parts;
   }
 
  private:
-  [[noreturn]] void fail(const char* name, const std::string& message) const {
+  [[noreturn]] void fail(const std::string& name, const std::string& message) const {
     throw ConfigError(key_ + "." + name, message);
   }
 
   /// @param size expected; 0: any
-  SparseMatrix matrix(const char* name, const MatrixText& text, Eigen::Index size) const {
+  SparseMatrix matrix(const std::string& name, const MatrixText& text, Eigen::Index size) const {
     if (text.empty() && size == 0) fail(name, "is empty, expected a matrix");
     if (text.empty()) return SparseMatrix(size, size);
     SparseMatrix read;
@@ -93,7 +111,7 @@ class MatrixLoader {
   }
 
   /// @param sign 1 symmetric, −1 skew-symmetric
-  void expect_symmetry(const char* name, const SparseMatrix& matrix, double sign) const {
+  void expect_symmetry(const std::string& name, const SparseMatrix& matrix, double sign) const {
     const SparseMatrix transposed = matrix.transpose();
     const SparseMatrix difference = matrix - sign * transposed;
     if (difference.norm() > 1e-12 * matrix.norm())
@@ -116,22 +134,20 @@ std::vector<std::pair<std::string, std::string>> files_of(const std::string& key
   const auto* given = dynamic_cast<const TouchedMatrixBodyParameters*>(&body);
   if (given == nullptr) return {};
   std::vector<std::pair<std::string, std::string>> files;
-  for (const auto& [name, member] : matrices_of_body) {
-    const MatrixText& text = given->body.*member;
+  for_each_matrix(given->body, [&](const std::string& name, const MatrixText& text) {
     if (is_file(text)) files.emplace_back(key + "." + name, text.front());
-  }
+  });
   return files;
 }
 
 void make_files_absolute(const std::string& key, const SceneNode& tree, BodyParameters& body) {
   auto* given = dynamic_cast<TouchedMatrixBodyParameters*>(&body);
   if (given == nullptr) return;
-  for (const auto& [name, member] : matrices_of_body) {
-    MatrixText& text = given->body.*member;
-    if (!is_file(text)) continue;
+  for_each_matrix(given->body, [&](const std::string& name, MatrixText& text) {
+    if (!is_file(text)) return;
     const std::string path = path_of_file(tree, key + "." + name, text.front());
     text.front() = std::filesystem::absolute(path).lexically_normal().string();
-  }
+  });
 }
 
 void read_files(const std::string& key, const SceneNode& tree, BodyParameters& body,

@@ -201,7 +201,10 @@ bool OscillatorFamily::are_laws_sound() const {
   const auto check = [&](const Schema& schema, const void* object) {
     for (const auto& one : schema.checks) one(object, problems);
   };
-  check(NormalParameters::schema(), &pair().normal);
+  const NormalParameters& normal = pair().normal;
+  check(NormalParameters::schema(), &normal);
+  if (normal.profile) check(ProfileParameters::schema(), &*normal.profile);
+  if (normal.material) check(ViscoelasticMaterial::schema(), &*normal.material);
   if (pair().friction) check(FrictionParameters::schema(), &*pair().friction);
   check(ContactParameters::schema(), &pair());
   return problems.empty();

@@ -11,10 +11,9 @@
 #include "core/memory.hpp"
 #include "core/suggestion.hpp"
 #include "io/channels.hpp"
-#include "io/contact_scene.hpp"
+#include "io/disc_scene.hpp"
 #include "io/former_keys.hpp"
 #include "io/law_table_file.hpp"
-#include "io/disc_scene.hpp"
 #include "io/matrix_reader.hpp"
 #include "io/resolved_scene.hpp"
 #include "io/scene_files.hpp"
@@ -226,7 +225,8 @@ const Schema& Expectation::schema() {
   static const Schema keys =
       SchemaOf<Expectation>("expect")
           .text("result", &Expectation::result,
-                {.doc = "Path of the number in the JSON object of `run`, e.g. contact_force.min."})
+                {.doc = "Path of the number in the JSON object of `run` or `contact`, e.g. "
+                        "contact_force.min or rows.0.force."})
           .real("value", &Expectation::value, {.doc = "What it should be, SI."})
           .real("tolerance", &Expectation::tolerance,
                 {.doc = "Largest allowed absolute difference.", .range = Range::non_negative()});
@@ -254,6 +254,11 @@ const Schema& Scene::schema() {
                    {.doc = "How `cycle` and sweeps of cycles seek the periodic motion of one mass "
                            "that moves in x and y on a half_space.",
                     .optional = true})
+          .section(
+              "sliding", &Scene::sliding,
+              {.doc = "Where `contact` evaluates the viscoelastic normal laws; its options win "
+                      "over it.",
+               .optional = true})
           .section("record", &Scene::record,
                    {.doc = "What is written to the run file.", .optional = true})
           .section("measure", &Scene::measure,
@@ -264,8 +269,11 @@ const Schema& Scene::schema() {
                     .optional = true})
           .section("checkpoint", &Scene::checkpoint,
                    {.doc = "When the state of a run is stored.", .optional = true})
-          .section_list("expect", &Scene::expect,
-                        {.doc = "Results that `run --verify` checks.", .optional = true})
+          .section_list(
+              "expect", &Scene::expect,
+              {.doc = "Results that `run --verify` checks, or `contact --verify` where the scene "
+                      "has a section `sliding`.",
+               .optional = true})
           .check(check_spectrogram)
           .check(check_terms)
           .check(check_rates);
@@ -327,6 +335,30 @@ void read_named_files(LoadedScene& loaded) {
   });
 }
 
+/// @throws ConfigError if the scene, or a contact of it, is only one for `contact` to evaluate
+void require_bodies(const LoadedScene& loaded) {
+  const ModelParameters& model = loaded.scene.model;
+  if (model.substructures.empty()) {
+    throw ConfigError("substructures",
+                      "is missing: without bodies there are only normal laws, which the verb "
+                      "`contact` evaluates");
+  }
+  const auto pairs = model.pairs();
+  for (const auto& [name, pair] : pairs) {
+    const std::string key = model.contact ? name : "contacts." + name;
+    if (pair.slave.empty()) {
+      throw ConfigError(key + ".slave",
+                        "is missing: a contact without it is only one for the verb `contact`");
+    }
+    if (!pair.normal.is_solved()) continue;
+    throw ConfigError(
+        key + ".normal.form",
+        fmt::format("solve computes every contact by boundary elements, of which bodies in motion "
+                    "need a table: `stridor contact {} {}--table law.h5`, and then `form: law.h5`",
+                    loaded.path, pairs.size() > 1 ? fmt::format("--contact {} ", name) : ""));
+  }
+}
+
 }  // namespace
 
 ConfigError LoadedScene::located(const ConfigError& error) const {
@@ -352,11 +384,6 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
   loaded.tree = read_scene_file(path);
   loaded.text = loaded.tree.document;
   for (const std::string& assignment : sets) set_value(loaded.tree, assignment);
-  if (is_contact_scene(loaded.tree)) {
-    throw loaded.located(
-        ConfigError(loaded.tree.entry("profile") != nullptr ? "profile" : "contact_solver",
-                    "belongs to a scene of a sliding contact, which the verb `contact` computes"));
-  }
   refuse_former_keys(loaded.tree);
   if (is_disc_scene(loaded.tree)) {
     throw loaded.located(ConfigError("disc",
@@ -397,6 +424,7 @@ Model build_runnable_model(const LoadedScene& loaded, BodyCache& cache) {
 Model build_model(const LoadedScene& loaded, BodyCache& cache) {
   try {
     const Scene& scene = loaded.scene;
+    require_bodies(loaded);
     std::vector<std::pair<PointName, std::string>> observed;
     std::vector<Channel> channels;
     if (scene.record) channels = parse_channels(*scene.record, scene.model);

@@ -7,6 +7,7 @@
 
 #include "analysis/spectrogram.hpp"
 #include "io/scene_tree.hpp"
+#include "io/sliding_points.hpp"
 #include "models/model.hpp"
 #include "solvers/simulation.hpp"
 
@@ -56,7 +57,7 @@ struct SpectrogramSection {
 
 /// One expected result of a scene, checked by `run --verify`.
 struct Expectation {
-  std::string result;  ///< path in the JSON object of the run, e.g. "contact_force.min"
+  std::string result;  ///< path in the JSON object of a verb, e.g. "contact_force.min"
   double value = 0.0;
   double tolerance = 0.0;  ///< largest allowed |result − value|
   static const Schema& schema();
@@ -75,6 +76,7 @@ struct Scene {
   std::optional<TimeParameters> time;             ///< needed by what marches in time
   std::optional<std::vector<std::string>> terms;  ///< absent: all
   std::optional<CycleParameters> cycle;
+  std::optional<SlidingPoints> sliding;  ///< of `contact`
   std::optional<RecordParameters> record;
   MeasureParameters measure;
   std::optional<SpectrogramSection> spectrogram;

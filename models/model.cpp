@@ -623,7 +623,9 @@ const Schema& ModelParameters::schema() {
   static const Schema keys =
       SchemaOf<ModelParameters>("model")
           .named_types("substructures", &ModelParameters::substructures, "type",
-                       {.doc = "The bodies, by name."})
+                       {.doc = "The bodies, by name; may be absent where only `contact` evaluates "
+                               "the normal laws.",
+                        .optional = true})
           .section("contact", &ModelParameters::contact,
                    {.doc = "The contact pair, where there is one only.", .optional = true})
           .named_sections("contacts", &ModelParameters::contacts,
@@ -634,6 +636,9 @@ const Schema& ModelParameters::schema() {
           .section("initial", &ModelParameters::initial,
                    {.doc = "State at the start of a run.", .optional = true})
           .check([](const ModelParameters& model, std::vector<Problem>& problems) {
+            if (model.substructures.empty() && model.pairs().empty())
+              problems.push_back(
+                  {"substructures", "is missing: there is nothing to move", {}, 0, 0});
             if (model.contact && !model.contacts.empty()) {
               problems.push_back(
                   {"contacts",
@@ -775,7 +780,7 @@ Model make_model(const ModelParameters& parameters,
                                       k + 1, gap, surface.name));
       }
       point.first_segment = segment;
-      point.assumption = pair.parameters->assumption;
+      point.assumption = pair.parameters->assumption_or_default();
       if (pair.parameters->friction) point.friction = make_friction_law(*pair.parameters->friction);
       point.penalty = pair.parameters->normal.stiffness;
       if (pair.parameters->normal.law == NormalLaw::viscoelastic)

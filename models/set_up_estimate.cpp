@@ -162,12 +162,12 @@ SetUpEstimate estimate_set_up(const DiscModelParameters& model) {
   return whole;
 }
 
-SetUpEstimate estimate_set_up(const SlidingContactParameters& contact) {
+SetUpEstimate estimate_set_up(const SlidingContactParameters& contact, const std::string& key) {
   const auto cells = static_cast<double>(contact.grid);
   SetUpEstimate estimate;
   constexpr double numbers_per_cell = 45.0;
   estimate.parts.push_back(
-      {"contact_solver.grid",
+      {key + ".grid",
        fmt::format("fields and influence coefficients of {0:.0f} x {0:.0f} cells", cells),
        "take a coarser grid", number * numbers_per_cell * cells * cells});
   return estimate;

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/memory.hpp"
+#include "coupling/sliding_contact_parameters.hpp"
 #include "models/disc_parameters.hpp"
 #include "models/model.hpp"
-#include "solvers/sliding_contact.hpp"
 #include "substructures/reduction_size.hpp"
 
 namespace stridor {
@@ -40,7 +40,8 @@ SetUpEstimate estimate_reduction(const ReductionSize& size, const std::string& k
 SetUpEstimate estimate_set_up(const ModelParameters& model);
 SetUpEstimate estimate_set_up(const DiscModelParameters& model);
 /// Of boundary elements.
-SetUpEstimate estimate_set_up(const SlidingContactParameters& contact);
+/// @param key of their settings, e.g. "contact.normal.solver"
+SetUpEstimate estimate_set_up(const SlidingContactParameters& contact, const std::string& key);
 
 /// @throws ConfigError naming the largest part, if all of them do not fit
 void require_memory(const SetUpEstimate& estimate, const MemoryLimit& limit);

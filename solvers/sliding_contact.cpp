@@ -35,33 +35,13 @@ const SlidingContactParameters& checked(const SlidingContactParameters& paramete
 
 }  // namespace
 
-const Schema& SlidingContactParameters::schema() {
-  static const Schema keys =
-      SchemaOf<SlidingContactParameters>("contact_solver")
-          .integer("grid", &SlidingContactParameters::grid,
-                   {.doc = "Cells along a side of the square window; even.",
-                    .optional = true,
-                    .range = Range::between(16, 4096)})
-          .real("window", &SlidingContactParameters::window,
-                {.doc = "Half-width of the window over the contact radius of an elastic "
-                        "half-space at the same indentation.",
-                 .range = {1.0, 10.0, true, false},
-                 .optional = true})
-          .real("tolerance", &SlidingContactParameters::tolerance,
-                {.doc = "Largest r.m.s. deviation of the surface from the indenter in the contact, "
-                        "over the indentation.",
-                 .range = Range::inside(0.0, 0.1),
-                 .optional = true})
-          .integer("max_rounds", &SlidingContactParameters::max_rounds,
-                   {.doc = "Most sets of contact cells that are tried; where they do not suffice "
-                           "the result says that it did not converge.",
-                    .optional = true,
-                    .range = Range::between(1, 1e6)})
-          .check([](const SlidingContactParameters& solver, std::vector<Problem>& problems) {
-            if (solver.grid % 2 != 0)
-              problems.push_back({"grid", fmt::format("{} is not even", solver.grid), {}, 0, 0});
-          });
-  return keys;
+CreepLengths creep_lengths(const ViscoelasticMaterial& material, double radius, double speed) {
+  CreepLengths lengths;
+  for (std::size_t k = 0; k < material.creep_times.size(); ++k) {
+    const double ratio = material.creep_times[k] / material.creep_times.front();
+    lengths.push_back({material.creep_weight(k), speed * radius * ratio});
+  }
+  return lengths;
 }
 
 std::vector<std::string> SlidingContactResult::remarks() const {

@@ -7,26 +7,23 @@
 #include <string>
 #include <vector>
 
-#include "core/schema.hpp"
 #include "coupling/indenter_profile.hpp"
+#include "coupling/sliding_contact_parameters.hpp"
 #include "solvers/contact_complementarity.hpp"
 #include "solvers/contact_edge.hpp"
 #include "solvers/half_space_convolution.hpp"
+#include "substructures/viscoelastic_material.hpp"
 
 namespace stridor {
-
-/// Numerical settings of a SlidingContact.
-struct SlidingContactParameters {
-  std::int64_t grid = 128;        ///< N, cells a side of the window, even, 16 to 4096
-  double window = 1.1;            ///< half-width of the window over the elastic contact radius, > 1
-  double tolerance = 1e-7;        ///< residual displacement over the indentation, in (0, 0.1)
-  std::int64_t max_rounds = 100;  ///< sets of contact cells that are tried, ≥ 1
-  static const Schema& schema();
-};
 
 /// One creep time as it acts on a contact: share w_k of the compliance 1/E_0 and v τ_k in m, which
 /// is negative for sliding towards −x.
 using CreepLengths = std::vector<SlidingCreep>;
+
+/// Shares and lengths of the creep times of a material at a dimensionless speed.
+/// @param radius R, m
+/// @param speed  v̂ = v τ_1/R, of either sign
+CreepLengths creep_lengths(const ViscoelasticMaterial& material, double radius, double speed);
 
 /// Result at one speed and indentation, and how far it can be trusted. Where the solver diverged,
 /// force, area and friction are NaN.

@@ -32,17 +32,32 @@ int dof_of(std::int64_t number, Eigen::Index num_dofs, const std::string& key) {
 
 }  // namespace
 
-const Schema& MatrixFactors::schema() {
-  using P = MatrixFactors;
-  const auto factor = [](const char* doc) { return RealKey{.doc = doc, .optional = true}; };
-  static const Schema keys = SchemaOf<P>("matrix_factors")
-                                 .real("damping", &P::damping, factor("Factor of `damping`."))
-                                 .real("gyroscopic", &P::gyroscopic,
-                                       factor("Factor of `gyroscopic`: a speed, if that is of a "
-                                              "unit speed."))
-                                 .real("stiffness", &P::stiffness, factor("Factor of `stiffness`."))
-                                 .real("circulatory", &P::circulatory,
-                                       factor("Factor of `circulatory`: friction, for instance."));
+bool is_of_velocity(MatrixRole role) {
+  return role == MatrixRole::damping || role == MatrixRole::gyroscopic ||
+         role == MatrixRole::velocity;
+}
+
+const Schema& MatrixTermParameters::schema() {
+  using P = MatrixTermParameters;
+  static const Schema keys =
+      SchemaOf<P>("matrix_term")
+          .choice(
+              "role", &P::role,
+              {{"damping", MatrixRole::damping},
+               {"gyroscopic", MatrixRole::gyroscopic},
+               {"stiffness", MatrixRole::stiffness},
+               {"circulatory", MatrixRole::circulatory},
+               {"velocity", MatrixRole::velocity},
+               {"position", MatrixRole::position}},
+              {.doc = "What it adds to: damping, gyroscopic (skew-symmetric) or velocity (any) to "
+                      "the matrix of velocities; stiffness, circulatory (skew-symmetric) or "
+                      "position (any) to that of displacements."})
+          .text_rows("matrix", &P::matrix,
+                     {.doc = "The matrix: a Matrix Market file, from the folder of the scene, or a "
+                             "list of rows, each a list or a text of numbers."})
+          .real("factor", &P::factor,
+                {.doc = "What it is multiplied with; to be varied, an expression of a parameter.",
+                 .optional = true});
   return keys;
 }
 
@@ -61,17 +76,23 @@ const Schema& MatrixBodyParameters::schema() {
           .text_rows("damping", &P::damping, matrix("Damping matrix.", true))
           .text_rows("gyroscopic", &P::gyroscopic,
                      matrix("Gyroscopic matrix, skew-symmetric.", true))
-          .text_rows("stiffness", &P::stiffness, matrix("Stiffness matrix.", false))
+          .text_rows("stiffness", &P::stiffness,
+                     matrix("Stiffness matrix; may be absent where a term says it.", true))
           .text_rows("circulatory", &P::circulatory,
                      matrix("Circulatory matrix, skew-symmetric.", true))
-          .section("factors", &P::factors,
-                   {.doc = "Factors of these matrices, each a key that can be varied.",
-                    .optional = true})
-          .real("load", &P::load, {.doc = "Factor of the matrices below.", .optional = true})
-          .text_rows("load_damping", &P::load_damping,
-                     matrix("What one unit of load adds to the velocity matrix.", true))
-          .text_rows("load_stiffness", &P::load_stiffness,
-                     matrix("What one unit of load adds to the position matrix.", true));
+          .section_list("terms", &P::terms,
+                        {.doc = "Matrices with factors, added to these.", .optional = true})
+          .check([](const P& body, std::vector<Problem>& problems) {
+            const bool has_position =
+                std::any_of(body.terms.begin(), body.terms.end(),
+                            [](const auto& term) { return !is_of_velocity(term.role); });
+            if (!body.stiffness.empty() || has_position) return;
+            problems.push_back({"stiffness",
+                                "is missing; give it, or a term of the role stiffness or position",
+                                {},
+                                0,
+                                0});
+          });
   return keys;
 }
 
@@ -142,14 +163,15 @@ const Schema& TouchedMatrixBodyParameters::schema() {
 }
 
 SparseSystem sum(const NamedMatrices& matrices, const MatrixBodyParameters& body) {
-  const MatrixFactors& factors = body.factors;
   SparseSystem system;
   system.mass = matrices.mass;
-  system.velocity = factors.damping * matrices.damping + factors.gyroscopic * matrices.gyroscopic +
-                    body.load * matrices.load_damping;
-  system.position = factors.stiffness * matrices.stiffness +
-                    factors.circulatory * matrices.circulatory +
-                    body.load * matrices.load_stiffness;
+  system.velocity = matrices.damping + matrices.gyroscopic;
+  system.position = matrices.stiffness + matrices.circulatory;
+  for (std::size_t i = 0; i < body.terms.size(); ++i) {
+    SparseMatrix& to = is_of_velocity(body.terms[i].role) ? system.velocity : system.position;
+    const SparseMatrix before = to;
+    to = before + body.terms[i].factor * matrices.terms.at(i);
+  }
   return system;
 }
 
@@ -230,7 +252,11 @@ ReductionSize TouchedMatrixBodyParameters::reduction_size(double interface_nodes
   ReductionSize size;
   if (!matrices || !reduction) return size;
   const auto n = static_cast<double>(matrices->mass.rows());
-  const auto entries = static_cast<double>(matrices->stiffness.nonZeros());
+  auto entries = static_cast<double>(matrices->stiffness.nonZeros());
+  for (std::size_t i = 0; i < matrices->terms.size(); ++i) {
+    if (!is_of_velocity(body.terms[i].role))
+      entries += static_cast<double>(matrices->terms[i].nonZeros());
+  }
   size.interface = size.watched = std::min(2.0 * interface_nodes, n);
   size.unknowns = n - size.interface;
   size.modes = reduction->fixed_interface_modes;

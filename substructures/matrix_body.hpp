@@ -18,26 +18,35 @@ namespace stridor {
 /// numbers ("1 0 -2.5"). Nothing where it is zero.
 using MatrixText = std::vector<std::string>;
 
-/// Numbers by which matrices are multiplied, to be varied.
-struct MatrixFactors {
-  double damping = 1.0;
-  double gyroscopic = 1.0;
-  double stiffness = 1.0;
-  double circulatory = 1.0;
+/// Which matrix of a body a term adds to.
+enum class MatrixRole {
+  damping,      ///< of q̇
+  gyroscopic,   ///< of q̇, skew-symmetric
+  stiffness,    ///< of q
+  circulatory,  ///< of q, skew-symmetric
+  velocity,     ///< of q̇, of any kind
+  position,     ///< of q, of any kind
+};
+
+/// Whether a matrix is multiplied with velocities, else with displacements.
+bool is_of_velocity(MatrixRole role);
+
+/// A matrix with a factor, which is added to those of the body.
+struct MatrixTermParameters {
+  MatrixRole role = MatrixRole::damping;
+  MatrixText matrix;
+  double factor = 1.0;
   static const Schema& schema();
 };
 
-/// M q̈ + (d D + g G) q̇ + (k K + n N) q + p (D₁ q̇ + K₁ q) = 0   (HS (28); docs/theory.md, 10.3)
+/// M q̈ + (D + G + Σ f_i D_i) q̇ + (K + N + Σ f_j K_j) q = 0   (HS (28); docs/theory.md, 10.3)
 struct MatrixBodyParameters {
-  MatrixText mass;            ///< M, symmetric positive definite
-  MatrixText damping;         ///< D
-  MatrixText gyroscopic;      ///< G, skew-symmetric
-  MatrixText stiffness;       ///< K
-  MatrixText circulatory;     ///< N, skew-symmetric
-  MatrixFactors factors;      ///< d, g, k, n
-  double load = 0.0;          ///< p
-  MatrixText load_damping;    ///< D₁
-  MatrixText load_stiffness;  ///< K₁
+  MatrixText mass;                          ///< M, symmetric positive definite
+  MatrixText damping;                       ///< D
+  MatrixText gyroscopic;                    ///< G, skew-symmetric
+  MatrixText stiffness;                     ///< K
+  MatrixText circulatory;                   ///< N, skew-symmetric
+  std::vector<MatrixTermParameters> terms;  ///< f_i D_i and f_j K_j
   static const Schema& schema();
 };
 
@@ -49,10 +58,11 @@ struct SparseSystem {
 
 /// The matrices of a body as its scene names them, all n x n.
 struct NamedMatrices {
-  SparseMatrix mass, damping, gyroscopic, stiffness, circulatory, load_damping, load_stiffness;
+  SparseMatrix mass, damping, gyroscopic, stiffness, circulatory;
+  std::vector<SparseMatrix> terms;  ///< as many as the body has, without their factors
 };
 
-/// The matrices with their factors and the load.
+/// All of them summed up, the terms with their factors.
 SparseSystem sum(const NamedMatrices& matrices, const MatrixBodyParameters& body);
 
 /// A point of a body given by matrices. Unknowns are counted from 1; 0: it is held there.

@@ -59,7 +59,7 @@ cp "$work/precision/precision.png" "$here/precision.png"
 root_locus() {  # FIGURE SCENE FROM TO [OPTION...]
   local figure=$1 scene=$2 from=$3 to=$4
   shift 4
-  "$stridor" locus "$source_folder/scenes/examples/$scene.yaml" --parameter substructures.oscillator.load \
+  "$stridor" locus "$source_folder/scenes/examples/$scene.yaml" --parameter parameters.load \
     --from "$from" --to "$to" --points 401 --history "$here/root_locus_$figure.png" --force "$@" >/dev/null
 }
 root_locus gyroscopic gyroscopic 0 1

@@ -148,8 +148,8 @@ TEST(Check, ConditionsBetweenKeysAreNamed) {
        {"time.integrator=exact", "time.step=1e-15"},
        "time.step: the run would take more than 1e15 steps"},
       {scene_path("viscoelastic_contact.yaml"),
-       {"contact_solver.grid=33"},
-       "contact_solver.grid: 33 is not even"}};
+       {"contacts.tip.normal.solver.grid=33"},
+       "contacts.tip.normal.solver.grid: 33 is not even"}};
   for (const auto& [scene, settings, message] : cases) {
     std::vector<std::string> arguments{"check", scene};
     for (const std::string& one : settings) arguments.insert(arguments.end(), {"--set", one});

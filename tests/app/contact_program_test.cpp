@@ -19,7 +19,8 @@ using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
 const std::string contact_scene = scene_path("viscoelastic_contact.yaml");
-const std::vector<std::string> small{"contact", contact_scene, "--set", "contact_solver.grid=32"};
+const std::vector<std::string> small{"contact", contact_scene, "--set",
+                                     "contacts.tip.normal.solver.grid=32"};
 
 ProgramResult run_with(std::vector<std::string> more) {
   std::vector<std::string> arguments = small;
@@ -78,8 +79,9 @@ TEST(ContactProgram, WritesFieldsAndPictures) {
 }
 
 TEST(ContactProgram, SaysWhatDidNotConverge) {
-  const ProgramResult result = run_with({"--set", "material.glassy_modulus=1 GPa", "--speed", "0.1",
-                                         "--indentation", "0.01", "--json"});
+  const ProgramResult result =
+      run_with({"--set", "contacts.tip.normal.material.glassy_modulus=1 GPa", "--speed", "0.1",
+                "--indentation", "0.01", "--json"});
   EXPECT_EQ(result.exit_code, 3);
   const Json row = Json::parse(result.out)["rows"][0];
   EXPECT_EQ(row["converged"], false);
@@ -97,38 +99,179 @@ TEST(ContactProgram, RefusesWrongInput) {
   result = run_with({"--set", "sliding.indentations=[]"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("--indentation: or --load is needed"));
-  result =
-      run_with({"--set", "profile={shape: table, radius: 1, radii: [0, 1, 2], heights: [0, 1, 4]}",
-                "--indentation", "100"});
+  result = run_with({"--set",
+                     "contacts.tip.normal.profile={shape: table, radius: 1, radii: [0, 1, 2], "
+                     "heights: [0, 1, 4]}",
+                     "--indentation", "100"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("in contact up to its end at an indentation of 100 R"));
-  result = run_with({"--set", "contact_solver.gird=64"});
+  result = run_with({"--set", "contacts.tip.normal.solver.gird=64"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("did you mean 'grid'?"));
   result = Program({"contact", scene_path("beam_on_beam.yaml")}).run();
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("belongs to a scene of bodies"));
+  EXPECT_THAT(result.err, HasSubstr("contact: the scene has no contact with the normal law "
+                                    "viscoelastic"));
   result = Program({"eig", contact_scene}).run();
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("which the verb `contact` computes"));
+  EXPECT_THAT(result.err, HasSubstr("which the verb `contact` evaluates"));
+  result = run_with({"--contact", "tipp"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("did you mean 'tip'?"));
 }
 
-TEST(ContactProgram, CheckKnowsBothKindsOfScenes) {
-  EXPECT_EQ(Program({"check", contact_scene}).run().exit_code, 0);
+TEST(ContactProgram, LawsOfOrdinaryScenesAreEvaluatedLikewise) {
+  // The rest of an oscillator: the force of its contact is that of the law at its indentation.
+  const std::string sphere = scene_path("viscoelastic_sphere.yaml");
+  const auto law = [&](const std::string& form, std::vector<std::string> more) {
+    std::vector<std::string> arguments{
+        "contact", sphere, "--json", "--set", "contact.normal.form=" + form, "--speed", "0.1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return Json::parse(result.out)["rows"][0];
+  };
+  const Json row = law("boundary_element", {"--indentation", "0.01"});
+  EXPECT_EQ(row.size(), 13u);
+  EXPECT_NEAR(row["force"].get<double>(), 1.62614e-3, 1e-7);
+  EXPECT_NEAR(row["area"].get<double>(), 2.0174e-2, 2e-5);
+  EXPECT_NEAR(row["friction"].get<double>(), 4.1775e-2, 5e-6);
+  EXPECT_EQ(row["converged"], true);
+  EXPECT_TRUE(row["memory_in_cells"].is_null());
+  EXPECT_TRUE(row["remarks"].empty());
+  // PPH (34) at lg v̂ = −1, lg ŷ = −2.
+  const double fitted = 11.890 * 1e-3 * 0.5 * (1.199 + std::erf(-0.873 + 0.449 * 2.0 + 0.412));
+  EXPECT_NEAR(law("published_fit", {"--indentation", "0.01"})["force"].get<double>(), fitted,
+              1e-12);
+  // Under a load instead.
+  const double force = row["force"].get<double>();
+  const Json loaded = law("boundary_element", {"--load", std::to_string(force)});
+  EXPECT_NEAR(loaded["indentation"].get<double>(), 0.01, 1e-5);
+  EXPECT_NEAR(loaded["force"].get<double>(), std::stod(std::to_string(force)), 1e-15);
+  EXPECT_EQ(law("published_fit", {"--indentation", "0.5"})["remarks"].size(), 1u);
+  // Pressures are those of boundary elements.
+  const ProgramResult picture = Program({"contact", sphere, "--speed", "1", "--indentation", "0.01",
+                                         "--pressure", "never.png"})
+                                    .run();
+  EXPECT_EQ(picture.exit_code, 2);
+  EXPECT_THAT(picture.err, HasSubstr("contact.normal.form: must be solve for --pressure"));
+}
+
+const std::string solved_on_two =
+    "format: 1\n"
+    "substructures:\n"
+    "  ball: {type: lumped, masses: {center: {mass: 1 g}}, springs: {s: {at: center, stiffness: "
+    "1}}}\n"
+    "contacts:\n"
+    "  soft: &law\n"
+    "    slave: ball.center\n"
+    "    master: half_space\n"
+    "    normal:\n"
+    "      law: viscoelastic\n"
+    "      form: solve\n"
+    "      radius: 10 mm\n"
+    "      material: {rubbery_modulus: 1 MPa, glassy_modulus: 10 MPa, poissons_ratio: 0.5,\n"
+    "                 creep_times: [10 ms]}\n"
+    "      solver: {grid: 32}\n"
+    "  hard: *law\n"
+    "sliding: {speeds: [0.1], indentations: [0.01]}\n";
+
+TEST(ContactProgram, SeveralContactsAreEvaluatedByName) {
+  const TemporaryFolder folder;
+  const std::string scene = folder / "two.yaml";
+  write_file(scene, solved_on_two);
+  EXPECT_EQ(Program({"check", scene}).run().exit_code, 0);
+  const ProgramResult both = Program({"contact", scene, "--json"}).run();
+  ASSERT_EQ(both.exit_code, 0) << both.err;
+  const Json contacts = Json::parse(both.out)["contacts"];
+  ASSERT_EQ(contacts.size(), 2u);
+  const ProgramResult one = Program({"contact", scene, "--json", "--contact", "hard"}).run();
+  ASSERT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_EQ(Json::parse(one.out)["rows"], contacts["hard"]["rows"]);
+  // A paraboloid by its radius is that of the shipped scene.
+  const ProgramResult shipped = run_with({"--speed", "0.1", "--indentation", "0.01", "--json"});
+  EXPECT_EQ(Json::parse(shipped.out)["rows"], contacts["soft"]["rows"]);
+  const ProgramResult table = Program({"contact", scene, "--table", folder / "law.h5"}).run();
+  EXPECT_EQ(table.exit_code, 2);
+  EXPECT_THAT(table.err, HasSubstr("--contact: is needed, since --table is of one contact"));
+}
+
+TEST(ContactProgram, BodiesInMotionNeedATableOfWhatIsSolved) {
+  const TemporaryFolder folder;
+  const std::string scene = folder / "two.yaml";
+  write_file(scene, solved_on_two);
+  const ProgramResult refused = Program({"eig", scene}).run();
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("contacts.hard.normal.form: solve computes every contact by "
+                                     "boundary elements"));
+  EXPECT_THAT(refused.err,
+              HasSubstr("`stridor contact " + scene + " --contact hard --table law.h5`"));
+  ASSERT_EQ(Program({"contact", scene, "--contact", "hard", "--table", folder / "law.h5",
+                     "--speeds", "0.01", "1", "4", "--indentations", "1e-3", "0.1", "4"})
+                .run()
+                .exit_code,
+            0);
+  // The table, once it is there, is what the contact evaluates to.
+  const std::string law = folder / "law.h5";
   const ProgramResult result =
-      Program({"check", contact_scene, "--json", "--set", "material.creep_times=[]"}).run();
+      Program(
+          {"contact", scene, "--contact", "hard", "--json", "--set",
+           "contacts.hard.normal={law: viscoelastic, radius: 10 mm, modulus: 1 MPa, creep_time: "
+           "10 ms, form: '" +
+               law + "'}",
+           "--speed", "0.01", "--indentation", "1e-3"})
+          .run();
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const ProgramResult solved = Program({"contact", scene, "--contact", "hard", "--json", "--speed",
+                                        "0.01", "--indentation", "1e-3"})
+                                   .run();
+  const Json expected = Json::parse(solved.out)["rows"][0];
+  for (const char* name : {"force", "area", "friction"}) {
+    EXPECT_NEAR(
+        Json::parse(result.out)["rows"][0][name].get<double>() / expected[name].get<double>(), 1.0,
+        1e-3)
+        << name;
+  }
+}
+
+TEST(ContactProgram, FormerKeysAreRefusedEachWithTheNewOne) {
+  const TemporaryFolder folder;
+  const std::string scene = folder / "former.yaml";
+  write_file(scene,
+             "format: 1\nmaterial: {rubbery_modulus: 1 MPa, glassy_modulus: 10 MPa}\n"
+             "profile: {shape: sphere, radius: 1}\ncontact_solver: {grid: 64}\n");
+  for (const char* verb : {"contact", "check", "eig"}) {
+    const ProgramResult result = Program({verb, scene}).run();
+    EXPECT_EQ(result.exit_code, 2);
+    for (const char* text :
+         {"former.yaml:2:",
+          "material.rubbery_modulus: is now contacts.NAME.normal.material.rubbery",
+          "profile.shape: is now contacts.NAME.normal.profile.shape",
+          "contact_solver.grid: is now contacts.NAME.normal.solver.grid", "docs/format_2.md"})
+      EXPECT_THAT(result.err, HasSubstr(text)) << verb;
+  }
+}
+
+TEST(ContactProgram, CheckReadsScenesWithoutBodies) {
+  EXPECT_EQ(Program({"check", contact_scene}).run().exit_code, 0);
+  const ProgramResult result = Program({"check", contact_scene, "--json", "--set",
+                                        "contacts.tip.normal.material.creep_times=[]"})
+                                   .run();
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_EQ(Json::parse(result.out)["errors"][0]["key"], "material.creep_times");
+  EXPECT_EQ(Json::parse(result.out)["errors"][0]["key"],
+            "contacts.tip.normal.material.creep_times");
 }
 
 TEST(ContactProgram, MasterCurveNeedsAParaboloidAndOneTime) {
   const TemporaryFolder folder;
   const std::string file = folder / "curve.inc";
-  ProgramResult result = run_with({"--set", "profile.shape=sphere", "--master-curve", file});
+  ProgramResult result =
+      run_with({"--set", "contacts.tip.normal.profile.shape=sphere", "--master-curve", file});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("profile.shape: must be paraboloid"));
-  result = run_with({"--set", "material.creep_times=[1, 2]", "--set",
-                     "material.creep_shares=[0.5, 0.5]", "--master-curve", file});
+  result =
+      run_with({"--set", "contacts.tip.normal.material.creep_times=[1, 2]", "--set",
+                "contacts.tip.normal.material.creep_shares=[0.5, 0.5]", "--master-curve", file});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("material.creep_times: must be one"));
   result = run_with({"--master-curve", file, "--json"});
@@ -143,8 +286,8 @@ TEST(ContactProgram, TableOfAParaboloidIsTheLawOfTheMasterCurve) {
   const TemporaryFolder folder;
   const std::string file = folder / "law.h5";
   const ProgramResult made =
-      Program({"contact", contact_scene, "--set", "contact_solver.grid=128", "--table", file,
-               "--speeds", "1e-3", "1", "25", "--indentations", "1e-3", "0.1", "9", "--json"})
+      Program({"contact", contact_scene, "--set", "contacts.tip.normal.solver.grid=128", "--table",
+               file, "--speeds", "1e-3", "1", "25", "--indentations", "1e-3", "0.1", "9", "--json"})
           .run();
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const Json table = Json::parse(made.out);
@@ -196,9 +339,10 @@ TEST(ContactProgram, TableOfASphereWithTwoCreepTimesDrivesTheOscillator) {
   const TemporaryFolder folder;
   const std::string file = folder / "law.h5";
   const ProgramResult made =
-      run_with({"--set", "profile.shape=sphere", "--set", "material.creep_times=[10 ms, 100 ms]",
-                "--set", "material.creep_shares=[0.5, 0.5]", "--table", file, "--speeds", "1e-2",
-                "10", "7", "--indentations", "1e-3", "0.1", "5"});
+      run_with({"--set", "contacts.tip.normal.profile.shape=sphere", "--set",
+                "contacts.tip.normal.material.creep_times=[10 ms, 100 ms]", "--set",
+                "contacts.tip.normal.material.creep_shares=[0.5, 0.5]", "--table", file, "--speeds",
+                "1e-2", "10", "7", "--indentations", "1e-3", "0.1", "5"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   EXPECT_THAT(made.out, HasSubstr("7 speeds, 5 indentations"));
   // A file named in a scene is beside it.
@@ -223,17 +367,19 @@ TEST(ContactProgram, TablesThatCannotBeAreRefused) {
   ProgramResult result = run_with({"--table", file, "--speeds", "1", "0.1", "5"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("--speeds: needs two positive numbers"));
-  result =
-      run_with({"--table", file, "--set",
-                "profile={shape: table, radius: 1, radii: [0, 0.1, 0.2], heights: [0, 1, 4]}"});
+  result = run_with({"--table", file, "--set",
+                     "contacts.tip.normal.profile={shape: table, radius: 1, radii: [0, 0.1, 0.2], "
+                     "heights: [0, 1, 4]}"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   result = run_with({"--table", file, "--force", "--set",
-                     "profile={shape: table, radius: 1, radii: [0, 0.1, 0.2], heights: [0, 1, 4]}",
+                     "contacts.tip.normal.profile={shape: table, radius: 1, radii: [0, 0.1, 0.2], "
+                     "heights: [0, 1, 4]}",
                      "--indentations", "0.1", "100", "4"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("in contact up to its end at an indentation of 10 R"));
-  result = run_with({"--table", file, "--force", "--set", "material.glassy_modulus=1 GPa",
-                     "--speeds", "0.05", "0.2", "4", "--indentations", "0.01", "0.02", "4"});
+  result = run_with({"--table", file, "--force", "--set",
+                     "contacts.tip.normal.material.glassy_modulus=1 GPa", "--speeds", "0.05", "0.2",
+                     "4", "--indentations", "0.01", "0.02", "4"});
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.err, HasSubstr("of the table did not converge; nothing has been written"));
   const auto eig = [](const std::string& law) {

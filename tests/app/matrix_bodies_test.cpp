@@ -22,7 +22,7 @@ const std::string support_scene = scene_path("examples/rotating_support.yaml");
 /// The scene with its gyroscopic matrix in a file beside it.
 std::string scene_with_file(const std::filesystem::path& folder) {
   std::string text = contents_of(support_scene);
-  const std::size_t from = text.find("    gyroscopic:\n");
+  const std::size_t from = text.find("    stiffness:\n");
   const std::size_t to = text.find("    stiffness:\n");
   text.replace(from, to - from, "    gyroscopic: G.mtx\n");
   std::ofstream(folder / "scene.yaml") << text;
@@ -97,7 +97,7 @@ TEST(MatrixBodies, TellWhatTheirDampingIsWhenChecked) {
   const TemporaryFolder folder;
   std::string text = contents_of(support_scene);
   const std::size_t from = text.find("    damping:\n      -");
-  const std::size_t to = text.find("    gyroscopic:\n");
+  const std::size_t to = text.find("    stiffness:\n");
   std::string rows;
   for (int i = 0; i < 6; ++i) {
     rows += "      - [";
@@ -107,7 +107,7 @@ TEST(MatrixBodies, TellWhatTheirDampingIsWhenChecked) {
   text.replace(from, to - from, "    damping:\n" + rows);
   const std::string changed = (folder / "scene.yaml").string();
   std::ofstream(changed) << text;
-  const std::string still = "substructures.support.factors.gyroscopic=0";
+  const std::string still = "parameters.spin=0";
   result = Program({"check", changed, "--set", still}).run();
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("support: damping is proportional, alpha 5 1/s"));

@@ -47,13 +47,16 @@ TEST(SetUpProgram, WhatDoesNotFitIntoMemoryIsRefusedBeforeItBegins) {
 TEST(SetUpProgram, ResultsThatDoNotFitIntoMemoryAreRefusedBeforeTheFirst) {
   const auto refusal = [](Strings command) {
     command.insert(command.begin() + 1, scene_path("examples/flutter.yaml"));
+    for (const char* set : {"parameters.damping=0",
+                            "substructures.oscillator.damping=[[=damping, 0], [0, =damping]]"})
+      command.insert(command.end(), {"--set", set});
     const ProgramResult result =
         Program(std::move(command)).with_memory_limit(gigabyte * 9 / 10).run();
     EXPECT_EQ(result.exit_code, 2) << result.err;
     return result.err;
   };
-  const std::string load = "substructures.oscillator.load";
-  const std::string damping = "substructures.oscillator.factors.damping";
+  const std::string load = "parameters.load";
+  const std::string damping = "parameters.damping";
   for (const char* verb : {"locus", "threshold"}) {
     EXPECT_THAT(
         refusal({verb, "--parameter", load, "--from", "0", "--to", "0.3", "--points", "1000000"}),
@@ -77,8 +80,8 @@ TEST(SetUpProgram, DiscsAndContactsAreRefusedLikewise) {
                        "pads.elastic.mesh.along=900000"}),
               HasSubstr("pads.elastic.mesh.along"));
   EXPECT_THAT(refusal({"contact", scene_path("viscoelastic_contact.yaml"), "--set",
-                       "contact_solver.grid=4096"}),
-              HasSubstr("contact_solver.grid"));
+                       "contacts.tip.normal.solver.grid=4096"}),
+              HasSubstr("contacts.tip.normal.solver.grid"));
 }
 
 TEST(SetUpProgram, ARecordOfAnyLengthIsAllowed) {

@@ -110,7 +110,8 @@ class ManyOscillators {
   }
   std::string scene(const std::string& matrices) const {
     const std::string path = (folder_ / "pairs.yaml").string();
-    std::ofstream(path) << "format: 1\nsubstructures:\n  pairs: {type: matrices, mass: M.mtx, "
+    std::ofstream(path) << "format: 1\nparameters: {load: 0, d: 1}\nsubstructures:\n  pairs: "
+                           "{type: matrices, mass: M.mtx, "
                         << matrices << "}\n";
     return path;
   }
@@ -127,13 +128,12 @@ TEST(UntouchedBodies, LargeMatricesHaveLociAndThresholds) {
   oscillators.write("K",
                     [](int i) { return std::pair(i, (i / 2 + 1) * (i % 2 == 0 ? 1.0 : 1.4)); });
   oscillators.write("N", [](int i) { return ManyOscillators::across(i, 1.0); });
-  const std::string scene =
-      oscillators.scene("damping: D.mtx, stiffness: K.mtx, load: 0, load_stiffness: N.mtx");
-  const std::vector<std::string> range{"--parameter", "substructures.pairs.load",
-                                       "--from",      "0",
-                                       "--to",        "0.35",
-                                       "--points",    "3",
-                                       "--below",     "0.3"};
+  const std::string scene = oscillators.scene(
+      "damping: D.mtx, stiffness: K.mtx, terms: [{role: circulatory, matrix: N.mtx, factor: "
+      "=load}]");
+  const std::vector<std::string> range{
+      "--parameter", "parameters.load", "--from", "0",       "--to",
+      "0.35",        "--points",        "3",      "--below", "0.3"};
   std::vector<std::string> arguments{"threshold", scene};
   arguments.insert(arguments.end(), range.begin(), range.end());
   const Json threshold = json_of(arguments);
@@ -164,9 +164,10 @@ TEST(UntouchedBodies, WindowsOfLargeMatricesAreFoundBetweenTheValues) {
   oscillators.write("N", [](int i) { return ManyOscillators::across(i, 0.02); });
   oscillators.write("L", [](int i) { return std::pair(i, i == 1 ? -1.0 : 0.0); });
   const std::string scene = oscillators.scene(
-      "damping: D.mtx, stiffness: K.mtx, circulatory: N.mtx, load: 0, load_stiffness: L.mtx");
-  const Json locus = json_of({"locus", scene, "--parameter", "substructures.pairs.load", "--from",
-                              "0", "--to", "1", "--points", "3", "--below", "0.25"});
+      "damping: D.mtx, stiffness: K.mtx, circulatory: N.mtx, terms: [{role: stiffness, matrix: "
+      "L.mtx, factor: =load}]");
+  const Json locus = json_of({"locus", scene, "--parameter", "parameters.load", "--from", "0",
+                              "--to", "1", "--points", "3", "--below", "0.25"});
   ASSERT_EQ(locus["eigenvalues"].size(), 3U);
   ASSERT_EQ(locus["unstable"].size(), 1U);
   const double half = std::sqrt(1e-8 + 12e-4);
@@ -182,10 +183,11 @@ TEST(UntouchedBodies, NarrowWindowsOfLargeMatricesAreFound) {
                     [](int i) { return std::pair(i, (i / 2 + 1) * (i % 2 == 0 ? 1.0 : 1.4237)); });
   oscillators.write("N", [](int i) { return ManyOscillators::across(i, 1e-4); });
   oscillators.write("L", [](int i) { return std::pair(i, i == 1 ? -1.0 : 0.0); });
-  const std::string scene =
-      oscillators.scene("stiffness: K.mtx, circulatory: N.mtx, load: 0, load_stiffness: L.mtx");
-  const Json threshold = json_of({"threshold", scene, "--parameter", "substructures.pairs.load",
-                                  "--from", "0", "--to", "1", "--points", "6", "--below", "0.25"});
+  const std::string scene = oscillators.scene(
+      "stiffness: K.mtx, circulatory: N.mtx, terms: [{role: stiffness, matrix: L.mtx, factor: "
+      "=load}]");
+  const Json threshold = json_of({"threshold", scene, "--parameter", "parameters.load", "--from",
+                                  "0", "--to", "1", "--points", "6", "--below", "0.25"});
   ASSERT_EQ(threshold["roots"].size(), 2U);
   EXPECT_NEAR(threshold["roots"][0]["value"].get<double>(), 0.4237 - 2e-4, 1e-8);
   EXPECT_NEAR(threshold["roots"][1]["value"].get<double>(), 0.4237 + 2e-4, 1e-8);
@@ -194,7 +196,7 @@ TEST(UntouchedBodies, NarrowWindowsOfLargeMatricesAreFound) {
 
 TEST(UntouchedBodies, ARangeOverManyDecadesHidesNoLimit) {
   const Json threshold = json_of({"threshold", scene_path("examples/flutter.yaml"), "--parameter",
-                                  "substructures.oscillator.load", "--from", "0", "--to", "1e100"});
+                                  "parameters.load", "--from", "0", "--to", "1e100"});
   ASSERT_EQ(threshold["roots"].size(), 1U);
   EXPECT_NEAR(threshold["roots"][0]["value"].get<double>(), 0.2, 1e-12);
 }
@@ -204,11 +206,13 @@ TEST(UntouchedBodies, FactorsOfMatricesAreVaried) {
   // 0.2280350850.
   const TemporaryFolder folder;
   const std::string scene = (folder / "two.yaml").string();
-  std::ofstream(scene) << "format: 1\nsubstructures:\n  two: {type: matrices, mass: [[1, 0], [0, "
-                          "1]], stiffness: [[1, 0], [0, 1.4]], damping: [[1, 0], [0, 1]], "
-                          "circulatory: [[0, 1], [-1, 0]], factors: {damping: 0}}\n";
-  const std::string n = "substructures.two.factors.circulatory";
-  const std::string d = "substructures.two.factors.damping";
+  std::ofstream(scene) << "format: 1\nparameters: {n: 1, d: 0, k: 1}\nsubstructures:\n"
+                          "  two: {type: matrices, mass: [[1, 0], [0, 1]], terms: [\n"
+                          "    {role: stiffness, matrix: [[1, 0], [0, 1.4]], factor: =k},\n"
+                          "    {role: damping, matrix: [[1, 0], [0, 1]], factor: =d},\n"
+                          "    {role: circulatory, matrix: [[0, 1], [-1, 0]], factor: =n}]}\n";
+  const std::string n = "parameters.n";
+  const std::string d = "parameters.d";
   const auto limit = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"threshold", scene, "--parameter", n,
                                        "--from",    "0",   "--to",        "0.4"};
@@ -217,7 +221,7 @@ TEST(UntouchedBodies, FactorsOfMatricesAreVaried) {
   };
   EXPECT_NEAR(limit({}), 0.2, 1e-12);
   EXPECT_NEAR(limit({"--set", d + "=0.1"}), 0.2280350850, 1e-10);
-  EXPECT_NEAR(limit({"--set", "substructures.two.factors.stiffness=1.5"}), 0.3, 1e-12);
+  EXPECT_NEAR(limit({"--set", "parameters.k=1.5"}), 0.3, 1e-12);
   const Json map = json_of({"map", scene, "--x", n, "0", "0.4", "5", "--y", d, "0.1", "0.3", "3"});
   // 0.2² + d² 1.2 = n².
   const auto stable = [&](std::size_t row, std::size_t column) {
@@ -238,11 +242,11 @@ TEST(UntouchedBodies, LargeMatricesHaveMaps) {
   oscillators.write("K",
                     [](int i) { return std::pair(i, (i / 2 + 1) * (i % 2 == 0 ? 1.0 : 1.4)); });
   oscillators.write("N", [](int i) { return ManyOscillators::across(i, 1.0); });
-  const std::string scene =
-      oscillators.scene("damping: D.mtx, stiffness: K.mtx, circulatory: N.mtx");
-  const std::string factors = "substructures.pairs.factors.";
-  const Json map = json_of({"map", scene, "--x", factors + "circulatory", "0.1", "0.3", "2", "--y",
-                            factors + "damping", "0.1", "0.2", "2", "--below", "0.25"});
+  const std::string scene = oscillators.scene(
+      "stiffness: K.mtx, terms: [{role: damping, matrix: D.mtx, factor: =d}, "
+      "{role: circulatory, matrix: N.mtx, factor: =load}]");
+  const Json map = json_of({"map", scene, "--x", "parameters.load", "0.1", "0.3", "2", "--y",
+                            "parameters.d", "0.1", "0.2", "2", "--below", "0.25"});
   const auto stable = [&](std::size_t row, std::size_t column) {
     return map["growth"][row][column].get<double>() <= 0.0;
   };
@@ -254,12 +258,11 @@ TEST(UntouchedBodies, LargeMatricesHaveMaps) {
 }
 
 TEST(UntouchedBodies, ExamplesHaveTheirClosedForms) {
-  EXPECT_NEAR(example_limit("flutter", "substructures.oscillator.load", "0.4", {}), 0.2, 1e-12);
-  EXPECT_NEAR(example_limit("flutter_equal_damping", "substructures.oscillator.load", "0.4", {}),
-              0.2280350850, 1e-10);
-  EXPECT_NEAR(example_limit("flutter_ziegler", "substructures.oscillator.load", "0.4", {}),
-              0.1732146068, 1e-10);
-  EXPECT_NEAR(example_limit("flutter_ziegler", "substructures.oscillator.load", "0.4",
+  EXPECT_NEAR(example_limit("flutter", "parameters.load", "0.4", {}), 0.2, 1e-12);
+  EXPECT_NEAR(example_limit("flutter_equal_damping", "parameters.load", "0.4", {}), 0.2280350850,
+              1e-10);
+  EXPECT_NEAR(example_limit("flutter_ziegler", "parameters.load", "0.4", {}), 0.1732146068, 1e-10);
+  EXPECT_NEAR(example_limit("flutter_ziegler", "parameters.load", "0.4",
                             {"--set", "substructures.oscillator.damping=[0.1 0, 0 0.3]"}),
               0.2509980080, 1e-10);
   EXPECT_NEAR(example_limit("two_springs_on_a_belt", "parameters.mu", "1.2", {}), 0.75, 1e-12);
@@ -280,7 +283,8 @@ std::string scene_of(const TemporaryFolder& folder, const std::string& text) {
 
 const char* const flutter_body =
     "  oscillator: {type: matrices, mass: [[1, 0], [0, 1]], stiffness: [[1, 0], [0, 1.4]], "
-    "load: 0.3, load_stiffness: [[0, 1], [-1, 0]], points: {a: {at: [0, 0], x: 1, y: 2}}}\n";
+    "terms: [{role: circulatory, matrix: [[0, 1], [-1, 0]], factor: 0.3}], points: {a: {at: [0, "
+    "0], x: 1, y: 2}}}\n";
 const char* const beam_body =
     "  ruler: {type: beam, length: 0.3, thickness: 2 mm, width: 20 mm, angle: 0, material: "
     "{youngs_modulus: 210 GPa, poissons_ratio: 0.3, density: 7850}, mesh: {along: 20, through: 1}, "
@@ -360,7 +364,7 @@ TEST(UntouchedBodies, AreExplainedAndDrawn) {
 
 TEST(UntouchedBodies, AMissingSectionIsAnErrorOfTheVerbThatNeedsIt) {
   const std::string flutter = scene_path("examples/flutter.yaml");
-  const std::string key = "substructures.oscillator.load";
+  const std::string key = "parameters.load";
   const TemporaryFolder folder;
   const std::string out = (folder / "x").string();
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{

@@ -131,7 +131,7 @@ TEST(VerbOutput, MapsSweepsAndLociOfSmallSystemsAreDrawn) {
               HasSubstr("periodic     0.15386127"));
   expect_picture(figure("sweep.png"));
   output_of({"locus", scene_path("examples/flutter.yaml"), "--parameter",
-             "substructures.oscillator.load", "--from", "0", "--to", "0.4", "--points", "9",
+             "parameters.load", "--from", "0", "--to", "0.4", "--points", "9",
              "--figure", figure("locus.png")});
   expect_picture(figure("locus.png"));
 }

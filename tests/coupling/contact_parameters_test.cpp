@@ -14,6 +14,7 @@ namespace stridor {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
@@ -89,9 +90,13 @@ TEST(ContactParameters, SchemaRefusesAnEmptyListOfSlaves) {
   ContactParameters contact;
   contact.friction.emplace().coefficient = 0.3;
   const std::vector<Problem> problems = problems_of(contact);
-  ASSERT_THAT(problems, SizeIs(1));
-  EXPECT_EQ(problems[0].text(), "slave: is an empty list; name at least one point");
+  ASSERT_THAT(problems, SizeIs(2));
+  EXPECT_EQ(problems[0].text(),
+            "slave: is missing: only a viscoelastic normal law, which `stridor contact` evaluates, "
+            "goes without; name at least one point");
+  EXPECT_EQ(problems[1].text(), "assumption: is missing; take subs_a, subs_b, subs_c or film");
   contact.slave = {"oblique.tip"};
+  contact.assumption = ContactAssumption::subs_b;
   EXPECT_THAT(problems_of(contact), IsEmpty());
 }
 
@@ -168,11 +173,72 @@ TEST(NormalParameters, EveryLawNeedsItsOwnKeys) {
   normal.form = "law.txt";
   EXPECT_THAT(complaints(normal),
               ElementsAre("stiffness: not used by the normal law viscoelastic",
-                          "radius: missing: needed by the normal law viscoelastic",
-                          "modulus: missing: needed by the normal law viscoelastic",
-                          "creep_time: missing: needed by the normal law viscoelastic",
-                          "form: 'law.txt' is neither published_fit nor boundary_element nor a "
-                          "file of `stridor contact --table` (*.h5)"));
+                          "radius: missing: needed by the normal law viscoelastic, or `profile`",
+                          "modulus: missing: needed by the normal law viscoelastic, or `material`",
+                          "creep_time: missing: needed by the normal law viscoelastic, or "
+                          "`material`",
+                          "form: 'law.txt' is neither published_fit nor boundary_element nor solve "
+                          "nor a file of `stridor contact --table` (*.h5)"));
+}
+
+NormalParameters rubber_sphere() {
+  NormalParameters normal;
+  normal.law = NormalLaw::viscoelastic;
+  normal.profile.emplace().shape = ProfileShape::sphere;
+  normal.profile->radius = 2e-3;
+  normal.material = ViscoelasticMaterial{0.75e6, 3e6, 0.5, {0.01, 0.1}, {0.5, 0.5}};
+  normal.form = NormalParameters::solve;
+  return normal;
+}
+
+TEST(NormalParameters, ProfileAndMaterialSayMoreThanRadiusModulusAndTime) {
+  NormalParameters normal = rubber_sphere();
+  normal.solver.emplace();
+  EXPECT_THAT(complaints(normal), IsEmpty());
+  EXPECT_EQ(normal.tip_radius(), 2e-3);
+  EXPECT_DOUBLE_EQ(normal.composite_modulus(), 1e6);
+  EXPECT_EQ(normal.first_creep_time(), 0.01);
+  normal.radius = 1e-3;
+  normal.modulus = 1e6;
+  EXPECT_THAT(complaints(normal),
+              ElementsAre("radius: cannot stand beside `profile`, which has a radius",
+                          "material: cannot stand beside `modulus` and `creep_time`, which it says"));
+  normal = rubber_sphere();
+  normal.material.reset();
+  normal.modulus = 1e6;
+  normal.creep_time = 0.01;
+  EXPECT_THAT(complaints(normal),
+              ElementsAre(HasSubstr("material: missing: the form solve needs")));
+}
+
+TEST(NormalParameters, LawsBuiltInAreOfOneIndenterAndMaterial) {
+  NormalParameters normal = rubber_sphere();
+  normal.form = NormalParameters::boundary_element;
+  normal.solver.emplace();
+  EXPECT_THAT(complaints(normal),
+              ElementsAre("solver: not used by the form boundary_element, but by solve",
+                          HasSubstr("profile.shape: must be paraboloid with the form"),
+                          HasSubstr("material.creep_times: must be one with the form"),
+                          HasSubstr("material.glassy_modulus: must be 10 times rubbery_modulus")));
+  normal.solver.reset();
+  normal.profile->shape = ProfileShape::paraboloid;
+  normal.material->creep_times = {0.01};
+  normal.material->creep_shares.clear();
+  normal.material->glassy_modulus = 7.5e6;
+  EXPECT_THAT(complaints(normal), IsEmpty());
+  // The same numbers as those of a radius, a modulus and a time.
+  NormalParameters other;
+  other.law = NormalLaw::viscoelastic;
+  other.radius = 2e-3;
+  other.modulus = 1e6;
+  other.creep_time = 0.01;
+  other.form = NormalParameters::boundary_element;
+  const SubstrateForces one = make_substrate_contact(normal, 0.0).at(2e-5, 0.02, 1.0);
+  const SubstrateForces same = make_substrate_contact(other, 0.0).at(2e-5, 0.02, 1.0);
+  EXPECT_NEAR(one.normal.value, same.normal.value, 1e-12 * same.normal.value);
+  EXPECT_NEAR(one.tangential.value, same.tangential.value, 1e-12 * -same.tangential.value);
+  normal.form = NormalParameters::solve;
+  EXPECT_THROW((void)make_substrate_contact(normal, 0.0), std::invalid_argument);
 }
 
 NormalParameters sphere_of_2_mm() {
@@ -189,6 +255,7 @@ TEST(ContactParameters, LawsThatDoNotGoTogetherAreRefused) {
   ContactParameters contact;
   contact.slave = {"reed.tip"};
   contact.master = "cantilever.top";
+  contact.assumption = ContactAssumption::subs_b;
   EXPECT_THAT(complaints(contact),
               ElementsAre("friction: is missing: this normal law brings none of its own"));
   contact.friction.emplace().law = FrictionKind::shear;

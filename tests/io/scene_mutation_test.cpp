@@ -13,7 +13,6 @@
 #include "core/excerpt.hpp"
 #include "core/suggestion.hpp"
 #include "core/units.hpp"
-#include "io/contact_scene.hpp"
 #include "io/disc_scene.hpp"
 #include "io/scene.hpp"
 #include "io/scene_reader.hpp"
@@ -498,7 +497,7 @@ template <class T>
 class SceneMutation : public ::testing::Test {};
 
 /// The example holds every kind of key, which the scenes of the program need not do.
-using Roots = ::testing::Types<Example, Scene, ContactScene, DiscScene>;
+using Roots = ::testing::Types<Example, Scene, DiscScene>;
 TYPED_TEST_SUITE(SceneMutation, Roots);
 
 TYPED_TEST(SceneMutation, ScenesMadeFromTheSchemaAreRead) {

@@ -209,8 +209,7 @@ LoadedScene two_masses() {
       "  pair:\n"
       "    type: matrices\n"
       "    mass: [[=n/2, 0], [0, '=max(1, n/2)']]\n"
-      "    stiffness: [[=2*k, =-k], [=-k, =2*k]]\n"
-      "    factors: {stiffness: =n}\n",
+      "    terms: [{role: stiffness, matrix: [[=2*k, =-k], [=-k, =2*k]], factor: =n}]\n",
       "m.yaml");
 }
 

@@ -27,14 +27,14 @@ TouchedMatrixBodyParameters small_body() {
   NamedMatrices matrices;
   matrices.mass = sparse(Eigen::Vector3d(2.0, 3.0, 4.0).asDiagonal());
   matrices.damping = sparse(Eigen::Matrix3d{{1, 0, 0}, {0, 0, 0}, {0, 0, 0}});
-  matrices.gyroscopic = sparse(Eigen::Matrix3d{{0, 1, 0}, {-1, 0, 0}, {0, 0, 0}});
+  matrices.gyroscopic = sparse(Eigen::Matrix3d{{0, 3, 0}, {-3, 0, 0}, {0, 0, 0}});
   matrices.stiffness = sparse(Eigen::Matrix3d{{50, 4, 0}, {0, 60, 0}, {0, 0, 70}});
-  matrices.circulatory = sparse(Eigen::Matrix3d{{0, 0, 1}, {0, 0, 0}, {-1, 0, 0}});
-  matrices.load_damping = matrices.load_stiffness = SparseMatrix(3, 3);
+  matrices.circulatory = SparseMatrix(3, 3);
+  matrices.terms = {sparse(Eigen::Matrix3d{{0, 1, 0}, {-1, 0, 0}, {0, 0, 0}}),
+                    sparse(Eigen::Matrix3d{{0, 0, 1}, {0, 0, 0}, {-1, 0, 0}})};
   TouchedMatrixBodyParameters body;
   body.matrices = std::make_shared<const NamedMatrices>(matrices);
-  body.body.factors.gyroscopic = 5.0;
-  body.body.factors.circulatory = 2.0;
+  body.body.terms = {{MatrixRole::gyroscopic, {}, 2.0}, {MatrixRole::circulatory, {}, 2.0}};
   body.points["left"] = {{0.0, 0.0}, 1, 2};
   body.points["right"] = {{0.1, 0.02}, 0, 3};
   body.surfaces["top"].points = {"left", "right"};
@@ -64,8 +64,9 @@ TEST(MatrixBody, FollowsTheDriveWithTheInertiaOfItsTranslation) {
 
 TEST(MatrixBody, HasNoCoupledTermsWhereNothingCouples) {
   TouchedMatrixBodyParameters given = small_body();
-  given.body.factors = {0.0, 0.0, 1.0, 0.0};
+  for (MatrixTermParameters& term : given.body.terms) term.factor = 0.0;
   NamedMatrices matrices = *given.matrices;
+  matrices.damping = matrices.gyroscopic = SparseMatrix(3, 3);
   matrices.stiffness = matrices.mass;
   given.matrices = std::make_shared<const NamedMatrices>(matrices);
   EXPECT_EQ(make_matrix_body(given).velocity.size(), 0);
@@ -111,8 +112,7 @@ ModelParameters paper_model_by_matrices(int num_elements = 50) {
   matrices.stiffness = mesh.stiffness;
   matrices.damping = beam.damping.alpha * mesh.mass + beam.damping.beta * mesh.stiffness;
   const Eigen::Index n = mesh.num_dofs();
-  matrices.gyroscopic = matrices.circulatory = matrices.load_damping = matrices.load_stiffness =
-      SparseMatrix(n, n);
+  matrices.gyroscopic = matrices.circulatory = SparseMatrix(n, n);
   TouchedMatrixBodyParameters body;
   body.matrices = std::make_shared<const NamedMatrices>(matrices);
   body.reduction.emplace().fixed_interface_modes = beam.reduction.fixed_interface_modes;

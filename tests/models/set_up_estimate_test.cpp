@@ -69,9 +69,9 @@ TEST(SetUpEstimate, OfADiscGrowsWithTheSquareOfItsModes) {
 TEST(SetUpEstimate, OfBoundaryElementsGrowsWithTheSquareOfTheGrid) {
   SlidingContactParameters contact;
   contact.grid = 4096;
-  const double whole = estimate_set_up(contact).bytes();
+  const double whole = estimate_set_up(contact, "contact.normal.solver").bytes();
   contact.grid = 2048;
-  EXPECT_EQ(estimate_set_up(contact).bytes(), 0.25 * whole);
+  EXPECT_EQ(estimate_set_up(contact, "contact.normal.solver").bytes(), 0.25 * whole);
 }
 
 TEST(RequireMemory, AllowsWhatFits) {

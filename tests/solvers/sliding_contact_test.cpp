@@ -331,5 +331,15 @@ TEST(SlidingContact, RefusesWhatItCannotSolve) {
   EXPECT_THAT(says([&] { (void)table.load(1.0, {}); }), HasSubstr("in contact up to its end"));
 }
 
+TEST(CreepLengths, AreInRadiiPerFirstCreepTime) {
+  const ViscoelasticMaterial material{1.0, 5.0, 0.0, {0.1, 1.0}, {0.25, 0.75}};
+  const CreepLengths lengths = creep_lengths(material, 2.0, 3.0);
+  ASSERT_EQ(lengths.size(), 2u);
+  EXPECT_DOUBLE_EQ(lengths[0].share, 0.2);
+  EXPECT_DOUBLE_EQ(lengths[0].length, 6.0);
+  EXPECT_DOUBLE_EQ(lengths[1].share, 0.6);
+  EXPECT_DOUBLE_EQ(lengths[1].length, 60.0);
+}
+
 }  // namespace
 }  // namespace stridor

@@ -164,12 +164,28 @@ class Repair {
   /// Takes in again a key that was left out.
   bool take_in(Draft& root, const std::string& path, const IsBetter& is_better) {
     Draft* map = find_draft(root, parent_path(path));
-    if (map == nullptr || map->schema == nullptr || map->child(last_name(path)) != nullptr) {
-      return false;
-    }
+    if (map == nullptr) return take_in_with_map(root, path, is_better);
+    if (map->schema == nullptr || map->child(last_name(path)) != nullptr) return false;
     const Key* key = map->schema->find(last_name(path));
     if (key == nullptr) return false;
     map->children.push_back(complete_draft(*key, map->pattern));
+    if (accepts(root, is_better, "in " + path) || change(root, path, is_better)) return true;
+    map->children.pop_back();
+    return false;
+  }
+
+  /// Takes in a key together with the section around it that was left out, of which nothing else.
+  bool take_in_with_map(Draft& root, const std::string& path, const IsBetter& is_better) {
+    const std::string section = parent_path(path);
+    Draft* map = section.empty() ? nullptr : find_draft(root, parent_path(section));
+    if (map == nullptr || map->schema == nullptr) return false;
+    const Key* key = map->schema->find(last_name(section));
+    if (key == nullptr || key->kind != KeyKind::section) return false;
+    Draft taken = complete_draft(*key, map->pattern);
+    std::erase_if(taken.children, [&](const Draft& child) {
+      return child.name != last_name(path) && child.key != nullptr && child.key->is_optional;
+    });
+    map->children.push_back(std::move(taken));
     if (accepts(root, is_better, "in " + path) || change(root, path, is_better)) return true;
     map->children.pop_back();
     return false;
