@@ -52,7 +52,7 @@ struct SystemBody {
   /// Motion at t = 0 in reduced coordinates, m and m/s; empty for a body at rest.
   Eigen::VectorXd initial_displacement;
   Eigen::VectorXd initial_velocity;
-  Eigen::VectorXd held_load;       ///< constant generalised load in reduced coordinates, N; empty where there is none
+  Eigen::VectorXd held_load;  ///< constant load in reduced coordinates, N; empty where there is none
 
   /// Whether the drive moves or loads it.
   bool feels_drive() const { return follows_drive || load_row >= 0; }
@@ -148,8 +148,12 @@ struct ContactPoint {
   OnViolation on_violation = OnViolation::stop;
   /// Violations of persistent sliding before this time are only counted, s.
   double armed_from = 0.0;
-  std::optional<FacePlace> face;   ///< in the place of `surface`, `first_segment`: contact on a face, two tangents
-  double overlap = 0.0;            ///< indentation of undeformed bodies, m: preload/penalty; 0 for multipliers
+  /// In the place of `surface` and `first_segment`: contact on a face, with two tangents. The frame of
+  /// the slave is then x along the circumference, y along the axis away from the face, z along the
+  /// radius.
+  std::optional<FacePlace> face;
+  /// Indentation of undeformed bodies on a face, m: preload/penalty; 0 for multipliers.
+  double overlap = 0.0;
 
   /// Gap per force of compression, 1/k, m/N; 0 of a contact that a multiplier closes.
   double compliance() const { return penalty ? 1.0 / *penalty : 0.0; }
