@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "core/errors.hpp"
+#include "coupling/face_kinematics.hpp"
 #include "solvers/contact_path.hpp"
 #include "solvers/equilibrium.hpp"
 #include "solvers/linearise.hpp"
@@ -101,10 +102,10 @@ SlidingContacts on_undeformed_masters(const System& system, double displacement)
     const ContactPoint& contact = system.contacts[c];
     const double share =
         (system.bodies[static_cast<std::size_t>(contact.slave_body)].follows_drive ? 1.0 : 0.0) -
-        (system.bodies[static_cast<std::size_t>(system.surface_of(contact).body)].follows_drive
-             ? 1.0
-             : 0.0);
-    const double slip = share * state.drive_velocity;
+        (system.bodies[static_cast<std::size_t>(system.master_of(contact))].follows_drive ? 1.0
+                                                                                          : 0.0);
+    const double slip = contact.face ? contact.face->spin * contact.face->radius
+                                     : share * state.drive_velocity;
     const double factor = (slip < 0.0 ? -1.0 : 1.0) * sliding_friction(contact.friction, slip);
     const auto row = static_cast<Eigen::Index>(c);
     sliding.rows.equilibrium.row(row) +=
@@ -127,20 +128,39 @@ std::optional<SlidingContacts> sliding_at(const System& system, double displacem
   }
 }
 
-/// The tangents of contacts held as well: t = (n_y, −n_x) in every pair of slots.
-Pencil sticking(const Pencil& sliding) {
+/// The tangents of contacts held as well: t = (n_y, −n_x) in every pair of slots, or both of a face.
+Pencil sticking(const System& system, const SlidingContacts& at) {
+  const Pencil& sliding = at.rows;
   Pencil held = sliding;
   const Eigen::Index k = sliding.num_constraints();
-  const Eigen::Index num_slots = sliding.num_slots();
-  held.compatibility.setZero(2 * k, num_slots);
+  Eigen::Index num_rows = k;
+  for (const std::size_t c : at.contacts) num_rows += system.contacts[c].face ? 2 : 1;
+  held.compatibility.setZero(num_rows, sliding.num_slots());
   held.compatibility.topRows(k) = sliding.compatibility;
-  for (Eigen::Index slot = 0; slot < num_slots - sliding.num_body_slots; slot += 2) {
-    held.compatibility.col(slot).tail(k) = sliding.compatibility.col(slot + 1);
-    held.compatibility.col(slot + 1).tail(k) = -sliding.compatibility.col(slot);
+  Eigen::Index row = k;
+  Eigen::Index slot = 0;
+  for (std::size_t i = 0; i < at.contacts.size(); ++i) {
+    const ContactPoint& contact = system.contacts[at.contacts[i]];
+    const Eigen::Index num_slots = system.num_contact_slots(contact);
+    const auto normal = sliding.compatibility.row(static_cast<Eigen::Index>(i));
+    if (contact.face) {
+      const FaceKinematics face = make_face_kinematics(*contact.face);
+      held.compatibility.row(row++).segment(slot, num_slots) =
+          face.along.head(num_slots).transpose();
+      held.compatibility.row(row++).segment(slot, num_slots) =
+          face.across.head(num_slots).transpose();
+    } else {
+      for (Eigen::Index s = slot; s < slot + num_slots; s += 2) {
+        held.compatibility(row, s) = normal(s + 1);
+        held.compatibility(row, s + 1) = -normal(s);
+      }
+      ++row;
+    }
+    slot += num_slots;
   }
   held.equilibrium = held.compatibility;
   if (sliding.compliance.size() > 0) {
-    held.compliance.setZero(2 * k);
+    held.compliance.setZero(num_rows);
     held.compliance.head(k) = sliding.compliance;
   }
   return held;
@@ -172,7 +192,7 @@ void add_states(const System& system, const SlidingContacts& at, double displace
       });
   if (can_stick && has_coupled_modes(system))
     states.push_back(
-        {fmt::format("{} sticking {}", all, at.place(0, displacement)), sticking(at.rows)});
+        {fmt::format("{} sticking {}", all, at.place(0, displacement)), sticking(system, at)});
 }
 
 std::string remedy_text(const StepRemedy& remedy, const TimeParameters& time) {

@@ -190,6 +190,10 @@ struct System {
   const MasterSurface& surface_of(const ContactPoint& contact) const {
     return surfaces[static_cast<std::size_t>(contact.surface)];
   }
+  /// "<body>.<surface>" or "<body>.<face>" that a contact touches.
+  const std::string& master_name(const ContactPoint& contact) const {
+    return contact.face ? contact.face->name : surface_of(contact).name;
+  }
   /// The body that a contact touches with its slave point.
   int master_of(const ContactPoint& contact) const {
     return contact.face ? contact.face->body : surface_of(contact).body;
