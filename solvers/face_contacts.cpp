@@ -131,17 +131,42 @@ void RunningFaces::add(const ContactPoint& point, Propagator& slave, Propagator&
   blocks_.emplace_back();
 }
 
-void RunningFaces::stand(double step, bool is_prompt) {
+void RunningFaces::stand(const System& system, const Instant& at) {
+  const auto row_of = [&](int index, int row, Eigen::VectorXd SystemBody::*motion) {
+    const SystemBody& body = system.bodies[static_cast<std::size_t>(index)];
+    return row < 0 || (body.*motion).size() == 0 ? 0.0
+                                                 : body.reduced.rows.row(row).dot(body.*motion);
+  };
   for (RunningFace& face : faces_) {
+    const ContactPoint& point = face.point();
+    const auto ports_of = [&](Eigen::VectorXd SystemBody::*motion) {
+      FacePorts y;
+      for (int k = 0; k < num_face_rows; ++k)
+        y[k] = row_of(point.face->body, point.face->rows[static_cast<std::size_t>(k)], motion);
+      y.tail<3>() << row_of(point.slave_body, point.slave_rows.x, motion),
+          row_of(point.slave_body, point.slave_rows.y, motion),
+          row_of(point.slave_body, point.slave_rows.z, motion);
+      return y;
+    };
     face.forget();
     face.last_state = ContactState::open;
     face.crept.setZero();
-    face.reached = face.kinematics.current();
-    face.velocities.fill(face.kinematics.face().velocity(
-        face.reached, face.kinematics.increment() / step));
+    face.reached = ports_of(&SystemBody::initial_displacement);
+    const FacePorts rate = ports_of(&SystemBody::initial_velocity);
+    face.velocities.fill(face.kinematics.face().velocity(face.reached, rate));
     face.slip_velocity = face.velocities[0].x();
-    if (is_prompt) face.reached -= face.kinematics.increment();
+    if (at.is_prompt) face.reached -= at.step * rate;
   }
+}
+
+/// A slow mode moves twelve times as far by the next step as at once.
+void RunningFaces::set_mobility(std::size_t i) {
+  constexpr double by_next = 12.0;
+  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(3, 3);
+  for (const PortBlock& a : blocks_[i])
+    for (const PortBlock& b : blocks_[i]) add_compliance(a, b, false, own);
+  faces_[i].mobility = by_next * std::max(own(1, 1), own(2, 2));
+  faces_[i].is_soft = faces_[i].compliance >= by_next * own(0, 0);
 }
 
 void RunningFaces::set_coefficients(RunningFace& face, PlanarProblem& problem,
@@ -188,6 +213,7 @@ void RunningFaces::pose(const Instant& at) {
     }
     set_coefficients(face, problem, face.rise_at(at.sought));
     kinematics.blocks(step_, blocks_[i][0], blocks_[i][1]);
+    if (at.is_prompt && problem.is_unilateral) set_mobility(i);
   }
 }
 
@@ -198,16 +224,17 @@ bool RunningFaces::is_unsteady(std::size_t i) const {
   constexpr int steady_after = 6;
   if (face.steady_steps < steady_after) return true;
   if (face.state != ContactState::slip) return false;
-  // A slow mode moves twelve times as far by the next step as at once.
   constexpr double share = 0.25;
-  constexpr double by_next = 12.0;
-  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(3, 3);
-  for (const PortBlock& a : blocks_[i])
-    for (const PortBlock& b : blocks_[i]) add_compliance(a, b, false, own);
-  const double most = std::max(own(1, 1), own(2, 2));
   const double speed = face.velocities[0].norm();
   const double limit = problem.sticking_friction * face.force;
-  return by_next * most * limit > share * speed * step_;
+  return face.mobility * limit > share * speed * step_;
+}
+
+bool RunningFaces::has_changed(std::size_t i) const {
+  const ContactState now = problems_[i].state;
+  const ContactState before = faces_[i].state;
+  if (faces_[i].is_soft) return (now == ContactState::stick) != (before == ContactState::stick);
+  return now != before;
 }
 
 void RunningFaces::pose_ahead(std::size_t i, const Instant& at) {
@@ -216,7 +243,7 @@ void RunningFaces::pose_ahead(std::size_t i, const Instant& at) {
   const FacePoint& kinematics = face.kinematics;
   const FaceKinematics& of = kinematics.face();
   face.looks_ahead = true;
-  problem.penetration = -kinematics.gap_ahead();
+  if (!face.is_soft) problem.penetration = -kinematics.gap_ahead();
   const FacePorts& now = kinematics.directed_at();
   problem.slip = of.slip(now, kinematics.ahead(), step_);
   if (face.state == ContactState::stick)
@@ -229,7 +256,8 @@ void RunningFaces::count_steady() {
   constexpr int steady_after = 6;
   for (std::size_t i = 0; i < faces_.size(); ++i) {
     RunningFace& face = faces_[i];
-    if (problems_[i].state == ContactState::open || (face.looks_ahead && has_changed(i))) {
+    const bool is_open = problems_[i].state == ContactState::open && !face.is_soft;
+    if (is_open || (face.looks_ahead && has_changed(i))) {
       face.steady_steps = 0;
     } else if (face.steady_steps < steady_after) {
       ++face.steady_steps;
@@ -246,13 +274,27 @@ void RunningFaces::fill(ContactSolver& solver, std::span<const std::array<PortBl
     for (const PortBlock& a : to)
       for (const PortBlock& b : from) add_compliance(a, b, ahead, block);
   };
+  Eigen::MatrixXd at_once(3, 3);
+  const auto keep_normal = [&](const std::array<PortBlock, 2>& to,
+                               const std::array<PortBlock, 2>& from, Eigen::Index row,
+                               Eigen::Index column) {
+    at_once.setZero();
+    for (const PortBlock& a : to)
+      for (const PortBlock& b : from) add_compliance(a, b, false, at_once.leftCols(b.width));
+    solver.delassus().block(row, column, 1, from[0].width) = at_once.topLeftCorner(1, from[0].width);
+  };
   for (std::size_t i = 0; i < faces_.size(); ++i) {
     const Eigen::Index row = solver.first_planar(static_cast<int>(i));
     const bool ahead = faces_[i].looks_ahead;
-    for (std::size_t j = 0; j < faces_.size(); ++j)
-      add(blocks_[i], blocks_[j], ahead, row, solver.first_planar(static_cast<int>(j)));
+    for (std::size_t j = 0; j < faces_.size(); ++j) {
+      const Eigen::Index column = solver.first_planar(static_cast<int>(j));
+      add(blocks_[i], blocks_[j], ahead, row, column);
+      if (ahead && faces_[i].is_soft) keep_normal(blocks_[i], blocks_[j], row, column);
+    }
     for (std::size_t j = 0; j < lines.size(); ++j) {
-      add(blocks_[i], lines[j], ahead, row, 2 * static_cast<Eigen::Index>(j));
+      const Eigen::Index column = 2 * static_cast<Eigen::Index>(j);
+      add(blocks_[i], lines[j], ahead, row, column);
+      if (ahead && faces_[i].is_soft) keep_normal(blocks_[i], lines[j], row, column);
       add(lines[j], blocks_[i], looks_ahead[j] != 0, 2 * static_cast<Eigen::Index>(j), row);
     }
     solver.delassus()(row, row) += faces_[i].compliance;

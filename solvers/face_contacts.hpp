@@ -72,13 +72,17 @@ struct RunningFace : ContactRecord {
   FacePoint kinematics;
 
   // State.
-  double friction_across = 0.0;         ///< friction along the radius
+  double friction_across = 0.0;  ///< friction along the radius
   ContactState last_state = ContactState::open;
   FacePorts reached = FacePorts::Zero();  ///< y at the last instant that is known whole
   /// Mean velocities of the last two steps, the latest first, m/s.
   std::array<Eigen::Vector2d, 2> velocities{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
   /// Slip of a sticking contact since it has stuck, m: rounding and what forces still change.
   Eigen::Vector2d crept = Eigen::Vector2d::Zero();
+
+  // Scratch of one step.
+  bool is_soft = false;    ///< on a spring that a step resolves
+  double mobility = 0.0;   ///< displacement along a tangent by the next step per force, m/N, about
 
   const ContactPoint& point() const { return kinematics.point(); }
   /// Friction as a vector, along the circumference and along the radius.
@@ -115,15 +119,16 @@ class RunningFaces {
 
   void add(const ContactPoint& point, Propagator& slave, Propagator& master, int slave_slot,
            int master_slot);
-  /// At the start: velocities from the increments of the bodies.
-  /// @param is_prompt as Instant::is_prompt
-  void stand(double step, bool is_prompt);
+  /// At the start, from the initial motion of the bodies.
+  /// @param at as of pose()
+  void stand(const System& system, const Instant& at);
   /// Poses the problems for the forces at t_n.
   void pose(const Instant& at);
   /// Whether a contact is to be solved at t_{n+1}: as those with one tangent, and where friction could
-  /// change more than a quarter of the sliding velocity within a step.
+  /// change more than a quarter of the sliding velocity within a step. The gap of one on a spring that a
+  /// step resolves stays that of t_n: so it rebounds as the spring does.
   bool is_unsteady(std::size_t i) const;
-  bool has_changed(std::size_t i) const { return problems_[i].state != faces_[i].state; }
+  bool has_changed(std::size_t i) const;
   /// Poses one anew, with gap and slip at t_{n+1} under forces that are constant from t_n on.
   void pose_ahead(std::size_t i, const Instant& at);
   /// Counts steps without a change, once the forces are known.
@@ -139,6 +144,7 @@ class RunningFaces {
   void follow(double step);
 
  private:
+  void set_mobility(std::size_t i);
   void set_coefficients(RunningFace& face, PlanarProblem& problem, double rise) const;
 
   std::vector<RunningFace> faces_;

@@ -360,7 +360,7 @@ struct Simulation::Implementation {
         contact.forget();
         stand(contact);
       }
-      faces.stand(step, is_prompt && !is_foreseeing_start);
+      faces.stand(system, instant(time(sought_index())));
       if (solve() != StepOutcome::done) throw NumericalError(failure);
     };
     const bool is_loaded = drive.load.value(0.0) != 0.0 || drive.acceleration(0.0) != 0.0;
