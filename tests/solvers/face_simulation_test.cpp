@@ -13,7 +13,7 @@
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/linearise.hpp"
 #include "solvers/simulation.hpp"
-#include "solvers/spring_contact_motion.hpp"
+#include "solvers/face_contact_motion.hpp"
 #include "tests/support/face_contacts.hpp"
 #include "tests/support/face_system.hpp"
 #include "tests/support/message_of.hpp"
@@ -321,39 +321,92 @@ TEST(FaceSimulation, EveryFrictionLawBrakesByItsCoefficient) {
   }
 }
 
-TEST(FaceSimulation, SquealsAsTheMotionOfSpringContactsDoes) {
-  // The limit cycle with lift-off, by its largest and mean forces over the last quarter.
-  const DiscModelParameters brake = test::squealing_brake();
-  const DiscModel model = make_disc_model(brake);
-  constexpr double step = 2e-6;
-  constexpr int num_steps = 60000;
-  SpringContactMotion spring(model.bodies, model.contacts, model.law, model.state, step);
-  const test::FastestMode fastest = test::fastest_of(model.system);
-  spring.start(1e-6 * fastest.q.real(), 1e-6 * (fastest.s * fastest.q).real());
-  double expected_force = 0.0, expected_moved = 0.0;
-  for (int n = 0; n < num_steps; ++n) {
-    ASSERT_TRUE(spring.step());
-    if (n < 3 * num_steps / 4) continue;
-    expected_force = std::max(expected_force, spring.contact(0).force);
-    expected_moved = std::max(expected_moved, std::abs(spring.moved(0, FacePort::pad_z)));
+/// Largest force, share of time without contact and r.m.s. displacement of the upper pad in a limit cycle.
+struct LimitCycle {
+  double force = 0.0, open = 0.0, moved = 0.0;
+};
+
+void enter(LimitCycle& cycle, double force, double moved, int num_steps) {
+  cycle.force = std::max(cycle.force, force);
+  cycle.open += force == 0.0 ? 1.0 / num_steps : 0.0;
+  cycle.moved += moved * moved / num_steps;
+}
+
+TEST(FaceSimulation, SquealsAsTheMotionOfDiscsAloneDoes) {
+  for (const bool is_rigid : {false, true}) {
+    DiscModelParameters brake = test::squealing_brake();
+    if (is_rigid) brake.contact.formulation = ContactFormulation::lagrange;
+    const DiscModel model = make_disc_model(brake);
+    constexpr double step = 2e-6;
+    constexpr int num_steps = 60000, num_first = 30000;
+    const auto motion =
+        make_face_contact_motion(model.bodies, model.contacts, model.law, model.state, step);
+    const test::FastestMode fastest = test::fastest_of(model.system);
+    motion->start(1e-6 * fastest.q.real(), 1e-6 * (fastest.s * fastest.q).real());
+    LimitCycle expected;
+    for (int n = 0; n < num_steps; ++n) {
+      ASSERT_TRUE(motion->step());
+      if (n >= num_first)
+        enter(expected, motion->contact(0).force, motion->moved(0, FacePort::pad_z),
+              num_steps - num_first);
+    }
+    const System system = test::disc_system(brake);
+    const Equilibrium equilibrium = test::face_equilibrium(system);
+    const FastMotion mode = fastest_motion(system, equilibrium);
+    Simulation simulation(perturbed(system, equilibrium, mode, 1e-6), face_time(step));
+    LimitCycle found;
+    for (int n = 0; n < num_steps; ++n) {
+      ASSERT_EQ(simulation.step(), StepOutcome::done) << simulation.failure();
+      if (n >= num_first)
+        enter(found, simulation.contact_force(0), simulation.displacement(1, 1),
+              num_steps - num_first);
+    }
+    // The motion is irregular: halving the step changes the forces of either by a tenth.
+    EXPECT_NEAR(found.open, expected.open, 0.05);
+    EXPECT_NEAR(std::sqrt(found.moved), std::sqrt(expected.moved), 0.25 * std::sqrt(expected.moved));
+    EXPECT_NEAR(found.force, expected.force, 0.35 * expected.force);
   }
-  System system = test::disc_system(brake);
-  const Equilibrium equilibrium = test::face_equilibrium(system);
-  FastMotion mode = fastest_motion(system, equilibrium);
-  Simulation simulation(perturbed(system, equilibrium, mode, 1e-6), face_time(step));
-  double moved = 0.0;
-  ASSERT_EQ(simulation.step_until(3 * num_steps / 4), StepOutcome::done) << simulation.failure();
-  simulation.reset_statistics();
-  while (simulation.step_index() < num_steps) {
-    ASSERT_EQ(simulation.step(), StepOutcome::done) << simulation.failure();
-    moved = std::max(moved, std::abs(simulation.displacement(1, 1)));
-  }
-  const ContactStatistics statistics = simulation.statistics(0);
-  EXPECT_EQ(statistics.force_min, 0.0);
-  EXPECT_GT(statistics.open, 0);
-  // The motion is irregular; amplitudes agree as those of two starts of one motion do.
-  EXPECT_NEAR(statistics.force_max, expected_force, 0.25 * expected_force);
-  EXPECT_NEAR(moved, expected_moved, 0.25 * expected_moved);
+}
+
+TEST(FaceSimulation, ContactsOfBothKindsRunInOneSystem) {
+  // A block between a belt, whose face presses it by the overlap of its spring, and a rigid rail above it.
+  MassOnFace scene;
+  scene.is_held_along = false;
+  scene.stiffness = 500.0;
+  System system = scene.system();
+  system.contacts[0].penalty = 2e5;
+  ReducedBody rail;
+  rail.mass = rail.stiffness = Eigen::MatrixXd::Identity(1, 1);
+  rail.rows = Eigen::MatrixXd::Zero(4, 1);
+  system.bodies.push_back(test::face_body("rail", rail));
+  MasterSurface surface;
+  surface.name = "rail.bottom";
+  surface.body = 2;
+  surface.rows = {{0, 1}, {2, 3}};
+  // The body lies on the right-hand side: above it, seen from its other end.
+  surface.positions = {{10.0, 0.0}, {-10.0, 0.0}};
+  surface.arc_length = {0.0, 20.0};
+  system.surfaces.push_back(surface);
+  ContactPoint above;
+  above.name = "block under rail";
+  above.slave_body = 1;
+  above.slave_rows = {0, 1, 2};
+  above.slave_position.setZero();
+  above.assumption = ContactAssumption::film;
+  above.friction = constant_friction(0.2);
+  system.contacts.push_back(above);
+  system.bodies[1].held_load(1) = -scene.load;
+  system.contacts[0].overlap = 30.0 / 2e5;  // 30 N from below: 20 N against the rail
+  Simulation simulation(system, face_time(1e-4));
+  ASSERT_EQ(simulation.step_until(2000), StepOutcome::done) << simulation.failure();
+  EXPECT_NEAR(simulation.contact_force(0), 30.0, 1e-6);
+  EXPECT_NEAR(simulation.contact_force(1), 20.0, 1e-6);
+  EXPECT_NEAR(std::hypot(simulation.friction_force(0), simulation.friction_across(0)), 0.4 * 30.0,
+              1e-6);
+  const Equilibrium equilibrium = find_equilibrium(system, sliding_state(system, 0.0));
+  ASSERT_EQ(equilibrium.status, EquilibriumStatus::converged) << equilibrium.failure;
+  EXPECT_NEAR(equilibrium.contacts[0].force, 30.0, 1e-9);
+  EXPECT_NEAR(equilibrium.contacts[1].force, 20.0, 1e-9);
 }
 
 TEST(FaceSimulation, EnergyBalancesToRoundingWhileItSquealsAndLiftsOff) {
@@ -373,7 +426,10 @@ TEST(FaceSimulation, EnergyBalancesToRoundingWhileItSquealsAndLiftsOff) {
     const EnergyBalance& balance = ledger.balance();
     EXPECT_GT(balance.friction_loss, 0.0);
     EXPECT_GT(balance.drive_work, 0.0);
-    EXPECT_EQ(ledger.friction_gain().steps, 0);
+    // Friction is against the velocity at its instant, the mean one of the step may point elsewhere where
+    // sliding turns round.
+    EXPECT_LE(ledger.friction_gain().steps, 5);
+    EXPECT_LT(ledger.friction_gain().largest_power, 1e-4 * balance.friction_loss / 0.01);
     if (!is_rigid) {
       EXPECT_GT(simulation.statistics(0).open, 0);
     }
