@@ -61,7 +61,9 @@ struct SlidingContacts {
   std::vector<std::size_t> contacts;  ///< of the constraints
   std::vector<double> positions;      ///< along the masters, m; empty on undeformed masters
 
-  std::string place(std::size_t constraint, double displacement) const {
+  std::string place(const System& system, std::size_t constraint, double displacement) const {
+    if (const auto& face = system.contacts[contacts[constraint]].face)
+      return fmt::format("at a radius of {:.4g} m", face->radius);
     return positions.empty() ? fmt::format("with the drive displaced by {:.4g} m", displacement)
                              : fmt::format("at {:.4g} m of its master", positions[constraint]);
   }
@@ -175,14 +177,14 @@ void add_states(const System& system, const SlidingContacts& at, double displace
                                     [&](std::size_t c) { return may_open(system.contacts[c]); });
   std::string all = name_of(0);
   for (std::size_t c = 1; c < at.contacts.size(); ++c) all += ", " + name_of(c);
-  states.push_back({fmt::format("{} sliding {}", all, at.place(0, displacement)), at.rows});
+  states.push_back({fmt::format("{} sliding {}", all, at.place(system, 0, displacement)), at.rows});
   for (std::size_t c = 0; can_open && at.contacts.size() > 1 && c < at.contacts.size(); ++c) {
     Pencil alone = at.rows;
     const auto row = static_cast<Eigen::Index>(c);
     alone.compatibility = at.rows.compatibility.row(row).eval();
     alone.equilibrium = at.rows.equilibrium.row(row).eval();
     if (at.rows.compliance.size() > 0) alone.compliance = at.rows.compliance.segment(row, 1).eval();
-    states.push_back({fmt::format("{} sliding alone {}", name_of(c), at.place(c, displacement)),
+    states.push_back({fmt::format("{} sliding alone {}", name_of(c), at.place(system, c, displacement)),
                       std::move(alone)});
   }
   const bool can_stick =
@@ -192,7 +194,7 @@ void add_states(const System& system, const SlidingContacts& at, double displace
       });
   if (can_stick && has_coupled_modes(system))
     states.push_back(
-        {fmt::format("{} sticking {}", all, at.place(0, displacement)), sticking(system, at)});
+        {fmt::format("{} sticking {}", all, at.place(system, 0, displacement)), sticking(system, at)});
 }
 
 std::string remedy_text(const StepRemedy& remedy, const TimeParameters& time) {

@@ -36,7 +36,7 @@ struct WholeMotion {
   Eigen::VectorXd displacement, velocity;
 };
 
-WholeMotion motion_of(const Simulation& simulation, int num_bodies) {
+WholeMotion whole_motion(const Simulation& simulation, int num_bodies) {
   WholeMotion whole;
   for (int b = 0; b < num_bodies; ++b) {
     const Propagator::Motion motion = simulation.motion(b);
@@ -54,7 +54,7 @@ struct FastMotion {
   Eigen::VectorXcd q;  ///< of length 1
 };
 
-FastMotion fastest_motion(const System& system, const Equilibrium& equilibrium) {
+FastMotion fastest_growing(const System& system, const Equilibrium& equilibrium) {
   const DenseSpectrum spectrum = dense_spectrum(linearise(system, equilibrium));
   const auto fastest =
       std::max_element(spectrum.eigenvalues.begin(), spectrum.eigenvalues.end(),
@@ -88,7 +88,7 @@ GrowthFound grow(const System& system, const Equilibrium& equilibrium, const Fas
   Simulation simulation(perturbed(system, equilibrium, mode, amplitude), face_time(step));
   const auto num_steps = static_cast<std::int64_t>(std::lround(end / step));
   EXPECT_EQ(simulation.step_until(num_steps), StepOutcome::done) << simulation.failure();
-  WholeMotion motion = motion_of(simulation, 3);
+  WholeMotion motion = whole_motion(simulation, 3);
   Eigen::VectorXd rest(motion.displacement.size());
   Eigen::Index first = 0;
   for (const Eigen::VectorXd& part : equilibrium.displacement) {
@@ -112,7 +112,7 @@ TEST(FaceSimulation, SmallMotionGrowsAsTheEigenvalueSays) {
       if (is_rigid) brake.contact.formulation = ContactFormulation::lagrange;
       const System system = test::disc_system(brake, assumption);
       const Equilibrium equilibrium = test::face_equilibrium(system);
-      const FastMotion mode = fastest_motion(system, equilibrium);
+      const FastMotion mode = fastest_growing(system, equilibrium);
       ASSERT_GT(mode.s.real(), 100.0);
       constexpr double end = 0.02;
       const GrowthFound coarse = grow(system, equilibrium, mode, 4e-6, end);
@@ -352,7 +352,7 @@ TEST(FaceSimulation, SquealsAsTheMotionOfDiscsAloneDoes) {
     }
     const System system = test::disc_system(brake);
     const Equilibrium equilibrium = test::face_equilibrium(system);
-    const FastMotion mode = fastest_motion(system, equilibrium);
+    const FastMotion mode = fastest_growing(system, equilibrium);
     Simulation simulation(perturbed(system, equilibrium, mode, 1e-6), face_time(step));
     LimitCycle found;
     for (int n = 0; n < num_steps; ++n) {
@@ -416,7 +416,7 @@ TEST(FaceSimulation, EnergyBalancesToRoundingWhileItSquealsAndLiftsOff) {
     if (is_rigid) brake.contact.formulation = ContactFormulation::lagrange;
     System system = test::disc_system(brake);
     const Equilibrium equilibrium = test::face_equilibrium(system);
-    FastMotion mode = fastest_motion(system, equilibrium);
+    FastMotion mode = fastest_growing(system, equilibrium);
     ASSERT_GT(mode.s.real(), 10.0);
     Simulation simulation(perturbed(system, equilibrium, mode, 5e-5),
                           face_time(5e-7, Integrator::central_difference), Accounts::energy);
@@ -442,7 +442,7 @@ TEST(FaceSimulation, ResumesBitIdentically) {
   const DiscModelParameters brake = test::squealing_brake();
   const System system = test::disc_system(brake);
   const Equilibrium equilibrium = test::face_equilibrium(system);
-  const FastMotion mode = fastest_motion(system, equilibrium);
+  const FastMotion mode = fastest_growing(system, equilibrium);
   const System moving = perturbed(system, equilibrium, mode, 5e-5);
   Simulation whole(moving, face_time(2e-6));
   ASSERT_EQ(whole.step_until(1500), StepOutcome::done);

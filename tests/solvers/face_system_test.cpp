@@ -19,7 +19,7 @@ namespace {
 
 /// Largest distance of one of the eigenvalues from the nearest of the others that is left, by its
 /// size.
-double largest_difference(std::vector<Eigenvalue> some, std::vector<Eigenvalue> others) {
+double largest_spectrum_difference(std::vector<Eigenvalue> some, std::vector<Eigenvalue> others) {
   double largest = std::abs(static_cast<double>(some.size()) - static_cast<double>(others.size()));
   for (const Eigenvalue& one : some) {
     const auto nearest =
@@ -33,7 +33,7 @@ double largest_difference(std::vector<Eigenvalue> some, std::vector<Eigenvalue> 
   return largest;
 }
 
-struct Case {
+struct DiscCase {
   std::string name;
   std::vector<std::string> terms;
   bool is_penalty;
@@ -41,7 +41,7 @@ struct Case {
   bool is_elastic;
 };
 
-DiscModelParameters brake_of(const Case& one) {
+DiscModelParameters brake_of(const DiscCase& one) {
   DiscModelParameters brake = test::squealing_brake();
   brake.terms = one.terms;
   brake.contact.friction.coefficient = 0.3;
@@ -54,7 +54,7 @@ DiscModelParameters brake_of(const Case& one) {
   return brake;
 }
 
-std::vector<Case> cases() {
+std::vector<DiscCase> disc_cases() {
   const std::vector<std::vector<std::string>> terms{
       {},
       {"gyroscopic"},
@@ -65,7 +65,7 @@ std::vector<Case> cases() {
       {"gyroscopic", "friction", "friction_damping", "geometric"},
       {"friction", "friction_damping", "geometric", "structural_damping"},
       {"gyroscopic", "friction", "friction_damping", "geometric", "structural_damping"}};
-  std::vector<Case> all;
+  std::vector<DiscCase> all;
   for (std::size_t i = 0; i < terms.size(); ++i) {
     for (int k = 0; k < 8; ++k) {
       all.push_back({fmt::format("terms_{}_{}_{}_{}", i, k & 1 ? "penalty" : "rigid",
@@ -76,7 +76,7 @@ std::vector<Case> cases() {
   return all;
 }
 
-class FaceSystem : public testing::TestWithParam<Case> {};
+class FaceSystem : public testing::TestWithParam<DiscCase> {};
 
 TEST_P(FaceSystem, HasTheEigenvaluesAndForcesOfTheDiscModel) {
   const DiscModelParameters brake = brake_of(GetParam());
@@ -95,12 +95,12 @@ TEST_P(FaceSystem, HasTheEigenvaluesAndForcesOfTheDiscModel) {
     EXPECT_NEAR(found.friction_across, friction.y(), 1e-9 * 3000.0);
   }
   // Rounding of ω² up to the stiffness of the penalty.
-  EXPECT_LT(largest_difference(dense_eigenvalues(linearise(system, equilibrium, terms)),
+  EXPECT_LT(largest_spectrum_difference(dense_eigenvalues(linearise(system, equilibrium, terms)),
                                dense_eigenvalues(make_pencil(model.system))),
             1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, FaceSystem, testing::ValuesIn(cases()),
+INSTANTIATE_TEST_SUITE_P(Cases, FaceSystem, testing::ValuesIn(disc_cases()),
                          [](const auto& one) { return one.param.name; });
 
 TEST(FaceEquilibrium, ContactsOpenWhereTheyWouldPull) {
@@ -127,7 +127,7 @@ TEST(FaceEquilibrium, ContactsOpenWhereTheyWouldPull) {
       }
     }
     EXPECT_GT(open, 0);
-    EXPECT_LT(largest_difference(dense_eigenvalues(linearise(system, equilibrium)),
+    EXPECT_LT(largest_spectrum_difference(dense_eigenvalues(linearise(system, equilibrium)),
                                  dense_eigenvalues(make_pencil(model.system))),
               1e-9);
   }
