@@ -75,6 +75,7 @@ void check(const PencilFamily& family, const std::vector<double>& values,
 std::vector<double> kinks_along_drive(const System& system) {
   std::vector<double> kinks;
   for (const ContactPoint& contact : system.contacts) {
+    if (contact.face) continue;  // it stays where it is
     const MasterSurface& surface = system.surfaces[static_cast<std::size_t>(contact.surface)];
     const auto drive_share = [&](int body) {
       return system.bodies[static_cast<std::size_t>(body)].follows_drive ? 1.0 : 0.0;

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "core/errors.hpp"
+#include "coupling/face_kinematics.hpp"
 #include "solvers/contact_path.hpp"
 #include "solvers/equilibrium.hpp"
 #include "solvers/linearise.hpp"
@@ -60,7 +61,9 @@ struct SlidingContacts {
   std::vector<std::size_t> contacts;  ///< of the constraints
   std::vector<double> positions;      ///< along the masters, m; empty on undeformed masters
 
-  std::string place(std::size_t constraint, double displacement) const {
+  std::string place(const System& system, std::size_t constraint, double displacement) const {
+    if (const auto& face = system.contacts[contacts[constraint]].face)
+      return fmt::format("at a radius of {:.4g} m", face->radius);
     return positions.empty() ? fmt::format("with the drive displaced by {:.4g} m", displacement)
                              : fmt::format("at {:.4g} m of its master", positions[constraint]);
   }
@@ -101,10 +104,10 @@ SlidingContacts on_undeformed_masters(const System& system, double displacement)
     const ContactPoint& contact = system.contacts[c];
     const double share =
         (system.bodies[static_cast<std::size_t>(contact.slave_body)].follows_drive ? 1.0 : 0.0) -
-        (system.bodies[static_cast<std::size_t>(system.surface_of(contact).body)].follows_drive
-             ? 1.0
-             : 0.0);
-    const double slip = share * state.drive_velocity;
+        (system.bodies[static_cast<std::size_t>(system.master_of(contact))].follows_drive ? 1.0
+                                                                                          : 0.0);
+    const double slip = contact.face ? contact.face->spin * contact.face->radius
+                                     : share * state.drive_velocity;
     const double factor = (slip < 0.0 ? -1.0 : 1.0) * sliding_friction(contact.friction, slip);
     const auto row = static_cast<Eigen::Index>(c);
     sliding.rows.equilibrium.row(row) +=
@@ -127,20 +130,39 @@ std::optional<SlidingContacts> sliding_at(const System& system, double displacem
   }
 }
 
-/// The tangents of contacts held as well: t = (n_y, −n_x) in every pair of slots.
-Pencil sticking(const Pencil& sliding) {
+/// The tangents of contacts held as well: t = (n_y, −n_x) in every pair of slots, or both of a face.
+Pencil sticking(const System& system, const SlidingContacts& at) {
+  const Pencil& sliding = at.rows;
   Pencil held = sliding;
   const Eigen::Index k = sliding.num_constraints();
-  const Eigen::Index num_slots = sliding.num_slots();
-  held.compatibility.setZero(2 * k, num_slots);
+  Eigen::Index num_rows = k;
+  for (const std::size_t c : at.contacts) num_rows += system.contacts[c].face ? 2 : 1;
+  held.compatibility.setZero(num_rows, sliding.num_slots());
   held.compatibility.topRows(k) = sliding.compatibility;
-  for (Eigen::Index slot = 0; slot < num_slots - sliding.num_body_slots; slot += 2) {
-    held.compatibility.col(slot).tail(k) = sliding.compatibility.col(slot + 1);
-    held.compatibility.col(slot + 1).tail(k) = -sliding.compatibility.col(slot);
+  Eigen::Index row = k;
+  Eigen::Index slot = 0;
+  for (std::size_t i = 0; i < at.contacts.size(); ++i) {
+    const ContactPoint& contact = system.contacts[at.contacts[i]];
+    const Eigen::Index num_slots = system.num_contact_slots(contact);
+    const auto normal = sliding.compatibility.row(static_cast<Eigen::Index>(i));
+    if (contact.face) {
+      const FaceKinematics face = make_face_kinematics(*contact.face);
+      held.compatibility.row(row++).segment(slot, num_slots) =
+          face.along.head(num_slots).transpose();
+      held.compatibility.row(row++).segment(slot, num_slots) =
+          face.across.head(num_slots).transpose();
+    } else {
+      for (Eigen::Index s = slot; s < slot + num_slots; s += 2) {
+        held.compatibility(row, s) = normal(s + 1);
+        held.compatibility(row, s + 1) = -normal(s);
+      }
+      ++row;
+    }
+    slot += num_slots;
   }
   held.equilibrium = held.compatibility;
   if (sliding.compliance.size() > 0) {
-    held.compliance.setZero(2 * k);
+    held.compliance.setZero(num_rows);
     held.compliance.head(k) = sliding.compliance;
   }
   return held;
@@ -155,14 +177,14 @@ void add_states(const System& system, const SlidingContacts& at, double displace
                                     [&](std::size_t c) { return may_open(system.contacts[c]); });
   std::string all = name_of(0);
   for (std::size_t c = 1; c < at.contacts.size(); ++c) all += ", " + name_of(c);
-  states.push_back({fmt::format("{} sliding {}", all, at.place(0, displacement)), at.rows});
+  states.push_back({fmt::format("{} sliding {}", all, at.place(system, 0, displacement)), at.rows});
   for (std::size_t c = 0; can_open && at.contacts.size() > 1 && c < at.contacts.size(); ++c) {
     Pencil alone = at.rows;
     const auto row = static_cast<Eigen::Index>(c);
     alone.compatibility = at.rows.compatibility.row(row).eval();
     alone.equilibrium = at.rows.equilibrium.row(row).eval();
     if (at.rows.compliance.size() > 0) alone.compliance = at.rows.compliance.segment(row, 1).eval();
-    states.push_back({fmt::format("{} sliding alone {}", name_of(c), at.place(c, displacement)),
+    states.push_back({fmt::format("{} sliding alone {}", name_of(c), at.place(system, c, displacement)),
                       std::move(alone)});
   }
   const bool can_stick =
@@ -172,7 +194,7 @@ void add_states(const System& system, const SlidingContacts& at, double displace
       });
   if (can_stick && has_coupled_modes(system))
     states.push_back(
-        {fmt::format("{} sticking {}", all, at.place(0, displacement)), sticking(at.rows)});
+        {fmt::format("{} sticking {}", all, at.place(system, 0, displacement)), sticking(system, at)});
 }
 
 std::string remedy_text(const StepRemedy& remedy, const TimeParameters& time) {

@@ -70,6 +70,18 @@ Json left_out_json(const System& system, double highest, bool has_ledger) {
   bool slides_only = true;
   bool has_fixed_normal = true;
   for (const ContactPoint& contact : system.contacts) {
+    if (contact.face) {
+      const auto num_slave = static_cast<Eigen::Index>(system.num_contact_slots(contact)) -
+                             static_cast<Eigen::Index>(contact.face->rows.size());
+      const auto on_face = static_cast<Eigen::Index>(contact.face->rows.size());
+      followed[static_cast<std::size_t>(contact.slave_body)] += num_slave;
+      touchable[static_cast<std::size_t>(contact.slave_body)] += num_slave;
+      followed[static_cast<std::size_t>(contact.face->body)] += on_face;
+      touchable[static_cast<std::size_t>(contact.face->body)] += on_face;
+      has_friction |= !contact.friction.is_frictionless();
+      slides_only = false;
+      continue;
+    }
     const MasterSurface& surface = system.surface_of(contact);
     const auto slave = static_cast<std::size_t>(contact.slave_body);
     const auto master = static_cast<std::size_t>(surface.body);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -17,10 +18,28 @@
 
 namespace stridor {
 
-/// Rows of ReducedBody::rows that carry the x and y displacement of one point.
+/// Rows of ReducedBody::rows that carry the displacement of one point.
 struct PointRows {
   int x = 0;
   int y = 0;
+  int z = -1;  ///< −1: the body does not move along z
+};
+
+/// A place on a face of a body that spins about an axis along z of space, seen from space: it stays where
+/// it is while material passes with Ω r (docs/theory.md, 10.2).
+struct FacePlace {
+  std::string name;             ///< "<body>.<face>"
+  int body = 0;
+  /// Rows of ReducedBody::rows that carry w, w_r, w_φ, w_rφ and w_φφ here.
+  std::array<int, 5> rows{};
+  double radius = 0.0;          ///< r, m
+  double angle = 0.0;           ///< φ, rad
+  double half_thickness = 0.0;  ///< h/2, m
+  int side = 1;                 ///< s: +1 on the face of larger z, −1 on the other
+  double spin = 0.0;            ///< Ω, rad/s
+  /// Angle of the circumference here against x of the slave's frame, rad:
+  /// p_φ = cos x − sin z, p_r = cos z + sin x, p_z = s y of the slave's point.
+  double turned = 0.0;
 };
 
 /// One component and its position.
@@ -33,6 +52,7 @@ struct SystemBody {
   /// Motion at t = 0 in reduced coordinates, m and m/s; empty for a body at rest.
   Eigen::VectorXd initial_displacement;
   Eigen::VectorXd initial_velocity;
+  Eigen::VectorXd held_load;  ///< constant load in reduced coordinates, N; empty where there is none
 
   /// Whether the drive moves or loads it.
   bool feels_drive() const { return follows_drive || load_row >= 0; }
@@ -109,7 +129,7 @@ enum class OnViolation {
   unilateral,  ///< it sticks, slips and lifts off
 };
 
-/// One slave point on one master surface.
+/// One slave point on one master surface, or on one place of the face of a spinning body.
 struct ContactPoint {
   std::string name;  ///< of the pair it belongs to, with "[k]" where the pair has several points
   int slave_body = 0;
@@ -128,6 +148,12 @@ struct ContactPoint {
   OnViolation on_violation = OnViolation::stop;
   /// Violations of persistent sliding before this time are only counted, s.
   double armed_from = 0.0;
+  /// In the place of `surface` and `first_segment`: contact on a face, with two tangents. The frame of
+  /// the slave is then x along the circumference, y along the axis away from the face, z along the
+  /// radius.
+  std::optional<FacePlace> face;
+  /// Indentation of undeformed bodies on a face, m: preload/penalty; 0 for multipliers.
+  double overlap = 0.0;
 
   /// Gap per force of compression, 1/k, m/N; 0 of a contact that a multiplier closes.
   double compliance() const { return penalty ? 1.0 / *penalty : 0.0; }
@@ -164,9 +190,23 @@ struct System {
   const MasterSurface& surface_of(const ContactPoint& contact) const {
     return surfaces[static_cast<std::size_t>(contact.surface)];
   }
+  /// "<body>.<surface>" or "<body>.<face>" that a contact touches.
+  const std::string& master_name(const ContactPoint& contact) const {
+    return contact.face ? contact.face->name : surface_of(contact).name;
+  }
+  /// The body that a contact touches with its slave point.
+  int master_of(const ContactPoint& contact) const {
+    return contact.face ? contact.face->body : surface_of(contact).body;
+  }
+  bool has_faces() const {
+    return std::any_of(contacts.begin(), contacts.end(),
+                       [](const ContactPoint& contact) { return contact.face.has_value(); });
+  }
   /// Displacements of the bodies at a contact: x and y of the slave and of every node of the
-  /// stencil.
+  /// stencil; on a face, its five and those of the slave, x, y and z.
   int num_contact_slots(const ContactPoint& contact) const {
+    if (contact.face)
+      return static_cast<int>(contact.face->rows.size()) + (contact.slave_rows.z < 0 ? 2 : 3);
     return 2 + 2 * surface_of(contact).stencil_size();
   }
 };

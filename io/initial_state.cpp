@@ -156,14 +156,14 @@ std::string gap_message(const System& system, const StartingGap& start) {
     return fmt::format(
         "'{}' starts {:.6g} m inside its master '{}', which the first step would turn into energy "
         "from nothing; the smallest lift that removes it: {}",
-        contact.name, -start.gap, system.surface_of(contact).name, move);
+        contact.name, -start.gap, system.master_name(contact), move);
   }
   return fmt::format(
       "'{}' starts {:.6g} m {} its master '{}', and a contact that slides persistently closes any "
       "gap in the first step, with energy from nothing; {}, or take assumption: film, in which a "
       "contact may start open",
       contact.name, std::abs(start.gap), start.gap < 0.0 ? "inside" : "away from",
-      system.surface_of(contact).name, move);
+      system.master_name(contact), move);
 }
 
 /// Refuses gaps that the contact forces would close in the first step. An overlap of a force law is
@@ -178,7 +178,7 @@ void check_gaps(const System& system, const LoadedScene& loaded) {
     const ContactPoint& contact = system.contacts[static_cast<std::size_t>(start.contact)];
     if (contact.substrate || contact.penalty) continue;
     if (may_start_open(contact) && start.gap >= 0.0) continue;
-    const double allowed = negligible_gap(system.surface_of(contact)) + turning * amplitude;
+    const double allowed = negligible_gap(system, contact) + turning * amplitude;
     if (std::abs(start.gap) <= allowed) continue;
     const auto [known, is_new] = worst.try_emplace(contact.slave_body, start);
     if (!is_new && std::abs(start.gap) > std::abs(known->second.gap)) known->second = start;

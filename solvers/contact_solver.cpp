@@ -119,14 +119,23 @@ inline bool solve_local(LocalProblem& contact, const LocalCompliance& w, double 
 
 }  // namespace
 
-ContactSolver::ContactSolver(int num_contacts, ContactSolverParameters parameters)
+bool solve_line(LocalProblem& contact, const Eigen::Matrix2d& delassus, double penetration,
+                double slip) {
+  return solve_local(contact, {delassus(0, 0), delassus(0, 1), delassus(1, 0), delassus(1, 1)},
+                     penetration, slip);
+}
+
+ContactSolver::ContactSolver(int num_contacts, ContactSolverParameters parameters, int num_planar)
     : parameters_(parameters),
-      delassus_(Eigen::MatrixXd::Zero(2 * num_contacts, 2 * num_contacts)),
-      sliding_(Eigen::MatrixXd::Zero(num_contacts, num_contacts)),
-      right_side_(Eigen::VectorXd::Zero(num_contacts)),
-      forces_(Eigen::VectorXd::Zero(num_contacts)),
-      factor_(num_contacts),
-      jamming_(num_contacts) {}
+      delassus_(Eigen::MatrixXd::Zero(2 * num_contacts + 3 * num_planar,
+                                      2 * num_contacts + 3 * num_planar)),
+      sliding_(Eigen::MatrixXd::Zero(num_contacts + num_planar, num_contacts + num_planar)),
+      right_side_(Eigen::VectorXd::Zero(num_contacts + num_planar)),
+      forces_(right_side_),
+      factor_(num_contacts + num_planar),
+      jamming_(num_contacts + num_planar),
+      num_lines_(2 * num_contacts),
+      all_forces_(Eigen::VectorXd::Zero(num_planar > 0 ? delassus_.rows() : 0)) {}
 
 ContactAnswer ContactSolver::solve(std::span<LocalProblem> contacts) {
   if (contacts.size() == 1) {

@@ -49,6 +49,45 @@ struct LocalProblem {
   double stiffness = 0.0;  ///< of the force law, by the indentation, N/m
 };
 
+/// The same of a contact with two tangents: λ = (λ_n, τ) with friction τ along both, against slip σ
+/// when along it (docs/theory.md, 2.4). Slip is a vector; friction opposes it as such.
+struct PlanarProblem {
+  double penetration = 0.0;                         ///< as LocalProblem, m
+  Eigen::Vector2d slip = Eigen::Vector2d::Zero();   ///< likewise, m
+  double sliding_friction = 0.0;                    ///< μ while sliding
+  double sticking_friction = 0.0;                   ///< μ up to which it sticks in this step
+  Eigen::Vector2d direction{1.0, 0.0};              ///< of persistent sliding, a unit vector
+  bool is_unilateral = false;                       ///< false: persistent sliding
+
+  /// A regularised law of friction in the place of the two coefficients, not owned.
+  const FrictionLaw* creep = nullptr;
+  double friction_factor = 1.0;  ///< on that law
+  double step = 0.0;             ///< over which it slips, s
+
+  // Answer; on entry the guess from which the iteration starts.
+  double normal = 0.0;                                   ///< λ_n, N
+  Eigen::Vector2d tangential = Eigen::Vector2d::Zero();  ///< τ, N
+  ContactState state = ContactState::open;
+};
+
+/// The solution of one contact with two tangents under forces known. With η ≥ 0 in
+///
+///   [D_nn  D_nt    ] [λ]   [p*]
+///   [D_tn  D_tt + η] [τ] = [σ*],   σ = η τ,   φ(η) = |τ| − μ λ = 0,
+///
+/// slip is along friction by construction, and φ is a scalar equation: φ(0) > 0 where the contact does
+/// not stick, φ → −μ p*/D_nn as η grows. For a regularised law μ = μ(v) s(v) at v = η |τ|/h.
+/// @param delassus D, 3 x 3, with the compliance of a penalty
+/// @param known    p* and σ*
+/// @return false where no force closes the gap
+bool solve_planar(PlanarProblem& contact, const Eigen::Matrix3d& delassus,
+                  const Eigen::Vector3d& known);
+
+/// The solution of one contact with one tangent, likewise.
+/// @param delassus 2 x 2
+bool solve_line(LocalProblem& contact, const Eigen::Matrix2d& delassus, double penetration,
+                double slip);
+
 enum class ContactStatus {
   converged,
   jammed,         ///< no contact force closes the gap of the contact named
@@ -57,7 +96,7 @@ enum class ContactStatus {
 
 struct ContactAnswer {
   ContactStatus status = ContactStatus::converged;
-  int contact = 0;  ///< the one to blame
+  int contact = 0;  ///< the one to blame; those with two tangents come after the others
   int sweeps = 0;
 };
 
@@ -82,19 +121,29 @@ struct ContactSolverParameters {
 /// contact with a force law is solved by solve_substrate_step().
 class ContactSolver {
  public:
-  explicit ContactSolver(int num_contacts, ContactSolverParameters parameters = {});
+  /// @param num_planar contacts with two tangents, besides
+  explicit ContactSolver(int num_contacts, ContactSolverParameters parameters = {},
+                         int num_planar = 0);
 
-  /// W, 2n x 2n, row and column 2i for the normal and 2i+1 for the tangent of contact i; to be
-  /// filled before `solve`.
+  /// W, row and column 2i for the normal and 2i+1 for the tangent of contact i; three for each of the
+  /// contacts with two tangents after all others (first_planar()). To be filled before `solve`.
   Eigen::MatrixXd& delassus() { return delassus_; }
 
   /// @param contacts problems in, solutions out
   /// No allocation but where strong friction makes bilateral contacts nearly jam.
   ContactAnswer solve(std::span<LocalProblem> contacts);
+  /// The same where some have two tangents, in blocks of 1 + d.
+  ContactAnswer solve(std::span<LocalProblem> contacts, std::span<PlanarProblem> planar);
+  /// Row of the normal of a contact with two tangents.
+  Eigen::Index first_planar(int index) const { return num_lines_ + 3 * index; }
 
  private:
   ContactAnswer solve_bilateral(std::span<LocalProblem> contacts);
   ContactAnswer iterate(std::span<LocalProblem> contacts);
+  ContactAnswer solve_bilateral(std::span<LocalProblem> contacts, std::span<PlanarProblem> planar);
+  ContactAnswer iterate(std::span<LocalProblem> contacts, std::span<PlanarProblem> planar);
+  /// Known penetration or slip of a row under the forces of all contacts but those of its own block.
+  double known(double without, Eigen::Index row, Eigen::Index first, Eigen::Index width) const;
 
   ContactSolverParameters parameters_;
   Eigen::MatrixXd delassus_;
@@ -103,6 +152,8 @@ class ContactSolver {
   Eigen::VectorXd forces_;
   Eigen::PartialPivLU<Eigen::MatrixXd> factor_;
   JammingTest jamming_;
+  Eigen::Index num_lines_;     ///< rows of contacts with one tangent
+  Eigen::VectorXd all_forces_; ///< of all rows; empty without contacts of two tangents
 };
 
 }  // namespace stridor

@@ -115,6 +115,12 @@ EnergyLedger::Body EnergyLedger::make_body(const SystemBody& system_body,
     body.base_inertia = AlignedArray(body.padded_size);
     copy_to(is_modal ? modal.base_inertia : reduced.base_inertia, body.base_inertia);
   }
+  if (system_body.held_load.size() > 0) {
+    body.held_load = AlignedArray(body.padded_size);
+    copy_to(is_modal ? Eigen::VectorXd(modal.shapes.transpose() * system_body.held_load)
+                     : system_body.held_load,
+            body.held_load);
+  }
   for (AlignedArray Body::*array :
        {&Body::position, &Body::increment, &Body::last_increment, &Body::mean_increment}) {
     body.*array = AlignedArray(body.padded_size);
@@ -152,13 +158,21 @@ EnergyLedger::EnergyLedger(const System& system, const TimeParameters& time)
     strain += 0.5 * forms.strain;
   }
   for (const ContactPoint& point : system.contacts) {
+    if (point.face) {
+      std::vector<PointRows> rows;
+      for (const int row : point.face->rows) rows.push_back({row, row});
+      contacts_.push_back({point.slave_body, point.face->body, point.slave_rows, std::move(rows),
+                           SurfaceKind::polyline, 0.0, point.compliance(), not_yet, not_yet,
+                           not_yet, not_yet, make_face_kinematics(*point.face)});
+      continue;
+    }
     const MasterSurface& surface = system.surfaces[static_cast<std::size_t>(point.surface)];
     const auto follows = [&](int body) {
       return system.bodies[static_cast<std::size_t>(body)].follows_drive ? 1.0 : 0.0;
     };
     contacts_.push_back({point.slave_body, surface.body, point.slave_rows, surface.rows,
                          surface.kind, follows(point.slave_body) - follows(surface.body),
-                         point.compliance(), not_yet, not_yet, not_yet, not_yet});
+                         point.compliance(), not_yet, not_yet, not_yet, not_yet, {}});
   }
   initial_ = kinetic + strain;
   enter_stored(kinetic, strain);
@@ -237,6 +251,10 @@ void EnergyLedger::add(double time, std::span<const ContactAction> contacts,
                        body.damping.beta * forms.stiffness_damping) /
                       step_);
     if (body.load_row >= 0) load_work_.add(load * mean_increment(body, body.load_row));
+    if (body.held_load.size() > 0) {
+      load_work_.add(
+          dot(body.held_load.data(), body.mean_increment.data(), body.padded_size));
+    }
     if (body.follows_drive && acceleration != 0.0) {
       drive_work_.add(-acceleration *
                       dot(body.base_inertia.data(), body.mean_increment.data(), body.padded_size));
@@ -249,9 +267,13 @@ void EnergyLedger::add(double time, std::span<const ContactAction> contacts,
     const double raised = roughness_increment(contacts_[i], action.roughness);
     given += stored_increment(contacts_[i], action.force);
     if (action.state == ContactState::open) continue;
-    given +=
-        enter_contact(contacts_[i], action, contacts_[i].driven * driven) - action.force * raised;
-    const double power = -action.friction_force * slip_velocities[i];
+    const bool is_on_face = contacts_[i].face.has_value();
+    given += is_on_face ? enter_face(contacts_[i], action)
+                        : enter_contact(contacts_[i], action, contacts_[i].driven * driven) -
+                              action.force * raised;
+    const double power = is_on_face ? -action.friction_force * action.sliding.x() -
+                                          action.friction_across * action.sliding.y()
+                                    : -action.friction_force * slip_velocities[i];
     if (action.state == ContactState::slip && power > 0.0) {
       ++friction_gain_.steps;
       friction_gain_.largest_power = std::max(friction_gain_.largest_power, power);
@@ -292,6 +314,29 @@ void EnergyLedger::enter_gain(double given, double time) {
   least_given_ = std::min(least_given_, given_.value());
   const double gain = given_.value() - least_given_;
   if (gain > contact_gain_.energy) contact_gain_ = {gain, time};
+}
+
+/// @return contact work of the step, J
+double EnergyLedger::enter_face(const Contact& contact, const ContactAction& action) {
+  const FaceKinematics& face = *contact.face;
+  const Body& master = bodies_[static_cast<std::size_t>(contact.master_body)];
+  const Body& slave = bodies_[static_cast<std::size_t>(contact.slave_body)];
+  FacePorts moved = FacePorts::Zero();
+  for (std::size_t k = 0; k < contact.master_rows.size(); ++k)
+    moved[static_cast<Eigen::Index>(k)] = mean_increment(master, contact.master_rows[k].x);
+  moved[num_face_rows] = mean_increment(slave, contact.slave_rows.x);
+  moved[num_face_rows + 1] = mean_increment(slave, contact.slave_rows.y);
+  if (contact.slave_rows.z >= 0)
+    moved[num_face_rows + 2] = mean_increment(slave, contact.slave_rows.z);
+  const double spun = step_ * face.sliding;
+  const double turned = spun * face.turning.dot(action.ports);
+  friction_loss_.add(
+      action.friction_force * (spun - face.along_at(action.ports).dot(moved)) +
+      action.friction_across * (-face.across.dot(moved) - turned));
+  drive_work_.add(action.friction_force * spun - action.friction_across * turned);
+  const double work = action.force * face.normal_at(action.ports).dot(moved);
+  contact_work_.add(work);
+  return work;
 }
 
 /// @param driven displacement of the slave against the master by the drive in +x, m

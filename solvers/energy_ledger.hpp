@@ -4,11 +4,13 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/state.hpp"
+#include "coupling/face_kinematics.hpp"
 #include "coupling/system.hpp"
 #include "solvers/aligned_array.hpp"
 #include "solvers/contact_solver.hpp"
@@ -44,6 +46,10 @@ struct ContactAction {
   double friction_force = 0.0;  ///< λ_t, N, positive against sliding of the slave along +t
   ContactState state = ContactState::open;
   double roughness = 0.0;  ///< height of the rough surface at t_{n+1}, m
+  // On a face, where friction_force is that along the circumference.
+  double friction_across = 0.0;                       ///< along the radius, N
+  FacePorts ports = FacePorts::Zero();                ///< y in whose directions its forces act
+  Eigen::Vector2d sliding = Eigen::Vector2d::Zero();  ///< v at t_{n+1}, m/s
 };
 
 /// The entries of the ledger, J (docs/theory.md, 3.4). Losses and works are sums since the start.
@@ -95,7 +101,13 @@ struct ContactGain {
 /// drive adds to it. With these the central difference with backward-difference damping balances
 /// exactly, whatever the contact forces: the balance error is rounding. Where sliding is frozen,
 /// the master is imagined to slide along t: contact work lacks δ, and the drive feeds friction
-/// alone.
+/// alone. On a face that slides with Ω r the two directions of friction τ do
+///
+///   contact work   λ_n (n + A y)·ȳ,    friction loss   τ·s̄
+///   drive work     h Ω r (τ₁ − τ₂ c·y)   by the spin, which is kept up
+///
+/// with the mean increments ȳ of the ports and s̄ = (h Ω r − (b + B y)·ȳ, −a·ȳ − h Ω r c·y). Loads that
+/// bodies hold are part of the load work.
 ///
 /// Everything is evaluated from the system and its motion; no coefficient of a propagator enters.
 class EnergyLedger {
@@ -148,6 +160,7 @@ class EnergyLedger {
     std::size_t padded_size = 0;
     AlignedArray rows;          ///< padded, one after the other
     AlignedArray base_inertia;  ///< padded; empty where the body does not follow the drive
+    AlignedArray held_load;     ///< padded; empty where there is none
     AlignedArray square_omega;  ///< ω², padded; empty in reduced coordinates
     Eigen::MatrixXd mass;       ///< empty in modal coordinates, like the next
     Eigen::MatrixXd stiffness;
@@ -176,12 +189,14 @@ class EnergyLedger {
     /// Of the last two steps, t_{n−1} and t_n, m.
     double roughness_before_last = std::numeric_limits<double>::quiet_NaN();
     double last_roughness = std::numeric_limits<double>::quiet_NaN();
+    std::optional<FaceKinematics> face{};
   };
 
   static Body make_body(const SystemBody& body, const TimeParameters& time);
   static Forms forms_of_step(Body& body);
   double mean_increment(const Body& body, int row) const;
   Eigen::Vector2d mean_increment(const Contact& contact, const ContactAction& action) const;
+  double enter_face(const Contact& contact, const ContactAction& action);
   double enter_contact(const Contact& contact, const ContactAction& action, double driven);
   static double roughness_increment(Contact& contact, double roughness);
   static double stored_increment(Contact& contact, double force);

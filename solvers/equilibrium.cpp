@@ -38,7 +38,7 @@ SlotVector relative(const Stencil& stencil, const NodeWeights& weights,
 
 /// How often the drive moves the slave of a contact against its master: +1, 0 or −1 times.
 double share_of_drive(const System& system, const ContactPoint& point) {
-  const int master = system.surfaces[at(point.surface)].body;
+  const int master = system.master_of(point);
   return (system.bodies[at(point.slave_body)].follows_drive ? 1.0 : 0.0) -
          (system.bodies[at(master)].follows_drive ? 1.0 : 0.0);
 }
@@ -173,12 +173,20 @@ void set_roughness(ContactPositions& positions, const MasterSurface& surface, in
 EquilibriumState sliding_state(const System& system, double drive_displacement,
                                ContactGeometry geometry) {
   const auto last = std::numeric_limits<double>::infinity();
-  return {drive_displacement, system.drive.velocity.value(last), system.drive.load.value(last), 1.0,
-          geometry};
+  return {drive_displacement,
+          system.drive.velocity.value(last),
+          system.drive.load.value(last),
+          1.0,
+          geometry,
+          {}};
 }
 
 double drive_displacement_at(const System& system, int contact, double position) {
   const ContactPoint& point = system.contacts[at(contact)];
+  if (point.face) {
+    throw std::invalid_argument(fmt::format(
+        "drive_displacement_at: {} stays where it is on its face", point.name));
+  }
   const MasterSurface& surface = system.surfaces[at(point.surface)];
   const auto [segment, xi] = place_on(surface, position);
   const Segment undeformed = surface.undeformed_segment(segment);
@@ -197,7 +205,8 @@ namespace {
 /// A contact while its equilibrium is sought.
 struct SoughtContact {
   const ContactPoint* point = nullptr;
-  const MasterSurface* surface = nullptr;
+  const MasterSurface* surface = nullptr;  ///< null on a face
+  std::optional<FaceKinematics> face;
   double share_of_drive = 0.0;
   bool is_unilateral = false;
   Eigen::Index first_slot = 0;  ///< among all
@@ -231,6 +240,8 @@ class Search {
     if (!(state.friction_factor >= 0.0))
       throw std::invalid_argument("find_equilibrium: the friction factor is negative");
     answer_.state = state;
+    if (state.geometry == ContactGeometry::undeformed)
+      answer_.state.terms.friction_damping = answer_.state.terms.geometric = false;
     for (const SystemBody& body : system.bodies) {
       BodySlots slots;
       slots.num_rigid = (body.modal.omega.array() == 0.0).count();
@@ -264,7 +275,11 @@ class Search {
     const EquilibriumState& state = answer_.state;
     SoughtContact contact;
     contact.point = &point;
-    contact.surface = &system_.surfaces[at(point.surface)];
+    if (point.face) {
+      contact.face = make_face_kinematics(*point.face);
+    } else {
+      contact.surface = &system_.surfaces[at(point.surface)];
+    }
     contact.share_of_drive = share_of_drive(system_, point);
     contact.is_unilateral = point.unilateral_from() < std::numeric_limits<double>::infinity();
     contact.result.segment = point.first_segment;
@@ -282,6 +297,7 @@ class Search {
 
   EquilibriumStatus find() {
     for (SoughtContact& contact : contacts_) {
+      if (contact.face) continue;
       if (is_target(contact)) {
         prescribe(contact);
         continue;
@@ -300,7 +316,7 @@ class Search {
       if (!iterate()) return EquilibriumStatus::not_converged;
       bool has_moved = false;
       for (SoughtContact& contact : contacts_) {
-        if (is_target(contact)) continue;
+        if (is_target(contact) || contact.face) continue;
         switch (contact.search.look(*contact.surface, contact.result.projection.xi,
                                     contact.result.segment)) {
           case SegmentSearch::Step::lost:
@@ -336,13 +352,24 @@ class Search {
   void gather() {
     for (BodySlots& body : bodies_) body.slots.clear();
     std::vector<std::vector<int>> watched(bodies_.size());
+    const auto watch_row = [&](int body, int slot, int row) {
+      bodies_[at(body)].slots.push_back(slot);
+      watched[at(body)].push_back(row);
+    };
     const auto watch = [&](int body, int slot, const PointRows& rows) {
-      bodies_[at(body)].slots.insert(bodies_[at(body)].slots.end(), {slot, slot + 1});
-      watched[at(body)].insert(watched[at(body)].end(), {rows.x, rows.y});
+      watch_row(body, slot, rows.x);
+      watch_row(body, slot + 1, rows.y);
     };
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       const SoughtContact& contact = contacts_[i];
-      const auto slot = static_cast<int>(contact.first_slot);
+      auto slot = static_cast<int>(contact.first_slot);
+      if (const auto& face = contact.point->face) {
+        for (const int row : face->rows) watch_row(face->body, slot++, row);
+        watch(contact.point->slave_body, slot, contact.point->slave_rows);
+        if (contact.num_slots == num_face_ports)
+          watch_row(contact.point->slave_body, slot + 2, contact.point->slave_rows.z);
+        continue;
+      }
       watch(contact.point->slave_body, slot, contact.point->slave_rows);
       const Stencil stencil = contact.surface->stencil(contact.result.segment);
       for (int k = 0; k < stencil.count; ++k) {
@@ -361,9 +388,7 @@ class Search {
       // Rigid modes come first, ω ascending.
       const Eigen::Index num_elastic = modal.size() - body.num_rigid;
       const auto columns = Eigen::seqN(body.first_rigid, body.num_rigid);
-      const int load_row = system_.bodies[b].load_row;
-      Eigen::VectorXd load = Eigen::VectorXd::Zero(modal.size());
-      if (load_row >= 0) load = answer_.state.load * modal.rows.row(load_row).transpose();
+      const Eigen::VectorXd load = load_on(system_.bodies[b]);
       rigid_load_(columns) = load.head(body.num_rigid);
       if (body.slots.empty()) continue;
 
@@ -373,6 +398,16 @@ class Search {
       flexibility_(body.slots, body.slots) = elastic * answer_of(modal, elastic.transpose());
       loaded_(body.slots) = elastic * answer_of(modal, load.tail(num_elastic));
     }
+  }
+
+  /// On the modes of a body: the drive's and what it holds.
+  Eigen::VectorXd load_on(const SystemBody& body) const {
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(body.modal.size());
+    if (body.load_row >= 0)
+      load += answer_.state.load * body.modal.rows.row(body.load_row).transpose();
+    // BLAS takes no empty matrix.
+    if (body.held_load.size() > 0) load += body.modal.shapes.transpose() * body.held_load;
+    return load;
   }
 
   /// What constant forces do to the elastic modes of a body: (diag(ω²) + N)⁻¹ f.
@@ -388,6 +423,10 @@ class Search {
 
   /// Positions of a contact for given displacements of its slots.
   void place(SoughtContact& contact, const SlotVector& slots) const {
+    if (contact.face) {
+      contact.result.ports.head(slots.size()) = slots;
+      return;
+    }
     prescribe(contact);
     const Eigen::Vector2d& origin = contact.surface->positions[at(contact.result.segment)];
     ContactPositions& positions = contact.result.positions;
@@ -464,6 +503,15 @@ class Search {
             against * found.tangential.by_indentation / stiffness - friction};
   }
 
+  /// A contact on a face at its ports; the gap is less its overlap.
+  ContactLinearisation linearised_face(const SoughtContact& contact) const {
+    ContactLinearisation local =
+        linearise_face(*contact.face, contact.result.ports, contact.num_slots,
+                       contact.point->friction, answer_.state.friction_factor, answer_.state.terms);
+    local.gap -= contact.point->overlap;
+    return local;
+  }
+
   /// Adds what a contact contributes and notes its state. @returns the largest length in it, m
   double add_contact(Equations& equations, Eigen::Index index, const Eigen::VectorXd& unknowns) {
     const Eigen::Index row = num_slots_ + index;
@@ -481,7 +529,8 @@ class Search {
       law.indentation = law.compliance * force;
     }
     const ContactLinearisation local =
-        has_law
+        contact.face ? linearised_face(contact)
+        : has_law
             ? linearise_contact(positions, constant_friction(law.friction), 1.0)
             : linearise_contact(positions, contact.point->friction, answer_.state.friction_factor);
     ContactEquilibrium& result = contact.result;
@@ -490,8 +539,10 @@ class Search {
     result.force = force;
     result.friction = local.friction;
     result.direction = local.direction;
-    result.friction_force = local.direction * local.friction * force;
+    result.friction_force = local.direction * local.friction * force * local.sliding_direction.x();
+    result.friction_across = local.friction * force * local.sliding_direction.y();
     result.slip_velocity = local.slip_velocity;
+    result.velocity = local.velocity;
 
     auto& [values, scale, derivative, residual] = equations;
     const SlotMatrix by_position = force * local.force_by_position;
@@ -523,6 +574,9 @@ class Search {
       values(row) = force;
       derivative(row, row) = 1.0;
     }
+    if (contact.face)
+      return std::max({contact.point->overlap, std::abs(law.indentation),
+                       loaded_.segment(first, width).cwiseAbs().maxCoeff()});
     const double segment_length = positions.master.chord().norm();
     if (is_target(contact)) {
       values(last) = segment_length * (local.projection.xi - target_->xi);
@@ -628,9 +682,10 @@ class Search {
     double largest_force = 0.0;
     double largest_length = 0.0;
     for (const SoughtContact& contact : contacts_) {
-      const ContactPositions& positions = contact.result.positions;
       largest_force = std::max(largest_force, std::abs(contact.result.force));
-      largest_length = std::max(largest_length, positions.master.chord().norm());
+      largest_length = std::max(
+          largest_length, contact.face ? contact.result.ports.cwiseAbs().maxCoeff()
+                                       : contact.result.positions.master.chord().norm());
     }
     SoughtContact* worst = nullptr;
     double worst_violation = 0.0;
@@ -663,6 +718,12 @@ class Search {
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       ContactEquilibrium& result = contacts_[i].result;
       const SoughtContact& contact = contacts_[i];
+      if (contact.face) {
+        forces.segment(contact.first_slot, contact.num_slots) =
+            -result.force * linearised_face(contact).force_row;
+        answer_.contacts.push_back(result);
+        continue;
+      }
       result.position = contact.surface->arc_at(result.segment, result.projection.weights);
       const ContactRows rows = make_rows(result.projection, result.friction, result.direction);
       const ContactRow& pushed = rows.equilibrium;
@@ -680,8 +741,7 @@ class Search {
       Eigen::VectorXd modes = Eigen::VectorXd::Zero(modal.size());
       if (!body.slots.empty() && body.rows.size() > 0)
         modes = body.rows.transpose() * forces(body.slots);
-      if (system_.bodies[b].load_row >= 0)
-        modes += answer_.state.load * modal.rows.row(system_.bodies[b].load_row).transpose();
+      modes += load_on(system_.bodies[b]);
       const Eigen::Index num_elastic = modal.size() - body.num_rigid;
       modes.tail(num_elastic) = answer_of(modal, modes.tail(num_elastic));
       modes.head(body.num_rigid) =
@@ -713,9 +773,10 @@ namespace {
 
 /// Bodies that nothing touches or loads: at rest where they are, even where nothing holds them.
 std::optional<Equilibrium> at_rest(const System& system, const EquilibriumState& state) {
-  const bool is_loaded =
-      state.load != 0.0 && std::any_of(system.bodies.begin(), system.bodies.end(),
-                                       [](const SystemBody& body) { return body.load_row >= 0; });
+  const bool is_loaded = std::any_of(
+      system.bodies.begin(), system.bodies.end(), [&](const SystemBody& body) {
+        return (state.load != 0.0 && body.load_row >= 0) || body.held_load.size() > 0;
+      });
   if (!system.contacts.empty() || is_loaded) return std::nullopt;
   Equilibrium rest;
   rest.status = EquilibriumStatus::converged;

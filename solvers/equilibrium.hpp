@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "coupling/face_kinematics.hpp"
 #include "coupling/system.hpp"
 
 namespace stridor {
@@ -45,6 +46,10 @@ struct LinearisationTerms {
                       ///< to the undeformed one
   bool roughness = true;       ///< the gap changes as ξ moves along the slope of the roughness
   bool friction_slope = true;  ///< μ changes with the sliding velocity
+  // Of contacts on the faces of spinning bodies.
+  bool friction = true;          ///< friction varies with the normal force; without it there is none
+  bool friction_damping = true;  ///< friction turns with the sliding velocity, not along φ
+  bool geometric = true;         ///< forces turn and shift with the motion, A and B of FaceKinematics
 };
 
 /// One sliding contact and its derivatives with respect to the displacements z of its ports
@@ -63,6 +68,9 @@ struct ContactLinearisation {
   SlotVector force_row;          ///< row of B_E
   SlotMatrix force_by_position;  ///< ∂(row of B_E)ᵀ/∂z, 1/m
   SlotMatrix force_by_velocity;  ///< ∂(row of B_E)ᵀ/∂ż, s/m
+  // Of a contact on a face.
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< v of FaceKinematics for ż = 0, m/s
+  Eigen::Vector2d sliding_direction{1.0, 0.0};         ///< d = v/|v|
 };
 
 /// Gap, rows and derivatives of a sliding contact under its assumption.
@@ -77,6 +85,21 @@ ContactLinearisation linearise_contact(const ContactPositions& positions, const 
                                        double friction_factor,
                                        const LinearisationTerms& terms = {});
 
+/// Gap, rows and derivatives of a sliding contact on a face, with d = v/|v| and T = (b + B y, a)
+/// (docs/theory.md, 10.8):
+///
+///   row of B_E   −(n + A y + μ T d)
+///   by y         −A − μ d₁ B + T D (0, Ω r c)ᵀ,   by ẏ   T D (b, a)ᵀ,   D = μ (1 − d dᵀ)/|v| + μ' d dᵀ
+///
+/// @param ports     y
+/// @param num_ports 7 where the slave does not move along z, else 8
+/// @param terms     `friction`, `friction_damping` and `geometric` of the gap and the rows as well
+/// @throws std::invalid_argument with friction that turns where the face does not slide: it does so
+///         without bound
+ContactLinearisation linearise_face(const FaceKinematics& face, const FacePorts& ports,
+                                    Eigen::Index num_ports, const FrictionLaw& law,
+                                    double friction_factor, const LinearisationTerms& terms = {});
+
 /// Lets a contact feel the roughness of its master.
 /// @param segment of the master that the positions belong to
 void set_roughness(ContactPositions& positions, const MasterSurface& surface, int segment);
@@ -88,6 +111,9 @@ struct EquilibriumState {
   double load = 0.0;                ///< on the loaded rows, N
   double friction_factor = 0.0;     ///< on every friction law, >= 0
   ContactGeometry geometry = ContactGeometry::deformed;
+  /// What of `friction`, `friction_damping` and `geometric` acts on the faces of spinning bodies; in
+  /// the undeformed geometry the first alone.
+  LinearisationTerms terms{};
 };
 
 /// Load, velocity and friction as they are once drive and friction no longer rise.
@@ -117,7 +143,11 @@ struct ContactEquilibrium {
   double friction_force = 0.0;  ///< λ_t = χ μ λ_n, N
   double friction = 0.0;        ///< μ
   double direction = 1.0;       ///< χ
-  double slip_velocity = 0.0;   ///< v_r, m/s
+  double slip_velocity = 0.0;   ///< v_r, m/s; on a face |v|
+  // Of a contact on a face, where λ_t is friction along the circumference.
+  FacePorts ports = FacePorts::Zero();               ///< y
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< v, m/s
+  double friction_across = 0.0;                        ///< friction along the radius, N
 };
 
 enum class EquilibriumStatus {
@@ -152,6 +182,9 @@ struct EquilibriumParameters {
 /// amplitudes of the rigid modes. Newton's method with the exact derivative, halving the step until
 /// the residual falls. As in `Simulation`, a contact moves from segment to segment without turning
 /// back; next to a node ξ may come out slightly beyond [0, 1].
+///
+/// Contacts on faces of spinning bodies slide by the spin (linearise_face()); their gap is less
+/// ContactPoint::overlap. Loads that bodies hold (SystemBody::held_load) act as well.
 ///
 /// A body that nothing but the curvature of its master would hold counts as free.
 /// A bilateral contact may come out pulling (λ < 0): then the equilibrium is none of real bodies.

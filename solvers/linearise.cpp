@@ -17,6 +17,22 @@ ContactRow row_of(const SlotVector& slots) {
   return row;
 }
 
+/// One contact where it is in equilibrium.
+ContactLinearisation linearised(const System& system, const ContactPoint& point,
+                                const ContactEquilibrium& contact, const EquilibriumState& state,
+                                const LinearisationTerms& terms) {
+  if (point.face) {
+    return linearise_face(make_face_kinematics(*point.face), contact.ports,
+                          system.num_contact_slots(point), point.friction, state.friction_factor,
+                          terms);
+  }
+  ContactPositions positions = contact.positions;
+  set_roughness(positions, system.surface_of(point), contact.segment);
+  if (point.substrate)
+    return linearise_contact(positions, constant_friction(contact.friction), 1.0, terms);
+  return linearise_contact(positions, point.friction, state.friction_factor, terms);
+}
+
 /// Adds the reduced form of modal coordinates to a state that may be empty.
 void add_motion(Eigen::VectorXd& state, const Eigen::MatrixXd& shapes,
                 const Eigen::VectorXd& modal) {
@@ -49,18 +65,18 @@ Pencil linearise_constraints(const System& system, const Equilibrium& equilibriu
   for (std::size_t i = 0; i < equilibrium.contacts.size(); ++i) {
     const ContactEquilibrium& contact = equilibrium.contacts[i];
     if (!contact.is_closed) continue;
-    ContactPositions positions = contact.positions;
-    set_roughness(positions, system.surface_of(system.contacts[i]), contact.segment);
-    const std::optional<SubstrateContact>& substrate = system.contacts[i].substrate;
-    const ContactLinearisation local =
-        substrate ? linearise_contact(positions, constant_friction(contact.friction), 1.0, terms)
-                  : linearise_contact(positions, system.contacts[i].friction,
-                                      equilibrium.state.friction_factor, terms);
+    const ContactPoint& point = system.contacts[i];
+    const std::optional<SubstrateContact>& substrate = point.substrate;
+    const ContactLinearisation local = linearised(system, point, contact, equilibrium.state, terms);
     const auto constraint = static_cast<Eigen::Index>(i);
     const Eigen::Index first = first_contact_slot(system, static_cast<int>(i));
     const Eigen::Index size = local.gap_row.size();
-    place_contact(pencil, system, static_cast<int>(i), contact.segment,
-                  {row_of(local.gap_row), row_of(local.force_row)});
+    if (point.face) {
+      place_face(pencil, system, static_cast<int>(i), local.gap_row, local.force_row);
+    } else {
+      place_contact(pencil, system, static_cast<int>(i), contact.segment,
+                    {row_of(local.gap_row), row_of(local.force_row)});
+    }
     stiffness.block(first, first, size, size) = contact.force * local.force_by_position;
     damping.block(first, first, size, size) = contact.force * local.force_by_velocity;
     if (substrate) {

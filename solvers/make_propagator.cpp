@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 #include "solvers/coupled_propagator.hpp"
 #include "solvers/dense_two_step.hpp"
@@ -11,22 +12,50 @@
 namespace stridor {
 namespace {
 
-/// Load patterns of a body in given coordinates: the drive's load, and the inertia of its motion.
-/// None of a body that feels neither.
+/// Load patterns of a body in given coordinates: the drive's load, the inertia of its motion, and the
+/// load that the body holds. None of a body without any.
+/// @param held in these coordinates; empty where there is none
 Eigen::MatrixXd load_patterns(const SystemBody& body, const Eigen::MatrixXd& rows,
-                              const Eigen::VectorXd& base_inertia) {
-  if (!body.feels_drive()) return Eigen::MatrixXd(rows.cols(), 0);
-  Eigen::MatrixXd patterns = Eigen::MatrixXd::Zero(rows.cols(), 2);
+                              const Eigen::VectorXd& base_inertia, const Eigen::VectorXd& held) {
+  if (!is_loaded(body)) return Eigen::MatrixXd(rows.cols(), 0);
+  Eigen::MatrixXd patterns =
+      Eigen::MatrixXd::Zero(rows.cols(), std::tuple_size_v<LoadAmplitudes>);
   if (body.load_row >= 0) patterns.col(0) = rows.row(body.load_row).transpose();
   if (body.follows_drive) patterns.col(1) = -base_inertia;
+  if (held.size() > 0) patterns.col(2) = held;
   return patterns;
+}
+
+Eigen::VectorXd held_on_modes(const SystemBody& body) {
+  // BLAS takes no empty matrix.
+  if (body.held_load.size() == 0) return {};
+  return body.modal.shapes.transpose() * body.held_load;
+}
+
+/// What the load that a body holds does through its truncated modes, in reduced coordinates: all of the
+/// static response less that of the modes that are kept.
+Eigen::VectorXd held_residual(const SystemBody& body) {
+  if (body.held_load.size() == 0) return {};
+  const ModalBody all = make_modal(body.reduced);
+  const Eigen::Index kept = body.modal.size();
+  const Eigen::MatrixXd truncated = all.shapes.rightCols(all.size() - kept);
+  return truncated * all.omega.tail(all.size() - kept)
+                         .array()
+                         .square()
+                         .inverse()
+                         .matrix()
+                         .cwiseProduct(truncated.transpose() * body.held_load);
 }
 
 Propagator::Residual residual_of(const SystemBody& body, double step) {
   const ModalResidual& modes = body.modal.residual;
   if (modes.num_modes == 0) return {};
-  return {modes, load_patterns(body, modes.flexibility, modes.base_rows),
-          load_patterns(body, modes.shapes.transpose(), modes.base_shapes), step};
+  const Eigen::VectorXd held = held_residual(body);
+  // Of rows per load: the same seen by the rows of the body.
+  const Eigen::VectorXd held_rows =
+      held.size() > 0 ? Eigen::VectorXd(body.reduced.rows * held) : held;
+  return {modes, load_patterns(body, modes.flexibility, modes.base_rows, held_rows),
+          load_patterns(body, modes.shapes.transpose(), modes.base_shapes, held), step};
 }
 
 bool is_at_rest(const SystemBody& body) {
@@ -58,14 +87,17 @@ std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimePa
                                             std::optional<double> surplus, int num_slots,
                                             std::span<const double> loads) {
   const double alpha = body.modal.damping.alpha_at(0.0);
-  const auto patterns = [&](const Eigen::MatrixXd& rows, const Eigen::VectorXd& base_inertia) {
-    return load_patterns(body, rows, base_inertia);
+  const auto on_modes = [&] {
+    return load_patterns(body, body.modal.rows, body.modal.base_inertia, held_on_modes(body));
+  };
+  const auto on_reduced = [&] {
+    return load_patterns(body, body.reduced.rows, body.reduced.base_inertia, body.held_load);
   };
   std::unique_ptr<Propagator> propagator;
   if (!body.modal.coupled.is_empty()) {
     require_exact(body.name, time);
     return std::make_unique<CoupledPropagator>(
-        body.modal, patterns(body.modal.rows, body.modal.base_inertia), time.step, surplus,
+        body.modal, on_modes(), time.step, surplus,
         num_slots, alpha, loads, body.name);
   }
   // A body without degrees of freedom is the same in all coordinates, but BLAS takes no empty
@@ -73,17 +105,17 @@ std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimePa
   switch (body.reduced.size() == 0 ? Coordinates::modal : time.coordinates) {
     case Coordinates::modal:
       propagator = std::make_unique<ModalRecurrence>(
-          body.modal, patterns(body.modal.rows, body.modal.base_inertia), time.integrator,
+          body.modal, on_modes(), time.integrator,
           time.step, surplus, num_slots, alpha, loads, residual_of(body, time.step));
       break;
     case Coordinates::craig_bampton:
       propagator = std::make_unique<PublishedTwoStep>(
-          body.reduced, patterns(body.reduced.rows, body.reduced.base_inertia), time.step,
+          body.reduced, on_reduced(), time.step,
           num_slots, alpha, loads);
       break;
     case Coordinates::craig_bampton_fused:
       propagator = std::make_unique<FusedTwoStep>(
-          body.reduced, patterns(body.reduced.rows, body.reduced.base_inertia), time.step,
+          body.reduced, on_reduced(), time.step,
           num_slots, alpha, loads);
       break;
   }

@@ -1,6 +1,7 @@
 // The propagator that a scene's time section asks for.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,10 +13,22 @@
 
 namespace stridor {
 
+/// Amplitudes of the load patterns of a body: the drive's load, N, its acceleration, m/s², and 1 for the
+/// load that the body holds.
+using LoadAmplitudes = std::array<double, 3>;
+inline LoadAmplitudes load_amplitudes(const Drive& drive, double time) {
+  return {drive.load.value(time), drive.acceleration(time), 1.0};
+}
+/// Whether a body has load patterns.
+inline bool is_loaded(const SystemBody& body) {
+  return body.feels_drive() || body.held_load.size() > 0;
+}
+
 /// A body of the system, at rest at t = 0, ready to be marched.
 ///
-/// Load patterns of a body that follows the drive: the drive's load on its guided support (N), and
-/// the acceleration of the drive (m/s²), which acts as −base_inertia. Other bodies have none.
+/// Load patterns of a body: the drive's load on its guided support (N), the acceleration of the drive
+/// (m/s²), which acts as −base_inertia where the body follows it, and the load that it holds.
+/// Bodies without any of them have none.
 ///
 /// @param surplus   prompt_surplus()
 /// @param num_slots ports for contacts, two per point

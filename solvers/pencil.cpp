@@ -7,11 +7,14 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <vector>
+
+#include "coupling/face_kinematics.hpp"
 
 namespace stridor {
 namespace {
@@ -355,10 +358,44 @@ void place_contact(Pencil& pencil, const System& system, int contact, int segmen
   set_row(pencil.equilibrium, rows.equilibrium);
 }
 
+void place_face(Pencil& pencil, const System& system, int contact,
+                const Eigen::VectorXd& compatibility, const Eigen::VectorXd& equilibrium) {
+  const ContactPoint& point = system.contacts[static_cast<std::size_t>(contact)];
+  const Eigen::Index slot = first_contact_slot(system, contact);
+  const Eigen::Index num_slots = system.num_contact_slots(point);
+  pencil.slots.middleRows(slot, num_slots).setZero();
+  Eigen::Index first = 0;
+  for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+    const ModalBody& modal = system.bodies[b].modal;
+    const auto columns = Eigen::seqN(first, modal.size());
+    if (static_cast<int>(b) == point.face->body) {
+      for (Eigen::Index k = 0; k < num_face_rows; ++k)
+        pencil.slots(slot + k, columns) =
+            modal.rows.row(point.face->rows[static_cast<std::size_t>(k)]);
+    }
+    if (static_cast<int>(b) == point.slave_body) {
+      const std::array rows{point.slave_rows.x, point.slave_rows.y, point.slave_rows.z};
+      for (Eigen::Index k = num_face_rows; k < num_slots; ++k)
+        pencil.slots(slot + k, columns) +=
+            modal.rows.row(rows[static_cast<std::size_t>(k - num_face_rows)]);
+    }
+    first += modal.size();
+  }
+  pencil.compatibility.row(contact).segment(slot, num_slots) = compatibility.transpose();
+  pencil.equilibrium.row(contact).segment(slot, num_slots) = equilibrium.transpose();
+}
+
 void place_undeformed(Pencil& pencil, const System& system, double drive_displacement,
                       double friction, double direction) {
   for (std::size_t c = 0; c < system.contacts.size(); ++c) {
     const ContactPoint& point = system.contacts[c];
+    if (point.face) {
+      const FaceKinematics face = make_face_kinematics(*point.face);
+      const int num_slots = system.num_contact_slots(point);
+      place_face(pencil, system, static_cast<int>(c), -face.normal.head(num_slots),
+                 -(face.normal + friction * face.along).head(num_slots));
+      continue;
+    }
     const MasterSurface& surface = system.surfaces[static_cast<std::size_t>(point.surface)];
     const auto driven = [&](int body) {
       return system.bodies[static_cast<std::size_t>(body)].follows_drive ? drive_displacement : 0.0;

@@ -81,13 +81,17 @@ Eigen::Index first_contact_slot(const System& system, int contact);
 void place_contact(Pencil& pencil, const System& system, int contact, int segment,
                    const ContactRows& rows);
 
+/// The same of a contact on a face, with its rows on the slots of the contact.
+void place_face(Pencil& pencil, const System& system, int contact,
+                const Eigen::VectorXd& compatibility, const Eigen::VectorXd& equilibrium);
+
 /// Fills in every contact as it slides on the undeformed master: B_C and B_E with the normal of the
 /// undeformed surface, no G and H.
 ///
 /// @param drive_displacement of the bodies that follow the drive, in +x, m
 /// @param friction           μ of every contact, >= 0
 /// @param direction          χ of every contact, ±1: sign of the sliding velocity of the slave
-///                           along the master
+///                           along the master; on a face it is that of the spin, along +φ
 /// @throws std::invalid_argument if a slave point is beyond the end of its master
 /// Linear in `drive_displacement` between two nodes of a polyline, cubic between those of a smooth
 /// master.

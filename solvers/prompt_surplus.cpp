@@ -156,7 +156,7 @@ double surplus_at(const System& system, const TimeParameters& time, double insta
     answers.push_back(answers_of(body, time, body.modal.damping.alpha_at(instant)));
     enough = std::max(enough, surplus_of_body(answers.back()));
   }
-  if (system.contacts.size() != 1) return enough;
+  if (system.contacts.size() != 1 || system.has_faces()) return enough;
   return std::min(enough, surplus_on_path(system, answers, time));
 }
 

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "core/errors.hpp"
+#include "coupling/face_kinematics.hpp"
 #include "solvers/contact_path.hpp"
 
 namespace stridor {
@@ -32,6 +35,26 @@ std::vector<SeenMode> modes_seen(const System& system, const ContactPoint& conta
   };
   add(contact.slave_body, {{contact.slave_rows}, {1.0}});
   add(system.surface_of(contact).body, place);
+  std::sort(seen.begin(), seen.end(),
+            [](const SeenMode& a, const SeenMode& b) { return a.omega < b.omega; });
+  return seen;
+}
+
+/// The same on a face, where the normal is that of the undeformed bodies.
+std::vector<SeenMode> modes_seen_on_face(const System& system, const ContactPoint& contact) {
+  const FaceKinematics face = make_face_kinematics(*contact.face);
+  std::vector<SeenMode> seen;
+  const auto add = [&](int index, std::initializer_list<std::pair<int, double>> entries) {
+    const ModalBody& body = system.bodies[static_cast<std::size_t>(index)].modal;
+    for (Eigen::Index i = 0; i < body.size(); ++i) {
+      double sum = 0.0;
+      for (const auto& [row, factor] : entries) sum += factor * body.rows(row, i);
+      seen.push_back({body.omega(i), sum * sum});
+    }
+  };
+  add(contact.slave_body, {{contact.slave_rows.x, face.normal(num_face_rows)},
+                           {contact.slave_rows.y, face.normal(num_face_rows + 1)}});
+  add(contact.face->body, {{contact.face->rows[0], face.normal(0)}});
   std::sort(seen.begin(), seen.end(),
             [](const SeenMode& a, const SeenMode& b) { return a.omega < b.omega; });
   return seen;
@@ -67,16 +90,21 @@ std::size_t num_needed(const std::vector<SeenMode>& modes, const RetainParameter
 double frequency_for_error(const System& system, const RetainParameters& retain, double end) {
   double highest = 2.0 * std::numbers::pi * retain.upper;
   if (system.contacts.empty()) return std::numeric_limits<double>::infinity();
+  const auto take = [&](const std::vector<SeenMode>& modes) {
+    const std::size_t needed = num_needed(modes, retain);
+    if (needed > 0) highest = std::max(highest, modes[needed - 1].omega);
+  };
   for (const ContactPoint& contact : system.contacts) {
+    if (contact.face) {
+      take(modes_seen_on_face(system, contact));
+      continue;
+    }
     const MasterSurface& surface = system.surface_of(contact);
     const auto first = static_cast<std::size_t>(contact.first_segment);
     const Eigen::Vector2d along = surface.positions[first + 1] - surface.positions[first];
     const Eigen::Vector2d normal = Eigen::Vector2d(-along.y(), along.x()).normalized();
-    for (const WeightedRows& place : path_of(system, contact, end)) {
-      const std::vector<SeenMode> modes = modes_seen(system, contact, place, normal);
-      const std::size_t needed = num_needed(modes, retain);
-      if (needed > 0) highest = std::max(highest, modes[needed - 1].omega);
-    }
+    for (const WeightedRows& place : path_of(system, contact, end))
+      take(modes_seen(system, contact, place, normal));
   }
   return highest;
 }

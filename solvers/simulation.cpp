@@ -46,6 +46,16 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
                         "and cannot be compared with it");
     }
   }
+  for (const ContactPoint& point : given.contacts) {
+    if (!point.face) continue;
+    for (const int body : {point.slave_body, point.face->body}) {
+      if (!given.bodies[static_cast<std::size_t>(body)].follows_drive) continue;
+      throw ConfigError("drive.moves",
+                        fmt::format("'{}' touches a face of a spinning body, on which contacts "
+                                    "stay where they are: the drive cannot move it",
+                                    given.bodies[static_cast<std::size_t>(body)].name));
+    }
+  }
   if (has_substrate && time.retain) {
     throw ConfigError("time.retain",
                       "a contact with a substrate takes all modes; leave out the key, or reduce "
@@ -78,34 +88,40 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
 
   std::vector<int> num_slots(system.bodies.size(), 0);
   for (const ContactPoint& point : system.contacts) {
+    if (point.face) {
+      num_slots[static_cast<std::size_t>(point.slave_body)] += point.slave_rows.z < 0 ? 2 : 3;
+      num_slots[static_cast<std::size_t>(point.face->body)] += num_face_rows;
+      continue;
+    }
     num_slots[static_cast<std::size_t>(point.slave_body)] += slave_slots;
     const MasterSurface& surface = system.surface_of(point);
     num_slots[static_cast<std::size_t>(surface.body)] += 2 * surface.stencil_size();
   }
   const std::optional<double> surplus = prompt_surplus(system, time);
   run.is_prompt = surplus.has_value();
-  const double loads[] = {system.drive.load.value(0.0), system.drive.acceleration(0.0)};
+  const LoadAmplitudes loads = load_amplitudes(system.drive, 0.0);
   for (std::size_t b = 0; b < system.bodies.size(); ++b) {
     const SystemBody& body = system.bodies[b];
     run.bodies.push_back(make_propagator(
         body, time, surplus, num_slots[b],
-        body.feels_drive() ? std::span<const double>(loads) : std::span<const double>()));
+        is_loaded(body) ? std::span<const double>(loads) : std::span<const double>()));
     const bool is_modal = time.coordinates == Coordinates::modal;
     run.shapes.push_back(is_modal ? body.modal.shapes : Eigen::MatrixXd());
     run.names.push_back(body.name);
     run.follows_drive.push_back(body.follows_drive);
-    run.feels_drive.push_back(body.feels_drive());
+    run.feels_drive.push_back(is_loaded(body));
     run.damping.push_back(body.modal.damping);
     run.forces.emplace_back(static_cast<std::size_t>(num_slots[b]), 0.0);
   }
   run.add_contacts(system);
   run.solver = ContactSolver(static_cast<int>(run.contacts.size()),
-                             {time.contact_tolerance, static_cast<int>(time.contact_sweeps)});
+                             {time.contact_tolerance, static_cast<int>(time.contact_sweeps)},
+                             static_cast<int>(run.faces.size()));
   run.local.resize(run.contacts.size());
   if (accounts == Accounts::energy) {
     run.ledger.emplace(system, time);
-    run.actions.resize(run.contacts.size());
-    run.slip_velocities.resize(run.contacts.size());
+    run.actions.resize(run.records.size());
+    run.slip_velocities.resize(run.records.size());
   }
   run.start(system, time);
 }
@@ -169,70 +185,89 @@ double Simulation::drive_displacement() const {
 }
 
 int Simulation::num_contacts() const {
-  return static_cast<int>(implementation_->contacts.size());
+  return static_cast<int>(implementation_->records.size());
 }
 
 double Simulation::contact_force(int contact) const {
-  return implementation_->contacts[static_cast<std::size_t>(contact)].force;
+  return implementation_->records[static_cast<std::size_t>(contact)]->force;
 }
 
 double Simulation::friction_force(int contact) const {
-  return implementation_->contacts[static_cast<std::size_t>(contact)].friction_force;
+  return implementation_->records[static_cast<std::size_t>(contact)]->friction_force;
 }
 
 ContactState Simulation::contact_state(int contact) const {
-  return implementation_->contacts[static_cast<std::size_t>(contact)].state;
+  return implementation_->records[static_cast<std::size_t>(contact)]->state;
 }
 
 double Simulation::contact_area(int contact) const {
-  const RunningContact& of = implementation_->contacts[static_cast<std::size_t>(contact)];
+  const RunningContact* const on_line = implementation_->line(contact);
+  if (on_line == nullptr) return 0.0;
+  const RunningContact& of = *on_line;
   const std::optional<SubstrateContact>& substrate = of.point().substrate;
   return substrate ? substrate->area(-contact_place(contact).gap, of.slip_velocity) : 0.0;
 }
 
 ContactAction Simulation::contact_action(int contact) const {
-  return Implementation::action_of(implementation_->contacts[static_cast<std::size_t>(contact)]);
+  const RunningContact* const on_line = implementation_->line(contact);
+  return on_line != nullptr ? Implementation::action_of(*on_line)
+                            : Implementation::action_of(*implementation_->on_face(contact));
 }
 
 double Simulation::slip_velocity(int contact) const {
-  return implementation_->contacts[static_cast<std::size_t>(contact)].slip_velocity;
+  return implementation_->records[static_cast<std::size_t>(contact)]->slip_velocity;
 }
 
 ContactPlace Simulation::contact_place(int contact) const {
-  return implementation_->contacts[static_cast<std::size_t>(contact)].sliding.present_place(
-      drive_displacement());
+  if (const RunningFace* const face = implementation_->on_face(contact)) {
+    const FacePoint& kinematics = face->kinematics;
+    const FacePlace& place = *face->point().face;
+    return {kinematics.face().gap(kinematics.current()) - face->point().overlap,
+            place.radius * place.angle};
+  }
+  return implementation_->line(contact)->sliding.present_place(drive_displacement());
+}
+
+double Simulation::friction_across(int contact) const {
+  const RunningFace* const face = implementation_->on_face(contact);
+  return face != nullptr ? face->friction_across : 0.0;
+}
+
+Eigen::Vector2d Simulation::sliding_velocity(int contact) const {
+  const RunningFace* const face = implementation_->on_face(contact);
+  return face != nullptr ? face->velocities[0] : Eigen::Vector2d(slip_velocity(contact), 0.0);
 }
 
 const ViolationCount& Simulation::violations(int contact) const {
-  return implementation_->contacts[static_cast<std::size_t>(contact)].violations;
+  return implementation_->records[static_cast<std::size_t>(contact)]->violations;
 }
 
 ContactStatistics Simulation::statistics(int contact) const {
-  const RunningContact& of = implementation_->contacts[static_cast<std::size_t>(contact)];
+  const ContactRecord& of = *implementation_->records[static_cast<std::size_t>(contact)];
   ContactStatistics all = of.earlier;
   all.add(of.statistics);
   return all;
 }
 
 void Simulation::reset_statistics() {
-  for (RunningContact& contact : implementation_->contacts) {
-    contact.open_interval.add(contact.statistics);
-    contact.statistics = {};
-    Implementation::count(contact);
-    contact.earlier = std::exchange(contact.statistics, {});
+  for (ContactRecord* const contact : implementation_->records) {
+    contact->open_interval.add(contact->statistics);
+    contact->statistics = {};
+    contact->count();
+    contact->earlier = std::exchange(contact->statistics, {});
   }
 }
 
 void Simulation::end_interval() {
-  for (RunningContact& contact : implementation_->contacts) {
-    contact.earlier.add(contact.statistics);
-    contact.interval = std::exchange(contact.open_interval, {});
-    contact.interval.add(std::exchange(contact.statistics, {}));
+  for (ContactRecord* const contact : implementation_->records) {
+    contact->earlier.add(contact->statistics);
+    contact->interval = std::exchange(contact->open_interval, {});
+    contact->interval.add(std::exchange(contact->statistics, {}));
   }
 }
 
 const ContactStatistics& Simulation::interval_statistics(int contact) const {
-  return implementation_->contacts[static_cast<std::size_t>(contact)].interval;
+  return implementation_->records[static_cast<std::size_t>(contact)]->interval;
 }
 
 const EnergyLedger* Simulation::energy() const {
@@ -274,6 +309,12 @@ State Simulation::save() const {
     for (const auto& [name, statistics] : saved_statistics(c))
       state.put(fmt::format("contacts/{}/{}", i, name), statistics->numbers());
   }
+  for (std::size_t i = 0; i < run.faces.size(); ++i) {
+    const std::string name = fmt::format("faces/{}", i);
+    state.put(name, run.faces[i].numbers());
+    for (const auto& [part, statistics] : saved_statistics(run.faces[i]))
+      state.put(name + "/" + part, statistics->numbers());
+  }
   if (run.ledger) run.ledger->save(state, "energy/");
   return state;
 }
@@ -314,6 +355,22 @@ void Simulation::load(const State& state) {
     run.local[i].normal = c.force;
     run.local[i].tangential = c.friction_force;
     run.local[i].state = c.state;
+  }
+  for (std::size_t i = 0; i < run.faces.size(); ++i) {
+    const std::string name = fmt::format("faces/{}", i);
+    RunningFace::Numbers values;
+    state.get(name, values);
+    run.faces[i].restore(values);
+    for (const auto& [part, statistics] : saved_statistics(run.faces[i])) {
+      ContactStatistics::Numbers numbers;
+      state.get(name + "/" + part, numbers);
+      *statistics = ContactStatistics::of(numbers);
+    }
+    run.faces[i].interval = {};
+    PlanarProblem& problem = run.faces.problems()[i];
+    problem.normal = run.faces[i].force;
+    problem.tangential = run.faces[i].whole_friction();
+    problem.state = run.faces[i].state;
   }
   if (run.ledger) run.ledger->load(state, "energy/");
 }

@@ -126,15 +126,21 @@ class Simulation {
   int num_contacts() const;
   /// λ_n, N, compression positive.
   double contact_force(int contact) const;
-  /// λ_t, N, positive against sliding of the slave along +t.
+  /// λ_t, N, positive against sliding of the slave along +t; on a face that along the circumference, in
+  /// which the face drives the slave towards +φ.
   double friction_force(int contact) const;
+  /// On a face, friction along the radius, N; 0 of other contacts.
+  double friction_across(int contact) const;
   ContactState contact_state(int contact) const;
   /// Area of a contact with a force law that has one, m²; 0 of any other.
   double contact_area(int contact) const;
   /// Action of a contact on its bodies from t_n to t_{n+1}.
   ContactAction contact_action(int contact) const;
-  /// Of the slave relative to the master along the tangent at t_n, m/s.
+  /// Of the slave relative to the master along the tangent at t_n, m/s; on a face that of the face
+  /// against the slave along the circumference.
   double slip_velocity(int contact) const;
+  /// The same along both tangents.
+  Eigen::Vector2d sliding_velocity(int contact) const;
   /// At t_n.
   ContactPlace contact_place(int contact) const;
   const ViolationCount& violations(int contact) const;

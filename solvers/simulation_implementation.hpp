@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -14,6 +15,8 @@
 #include <vector>
 
 #include "core/errors.hpp"
+#include "solvers/contact_record.hpp"
+#include "solvers/face_contacts.hpp"
 #include "solvers/make_propagator.hpp"
 #include "solvers/simulation.hpp"
 #include "solvers/substrate_step.hpp"
@@ -35,36 +38,20 @@ inline constexpr int slave_slots = 2;
 /// after the change has decayed to a hundredth or less (docs/theory.md, 3.5).
 inline constexpr int steady_after = 6;
 
-/// A contact while it runs.
-struct RunningContact {
+/// A contact with one tangent while it runs.
+struct RunningContact : ContactRecord {
   explicit RunningContact(SlidingPoint point) : sliding(std::move(point)) {}
 
   SlidingPoint sliding;
-  double unilateral_from = 0.0;
   bool tracks_slip = false;    ///< it is unilateral or may become so, or its friction is a function
                                ///< of the slip in the step
-  double compliance = 0.0;     ///< ContactPoint::compliance()
-  double constant_from = 0.0;  ///< of the rise of its friction
-  double rise = 0.0;           ///< from then on
 
   // State.
-  double force = 0.0;           ///< λ_n
-  double friction_force = 0.0;  ///< λ_t
-  ContactState state = ContactState::open;
-  double slip_velocity = 0.0;
   /// Place on the master, along its undeformed surface, that the slave was over at the end of the
   /// last step; the material point that a sticking contact keeps.
   double anchor = 0.0;
-  int steady_steps = 0;  ///< closed without a change of state, up to steady_after
-  ContactStatistics statistics;     ///< since the last reset or the end of the last interval
-  ContactStatistics earlier;        ///< from the last reset up to there
-  ContactStatistics open_interval;  ///< of the present interval, up to the last reset
-  ContactStatistics interval;       ///< the one that ended last
-  ViolationCount violations;
 
   // Scratch of one step.
-  bool looks_ahead = false;        ///< its problem is that of t_{n+1}
-  double friction = 0.0;           ///< μ, for messages
   double indentation = 0.0;        ///< in a substrate, likewise, m
   double stiffness_in_step = 0.0;  ///< k W of a substrate, likewise
   double stretch = 1.0;            ///< SlidingPoint::stretch()
@@ -86,11 +73,13 @@ struct Simulation::Implementation {
   std::int64_t next_health_check = 0;
   bool is_prompt = false;  ///< bodies have direct feedthrough (Propagator::is_prompt)
   bool is_foreseeing_start = false;
-  bool slides_only = true;  ///< no contact tracks its slip
+  bool slides_only = true;  ///< no contact tracks its slip, none is on a face
   std::int64_t index = 0;
   std::vector<std::unique_ptr<Propagator>> bodies;
   std::vector<Eigen::MatrixXd> shapes;  ///< of the modes; empty in reduced coordinates
-  std::vector<RunningContact> contacts;
+  std::vector<RunningContact> contacts;  ///< with one tangent
+  RunningFaces faces;
+  std::vector<ContactRecord*> records;  ///< of all contacts, in the order of the system
   std::vector<std::vector<double>> forces;  ///< per body, at its ports
   std::string failure;
 
@@ -105,7 +94,23 @@ struct Simulation::Implementation {
   std::vector<double> slip_velocities;  ///< likewise
 
   ContactSolver solver{0};
-  std::vector<LocalProblem> local;  ///< per contact
+  std::vector<LocalProblem> local;  ///< per contact with one tangent
+  std::vector<std::array<PortBlock, 2>> line_blocks;  ///< scratch, of these
+  std::vector<char> line_looks_ahead;                 ///< likewise
+
+  /// A contact by its index in the system: null where it is of the other kind.
+  const RunningContact* line(int contact) const {
+    const ContactRecord* const record = records[static_cast<std::size_t>(contact)];
+    for (const RunningContact& one : contacts)
+      if (&one == record) return &one;
+    return nullptr;
+  }
+  const RunningFace* on_face(int contact) const {
+    const ContactRecord* const record = records[static_cast<std::size_t>(contact)];
+    for (std::size_t i = 0; i < faces.size(); ++i)
+      if (&faces[i] == record) return &faces[i];
+    return nullptr;
+  }
 
   double time(std::int64_t at_index) const { return static_cast<double>(at_index) * step; }
   /// Step at which gap and slip satisfy the contact conditions.
@@ -126,7 +131,7 @@ struct Simulation::Implementation {
   }
 
   void set_loads(double at) {
-    const double amplitudes[] = {drive.load.value(at), drive.acceleration(at)};
+    const LoadAmplitudes amplitudes = load_amplitudes(drive, at);
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       if (feels_drive[b]) bodies[b]->set_loads(amplitudes);
     }
@@ -137,7 +142,14 @@ struct Simulation::Implementation {
   /// Adds the contacts of a system. Their ports follow each other on every body.
   void add_contacts(const System& system) {
     std::vector<int> next_slot(bodies.size(), 0);
+    std::vector<std::size_t> place;  // among those of its kind
     for (const ContactPoint& point : system.contacts) {
+      if (point.face) {
+        place.push_back(faces.size());
+        add_face(point, next_slot);
+        continue;
+      }
+      place.push_back(contacts.size());
       const MasterSurface& surface = surfaces[static_cast<std::size_t>(point.surface)];
       const auto slave = static_cast<std::size_t>(point.slave_body);
       const auto master = static_cast<std::size_t>(surface.body);
@@ -148,15 +160,31 @@ struct Simulation::Implementation {
       const double share = (follows_drive[slave] ? 1.0 : 0.0) - (follows_drive[master] ? 1.0 : 0.0);
       RunningContact contact(SlidingPoint(point, surface, *bodies[slave], *bodies[master],
                                           slave_slot, master_slot, share));
-      contact.unilateral_from = point.unilateral_from();
+      contact.begin(point);
       contact.tracks_slip = contact.unilateral_from < std::numeric_limits<double>::infinity() ||
                             point.friction.is_regularised();
-      contact.compliance = point.compliance();
-      contact.constant_from = point.friction_rise.constant_from();
-      contact.rise = point.friction_rise.value(contact.constant_from);
       slides_only = slides_only && !contact.tracks_slip;
       contacts.push_back(std::move(contact));
     }
+    slides_only = slides_only && faces.empty();
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      if (system.contacts[i].face) {
+        records.push_back(&faces[place[i]]);
+      } else {
+        records.push_back(&contacts[place[i]]);
+      }
+    }
+  }
+
+  void add_face(const ContactPoint& point, std::vector<int>& next_slot) {
+    const auto slave = static_cast<std::size_t>(point.slave_body);
+    const auto master = static_cast<std::size_t>(point.face->body);
+    int& slave_slot = next_slot[slave];
+    const int first = slave_slot;
+    slave_slot += point.slave_rows.z < 0 ? 2 : 3;
+    int& master_slot = next_slot[master];
+    faces.add(point, *bodies[slave], *bodies[master], first, master_slot);
+    master_slot += num_face_rows;
   }
 
   /// Takes projection, material point and slip velocity from the motion at the present time.
@@ -249,38 +277,71 @@ struct Simulation::Implementation {
 
   /// Solves the contacts as posed; those that are unsteady, or change, ahead.
   ContactAnswer solve_contacts(double drive_at, double rise_time) {
-    if (slides_only || !is_prompt || is_foreseeing_start) {
+    if (slides_only) {
       fill_delassus();
       return solver.solve(local);
     }
+    if (!faces.empty()) faces.pose(instant(rise_time));
+    if (!is_prompt || is_foreseeing_start) return solve_posed();
     return solve_unsteady_contacts(drive_at, rise_time);
+  }
+
+  RunningFaces::Instant instant(double sought) const {
+    return {time(index), sought, step, is_prompt && !is_foreseeing_start};
+  }
+
+  ContactAnswer solve_posed() {
+    fill_delassus();
+    if (faces.empty()) return solver.solve(local);
+    line_blocks.clear();
+    line_looks_ahead.clear();
+    for (const RunningContact& contact : contacts) {
+      line_blocks.push_back(contact.sliding.blocks());
+      line_looks_ahead.push_back(contact.looks_ahead ? 1 : 0);
+    }
+    faces.fill(solver, line_blocks, line_looks_ahead);
+    return solver.solve(local, faces.problems());
   }
 
   [[gnu::noinline]] ContactAnswer solve_unsteady_contacts(double drive_at, double rise_time) {
     bool is_ahead = false;
-    const auto look_ahead = [&](std::size_t i) {
+    const auto look_ahead_with_bodies = [&] {
       if (!is_ahead) {
         for (const auto& body : bodies) body->look_ahead();
       }
       is_ahead = true;
+    };
+    const auto look_ahead = [&](std::size_t i) {
+      look_ahead_with_bodies();
       pose_ahead(contacts[i], local[i], drive_at, contacts[i].rise_at(rise_time));
+    };
+    const auto look_ahead_on_face = [&](std::size_t i) {
+      look_ahead_with_bodies();
+      faces.pose_ahead(i, instant(rise_time));
     };
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       if (is_unsteady(i)) look_ahead(i);
     }
-    fill_delassus();
-    ContactAnswer answer = solver.solve(local);
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      if (faces.is_unsteady(i)) look_ahead_on_face(i);
+    }
+    ContactAnswer answer = solve_posed();
     bool has_any_changed = false;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      if (!faces.problems()[i].is_unilateral || faces[i].looks_ahead || !faces.has_changed(i))
+        continue;
+      faces[i].steady_steps = 0;
+      look_ahead_on_face(i);
+      has_any_changed = true;
+    }
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       if (!local[i].is_unilateral || contacts[i].looks_ahead || !has_changed(i)) continue;
       contacts[i].steady_steps = 0;
       look_ahead(i);
       has_any_changed = true;
     }
-    if (has_any_changed) {
-      fill_delassus();
-      answer = solver.solve(local);
-    }
+    if (has_any_changed) answer = solve_posed();
+    faces.count_steady();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       int& steady = contacts[i].steady_steps;
       if (local[i].state == ContactState::open || (contacts[i].looks_ahead && has_changed(i))) {
@@ -296,12 +357,10 @@ struct Simulation::Implementation {
   void start(const System& system, const TimeParameters& time_parameters) {
     const auto stand_and_solve = [&] {
       for (RunningContact& contact : contacts) {
-        contact.statistics = contact.earlier = contact.open_interval = contact.interval = {};
-        contact.violations = {};
-        contact.state = ContactState::open;
-        contact.steady_steps = 0;
+        contact.forget();
         stand(contact);
       }
+      faces.stand(system, instant(time(sought_index())));
       if (solve() != StepOutcome::done) throw NumericalError(failure);
     };
     const bool is_loaded = drive.load.value(0.0) != 0.0 || drive.acceleration(0.0) != 0.0;
@@ -353,6 +412,7 @@ struct Simulation::Implementation {
     }
     const ContactAnswer answer = solve_contacts(drive_at, sought_time);
     if (answer.status != ContactStatus::converged) {
+      if (answer.contact >= static_cast<int>(contacts.size())) return fail_on_face(answer);
       RunningContact& contact = contacts[static_cast<std::size_t>(answer.contact)];
       const LocalProblem& problem = local[static_cast<std::size_t>(answer.contact)];
       contact.friction = problem.sliding_friction;
@@ -372,7 +432,7 @@ struct Simulation::Implementation {
       contact.friction_force = local[i].tangential;
       contact.state = local[i].state;
       if (!(std::abs(contact.force) < absurd_force)) return fail(contact, StepOutcome::diverged);
-      count(contact);
+      contact.count();
       if (contact.tracks_slip) {
         const StepOutcome followed = follow_slip(contact, i);
         if (followed != StepOutcome::done) return followed;
@@ -383,11 +443,49 @@ struct Simulation::Implementation {
       }
       apply_forces(contact);
     }
+    if (!slides_only && !faces.empty()) {
+      const StepOutcome taken = take_faces();
+      if (taken != StepOutcome::done) outcome = taken;
+    }
     if (is_prompt && !is_foreseeing_start) {
       for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b]->settle(forces[b].data());
       if (!update_slip_velocities()) outcome = StepOutcome::sliding_reversed;
     }
     return outcome;
+  }
+
+  /// Takes up the forces of contacts on faces and applies them.
+  [[gnu::noinline]] StepOutcome take_faces() {
+    StepOutcome outcome = StepOutcome::done;
+    faces.take();
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      RunningFace& face = faces[i];
+      if (!(std::abs(face.force) < absurd_force)) return fail(face, StepOutcome::diverged);
+      const bool is_unilateral = faces.problems()[i].is_unilateral;
+      if (is_unilateral && face.point().assumption != ContactAssumption::film) {
+        if (face.state == ContactState::open) note(face, face.violations.negative_force);
+        if (face.state == ContactState::stick) note(face, face.violations.reversed_sliding);
+      }
+      if (face.force < 0.0 && !is_unilateral && !tolerate(face, face.violations.negative_force))
+        outcome = fail(face, StepOutcome::pulling);
+      face.kinematics.apply(face.force, face.whole_friction(),
+                            forces_on(face.point().slave_body).data(),
+                            forces_on(face.point().face->body).data());
+    }
+    return outcome;
+  }
+
+  StepOutcome fail_on_face(const ContactAnswer& answer) {
+    const std::size_t i = static_cast<std::size_t>(answer.contact) - contacts.size();
+    RunningFace& face = faces[i];
+    const PlanarProblem& problem = faces.problems()[i];
+    face.force = problem.normal;
+    if (!std::isfinite(problem.penetration)) {
+      face.force = problem.penetration;
+      return fail(face, StepOutcome::diverged);
+    }
+    return fail(face, answer.status == ContactStatus::jammed ? StepOutcome::jammed
+                                                             : StepOutcome::not_converged);
   }
 
   /// Additional update of a contact that may stick, separate or sink in, once its forces are known.
@@ -409,17 +507,6 @@ struct Simulation::Implementation {
     if (problem.substrate->is_sunk(problem.indentation)) return fail(contact, StepOutcome::sunk);
     if (overshoots(problem.stiffness, compliance)) return fail(contact, StepOutcome::overshot);
     return StepOutcome::done;
-  }
-
-  static void count(RunningContact& contact) {
-    ContactStatistics& statistics = contact.statistics;
-    statistics.force_min = std::min(statistics.force_min, contact.force);
-    statistics.force_max = std::max(statistics.force_max, contact.force);
-    statistics.friction_min = std::min(statistics.friction_min, contact.friction_force);
-    statistics.friction_max = std::max(statistics.friction_max, contact.friction_force);
-    ++statistics.steps;
-    if (contact.state == ContactState::slip) return;
-    ++(contact.state == ContactState::stick ? statistics.sticking : statistics.open);
   }
 
   /// The material point of a contact that does not stick moves with its corrected slip.
@@ -516,6 +603,22 @@ struct Simulation::Implementation {
         is_allowed = false;
       }
     }
+    if (!slides_only && !faces.empty() && !follow_faces()) is_allowed = false;
+    return is_allowed;
+  }
+
+  /// Takes the motion of contacts on faces. @returns as update_slip_velocities()
+  [[gnu::noinline]] bool follow_faces() {
+    bool is_allowed = true;
+    faces.follow(step);
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      RunningFace& face = faces[i];
+      if (face.slip_velocity * face.point().face->spin >= 0.0 || time(index) >= face.unilateral_from ||
+          tolerate(face, face.violations.reversed_sliding))
+        continue;
+      fail(face, StepOutcome::sliding_reversed);
+      is_allowed = false;
+    }
     return is_allowed;
   }
 
@@ -529,17 +632,35 @@ struct Simulation::Implementation {
     advance();
     const StepOutcome outcome = arrive();
     // The results of the contacts are kept until they are solved anew.
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      actions[i] = action_of(contacts[i]);
-      slip_velocities[i] = contacts[i].slip_velocity;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      const auto contact = static_cast<int>(i);
+      const RunningContact* const on_line = line(contact);
+      actions[i] = on_line != nullptr ? action_of(*on_line) : action_of(*on_face(contact));
+      slip_velocities[i] = records[i]->slip_velocity;
     }
     ledger->add(acting_at, actions, slip_velocities);
     return outcome;
   }
 
   static ContactAction action_of(const RunningContact& contact) {
-    return {contact.sliding.segment(), contact.sliding.projection(), contact.force,
-            contact.friction_force, contact.state, contact.sliding.roughness()};
+    ContactAction action;
+    action.segment = contact.sliding.segment();
+    action.projection = contact.sliding.projection();
+    action.force = contact.force;
+    action.friction_force = contact.friction_force;
+    action.state = contact.state;
+    action.roughness = contact.sliding.roughness();
+    return action;
+  }
+  static ContactAction action_of(const RunningFace& face) {
+    ContactAction action;
+    action.force = face.force;
+    action.friction_force = face.friction_force;
+    action.state = face.state;
+    action.friction_across = face.friction_across;
+    action.ports = face.kinematics.directed_at();
+    action.sliding = face.velocities[0];
+    return action;
   }
 
   /// t·(v_C − v_M) from the increments of the last step. @returns the drive's part of it
@@ -549,13 +670,14 @@ struct Simulation::Implementation {
     return driven;
   }
 
-  void note(RunningContact& contact, std::int64_t& counter) {
+  void note(ContactRecord& contact, std::int64_t& counter) {
     ++counter;
     contact.violations.last_time = time(index);
   }
 
   /// Counts a violation of persistent sliding; false where the contact is armed.
-  bool tolerate(RunningContact& contact, std::int64_t& counter) {
+  template <class Running>
+  bool tolerate(Running& contact, std::int64_t& counter) {
     note(contact, counter);
     if (time(index) >= contact.point().armed_from) return false;
     ++contact.violations.before_armed;
@@ -580,12 +702,11 @@ struct Simulation::Implementation {
   }
 
   StepOutcome fail(const RunningContact& contact, StepOutcome outcome) {
-    const MasterSurface& surface = contact.sliding.surface();
-    const double position = contact.sliding.position();
     std::string what;
     std::string remedy;
     switch (outcome) {
-      case StepOutcome::master_lost:
+      case StepOutcome::master_lost: {
+        const MasterSurface& surface = contact.sliding.surface();
         what = fmt::format("the slave point has left the end of the surface {} ({:.6g} m long)",
                            surface.name, surface.arc_length.back());
         remedy =
@@ -599,6 +720,48 @@ struct Simulation::Implementation {
               contact.violations.before_armed);
         }
         break;
+      }
+      case StepOutcome::sunk:
+        what = fmt::format(
+            "it has sunk {:.4g} m into the substrate, more than its radius of {:.4g} m, where no "
+            "contact law holds",
+            contact.indentation, contact.point().substrate->indentation_unit);
+        remedy =
+            "take a smaller load (drive.load), a larger contact.normal.modulus or radius, or, "
+            "if "
+            "it did not sink under its load but came to swing so far, a smaller time.step";
+        break;
+      case StepOutcome::overshot:
+        what = fmt::format(
+            "the substrate is too stiff for the step: at an indentation of {:.4g} m its force "
+            "undoes {:.3g} times a change of indentation in one step, and more than 4 times makes "
+            "it grow",
+            contact.indentation, contact.stiffness_in_step);
+        remedy = fmt::format("take a smaller time.step; about {:.1g} s resolves this contact",
+                             step / std::sqrt(contact.stiffness_in_step));
+        break;
+      default:
+        return fail_anywhere(contact, fmt::format("position {:.6g} m", contact.sliding.position()),
+                             outcome);
+    }
+    failure = fmt::format("{} at t = {:.9g} s (step {}), position {:.6g} m: {}. Remedy: {}.",
+                          contact.point().name, time(index), index, contact.sliding.position(),
+                          what, remedy);
+    return outcome;
+  }
+
+  StepOutcome fail(const RunningFace& face, StepOutcome outcome) {
+    const FacePlace& place = *face.point().face;
+    return fail_anywhere(
+        face, fmt::format("radius {:.6g} m, angle {:.4g} rad", place.radius, place.angle), outcome);
+  }
+
+  /// What can go wrong with a contact of any kinematics.
+  template <class Running>
+  StepOutcome fail_anywhere(const Running& contact, const std::string& where, StepOutcome outcome) {
+    std::string what;
+    std::string remedy;
+    switch (outcome) {
       case StepOutcome::pulling:
         what = fmt::format(
             "the contact force is {:.6g} N: a bilateral contact pulls where real bodies would part",
@@ -628,30 +791,14 @@ struct Simulation::Implementation {
                            contact.force);
         remedy = "take a smaller time.step";
         break;
+      case StepOutcome::master_lost:
       case StepOutcome::sunk:
-        what = fmt::format(
-            "it has sunk {:.4g} m into the substrate, more than its radius of {:.4g} m, where no "
-            "contact law holds",
-            contact.indentation, contact.point().substrate->indentation_unit);
-        remedy =
-            "take a smaller load (drive.load), a larger contact.normal.modulus or radius, or, "
-            "if "
-            "it did not sink under its load but came to swing so far, a smaller time.step";
-        break;
       case StepOutcome::overshot:
-        what = fmt::format(
-            "the substrate is too stiff for the step: at an indentation of {:.4g} m its force "
-            "undoes {:.3g} times a change of indentation in one step, and more than 4 times makes "
-            "it grow",
-            contact.indentation, contact.stiffness_in_step);
-        remedy = fmt::format("take a smaller time.step; about {:.1g} s resolves this contact",
-                             step / std::sqrt(contact.stiffness_in_step));
-        break;
       case StepOutcome::done:
         break;
     }
-    failure = fmt::format("{} at t = {:.9g} s (step {}), position {:.6g} m: {}. Remedy: {}.",
-                          contact.point().name, time(index), index, position, what, remedy);
+    failure = fmt::format("{} at t = {:.9g} s (step {}), {}: {}. Remedy: {}.",
+                          contact.point().name, time(index), index, where, what, remedy);
     return outcome;
   }
 };

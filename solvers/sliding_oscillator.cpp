@@ -32,7 +32,7 @@ std::string fault_of_parts(const System& system, int& body) {
   const ContactPoint& contact = system.contacts.front();
   const SystemBody& slave = system.bodies[static_cast<std::size_t>(body)];
   if (!contact.substrate) return "its contact has no viscoelastic half_space";
-  if (contact.slave_body != body || !system.surface_of(contact).is_endless)
+  if (contact.face || contact.slave_body != body || !system.surface_of(contact).is_endless)
     return "its contact is not that of the body on a half_space";
   if (slave.reduced.size() != 2)
     return fmt::format("its body '{}' has {} unknowns", slave.name, slave.reduced.size());

@@ -310,6 +310,25 @@ void SlidingPoint::apply(double normal, double tangential, double* slave_forces,
     master[k] = normal * normal_.master[k] - tangential * tangent_.master[k];
 }
 
+std::array<PortBlock, 2> SlidingPoint::blocks() const {
+  std::array<PortBlock, 2> blocks;
+  const auto set = [](PortBlock& block, const Propagator& body, int slot, int count,
+                      const double* normal, const double* tangent) {
+    block.body = &body;
+    block.slot = slot;
+    block.count = count;
+    for (int k = 0; k < count; ++k) {
+      block.sense(k, 0) = normal[k];
+      block.sense(k, 1) = -tangent[k];
+    }
+    block.push = block.sense;
+  };
+  set(blocks[0], *master_, master_slot_, 2 * undeformed_.stencil.count, normal_.master.data(),
+      tangent_.master.data());
+  set(blocks[1], *slave_, slave_slot_, 2, normal_.slave.data(), tangent_.slave.data());
+  return blocks;
+}
+
 void SlidingPoint::restore(int segment, double xi, const Eigen::Vector2d& tangent) {
   segment_ = segment;
   undeformed_ = surface_->undeformed_piece(segment);

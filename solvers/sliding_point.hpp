@@ -4,6 +4,7 @@
 #include <array>
 
 #include "coupling/system.hpp"
+#include "solvers/port_block.hpp"
 #include "solvers/propagator.hpp"
 
 namespace stridor {
@@ -87,6 +88,9 @@ class SlidingPoint {
   double sliding_compliance(const SlidingPoint& other, double friction) const;
   /// Writes λ_n and λ_t as forces on the ports of either body.
   void apply(double normal, double tangential, double* slave_forces, double* master_forces) const;
+
+  /// Its blocks at the master and at the slave.
+  std::array<PortBlock, 2> blocks() const;
 
   const ContactPoint& point() const { return point_; }
   const MasterSurface& surface() const { return *surface_; }

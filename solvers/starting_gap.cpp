@@ -1,5 +1,7 @@
 #include "solvers/starting_gap.hpp"
 
+#include "coupling/face_kinematics.hpp"
+
 namespace stridor {
 namespace {
 
@@ -63,8 +65,26 @@ Projection projection_in(const Setting& setting, ContactAssumption assumption) {
   return project(setting.undeformed, setting.slave, guess);
 }
 
+/// On a face, less the overlap of the contact.
+double gap_on_face(const System& system, const ContactPoint& contact) {
+  const auto displaced_row = [&](int body, int row) {
+    const SystemBody& of = body_at(system, body);
+    return row < 0 || of.initial_displacement.size() == 0
+               ? 0.0
+               : of.reduced.rows.row(row).dot(of.initial_displacement);
+  };
+  FacePorts ports;
+  for (int k = 0; k < num_face_rows; ++k)
+    ports[k] = displaced_row(contact.face->body, contact.face->rows[static_cast<std::size_t>(k)]);
+  ports.tail<3>() << displaced_row(contact.slave_body, contact.slave_rows.x),
+      displaced_row(contact.slave_body, contact.slave_rows.y),
+      displaced_row(contact.slave_body, contact.slave_rows.z);
+  return make_face_kinematics(*contact.face).gap(ports) - contact.overlap;
+}
+
 StartingGap starting_gap(const System& system, int index) {
   const ContactPoint& contact = system.contacts[static_cast<std::size_t>(index)];
+  if (contact.face) return {index, gap_on_face(system, contact), Eigen::Vector2d::UnitY()};
   const MasterSurface& surface = system.surface_of(contact);
   int segment = contact.first_segment;
   int heading = 0;
@@ -96,8 +116,9 @@ std::vector<StartingGap> starting_gaps(const System& system) {
   return gaps;
 }
 
-double negligible_gap(const MasterSurface& surface) {
-  return 1e-9 * surface.arc_length.back();
+double negligible_gap(const System& system, const ContactPoint& contact) {
+  constexpr double share = 1e-9;
+  return share * (contact.face ? contact.face->radius : system.surface_of(contact).arc_length.back());
 }
 
 }  // namespace stridor

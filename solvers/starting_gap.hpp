@@ -23,8 +23,8 @@ std::vector<StartingGap> starting_gaps(const System& system);
 /// load in time. A bilateral contact closes any gap in the first step.
 inline bool may_start_open(const ContactPoint& contact) { return contact.unilateral_from() <= 0.0; }
 
-/// Largest gap that is rounding, m: 1e-9 of the length of the master. An equilibrium that is found
+/// Largest gap that is rounding, m: 1e-9 of the length of the master, on a face of its radius. An equilibrium that is found
 /// iteratively leaves up to some 1e-11 of it.
-double negligible_gap(const MasterSurface& surface);
+double negligible_gap(const System& system, const ContactPoint& contact);
 
 }  // namespace stridor

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/face_contacts.hpp"
+#include "tests/support/face_system.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/step_growth_cases.hpp"
 
@@ -152,6 +154,35 @@ TEST(StepGuard, NamesContactPlaceGrowthStepAndRemedy) {
     EXPECT_NO_THROW(require_no_own_growth(system, finer));
     return;
   }
+}
+
+TEST(StepGuard, HoldsContactsOnFacesInBothTangents) {
+  DiscModelParameters brake = test::squealing_brake();
+  brake.contact.formulation = ContactFormulation::lagrange;
+  const System system = test::disc_system(brake);
+  TimeParameters time;
+  time.integrator = Integrator::exact;
+  time.step = 2e-6;
+  time.end = 0.1;
+  const std::vector<HeldContacts> held = held_contacts(system, time);
+  // Both sliding, each alone, and both sticking with a normal and two tangents each.
+  ASSERT_EQ(held.size(), 4U);
+  EXPECT_THAT(held[0].name, HasSubstr("'upper[0]', 'lower[0]' sliding at a radius of 0.13 m"));
+  EXPECT_EQ(held[0].rows.num_constraints(), 2);
+  EXPECT_THAT(held[3].name, HasSubstr("sticking"));
+  EXPECT_EQ(held[3].rows.num_constraints(), 6);
+  // The squeal is that of the bodies, whatever the step; damped bodies that stick decay.
+  for (const double step : {2e-6, 1e-5, 4e-5}) {
+    time.step = step;
+    EXPECT_NO_THROW(require_no_own_growth(system, time)) << step;
+  }
+  const FrozenStep frozen(system, time);
+  EXPECT_GT(spectral_radius(frozen.factors(held[0].rows)), 1.0);
+  EXPECT_LT(spectral_radius(frozen.factors(held[3].rows)), 1.0);
+  // Coupled modes turn by at most 2 in a step.
+  time.step = 1e-4;
+  EXPECT_THAT(message_of<ConfigError>([&] { require_no_own_growth(system, time); }),
+              HasSubstr("take a step of 5.59e-05 s or less"));
 }
 
 }  // namespace
