@@ -198,6 +198,40 @@ SubstrateContact make_substrate_contact(const ContactParameters& contact, double
   return made;
 }
 
+const Schema& StartParameters::schema() {
+  using P = StartParameters;
+  static const Schema keys =
+      SchemaOf<P>("start")
+          .real("along", &P::along,
+                {.doc = "Position of the first slave point along the master surface, from its "
+                        "first node.",
+                 .unit = "m",
+                 .range = Range::non_negative(),
+                 .optional = true})
+          .real("radius", &P::radius,
+                {.doc = "Of the middle of the slave body on the face of a plate, from the axis.",
+                 .unit = "m",
+                 .range = Range::positive(),
+                 .optional = true})
+          .real("angle", &P::angle,
+                {.doc = "Of that middle around the axis; default 0.",
+                 .unit = "rad",
+                 .optional = true})
+          .check([](const P& start, std::vector<Problem>& problems) {
+            if (start.along.has_value() == start.radius.has_value()) {
+              problems.push_back({"",
+                                  "is either a length along the master or, on the face of a plate, "
+                                  "{radius, angle}",
+                                  {},
+                                  0,
+                                  0});
+            } else if (start.along && start.angle) {
+              problems.push_back({"angle", "goes with radius, on the face of a plate", {}, 0, 0});
+            }
+          });
+  return keys;
+}
+
 const Schema& ContactParameters::schema() {
   static const Schema keys =
       SchemaOf<ContactParameters>("contact")
@@ -205,7 +239,7 @@ const Schema& ContactParameters::schema() {
                      {.doc = "Slave: <body>.<point>, <body>.<surface> (every node of it), or a "
                              "list of them."})
           .text("master", &ContactParameters::master,
-                {.doc = "Master surface: <body>.<surface>; `rigid`: a rigid straight line along +x "
+                {.doc = "Master surface: <body>.<surface>, or a face of a plate; `rigid`: a rigid straight line along +x "
                         "without end, below the slave; or `half_space`: a viscoelastic one there, "
                         "of which the normal law is that of a sphere at the slave point."})
           .choice("assumption", &ContactParameters::assumption,
@@ -229,11 +263,10 @@ const Schema& ContactParameters::schema() {
                  .unit = "s",
                  .range = Range::non_negative(),
                  .optional = true})
-          .real("start", &ContactParameters::start,
-                {.doc = "Initial position of the first slave point along the master surface, from "
-                        "its first node.",
-                 .unit = "m",
-                 .range = Range::non_negative()})
+          .section("start", &ContactParameters::start,
+                   {.doc = "Initial position of the first slave point along the master surface, "
+                           "from its first node; on the face of a plate {radius, angle}.",
+                    .number_key = "along"})
           .choice("sliding", &ContactParameters::sliding,
                   {{"moving", SlidingMode::moving}, {"frozen", SlidingMode::frozen}},
                   {.doc = "moving: the drive slides the slave; frozen: position held, friction as "

@@ -35,6 +35,9 @@ void check_keys_of_law(const NormalParameters& normal, std::vector<Problem>& pro
   demand("radius", normal.radius.has_value(), NormalLaw::viscoelastic);
   demand("modulus", normal.modulus.has_value(), NormalLaw::viscoelastic);
   demand("creep_time", normal.creep_time.has_value(), NormalLaw::viscoelastic);
+  if (normal.preload && normal.law == NormalLaw::viscoelastic) {
+    problems.push_back({"preload", "not used by the normal law viscoelastic", {}, 0, 0});
+  }
   if (normal.has_table() && !normal.form.ends_with(".h5")) {
     problems.push_back({"form",
                         fmt::format("'{}' is neither published_fit nor boundary_element nor a file "
@@ -84,6 +87,12 @@ const Schema& NormalParameters::schema() {
                 {.doc = "Of a penalty, per slave point.",
                  .unit = "N m-1",
                  .range = Range::positive(),
+                 .optional = true})
+          .real("preload", &NormalParameters::preload,
+                {.doc = "Force of each slave point in steady sliding on the face of a plate, about "
+                        "undeformed bodies, where no drive presses them together.",
+                 .unit = "N",
+                 .range = Range::non_negative(),
                  .optional = true})
           .real("radius", &NormalParameters::radius,
                 {.doc = "R of the sphere at the slave point.",

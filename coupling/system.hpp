@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -17,10 +18,28 @@
 
 namespace stridor {
 
-/// Rows of ReducedBody::rows that carry the x and y displacement of one point.
+/// Rows of ReducedBody::rows that carry the displacement of one point.
 struct PointRows {
   int x = 0;
   int y = 0;
+  int z = -1;  ///< −1: the body does not move along z
+};
+
+/// A place on a face of a body that spins about an axis along z of space, seen from space: it stays where
+/// it is while material passes with Ω r (docs/theory.md, 10.2).
+struct FacePlace {
+  std::string name;             ///< "<body>.<face>"
+  int body = 0;
+  /// Rows of ReducedBody::rows that carry w, w_r, w_φ, w_rφ and w_φφ here.
+  std::array<int, 5> rows{};
+  double radius = 0.0;          ///< r, m
+  double angle = 0.0;           ///< φ, rad
+  double half_thickness = 0.0;  ///< h/2, m
+  int side = 1;                 ///< s: +1 on the face of larger z, −1 on the other
+  double spin = 0.0;            ///< Ω, rad/s
+  /// Angle of the circumference here against x of the slave's frame, rad:
+  /// p_φ = cos x − sin z, p_r = cos z + sin x, p_z = s y of the slave's point.
+  double turned = 0.0;
 };
 
 /// One component and its position.
@@ -33,6 +52,7 @@ struct SystemBody {
   /// Motion at t = 0 in reduced coordinates, m and m/s; empty for a body at rest.
   Eigen::VectorXd initial_displacement;
   Eigen::VectorXd initial_velocity;
+  Eigen::VectorXd held_load;  ///< constant generalised load in reduced coordinates, N; empty where there is none
 
   /// Whether the drive moves or loads it.
   bool feels_drive() const { return follows_drive || load_row >= 0; }
@@ -125,6 +145,8 @@ struct ContactPoint {
   /// A force law in the place of gap = 0 and of the friction law, which then are not used. It acts
   /// with all of its friction from the start.
   std::optional<SubstrateContact> substrate;
+  std::optional<FacePlace> face;  ///< in the place of `surface`, `first_segment`: contact on a face, two tangents
+  double overlap = 0.0;           ///< indentation of undeformed bodies, m: preload/penalty; 0 for multipliers
   OnViolation on_violation = OnViolation::stop;
   /// Violations of persistent sliding before this time are only counted, s.
   double armed_from = 0.0;

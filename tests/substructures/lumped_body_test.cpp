@@ -59,7 +59,7 @@ TEST(LumpedBody, ChainHasTheFrequenciesOfItsClosedForm) {
   // n masses between two walls: ω_j = 2 (k/m)^½ sin(j π/(2 (n + 1))).
   constexpr int n = 5;
   LumpedParameters chain;
-  chain.moves = {"x"};
+  chain.directions = {"x"};
   for (int i = 0; i < n; ++i) chain.masses["m" + std::to_string(i)] = {0.5, {0.1 * i, 0.0}};
   for (int i = 0; i + 1 < n; ++i)
     chain.springs["k" + std::to_string(i)] = {
@@ -115,16 +115,16 @@ TEST(LumpedBody, RefusesWhatIsNotThere) {
   EXPECT_THAT(message_of<ConfigError>([&] { body.make(); }),
               HasSubstr("springs.vertical.direction: missing: the two masses stand at one place"));
   body = oscillator(0.0, 0.0);
-  body.moves = {"x"};
+  body.directions = {"x"};
   body.guided = "center";
   EXPECT_THAT(message_of<ConfigError>([&] { body.make(); }),
               HasSubstr("guided: needs a mass that moves in y"));
   std::vector<Problem> problems;
-  body.moves = {"x", "x", "z"};
+  body.directions = {"x", "x", "w"};
   for (const auto& check : LumpedParameters::schema().checks) check(&body, problems);
   std::vector<std::string> keys;
   for (const Problem& problem : problems) keys.push_back(problem.key);
-  EXPECT_THAT(keys, ElementsAre("moves.1", "moves.2"));
+  EXPECT_THAT(keys, ElementsAre("directions.1", "directions.2"));
 }
 
 TEST(Substructure, IsCopiedWithWhatItHolds) {
