@@ -62,8 +62,8 @@ struct StartParameters {
   std::optional<double> angle;   ///< of it, rad; default 0
 
   StartParameters() = default;
-  StartParameters(double along)  // NOLINT(google-explicit-constructor): a length is one
-      : along(along) {}
+  StartParameters(double length)  // NOLINT(google-explicit-constructor): a length is one
+      : along(length) {}
   static const Schema& schema();
 };
 

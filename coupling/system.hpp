@@ -23,6 +23,9 @@ struct PointRows {
   int x = 0;
   int y = 0;
   int z = -1;  ///< −1: the body does not move along z
+
+  /// Row of a direction: x (0), y (1) or z (2).
+  int row(int direction) const { return direction == 0 ? x : direction == 1 ? y : z; }
 };
 
 /// A place on a face of a body that spins about an axis along z of space, seen from space: it stays where
@@ -53,6 +56,9 @@ struct SystemBody {
   Eigen::VectorXd initial_displacement;
   Eigen::VectorXd initial_velocity;
   Eigen::VectorXd held_load;  ///< constant generalised load in reduced coordinates, N; empty where there is none
+
+  /// Lowest ω among modes that the body never had, rad/s (BodyMatrices::lowest_omitted).
+  double lowest_omitted = std::numeric_limits<double>::infinity();
 
   /// Whether the drive moves or loads it.
   bool feels_drive() const { return follows_drive || load_row >= 0; }

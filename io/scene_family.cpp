@@ -378,7 +378,7 @@ void SceneFamily::build(const Settings& settings) {
   model_ = build_model_with(*changed_, settings, cache_);
   built_ = settings;
   const auto pairs = changed_->scene.model.pairs();
-  if (!pairs.empty()) start_ = pairs.begin()->second.start;
+  if (!pairs.empty()) start_ = pairs.begin()->second.start.along.value_or(0.0);
 }
 
 }  // namespace stridor

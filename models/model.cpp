@@ -112,6 +112,7 @@ class ModelBuilder {
       finished.name = body.name;
       finished.follows_drive = follows_drive(body, drive_);
       finished.load_row = load_row_of(body, drive_);
+      finished.lowest_omitted = body.matrices.lowest_omitted;
       if (is_sparse && body.is_whole()) {
         blocks.push_back(make_sparse(body.matrices));
         continue;

@@ -5,6 +5,7 @@
 #include <Eigen/SparseCore>
 #include <array>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -64,6 +65,8 @@ struct BodyMatrices {
   std::vector<std::vector<int>> outlines;  ///< nodes in order that are drawn besides the surfaces
   /// Whether modes are its DoFs already, of which a reduction would make none better.
   bool is_modal = false;
+  /// Lowest ω among modes that are not among its DoFs, rad/s; infinite where none is left out.
+  double lowest_omitted = std::numeric_limits<double>::infinity();
   /// Loads by name, "<surface>.<x|y|z>": a force of 1 N spread evenly over a surface;
   /// "<spring>.<x|y|z>": what the spring exerts when its ground end moves by 1 m. As sums over DoFs,
   /// which also are the displacements that these loads do work on.

@@ -57,6 +57,8 @@ class BodyParameters {
   virtual std::optional<double> interface_spacing() const { return std::nullopt; }
   /// Whether the nodes fill the body, so that the side of a surface on which it lies can be told.
   virtual bool is_filled() const { return false; }
+  /// Whether it has a face of this name (BodyMatrices::faces).
+  virtual bool has_face(const std::string& /*name*/) const { return false; }
   /// Elements of eight nodes to draw; none for a body without mesh.
   virtual std::vector<std::array<int, 8>> elements() const { return {}; }
 

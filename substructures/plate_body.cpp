@@ -138,6 +138,7 @@ BodyMatrices PlateBodyParameters::make() const {
 
   BodyMatrices body;
   body.is_modal = true;
+  body.lowest_omitted = modes->lowest_omitted();
   body.mass = Eigen::MatrixXd::Identity(n, n).sparseView();
   Eigen::MatrixXd stiffness = elastic.asDiagonal();
   if (turning == 0.0) {

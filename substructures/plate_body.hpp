@@ -43,6 +43,9 @@ struct PlateBodyParameters : BodyParametersOf<PlateBodyParameters> {
   static const Schema& schema();
 
   BodyMatrices make() const override;
+  bool has_face(const std::string& name) const override {
+    return name == "top" || name == "bottom";
+  }
   double num_slave_nodes(const std::string& /*name*/) const override { return 0.0; }
   ReductionSize reduction_size(double interface_nodes) const override;
   SizeKey size_key() const override;

@@ -16,8 +16,12 @@ void check_spring_matrix(const Parameters& given, std::vector<Problem>& problems
     return;
   }
   if (given.along) {
-    if (given.xx || given.yy || given.zz || given.xy || given.yz || given.zx)
-      refuse("is either a number along a direction, or xx, yy, zz, xy, yz, zx");
+    for (const auto& [key, entry] :
+         {std::pair("xx", given.xx), std::pair("yy", given.yy), std::pair("zz", given.zz),
+          std::pair("xy", given.xy), std::pair("yz", given.yz), std::pair("zx", given.zx)}) {
+      if (entry)
+        problems.push_back({key, "does not go with a number along a direction", {}, 0, 0});
+    }
     return;
   }
   const Eigen::Matrix3d matrix = spring_matrix(given, Eigen::Vector3d::Zero());

@@ -36,8 +36,8 @@ struct SpringDirectionParameters {
   std::vector<double> vector;   ///< two or three components, of any length
 
   SpringDirectionParameters() = default;
-  SpringDirectionParameters(double angle)  // NOLINT(google-explicit-constructor): a number is one
-      : angle(angle) {}
+  SpringDirectionParameters(double number)  // NOLINT(google-explicit-constructor): a number is one
+      : angle(number) {}
 
   /// Of unit length.
   Eigen::Vector3d unit() const;

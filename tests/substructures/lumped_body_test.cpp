@@ -100,6 +100,69 @@ TEST(LumpedBody, GuidedOneFollowsTheDriveWithAllItsMasses) {
   EXPECT_EQ(made.base_inertia, Eigen::Vector4d(2.0, 0.0, 3.0, 0.0));
 }
 
+TEST(LumpedBody, MovesInSpace) {
+  LumpedParameters body;
+  body.directions = {"x", "z", "y"};
+  body.masses["a"] = {2.0, {}};
+  body.masses["b"] = {3.0, {0.3, 0.0, 0.4}};
+  body.damping.beta = 1e-3;
+  LumpedSpringParameters& ground = body.springs["ground"];
+  ground.at = {"a"};
+  ground.stiffness.xx = 4.0;
+  ground.stiffness.yy = 9.0;
+  ground.stiffness.zz = 7.0;
+  ground.stiffness.xy = 5.0;
+  ground.stiffness.zx = -1.0;
+  body.springs["link"] = {{"a", "b"}, 10.0, {}, {}};
+  const BodyMatrices made = body.make();
+  ASSERT_EQ(made.num_dofs(), 6);
+  EXPECT_EQ(made.node_dofs[0], (std::array{0, 1}));
+  EXPECT_EQ(made.across, (std::vector{2, 5}));
+  const Eigen::Vector3d d(0.6, 0.0, 0.8);
+  const Eigen::Matrix3d link = 10.0 * d * d.transpose();
+  Eigen::Matrix3d k;
+  k << 4.0, 5.0, -1.0, 5.0, 9.0, 0.0, -1.0, 0.0, 7.0;
+  Eigen::MatrixXd K(6, 6);
+  K << k + link, -link, -link, link;
+  EXPECT_LT((Eigen::MatrixXd(made.stiffness) - K).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_EQ(made.damping.beta, 1e-3);
+  // The ground end of the spring, moved along x, y or z, carries the mass along.
+  for (const std::size_t axis : {0, 1, 2}) {
+    Eigen::Vector3d load = Eigen::Vector3d::Zero();
+    for (const DofWeight& dof : made.loads.at(std::string("ground.") + "xyz"[axis]))
+      load(dof.dof) += dof.weight;
+    EXPECT_EQ(load, k.col(static_cast<Eigen::Index>(axis)));
+  }
+  EXPECT_FALSE(made.loads.contains("link.x"));  // it has no ground end
+  EXPECT_EQ(made.load("b.z").value().front().dof, 5);
+}
+
+TEST(LumpedBody, SpringsActAlongVectors) {
+  LumpedParameters body;
+  body.directions = {"x", "y", "z"};
+  body.masses["a"] = {2.0, {}};
+  LumpedSpringParameters& spring = body.springs["s"];
+  spring.at = {"a"};
+  spring.stiffness = 50.0;
+  spring.damping.emplace(4.0);
+  spring.direction.emplace();
+  spring.direction->vector = {0.0, 3.0, 4.0};
+  const BodyMatrices made = body.make();
+  const Eigen::Vector3d d(0.0, 0.6, 0.8);
+  const Eigen::Matrix3d K = 50.0 * d * d.transpose();
+  EXPECT_LT((Eigen::MatrixXd(made.stiffness) - K).cwiseAbs().maxCoeff(), 1e-14);
+  // 4 d dᵀ is 0.08 K: proportional.
+  EXPECT_NEAR(made.damping.beta, 0.08, 1e-15);
+  body.directions = {"y"};
+  EXPECT_NEAR(body.make().stiffness.coeff(0, 0), 18.0, 1e-13);
+  std::vector<Problem> problems;
+  spring.direction->vector = {0.0, 0.0};
+  for (const auto& check : SpringDirectionParameters::schema().checks)
+    check(&*spring.direction, problems);
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_THAT(problems[0].message, HasSubstr("not all of them 0"));
+}
+
 TEST(LumpedBody, RefusesWhatIsNotThere) {
   LumpedParameters body = oscillator(0.0, 0.0);
   body.springs["vertical"].at = {"centre"};
