@@ -642,14 +642,16 @@ bool is_growing(const Eigenvalue& eigenvalue) {
 
 double trusted_frequency(const System& system) {
   double lowest = std::numeric_limits<double>::infinity();
+  double omitted = lowest;  // of bodies that are modes as they are
   for (const SystemBody& body : system.bodies) {
+    omitted = std::min(omitted, body.lowest_omitted / (2.0 * std::numbers::pi));
     const Eigen::Index n = body.reduced.size();
     if (n == body.reduced.num_interface) continue;
     // The stiffness of fixed-interface modes is diagonal and ascends.
     const double omega = std::sqrt(body.reduced.stiffness(n - 1, n - 1));
     lowest = std::min(lowest, omega / (2.0 * std::numbers::pi));
   }
-  return 0.5 * lowest;
+  return std::min(0.5 * lowest, omitted);
 }
 
 Json eigenvalues_json(const std::vector<Eigenvalue>& eigenvalues) {

@@ -61,7 +61,7 @@ StudiedScene study_scene(LoadedScene loaded, const std::optional<std::string>& u
   study.model = build_model(study.loaded);
   set_initial_state(study.model.system, study.loaded);
   const Model::Point& point = study.model.points.at(*channel->point);
-  study.observed = {point.body, channel->is_vertical ? point.rows.y : point.rows.x};
+  study.observed = {point.body, point.rows.row(channel->direction)};
   study.interval = scene.record->interval;
   double end = scene.time->end;
   if (until) {

@@ -23,4 +23,20 @@ const Key* Schema::find(const std::string& key) const {
   return nullptr;
 }
 
+namespace {
+
+const Key* key_in_place(const Key& section, const std::string& name) {
+  return name.empty() ? nullptr : section.alternatives.front().schema().find(name);
+}
+
+}  // namespace
+
+const Key* number_in_place_of(const Key& section) {
+  return key_in_place(section, section.number_key);
+}
+
+const Key* list_in_place_of(const Key& section) {
+  return key_in_place(section, section.list_key);
+}
+
 }  // namespace stridor

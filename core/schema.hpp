@@ -110,6 +110,8 @@ struct Key {
   Range storable;    ///< of an integer: what its member can hold
   bool is_optional = false;
   std::string absent_word;           ///< of an optional section: may stand for "not given"
+  /// Of a section: which of its keys a single number, or a list, in its place is the value of.
+  std::string number_key, list_key;
   std::vector<std::string> choices;  ///< of a choice
   bool has_rows = false;             ///< of a text_list: a list of numbers stands for their text
   std::string discriminator;         ///< of named_sections with several alternatives, e.g. "type"
@@ -140,6 +142,11 @@ class Schema {
   const Key* find(const std::string& key) const;
 };
 
+/// The key of a section that a number in its place is the value of; null where it takes none.
+const Key* number_in_place_of(const Key& section);
+/// The same of a list.
+const Key* list_in_place_of(const Key& section);
+
 /// What is said of a number (or of a list of numbers, or a curve) besides its name and member.
 struct RealKey {
   std::string doc;
@@ -153,6 +160,9 @@ struct PlainKey {
   bool optional = false;
   Range range = Range::any();
   std::string absent_word = "";  ///< of an optional section: may stand for "not given"
+  /// Of a section: its key that a number (a list) in its place stands for.
+  std::string number_key = "";
+  std::string list_key = "";
 };
 
 namespace detail {
@@ -309,6 +319,8 @@ class SchemaOf {
     key.doc = std::move(says.doc);
     key.is_optional = says.optional;
     key.absent_word = std::move(says.absent_word);
+    key.number_key = std::move(says.number_key);
+    key.list_key = std::move(says.list_key);
     key.open = [member](void* object, const std::string&, std::size_t) -> void* {
       M& nested = static_cast<T*>(object)->*member;
       if constexpr (detail::is_optional<M>::value) {

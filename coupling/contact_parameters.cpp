@@ -207,6 +207,40 @@ SubstrateContact make_substrate_contact(const ContactParameters& contact, double
   return made;
 }
 
+const Schema& StartParameters::schema() {
+  using P = StartParameters;
+  static const Schema keys =
+      SchemaOf<P>("start")
+          .real("along", &P::along,
+                {.doc = "Position of the first slave point along the master surface, from its "
+                        "first node.",
+                 .unit = "m",
+                 .range = Range::non_negative(),
+                 .optional = true})
+          .real("radius", &P::radius,
+                {.doc = "Of the middle of the slave body on the face of a plate, from the axis.",
+                 .unit = "m",
+                 .range = Range::positive(),
+                 .optional = true})
+          .real("angle", &P::angle,
+                {.doc = "Of that middle around the axis; default 0.",
+                 .unit = "rad",
+                 .optional = true})
+          .check([](const P& start, std::vector<Problem>& problems) {
+            if (start.along.has_value() == start.radius.has_value()) {
+              problems.push_back({"",
+                                  "is either a length along the master or, on the face of a plate, "
+                                  "{radius, angle}",
+                                  {},
+                                  0,
+                                  0});
+            } else if (start.along && start.angle) {
+              problems.push_back({"angle", "goes with radius, on the face of a plate", {}, 0, 0});
+            }
+          });
+  return keys;
+}
+
 const Schema& ContactParameters::schema() {
   static const Schema keys =
       SchemaOf<ContactParameters>("contact")
@@ -216,7 +250,7 @@ const Schema& ContactParameters::schema() {
                       "list of them. May be absent where only `contact` evaluates the normal law.",
                .optional = true})
           .text("master", &ContactParameters::master,
-                {.doc = "Master surface: <body>.<surface>; `rigid`: a rigid straight line along +x "
+                {.doc = "Master surface: <body>.<surface>, or a face of a plate; `rigid`: a rigid straight line along +x "
                         "without end, below the slave; or `half_space`: a viscoelastic one there, "
                         "of which the normal law is that of an indenter at the slave point."})
           .choice("assumption", &ContactParameters::assumption,
@@ -241,12 +275,11 @@ const Schema& ContactParameters::schema() {
                  .unit = "s",
                  .range = Range::non_negative(),
                  .optional = true})
-          .real("start", &ContactParameters::start,
-                {.doc = "Initial position of the first slave point along the master surface, from "
-                        "its first node.",
-                 .unit = "m",
-                 .range = Range::non_negative(),
-                 .optional = true})
+          .section("start", &ContactParameters::start,
+                   {.doc = "Initial position of the first slave point along the master surface, "
+                           "from its first node; on the face of a plate {radius, angle}.",
+                     .optional = true,
+                     .number_key = "along"})
           .choice("sliding", &ContactParameters::sliding,
                   {{"moving", SlidingMode::moving}, {"frozen", SlidingMode::frozen}},
                   {.doc = "moving: the drive slides the slave; frozen: position held, friction as "

@@ -55,15 +55,28 @@ inline constexpr const char* half_space_master = "half_space";
 /// Stands for all guided supports in the lists of the drive.
 inline constexpr const char* guided_supports = "guided";
 
+/// Where a slave is at the start: on a curve, or on the face of a plate.
+struct StartParameters {
+  std::optional<double> along;   ///< of the first slave point from the first node of the curve, m
+  std::optional<double> radius;  ///< of the middle of the slave body, m
+  std::optional<double> angle;   ///< of it, rad; default 0
+
+  StartParameters() = default;
+  StartParameters(double length)  // NOLINT(google-explicit-constructor): a length is one
+      : along(length) {}
+  static const Schema& schema();
+};
+
 /// One pair: slave points on a master surface.
 struct ContactParameters {
   /// "<body>.<point>" or "<body>.<surface>" (every node of it); empty where only its law is wanted.
   std::vector<std::string> slave;
-  std::string master;              ///< "<body>.<surface>", rigid_master or half_space_master
+  /// "<body>.<surface>", "<body>.<face>", rigid_master or half_space_master.
+  std::string master;
   std::optional<ContactAssumption> assumption;  ///< absent: film, of a viscoelastic normal law
   OnViolation on_violation = OnViolation::stop;
   std::optional<double> armed_from;  ///< s; the drive's ramp where absent
-  double start = 0.0;  ///< of the first slave point, along the master from its first node, m
+  StartParameters start{0.0};
   SlidingMode sliding = SlidingMode::moving;
   SurfaceKind surface = SurfaceKind::polyline;
   std::optional<RoughnessParameters> roughness;

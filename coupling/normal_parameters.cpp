@@ -98,6 +98,7 @@ void check_keys_of_law(const NormalParameters& normal, std::vector<Problem>& pro
                     name_of(normal.law)));
   }
   if (normal.law == NormalLaw::viscoelastic) {
+    if (normal.preload) add(problems, "preload", "not used by the normal law viscoelastic");
     check_viscoelastic(normal, problems);
     return;
   }
@@ -157,6 +158,12 @@ const Schema& NormalParameters::schema() {
                 {.doc = "Of a penalty, per slave point.",
                  .unit = "N m-1",
                  .range = Range::positive(),
+                 .optional = true})
+          .real("preload", &NormalParameters::preload,
+                {.doc = "Force of each slave point in steady sliding on the face of a plate, about "
+                        "undeformed bodies, where no drive presses them together.",
+                 .unit = "N",
+                 .range = Range::non_negative(),
                  .optional = true})
           .real("radius", &NormalParameters::radius,
                 {.doc = "R of the sphere at the slave point, for short: a `profile` of the shape "

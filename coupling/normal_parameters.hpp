@@ -34,6 +34,9 @@ struct NormalParameters {
 
   NormalLaw law = NormalLaw::multiplier;
   std::optional<double> stiffness;           ///< k of a penalty, N/m, > 0
+  /// Force of each contact in steady sliding of undeformed bodies, N, ≥ 0; of a multiplier or
+  /// penalty on a face.
+  std::optional<double> preload;
   std::optional<double> radius;              ///< R of the sphere at the slave point, m, > 0
   std::optional<ProfileParameters> profile;  ///< the indenter there, in the place of `radius`
   std::optional<double> modulus;             ///< E_0* of the half-space at frequency zero, Pa, > 0

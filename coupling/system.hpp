@@ -23,6 +23,9 @@ struct PointRows {
   int x = 0;
   int y = 0;
   int z = -1;  ///< −1: the body does not move along z
+
+  /// Row of a direction: x (0), y (1) or z (2).
+  int row(int direction) const { return direction == 0 ? x : direction == 1 ? y : z; }
 };
 
 /// A place on a face of a body that spins about an axis along z of space, seen from space: it stays where
@@ -52,7 +55,10 @@ struct SystemBody {
   /// Motion at t = 0 in reduced coordinates, m and m/s; empty for a body at rest.
   Eigen::VectorXd initial_displacement;
   Eigen::VectorXd initial_velocity;
-  Eigen::VectorXd held_load;  ///< constant load in reduced coordinates, N; empty where there is none
+  Eigen::VectorXd held_load;  ///< constant generalised load in reduced coordinates, N; empty where there is none
+
+  /// Lowest ω among modes that the body never had, rad/s (BodyMatrices::lowest_omitted).
+  double lowest_omitted = std::numeric_limits<double>::infinity();
 
   /// Whether the drive moves or loads it.
   bool feels_drive() const { return follows_drive || load_row >= 0; }
@@ -145,6 +151,8 @@ struct ContactPoint {
   /// A force law in the place of gap = 0 and of the friction law, which then are not used. It acts
   /// with all of its friction from the start.
   std::optional<SubstrateContact> substrate;
+  std::optional<FacePlace> face;  ///< in the place of `surface`, `first_segment`: contact on a face, two tangents
+  double overlap = 0.0;           ///< indentation of undeformed bodies, m: preload/penalty; 0 for multipliers
   OnViolation on_violation = OnViolation::stop;
   /// Violations of persistent sliding before this time are only counted, s.
   double armed_from = 0.0;

@@ -63,12 +63,12 @@ Channel parse(const std::string& name, const ModelParameters& model) {
     std::vector<std::string> bodies;
     for (const auto& entry : model.substructures) bodies.push_back(entry.first);
     if (!index_in(bodies, parts[0])) throw one_of("substructure", parts[0], bodies);
-    if (parts[2] != "x" && parts[2] != "y")
-      throw fmt::format("'{}' is not a direction; take x or y", parts[2]);
+    const auto direction = index_in({"x", "y", "z"}, parts[2]);
+    if (!direction) throw fmt::format("'{}' is not a direction; take x, y or z", parts[2]);
     const auto motion = index_in(motions, parts[3]);
     if (!motion) throw one_of("motion", parts[3], motions);
     channel.point = PointName{parts[0], parts[1]};
-    channel.is_vertical = parts[2] == "y";
+    channel.direction = static_cast<int>(*direction);
     channel.derivative = static_cast<Derivative>(*motion);
     return channel;
   }
@@ -85,7 +85,7 @@ Channel parse(const std::string& name, const ModelParameters& model) {
     return channel;
   }
   throw std::string(
-      "is neither <body>.<point>.<x|y>.<displacement|velocity|acceleration> nor "
+      "is neither <body>.<point>.<x|y|z>.<displacement|velocity|acceleration> nor "
       "<contact>.<force|gap|slip_velocity|position|friction_force|state|area>");
 }
 

@@ -28,7 +28,7 @@ struct Channel {
   std::string key;   ///< its key path, for messages
 
   std::optional<PointName> point;  ///< of a motion
-  bool is_vertical = false;        ///< y, not x
+  int direction = 0;               ///< of it: x (0), y (1) or z (2)
   Derivative derivative = Derivative::none;
 
   std::string pair;  ///< of a contact quantity

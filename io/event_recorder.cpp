@@ -58,8 +58,8 @@ double EventRecorder::value_at_point(const Channel& channel, double time,
   const Eigen::Vector2d reduced =
       oscillator_->mass.to_body * motion_in_contact(channel.derivative, *oscillator_, motion);
   const double relative =
-      body.reduced.rows.row(channel.is_vertical ? point.rows.y : point.rows.x).dot(reduced);
-  if (channel.is_vertical || !body.follows_drive) return relative;
+      body.reduced.rows.row(point.rows.row(channel.direction)).dot(reduced);
+  if (channel.direction != 0 || !body.follows_drive) return relative;
   const Drive& drive = model_->system.drive;
   if (channel.derivative == Derivative::none) return relative + drive.displacement(time);
   return channel.derivative == Derivative::first ? relative + drive.velocity.value(time) : relative;

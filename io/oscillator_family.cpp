@@ -156,6 +156,11 @@ bool OscillatorFamily::add_number(const std::string& path, Source source) {
     };
     const Key* key = schema->find(part());
     if (key == nullptr) return false;
+    if (const Key* number = begin > path.size() ? number_in_place_of(*key) : nullptr) {
+      object = entry_of(*key, object, "").second;
+      if (object == nullptr) return false;
+      key = number;
+    }
     if (key->kind == KeyKind::real || key->kind == KeyKind::curve) {
       if (begin <= path.size()) return false;
       changes_.push_back({{key, object}, std::move(source)});

@@ -58,7 +58,7 @@ int sampling_stride(const System& system, double step, int ratio) {
 double Recorder::Stream::value(const Simulation& simulation) const {
   if (point) {
     const double relative =
-        simulation.displacement(point->body, is_vertical ? point->rows.y : point->rows.x);
+        simulation.displacement(point->body, point->rows.row(direction));
     return follows_drive ? relative + simulation.drive_displacement() : relative;
   }
   if (energy != nullptr) {
@@ -96,7 +96,7 @@ Recorder::Recorder(const Model& model, std::vector<Channel> channels, double ste
     } else if (channel.energy != nullptr) {
       columns_.push_back({streams_.size()});
       streams_.push_back(
-          {std::nullopt, false, false, 0, channel.quantity, channel.energy, Decimator(filter)});
+          {std::nullopt, 0, false, 0, channel.quantity, channel.energy, Decimator(filter)});
     } else {
       for (const int contact : contacts_of(model.system, channel.pair))
         add_contact(channel, contact, filter);
@@ -120,13 +120,13 @@ void Recorder::add_motion(const Model& model, const Channel& channel,
          !(streams_[stream].point && streams_[stream].point->body == point.body &&
            streams_[stream].point->rows.x == point.rows.x &&
            streams_[stream].point->rows.y == point.rows.y &&
-           streams_[stream].is_vertical == channel.is_vertical)) {
+           streams_[stream].direction == channel.direction)) {
     ++stream;
   }
   if (stream == streams_.size()) {
-    const bool follows = !channel.is_vertical &&
+    const bool follows = channel.direction == 0 &&
                          model.system.bodies[static_cast<std::size_t>(point.body)].follows_drive;
-    streams_.push_back({point, channel.is_vertical, follows, 0, ContactQuantity::force, nullptr,
+    streams_.push_back({point, channel.direction, follows, 0, ContactQuantity::force, nullptr,
                         Decimator(filter)});
   }
   columns_.push_back({stream, channel.derivative});
@@ -192,7 +192,7 @@ std::optional<DisplacementSink::Row> Recorder::sole_row() const {
   const Stream& stream = streams_.front();
   if (!stream.point || stream.follows_drive) return std::nullopt;
   const PointRows& rows = stream.point->rows;
-  return Row{stream.point->body, stream.is_vertical ? rows.y : rows.x};
+  return Row{stream.point->body, rows.row(stream.direction)};
 }
 
 void Recorder::sample_displacement(double displacement) {

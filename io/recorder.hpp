@@ -63,7 +63,7 @@ class Recorder : public DisplacementSink {
   /// One sampled quantity and its filter.
   struct Stream {
     std::optional<Model::Point> point;  ///< of a motion
-    bool is_vertical = false;
+    int direction = 0;
     bool follows_drive = false;  ///< the drive's displacement is added
     int contact = 0;
     ContactQuantity quantity = ContactQuantity::force;

@@ -117,6 +117,16 @@ Lines entry_lines(const Key& key, std::size_t alternative, const void* object) {
   return lines;
 }
 
+/// What may be written in the place of a section of which only one key is given; "" if nothing.
+std::string value_in_place(const Key& key, const Lines& inner) {
+  if (inner.size() != 1) return "";
+  for (const std::string& name : {key.number_key, key.list_key}) {
+    if (!name.empty() && inner.front().starts_with(name + ": "))
+      return inner.front().substr(name.size() + 2);
+  }
+  return "";
+}
+
 void append_sections(Lines& lines, const Key& key, const void* object) {
   Lines inner;
   bool is_present = key.kind != KeyKind::section;
@@ -135,6 +145,10 @@ void append_sections(Lines& lines, const Key& key, const void* object) {
   });
   if (!is_present && !key.absent_word.empty()) lines.push_back(key.name + ": " + key.absent_word);
   if (!is_present) return;
+  if (const std::string value = value_in_place(key, inner); !value.empty()) {
+    lines.push_back(key.name + ": " + value);
+    return;
+  }
   if (key.kind == KeyKind::section_list && inner.empty()) {
     lines.push_back(key.name + ": []");
   } else {

@@ -132,7 +132,7 @@ const Schema& RecordParameters::schema() {
           .text_list(
               "channels", &RecordParameters::channels,
               {.doc =
-                   "What is recorded: <body>.<point>.<x|y>.<displacement|velocity|acceleration>, "
+                   "What is recorded: <body>.<point>.<x|y|z>.<displacement|velocity|acceleration>, "
                    "<contact>.<force|gap|slip_velocity|position|friction_force|state|area>."})
           .flag("energy", &RecordParameters::energy,
                 {.doc = "Whether the energy ledger is kept and recorded under /energy; a step then "
@@ -247,8 +247,9 @@ const Schema& Scene::schema() {
           .text_list("terms", &Scene::terms,
                      {.doc = "Terms of the linearised equations, of gyroscopic, friction, "
                              "friction_damping (all damping that contacts bring), geometric and "
-                             "structural_damping (all that bodies bring): the two dampings may be "
-                             "left out; default: all.",
+                             "structural_damping (all that bodies bring). The two dampings may be "
+                             "left out; where all contacts are on faces of plates, friction and "
+                             "geometric too; with a plate, gyroscopic. Default: all.",
                       .optional = true})
           .section("cycle", &Scene::cycle,
                    {.doc = "How `cycle` and sweeps of cycles seek the periodic motion of one mass "
@@ -281,7 +282,14 @@ const Schema& Scene::schema() {
 }
 
 DampingTerms damping_terms(const Scene& scene) {
-  return {keeps_term(scene, "structural_damping"), keeps_term(scene, "friction_damping")};
+  const KeptTerms kept = kept_terms(scene);
+  return {kept.structural_damping, kept.friction_damping};
+}
+
+KeptTerms kept_terms(const Scene& scene) {
+  return {keeps_term(scene, "gyroscopic"), keeps_term(scene, "friction"),
+          keeps_term(scene, "friction_damping"), keeps_term(scene, "geometric"),
+          keeps_term(scene, "structural_damping")};
 }
 
 Accounts accounts_of(const Scene& scene) {
@@ -309,14 +317,62 @@ void for_each_pair(ModelParameters& model, const Visit& visit) {
   for (auto& [name, pair] : model.contacts) visit("contacts." + name, pair);
 }
 
-/// @throws ConfigError if a term is left out that bodies in contact cannot do without
+/// Whether a master is the face of a body.
+bool is_face(const ModelParameters& model, const std::string& master) {
+  const std::size_t dot = master.find('.');
+  if (dot == std::string::npos) return false;
+  const auto body = model.substructures.find(master.substr(0, dot));
+  return body != model.substructures.end() && body->second->has_face(master.substr(dot + 1));
+}
+
+/// Terms that only contacts on faces, and bodies that spin, can do without.
+std::vector<std::string> indispensable_terms(const ModelParameters& model) {
+  const auto pairs = model.pairs();
+  const bool spins = std::any_of(
+      model.substructures.begin(), model.substructures.end(), [](const auto& body) {
+        return body.second->has_face("top") || body.second->has_face("bottom");
+      });
+  const bool is_on_faces =
+      !pairs.empty() && std::all_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
+        return is_face(model, pair.second.master);
+      });
+  std::vector<std::string> names;
+  if (!spins) names.push_back("gyroscopic");
+  if (!is_on_faces) names.insert(names.end(), {"friction", "geometric"});
+  return names;
+}
+
+/// @throws ConfigError if a term is left out that bodies and contacts cannot do without
 void require_terms(const LoadedScene& loaded) {
-  for (const char* name : {"gyroscopic", "friction", "geometric"}) {
+  for (const std::string& name : indispensable_terms(loaded.scene.model)) {
     if (keeps_term(loaded.scene, name)) continue;
     throw loaded.located(ConfigError(
-        "terms", fmt::format("`{}` is missing: of bodies in contact only friction_damping and "
-                             "structural_damping can be left out",
+        "terms", fmt::format("`{}` is missing: only friction_damping and structural_damping can be "
+                             "left out, of contacts on the faces of plates friction and geometric, "
+                             "of plates gyroscopic as well",
                              name)));
+  }
+}
+
+/// Refuses what is not built yet; the mechanics of contacts on faces is to follow.
+/// @throws ConfigError for a contact on a face
+void refuse_face_contacts(const Model& model) {
+  for (const ContactPoint& contact : model.system.contacts) {
+    if (!contact.face) continue;
+    throw ConfigError("contacts", fmt::format("'{}' is on '{}', the face of a plate; such contacts "
+                                              "can be described, but not computed yet: scenes with "
+                                              "`disc` and `pads` are",
+                                              contact.name, contact.face->name));
+  }
+}
+
+/// @throws ConfigError for the motion of a point along z, along which it does not move
+void require_rows(const Model& model, const std::vector<Channel>& channels) {
+  for (const Channel& channel : channels) {
+    if (!channel.point || !model.points.contains(*channel.point)) continue;
+    if (model.points.at(*channel.point).rows.row(channel.direction) >= 0) continue;
+    throw ConfigError(channel.key, fmt::format("channel '{}': '{}' does not move along z",
+                                               channel.name, channel.point->body));
   }
 }
 
@@ -415,6 +471,11 @@ Model build_runnable_model(const LoadedScene& loaded, BodyCache& cache) {
   Model model = build_model(loaded, cache);
   try {
     require_modes(model);
+    if (!kept_terms(loaded.scene).has_all_but_damping()) {
+      throw ConfigError("terms",
+                        "must not leave out gyroscopic, friction or geometric in a run, whose "
+                        "motion has all terms; eig, locus and the like can do without some");
+    }
   } catch (const ConfigError& error) {
     throw loaded.located(error);
   }
@@ -432,9 +493,15 @@ Model build_model(const LoadedScene& loaded, BodyCache& cache) {
       if (channel.point) observed.emplace_back(*channel.point, channel.key);
     }
     ModelParameters parameters = scene.model;
-    for (auto& [name, substructure] : parameters.substructures)
+    const KeptTerms kept = kept_terms(scene);
+    for (auto& [name, substructure] : parameters.substructures) {
       read_files("substructures." + name, loaded.tree, *substructure, cache);
-    return make_model(parameters, observed, cache);
+      substructure->keep_terms({kept.gyroscopic, kept.structural_damping});
+    }
+    Model model = make_model(parameters, observed, cache);
+    require_rows(model, channels);
+    refuse_face_contacts(model);
+    return model;
   } catch (const ConfigError& error) {
     throw loaded.located(error);
   }

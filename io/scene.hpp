@@ -63,6 +63,18 @@ struct Expectation {
   static const Schema& schema();
 };
 
+/// Terms that the linearised equations keep; the steps of Hetzler and Seemann.
+struct KeptTerms {
+  bool gyroscopic = true;          ///< and centrifugal ones, of bodies that spin
+  bool friction = true;            ///< of normal forces that vary
+  bool friction_damping = true;    ///< all damping that contacts bring
+  bool geometric = true;           ///< contact forces turn and shift with the motion
+  bool structural_damping = true;  ///< all that bodies bring
+
+  /// Whether nothing is left out but damping.
+  bool has_all_but_damping() const { return gyroscopic && friction && geometric; }
+};
+
 /// Damping that the linearised equations keep.
 struct DampingTerms {
   bool structural = true;  ///< of the bodies
@@ -86,6 +98,8 @@ struct Scene {
 };
 
 /// What `terms` keeps.
+KeptTerms kept_terms(const Scene& scene);
+/// What it keeps of damping.
 DampingTerms damping_terms(const Scene& scene);
 
 /// What a run of the scene keeps account of.

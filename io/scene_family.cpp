@@ -147,6 +147,8 @@ NumericKey find_numeric_key(const Schema& keys, const void* object, const std::s
     switch (key->kind) {
       case KeyKind::section: {
         if (is_last) {
+          if (const Key* number = number_in_place_of(*key))
+            return {path, number->unit, number->range, false};
           throw ConfigError(option,
                             fmt::format("'{}' is a section; name one of its numbers ({})", path,
                                         fmt::join(key_names(key->alternatives[0].schema()), ", ")));
@@ -376,7 +378,7 @@ void SceneFamily::build(const Settings& settings) {
   model_ = build_model_with(*changed_, settings, cache_);
   built_ = settings;
   const auto pairs = changed_->scene.model.pairs();
-  if (!pairs.empty()) start_ = pairs.begin()->second.start;
+  if (!pairs.empty()) start_ = pairs.begin()->second.start.along.value_or(0.0);
 }
 
 }  // namespace stridor

@@ -253,7 +253,9 @@ class Reader {
       case KeyKind::section:
         if (!key.absent_word.empty() && node.kind == Kind::scalar && node.text == key.absent_word)
           return;
-        if (is_kind(node, Kind::map, expected_of(key), path)) {
+        if (const Key* nested = in_place_of(node, key)) {
+          read_in_place(node, key, *nested, object, path);
+        } else if (is_kind(node, Kind::map, expected_of(key), path)) {
           read_map(node, key.alternatives.front().schema(), key.open(object, "", 0), path, "");
         }
         return;
@@ -285,6 +287,22 @@ class Reader {
         return;
       }
     }
+  }
+
+  /// The key of a section whose value stands in the place of the whole section, if one does.
+  static const Key* in_place_of(const SceneNode& node, const Key& section) {
+    if (node.kind == Kind::scalar) return number_in_place_of(section);
+    return node.kind == Kind::list ? list_in_place_of(section) : nullptr;
+  }
+
+  void read_in_place(const SceneNode& node, const Key& section, const Key& nested, void* object,
+                     const std::string& path) {
+    const std::size_t num_before = problems_.size();
+    const Value value = read_value(node, nested, path);
+    if (problems_.size() > num_before || std::holds_alternative<std::monostate>(value)) return;
+    void* opened = section.open(object, "", 0);
+    nested.assign(opened, value);
+    run_checks(node, section.alternatives.front().schema(), opened, path);
   }
 
   void read_named_sections(const SceneNode& node, const Key& key, void* object,
@@ -639,8 +657,12 @@ std::string expected_of(const Key& key) {
       return key.has_rows ? "a text, or a list of rows of numbers" : "a text or a list of texts";
     case KeyKind::curve:
       return in_unit("a number", key.unit) + " or {times: [...], values: [...]}";
-    case KeyKind::section:
-      return key.absent_word.empty() ? "a map" : fmt::format("{} or a map", key.absent_word);
+    case KeyKind::section: {
+      std::string expected = key.absent_word.empty() ? "" : key.absent_word + " or ";
+      if (const Key* number = number_in_place_of(key)) expected += expected_of(*number) + " or ";
+      if (const Key* list = list_in_place_of(key)) expected += expected_of(*list) + " or ";
+      return expected + "a map";
+    }
     case KeyKind::named_sections:
       return "a map of named maps";
     case KeyKind::section_list:

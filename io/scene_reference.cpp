@@ -208,12 +208,12 @@ class Page {
         return key.has_rows ? "text or list of rows" : "text or list of texts";
       case KeyKind::curve:
         return "curve" + unit;
-      case KeyKind::section:
-        if (!key.absent_word.empty()) {
-          return "`" + key.absent_word + "` or " +
-                 link("map", sections_of(key, parent).front().heading());
-        }
-        return link("map", sections_of(key, parent).front().heading());
+      case KeyKind::section: {
+        std::string forms = key.absent_word.empty() ? "" : "`" + key.absent_word + "` or ";
+        for (const Key* nested : {number_in_place_of(key), list_in_place_of(key)})
+          if (nested != nullptr) forms += type_text(*nested, parent) + " or ";
+        return forms + link("map", sections_of(key, parent).front().heading());
+      }
       case KeyKind::section_list:
         return link("list of maps", sections_of(key, parent).front().heading());
       case KeyKind::parameters:

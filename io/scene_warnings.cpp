@@ -140,13 +140,13 @@ void look_at_channels(const Scene& scene, const Model& model, std::vector<Proble
     const Model::Point& point = model.points.at(*channel.point);
     const SystemBody& body = model.system.bodies[static_cast<std::size_t>(point.body)];
     // What the drive carries along moves with it.
-    const bool is_driven = body.follows_drive && !channel.is_vertical;
-    if (is_driven || !is_held(body, channel.is_vertical ? point.rows.y : point.rows.x)) continue;
+    const bool is_driven = body.follows_drive && channel.direction == 0;
+    if (is_driven || !is_held(body, point.rows.row(channel.direction))) continue;
     warnings.push_back(
         {channel.key,
          fmt::format("'{}' will be recorded as zeros: '{}' is held in {} at this point; record "
                      "another point or direction",
-                     channel.name, body.name, channel.is_vertical ? "y" : "x"),
+                     channel.name, body.name, "xyz"[channel.direction]),
          {},
          0,
          0});

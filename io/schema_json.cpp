@@ -229,10 +229,7 @@ class Writer {
         json["oneOf"] = Json::array({real_json(key.unit, key.range), table_json(key)});
         return json;
       case KeyKind::section:
-        if (key.absent_word.empty()) return reference(key, key.alternatives.front());
-        json["oneOf"] =
-            Json::array({{{"const", key.absent_word}}, reference(key, key.alternatives.front())});
-        return json;
+        return section_json(key);
       case KeyKind::named_sections:
         json = typed("object");
         json["patternProperties"]["^[A-Za-z_][A-Za-z0-9_-]*$"] = entry_json(key);
@@ -248,6 +245,19 @@ class Writer {
         json["additionalProperties"] = false;
         return json;
     }
+    return json;
+  }
+
+  /// A map, or what may stand in its place.
+  Json section_json(const Key& key) {
+    Json forms = Json::array();
+    if (!key.absent_word.empty()) forms.push_back({{"const", key.absent_word}});
+    for (const Key* nested : {number_in_place_of(key), list_in_place_of(key)})
+      if (nested != nullptr) forms.push_back(value_json(*nested));
+    if (forms.empty()) return reference(key, key.alternatives.front());
+    forms.push_back(reference(key, key.alternatives.front()));
+    Json json = Json::object();
+    json["oneOf"] = std::move(forms);
     return json;
   }
 

@@ -66,7 +66,8 @@ namespace {
 std::string key_of(const BodyParameters& parameters) {
   const std::unique_ptr<BodyParameters> undamped = parameters.clone();
   if (RayleighDamping* damping = undamped->own_damping()) *damping = {};
-  std::string text = std::string(undamped->type()) + ':';
+  std::string text = fmt::format("{}{}{}:", undamped->type(), parameters.terms().rotation ? "" : "!",
+                                 parameters.terms().damping ? "" : "~");
   append_keys(text, undamped->keys(), undamped->object());
   return text;
 }

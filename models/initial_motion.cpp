@@ -1,10 +1,96 @@
 #include "models/initial_motion.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/QR>
+#include <algorithm>
 
 #include "core/errors.hpp"
 
 namespace stridor {
+namespace {
+
+/// Whether a DoF is the displacement of nodes in a direction.
+bool is_dof_of(const BodyMatrices& body, int dof, std::size_t direction) {
+  if (direction == 2)
+    return std::find(body.across.begin(), body.across.end(), dof) != body.across.end();
+  return std::any_of(body.node_dofs.begin(), body.node_dofs.end(),
+                     [&](const auto& dofs) { return dofs[direction] == dof; });
+}
+
+/// Constraint modes carry a body along with its interface; that is a translation where no support
+/// resists it.
+Eigen::VectorXd translation(const std::string& key, const Eigen::Vector3d& value,
+                            const ModelBody& built, const SystemBody& finished) {
+  Eigen::VectorXd motion = Eigen::VectorXd::Zero(finished.reduced.size());
+  const Eigen::MatrixXd& stiffness = finished.reduced.stiffness;
+  for (Eigen::Index direction = 0; direction < 3; ++direction) {
+    if (value(direction) == 0.0) continue;
+    Eigen::VectorXd unit = Eigen::VectorXd::Zero(finished.reduced.size());
+    for (std::size_t k = 0; k < built.interface.size(); ++k) {
+      if (is_dof_of(built.matrices, built.interface[k], static_cast<std::size_t>(direction)))
+        unit(static_cast<Eigen::Index>(k)) = 1.0;
+    }
+    const double energy = unit.dot(stiffness * unit);
+    const double scale = unit.dot(stiffness.cwiseAbs() * unit);
+    // A body without interface DoFs in this direction is held by its supports alone.
+    if (unit.isZero() || !(energy <= 1e-9 * scale)) {
+      throw ConfigError(key + ".at",
+                        fmt::format("the supports of '{}' do not let all of it move alike; name "
+                                    "a point of it",
+                                    built.name));
+    }
+    motion += value(direction) * unit;
+  }
+  return motion;
+}
+
+}  // namespace
+
+void InitialMotion::add(const std::string& key, const std::string& at, const Eigen::Vector3d& value,
+                        std::vector<ModelBody>& bodies) {
+  Entry entry{key, 0, std::nullopt, value};
+  const bool is_point = at.find('.') != std::string::npos;
+  const auto [b, point] = split_name(is_point ? at : at + ".all", bodies, key + ".at");
+  entry.body = b;
+  ModelBody& body = bodies[static_cast<std::size_t>(b)];
+  if (is_point) entry.rows = body.rows_of(node_at(body, point, key + ".at"));
+  entries_.push_back(std::move(entry));
+}
+
+Eigen::VectorXd InitialMotion::of(int body, const ModelBody& built,
+                                  const SystemBody& finished) const {
+  Eigen::VectorXd motion;
+  std::vector<PrescribedRow> prescribed;
+  std::string key;
+  const auto add = [&](const Eigen::VectorXd& part) {
+    motion = motion.size() == 0 ? part : Eigen::VectorXd(motion + part);
+  };
+  for (const Entry& entry : entries_) {
+    if (entry.body != body) continue;
+    if (entry.rows) {
+      key = entry.key;
+      if (entry.value.x() != 0.0) prescribed.push_back({entry.rows->x, entry.value.x()});
+      if (entry.value.y() != 0.0) prescribed.push_back({entry.rows->y, entry.value.y()});
+      if (entry.value.z() != 0.0 && entry.rows->z < 0) {
+        throw ConfigError(entry.key + ".at",
+                          fmt::format("'{}' does not move along z", built.name));
+      }
+      if (entry.value.z() != 0.0) prescribed.push_back({entry.rows->z, entry.value.z()});
+    } else {
+      add(translation(entry.key, entry.value, built, finished));
+    }
+  }
+  if (!prescribed.empty()) {
+    try {
+      add(static_shape(finished.modal, prescribed));
+    } catch (const NumericalError& error) {
+      throw ConfigError(key + ".at", error.what());
+    }
+  }
+  return motion;
+}
+
 
 Eigen::VectorXd static_shape(const ModalBody& body, std::span<const PrescribedRow> prescribed) {
   const auto num_rows = static_cast<Eigen::Index>(prescribed.size());

@@ -14,9 +14,10 @@ const Schema& InitialMotionParameters<kind>::schema() {
                         "through all points named; <body>: all of it alike."})
           .real("x", &Motion::x, {.doc = "Component in x.", .unit = unit, .optional = true})
           .real("y", &Motion::y, {.doc = "Component in y.", .unit = unit, .optional = true})
+          .real("z", &Motion::z, {.doc = "Component in z.", .unit = unit, .optional = true})
           .check([](const Motion& motion, std::vector<Problem>& problems) {
-            if (motion.x == 0.0 && motion.y == 0.0)
-              problems.push_back({"at", "moves nothing: give `x`, `y` or both", {}, 0, 0});
+            if (motion.x == 0.0 && motion.y == 0.0 && motion.z == 0.0)
+              problems.push_back({"at", "moves nothing: give some of `x`, `y` and `z`", {}, 0, 0});
           });
   return keys;
 }

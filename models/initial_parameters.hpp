@@ -18,6 +18,7 @@ struct InitialMotionParameters {
   std::string at;  ///< "<body>.<point>", or "<body>" for all of it
   double x = 0.0;
   double y = 0.0;
+  double z = 0.0;
   static const Schema& schema();
 };
 

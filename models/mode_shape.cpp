@@ -38,7 +38,12 @@ std::vector<BodyShape> mode_shape(const Model& model, const Equilibrium& equilib
           recovery * (body.modal.shapes * equilibrium.displacement[b]);
       shape.nodes += node_displacements(matrices, static_part.cast<std::complex<double>>()).real();
     }
+    if (placement.is_mirrored) {
+      shape.nodes.col(1) *= -1.0;
+      shape.displacement.col(1) *= -1.0;
+    }
     for (const auto& [name, nodes] : matrices.surfaces) shape.outlines.push_back(nodes);
+    for (const std::vector<int>& nodes : matrices.outlines) shape.outlines.push_back(nodes);
     shape.elements = parameters->second->elements();
     shapes.push_back(std::move(shape));
   }

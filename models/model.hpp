@@ -50,6 +50,7 @@ struct Model {
   struct Placement {
     Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< of its frame, m
     std::vector<int> interface;                       ///< DoFs, as of make_craig_bampton()
+    bool is_mirrored = false;  ///< y of its frame points downwards, from the lower face of a plate
   };
   System system;
   std::map<PointName, Point> points;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "substructures/beam_additions.hpp"
 #include "substructures/beam_mesh.hpp"
 #include "substructures/q8_element.hpp"
 
@@ -190,9 +191,29 @@ const Schema& BeamParameters::schema() {
                    {.doc = "Rayleigh damping and its schedule."})
           .section("supports", &BeamParameters::supports,
                    {.doc = "What holds the ends.", .optional = true})
+          .named_sections("points", &BeamParameters::points,
+                          {.doc = "Points of its own, by name.", .optional = true})
+          .named_sections("springs", &BeamParameters::springs,
+                          {.doc = "Springs to the ground, by name; the damping of the beam "
+                                  "includes them.",
+                           .optional = true})
+          .choice("across", &BeamParameters::across,
+                  {{"held", AcrossMotion::held}, {"rigid", AcrossMotion::rigid}},
+                  {.doc = "Motion across the plane, along z: none, or as a rigid body on what "
+                          "springs have along z.",
+                   .optional = true})
           .section("interface", &BeamParameters::interface,
                    {.doc = "Surface nodes kept for contact.", .optional = true})
           .section("reduction", &BeamParameters::reduction, {.doc = "Craig-Bampton reduction."})
+          .check([](const BeamParameters& beam, std::vector<Problem>& problems) {
+            if (beam.across == AcrossMotion::held) return;
+            if (beam.supports.start == Support::free && beam.supports.end == Support::free) return;
+            problems.push_back({"across",
+                                "must be `held`: a support of an end holds it along z as well",
+                                {},
+                                0,
+                                0});
+          })
           .check([](const BeamParameters& beam, std::vector<Problem>& problems) {
             constexpr double flattest = 1e10;
             const double ratio =
@@ -210,7 +231,9 @@ const Schema& BeamParameters::schema() {
   return keys;
 }
 
-BodyMatrices make_beam(const BeamParameters& parameters) {
+namespace {
+
+BodyMatrices make_mesh(const BeamParameters& parameters) {
   const auto& supports = parameters.supports;
   if (supports.start == Support::guided && supports.end == Support::guided) {
     throw std::invalid_argument("make_beam: both ends are guided");
@@ -328,6 +351,18 @@ BodyMatrices make_beam(const BeamParameters& parameters) {
   return body;
 }
 
+}  // namespace
+
+BodyMatrices make_beam(const BeamParameters& parameters) {
+  BodyMatrices body = make_mesh(parameters);
+  if (parameters.across == AcrossMotion::rigid) add_motion_across(parameters, body);
+  for (const auto& [name, point] : parameters.points)
+    add_beam_point("points." + name, name, point, body);
+  add_beam_loads(body);
+  add_beam_springs(parameters, body);
+  return body;
+}
+
 std::vector<std::array<int, 8>> beam_elements(const MeshParameters& mesh) {
   const NodeGrid grid{mesh.along, mesh.through};
   std::vector<std::array<int, 8>> elements;
@@ -348,6 +383,7 @@ std::vector<std::array<int, 8>> BeamParameters::elements() const {
 double BeamParameters::num_slave_nodes(const std::string& name) const {
   if (name == "top" || name == "bottom") return 2.0 * mesh.along + 1.0;
   if (name == "start_face" || name == "end_face") return 2.0 * mesh.through + 1.0;
+  if (points.contains(name)) return 3.0;  // of an edge
   return 1.0;
 }
 

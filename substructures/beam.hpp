@@ -4,6 +4,7 @@
 #include "core/schema.hpp"
 #include "substructures/body_matrices.hpp"
 #include "substructures/body_parameters.hpp"
+#include "substructures/spring_stiffness.hpp"
 
 namespace stridor {
 
@@ -44,6 +45,27 @@ struct ReductionParameters {
   static const Schema& schema();
 };
 
+/// A point on a surface of a beam.
+struct BeamPointParameters {
+  std::string on;   ///< a surface
+  double at = 0.0;  ///< along it from its first node, m, >= 0
+  static const Schema& schema();
+};
+
+/// A spring to the ground, spread evenly over a surface or at a point.
+struct BeamSpringParameters {
+  std::string on;  ///< a surface or point
+  SpringMatrixParameters stiffness;
+  std::optional<SpringDirectionParameters> direction;  ///< of a stiffness along one
+  static const Schema& schema();
+};
+
+/// Motion of a beam across its plane.
+enum class AcrossMotion {
+  held,
+  rigid,  ///< along z, all of it alike
+};
+
 struct BeamParameters : BodyParametersOf<BeamParameters> {
   static constexpr const char* type_name = "beam";
 
@@ -55,6 +77,9 @@ struct BeamParameters : BodyParametersOf<BeamParameters> {
   MeshParameters mesh;
   RayleighDamping damping;
   SupportParameters supports;
+  std::map<std::string, BeamPointParameters> points;
+  std::map<std::string, BeamSpringParameters> springs;
+  AcrossMotion across = AcrossMotion::held;
   InterfaceParameters interface;
   ReductionParameters reduction;
   static const Schema& schema();
@@ -83,9 +108,15 @@ ReductionSize size_of(const MeshParameters& mesh, const ReductionParameters& red
 /// `end_bottom`, `end_top` (corners; "top" is on the left of the axis direction), `start`, `end`
 /// (on the axis), `tip` (the lowest corner of the start; the bottom one on a tie) and, where
 /// exactly one end is free, `free_end` (its top corner). Surfaces: `top`, `bottom`, `start_face`,
-/// `end_face`.
+/// `end_face`. Points of the scene stand between nodes of the edge of an element as its shape
+/// functions have it (docs/theory.md, 10.7).
+///
+/// A beam that moves across as a rigid body has one more DoF, its displacement along z, with its
+/// whole mass. Springs add to the stiffness; spread over a surface each node has the share of an
+/// even load, Simpson's weights.
 ///
 /// @param parameters all within the ranges of the schema
+/// @throws ConfigError for points and springs on what is not there
 /// @throws std::invalid_argument if both ends are guided (the drive would have two loads to carry)
 BodyMatrices make_beam(const BeamParameters& parameters);
 

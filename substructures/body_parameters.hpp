@@ -16,6 +16,13 @@
 
 namespace stridor {
 
+/// Terms of the equations of a body that may be left out, to see what they do.
+struct BodyTerms {
+  bool rotation = true;  ///< what the spin of a body brings: gyroscopic and centrifugal terms
+  bool damping = true;   ///< of a body that spins, besides that of RayleighDamping
+  bool operator==(const BodyTerms&) const = default;
+};
+
 /// A substructure as a scene describes it: the keys of one type of body, and what the rest of the
 /// program asks of them. A new type derives from BodyParametersOf and is registered in
 /// body_types.cpp; nothing else names it.
@@ -29,6 +36,10 @@ class BodyParameters {
   /// The struct that keys() describes.
   virtual const void* object() const = 0;
   virtual std::unique_ptr<BodyParameters> clone() const = 0;
+
+  /// Terms that make() keeps.
+  const BodyTerms& terms() const { return terms_; }
+  void keep_terms(const BodyTerms& terms) { terms_ = terms; }
 
   /// Matrices, points and surfaces with the supports applied.
   /// @throws ConfigError with key paths below that of the body
@@ -46,6 +57,8 @@ class BodyParameters {
   virtual std::optional<double> interface_spacing() const { return std::nullopt; }
   /// Whether the nodes fill the body, so that the side of a surface on which it lies can be told.
   virtual bool is_filled() const { return false; }
+  /// Whether it has a face of this name (BodyMatrices::faces).
+  virtual bool has_face(const std::string& /*name*/) const { return false; }
   /// Elements of eight nodes to draw; none for a body without mesh.
   virtual std::vector<std::array<int, 8>> elements() const { return {}; }
 
@@ -64,6 +77,9 @@ class BodyParameters {
   BodyParameters() = default;
   BodyParameters(const BodyParameters&) = default;
   BodyParameters& operator=(const BodyParameters&) = default;
+
+ private:
+  BodyTerms terms_;
 };
 
 /// What follows from the static members `type_name` and `schema()` of a type of body.

@@ -7,6 +7,7 @@
 #include "substructures/body_parameters.hpp"
 #include "substructures/lumped_body.hpp"
 #include "substructures/matrix_body.hpp"
+#include "substructures/plate_body.hpp"
 
 namespace stridor {
 
@@ -15,6 +16,7 @@ const std::vector<Substructure::Type>& Substructure::types() {
       body_type<BeamParameters>(),
       body_type<LumpedParameters>(),
       body_type<TouchedMatrixBodyParameters>(),
+      body_type<PlateBodyParameters>(),
   };
   return all;
 }

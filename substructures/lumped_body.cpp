@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/errors.hpp"
@@ -21,12 +22,17 @@ std::vector<std::string> names_of(const std::map<std::string, LumpedMassParamete
   return names;
 }
 
-bool moves_along(const LumpedParameters& body, const char* direction) {
-  return std::find(body.moves.begin(), body.moves.end(), direction) != body.moves.end();
+constexpr std::array direction_names{"x", "y", "z"};
+
+bool moves_along(const LumpedParameters& body, const std::string& direction) {
+  return std::find(body.directions.begin(), body.directions.end(), direction) !=
+         body.directions.end();
 }
 
-Eigen::Vector2d place_of(const LumpedMassParameters& mass) {
-  return mass.at.empty() ? Eigen::Vector2d(0.0, 0.0) : Eigen::Vector2d(mass.at[0], mass.at[1]);
+Eigen::Vector3d place_of(const LumpedMassParameters& mass) {
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < mass.at.size(); ++i) place(static_cast<Eigen::Index>(i)) = mass.at[i];
+  return place;
 }
 
 /// Node of a mass, in the order of their names.
@@ -39,10 +45,10 @@ int node_of(const LumpedParameters& body, const std::string& name, const std::st
                                      did_you_mean(name, names), fmt::join(names, ", ")));
 }
 
-/// Adds the spring and the damper to the matrices of a body.
+/// Adds springs and dampers to the matrices of a body.
 class SpringAssembly {
  public:
-  SpringAssembly(const LumpedParameters& parameters, const BodyMatrices& body)
+  SpringAssembly(const LumpedParameters& parameters, BodyMatrices& body)
       : parameters_(parameters), body_(body) {}
 
   void add(const std::string& name, const LumpedSpringParameters& spring) {
@@ -52,21 +58,14 @@ class SpringAssembly {
       nodes.push_back(node_of(parameters_, mass, key + ".at"));
     if (nodes.size() == 2 && nodes[0] == nodes[1])
       throw ConfigError(key + ".at", "must be two different masses, or one to the ground");
-    const Eigen::Vector2d along = direction(spring, nodes, key);
-    std::vector<std::pair<int, double>> entries;
-    for (std::size_t end = 0; end < nodes.size(); ++end) {
-      const auto& dofs = body_.node_dofs[static_cast<std::size_t>(nodes[end])];
-      for (std::size_t i = 0; i < 2; ++i) {
-        const double entry = (end == 0 ? 1.0 : -1.0) * along[static_cast<Eigen::Index>(i)];
-        if (dofs[i] != BodyMatrices::held) entries.emplace_back(dofs[i], entry);
-      }
-    }
-    for (const auto& [row, a] : entries) {
-      for (const auto& [column, b] : entries) {
-        stiffness_.emplace_back(row, column, spring.stiffness * a * b);
-        damping_.emplace_back(row, column, spring.damping * a * b);
-      }
-    }
+    const bool is_along =
+        spring.stiffness.along || (spring.damping && spring.damping->along);
+    const Eigen::Vector3d along =
+        is_along ? direction(spring, key) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+    const Eigen::Matrix3d stiffness = spring_matrix(spring.stiffness, along);
+    add_to(stiffness_, nodes, stiffness);
+    if (spring.damping) add_to(damping_, nodes, spring_matrix(*spring.damping, along));
+    if (nodes.size() == 1) add_ground_end(name, nodes.front(), stiffness);
   }
 
   SparseMatrix stiffness() const { return assembled(stiffness_); }
@@ -75,15 +74,47 @@ class SpringAssembly {
  private:
   using Triplets = std::vector<Eigen::Triplet<double>>;
 
-  Eigen::Vector2d direction(const LumpedSpringParameters& spring, const std::vector<int>& nodes,
-                            const std::string& key) const {
-    if (spring.direction) return {std::cos(*spring.direction), std::sin(*spring.direction)};
-    if (nodes.size() == 1) return {1.0, 0.0};
-    const Eigen::Vector2d along =
-        (body_.nodes.row(nodes[1]) - body_.nodes.row(nodes[0])).transpose();
+  Eigen::Vector3d direction(const LumpedSpringParameters& spring, const std::string& key) const {
+    if (spring.direction) return spring.direction->unit();
+    if (spring.at.size() == 1) return Eigen::Vector3d::UnitX();
+    const Eigen::Vector3d along = place_of(parameters_.masses.at(spring.at[1])) -
+                                  place_of(parameters_.masses.at(spring.at[0]));
     if (along.norm() > 0.0) return along.normalized();
     throw ConfigError(key + ".direction",
                       "missing: the two masses stand at one place, so that no line joins them");
+  }
+
+  /// Adds B k Bᵀ.
+  void add_to(Triplets& triplets, const std::vector<int>& nodes, const Eigen::Matrix3d& matrix) {
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      for (std::size_t b = 0; b < nodes.size(); ++b) {
+        const double sign = a == b ? 1.0 : -1.0;
+        for (std::size_t i = 0; i < 3; ++i) {
+          for (std::size_t j = 0; j < 3; ++j) {
+            const double entry = matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+            if (entry == 0.0) continue;
+            for (const DofWeight& row : body_.displacement(nodes[a], i)) {
+              for (const DofWeight& column : body_.displacement(nodes[b], j))
+                triplets.emplace_back(row.dof, column.dof, sign * entry);
+            }
+          }
+        }
+      }
+    }
+  }
+
+  /// What the spring exerts when its ground end moves by 1 m in a direction.
+  void add_ground_end(const std::string& name, int node, const Eigen::Matrix3d& stiffness) {
+    for (std::size_t moved = 0; moved < 3; ++moved) {
+      DofSum& load = body_.loads[name + "." + direction_names[moved]];
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double force =
+            stiffness(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(moved));
+        if (force == 0.0) continue;
+        for (const DofWeight& dof : body_.displacement(node, i))
+          load.push_back({dof.dof, force * dof.weight});
+      }
+    }
   }
 
   SparseMatrix assembled(const Triplets& triplets) const {
@@ -93,24 +124,25 @@ class SpringAssembly {
   }
 
   const LumpedParameters& parameters_;
-  const BodyMatrices& body_;
+  BodyMatrices& body_;
   Triplets stiffness_, damping_;
 };
 
-void check_moves(const LumpedParameters& body, std::vector<Problem>& problems) {
-  for (std::size_t i = 0; i < body.moves.size(); ++i) {
-    const std::string& name = body.moves[i];
-    const bool is_known = name == "x" || name == "y";
-    const bool is_new = std::find(body.moves.begin(), body.moves.begin() + static_cast<long>(i),
-                                  name) == body.moves.begin() + static_cast<long>(i);
-    if (is_known && is_new) continue;
-    problems.push_back({fmt::format("moves.{}", i),
-                        fmt::format("expected x or y, each once, got '{}'", name),
+void check_directions(const LumpedParameters& body, std::vector<Problem>& problems) {
+  const std::vector<std::string>& given = body.directions;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const bool is_known = std::find(direction_names.begin(), direction_names.end(), given[i]) !=
+                          direction_names.end();
+    const auto here = given.begin() + static_cast<std::ptrdiff_t>(i);
+    if (is_known && std::find(given.begin(), here, given[i]) == here) continue;
+    problems.push_back({fmt::format("directions.{}", i),
+                        fmt::format("expected x, y or z, each once, got '{}'", given[i]),
                         {},
                         0,
                         0});
   }
-  if (body.moves.empty()) problems.push_back({"moves", "is empty; name x, y or both", {}, 0, 0});
+  if (given.empty())
+    problems.push_back({"directions", "is empty; name some of x, y and z", {}, 0, 0});
   if (body.masses.empty()) problems.push_back({"masses", "is empty; a body needs one", {}, 0, 0});
 }
 
@@ -122,12 +154,13 @@ const Schema& LumpedMassParameters::schema() {
       SchemaOf<P>("lumped_mass")
           .real("mass", &P::mass, {.doc = "Mass.", .unit = "kg", .range = Range::positive()})
           .real_list("at", &P::at,
-                     {.doc = "Place in the frame of the body, x and y; default: its origin.",
+                     {.doc = "Place in the frame of the body: x and y, or x, y and z; default: its "
+                             "origin.",
                       .unit = "m",
                       .optional = true})
           .check([](const P& mass, std::vector<Problem>& problems) {
-            if (!mass.at.empty() && mass.at.size() != 2)
-              problems.push_back({"at", "must be two lengths, x and y", {}, 0, 0});
+            if (!mass.at.empty() && mass.at.size() != 2 && mass.at.size() != 3)
+              problems.push_back({"at", "must be two or three lengths: x, y and z", {}, 0, 0});
           });
   return keys;
 }
@@ -138,21 +171,31 @@ const Schema& LumpedSpringParameters::schema() {
       SchemaOf<P>("lumped_spring")
           .text_list("at", &P::at,
                      {.doc = "A mass, which the spring joins to the ground, or a list of two."})
-          .real("stiffness", &P::stiffness,
-                {.doc = "Along its direction.", .unit = "N m-1", .range = Range::non_negative()})
-          .real("damping", &P::damping,
-                {.doc = "Of a damper beside it.",
-                 .unit = "N s m-1",
-                 .range = Range::non_negative(),
-                 .optional = true})
-          .real("direction", &P::direction,
-                {.doc = "Angle of the spring against +x; default: the line between its two masses, "
-                        "0 to the ground.",
-                 .unit = "rad",
-                 .optional = true})
+          .section("stiffness", &P::stiffness,
+                   {.doc = "A number, along the direction of the spring, or a matrix.",
+                    .number_key = "along"})
+          .section("damping", &P::damping,
+                   {.doc = "Of a damper beside it, likewise.",
+                    .optional = true,
+                    .number_key = "along"})
+          .section("direction", &P::direction,
+                   {.doc = "Of the spring: an angle in the plane against +x, or a vector; default: "
+                           "the line between its two masses, x to the ground.",
+                    .optional = true,
+                    .number_key = "angle",
+                    .list_key = "vector"})
           .check([](const P& spring, std::vector<Problem>& problems) {
             if (spring.at.size() != 1 && spring.at.size() != 2)
               problems.push_back({"at", "must be one mass or two", {}, 0, 0});
+            if (spring.direction && !spring.stiffness.along &&
+                !(spring.damping && spring.damping->along)) {
+              problems.push_back({"direction",
+                                  "is not used: this stiffness is a matrix, which has its "
+                                  "directions in itself",
+                                  {},
+                                  0,
+                                  0});
+            }
           });
   return keys;
 }
@@ -181,8 +224,8 @@ const Schema& LumpedParameters::schema() {
                           {.doc = "Rigid masses by name, each also a point of the body."})
           .named_sections("springs", &P::springs,
                           {.doc = "Springs with dampers, by name.", .optional = true})
-          .text_list("moves", &P::moves,
-                     {.doc = "Directions in which the masses move: x, y or both; held in others.",
+          .text_list("directions", &P::directions,
+                     {.doc = "In which the masses move, of x, y and z; they are held in others.",
                       .optional = true})
           .section("damping", &P::damping,
                    {.doc = "Proportional damping, besides that of the springs.", .optional = true})
@@ -190,7 +233,7 @@ const Schema& LumpedParameters::schema() {
                 {.doc = "A mass on which the drive's load acts in +y; the drive then moves the "
                         "ground of all springs in +x.",
                  .optional = true})
-          .check(check_moves);
+          .check(check_directions);
   return keys;
 }
 
@@ -200,15 +243,16 @@ BodyMatrices LumpedParameters::make() const {
   std::vector<double> mass_of_dof;
   for (const auto& [name, mass] : masses) {
     const auto node = static_cast<int>(body.node_dofs.size());
-    body.nodes.row(node) = place_of(mass).transpose();
+    body.nodes.row(node) = place_of(mass).head<2>().transpose();
     body.points[name] = node;
-    std::array<int, 2> dofs{BodyMatrices::held, BodyMatrices::held};
-    for (std::size_t i = 0; i < 2; ++i) {
-      if (!moves_along(*this, i == 0 ? "x" : "y")) continue;
+    std::array<int, 3> dofs{BodyMatrices::held, BodyMatrices::held, BodyMatrices::held};
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!moves_along(*this, direction_names[i])) continue;
       dofs[i] = static_cast<int>(mass_of_dof.size());
       mass_of_dof.push_back(mass.mass);
     }
-    body.node_dofs.push_back(dofs);
+    body.node_dofs.push_back({dofs[0], dofs[1]});
+    if (moves_along(*this, "z")) body.across.push_back(dofs[2]);
   }
   const auto n = static_cast<Eigen::Index>(mass_of_dof.size());
   body.mass.resize(n, n);

@@ -8,22 +8,24 @@
 
 #include "core/schema.hpp"
 #include "substructures/body_parameters.hpp"
+#include "substructures/spring_stiffness.hpp"
 
 namespace stridor {
 
 /// A mass that moves without turning; also the point of its name.
 struct LumpedMassParameters {
   double mass = 0.0;       ///< kg, > 0
-  std::vector<double> at;  ///< x and y in the frame of the body, m; empty: its origin
+  std::vector<double> at;  ///< x, y and z (or x and y) in the frame of the body, m; empty: its origin
   static const Schema& schema();
 };
 
-/// A spring with a damper beside it, along one direction.
+/// A spring with a damper beside it.
 struct LumpedSpringParameters {
-  std::vector<std::string> at;      ///< one mass: to the ground; two: between them
-  double stiffness = 0.0;           ///< N/m, >= 0
-  double damping = 0.0;             ///< N s/m, >= 0
-  std::optional<double> direction;  ///< against +x, rad; default: from mass to mass, else 0
+  std::vector<std::string> at;  ///< one mass: to the ground; two: between them
+  SpringMatrixParameters stiffness;
+  std::optional<DamperMatrixParameters> damping;
+  /// Of a stiffness and damping along one; default: from mass to mass, else x.
+  std::optional<SpringDirectionParameters> direction;
   static const Schema& schema();
 };
 
@@ -34,14 +36,15 @@ struct LumpedDampingParameters {
   static const Schema& schema();
 };
 
-/// M = diag(m), K = Σ k d dᵀ and C = α M + β K + Σ c d dᵀ over the springs, d the unit vector along
-/// a spring with the opposite sign at its second mass (docs/theory.md, 1.6).
+/// M = diag(m), K = Σ B k Bᵀ and C = α M + β K + Σ B c Bᵀ over the springs with their matrices k and
+/// c, 3 x 3; B picks the displacement of a spring's first mass less that of its second
+/// (docs/theory.md, 1.6).
 struct LumpedParameters : BodyParametersOf<LumpedParameters> {
   static constexpr const char* type_name = "lumped";
 
   std::map<std::string, LumpedMassParameters> masses;
   std::map<std::string, LumpedSpringParameters> springs;
-  std::vector<std::string> moves{"x", "y"};  ///< directions in which the masses move
+  std::vector<std::string> directions{"x", "y"};  ///< in which the masses move
   LumpedDampingParameters damping;
   /// Mass on which the drive's load acts; the drive then moves the ground of the springs.
   std::optional<std::string> guided;

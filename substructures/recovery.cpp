@@ -15,11 +15,11 @@ Eigen::MatrixXd recovery_matrix(const BodyMatrices& body, std::span<const int> i
 
 Eigen::MatrixX2cd node_displacements(const BodyMatrices& body, const Eigen::VectorXcd& dofs) {
   Eigen::MatrixX2cd displacements = Eigen::MatrixX2cd::Zero(body.nodes.rows(), 2);
-  for (std::size_t node = 0; node < body.node_dofs.size(); ++node) {
+  for (Eigen::Index node = 0; node < displacements.rows(); ++node) {
     for (Eigen::Index direction = 0; direction < 2; ++direction) {
-      const int dof = body.node_dofs[node][static_cast<std::size_t>(direction)];
-      if (dof != BodyMatrices::held)
-        displacements(static_cast<Eigen::Index>(node), direction) = dofs(dof);
+      for (const DofWeight& dof :
+           body.displacement(static_cast<int>(node), static_cast<std::size_t>(direction)))
+        displacements(node, direction) += dof.weight * dofs(dof.dof);
     }
   }
   return displacements;

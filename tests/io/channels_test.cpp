@@ -19,10 +19,10 @@ TEST(Channels, MotionsAndContactQuantitiesAreRead) {
   const auto channels = parse_channels(record, paper_model());
   ASSERT_EQ(channels.size(), 5u);
   EXPECT_EQ(*channels[0].point, (PointName{"cantilever", "free_end"}));
-  EXPECT_TRUE(channels[0].is_vertical);
+  EXPECT_EQ(channels[0].direction, 1);
   EXPECT_EQ(channels[0].derivative, Derivative::second);
   EXPECT_EQ(channels[0].units(), "m/s^2");
-  EXPECT_FALSE(channels[1].is_vertical);
+  EXPECT_EQ(channels[1].direction, 0);
   EXPECT_EQ(channels[1].units(), "m/s");
   EXPECT_FALSE(channels[2].point.has_value());
   EXPECT_EQ(channels[2].pair, "contact");
@@ -58,7 +58,7 @@ TEST(Channels, EveryWrongNameIsReportedAtItsPlaceInTheList) {
   RecordParameters record;
   record.channels = {"contact.force",
                      "cantlever.free_end.y.velocity",
-                     "oblique.tip.z.velocity",
+                     "oblique.tip.w.velocity",
                      "oblique.tip.x.speed",
                      "contac.force",
                      "contact.pressure",
@@ -74,7 +74,7 @@ TEST(Channels, EveryWrongNameIsReportedAtItsPlaceInTheList) {
     EXPECT_EQ(problems[0].key, "record.channels.1");
     EXPECT_THAT(problems[0].message,
                 HasSubstr("there is no substructure 'cantlever', did you mean 'cantilever'?"));
-    EXPECT_THAT(problems[1].message, HasSubstr("'z' is not a direction; take x or y"));
+    EXPECT_THAT(problems[1].message, HasSubstr("'w' is not a direction; take x, y or z"));
     EXPECT_THAT(problems[2].message, HasSubstr("there is no motion 'speed'"));
     EXPECT_THAT(problems[3].message,
                 HasSubstr("there is no contact pair 'contac', did you mean 'contact'?"));

@@ -386,11 +386,15 @@ class MutantMaker {
       case KeyKind::named_sections:
       case KeyKind::section_list:
       case KeyKind::parameters:
-        refuse("1", "'1'");
+        if (const Key* number = number_in_place_of(key)) {
+          put(path, "zz", "expected " + expected_of(*number) + ", got 'zz'");
+        } else {
+          refuse("1", "'1'");
+        }
         break;
     }
     const bool takes_list = key.kind == KeyKind::real_list || key.kind == KeyKind::text_list ||
-                            key.kind == KeyKind::section_list;
+                            key.kind == KeyKind::section_list || !key.list_key.empty();
     const bool takes_map = key.kind == KeyKind::curve || key.kind == KeyKind::section ||
                            key.kind == KeyKind::named_sections || key.kind == KeyKind::parameters;
     if (!takes_list) refuse("[1]", "a list");

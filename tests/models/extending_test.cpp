@@ -47,7 +47,7 @@ const Schema& ColumnParameters::schema() {
 /// K and M of the chain; `foot` and `head` are its ends.
 BodyMatrices ColumnParameters::make() const {
   LumpedParameters chain;
-  chain.moves = {"y"};
+  chain.directions = {"y"};
   std::string below;
   for (int i = 0; i < masses; ++i) {
     const std::string name = i == 0 ? "foot" : i + 1 == masses ? "head" : std::to_string(i);

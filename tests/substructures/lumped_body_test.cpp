@@ -59,7 +59,7 @@ TEST(LumpedBody, ChainHasTheFrequenciesOfItsClosedForm) {
   // n masses between two walls: ω_j = 2 (k/m)^½ sin(j π/(2 (n + 1))).
   constexpr int n = 5;
   LumpedParameters chain;
-  chain.moves = {"x"};
+  chain.directions = {"x"};
   for (int i = 0; i < n; ++i) chain.masses["m" + std::to_string(i)] = {0.5, {0.1 * i, 0.0}};
   for (int i = 0; i + 1 < n; ++i)
     chain.springs["k" + std::to_string(i)] = {
@@ -100,6 +100,69 @@ TEST(LumpedBody, GuidedOneFollowsTheDriveWithAllItsMasses) {
   EXPECT_EQ(made.base_inertia, Eigen::Vector4d(2.0, 0.0, 3.0, 0.0));
 }
 
+TEST(LumpedBody, MovesInSpace) {
+  LumpedParameters body;
+  body.directions = {"x", "z", "y"};
+  body.masses["a"] = {2.0, {}};
+  body.masses["b"] = {3.0, {0.3, 0.0, 0.4}};
+  body.damping.beta = 1e-3;
+  LumpedSpringParameters& ground = body.springs["ground"];
+  ground.at = {"a"};
+  ground.stiffness.xx = 4.0;
+  ground.stiffness.yy = 9.0;
+  ground.stiffness.zz = 7.0;
+  ground.stiffness.xy = 5.0;
+  ground.stiffness.zx = -1.0;
+  body.springs["link"] = {{"a", "b"}, 10.0, {}, {}};
+  const BodyMatrices made = body.make();
+  ASSERT_EQ(made.num_dofs(), 6);
+  EXPECT_EQ(made.node_dofs[0], (std::array{0, 1}));
+  EXPECT_EQ(made.across, (std::vector{2, 5}));
+  const Eigen::Vector3d d(0.6, 0.0, 0.8);
+  const Eigen::Matrix3d link = 10.0 * d * d.transpose();
+  Eigen::Matrix3d k;
+  k << 4.0, 5.0, -1.0, 5.0, 9.0, 0.0, -1.0, 0.0, 7.0;
+  Eigen::MatrixXd K(6, 6);
+  K << k + link, -link, -link, link;
+  EXPECT_LT((Eigen::MatrixXd(made.stiffness) - K).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_EQ(made.damping.beta, 1e-3);
+  // The ground end of the spring, moved along x, y or z, carries the mass along.
+  for (const std::size_t axis : {0, 1, 2}) {
+    Eigen::Vector3d load = Eigen::Vector3d::Zero();
+    for (const DofWeight& dof : made.loads.at(std::string("ground.") + "xyz"[axis]))
+      load(dof.dof) += dof.weight;
+    EXPECT_EQ(load, k.col(static_cast<Eigen::Index>(axis)));
+  }
+  EXPECT_FALSE(made.loads.contains("link.x"));  // it has no ground end
+  EXPECT_EQ(made.load("b.z").value().front().dof, 5);
+}
+
+TEST(LumpedBody, SpringsActAlongVectors) {
+  LumpedParameters body;
+  body.directions = {"x", "y", "z"};
+  body.masses["a"] = {2.0, {}};
+  LumpedSpringParameters& spring = body.springs["s"];
+  spring.at = {"a"};
+  spring.stiffness = 50.0;
+  spring.damping.emplace(4.0);
+  spring.direction.emplace();
+  spring.direction->vector = {0.0, 3.0, 4.0};
+  const BodyMatrices made = body.make();
+  const Eigen::Vector3d d(0.0, 0.6, 0.8);
+  const Eigen::Matrix3d K = 50.0 * d * d.transpose();
+  EXPECT_LT((Eigen::MatrixXd(made.stiffness) - K).cwiseAbs().maxCoeff(), 1e-14);
+  // 4 d dᵀ is 0.08 K: proportional.
+  EXPECT_NEAR(made.damping.beta, 0.08, 1e-15);
+  body.directions = {"y"};
+  EXPECT_NEAR(body.make().stiffness.coeff(0, 0), 18.0, 1e-13);
+  std::vector<Problem> problems;
+  spring.direction->vector = {0.0, 0.0};
+  for (const auto& check : SpringDirectionParameters::schema().checks)
+    check(&*spring.direction, problems);
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_THAT(problems[0].message, HasSubstr("not all of them 0"));
+}
+
 TEST(LumpedBody, RefusesWhatIsNotThere) {
   LumpedParameters body = oscillator(0.0, 0.0);
   body.springs["vertical"].at = {"centre"};
@@ -115,16 +178,16 @@ TEST(LumpedBody, RefusesWhatIsNotThere) {
   EXPECT_THAT(message_of<ConfigError>([&] { body.make(); }),
               HasSubstr("springs.vertical.direction: missing: the two masses stand at one place"));
   body = oscillator(0.0, 0.0);
-  body.moves = {"x"};
+  body.directions = {"x"};
   body.guided = "center";
   EXPECT_THAT(message_of<ConfigError>([&] { body.make(); }),
               HasSubstr("guided: needs a mass that moves in y"));
   std::vector<Problem> problems;
-  body.moves = {"x", "x", "z"};
+  body.directions = {"x", "x", "w"};
   for (const auto& check : LumpedParameters::schema().checks) check(&body, problems);
   std::vector<std::string> keys;
   for (const Problem& problem : problems) keys.push_back(problem.key);
-  EXPECT_THAT(keys, ElementsAre("moves.1", "moves.2"));
+  EXPECT_THAT(keys, ElementsAre("directions.1", "directions.2"));
 }
 
 TEST(Substructure, IsCopiedWithWhatItHolds) {
