@@ -151,8 +151,6 @@ struct ContactPoint {
   /// A force law in the place of gap = 0 and of the friction law, which then are not used. It acts
   /// with all of its friction from the start.
   std::optional<SubstrateContact> substrate;
-  std::optional<FacePlace> face;  ///< in the place of `surface`, `first_segment`: contact on a face, two tangents
-  double overlap = 0.0;           ///< indentation of undeformed bodies, m: preload/penalty; 0 for multipliers
   OnViolation on_violation = OnViolation::stop;
   /// Violations of persistent sliding before this time are only counted, s.
   double armed_from = 0.0;
