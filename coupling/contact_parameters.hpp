@@ -76,7 +76,7 @@ struct ContactParameters {
   std::optional<ContactAssumption> assumption;  ///< absent: film, of a viscoelastic normal law
   OnViolation on_violation = OnViolation::stop;
   std::optional<double> armed_from;  ///< s; the drive's ramp where absent
-  StartParameters start{0.0};
+  StartParameters start;  ///< of a curve; its first node where neither is given
   SlidingMode sliding = SlidingMode::moving;
   SurfaceKind surface = SurfaceKind::polyline;
   std::optional<RoughnessParameters> roughness;

@@ -95,13 +95,13 @@ std::pair<int, Projection> locate_on(const MasterSurface& surface, const Eigen::
 }
 
 void place_slave(const ContactPair& pair, const MasterSurface& surface, ModelBody& slave) {
-  if (!pair.parameters->start.along) {
+  if (pair.parameters->start.radius) {
     throw ConfigError(pair.key_of("start"),
                       fmt::format("must be a length along the master '{}'; {{radius, angle}} is for "
                                   "the face of a plate",
                                   surface.name));
   }
-  const double start = *pair.parameters->start.along;
+  const double start = pair.parameters->start.along.value_or(0.0);
   const double length = surface.arc_length.back();
   if (!surface.is_endless && start > length * (1.0 + 1e-12)) {
     throw ConfigError(

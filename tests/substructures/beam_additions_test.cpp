@@ -133,7 +133,8 @@ TEST(BeamAdditions, LoadsAreEvenAndGroundEndsCarryTheBodyAlong) {
     }
   }
   double moment = 0.0;
-  for (const DofWeight& dof : body.load("top.y").value()) {
+  const DofSum top = body.load("top.y").value();
+  for (const DofWeight& dof : top) {
     for (std::size_t node = 0; node < body.node_dofs.size(); ++node) {
       if (body.node_dofs[node][1] == dof.dof)
         moment += dof.weight * (body.nodes(static_cast<Eigen::Index>(node), 0) - 0.03);
