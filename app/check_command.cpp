@@ -12,10 +12,10 @@
 #include "app/step_stability_report.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
-#include "io/disc_scene.hpp"
 #include "io/initial_state.hpp"
 #include "io/scene.hpp"
 #include "io/scene_warnings.hpp"
+#include "models/body_cache.hpp"
 #include "solvers/simulation.hpp"
 
 namespace stridor {
@@ -55,14 +55,6 @@ bool is_for_contact(const Scene& scene) {
 /// Reads the scene and does what `run` does before its first step; a scene that is only for
 /// `contact` is only read.
 Report check_scene(const CheckOptions& options) {
-  SceneNode tree = read_scene_file(options.scene);
-  for (const std::string& assignment : options.common.sets) set_value(tree, assignment);
-  if (is_disc_scene(tree)) {
-    const LoadedDiscScene loaded = load_disc_scene(options.scene, options.common.sets);
-    (void)loaded.model();
-    refuse_stability(options);
-    return {key_warnings(DiscScene::schema(), &loaded.scene, tree)};
-  }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   if (is_for_contact(loaded.scene)) {
     refuse_stability(options);
@@ -76,7 +68,7 @@ Report check_scene(const CheckOptions& options) {
   try {
     require_modes(model);
     const Activity preparing("preparing the first step");
-    set_initial_state(model.system, loaded);
+    (void)set_initial_state(model.system, loaded);
     if (loaded.scene.time->is_event_driven()) {
       (void)sliding_equilibrium(oscillator_of(loaded, model.system, "time.integrator"));
       refuse_stability(options);

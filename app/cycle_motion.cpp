@@ -57,7 +57,7 @@ CycleScene make_cycle_scene(const LoadedScene& loaded, Model& model) {
         "missing: a limit cycle is sought after `cycle.settle`, the time that the motion "
         "takes to settle"));
   }
-  set_initial_state(model.system, loaded);
+  (void)set_initial_state(model.system, loaded);
   CycleScene made{oscillator_of(loaded, model.system, "cycle"), {}, {}, {}};
   (void)sliding_equilibrium(made.oscillator);
   made.displacement = made.oscillator.initial_displacement(model.system);

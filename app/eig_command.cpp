@@ -11,7 +11,6 @@
 #include <string>
 
 #include "analysis/explanation.hpp"
-#include "app/disc_stability.hpp"
 #include "app/eigenvalue_report.hpp"
 #include "app/found_spectrum.hpp"
 #include "app/stability.hpp"
@@ -135,9 +134,9 @@ std::vector<std::string> write_shapes(const EigOptions& options, const LoadedSce
     if (!state.equilibrium.contacts[i].is_closed) continue;
     // The positions of a contact are as seen from the undeformed first node of its segment.
     const ContactEquilibrium& contact = state.equilibrium.contacts[i];
-    const MasterSurface& surface =
-        member.model->system
-            .surfaces[static_cast<std::size_t>(member.model->system.contacts[i].surface)];
+    const ContactPoint& point = member.model->system.contacts[i];
+    if (point.face) continue;  // the picture shows no face
+    const MasterSurface& surface = member.model->system.surface_of(point);
     const SurfacePiece& seen = state.equilibrium.state.geometry == ContactGeometry::deformed
                                    ? contact.positions.master
                                    : contact.positions.undeformed;
@@ -164,12 +163,15 @@ void print_equilibrium(const System& system, const Equilibrium& equilibrium) {
       fmt::print("{:<20}open, gap {:.4g} m\n", system.contacts[i].name, contact.gap);
       continue;
     }
-    fmt::print(
-        "{:<20}{:.6g} m along the master, force {:.6g} N, friction {:.6g} N, sliding at "
-        "{:.4g} m/s{}\n",
-        system.contacts[i].name, contact.position, contact.force, contact.friction_force,
-        contact.slip_velocity,
-        contact.force < 0.0 ? " (pulls: no equilibrium of real bodies)" : "");
+    const std::optional<FacePlace>& face = system.contacts[i].face;
+    const std::string place =
+        face ? fmt::format("at radius {:.6g} m and {:.4g} rad of {}", face->radius, face->angle,
+                           face->name)
+             : fmt::format("{:.6g} m along the master", contact.position);
+    fmt::print("{:<20}{}, force {:.6g} N, friction {:.6g} N, sliding at {:.4g} m/s{}\n",
+               system.contacts[i].name, place, contact.force,
+               std::hypot(contact.friction_force, contact.friction_across), contact.slip_velocity,
+               contact.force < 0.0 ? " (pulls: no equilibrium of real bodies)" : "");
   }
 }
 
@@ -224,8 +226,8 @@ Analysis analyse(const EigOptions& options, const LoadedScene& loaded,
     return analysis;
   }
   const System& system = member.model->system;
-  analysis.state = sliding_state_of(member, options.stability.geometry(), "");
-  keep_terms(analysis.state.pencil, damping_terms(loaded.scene));
+  analysis.state = sliding_state_of(member, options.stability.geometry(),
+                                    kept_terms(loaded.scene), "");
   analysis.trusted =
       std::min(trusted_frequency(system),
                asked_frequency(system, loaded.scene.time) / (2.0 * std::numbers::pi));
@@ -325,14 +327,8 @@ ExitCode report(const EigOptions& options, const LoadedScene& loaded, const Anal
 ExitCode eig(EigOptions options) {
   if (options.mode && !options.explain && !options.shapes)
     throw ConfigError("--mode", "names the mode to explain or draw; add --explain or --shapes");
-  if (is_disc_scene_file(options.stability.scene)) {
-    if (options.at) throw ConfigError("--at", "needs a contact that moves along a master");
-    if (options.shapes) throw ConfigError("--shapes", "needs bodies with meshes");
-    choose_method(options.stability);
-    return eig_of_disc(options.stability, options.explain, options.mode);
-  }
   const LoadedScene loaded = load_scene(options.stability.scene, options.stability.common.sets);
-  choose_method(options.stability);
+  make_choices(options.stability, loaded.scene);
   std::vector<double> values;
   SceneFamily family = make_family(loaded, options, values);
   return report(options, loaded, analyse(options, loaded, family.at(values)));

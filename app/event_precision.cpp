@@ -64,7 +64,7 @@ struct Study {
 
 Study make_study(const LoadedScene& loaded) {
   Study study{&loaded, build_model(loaded), {}};
-  set_initial_state(study.model.system, loaded);
+  (void)set_initial_state(study.model.system, loaded);
   study.oscillator = oscillator_of(loaded, study.model.system, "time.integrator");
   (void)sliding_equilibrium(study.oscillator);
   const Scene& scene = loaded.scene;

@@ -12,7 +12,7 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 class GrowthOfMass : public GrowthField {
  public:
-  GrowthOfMass(std::unique_ptr<OscillatorFamily> family, const DampingTerms& terms)
+  GrowthOfMass(std::unique_ptr<OscillatorFamily> family, const KeptTerms& terms)
       : family_(std::move(family)), terms_(terms) {}
 
   std::complex<double> leading(double x, double y) override {
@@ -34,15 +34,15 @@ class GrowthOfMass : public GrowthField {
     if (!found.converged) return false;
     last_ = found.displacement.y() / unit;
     motion_ = small_motion(oscillator, found);
-    if (!terms_.friction) motion_.damping = oscillator.damping;
-    if (!terms_.structural && !terms_.friction) motion_.damping.setZero();
-    if (!terms_.structural && terms_.friction) motion_.damping -= oscillator.damping;
+    if (!terms_.friction_damping) motion_.damping = oscillator.damping;
+    if (!terms_.structural_damping && !terms_.friction_damping) motion_.damping.setZero();
+    if (!terms_.structural_damping && terms_.friction_damping) motion_.damping -= oscillator.damping;
     time_ = of->time;
     return true;
   }
 
   std::unique_ptr<OscillatorFamily> family_;
-  DampingTerms terms_;
+  KeptTerms terms_;
   SmallMotion motion_;
   double time_ = 1.0;   ///< unit, s
   double last_ = 1e-2;  ///< ŷ
@@ -54,7 +54,7 @@ std::unique_ptr<GrowthField> make_growth_field(const LoadedScene& loaded,
                                                const std::vector<NumericKey>& keys) {
   std::unique_ptr<OscillatorFamily> family = OscillatorFamily::make(loaded, keys);
   if (family == nullptr) return nullptr;
-  return std::make_unique<GrowthOfMass>(std::move(family), damping_terms(loaded.scene));
+  return std::make_unique<GrowthOfMass>(std::move(family), kept_terms(loaded.scene));
 }
 
 }  // namespace stridor

@@ -318,9 +318,10 @@ void check_outputs(const LocusCommandOptions& options) {
 ExitCode locus(LocusCommandOptions options) {
   check_outputs(options);
   StabilityOptions& stability = options.stability;
-  const auto loaded = load_stability_scene(stability);
-  const KeyRange range = make_range(*loaded, options.range);
-  const auto family = loaded->family({range.key}, stability.geometry());
+  const StabilityScene scene = load_stability_scene(stability);
+  const LoadedScene& loaded = scene.loaded();
+  const KeyRange range = make_range(scene, options.range);
+  const auto family = scene.family({range.key}, stability.geometry());
   const double first = range.values.front();
   std::optional<LocusProgress> progress(std::in_place, "locus", *family, range);
   const Locus found =
@@ -332,10 +333,9 @@ ExitCode locus(LocusCommandOptions options) {
 
   std::optional<PassingTimes> times;
   const bool is_path =
-      range.key.path == drive_displacement_name || loaded->default_key() == range.key.path;
-  if (loaded->bodies() != nullptr && loaded->bodies()->scene.time && is_path) {
-    times.emplace(loaded->bodies()->scene, dynamic_cast<BodyStabilityFamily&>(*family));
-  }
+      range.key.path == drive_displacement_name || scene.default_key() == range.key.path;
+  if (loaded.scene.time && is_path)
+    times.emplace(loaded.scene, dynamic_cast<BodyStabilityFamily&>(*family));
   const std::vector<TimedWindow> windows = timed_windows(found, times);
   const std::string units = printed_units(range.key);
   if (options.output) {
@@ -345,8 +345,8 @@ ExitCode locus(LocusCommandOptions options) {
                       {"about", stability.about},
                       {"method", stability.method},
                       {"scene", stability.scene},
-                      {"scene_hash", loaded->hash()},
-                      {"scene_resolved", loaded->resolved()},
+                      {"scene_hash", loaded.hash()},
+                      {"scene_resolved", loaded.resolved()},
                       {"command", options.command_line},
                       {"version", std::string(version)},
                       {"commit", std::string(commit)},
@@ -354,9 +354,8 @@ ExitCode locus(LocusCommandOptions options) {
   }
   if (options.figure || options.history) {
     LocusPicture picture;
-    const LoadedScene* bodies = loaded->bodies();
-    const AxisUnit unit = axis_unit(range.key, {options.range.from, options.range.to},
-                                    bodies == nullptr ? nullptr : &bodies->tree);
+    const AxisUnit unit =
+        axis_unit(range.key, {options.range.from, options.range.to}, &loaded.tree);
     picture.parameter = range.key.path;
     picture.units = unit.name;
     picture.curves = curves_of(found, highest_frequency(found));
@@ -367,10 +366,10 @@ ExitCode locus(LocusCommandOptions options) {
     }
     picture.caption = fmt::format(
         "The lowest {} eigenvalues{}, {} from {} to {}; {}, scene {}.", most_eigenvalues(found),
-        loaded->about_text(stability), range.key.path, unit.number(range.values.front()),
+        scene.about_text(stability), range.key.path, unit.number(range.values.front()),
         fmt::format("{:g}{}", unit.number(range.values.back()),
                     unit.name == "1" ? "" : " " + unit.name),
-        std::filesystem::path(stability.scene).filename().string(), loaded->hash());
+        std::filesystem::path(stability.scene).filename().string(), loaded.hash());
     if (options.figure) plot_locus(picture, *options.figure);
     if (options.history) plot_locus_histories(picture, *options.history);
   }

@@ -233,7 +233,7 @@ StabilityMap make_map(const StabilityScene& loaded, const std::array<Axis, 2>& a
 void draw(const MapOptions& options, const std::array<Axis, 2>& axes, const StabilityMap& map,
           const StabilityScene& loaded) {
   StabilityMapPicture picture;
-  const SceneNode* tree = loaded.bodies() == nullptr ? nullptr : &loaded.bodies()->tree;
+  const SceneNode* tree = &loaded.loaded().tree;
   const AxisUnit x_unit = axis_unit(axes[0].key, {options.x[1], options.x[2]}, tree);
   const AxisUnit y_unit = axis_unit(axes[1].key, {options.y[1], options.y[2]}, tree);
   const auto axis_of = [](const Axis& axis, const AxisUnit& unit) {
@@ -248,13 +248,10 @@ void draw(const MapOptions& options, const std::array<Axis, 2>& axes, const Stab
       picture.boundary.back().push_back({x_unit.number(point[0]), y_unit.number(point[1])});
   }
   picture.caption = fmt::format(
-      "Largest growth rate{}, {} by {} values; line: boundary of stability. {}, scene {}.",
-      loaded.bodies() == nullptr
-          ? ""
-          : fmt::format(" of the {} lowest eigenvalues{}", options.stability.count,
-                        loaded.about_text(options.stability)),
-      map.x.size(), map.y.size(),
-      std::filesystem::path(options.stability.scene).filename().string(), loaded.hash());
+      "Largest growth rate of the {} lowest eigenvalues{}, {} by {} values; line: boundary of "
+      "stability. {}, scene {}.",
+      options.stability.count, loaded.about_text(options.stability), map.x.size(), map.y.size(),
+      std::filesystem::path(options.stability.scene).filename().string(), loaded.loaded().hash());
   plot_stability_map(picture, *options.figure);
 }
 
@@ -263,8 +260,7 @@ ExitCode map(MapOptions options) {
   const Overwrite overwrite = stability.common.overwrite();
   if (options.output) check_output(*options.output, overwrite);
   if (options.figure) check_figure(*options.figure, stability.common);
-  const auto scene = load_stability_scene(stability);
-  const StabilityScene& loaded = *scene;
+  const StabilityScene loaded = load_stability_scene(stability);
   const std::array<Axis, 2> axes{
       make_axis(loaded, options.x, "--x", options.x_scale.value_or(options.scale)),
       make_axis(loaded, options.y, "--y", options.y_scale.value_or(options.scale))};
@@ -288,8 +284,8 @@ ExitCode map(MapOptions options) {
                     {"about", stability.about},
                     {"method", stability.method},
                     {"scene", stability.scene},
-                    {"scene_hash", loaded.hash()},
-                    {"scene_resolved", loaded.resolved()},
+                    {"scene_hash", loaded.loaded().hash()},
+                    {"scene_resolved", loaded.loaded().resolved()},
                     {"command", options.command_line},
                     {"version", std::string(version)},
                     {"commit", std::string(commit)},

@@ -9,7 +9,6 @@
 
 #include "app/command.hpp"
 #include "app/cycle_motion.hpp"
-#include "app/disc_run.hpp"
 #include "app/error_estimate.hpp"
 #include "app/progress.hpp"
 #include "app/run_ending.hpp"
@@ -18,7 +17,6 @@
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
 #include "io/damage_guard.hpp"
-#include "io/disc_scene.hpp"
 #include "io/scene_warnings.hpp"
 
 namespace stridor {
@@ -127,6 +125,11 @@ void print_summary(const Json& results, const std::string& output) {
     for (const auto& [name, contact] : results["contacts"].items())
       print_force("contact force, " + name, contact["contact_force"]);
   }
+  if (!results["perturbation"].is_null()) {
+    fmt::print("{:<24}{:.6g} Hz, growth {:.6g} 1/s\n", "perturbed mode",
+               results["perturbation"]["frequency"].get<double>(),
+               results["perturbation"]["growth"].get<double>());
+  }
   print_acceleration(results);
   print_bursts(results);
   const bool has_contacts = !results.contains("contacts") || !results["contacts"].empty();
@@ -223,35 +226,15 @@ ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::
   return code;
 }
 
-/// @throws ConfigError if an error is asked for that cannot be given
-void refuse_error(const RunOptions& options) {
-  if (!options.error) return;
-  throw ConfigError(
-      "--error",
-      "is for scenes of bodies in contact; of discs a second run at half the step says it");
-}
-
 ExitCode begin(const RunOptions& options) {
   const RunOutput output{options.output, options.common.overwrite(), options.command_line};
   const RunEnding ending{options.max_wall, options.common.json, options.verify};
-  if (is_disc_scene_file(options.scene)) {
-    refuse_error(options);
-    const LoadedDiscScene loaded = load_disc_scene(options.scene, options.common.sets);
-    print_warnings(key_warnings(DiscScene::schema(), &loaded.scene, loaded.tree));
-    return run_disc(loaded, output, ending);
-  }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   loaded.require_section("time", "run");
   const auto study = studied(loaded, options);
   Transient transient(loaded, output);
   print_warnings(scene_warnings(loaded, transient.model()));
   return run_to_end(transient, loaded, options.output, study, ending);
-}
-
-std::vector<Expectation> expectations_of(const SceneNode& tree, const std::string& text,
-                                         const std::string& source) {
-  if (is_disc_scene(tree)) return load_resolved_disc_scene(text, source).scene.expect;
-  return load_resolved_scene(text, source).scene.expect;
 }
 
 /// Says what a run gave that is done already.
@@ -271,7 +254,7 @@ ExitCode report_done(const RunOptions& options, const RunFileReader& reader) {
   if (options.verify) {
     const std::string& text = reader.header().scene_resolved;
     const std::string source = options.resumed + ":/scene/resolved";
-    check_expectations(expectations_of(read_scene_text(text, source), text, source), results);
+    check_expectations(load_resolved_scene(text, source).scene.expect, results);
   }
   return ExitCode::done;
 }
@@ -285,10 +268,7 @@ ExitCode resume(const RunOptions& options) {
   const InterruptedRun interrupted = find_interrupted_run(options.resumed);
   guard.reset();
   const std::string source = options.resumed + ":/scene/resolved";
-  const SceneNode tree = read_scene_text(interrupted.scene_text, source);
   const RunEnding ending{options.max_wall, options.common.json, options.verify};
-  if (is_disc_scene(tree)) refuse_error(options);
-  if (is_disc_scene(tree)) return resume_disc(interrupted, ending);
   const LoadedScene loaded = load_resolved_scene(interrupted.scene_text, source);
   const auto study = studied(loaded, options);
   Transient transient(loaded, interrupted);

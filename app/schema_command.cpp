@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include "app/command.hpp"
-#include "io/all_scenes.hpp"
+#include "io/scene.hpp"
+#include "io/scene_reference.hpp"
+#include "io/schema_json.hpp"
 
 namespace stridor {
 namespace {
@@ -13,7 +15,8 @@ struct SchemaOptions {
 };
 
 ExitCode print_schema(const SchemaOptions& options) {
-  fmt::print("{}", options.is_reference ? all_scenes_reference() : all_scenes_json_schema());
+  fmt::print("{}", options.is_reference ? scene_reference(Scene::schema())
+                                          : json_schema_text(Scene::schema()));
   return ExitCode::done;
 }
 

@@ -9,7 +9,7 @@
 
 #include "analysis/counted_spectra.hpp"
 #include "analysis/sampled_locus.hpp"
-#include "app/disc_stability.hpp"
+#include "app/eigenvalue_report.hpp"
 #include "app/found_spectrum.hpp"
 #include "app/growth_of_mass.hpp"
 #include "app/remark.hpp"
@@ -49,9 +49,29 @@ const char* range_text(LawRange range) {
   return "";
 }
 
+/// On the face of a body.
+Json face_contact_json(const System& system, const Equilibrium& equilibrium, std::size_t i) {
+  const ContactEquilibrium& contact = equilibrium.contacts[i];
+  const ContactPoint& point = system.contacts[i];
+  const FacePlace& face = *point.face;
+  return {{"closed", contact.is_closed},
+          {"force", number(contact.force)},
+          {"friction_force", number(contact.friction_force)},
+          {"friction_across", number(contact.friction_across)},
+          {"friction", number(contact.friction)},
+          {"velocity", {number(contact.velocity.x()), number(contact.velocity.y())}},
+          {"slip_velocity", number(contact.slip_velocity)},
+          {"gap", number(contact.gap)},
+          {"radius", face.radius},
+          {"angle", face.angle},
+          {"displacement",
+           displacement_json(system, equilibrium, point.slave_body, point.slave_rows)}};
+}
+
 Json contact_json(const System& system, const Equilibrium& equilibrium, std::size_t i) {
   const ContactEquilibrium& contact = equilibrium.contacts[i];
   const ContactPoint& point = system.contacts[i];
+  if (point.face) return face_contact_json(system, equilibrium, i);
   Json object = {
       {"closed", contact.is_closed},
       {"force", number(contact.force)},
@@ -117,8 +137,9 @@ void add_range_options(CLI::App& verb, RangeOptions& options) {
 void add_stability_options(CLI::App& verb, StabilityOptions& options) {
   verb.add_option("scene", options.scene, "Scene file (YAML)")->required();
   verb.add_option("--about", options.about,
-                  "Geometry about which the system is linearised: undeformed (default), or that of "
-                  "the deformed sliding equilibrium")
+                  "Geometry about which the system is linearised: undeformed, or that of the "
+                  "deformed sliding equilibrium; default: undeformed, with contacts on the faces of "
+                  "plates deformed")
       ->check(CLI::IsMember({"undeformed", "deformed"}));
   verb.add_option("--method", options.method,
                   "secular (default): zeros of the secular function; dense: all eigenvalues of the "
@@ -175,13 +196,13 @@ KeyRange make_range(const StabilityScene& scene, const RangeOptions& options) {
 }
 
 SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry geometry,
-                              const std::string& what) {
+                              const KeptTerms& terms, const std::string& what) {
   const System& system = member.model->system;
   const std::string where = what.empty() ? "" : " at " + what;
   SlidingState state;
   try {
-    const EquilibriumState asked =
-        stridor::sliding_state(system, member.drive_displacement, geometry);
+    EquilibriumState asked = stridor::sliding_state(system, member.drive_displacement, geometry);
+    asked.terms = contact_terms(terms);
     state.equilibrium = geometry == ContactGeometry::deformed && member.position
                             ? find_equilibrium_at(system, 0, *member.position, asked)
                             : find_equilibrium(system, asked);
@@ -198,14 +219,11 @@ SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry
                    [](const ContactEquilibrium& contact) { return contact.is_closed; })) {
     throw NumericalError(fmt::format("every contact is open in equilibrium{}", where));
   }
-  state.pencil = linearise(system, state.equilibrium);
+  state.pencil = linearise(system, state.equilibrium, contact_terms(terms));
+  if (!terms.structural_damping) drop_structural_damping(state.pencil);
+  if (!terms.friction_damping) drop_contact_damping(state.pencil);
   state.is_on_the_way = member.is_on_the_way;
   return state;
-}
-
-void keep_terms(Pencil& pencil, const DampingTerms& terms) {
-  if (!terms.structural) drop_structural_damping(pencil);
-  if (!terms.friction) drop_contact_damping(pencil);
 }
 
 Pencil retained(const Pencil& pencil, const System& system,
@@ -257,7 +275,12 @@ LowestEigenvalues find_lowest(const Pencil& pencil, EigenvalueMethod method,
   if (method == EigenvalueMethod::secular) {
     try {
       found.eigenvalues = secular_eigenvalues(pencil, window);
-      return found;
+      // Pairs that lie close together leave more of the equations than others: of a small system all
+      // eigenvalues cost no more than a search.
+      constexpr Eigen::Index small = 200;
+      const bool is_sure =
+          std::none_of(found.eigenvalues.begin(), found.eigenvalues.end(), is_doubtful);
+      if (is_sure || pencil.num_eigenvalues() > small) return found;
     } catch (const NumericalError& error) {
       if (pencil.num_eigenvalues() > most_dense) {
         throw NumericalError(
@@ -312,8 +335,8 @@ std::string limit_text(double highest, double trusted) {
   if (!std::isfinite(highest)) return "";
   return highest < trusted
              ? " (nothing above was asked for)"
-             : " (what the reduced bodies resolve, by a rule of thumb: half the frequency of the "
-               "highest mode kept)";
+             : " (what the bodies resolve, by a rule of thumb: half the frequency of the highest "
+               "mode kept, of a plate that of the lowest mode left out)";
 }
 
 std::string reach_text(const Locus& locus) {
@@ -343,57 +366,35 @@ double verdict_limit(const Locus& locus, const SpectrumWindow& window, double tr
   return highest;
 }
 
-namespace {
+std::optional<std::string> StabilityScene::default_key() const {
+  const ModelParameters& model = loaded_.scene.model;
+  const auto pairs = model.pairs();
+  const bool moves = std::any_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
+    return !is_face(model, pair.second.master);
+  });
+  if (!moves) return std::nullopt;
+  return start_key(model).value_or(drive_displacement_name);
+}
 
-/// A scene of bodies, in contact or not.
-class BodyStabilityScene : public StabilityScene {
- public:
-  explicit BodyStabilityScene(LoadedScene loaded) : loaded_(std::move(loaded)) {}
-
-  NumericKey find_key(const std::string& path, const std::string& option) const override {
-    return find_stability_key(loaded_.scene, path, option);
-  }
-  std::optional<std::string> default_key() const override {
-    if (loaded_.scene.model.pairs().empty()) return std::nullopt;
-    return start_key(loaded_.scene.model).value_or(drive_displacement_name);
-  }
-  bool needs_one_thread() const override { return loaded_.scene.model.pairs().empty(); }
-  std::unique_ptr<StabilityFamily> family(std::vector<NumericKey> keys,
-                                          ContactGeometry geometry) const override {
-    return std::make_unique<BodyStabilityFamily>(loaded_, std::move(keys), geometry);
-  }
-  std::unique_ptr<GrowthField> growth_field(const std::vector<NumericKey>& keys) const override {
-    return make_growth_field(loaded_, keys);
-  }
-  std::string hash() const override { return loaded_.hash(); }
-  std::string resolved() const override { return loaded_.resolved(); }
-  const LoadedScene* bodies() const override { return &loaded_; }
-
- private:
-  LoadedScene loaded_;
-};
-
-}  // namespace
+std::unique_ptr<GrowthField> StabilityScene::growth_field(
+    const std::vector<NumericKey>& keys) const {
+  return make_growth_field(loaded_, keys);
+}
 
 std::string StabilityScene::about_text(const StabilityOptions& options) const {
-  const bool has_choice = bodies() != nullptr && !bodies()->scene.model.pairs().empty();
-  return has_choice ? fmt::format(" about the {} geometry", options.about) : "";
+  if (loaded_.scene.model.pairs().empty()) return "";
+  return fmt::format(" about the {} geometry", options.about);
 }
 
-void choose_method(StabilityOptions& options) {
+void make_choices(StabilityOptions& options, const Scene& scene) {
   if (options.method.empty()) options.method = "secular";
+  if (options.about.empty())
+    options.about = has_face_contacts(scene.model) ? "deformed" : "undeformed";
 }
 
-std::unique_ptr<StabilityScene> load_stability_scene(StabilityOptions& options) {
-  std::unique_ptr<StabilityScene> scene;
-  const SceneNode tree = read_scene_file(options.scene);
-  if (is_disc_scene(tree)) {
-    scene =
-        std::make_unique<DiscStabilityScene>(load_disc_scene(options.scene, options.common.sets));
-  } else {
-    scene = std::make_unique<BodyStabilityScene>(load_scene(options.scene, options.common.sets));
-  }
-  choose_method(options);
+StabilityScene load_stability_scene(StabilityOptions& options) {
+  StabilityScene scene(load_scene(options.scene, options.common.sets));
+  make_choices(options, scene.loaded().scene);
   return scene;
 }
 
@@ -401,7 +402,7 @@ BodyStabilityFamily::BodyStabilityFamily(const LoadedScene& loaded, std::vector<
                                          ContactGeometry geometry)
     : family_(loaded, std::move(keys)),
       time_(loaded.scene.time),
-      terms_(damping_terms(loaded.scene)),
+      terms_(kept_terms(loaded.scene)),
       geometry_(geometry),
       start_key_(start_key(loaded.scene.model)) {}
 
@@ -415,8 +416,7 @@ std::string BodyStabilityFamily::values_text(std::span<const double> values) con
 SlidingState BodyStabilityFamily::at(std::span<const double> values) {
   const BlasGuard guard;
   const SceneFamily::Member member = family_.at(values);
-  SlidingState state = sliding_state_of(member, geometry_, values_text(values));
-  keep_terms(state.pencil, terms_);
+  SlidingState state = sliding_state_of(member, geometry_, terms_, values_text(values));
   // Once for all values: it takes much longer than a pencil, and a branch must not change its
   // modes.
   if (!asked_) asked_ = asked_frequency(member.model->system, time_);

@@ -24,8 +24,8 @@ enum class EigenvalueMethod { secular, dense };
 struct StabilityOptions {
   CommonOptions common;
   std::string scene;
-  std::string about = "undeformed";
-  std::string method;  ///< empty until choose_method() where none was asked for
+  std::string about;   ///< empty until make_choices() where none was asked for
+  std::string method;  ///< likewise
   int count = 20;
   std::optional<std::string> below;           ///< frequency, as written
   const CLI::Option* count_option = nullptr;  ///< tells whether a count was given
@@ -56,8 +56,10 @@ std::vector<double> range_values(const NumericKey& key, const RangeOptions& opti
 /// --parameter, --from, --to, --points.
 void add_range_options(CLI::App& verb, RangeOptions& options);
 
-/// If no method was asked for: the secular function.
-void choose_method(StabilityOptions& options);
+/// What was not asked for: the method is the secular function; the geometry is the undeformed one,
+/// with contacts on the faces of spinning bodies that of the equilibrium, to which the loads press
+/// them.
+void make_choices(StabilityOptions& options, const Scene& scene);
 
 /// The scene, --about, --method, --count, --set, --threads and --json.
 void add_stability_options(CLI::App& verb, StabilityOptions& options);
@@ -75,15 +77,12 @@ struct SlidingState {
   bool is_on_the_way = false;  ///< the drive puts the scene there, by `equilibrium.state`
 };
 
-/// The state of a member of a family. In the deformed geometry the contact is at the position on
+/// The state of a member of a family, with what the scene keeps of its terms. In the deformed geometry the contact is at the position on
 /// the deformed master that the member specifies; the drive is displaced accordingly.
 /// @param what names the member in messages, e.g. "contact.start = 0.05"; empty where there is one
 /// @throws NumericalError if there is no equilibrium, or every contact is open
 SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry geometry,
-                              const std::string& what);
-
-/// Leaves out the damping that the scene does not keep.
-void keep_terms(Pencil& pencil, const DampingTerms& terms);
+                              const KeptTerms& terms, const std::string& what);
 
 /// The pencil with the modes above `time.retain` as residual modes (docs/theory.md, 7.1); all modes
 /// where the scene keeps all.
@@ -171,39 +170,42 @@ class BodyStabilityFamily : public StabilityFamily {
 
   SceneFamily family_;
   std::optional<TimeParameters> time_;
-  DampingTerms terms_;
+  KeptTerms terms_;
   std::optional<double> asked_;  ///< asked_frequency() of the first values
   ContactGeometry geometry_;
   std::optional<std::string> start_key_;
 };
 
-/// A scene of any kind whose small motions can be followed along its keys.
+/// A scene whose small motions can be followed along its keys.
 class StabilityScene {
  public:
-  virtual ~StabilityScene() = default;
+  explicit StabilityScene(LoadedScene loaded) : loaded_(std::move(loaded)) {}
+
   /// As find_stability_key().
-  virtual NumericKey find_key(const std::string& path, const std::string& option) const = 0;
-  /// The key that is varied where the user names none.
-  virtual std::optional<std::string> default_key() const { return std::nullopt; }
-  virtual std::unique_ptr<StabilityFamily> family(std::vector<NumericKey> keys,
-                                                  ContactGeometry geometry) const = 0;
-  /// The fast way to growth rates over two keys, one field per thread; null where there is none.
-  virtual std::unique_ptr<GrowthField> growth_field(const std::vector<NumericKey>&) const {
-    return nullptr;
+  NumericKey find_key(const std::string& path, const std::string& option) const {
+    return find_stability_key(loaded_.scene, path, option);
   }
+  /// The key that is varied where the user names none: the place along a master.
+  std::optional<std::string> default_key() const;
+  std::unique_ptr<StabilityFamily> family(std::vector<NumericKey> keys,
+                                          ContactGeometry geometry) const {
+    return std::make_unique<BodyStabilityFamily>(loaded_, std::move(keys), geometry);
+  }
+  /// The fast way to growth rates over two keys, one field per thread; null where there is none.
+  std::unique_ptr<GrowthField> growth_field(const std::vector<NumericKey>& keys) const;
   /// Whether its lines must be traced by one thread: dense products go to BLAS.
-  virtual bool needs_one_thread() const { return false; }
-  virtual std::string hash() const = 0;
-  virtual std::string resolved() const = 0;
-  /// The scene of bodies, if it is one.
-  virtual const LoadedScene* bodies() const { return nullptr; }
+  bool needs_one_thread() const { return loaded_.scene.model.pairs().empty(); }
+  const LoadedScene& loaded() const { return loaded_; }
   /// For captions: about which geometry its eigenvalues are, where there is a choice.
   std::string about_text(const StabilityOptions& options) const;
+
+ private:
+  LoadedScene loaded_;
 };
 
-/// Reads the scene, of whichever kind it is, and chooses the method for it.
-/// @throws ConfigError, FileError as the reader of its kind
-std::unique_ptr<StabilityScene> load_stability_scene(StabilityOptions& options);
+/// Reads the scene and makes the choices that the options leave to it.
+/// @throws ConfigError, FileError as load_scene()
+StabilityScene load_stability_scene(StabilityOptions& options);
 
 /// @throws ConfigError if the key, an end of the range or the number of points is wrong
 KeyRange make_range(const StabilityScene& scene, const RangeOptions& options);

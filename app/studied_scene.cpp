@@ -59,7 +59,7 @@ StudiedScene study_scene(LoadedScene loaded, const std::optional<std::string>& u
   }
   study.channel = channel->name;
   study.model = build_model(study.loaded);
-  set_initial_state(study.model.system, study.loaded);
+  (void)set_initial_state(study.model.system, study.loaded);
   const Model::Point& point = study.model.points.at(*channel->point);
   study.observed = {point.body, point.rows.row(channel->direction)};
   study.interval = scene.record->interval;

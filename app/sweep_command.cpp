@@ -4,7 +4,6 @@
 
 #include "app/sweep.hpp"
 #include "core/errors.hpp"
-#include "io/disc_scene.hpp"
 
 namespace stridor {
 namespace {
@@ -13,11 +12,6 @@ ExitCode sweep(const SweepOptions& options) {
   if (options.output) check_output(*options.output, options.common.overwrite());
   if (options.figure) check_figure(*options.figure, options.common);
   if (options.range.parameter.empty()) throw ConfigError("--parameter", "name a key of the scene");
-  if (is_disc_scene_file(options.scene)) {
-    throw ConfigError("scene",
-                      "is of a disc and pads; sweep takes bodies in the plane, and the verb locus "
-                      "follows the eigenvalues of this one along a key");
-  }
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   loaded.require_section("time", "sweep");
   if (loaded.scene.time->is_event_driven()) return sweep_cycles(options, loaded);

@@ -73,10 +73,10 @@ ExitCode threshold(const ThresholdOptions& options, const KeyRange& range, Growt
 
 ExitCode threshold(ThresholdOptions options) {
   StabilityOptions& stability = options.stability;
-  const auto scene = load_stability_scene(stability);
-  const KeyRange range = make_range(*scene, options.range);
-  if (const auto field = scene->growth_field({range.key})) return threshold(options, range, *field);
-  const auto family = scene->family({range.key}, stability.geometry());
+  const StabilityScene scene = load_stability_scene(stability);
+  const KeyRange range = make_range(scene, options.range);
+  if (const auto field = scene.growth_field({range.key})) return threshold(options, range, *field);
+  const auto family = scene.family({range.key}, stability.geometry());
   std::optional<LocusProgress> progress(std::in_place, "threshold", *family, range);
   const Locus locus = locus_along(*family, range.key, 0, {range.values.front()}, range.values,
                                   stability.locus_options());

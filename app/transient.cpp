@@ -75,7 +75,7 @@ Transient::Transient(const LoadedScene& loaded, const RunOutput& output)
   check_output(file_, output.overwrite);
   model_ = build_model(loaded);
   const Activity preparing("preparing the first step");
-  set_initial_state(model_.system, loaded);
+  start_ = set_initial_state(model_.system, loaded);
   driver_ = make_run_driver(loaded, model_);
   const auto file_start = Clock::now();
   writer_.emplace(
@@ -117,12 +117,21 @@ State Transient::save() const {
   State state = driver_->save();
   state.put("march_seconds", march_seconds_);
   save_start(model_.system, state);
+  if (start_.perturbation) {
+    const double s[] = {start_.perturbation->real(), start_.perturbation->imag()};
+    state.put("start/perturbation", s);
+  }
   return state;
 }
 
 void Transient::load(const State& state) {
   driver_->load(state);
   march_seconds_ = state.get("march_seconds");
+  if (state.arrays().contains("start/perturbation")) {
+    double s[2];
+    state.get("start/perturbation", s);
+    start_.perturbation = {s[0], s[1]};
+  }
 }
 
 void Transient::write_checkpoint() {
@@ -168,6 +177,11 @@ Json Transient::finish(const Json& error) {
       effort_json(effort.steps, effort.step, effort.limit,
                   {setup_seconds_, march_seconds_, file_seconds_ + writer_->write_seconds()}));
   results["error"] = error;
+  results["perturbation"] =
+      start_.perturbation
+          ? Json{{"frequency", number(start_.perturbation->imag() / (2.0 * std::numbers::pi))},
+                 {"growth", number(start_.perturbation->real())}}
+          : Json(nullptr);
   results["file"] = file_;
   write_final_motion();
   store_results(*writer_, results);

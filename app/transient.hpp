@@ -8,6 +8,7 @@
 
 #include "app/run_driver.hpp"
 #include "app/run_keeping.hpp"
+#include "io/initial_state.hpp"
 
 namespace stridor {
 
@@ -60,6 +61,7 @@ class Transient {
   std::string file_;
   RunKeeper keeper_;
   Model model_;
+  InitialState start_;
   std::unique_ptr<RunDriver> driver_;
   std::optional<RunFileWriter> writer_;
   MarchEnd end_ = MarchEnd::finished;

@@ -79,7 +79,7 @@ Json left_out_json(const System& system, double highest, bool has_ledger) {
       followed[static_cast<std::size_t>(contact.face->body)] += on_face;
       touchable[static_cast<std::size_t>(contact.face->body)] += on_face;
       has_friction |= !contact.friction.is_frictionless();
-      slides_only = false;
+      slides_only = has_fixed_normal = false;
       continue;
     }
     const MasterSurface& surface = system.surface_of(contact);

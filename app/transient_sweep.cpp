@@ -99,7 +99,7 @@ struct Transit {
     const auto start = Clock::now();
     const Scene& given = loaded.scene;
     const double step = given.time->step;
-    set_initial_state(model.system, loaded);
+    (void)set_initial_state(model.system, loaded);
     try {
       simulation = make_run_simulation(model.system, *given.time, accounts_of(given));
     } catch (const ConfigError& error) {

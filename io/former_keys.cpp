@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -91,6 +92,73 @@ void refuse_sphere(const SceneNode& tree) {
   refuse(std::move(problems), tree);
 }
 
+/// docs/format_2.md, "Disc and pads". UPPER stands for each of the two pads and its contact.
+constexpr FormerKey former_keys_of_discs[] = {
+    {"disc", "substructures.disc, of type annular_plate, with the same keys"},
+    {"disc.speed", "substructures.disc.spin"},
+    {"pads.mass",
+     "substructures.UPPER: {type: lumped, directions: [x, y, z], masses: {block: {mass}}}"},
+    {"pads.stiffness", "substructures.UPPER.springs.backing: {at: block, stiffness: {xx, yy, zz, "
+                       "xy}}; of an elastic pad {on: top, stiffness: ...}"},
+    {"pads.stiffness.circumferential", "substructures.UPPER.springs.backing.stiffness.xx"},
+    {"pads.stiffness.normal", "substructures.UPPER.springs.backing.stiffness.yy"},
+    {"pads.stiffness.radial", "substructures.UPPER.springs.backing.stiffness.zz"},
+    {"pads.stiffness.coupling", "substructures.UPPER.springs.backing.stiffness.xy"},
+    {"pads.elastic",
+     "substructures.UPPER: {type: beam, angle: 0, across: rigid, ...}, with the same keys"},
+    {"pads.damping", "substructures.UPPER.damping"},
+    {"pads.radius", "contacts.UPPER.start.radius"},
+    {"pads.angle", "contacts.UPPER.start.angle"},
+    {"pads.piston.force", "a drive with load, on UPPER.top or UPPER.block, with a minus"},
+    {"pads.piston.displacement", "a drive with displacement, of UPPER.backing, with a minus"},
+    {"contact.preload", "contacts.UPPER.normal.preload, of each of its points"},
+    {"contact.friction", "contacts.UPPER.friction"},
+    {"contact.formulation",
+     "contacts.UPPER.normal.law: multiplier for lagrange, penalty for penalty"},
+    {"contact.penalty", "contacts.UPPER.normal.stiffness, of law: penalty"},
+    {"contact.offsets", "substructures.UPPER.points, on the surface bottom, and a list of them as "
+                        "contacts.UPPER.slave"}};
+
+/// The longest former key that a path begins with.
+const FormerKey* former_key_of(const std::string& path) {
+  const FormerKey* best = nullptr;
+  std::size_t longest = 0;
+  for (const FormerKey& one : former_keys_of_discs) {
+    const std::string_view key = one.path;
+    const bool is_prefix =
+        path.starts_with(key) && (path.size() == key.size() || path[key.size()] == '.');
+    if (!is_prefix || key.size() <= longest) continue;
+    longest = key.size();
+    best = &one;
+  }
+  return best;
+}
+
+void refuse_disc(const SceneNode& tree) {
+  std::vector<std::string> paths;
+  collect_paths(tree, "", paths);
+  std::vector<Problem> problems;
+  for (const std::string& path : paths) {
+    const FormerKey* const former = former_key_of(path);
+    if (former == nullptr) continue;
+    const std::string rest = path.substr(std::string_view(former->path).size());
+    problems.push_back({path,
+                        rest.empty() ? fmt::format("is now {}", former->now)
+                                     : fmt::format("is now `{}` of {}", rest.substr(1), former->now),
+                        {},
+                        0,
+                        0});
+  }
+  problems.push_back({"disc",
+                      "is no longer a kind of scene of its own: a disc is a body of type "
+                      "annular_plate, and pads are bodies in contact with its faces "
+                      "(docs/format_2.md; scenes/disc_and_pads.yaml)",
+                      {},
+                      0,
+                      0});
+  refuse(std::move(problems), tree);
+}
+
 /// docs/format_2.md, "Sliding contact on rubber".
 constexpr std::pair<const char*, const char*> former_sections[] = {
     {"material", "contacts.NAME.normal.material"},
@@ -170,6 +238,7 @@ void refuse_former_keys(const SceneNode& tree) {
     return;
   }
   if (tree.entry("sphere") != nullptr) refuse_sphere(tree);
+  if (tree.entry("disc") != nullptr) refuse_disc(tree);
   const bool is_former =
       std::any_of(std::begin(former_sections), std::end(former_sections),
                   [&](const auto& section) { return tree.entry(section.first) != nullptr; });

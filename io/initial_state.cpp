@@ -92,7 +92,8 @@ Equilibrium equilibrium_at_start(const System& system) {
   return equilibrium;
 }
 
-void perturb(System& system, const Equilibrium& equilibrium,
+/// @return the eigenvalue
+std::complex<double> perturb(System& system, const Equilibrium& equilibrium,
              const PerturbationParameters& perturbation) {
   const Pencil pencil = linearise(system, equilibrium);
   std::vector<Eigenvalue> eigenvalues = dense_eigenvalues(pencil, DenseWork::eigenvalues);
@@ -105,6 +106,7 @@ void perturb(System& system, const Equilibrium& equilibrium,
   }
   const std::complex<double> s = eigenvalues[number - 1].s;
   add_perturbation(system, eigenvector(pencil, s).right, s, perturbation.amplitude);
+  return s;
 }
 
 Eigen::VectorXd sum(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
@@ -192,9 +194,10 @@ void check_gaps(const System& system, const LoadedScene& loaded) {
   throw loaded.located(ConfigError(std::move(problems)));
 }
 
-void add_state(System& system, const LoadedScene& loaded) {
+InitialState add_state(System& system, const LoadedScene& loaded) {
   const InitialParameters& initial = loaded.scene.model.initial;
-  if (initial.state == InitialParameters::rest) return;
+  InitialState state;
+  if (initial.state == InitialParameters::rest) return state;
   const std::vector<SystemBody> prescribed = system.bodies;
   try {
     if (initial.is_file()) {
@@ -202,7 +205,8 @@ void add_state(System& system, const LoadedScene& loaded) {
     } else {
       const Equilibrium equilibrium = equilibrium_at_start(system);
       apply_initial_motion(system, equilibrium);
-      if (initial.perturbation) perturb(system, equilibrium, *initial.perturbation);
+      if (initial.perturbation)
+        state.perturbation = perturb(system, equilibrium, *initial.perturbation);
       if (initial.indentation) press_in(system, equilibrium, *initial.indentation - 1.0);
     }
   } catch (const ConfigError& error) {
@@ -213,13 +217,15 @@ void add_state(System& system, const LoadedScene& loaded) {
     body.initial_displacement = sum(body.initial_displacement, prescribed[b].initial_displacement);
     body.initial_velocity = sum(body.initial_velocity, prescribed[b].initial_velocity);
   }
+  return state;
 }
 
 }  // namespace
 
-void set_initial_state(System& system, const LoadedScene& loaded) {
-  add_state(system, loaded);
+InitialState set_initial_state(System& system, const LoadedScene& loaded) {
+  const InitialState state = add_state(system, loaded);
   check_gaps(system, loaded);
+  return state;
 }
 
 }  // namespace stridor

@@ -11,7 +11,6 @@
 #include "core/memory.hpp"
 #include "core/suggestion.hpp"
 #include "io/channels.hpp"
-#include "io/disc_scene.hpp"
 #include "io/former_keys.hpp"
 #include "io/law_table_file.hpp"
 #include "io/matrix_reader.hpp"
@@ -281,9 +280,12 @@ const Schema& Scene::schema() {
   return keys;
 }
 
-DampingTerms damping_terms(const Scene& scene) {
-  const KeptTerms kept = kept_terms(scene);
-  return {kept.structural_damping, kept.friction_damping};
+LinearisationTerms contact_terms(const KeptTerms& kept) {
+  LinearisationTerms terms;
+  terms.friction = kept.friction;
+  terms.friction_damping = kept.friction_damping;
+  terms.geometric = kept.geometric;
+  return terms;
 }
 
 KeptTerms kept_terms(const Scene& scene) {
@@ -317,13 +319,22 @@ void for_each_pair(ModelParameters& model, const Visit& visit) {
   for (auto& [name, pair] : model.contacts) visit("contacts." + name, pair);
 }
 
-/// Whether a master is the face of a body.
+}  // namespace
+
 bool is_face(const ModelParameters& model, const std::string& master) {
   const std::size_t dot = master.find('.');
   if (dot == std::string::npos) return false;
   const auto body = model.substructures.find(master.substr(0, dot));
   return body != model.substructures.end() && body->second->has_face(master.substr(dot + 1));
 }
+
+bool has_face_contacts(const ModelParameters& model) {
+  const auto pairs = model.pairs();
+  return std::any_of(pairs.begin(), pairs.end(),
+                     [&](const auto& pair) { return is_face(model, pair.second.master); });
+}
+
+namespace {
 
 /// Terms that only contacts on faces, and bodies that spin, can do without.
 std::vector<std::string> indispensable_terms(const ModelParameters& model) {
@@ -351,18 +362,6 @@ void require_terms(const LoadedScene& loaded) {
                              "left out, of contacts on the faces of plates friction and geometric, "
                              "of plates gyroscopic as well",
                              name)));
-  }
-}
-
-/// Refuses what is not built yet; the mechanics of contacts on faces is to follow.
-/// @throws ConfigError for a contact on a face
-void refuse_face_contacts(const Model& model) {
-  for (const ContactPoint& contact : model.system.contacts) {
-    if (!contact.face) continue;
-    throw ConfigError("contacts", fmt::format("'{}' is on '{}', the face of a plate; such contacts "
-                                              "can be described, but not computed yet: scenes with "
-                                              "`disc` and `pads` are",
-                                              contact.name, contact.face->name));
   }
 }
 
@@ -441,11 +440,6 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
   loaded.text = loaded.tree.document;
   for (const std::string& assignment : sets) set_value(loaded.tree, assignment);
   refuse_former_keys(loaded.tree);
-  if (is_disc_scene(loaded.tree)) {
-    throw loaded.located(ConfigError("disc",
-                                     "belongs to a scene of a disc and pads, for the verbs eig, "
-                                     "locus, threshold, map and run"));
-  }
   loaded.scene = read_as<Scene>(loaded.tree);
   require_terms(loaded);
   read_named_files(loaded);
@@ -500,7 +494,6 @@ Model build_model(const LoadedScene& loaded, BodyCache& cache) {
     }
     Model model = make_model(parameters, observed, cache);
     require_rows(model, channels);
-    refuse_face_contacts(model);
     return model;
   } catch (const ConfigError& error) {
     throw loaded.located(error);

@@ -9,6 +9,7 @@
 #include "io/scene_tree.hpp"
 #include "io/sliding_points.hpp"
 #include "models/model.hpp"
+#include "solvers/equilibrium.hpp"
 #include "solvers/simulation.hpp"
 
 namespace stridor {
@@ -75,12 +76,6 @@ struct KeptTerms {
   bool has_all_but_damping() const { return gyroscopic && friction && geometric; }
 };
 
-/// Damping that the linearised equations keep.
-struct DampingTerms {
-  bool structural = true;  ///< of the bodies
-  bool friction = true;    ///< of the contacts
-};
-
 struct Scene {
   int format = 0;
   NamedNumbers parameters;
@@ -99,8 +94,12 @@ struct Scene {
 
 /// What `terms` keeps.
 KeptTerms kept_terms(const Scene& scene);
-/// What it keeps of damping.
-DampingTerms damping_terms(const Scene& scene);
+/// What it keeps of contacts on the faces of spinning bodies.
+LinearisationTerms contact_terms(const KeptTerms& kept);
+/// Whether a master, "<body>.<face>", is the face of a body.
+bool is_face(const ModelParameters& model, const std::string& master);
+/// Whether a contact of the scene is on the face of a body.
+bool has_face_contacts(const ModelParameters& model);
 
 /// What a run of the scene keeps account of.
 Accounts accounts_of(const Scene& scene);

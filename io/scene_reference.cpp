@@ -238,12 +238,8 @@ class Page {
 }  // namespace
 
 std::string scene_reference(const Schema& schema) {
-  return scene_reference(std::vector<const Schema*>{&schema});
-}
-
-std::string scene_reference(const std::vector<const Schema*>& schemas) {
   Page page;
-  for (const Schema* schema : schemas) page.add({"", schema, "", "", ""});
+  page.add({"", &schema, "", "", ""});
   return page.text();
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "core/schema.hpp"
 
@@ -15,7 +14,5 @@ namespace stridor {
 /// | meaning. A map that occurs at several paths is described at the first and linked from the
 /// others.
 std::string scene_reference(const Schema& schema);
-/// The same with several kinds of scenes, one after the other.
-std::string scene_reference(const std::vector<const Schema*>& schemas);
 
 }  // namespace stridor

@@ -308,26 +308,6 @@ Json preamble() {
 
 }  // namespace
 
-Json json_schema(const Schema& usual, const std::vector<SpecialScene>& specials) {
-  Writer writer;
-  Json choice = writer.definition(usual);
-  for (std::size_t i = specials.size(); i-- > 0;) {
-    Json any = Json::array();
-    for (const std::string& sign : specials[i].signs)
-      any.push_back({{"required", Json::array({sign})}});
-    Json outer = Json::object();
-    outer["if"]["anyOf"] = std::move(any);
-    outer["then"] = writer.definition(*specials[i].schema);
-    outer["else"] = std::move(choice);
-    choice = std::move(outer);
-  }
-  Json json = preamble();
-  json["type"] = "object";
-  json.update(choice);
-  json["$defs"] = writer.definitions();
-  return json;
-}
-
 Json json_schema(const Schema& schema) {
   Json json = preamble();
   Writer writer;

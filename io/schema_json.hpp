@@ -25,14 +25,4 @@ nlohmann::ordered_json json_schema(const Schema& schema);
 /// The same as text.
 std::string json_schema_text(const Schema& schema);
 
-/// A kind of scene that is known by the keys at its top.
-struct SpecialScene {
-  const Schema* schema = nullptr;
-  std::vector<std::string> signs;  ///< any one of them marks this kind
-};
-
-/// The schema of scenes of several kinds: the first of `specials` whose sign is at the top,
-/// else `usual`.
-nlohmann::ordered_json json_schema(const Schema& usual, const std::vector<SpecialScene>& specials);
-
 }  // namespace stridor

@@ -11,7 +11,6 @@
 //
 //   beam of 8000 x 1 elements, 202 interface unknowns, 20 modes    292 MB    347 MB
 //   beam of 200 x 200 elements, otherwise the same               1183 MB   1644 MB
-//   disc of 826 modal unknowns, rigid pads                          45 MB     76 MB
 //   boundary elements, 512 x 512 cells                              74 MB     94 MB
 
 namespace stridor {
@@ -126,39 +125,6 @@ SetUpEstimate estimate_set_up(const ModelParameters& model) {
     append(whole, estimate_reduction(body->reduction_size(nodes), "substructures." + name,
                                      body->size_key()));
   }
-  return whole;
-}
-
-SetUpEstimate estimate_set_up(const DiscModelParameters& model) {
-  SetUpEstimate whole;
-  double size = (2.0 * model.disc.plate.nodal_diameters + 1.0) * model.disc.plate.radial_modes;
-  const double num_points =
-      model.contact.offsets.empty()
-          ? (model.pads.elastic ? 2.0 * model.pads.elastic->mesh.along + 1.0 : 1.0)
-          : static_cast<double>(model.contact.offsets.size());
-  if (model.pads.elastic) {
-    const ElasticPadParameters& pad = *model.pads.elastic;
-    // A point between nodes is held by those of an edge.
-    const double nodes = std::min(2.0 * pad.mesh.along + 1.0,
-                                  model.contact.offsets.empty() ? num_points : 3.0 * num_points);
-    ReductionSize reduction = size_of(pad.mesh, pad.reduction, nodes);
-    reduction.watched = 2.0 * (2.0 * pad.mesh.along + 1.0);
-    append(whole, estimate_reduction(
-                      reduction, "pads.elastic",
-                      {".mesh.along",
-                       "take fewer elements, or name fewer contact points (contact.offsets)"}));
-    size += 2.0 * (reduction.interface + reduction.modes + 1.0);
-  } else {
-    size += 6.0;
-  }
-  // Mass, velocity and position of the bodies and of their small motion, spin and products of it;
-  // each contact has eight rows of both pads.
-  whole.parts.push_back(
-      {"disc.nodal_diameters",
-       fmt::format("dense matrices of {} unknowns of disc and pads", count_text(size)),
-       "keep fewer nodal diameters or radial modes",
-       number * size * (14.0 * size + 32.0 * num_points)});
-  whole.operations += 20.0 * size * size * size;
   return whole;
 }
 

@@ -6,7 +6,6 @@
 
 #include "core/memory.hpp"
 #include "coupling/sliding_contact_parameters.hpp"
-#include "models/disc_parameters.hpp"
 #include "models/model.hpp"
 #include "substructures/reduction_size.hpp"
 
@@ -38,7 +37,6 @@ SetUpEstimate estimate_reduction(const ReductionSize& size, const std::string& k
 
 /// Of beams; of bodies by matrices only once these are read. Names that lead nowhere count nothing.
 SetUpEstimate estimate_set_up(const ModelParameters& model);
-SetUpEstimate estimate_set_up(const DiscModelParameters& model);
 /// Of boundary elements.
 /// @param key of their settings, e.g. "contact.normal.solver"
 SetUpEstimate estimate_set_up(const SlidingContactParameters& contact, const std::string& key);

@@ -117,11 +117,11 @@ INSTANTIATE_TEST_SUITE_P(
                             "contact.friction.coefficient", "0.1", "0.5", "5", "--about",
                             "deformed"}},
                       Case{"locus_of_the_disc",
-                           {"locus", disc, "--parameter", "contact.friction.coefficient", "--from",
+                           {"locus", disc, "--parameter", "parameters.mu", "--from",
                             "0.1", "--to", "0.5", "--points", "5"}},
                       Case{"map_of_the_disc",
-                           {"map", disc, "--x", "contact.friction.coefficient", "0.1", "0.5", "4",
-                            "--y", "disc.speed", "1", "20", "3"}}),
+                           {"map", disc, "--x", "parameters.mu", "0.1", "0.5", "4",
+                            "--y", "substructures.disc.spin", "1", "20", "3"}}),
     [](const auto& test) { return test.param.name; });
 
 TEST(Threads, AreStoppedByASignal) {

@@ -146,14 +146,14 @@ TEST(ParametersProgram, ThresholdOfTheSphereIsThatOfTheKey) {
 TEST(ParametersProgram, MapOfTheDiscIsThatOfTheKeys) {
   const TemporaryFolder folder;
   const std::string scene =
-      scene_with(folder, "disc_and_pads.yaml", "{mu: 0.3, k: 6.0e7}",
-                 {{"coefficient: 0.3", "coefficient: =mu"}, {"radial: 6.0e+7", "radial: =k"}});
+      scene_with(folder, "disc_and_pads.yaml", "{mu: 0.3, preload: 3000, speed: 10}",
+                 {{"spin: 10 rad/s", "spin: =speed"}});
   const auto growth = [&](const std::string& x, const std::string& y) {
     return json_of(
-        {"map", scene, "--x", x, "0", "0.6", "3", "--y", y, "5e7", "7e7", "2"})["growth"];
+        {"map", scene, "--x", x, "0", "0.6", "3", "--y", y, "5", "20", "2"})["growth"];
   };
-  EXPECT_EQ(growth("parameters.mu", "parameters.k"),
-            growth("contact.friction.coefficient", "pads.stiffness.radial"));
+  EXPECT_EQ(growth("parameters.mu", "parameters.speed"),
+            growth("parameters.mu", "substructures.disc.spin"));
 }
 
 std::vector<std::string> shortened(const std::string& scene, const std::string& output) {

@@ -178,8 +178,6 @@ TEST(RunError, IsRefusedBeforeTheRunWhereItCannotBe) {
               HasSubstr("no motion of a point among the channels"));
   EXPECT_THAT(refusal(scene, {"--set", "time.end=0.2"}),
               HasSubstr("time.end: the run ends at 0.2 s, but errors are taken from 0.4 s on"));
-  EXPECT_THAT(refusal(scene_path("examples/disc_squeal.yaml"), {}),
-              HasSubstr("--error: is for scenes of bodies"));
   EXPECT_THAT(refusal(scene_path("viscoelastic_sphere.yaml"), {}),
               HasSubstr("--error: is for time.step"));
 }

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "app/disc_transient.hpp"
 #include "app/transient.hpp"
 #include "core/stop_token.hpp"
 #include "tests/app/resume_fixture.hpp"
@@ -101,6 +100,15 @@ INSTANTIATE_TEST_SUITE_P(
                      {"time.coordinates=craig_bampton", "measure.from=0", "measure.band=[]",
                       "record.interval=2e-6"},
                      0.0002},
+        // From a large perturbation, so that contacts lift off and stick at every stop.
+        Interruption{"ElasticPads",
+                     "examples/elastic_pads.yaml",
+                     {"initial.perturbation.amplitude=20um", "record.interval=1e-5"},
+                     0.004},
+        Interruption{"DiscSqueal",
+                     "examples/disc_squeal.yaml",
+                     {"initial.perturbation.amplitude=50um"},
+                     0.01},
         // With stick and slip; the window of the cycles begins before the first interruption, in
         // which turns are between samples.
         Interruption{"EventDriven", "viscoelastic_sphere.yaml", {"measure.from=1"}, 7.5},
@@ -117,45 +125,6 @@ INSTANTIATE_TEST_SUITE_P(
                      {"time.integrator=central_difference", "time.step=2.5e-4", "measure.from=1"},
                      7.5}),
     [](const auto& tested) { return std::string(tested.param.name); });
-
-TEST(ResumeDisc, GoesOnBitwiseAsIfTheRunHadNotStopped) {
-  const TemporaryFolder folder;
-  const std::string whole = (folder / "whole.h5").string();
-  const std::string broken = (folder / "broken.h5").string();
-  constexpr double end = 0.004;
-  // From a large perturbation, so that contacts lift off and stick at every stop.
-  const LoadedDiscScene loaded = load_disc_scene(
-      scene_path("examples/elastic_pads.yaml"),
-      {"time.end=0.004", "initial.perturbation.amplitude=20um", "record.interval=1e-5"});
-  {
-    DiscTransient transient(loaded, {whole, Overwrite::no, "test"});
-    ASSERT_EQ(transient.run_to_end(), MarchEnd::finished);
-    EXPECT_GT(transient.finish()["free_fraction"].get<double>(), 0.0);
-  }
-  {
-    DiscTransient transient(loaded, {broken, Overwrite::no, "test"});
-    transient.run_until(0.21 * end);
-    transient.write_checkpoint();
-    transient.run_until(0.35 * end);  // more rows than the checkpoint knows
-  }
-  for (const double stop : {0.47, 0.66, 1.0}) {
-    const InterruptedRun interrupted = find_interrupted_run(broken);
-    const LoadedDiscScene again = load_resolved_disc_scene(interrupted.scene_text, broken);
-    DiscTransient transient(again, interrupted);
-    if (stop == 1.0) {
-      ASSERT_EQ(transient.run_to_end(), MarchEnd::finished);
-      transient.finish();
-      break;
-    }
-    transient.run_until(stop * end);
-    request_stop();
-    EXPECT_EQ(transient.run_to_end(), MarchEnd::stopped);
-    request_stop(false);
-    transient.write_checkpoint();
-    transient.finish();
-  }
-  EXPECT_EQ(difference(whole, broken), "");
-}
 
 // ---------------------------------------------------------------- the program
 

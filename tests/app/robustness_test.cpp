@@ -128,7 +128,7 @@ TEST(Robustness, EveryVerbSaysThatAFolderCannotBeWritten) {
         {"cycle", sphere_scene, "-o", at + ".h5"},
         {"map", sphere_scene, "--x", "parameters.v", "0.1", "1", "3", "--y", "parameters.tau0",
          "0.01", "0.1", "3", "-o", at + ".h5"},
-        {"locus", disc, "--parameter", "contact.friction.coefficient", "--from", "0.1", "--to",
+        {"locus", disc, "--parameter", "parameters.mu", "--from", "0.1", "--to",
          "0.2", "--points", "2", "-o", at + ".h5"}}) {
     const ProgramResult result = Program(arguments).run();
     EXPECT_EQ(result.exit_code, 4) << arguments[0] << ": " << result.err;
@@ -154,8 +154,8 @@ TEST(Robustness, NumbersBeyondComputationAreRefusedWithTheirPlace) {
       {folder / "huge.yaml", "format=1",
        "substructures.m.stiffness.0.0: is beyond what can be computed with, up to 1e+100 in "
        "magnitude; got 1e+308"},
-      {scene_path("disc_and_pads.yaml"), "disc.speed=1e-308",
-       "disc.speed: is beyond what can be computed with"},
+      {scene_path("disc_and_pads.yaml"), "substructures.disc.spin=1e-308",
+       "substructures.disc.spin: is beyond what can be computed with"},
       {contact, "contacts.tip.normal.material.glassy_modulus=1e60",
        "contacts.tip.normal.material.glassy_modulus: is beyond what can be computed with"},
       {scene_path("examples/frozen_growth.yaml"), "substructures.cantilever.damping.alpha=1e200",
@@ -176,7 +176,9 @@ TEST(Robustness, NoNumberOfASceneIsAnInternalError) {
                 "examples/stick_slip.yaml",
                 {"substructures.reed.thickness", "substructures.reed.length",
                  "substructures.reed.material.density", "drive.load"}},
-               {"eig", "disc_and_pads.yaml", {"disc.speed", "disc.thickness"}},
+               {"eig",
+                "disc_and_pads.yaml",
+                {"substructures.disc.spin", "substructures.disc.thickness"}},
                {"eig", "examples/flutter.yaml", {"parameters.load"}}};
   for (const auto& [verb, scene, keys] : cases) {
     for (const char* key : keys) {

@@ -73,12 +73,14 @@ TEST(SetUpProgram, DiscsAndContactsAreRefusedLikewise) {
     EXPECT_EQ(result.exit_code, 2) << result.err;
     return result.err;
   };
-  EXPECT_THAT(refusal({"eig", scene_path("disc_and_pads.yaml"), "--set", "disc.nodal_diameters=200",
-                       "--set", "disc.radial_modes=40", "--set", "disc.radial_terms=40"}),
-              HasSubstr("disc.nodal_diameters"));
+  EXPECT_THAT(refusal({"eig", scene_path("disc_and_pads.yaml"), "--set",
+                       "substructures.disc.nodal_diameters=200", "--set",
+                       "substructures.disc.radial_modes=40", "--set",
+                       "substructures.disc.radial_terms=40"}),
+              HasSubstr("substructures.disc.nodal_diameters"));
   EXPECT_THAT(refusal({"check", scene_path("examples/elastic_pads.yaml"), "--set",
-                       "pads.elastic.mesh.along=900000"}),
-              HasSubstr("pads.elastic.mesh.along"));
+                       "substructures.upper.mesh.along=900000"}),
+              HasSubstr("substructures.upper.mesh"));
   EXPECT_THAT(refusal({"contact", scene_path("viscoelastic_contact.yaml"), "--set",
                        "contacts.tip.normal.solver.grid=4096"}),
               HasSubstr("contacts.tip.normal.solver.grid"));

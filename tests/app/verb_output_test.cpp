@@ -138,7 +138,7 @@ TEST(VerbOutput, MapsSweepsAndLociOfSmallSystemsAreDrawn) {
 
 TEST(VerbOutput, ThresholdSaysWhereAndWhichWay) {
   const std::vector<std::string> scan{"threshold",   scene_path("disc_and_pads.yaml"),
-                                      "--parameter", "contact.friction.coefficient",
+                                      "--parameter", "parameters.mu",
                                       "--from",      "0.1"};
   const auto to = [&](const char* end, const char* from) {
     std::vector<std::string> arguments = scan;

@@ -16,7 +16,6 @@
 #include <string>
 #include <vector>
 
-#include "app/disc_transient.hpp"
 #include "app/transient.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
@@ -71,8 +70,8 @@ inline std::vector<FaultyScene> faulty_scenes() {
                        "substructures.reed.reduction.fixed_interface_modes=2"});
   };
   const auto disc = [] {
-    return load_disc_scene(scene_path("examples/disc_squeal.yaml"),
-                           {"time.end=2e-3", "record.channels=[upper.force, upper.state]"});
+    return load_scene(scene_path("examples/disc_squeal.yaml"),
+                      {"time.end=2e-3", "record.channels=[upper.force, upper.state]"});
   };
   const auto sphere = [] {
     return load_scene(scene_path("viscoelastic_sphere.yaml"), {"time.end=0.25", "measure.from=0"});
@@ -85,13 +84,12 @@ inline std::vector<FaultyScene> faulty_scenes() {
              Transient run(loaded, interrupted);
              go_to_end(run);
            }},
-          {"Disc", [=](const std::string& file) { run_all<DiscTransient>(disc(), 1e-3, file); },
-           [=](const std::string& file) { run_half<DiscTransient>(disc(), 1e-3, file); },
+          {"Disc", [=](const std::string& file) { run_all<Transient>(disc(), 1e-3, file); },
+           [=](const std::string& file) { run_half<Transient>(disc(), 1e-3, file); },
            [](const std::string& file) {
              const InterruptedRun interrupted = find_interrupted_run(file);
-             const LoadedDiscScene loaded =
-                 load_resolved_disc_scene(interrupted.scene_text, file);
-             DiscTransient run(loaded, interrupted);
+             const LoadedScene loaded = load_resolved_scene(interrupted.scene_text, file);
+             Transient run(loaded, interrupted);
              go_to_end(run);
            }},
           {"Events", [=](const std::string& file) { run_all<Transient>(sphere(), 0.125, file); },

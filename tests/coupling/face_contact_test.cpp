@@ -1,4 +1,4 @@
-#include "coupling/face_contact.hpp"
+#include "tests/support/face_contact.hpp"
 
 #include <gtest/gtest.h>
 

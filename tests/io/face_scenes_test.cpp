@@ -1,5 +1,4 @@
-// Discs with pads as scenes of bodies: the systems made of them against the models of discs and
-// pads that have keys of their own.
+// Discs with pads as scenes of bodies: the systems made of them against a second formulation.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "coupling/face_contact.hpp"
-#include "io/disc_scene.hpp"
+#include "tests/support/face_contact.hpp"
 #include "io/scene.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/linear_pencil.hpp"
-#include "solvers/sliding_state.hpp"
+#include "tests/support/sliding_state.hpp"
 #include "substructures/recovery.hpp"
 #include "tests/support/message_of.hpp"
+#include "tests/support/reference_brake.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -101,6 +100,27 @@ struct FaceScene {
 FaceScene rigid_scene(const std::string& normal, double friction,
                       const std::vector<std::string>& sets = {}) {
   return FaceScene(plate_text + rigid_pads + contacts_text({"block"}, normal, friction), sets);
+}
+
+/// The brake of these texts for the second formulation.
+DiscModelParameters damped_brake() {
+  DiscModelParameters brake = test::reference_brake(
+      {"gyroscopic", "friction", "friction_damping", "geometric", "structural_damping"});
+  brake.disc.damping.beta = brake.pads.damping.beta = 1e-7;
+  return brake;
+}
+
+DiscModelParameters elastic_brake() {
+  DiscModelParameters brake = damped_brake();
+  brake.contact.preload.reset();
+  brake.pads.mass.reset();
+  brake.pads.elastic = ElasticPadParameters{0.06, 0.015, 0.04, {1e10, 0.3, 2500.0}, {12, 3}, {}};
+  brake.pads.elastic->reduction.fixed_interface_modes = 20;
+  brake.contact.offsets = {-0.03, -0.015, 0.0, 0.015, 0.03};
+  brake.contact.friction.coefficient = 0.4;
+  brake.contact.formulation = ContactFormulation::penalty;
+  brake.contact.penalty = 5e8;
+  return brake;
 }
 
 /// First coordinate of a body in those of the whole system.
@@ -215,7 +235,7 @@ void expect_same(const Eigen::MatrixXd& found, const Eigen::MatrixXd& expected, 
 TEST(FaceScenes, RigidPadsAreTheDiscModel) {
   const FaceScene scene = rigid_scene("{law: multiplier, preload: 3000}", 0.3);
   const System& system = scene.model.system;
-  const DiscModel model = load_disc_scene(scene_path("disc_and_pads.yaml"), {}).model();
+  const DiscModel model = make_disc_model(damped_brake());
   const LinearSystem bodies = free_bodies_of(system);
   const Eigen::MatrixXd P = permutation(13);
   expect_same(P.transpose() * bodies.mass * P, model.bodies.mass, "mass");
@@ -272,10 +292,11 @@ TEST(FaceScenes, ElasticPadsUnderPistonsAreTheDiscModel) {
                         contacts_text({"p0", "p1", "p2", "p3", "p4"},
                                       "{law: penalty, stiffness: 5.0e+8}", 0.4));
   const Model& model = scene.model;
-  const DiscModel old = load_disc_scene(scene_path("examples/elastic_pads.yaml"), {}).model();
-  const DiscModel by_displacement =
-      load_disc_scene(scene_path("examples/elastic_pads.yaml"), {"pads.piston={displacement: 40 um}"})
-          .model();
+  DiscModelParameters pressed = elastic_brake();
+  pressed.pads.piston.emplace().force = 3000.0;
+  const DiscModel old = make_disc_model(pressed);
+  pressed.pads.piston.emplace().displacement = 4e-5;
+  const DiscModel by_displacement = make_disc_model(pressed);
   const LinearSystem bodies = free_bodies_of(model.system);
   expect_same_eigenvalues(
       bodies,
@@ -389,12 +410,6 @@ TEST(FaceScenes, PadsStandAroundTheirMiddleAndAboveTheFace) {
   EXPECT_NEAR(angles[1], arc, 1e-14);
   EXPECT_NEAR(angles[2], 0.5 - arc, 1e-14);
   EXPECT_NEAR(angles[3], 0.5 + arc, 1e-14);
-}
-
-TEST(FaceScenes, AreRefusedWhereTheyAreComputed) {
-  const FaceScene scene = rigid_scene("{law: multiplier, preload: 3000}", 0.3);
-  EXPECT_THAT(message_of<ConfigError>([&] { build_model(scene.loaded); }),
-              HasSubstr("the face of a plate; such contacts can be described, but not computed"));
 }
 
 TEST(FaceScenes, ASectionMayBeANumberOrAList) {

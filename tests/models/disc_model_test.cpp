@@ -1,4 +1,4 @@
-#include "models/disc_model.hpp"
+#include "tests/support/disc_model.hpp"
 
 #include <gtest/gtest.h>
 

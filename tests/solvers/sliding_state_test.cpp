@@ -1,4 +1,4 @@
-#include "solvers/sliding_state.hpp"
+#include "tests/support/sliding_state.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 
 #include "core/errors.hpp"
 #include "solvers/dense_eigenvalues.hpp"
-#include "solvers/spring_contact_motion.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/reference_brake.hpp"
 
@@ -196,40 +195,6 @@ TEST(SlidingState, IsTheEquilibriumOfTheSecondOrderForces) {
   const auto plain = solve_sliding_state(brake.bodies, brake.contacts, straight, brake.loads);
   ASSERT_TRUE(plain.has_converged);
   EXPECT_GT((plain.state.displacement - q).norm(), 1e-4 * q.norm());
-}
-
-TEST(SlidingState, IsWhereADampedMotionSettles) {
-  const OneSidedBrake brake = one_sided_brake();
-  const SlidingStateSolution found =
-      solve_sliding_state(brake.bodies, brake.contacts, brake.law, brake.loads);
-  ASSERT_TRUE(found.has_converged);
-  // From the bodies as the loads alone leave them, overlapping: there no contact is closed yet.
-  FaceSlidingState free;
-  free.displacement = brake.bodies.position.partialPivLu().solve(brake.loads);
-  for (const FaceContact& contact : brake.contacts) {
-    free.contacts.push_back(face_contact_point(contact, brake.law, free.displacement, 0.0));
-    free.contacts.back().is_closed = false;
-  }
-  SpringContactMotion motion(brake.bodies, brake.contacts, brake.law, free, 5e-6);
-  motion.start(Eigen::VectorXd::Zero(brake.bodies.size()),
-               Eigen::VectorXd::Zero(brake.bodies.size()));
-  const Eigen::VectorXd way = found.state.displacement - free.displacement;
-  for (int n = 0; n < 6000; ++n) ASSERT_TRUE(motion.step()) << n;
-  EXPECT_LT((motion.displacement() - way).norm(), 1e-7 * way.norm());
-  for (std::size_t i = 0; i < brake.contacts.size(); ++i) {
-    EXPECT_NEAR(motion.contact(static_cast<int>(i)).force, found.state.contacts[i].force,
-                1e-5 * 2000.0);
-  }
-}
-
-TEST(SlidingState, MotionAboutItStaysAtRest) {
-  const OneSidedBrake brake = one_sided_brake();
-  const SlidingStateSolution found =
-      solve_sliding_state(brake.bodies, brake.contacts, brake.law, brake.loads);
-  ASSERT_TRUE(found.has_converged);
-  SpringContactMotion motion(brake.bodies, brake.contacts, brake.law, found.state, 5e-7);
-  for (int n = 0; n < 200; ++n) ASSERT_TRUE(motion.step()) << n;
-  EXPECT_LT(motion.displacement().norm(), 1e-9 * found.state.displacement.norm());
 }
 
 TEST(SlidingState, TheDeformedStateFeedsTheSmallMotion) {

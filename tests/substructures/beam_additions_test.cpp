@@ -8,7 +8,7 @@
 
 #include "core/errors.hpp"
 #include "substructures/beam.hpp"
-#include "substructures/brake_pad.hpp"
+#include "tests/support/brake_pad.hpp"
 #include "substructures/craig_bampton.hpp"
 #include "tests/support/message_of.hpp"
 

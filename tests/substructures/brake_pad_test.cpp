@@ -1,4 +1,4 @@
-#include "substructures/brake_pad.hpp"
+#include "tests/support/brake_pad.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <complex>
 
-#include "coupling/face_contact.hpp"
+#include "tests/support/face_contact.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "tests/support/reference_brake.hpp"
 

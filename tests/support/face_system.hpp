@@ -5,7 +5,7 @@
 
 #include "coupling/face_kinematics.hpp"
 #include "coupling/system.hpp"
-#include "models/disc_model.hpp"
+#include "tests/support/disc_model.hpp"
 #include "solvers/equilibrium.hpp"
 
 namespace stridor::test {
@@ -101,8 +101,7 @@ inline void hold_preload(System& system, const ContactPoint& contact, double for
 inline System disc_system(const DiscModelParameters& parameters,
                           ContactAssumption assumption = ContactAssumption::film) {
   const std::vector<double> offsets = contact_offsets(parameters);
-  DiscBodyCache cache;
-  const PadBody& pad = cache.pad(parameters.pads, offsets);
+  const PadBody pad = make_pad(parameters.pads, offsets);
   System system;
   std::vector<double> angles;
   for (const double offset : offsets)

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "models/disc_model.hpp"
+#include "tests/support/disc_model.hpp"
 #include "solvers/linear_pencil.hpp"
 
 namespace stridor::test {
