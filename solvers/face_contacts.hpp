@@ -90,6 +90,10 @@ struct RunningFace : ContactRecord {
   double rise_at(double time) const {
     return time < constant_from ? point().friction_rise.value(time) : rise;
   }
+  /// Whether its spring has let the slave through the middle of the plate, of which it says nothing.
+  bool is_through() const {
+    return force * point().compliance() > point().face->half_thickness;
+  }
   /// Half of what the mean velocity has changed by from step to step: with it that of a step becomes
   /// that at its end. Where sliding ends or turns round, by more than half, it is left out.
   Eigen::Vector2d half_change() const;
@@ -100,7 +104,7 @@ struct RunningFace : ContactRecord {
   void restore(const Numbers& numbers);
 };
 
-/// The contacts on faces of a simulation, with their problems (docs/theory.md, 10.9).
+/// The contacts on faces of a simulation, with their problems (docs/theory.md, 10.6).
 class RunningFaces {
  public:
   /// What a step is made with.

@@ -33,6 +33,17 @@ ContactLinearisation linearised(const System& system, const ContactPoint& point,
   return linearise_contact(positions, point.friction, state.friction_factor, terms);
 }
 
+/// Rows of a body that carry derivatives of a displacement at contacts on its faces.
+std::vector<int> slope_rows(const System& system, int body) {
+  std::vector<int> rows;
+  for (const ContactPoint& contact : system.contacts) {
+    if (!contact.face || contact.face->body != body) continue;
+    rows.insert(rows.end(), contact.face->rows.begin() + 1, contact.face->rows.end());
+  }
+  std::erase_if(rows, [](int row) { return row < 0; });
+  return rows;
+}
+
 /// Adds the reduced form of modal coordinates to a state that may be empty.
 void add_motion(Eigen::VectorXd& state, const Eigen::MatrixXd& shapes,
                 const Eigen::VectorXd& modal) {
@@ -128,8 +139,10 @@ void add_perturbation(System& system, const Eigen::VectorXcd& vector, std::compl
   }
   std::complex<double> largest = 0.0;
   Eigen::Index first = 0;
-  for (const SystemBody& body : system.bodies) {
-    const Eigen::VectorXcd rows = body.modal.rows * vector.segment(first, body.modal.size());
+  for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+    const SystemBody& body = system.bodies[b];
+    Eigen::VectorXcd rows = body.modal.rows * vector.segment(first, body.modal.size());
+    for (const int slope : slope_rows(system, static_cast<int>(b))) rows(slope) = 0.0;
     for (const std::complex<double>& row : rows)
       if (std::abs(row) > std::abs(largest)) largest = row;
     first += body.modal.size();

@@ -30,7 +30,7 @@ enum class StepOutcome {
   jammed,            ///< b_C W b_Eᵀ of a contact is not positive: no contact force closes its gap
   not_converged,     ///< the forces of several contacts have not settled
   diverged,          ///< a contact force is not finite or beyond any use
-  sunk,              ///< a slave point is deeper in its substrate than its radius
+  sunk,              ///< a slave point is deeper in its substrate than its radius, or has gone through a plate
   overshot,          ///< a substrate is so stiff for the step that indentations grow with each
 };
 

@@ -461,6 +461,7 @@ struct Simulation::Implementation {
     for (std::size_t i = 0; i < faces.size(); ++i) {
       RunningFace& face = faces[i];
       if (!(std::abs(face.force) < absurd_force)) return fail(face, StepOutcome::diverged);
+      if (face.is_through()) return fail(face, StepOutcome::sunk);
       const bool is_unilateral = faces.problems()[i].is_unilateral;
       if (is_unilateral && face.point().assumption != ContactAssumption::film) {
         if (face.state == ContactState::open) note(face, face.violations.negative_force);
@@ -752,8 +753,16 @@ struct Simulation::Implementation {
 
   StepOutcome fail(const RunningFace& face, StepOutcome outcome) {
     const FacePlace& place = *face.point().face;
-    return fail_anywhere(
-        face, fmt::format("radius {:.6g} m, angle {:.4g} rad", place.radius, place.angle), outcome);
+    const std::string where =
+        fmt::format("radius {:.6g} m, angle {:.4g} rad", place.radius, place.angle);
+    if (outcome != StepOutcome::sunk) return fail_anywhere(face, where, outcome);
+    failure = fmt::format(
+        "{} at t = {:.9g} s (step {}), {}: it has gone {:.4g} m into {}, more than half its "
+        "thickness. Remedy: take a smaller initial amplitude, a larger normal.stiffness or a "
+        "smaller time.step.",
+        face.point().name, time(index), index, where, face.force * face.point().compliance(),
+        place.name);
+    return outcome;
   }
 
   /// What can go wrong with a contact of any kinematics.

@@ -68,5 +68,5 @@ root_locus equal_damping flutter_equal_damping 0 0.4
 root_locus uneven_damping flutter_ziegler 0 0.4 --set "substructures.oscillator.damping=[[0.1, 0], [0, 0.3]]"
 root_locus ziegler flutter_ziegler 0 0.4
 root_locus gyroscopic_flutter flutter_gyroscopic 0 0.4
-"$stridor" locus "$source_folder/scenes/examples/elastic_pads.yaml" --parameter contact.friction.coefficient \
+"$stridor" locus "$source_folder/scenes/examples/elastic_pads.yaml" --parameter parameters.mu \
   --from 0 --to 0.6 --points 121 --below 3.6kHz --history "$here/root_locus_elastic_pads.png" --force >/dev/null

@@ -360,5 +360,21 @@ TEST(DiscProgram, HasWhatOtherScenesHave) {
   EXPECT_EQ(sweep["rows"].size(), 3U) << sweep;
 }
 
+TEST(DiscProgram, StopsWhereAPadGoesThroughTheDisc) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "run.h5").string();
+  const auto run = [&](const std::string& amplitude) {
+    return Program({"run", scene_path("examples/disc_squeal.yaml"), "-o", file, "--force", "--set",
+                    "time.end=0.02", "--set", "initial.perturbation.amplitude=" + amplitude})
+        .run();
+  };
+  // The disc is 12 mm thick. 5 mm are no small motion, but the pads stay on their sides.
+  EXPECT_EQ(run("5 mm").exit_code, 0);
+  const ProgramResult result = run("1");
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("more than half its thickness"));
+  EXPECT_THAT(result.err, HasSubstr("m into disc."));
+}
+
 }  // namespace
 }  // namespace stridor

@@ -58,13 +58,14 @@ TEST(SetUpEstimate, OfABodyWithoutReductionIsThatOfItsAssembly) {
 
 TEST(SetUpEstimate, OfADiscGrowsWithTheSquareOfItsModes) {
   ModelParameters model;
-  const auto disc = std::make_shared<PlateBodyParameters>();
-  disc->plate.nodal_diameters = 200;
-  disc->plate.radial_modes = 40;
+  PlateBodyParameters disc;
+  disc.plate.nodal_diameters = 200;
+  disc.plate.radial_modes = 40;
   model.substructures["disc"] = disc;
   const double whole = estimate_set_up(model).bytes();
   EXPECT_GT(whole, 9.0 * 8.0 * 16040.0 * 16040.0);
-  disc->plate.radial_modes = 20;
+  disc.plate.radial_modes = 20;
+  model.substructures["disc"] = disc;
   EXPECT_NEAR(estimate_set_up(model).bytes() / whole, 0.25, 1e-2);
 }
 
