@@ -307,10 +307,14 @@ class ScaledPeriodMap {
     all << *next - y.head(m), velocity_.dot(y.head(m));
     return all;
   }
-  /// ∂P_T(z)/∂(z, T) by central differences.
+  /// ∂P_T(z)/∂(z, T) by central differences; P jumps where a contact breaks loose a step earlier or
+  /// later, and beside a jump the difference to the other side is taken.
   std::optional<Eigen::MatrixXd> derivative(const Eigen::VectorXd& y) const {
     constexpr double change = 1e-5;
+    constexpr double jump = 0.1;
     const Eigen::Index m = scale_.size();
+    const auto here = (*this)(y);
+    if (!here) return std::nullopt;
     Eigen::MatrixXd derivative(m, m + 1);
     for (Eigen::Index k = 0; k <= m; ++k) {
       Eigen::VectorXd moved = y;
@@ -319,7 +323,13 @@ class ScaledPeriodMap {
       moved[k] = y[k] - change;
       const auto before = (*this)(moved);
       if (!after || !before) return std::nullopt;
-      derivative.col(k) = (*after - *before) / (2.0 * change);
+      const Eigen::VectorXd ahead = (*after - *here) / change;
+      const Eigen::VectorXd behind = (*here - *before) / change;
+      if ((ahead - behind).norm() < jump * std::min(ahead.norm(), behind.norm()) + jump) {
+        derivative.col(k) = 0.5 * (ahead + behind);
+      } else {
+        derivative.col(k) = ahead.norm() < behind.norm() ? ahead : behind;
+      }
     }
     return derivative;
   }
