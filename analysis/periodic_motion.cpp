@@ -251,8 +251,8 @@ class PeriodMap {
   Eigen::Index num_unknowns_ = 0;
 };
 
-/// Sizes of the displacements and velocities over a stretch of steps: half of what each moves through,
-/// at least 1e-4 of that of its kind that moves most.
+/// Sizes of the displacements and velocities over a stretch of steps: half of what each moves
+/// through, at least 1e-4 of that of its kind that moves most.
 Eigen::VectorXd sizes_of_motion(const PeriodMap& map, Simulation& simulation,
                                 std::int64_t num_steps) {
   const Eigen::Index size = map.num_unknowns();
@@ -354,9 +354,9 @@ class ScaledPeriodMap {
 std::vector<std::complex<double>> multipliers_of(const Eigen::MatrixXd& derivative) {
   const Eigen::VectorXcd all = Eigen::EigenSolver<Eigen::MatrixXd>(derivative, false).eigenvalues();
   std::vector<std::complex<double>> multipliers(all.data(), all.data() + all.size());
-  multipliers.erase(
-      std::min_element(multipliers.begin(), multipliers.end(),
-                       [](auto a, auto b) { return std::abs(a - 1.0) < std::abs(b - 1.0); }));
+  multipliers.erase(std::min_element(multipliers.begin(), multipliers.end(), [](auto a, auto b) {
+    return std::abs(a - 1.0) < std::abs(b - 1.0);
+  }));
   std::sort(multipliers.begin(), multipliers.end(),
             [](auto a, auto b) { return std::abs(a) > std::abs(b); });
   return multipliers;
@@ -465,7 +465,8 @@ bool go_to_turn(Simulation& simulation, const System& system, ObservedMotion obs
 }
 
 /// The sizes by which Newton's method measures the unknowns.
-Eigen::VectorXd scale_of(const PeriodMap& map, Simulation& simulation, const PeriodicMotion& found) {
+Eigen::VectorXd scale_of(const PeriodMap& map, Simulation& simulation,
+                         const PeriodicMotion& found) {
   Eigen::VectorXd scale = sizes_of_motion(map, simulation, found.num_steps);
   constexpr double least = 1e-6;
   Eigen::Index first = 0;
@@ -481,9 +482,10 @@ Eigen::VectorXd scale_of(const PeriodMap& map, Simulation& simulation, const Per
   return scale;
 }
 
-/// Newton's method with `found.num_steps` steps, and where it ends at a jump of P with a few more: a
-/// contact with a static coefficient breaks loose at the end of a step, and with another length of it the
-/// cycle lies between two jumps. @return of what it came to, and of the first start where it did not
+/// Newton's method with `found.num_steps` steps, and where it ends at a jump of P with a few more:
+/// a contact with a static coefficient breaks loose at the end of a step, and with another length
+/// of it the cycle lies between two jumps. @return of what it came to, and of the first start where
+/// it did not
 std::optional<PeriodicMotion> solve_with_steps(const TimeParameters& time,
                                                const Simulation& simulation,
                                                const Eigen::VectorXd& start,

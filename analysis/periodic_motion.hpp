@@ -1,4 +1,5 @@
-// Periodic motion of bodies in contact, as the steps of a simulation make it: settled, then solved for.
+// Periodic motion of bodies in contact, as the steps of a simulation make it: settled, then solved
+// for.
 #pragma once
 
 #include <complex>
@@ -31,8 +32,8 @@ struct PeriodicMotion {
   CycleStatus status = CycleStatus::diverged;
   std::string failure;  ///< of the simulation; empty unless `diverged`
   ObservedMotion observed;
-  /// Statistics of the observed displacement, SI: of the cycle, or of the whole turns after `settle`
-  /// where none was solved for.
+  /// Statistics of the observed displacement, SI: of the cycle, or of the whole turns after
+  /// `settle` where none was solved for.
   CycleMeter::Reading seen;
   double period = 0.0;         ///< T, s; 0 where not periodic
   std::int64_t num_steps = 0;  ///< N of a period
@@ -49,8 +50,9 @@ struct PeriodicMotion {
 };
 
 struct PeriodicMotionOptions {
-  double settle = 0.0;                ///< time before a cycle is sought, s
-  Eigen::Index most_unknowns = 1000;  ///< displacements and velocities that Newton's method solves for
+  double settle = 0.0;  ///< time before a cycle is sought, s
+  Eigen::Index most_unknowns =
+      1000;  ///< displacements and velocities that Newton's method solves for
 };
 
 /// Follows a motion until it repeats itself, and solves for the cycle.
@@ -60,11 +62,12 @@ struct PeriodicMotionOptions {
 ///
 ///   P_T(z) − z = 0,   v(z) = 0,
 ///
-/// with P_T(z) the motion after N steps of T/N, N the period over the step of the scene, v the velocity
-/// of the observed displacement, and derivatives by central differences. The eigenvalues of ∂P/∂z are
-/// the multipliers. The cycle is that of the discrete motion. Where Newton's method does not converge, as
-/// where a start a little aside breaks loose a step earlier, the motion is periodic without
-/// multipliers if one period brings it back to 3 % of its size, and irregular otherwise.
+/// with P_T(z) the motion after N steps of T/N, N the period over the step of the scene, v the
+/// velocity of the observed displacement, and derivatives by central differences. The eigenvalues
+/// of ∂P/∂z are the multipliers. The cycle is that of the discrete motion. Where Newton's method
+/// does not converge, as where a start a little aside breaks loose a step earlier, the motion is
+/// periodic without multipliers if one period brings it back to 3 % of its size, and irregular
+/// otherwise.
 ///
 /// @param system as for Simulation, with its initial state
 /// @param time   `end` is not used

@@ -74,14 +74,14 @@ void print_cycle(const Json& results) {
 
 std::string caption_of(const CycleCommandOptions& options, const LoadedScene& loaded,
                        const Json& results, const char* what) {
-  return fmt::format(
-      "{}, {}, x r.m.s. {}. {}, scene {}.", what,
-      results["period"].is_null()
-          ? results["status"].get<std::string>()
-          : fmt::format("one period of {:.6g} s", results["period"].get<double>()),
-      results["x"]["rms"].is_null() ? "none"
-                                    : fmt::format("{:.6g} m", results["x"]["rms"].get<double>()),
-      std::filesystem::path(options.scene).filename().string(), loaded.hash());
+  return fmt::format("{}, {}, x r.m.s. {}. {}, scene {}.", what,
+                     results["period"].is_null()
+                         ? results["status"].get<std::string>()
+                         : fmt::format("one period of {:.6g} s", results["period"].get<double>()),
+                     results["x"]["rms"].is_null()
+                         ? "none"
+                         : fmt::format("{:.6g} m", results["x"]["rms"].get<double>()),
+                     std::filesystem::path(options.scene).filename().string(), loaded.hash());
 }
 
 /// One mass on a half-space, from event to event.
@@ -152,8 +152,8 @@ ExitCode cycle(const CycleCommandOptions& options) {
 void add_cycle_command(CLI::App& program, Action& action, const std::string& command_line) {
   auto options = std::make_shared<CycleCommandOptions>();
   options->command_line = command_line;
-  CLI::App* verb = program.add_subcommand(
-      "cycle", "Limit cycle of bodies in contact, with its multipliers");
+  CLI::App* verb =
+      program.add_subcommand("cycle", "Limit cycle of bodies in contact, with its multipliers");
   verb->add_option("scene", options->scene, "Scene file (YAML)")->required();
   verb->add_option("-o,--output", options->output, "File for one period (HDF5)");
   verb->add_option("--figure", options->figure, "Picture of one period: .png, .svg or .pdf");

@@ -21,7 +21,9 @@ std::string observed_name(const PeriodicMotion& cycle) {
                      observed_contact(cycle).name);
 }
 
-Json or_null(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
+Json or_null(const std::optional<double>& value) {
+  return value ? number(*value) : Json(nullptr);
+}
 
 }  // namespace
 

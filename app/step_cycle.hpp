@@ -1,4 +1,5 @@
-// Limit cycles of bodies in contact, of the steps of a run: results, one period as columns, picture.
+// Limit cycles of bodies in contact, of the steps of a run: results, one period as columns,
+// picture.
 #pragma once
 
 #include <string>
@@ -20,8 +21,8 @@ PeriodicMotion find_scene_cycle(const LoadedScene& loaded, Model& model);
 /// The results of `cycle`, SI.
 Json step_cycle_json(const PeriodicMotion& cycle);
 
-/// One period of a cycle, at most 1,000 rows: the displacement observed, and of every contact force,
-/// friction force, slip velocity and state.
+/// One period of a cycle, at most 1,000 rows: the displacement observed, and of every contact
+/// force, friction force, slip velocity and state.
 std::vector<Column> step_cycle_columns(const PeriodicMotion& cycle, const TimeParameters& time);
 
 /// Draws the displacement, and slip velocity and force of its contact, of columns as of

@@ -65,10 +65,10 @@ TEST(CycleProgram, PrintsAndDraws) {
   const ProgramResult result =
       Program({"cycle", scene_path("examples/mass_on_belt.yaml"), "--figure", picture}).run();
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  for (const char* line : {"status                          periodic",
-                           "x is                    x of the slave at contact",
-                           "period                      0.671", "part of time sticking           0.29",
-                           "belt.png\n"})
+  for (const char* line :
+       {"status                          periodic",
+        "x is                    x of the slave at contact", "period                      0.671",
+        "part of time sticking           0.29", "belt.png\n"})
     EXPECT_THAT(result.out, HasSubstr(line));
   EXPECT_GT(std::filesystem::file_size(picture), 10'000u);
   const ProgramResult many = Program({"cycle", reed_scene}).run();
@@ -87,9 +87,10 @@ TEST(CycleProgram, MotionThatBreaksLooseUnevenlyIsIrregular) {
 TEST(CycleProgram, RefusesWhatCannotRepeatItself) {
   const std::string beams = scene_path("beam_on_beam_limit_cycle.yaml");
   EXPECT_THAT(cycle_error({beams}), HasSubstr("cycle: missing: a limit cycle is sought after"));
-  EXPECT_THAT(cycle_error({beams, "--set", "cycle.settle=0.1"}),
-              HasSubstr("cycle: the motion cannot repeat itself: contact 'contact' moves along "
-                        "cantilever.top and comes to its end; hold its place by `sliding: frozen`"));
+  EXPECT_THAT(
+      cycle_error({beams, "--set", "cycle.settle=0.1"}),
+      HasSubstr("cycle: the motion cannot repeat itself: contact 'contact' moves along "
+                "cantilever.top and comes to its end; hold its place by `sliding: frozen`"));
   EXPECT_THAT(cycle_error({scene_path("examples/gyroscopic.yaml"), "--set", "cycle.settle=0.1"}),
               HasSubstr("time: missing: `cycle` needs this section"));
   EXPECT_THAT(cycle_error({scene_path("examples/gyroscopic.yaml"), "--set", "cycle.settle=0.1",
@@ -104,7 +105,8 @@ TEST(CycleProgram, RefusesWhatCannotRepeatItself) {
 
 TEST(CycleProgram, FailureOfTheRunIsOneOfNumbers) {
   const ProgramResult result =
-      Program({"cycle", scene_path("examples/frozen_growth.yaml"), "--set", "cycle.settle=1"}).run();
+      Program({"cycle", scene_path("examples/frozen_growth.yaml"), "--set", "cycle.settle=1"})
+          .run();
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.err, HasSubstr("persistent sliding"));
 }

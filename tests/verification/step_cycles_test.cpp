@@ -20,9 +20,9 @@ TEST(StepCycles, SphereOnRubberIsThatOfTheEvents) {
   const SlidingOscillator oscillator = as_oscillator(model.system).value();
   CycleOptions options;
   options.settle = 200.0;
-  const LimitCycle events = find_limit_cycle(
-      oscillator.oscillator, oscillator.initial_displacement(model.system),
-      oscillator.initial_velocity(model.system), options);
+  const LimitCycle events =
+      find_limit_cycle(oscillator.oscillator, oscillator.initial_displacement(model.system),
+                       oscillator.initial_velocity(model.system), options);
   ASSERT_EQ(events.status, CycleStatus::periodic);
   // A restart, and an end of sticking, lies within a step: of first order in h.
   double before = 0.0;
