@@ -35,12 +35,9 @@ struct Report {
   Json bodies = Json::object();  ///< given by matrices, see matrix_bodies_json()
 };
 
-/// Of a scene of another kind. @throws ConfigError
-void refuse_stability(const CheckOptions& options) {
-  if (!options.stability) return;
-  throw ConfigError("--stability",
-                    "takes a scene of bodies in contact, which `run` marches with time.step; the "
-                    "vibrations of this one are followed by eig and locus");
+/// Of what has no steps. @throws ConfigError
+void refuse_stability(const CheckOptions& options, const char* reason) {
+  if (options.stability) throw ConfigError("--stability", reason);
 }
 
 /// Whether only `contact` can do something with a scene.
@@ -57,7 +54,9 @@ bool is_for_contact(const Scene& scene) {
 Report check_scene(const CheckOptions& options) {
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   if (is_for_contact(loaded.scene)) {
-    refuse_stability(options);
+    refuse_stability(options,
+                     "is that of the steps of a run, and without bodies to march there are only "
+                     "normal laws, which the verb `contact` evaluates");
     (void)viscoelastic_contacts(loaded);
     return {key_warnings(Scene::schema(), &loaded.scene, loaded.tree)};
   }
@@ -71,7 +70,9 @@ Report check_scene(const CheckOptions& options) {
     (void)set_initial_state(model.system, loaded);
     if (loaded.scene.time->is_event_driven()) {
       (void)sliding_equilibrium(oscillator_of(loaded, model.system, "time.integrator"));
-      refuse_stability(options);
+      refuse_stability(options,
+                       "is that of time.step, and event_driven has no steps of a given length; the "
+                       "vibrations are followed by eig and locus");
     } else {
       const Simulation simulation(model.system, *loaded.scene.time, accounts_of(loaded.scene));
       // The report on stability shows what a run would be refused for.

@@ -49,14 +49,17 @@ SubstrateEquilibrium sliding_equilibrium(const SlidingOscillator& oscillator) {
   return found;
 }
 
+void require_cycle_section(const LoadedScene& loaded) {
+  if (loaded.scene.cycle) return;
+  throw loaded.located(ConfigError(
+      "cycle",
+      "missing: a limit cycle is sought after `cycle.settle`, the time that the motion "
+      "takes to settle"));
+}
+
 CycleScene make_cycle_scene(const LoadedScene& loaded, Model& model) {
   const Scene& scene = loaded.scene;
-  if (!scene.cycle) {
-    throw loaded.located(ConfigError(
-        "cycle",
-        "missing: a limit cycle is sought after `cycle.settle`, the time that the motion "
-        "takes to settle"));
-  }
+  require_cycle_section(loaded);
   (void)set_initial_state(model.system, loaded);
   CycleScene made{oscillator_of(loaded, model.system, "cycle"), {}, {}, {}};
   (void)sliding_equilibrium(made.oscillator);

@@ -28,6 +28,9 @@ struct CycleScene {
   CycleOptions options;          ///< likewise
 };
 
+/// @throws ConfigError with the place of the key if a scene has no section `cycle`
+void require_cycle_section(const LoadedScene& loaded);
+
 /// @param model is put into its initial state
 /// @throws ConfigError with the place of the key if the scene has no section `cycle` or is of no
 ///         such system; FileError, NumericalError

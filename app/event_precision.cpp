@@ -218,7 +218,7 @@ void refuse_options_of_steps(const PrecisionOptions& options) {
     throw ConfigError("--until", fmt::format("{}; here time.end says how far", reason));
   if (!options.retain.empty()) throw ConfigError("--retain", reason);
   if (!options.assumptions.empty()) throw ConfigError("--assumptions", reason);
-  if (options.points > 20) throw ConfigError("--points", "is at most 20 for this kind of scene");
+  if (options.points > 20) throw ConfigError("--points", "is at most 20 with event_driven");
 }
 
 }  // namespace

@@ -2,85 +2,26 @@
 
 #include <fmt/format.h>
 
-namespace stridor {
+#include <string>
+#include <utility>
 
-void check_coefficient(const char* key, const std::optional<double>& coefficient,
-                       std::vector<Problem>& problems) {
-  constexpr double most = 100.0;
-  if (!coefficient || *coefficient <= most) return;
-  problems.push_back({key,
-                      fmt::format("must be at most {:g}, got {:g}: solids in contact have "
-                                  "coefficients of friction below about 10",
-                                  most, *coefficient),
-                      {},
-                      0,
-                      0});
-}
+namespace stridor {
 
 namespace {
 
-const char* name_of(FrictionKind law) {
-  switch (law) {
-    case FrictionKind::constant:
-      return "constant";
-    case FrictionKind::static_dynamic:
-      return "static_dynamic";
-    case FrictionKind::stribeck:
-      return "stribeck";
-    case FrictionKind::shear:
-      return "shear";
-  }
-  return "";
-}
-
-void check_friction(const FrictionParameters& friction, std::vector<Problem>& problems) {
-  const FrictionKind law = friction.law;
-  const auto demand = [&](const char* key, bool is_given, bool is_wanted) {
-    if (is_given == is_wanted) return;
-    problems.push_back({key,
-                        fmt::format("{} by the {} friction law",
-                                    is_wanted ? "missing: needed" : "not used", name_of(law)),
-                        {},
-                        0,
-                        0});
-  };
-  const bool is_constant = law == FrictionKind::constant;
-  const bool is_shear = law == FrictionKind::shear;
-  demand("coefficient", friction.coefficient.has_value(), is_constant);
-  demand("static", friction.static_coefficient.has_value(), !is_constant && !is_shear);
-  demand("dynamic", friction.dynamic_coefficient.has_value(), !is_constant && !is_shear);
-  demand("decay_velocity", friction.decay_velocity.has_value(), law == FrictionKind::stribeck);
-  demand("strength", friction.strength.has_value(), is_shear);
-  check_coefficient("coefficient", friction.coefficient, problems);
-  check_coefficient("static", friction.static_coefficient, problems);
-  check_coefficient("dynamic", friction.dynamic_coefficient, problems);
-  if (friction.static_coefficient && friction.dynamic_coefficient &&
-      law == FrictionKind::static_dynamic &&
-      *friction.static_coefficient < *friction.dynamic_coefficient) {
-    problems.push_back({"static", "must not be below `dynamic`", {}, 0, 0});
-  }
-  if (friction.regularisation && law == FrictionKind::static_dynamic) {
-    problems.push_back({"regularisation",
-                        "goes with a law that is continuous in sliding: a regularised contact "
-                        "never rests, so that `static` would never act; take constant or stribeck",
-                        {},
-                        0,
-                        0});
-  }
-}
-
 /// Which laws go together.
 void check_laws(const ContactParameters& contact, std::vector<Problem>& problems) {
-  const auto refuse = [&](const char* key, const char* text) {
-    problems.push_back({key, text, {}, 0, 0});
+  const auto refuse = [&](const char* key, std::string text) {
+    problems.push_back({key, std::move(text), {}, 0, 0});
   };
   const bool is_viscoelastic = contact.normal.law == NormalLaw::viscoelastic;
   if (!contact.friction && !is_viscoelastic)
     refuse("friction", "is missing: this normal law brings none of its own");
-  if (contact.friction && contact.friction->law == FrictionKind::shear && !is_viscoelastic) {
+  if (contact.friction && contact.friction->law->needs_area && !is_viscoelastic) {
     refuse("normal.law",
-           "has no area of contact, with which the friction law shear is in proportion; take {law: "
-           "viscoelastic, ...}, or a friction coefficient");
+           fmt::format("has no area of contact, with which the friction law {} is in proportion; "
+                       "take {{law: viscoelastic, ...}}, or a friction coefficient",
+                       contact.friction->law->name));
   }
   if (contact.friction && contact.friction->viscoelastic == FrictionLoad::applied &&
       !is_viscoelastic) {
@@ -107,101 +48,10 @@ void check_laws(const ContactParameters& contact, std::vector<Problem>& problems
 
 }  // namespace
 
-const Schema& FrictionRegularisation::schema() {
-  using Kind = RegularisedSign::Kind;
-  static const Schema keys =
-      SchemaOf<FrictionRegularisation>("friction_regularisation")
-          .choice("law", &FrictionRegularisation::law,
-                  {{"tanh", Kind::tanh},
-                   {"linear", Kind::linear},
-                   {"square_root", Kind::square_root},
-                   {"atan", Kind::atan}},
-                  {.doc = "What stands in the place of the sign of the slip, with u the slip over "
-                          "`speed`: tanh u, u up to 1, u/(1 + u²)^1/2 or (2/π) arctan u.",
-                   .optional = true})
-          .real("speed", &FrictionRegularisation::speed,
-                {.doc = "Slip over which friction rises.",
-                 .unit = "m s-1",
-                 .range = Range::positive()});
-  return keys;
-}
-
-const Schema& FrictionParameters::schema() {
-  static const Schema keys =
-      SchemaOf<FrictionParameters>("friction")
-          .choice(
-              "law", &FrictionParameters::law,
-              {{"constant", FrictionKind::constant},
-               {"static_dynamic", FrictionKind::static_dynamic},
-               {"stribeck", FrictionKind::stribeck},
-               {"shear", FrictionKind::shear}},
-              {.doc = "constant: `coefficient`; static_dynamic: `static` at rest, `dynamic` in "
-                      "sliding; stribeck: from `static` to `dynamic` as exp(-|v|/decay_velocity); "
-                      "shear: `strength` times the area of a viscoelastic contact.",
-               .optional = true})
-          .real("coefficient", &FrictionParameters::coefficient,
-                {.doc = "Coulomb friction coefficient of the constant law, at most 100; rises with "
-                        "drive.ramp.",
-                 .range = Range::non_negative(),
-                 .optional = true})
-          .real("static", &FrictionParameters::static_coefficient,
-                {.doc = "Coefficient at rest, at most 100; rises with drive.ramp.",
-                 .range = Range::non_negative(),
-                 .optional = true})
-          .real("dynamic", &FrictionParameters::dynamic_coefficient,
-                {.doc = "Coefficient in (fast) sliding, at most 100; rises with drive.ramp.",
-                 .range = Range::non_negative(),
-                 .optional = true})
-          .real("decay_velocity", &FrictionParameters::decay_velocity,
-                {.doc = "Sliding velocity over which the Stribeck law falls by 1/e.",
-                 .unit = "m s-1",
-                 .range = Range::positive(),
-                 .optional = true})
-          .real("strength", &FrictionParameters::strength,
-                {.doc = "τ_0 of the shear law: friction of the interface per area of contact.",
-                 .unit = "Pa",
-                 .range = Range::non_negative(),
-                 .optional = true})
-          .choice(
-              "viscoelastic", &FrictionParameters::viscoelastic,
-              {{"applied", FrictionLoad::applied}, {"contact", FrictionLoad::contact}},
-              {.doc = "What the friction coefficient of a viscoelastic normal law is multiplied "
-                      "with: the drive's load, or the force of the contact at the instant.",
-               .optional = true})
-          .section("regularisation", &FrictionParameters::regularisation,
-                   {.doc = "Friction without sticking, as a smooth function of the slip: the "
-                           "contact creeps where it would stick.",
-                    .optional = true})
-          .check(check_friction);
-  return keys;
-}
-
-FrictionLaw make_friction_law(const FrictionParameters& parameters) {
-  FrictionLaw law;
-  switch (parameters.law) {
-    case FrictionKind::constant:
-      law = constant_friction(parameters.coefficient.value());
-      break;
-    case FrictionKind::static_dynamic:
-    case FrictionKind::stribeck:
-      law = {parameters.law == FrictionKind::stribeck ? FrictionLaw::Kind::stribeck
-                                                      : FrictionLaw::Kind::static_dynamic,
-             parameters.static_coefficient.value(), parameters.dynamic_coefficient.value(),
-             parameters.decay_velocity.value_or(1.0)};
-      break;
-    case FrictionKind::shear:
-      break;
-  }
-  if (parameters.regularisation)
-    law.sign = {parameters.regularisation->law, parameters.regularisation->speed};
-  return law;
-}
-
 SubstrateContact make_substrate_contact(const ContactParameters& contact, double load) {
-  if (!contact.friction) return make_substrate_contact(contact.normal, 0.0);
+  if (!contact.friction) return make_substrate_contact(contact.normal);
   const FrictionParameters& friction = *contact.friction;
-  SubstrateContact made = make_substrate_contact(contact.normal, friction.strength.value_or(0.0),
-                                                 make_friction_law(friction));
+  SubstrateContact made = make_substrate_contact(contact.normal, make_friction_law(friction));
   made.friction_load = friction.viscoelastic;
   made.load = load;
   return made;
@@ -250,7 +100,8 @@ const Schema& ContactParameters::schema() {
                       "list of them. May be absent where only `contact` evaluates the normal law.",
                .optional = true})
           .text("master", &ContactParameters::master,
-                {.doc = "Master surface: <body>.<surface>, or a face of a plate; `rigid`: a rigid straight line along +x "
+                {.doc = "Master surface: <body>.<surface>, or a face of a plate; `rigid`: a rigid "
+                        "straight line along +x "
                         "without end, below the slave; or `half_space`: a viscoelastic one there, "
                         "of which the normal law is that of an indenter at the slave point."})
           .choice("assumption", &ContactParameters::assumption,
@@ -278,8 +129,8 @@ const Schema& ContactParameters::schema() {
           .section("start", &ContactParameters::start,
                    {.doc = "Initial position of the first slave point along the master surface, "
                            "from its first node; on the face of a plate {radius, angle}.",
-                     .optional = true,
-                     .number_key = "along"})
+                    .optional = true,
+                    .number_key = "along"})
           .choice("sliding", &ContactParameters::sliding,
                   {{"moving", SlidingMode::moving}, {"frozen", SlidingMode::frozen}},
                   {.doc = "moving: the drive slides the slave; frozen: position held, friction as "

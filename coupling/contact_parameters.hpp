@@ -6,42 +6,12 @@
 #include <vector>
 
 #include "core/schema.hpp"
+#include "coupling/friction_parameters.hpp"
 #include "coupling/normal_parameters.hpp"
 #include "coupling/roughness.hpp"
 #include "coupling/system.hpp"
 
 namespace stridor {
-
-/// Smooth friction in the place of the set-valued one, which it only resembles.
-struct FrictionRegularisation {
-  RegularisedSign::Kind law = RegularisedSign::Kind::tanh;
-  double speed = 0.0;  ///< v_ε, m/s, > 0
-  static const Schema& schema();
-};
-
-enum class FrictionKind { constant, static_dynamic, stribeck, shear };
-
-/// Coefficients hold once the drive's ramp has ended.
-struct FrictionParameters {
-  FrictionKind law = FrictionKind::constant;
-  std::optional<double> coefficient;          ///< μ of the constant law, ≥ 0
-  std::optional<double> static_coefficient;   ///< μ_s, ≥ 0
-  std::optional<double> dynamic_coefficient;  ///< μ_d, ≥ 0
-  std::optional<double> decay_velocity;       ///< v_d, m/s, > 0
-  std::optional<double>
-      strength{};  ///< τ_0 of the shear law, friction per area of contact, Pa, ≥ 0
-  /// What the viscoelastic friction coefficient of such a normal law is multiplied with.
-  FrictionLoad viscoelastic = FrictionLoad::contact;
-  std::optional<FrictionRegularisation> regularisation{};
-  static const Schema& schema();
-};
-
-/// Adds a problem for a coefficient of friction that no pair of solids has, above 100.
-void check_coefficient(const char* key, const std::optional<double>& coefficient,
-                       std::vector<Problem>& problems);
-
-/// Coulomb friction of a section; none for the shear law, which is in proportion to an area.
-FrictionLaw make_friction_law(const FrictionParameters& parameters);
 
 enum class SlidingMode {
   moving,  ///< the drive moves the slave along the master

@@ -201,8 +201,7 @@ const Schema& NormalParameters::schema() {
   return keys;
 }
 
-SubstrateContact make_substrate_contact(const NormalParameters& p, double shear_strength,
-                                        const FrictionLaw& friction) {
+SubstrateContact make_substrate_contact(const NormalParameters& p, const FrictionLaw& friction) {
   const double radius = p.tip_radius();
   const double square = radius * radius;
   SubstrateContact contact;
@@ -210,7 +209,7 @@ SubstrateContact make_substrate_contact(const NormalParameters& p, double shear_
   contact.indentation_unit = radius;
   contact.speed_unit = radius / p.first_creep_time();
   contact.force_unit = p.composite_modulus() * square;
-  contact.shear = shear_strength * square;
+  contact.shear = friction.shear_strength * square;
   contact.friction_load = FrictionLoad::contact;
   contact.sign = friction.sign;
   contact.interface_friction = friction;

@@ -77,10 +77,9 @@ std::shared_ptr<const ViscoelasticContactLaw> law_of(const NormalParameters& par
 /// The contact of a viscoelastic normal law in SI units:
 /// F_k = E_0* R² F̃(y/R, v τ/R), friction μ_v F_k + τ_0 R² Ã + μ(v) F_k.
 ///
-/// @param shear_strength τ_0, Pa, >= 0
-/// @param friction       μ(v) of the interface, besides the viscoelastic friction μ_v
+/// @param friction τ_0 and μ(v) of the interface, besides the viscoelastic friction μ_v
 /// @throws std::invalid_argument as law_of()
-SubstrateContact make_substrate_contact(const NormalParameters& parameters, double shear_strength,
+SubstrateContact make_substrate_contact(const NormalParameters& parameters,
                                         const FrictionLaw& friction = {});
 
 }  // namespace stridor

@@ -191,7 +191,7 @@ std::optional<Shape> shape_of(Run& run) {
   const ContactPoint& point = contact.point();
   const MasterSurface& surface = contact.sliding.surface();
   if (!run.slides_only || point.substrate || point.penalty ||
-      point.friction.kind == FrictionLaw::Kind::stribeck || surface.stencil_size() != 2 ||
+      point.friction.sliding || surface.stencil_size() != 2 ||
       !surface.roughness.is_smooth() || point.slave_body == surface.body) {
     return std::nullopt;
   }

@@ -122,7 +122,7 @@ SlidingOscillator scaled(SlidingMass mass) {
   contact.force_unit /= made.force;
   contact.shear /= made.force;
   contact.load /= made.force;
-  contact.interface_friction.decay_velocity /= velocity;
+  contact.interface_friction.velocity_unit *= velocity;
   contact.sign.speed /= velocity;
   made.mass = std::move(mass);
   return made;

@@ -256,15 +256,15 @@ Strings unlisted_sources(const fs::path& folder) {
   return unlisted;
 }
 
-/// The struct of a type of body and the files that may name it.
-struct BodyType {
+/// A name, as of the struct of a type of body, and the files that may use it.
+struct OwnedName {
   std::string name;
   Strings files;
 };
 
-/// Lines of code that name a type of body outside its own files and its registration.
-/// @return "file:line: names <struct>"
-Strings strangers_to_body_types(const fs::path& root, const std::vector<BodyType>& types) {
+/// Lines of code that use a name outside its own files and its registration.
+/// @return "file:line: names <name>"
+Strings strangers_to(const fs::path& root, const std::vector<OwnedName>& types) {
   Strings found;
   for (const std::string& folder : folders_in_order) {
     for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
@@ -274,7 +274,7 @@ Strings strangers_to_body_types(const fs::path& root, const std::vector<BodyType
       const std::string text{std::istreambuf_iterator<char>(stream),
                              std::istreambuf_iterator<char>()};
       const std::vector<SourceLine> lines = lines_without_comments(text);
-      for (const BodyType& type : types) {
+      for (const OwnedName& type : types) {
         if (contains(type.files, name)) continue;
         const std::regex word("\\b" + type.name + "\\b");
         for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -321,7 +321,7 @@ TEST(IncludeOrder, HoldsInThisSourceTree) {
 
 TEST(BodyTypes, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
   const std::string list = "substructures/body_types.cpp";
-  const std::vector<BodyType> types{
+  const std::vector<OwnedName> types{
       // Elastic pads are meshed as beams are.
       {"BeamParameters",
        {list, "substructures/beam.hpp", "substructures/beam.cpp", "substructures/brake_pad.cpp"}},
@@ -330,13 +330,31 @@ TEST(BodyTypes, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
       {"TouchedMatrixBodyParameters",
        {list, "substructures/matrix_body.hpp", "substructures/matrix_body.cpp",
         "io/matrix_reader.cpp"}}};
-  EXPECT_THAT(strangers_to_body_types(STRIDOR_SOURCE_DIR, types), IsEmpty());
+  EXPECT_THAT(strangers_to(STRIDOR_SOURCE_DIR, types), IsEmpty());
+}
+
+TEST(FrictionLaws, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
+  const std::string list = "coupling/friction_laws.cpp";
+  std::vector<OwnedName> names;
+  for (const std::string law : {"constant", "static_dynamic", "stribeck", "shear"}) {
+    const Strings own{list, "coupling/" + law + "_friction.hpp"};
+    names.push_back({law + "_friction_type", own});
+    // A constant coefficient is also what discs have and what a law without a section is.
+    if (law != "constant") names.push_back({law + "_friction", own});
+  }
+  // As words of scenes; the other two are words of the language, too.
+  names.push_back({"static_dynamic", {"coupling/static_dynamic_friction.hpp"}});
+  names.push_back({"stribeck", {"coupling/stribeck_friction.hpp"}});
+  names.push_back({"StribeckFriction", {"coupling/stribeck_friction.hpp"}});
+  EXPECT_THAT(strangers_to(STRIDOR_SOURCE_DIR, names), IsEmpty());
+  // The words are where they should be, so that the search finds what there is.
+  EXPECT_THAT(strangers_to(STRIDOR_SOURCE_DIR, {{"stribeck", {}}}), ::testing::SizeIs(1));
 }
 
 TEST_F(SourceText, StrangersThatNameABodyAreFound) {
   write("substructures/rod.hpp", "#pragma once\nstruct RodParameters {};\n");
   write("models/model.cpp", "// RodParameters\nint RodParametersOfOld;\nRodParameters rod;\n");
-  EXPECT_THAT(strangers_to_body_types(root_, {{"RodParameters", {"substructures/rod.hpp"}}}),
+  EXPECT_THAT(strangers_to(root_, {{"RodParameters", {"substructures/rod.hpp"}}}),
               ElementsAre("models/model.cpp:3: names RodParameters"));
 }
 

@@ -1,4 +1,6 @@
 #include "coupling/contact_parameters.hpp"
+#include "coupling/shear_friction.hpp"
+#include "coupling/stribeck_friction.hpp"
 #include "tests/support/constants.hpp"
 
 #include <gmock/gmock.h>
@@ -88,7 +90,7 @@ TEST(ContactParameters, SchemaRefusesAnEmptyListOfSlaves) {
     return problems;
   };
   ContactParameters contact;
-  contact.friction.emplace().coefficient = 0.3;
+  contact.friction.emplace().numbers["coefficient"] = 0.3;
   const std::vector<Problem> problems = problems_of(contact);
   ASSERT_THAT(problems, SizeIs(2));
   EXPECT_EQ(problems[0].text(),
@@ -128,10 +130,10 @@ TEST(ContactParameters, ChoicesMeanWhatTheySay) {
     FrictionParameters::schema().find("law")->assign(&friction, Value(std::string(text)));
     return friction.law;
   };
-  EXPECT_EQ(choose_law("static_dynamic"), FrictionKind::static_dynamic);
-  EXPECT_EQ(choose_law("stribeck"), FrictionKind::stribeck);
-  EXPECT_EQ(choose_law("constant"), FrictionKind::constant);
-  EXPECT_EQ(choose_law("shear"), FrictionKind::shear);
+  EXPECT_EQ(choose_law("static_dynamic"), &friction_law_type("static_dynamic"));
+  EXPECT_EQ(choose_law("stribeck"), &friction_law_type("stribeck"));
+  EXPECT_EQ(choose_law("constant"), &friction_law_type("constant"));
+  EXPECT_EQ(choose_law("shear"), &friction_law_type("shear"));
 }
 
 TEST(ContactParameters, PhysicalQuantitiesHaveNoDefault) {
@@ -142,10 +144,15 @@ TEST(ContactParameters, PhysicalQuantitiesHaveNoDefault) {
   // Which numbers are needed depends on the laws, see NormalParameters and FrictionParameters.
   EXPECT_EQ(NormalParameters{}.stiffness, std::nullopt);
   EXPECT_EQ(NormalParameters{}.radius, std::nullopt);
-  EXPECT_EQ(FrictionParameters{}.coefficient, std::nullopt);
+  EXPECT_TRUE(FrictionParameters{}.numbers.empty());
 }
 
-using Kind = FrictionKind;
+FrictionParameters friction_of(const char* law, FrictionNumbers numbers) {
+  FrictionParameters friction;
+  friction.law = &friction_law_type(law);
+  friction.numbers = std::move(numbers);
+  return friction;
+}
 
 /// Complaints about the keys of a section, one line each.
 template <class Parameters>
@@ -200,9 +207,10 @@ TEST(NormalParameters, ProfileAndMaterialSayMoreThanRadiusModulusAndTime) {
   EXPECT_EQ(normal.first_creep_time(), 0.01);
   normal.radius = 1e-3;
   normal.modulus = 1e6;
-  EXPECT_THAT(complaints(normal),
-              ElementsAre("radius: cannot stand beside `profile`, which has a radius",
-                          "material: cannot stand beside `modulus` and `creep_time`, which it says"));
+  EXPECT_THAT(
+      complaints(normal),
+      ElementsAre("radius: cannot stand beside `profile`, which has a radius",
+                  "material: cannot stand beside `modulus` and `creep_time`, which it says"));
   normal = rubber_sphere();
   normal.material.reset();
   normal.modulus = 1e6;
@@ -233,12 +241,12 @@ TEST(NormalParameters, LawsBuiltInAreOfOneIndenterAndMaterial) {
   other.modulus = 1e6;
   other.creep_time = 0.01;
   other.form = NormalParameters::boundary_element;
-  const SubstrateForces one = make_substrate_contact(normal, 0.0).at(2e-5, 0.02, 1.0);
-  const SubstrateForces same = make_substrate_contact(other, 0.0).at(2e-5, 0.02, 1.0);
+  const SubstrateForces one = make_substrate_contact(normal).at(2e-5, 0.02, 1.0);
+  const SubstrateForces same = make_substrate_contact(other).at(2e-5, 0.02, 1.0);
   EXPECT_NEAR(one.normal.value, same.normal.value, 1e-12 * same.normal.value);
   EXPECT_NEAR(one.tangential.value, same.tangential.value, 1e-12 * -same.tangential.value);
   normal.form = NormalParameters::solve;
-  EXPECT_THROW((void)make_substrate_contact(normal, 0.0), std::invalid_argument);
+  EXPECT_THROW((void)make_substrate_contact(normal), std::invalid_argument);
 }
 
 NormalParameters sphere_of_2_mm() {
@@ -258,7 +266,7 @@ TEST(ContactParameters, LawsThatDoNotGoTogetherAreRefused) {
   contact.assumption = ContactAssumption::subs_b;
   EXPECT_THAT(complaints(contact),
               ElementsAre("friction: is missing: this normal law brings none of its own"));
-  contact.friction.emplace().law = FrictionKind::shear;
+  contact.friction.emplace().law = &friction_law_type("shear");
   EXPECT_THAT(
       complaints(contact),
       ElementsAre("normal.law: has no area of contact, with which the friction law shear is in "
@@ -275,7 +283,7 @@ TEST(ContactParameters, LawsThatDoNotGoTogetherAreRefused) {
   contact.friction.reset();
   EXPECT_THAT(complaints(contact), IsEmpty());
   contact.normal = {};
-  contact.friction.emplace().coefficient = 0.3;
+  contact.friction.emplace().numbers["coefficient"] = 0.3;
   EXPECT_THAT(
       complaints(contact),
       ElementsAre(
@@ -284,16 +292,16 @@ TEST(ContactParameters, LawsThatDoNotGoTogetherAreRefused) {
 
 TEST(ViscoelasticNormalLaw, IsInSiUnits) {
   // F = E_0* R² F̃(y/R, v τ/R); at rest F̃ = 4/3 ŷ^{3/2}, Ã = π ŷ by the boundary elements.
-  const SubstrateContact contact = make_substrate_contact(sphere_of_2_mm(), 0.02e6);
+  const SubstrateContact contact = make_substrate_contact(sphere_of_2_mm(), shear_friction(0.02e6));
   const double y = 2e-5;
   EXPECT_NEAR(contact.at(y, 0.0, 1.0).normal.value, 1e6 * 4e-6 * 4.0 / 3.0 * 1e-3, 1e-12);
   EXPECT_NEAR(contact.static_strength(y).value, 0.02 * 1e6 * 4e-6 * M_PI * 0.01, 1e-12);
 }
 
 TEST(ViscoelasticNormalLaw, FrictionOfTheInterfaceAddsToItsOwn) {
-  FrictionLaw interface { FrictionLaw::Kind::stribeck, 0.5, 0.2, 0.03 };
-  const SubstrateContact bare = make_substrate_contact(sphere_of_2_mm(), 0.0);
-  const SubstrateContact rubbing = make_substrate_contact(sphere_of_2_mm(), 0.0, interface);
+  FrictionLaw interface = stribeck_friction(0.5, 0.2, 0.03);
+  const SubstrateContact bare = make_substrate_contact(sphere_of_2_mm());
+  const SubstrateContact rubbing = make_substrate_contact(sphere_of_2_mm(), interface);
   const double y = 2e-5;
   for (const double v : {0.02, -0.4}) {
     const double direction = v > 0.0 ? 1.0 : -1.0;
@@ -316,7 +324,7 @@ TEST(ViscoelasticNormalLaw, FrictionOfTheInterfaceAddsToItsOwn) {
   }
   EXPECT_NEAR(rubbing.static_strength(y).value, 0.5 * rubbing.at(y, 0.0, 1.0).normal.value, 1e-15);
   interface.sign = {RegularisedSign::Kind::tanh, 0.1};
-  const SubstrateContact creeping = make_substrate_contact(sphere_of_2_mm(), 0.0, interface);
+  const SubstrateContact creeping = make_substrate_contact(sphere_of_2_mm(), interface);
   EXPECT_EQ(creeping.static_strength(y).value, 0.0);
   EXPECT_NEAR(creeping.at(y, 0.1, 1.0).tangential.value,
               std::tanh(1.0) * rubbing.at(y, 0.1, 1.0).tangential.value, 1e-12);
@@ -326,11 +334,11 @@ TEST(FrictionParameters, EveryLawNeedsItsOwnKeys) {
   FrictionParameters friction;
   EXPECT_THAT(complaints(friction),
               ElementsAre("coefficient: missing: needed by the constant friction law"));
-  friction.law = Kind::static_dynamic;
+  friction.law = &friction_law_type("static_dynamic");
   EXPECT_THAT(complaints(friction),
               ElementsAre("static: missing: needed by the static_dynamic friction law",
                           "dynamic: missing: needed by the static_dynamic friction law"));
-  friction.law = Kind::stribeck;
+  friction.law = &friction_law_type("stribeck");
   EXPECT_THAT(complaints(friction),
               ElementsAre("static: missing: needed by the stribeck friction law",
                           "dynamic: missing: needed by the stribeck friction law",
@@ -338,34 +346,42 @@ TEST(FrictionParameters, EveryLawNeedsItsOwnKeys) {
 }
 
 TEST(FrictionParameters, KeysOfOtherLawsAreRefused) {
-  const FrictionParameters all{Kind::constant, 0.3, 0.4, 0.3, 0.01};
+  const FrictionParameters all = friction_of(
+      "constant",
+      {{"coefficient", 0.3}, {"static", 0.4}, {"dynamic", 0.3}, {"decay_velocity", 0.01}});
   FrictionParameters friction = all;
   EXPECT_THAT(complaints(friction),
               ElementsAre("static: not used by the constant friction law",
                           "dynamic: not used by the constant friction law",
                           "decay_velocity: not used by the constant friction law"));
-  friction.law = Kind::static_dynamic;
+  friction.law = &friction_law_type("static_dynamic");
   EXPECT_THAT(complaints(friction),
               ElementsAre("coefficient: not used by the static_dynamic friction law",
                           "decay_velocity: not used by the static_dynamic friction law"));
-  friction.law = Kind::stribeck;
+  friction.law = &friction_law_type("stribeck");
   EXPECT_THAT(complaints(friction),
               ElementsAre("coefficient: not used by the stribeck friction law"));
 }
 
 TEST(FrictionParameters, CompleteLawsAreTaken) {
-  EXPECT_THAT(complaints<FrictionParameters>({Kind::constant, 0.3, {}, {}, {}}), IsEmpty());
-  EXPECT_THAT(complaints<FrictionParameters>({Kind::constant, 0.0, {}, {}, {}}), IsEmpty());
-  EXPECT_THAT(complaints<FrictionParameters>({Kind::static_dynamic, {}, 0.4, 0.3, {}}), IsEmpty());
-  EXPECT_THAT(complaints<FrictionParameters>({Kind::stribeck, {}, 0.4, 0.3, 0.01}), IsEmpty());
+  EXPECT_THAT(complaints(friction_of("constant", {{"coefficient", 0.3}})), IsEmpty());
+  EXPECT_THAT(complaints(friction_of("constant", {{"coefficient", 0.0}})), IsEmpty());
+  EXPECT_THAT(complaints(friction_of("static_dynamic", {{"static", 0.4}, {"dynamic", 0.3}})),
+              IsEmpty());
+  EXPECT_THAT(complaints(friction_of(
+                  "stribeck", {{"static", 0.4}, {"dynamic", 0.3}, {"decay_velocity", 0.01}})),
+              IsEmpty());
   // A law may rise with the speed.
-  EXPECT_THAT(complaints<FrictionParameters>({Kind::stribeck, {}, 0.3, 0.4, 0.01}), IsEmpty());
+  EXPECT_THAT(complaints(friction_of(
+                  "stribeck", {{"static", 0.3}, {"dynamic", 0.4}, {"decay_velocity", 0.01}})),
+              IsEmpty());
 }
 
 TEST(FrictionParameters, AtRestNoLessThanInSlidingUnlessTheLawIsContinuous) {
-  EXPECT_THAT(complaints<FrictionParameters>({Kind::static_dynamic, {}, 0.3, 0.4, {}}),
+  EXPECT_THAT(complaints(friction_of("static_dynamic", {{"static", 0.3}, {"dynamic", 0.4}})),
               ElementsAre("static: must not be below `dynamic`"));
-  EXPECT_THAT(complaints<FrictionParameters>({Kind::static_dynamic, {}, 0.3, 0.3, {}}), IsEmpty());
+  EXPECT_THAT(complaints(friction_of("static_dynamic", {{"static", 0.3}, {"dynamic", 0.3}})),
+              IsEmpty());
 }
 
 TEST(FrictionParameters, CoefficientsMayBeZeroButNotNegativeAndTheDecayVelocityIsPositive) {
@@ -379,19 +395,23 @@ TEST(FrictionParameters, CoefficientsMayBeZeroButNotNegativeAndTheDecayVelocityI
 }
 
 TEST(FrictionParameters, BecomeTheLawThatTheyName) {
-  const FrictionLaw constant = make_friction_law({Kind::constant, 0.3, {}, {}, {}});
-  EXPECT_EQ(constant.kind, FrictionLaw::Kind::constant);
+  const FrictionLaw constant = make_friction_law(friction_of("constant", {{"coefficient", 0.3}}));
+  EXPECT_EQ(constant.sliding, nullptr);
   EXPECT_EQ(constant.static_coefficient, 0.3);
   EXPECT_EQ(constant.dynamic_coefficient, 0.3);
-  const FrictionLaw jump = make_friction_law({Kind::static_dynamic, {}, 0.4, 0.3, {}});
-  EXPECT_EQ(jump.kind, FrictionLaw::Kind::static_dynamic);
+  const FrictionLaw jump =
+      make_friction_law(friction_of("static_dynamic", {{"static", 0.4}, {"dynamic", 0.3}}));
+  EXPECT_EQ(jump.sliding, nullptr);
   EXPECT_EQ(jump.static_coefficient, 0.4);
   EXPECT_EQ(jump.dynamic_coefficient, 0.3);
-  const FrictionLaw stribeck = make_friction_law({Kind::stribeck, {}, 0.4, 0.3, 0.01});
-  EXPECT_EQ(stribeck.kind, FrictionLaw::Kind::stribeck);
+  const FrictionLaw stribeck = make_friction_law(
+      friction_of("stribeck", {{"static", 0.4}, {"dynamic", 0.3}, {"decay_velocity", 0.01}}));
+  EXPECT_NEAR(sliding_friction(stribeck, 0.01), 0.3 + 0.1 * std::exp(-1.0), 1e-15);
   EXPECT_EQ(stribeck.static_coefficient, 0.4);
   EXPECT_EQ(stribeck.dynamic_coefficient, 0.3);
-  EXPECT_EQ(stribeck.decay_velocity, 0.01);
+  EXPECT_EQ(make_friction_law(friction_of("shear", {{"strength", 2e4}})).shear_strength, 2e4);
+  EXPECT_THROW((void)make_friction_law(friction_of("shear", {})), std::out_of_range);
+  EXPECT_THROW((void)friction_law_type("slippery"), std::out_of_range);
 }
 
 TEST(ContactPoint, IsUnilateralFromTheStartWithFilmAndFromItsArmingOnDemand) {

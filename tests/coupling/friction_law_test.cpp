@@ -1,4 +1,6 @@
 #include "coupling/friction_law.hpp"
+#include "coupling/static_dynamic_friction.hpp"
+#include "coupling/stribeck_friction.hpp"
 #include "tests/support/constants.hpp"
 
 #include <gtest/gtest.h>
@@ -10,8 +12,9 @@ namespace {
 
 using test::eps;
 
-constexpr FrictionLaw falling{FrictionLaw::Kind::stribeck, 0.5, 0.2, 0.01};
-constexpr FrictionLaw rising{FrictionLaw::Kind::stribeck, 0.2, 0.5, 0.01};
+constexpr double decay = 0.01;
+const FrictionLaw falling = stribeck_friction(0.5, 0.2, decay);
+const FrictionLaw rising = stribeck_friction(0.2, 0.5, decay);
 
 TEST(FrictionLaw, ConstantHoldsAsMuchAtRestAsInSliding) {
   const FrictionLaw law = constant_friction(0.3);
@@ -23,7 +26,7 @@ TEST(FrictionLaw, ConstantHoldsAsMuchAtRestAsInSliding) {
 }
 
 TEST(FrictionLaw, StaticDynamicSlidesWithTheDynamicCoefficientAtAnySpeed) {
-  const FrictionLaw law{FrictionLaw::Kind::static_dynamic, 0.4, 0.3, 1.0};
+  const FrictionLaw law = static_dynamic_friction(0.4, 0.3);
   for (const double velocity : {-10.0, -1e-9, 0.0, 1e-9, 10.0}) {
     EXPECT_EQ(sliding_friction(law, velocity), 0.3);
     EXPECT_EQ(sliding_friction_slope(law, velocity), 0.0);
@@ -56,7 +59,7 @@ TEST(FrictionLaw, SlopeIsTheDerivativeByTheSpeed) {
   // eps μ/(1e-4 v_d) is 1e-10.
   for (const FrictionLaw& law : {falling, rising}) {
     for (const double speed : {0.001, 0.01, 0.03}) {
-      const double dv = 1e-4 * law.decay_velocity;
+      const double dv = 1e-4 * decay;
       const double difference =
           (sliding_friction(law, speed + dv) - sliding_friction(law, speed - dv)) / (2.0 * dv);
       const double slope = sliding_friction_slope(law, speed);
@@ -68,8 +71,24 @@ TEST(FrictionLaw, SlopeIsTheDerivativeByTheSpeed) {
   EXPECT_EQ(sliding_friction_slope(falling, 10.0), -0.0);
 }
 
+TEST(FrictionLaw, TakesVelocitiesInAUnit) {
+  FrictionLaw scaled = falling;
+  scaled.velocity_unit = 0.25;
+  for (const RegularisedSign& sign : {RegularisedSign{}, {RegularisedSign::Kind::tanh, 0.08}}) {
+    FrictionLaw plain = falling;
+    plain.sign = {sign.kind, 0.25 * sign.speed};
+    scaled.sign = sign;
+    for (const double velocity : {-0.08, 0.0, 0.02}) {
+      EXPECT_DOUBLE_EQ(sliding_friction(scaled, velocity),
+                       sliding_friction(plain, 0.25 * velocity));
+      EXPECT_DOUBLE_EQ(sliding_friction_slope(scaled, velocity),
+                       0.25 * sliding_friction_slope(plain, 0.25 * velocity));
+    }
+  }
+}
+
 TEST(FrictionLaw, EqualCoefficientsMakeStribeckConstant) {
-  const FrictionLaw law{FrictionLaw::Kind::stribeck, 0.3, 0.3, 0.01};
+  const FrictionLaw law = stribeck_friction(0.3, 0.3, decay);
   for (const double velocity : {0.0, 0.01, 1.0}) {
     EXPECT_EQ(sliding_friction(law, velocity), 0.3);
     EXPECT_EQ(sliding_friction_slope(law, velocity), 0.0);

@@ -54,7 +54,7 @@ TEST(BodyCache, ReducesOnlyWhatAKeyChanges) {
   ModelParameters parameters = small_model();
   cached_model(parameters, cache);
   parameters.contact->start = 0.05;
-  parameters.contact->friction->coefficient = 0.1;
+  parameters.contact->friction->numbers["coefficient"] = 0.1;
   parameters.drive->load = TimeCurve(-1.0);
   cached_model(parameters, cache);
   EXPECT_EQ(cache.num_reductions(), 2);

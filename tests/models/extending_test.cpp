@@ -1,4 +1,4 @@
-// The worked example of docs/extending.md: a type of body of one's own.
+// The worked examples of docs/extending.md: a type of body and a friction law of one's own.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,6 +15,13 @@
 #include "substructures/body_parameters.hpp"
 #include "substructures/lumped_body.hpp"
 // end of example
+// example: includes of a law
+#include <memory>
+
+#include "coupling/friction_law_type.hpp"
+// end of example
+#include "solvers/linearise.hpp"
+#include "solvers/secular_eigenvalues.hpp"
 
 namespace stridor {
 namespace {
@@ -70,7 +77,7 @@ TEST(Extending, BodyOfOnesOwnStandsOnTheGroundUnderALoad) {
   contact.slave = {"column.foot"};
   contact.master = rigid_master;
   contact.assumption = ContactAssumption::film;
-  contact.friction.emplace().coefficient = 0.3;
+  contact.friction.emplace().numbers["coefficient"] = 0.3;
   parameters.contact = contact;
   parameters.drive.emplace().velocity = TimeCurve(0.0);
   parameters.drive->load = TimeCurve(-5.0);
@@ -87,6 +94,96 @@ TEST(Extending, BodyOfOnesOwnStandsOnTheGroundUnderALoad) {
   time.step = 1e-4;
   Simulation simulation(model.system, time);
   EXPECT_EQ(simulation.step_until(1000), StepOutcome::done) << simulation.failure();
+}
+
+// example: a law
+/// μ(v) = μ_d + (μ_s − μ_d)/(1 + |v|/v_h): half of the fall is done at v_h.
+class HyperbolicFriction : public SlidingFriction {
+ public:
+  HyperbolicFriction(double rest, double fast, double half)
+      : fast_(fast), fall_(rest - fast), half_(half) {}
+  double coefficient(double speed) const override { return fast_ + fall_ / (1.0 + speed / half_); }
+  double slope(double speed) const override {
+    const double ratio = 1.0 + speed / half_;
+    return -fall_ / (half_ * ratio * ratio);
+  }
+
+ private:
+  double fast_, fall_, half_;
+};
+
+inline FrictionLawType hyperbolic_friction_type() {
+  return {.name = "hyperbolic",
+          .doc = "from `static` to `dynamic` as 1/(1 + |v|/half_velocity)",
+          .keys = {static_coefficient_key(),
+                   dynamic_coefficient_key(),
+                   {"half_velocity",
+                    {.doc = "Sliding velocity at which half of the fall is done.",
+                     .unit = "m s-1",
+                     .range = Range::positive()}}},
+          .make = [](const FrictionNumbers& numbers) {
+            const double rest = numbers.at("static");
+            const double fast = numbers.at("dynamic");
+            return FrictionLaw{
+                rest, fast,
+                std::make_shared<HyperbolicFriction>(rest, fast, numbers.at("half_velocity"))};
+          }};
+}
+// end of example
+
+TEST(Extending, LawOfOnesOwnHoldsAMassOnABelt) {
+  static const FrictionLawType law = hyperbolic_friction_type();
+  LumpedParameters slider;
+  slider.masses["mass"] = {2.0, {}};
+  slider.springs["spring"] = {{"mass"}, 100.0, 20.0, {}};
+  ModelParameters parameters;
+  parameters.substructures["slider"] = slider;
+  ContactParameters contact;
+  contact.slave = {"slider.mass"};
+  contact.master = rigid_master;
+  contact.assumption = ContactAssumption::film;
+  contact.friction =
+      FrictionParameters{&law, {{"static", 0.5}, {"dynamic", 0.2}, {"half_velocity", 0.05}}};
+  parameters.contact = contact;
+  parameters.drive.emplace().velocity = TimeCurve(0.1);
+  parameters.drive->load = TimeCurve(-10.0);
+  parameters.drive->moves = {"contact.master"};
+  parameters.drive->load_on = {"slider.mass"};
+  const Model model = make_model(parameters, {{{"slider", "mass"}, "record.channels.0"}});
+  const double friction = (0.2 + 0.3 / 3.0) * 10.0;
+  const double slope = -0.3 / (0.05 * 9.0) * 10.0;
+  const SystemBody& body = model.system.bodies[0];
+  const int row = model.points.at({"slider", "mass"}).rows.x;
+
+  const Equilibrium rest = find_equilibrium(model.system, sliding_state(model.system, 0.0));
+  ASSERT_EQ(rest.status, EquilibriumStatus::converged) << rest.failure;
+  EXPECT_NEAR(body.modal.rows.row(row) * rest.displacement[0], friction / 100.0, 1e-12);
+  // m ẍ + (c + T'(v)) ẋ + k x = 0 about it.
+  const double half = (20.0 + slope) / (2.0 * 2.0);
+  const auto list = secular_eigenvalues(linearise(model.system, rest), SpectrumWindow::lowest(1));
+  ASSERT_FALSE(list.empty());
+  EXPECT_NEAR(list.front().s.real(), -half, 1e-6 * half);
+
+  // And there the motion ends.
+  TimeParameters time;
+  time.integrator = Integrator::exact;
+  time.step = 1e-4;
+  Simulation simulation(model.system, time);
+  ASSERT_EQ(simulation.step_until(100'000), StepOutcome::done) << simulation.failure();
+  EXPECT_NEAR(simulation.displacement(0, row), friction / 100.0, 1e-9);
+}
+
+TEST(Extending, RegisteredLawsAreInTheSchema) {
+  // What a line in friction_laws.cpp does for the law: its name and keys are those of scenes.
+  const Schema& schema = FrictionParameters::schema();
+  for (const FrictionLawType& type : friction_law_types()) {
+    EXPECT_THAT(schema.find("law")->choices, ::testing::Contains(type.name));
+    EXPECT_THAT(schema.find("law")->doc, ::testing::HasSubstr(type.name + ": " + type.doc));
+    for (const FrictionKey& key : type.keys) {
+      ASSERT_NE(schema.find(key.name), nullptr) << key.name;
+      EXPECT_EQ(schema.find(key.name)->doc, key.says.doc);
+    }
+  }
 }
 
 std::string text_of(const std::filesystem::path& path) {
@@ -109,7 +206,7 @@ TEST(Extending, PageShowsWhatIsCompiledHere) {
     EXPECT_NE(page.find(example), std::string::npos) << example;
     ++shown;
   }
-  EXPECT_EQ(shown, 2);
+  EXPECT_EQ(shown, 4);
 }
 
 }  // namespace

@@ -285,7 +285,7 @@ TEST(Model, RefusesAVelocityThatNothingFollows) {
 TEST(Model, OnRigidGroundTheContactCarriesTheLoadInEveryForm) {
   ModelParameters parameters = on_rigid_ground();
   parameters.contact->assumption = ContactAssumption::film;
-  parameters.contact->friction->coefficient = 0.0;
+  parameters.contact->friction->numbers["coefficient"] = 0.0;
   auto& oblique = parameters.substructures["oblique"].get<BeamParameters>();
   oblique.damping.alpha = 2000.0;
   oblique.damping.alpha_start.reset();
@@ -380,12 +380,12 @@ TEST(Model, ASubstructureMayNotTakeTheNameOfTheRigidMaster) {
 TEST(Model, FrictionLawsRiseWithTheRamp) {
   ModelParameters parameters = paper_model();
   parameters.contact->friction =
-      FrictionParameters{FrictionKind::stribeck, {}, 0.4, 0.3, 0.01, {}, {}};
+      FrictionParameters{&friction_law_type("stribeck"),
+                         {{"static", 0.4}, {"dynamic", 0.3}, {"decay_velocity", 0.01}}};
   const Model model = make_paper_model(parameters);
   const ContactPoint& contact = model.system.contacts.at(0);
-  EXPECT_EQ(contact.friction.kind, FrictionLaw::Kind::stribeck);
   EXPECT_EQ(contact.friction.static_coefficient, 0.4);
-  EXPECT_EQ(contact.friction.decay_velocity, 0.01);
+  EXPECT_EQ(sliding_friction(contact.friction, 0.01), 0.3 + (0.4 - 0.3) * std::exp(-1.0));
   EXPECT_EQ(contact.friction_rise.value(0.0), 0.0);
   EXPECT_EQ(contact.friction_rise.value(0.05), 0.5);
   EXPECT_EQ(contact.friction_rise.value(0.1), 1.0);

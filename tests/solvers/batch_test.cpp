@@ -29,7 +29,7 @@ struct Fate {
 /// The trailing scene with a short start-up; every kind has another friction, load and speed.
 Model model_of_kind(int kind, ContactAssumption assumption = ContactAssumption::subs_b) {
   ModelParameters parameters = paper_model(trailing_angle, assumption);
-  parameters.contact->friction->coefficient = 0.05 + 0.04 * kind;
+  parameters.contact->friction->numbers["coefficient"] = 0.05 + 0.04 * kind;
   parameters.contact->armed_from = 1.0;
   parameters.contact->start = 0.0302 + 1e-4 * kind;
   parameters.drive->load = TimeCurve(-0.2 - 0.01 * kind);

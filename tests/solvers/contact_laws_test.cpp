@@ -10,6 +10,7 @@
 #include <random>
 #include <vector>
 
+#include "coupling/stribeck_friction.hpp"
 #include "solvers/contact_solver.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/equilibrium.hpp"
@@ -292,8 +293,7 @@ TEST(RegularisedFriction, SolvesTheLawAtTheMeanSlipOfTheStep) {
     Eigen::Matrix2d root;
     root << uniform(random), uniform(random), uniform(random), uniform(random);
     const Eigen::Matrix2d w = root * root.transpose() + 0.05 * Eigen::Matrix2d::Identity();
-    FrictionLaw law{i % 2 == 0 ? FrictionLaw::Kind::constant : FrictionLaw::Kind::stribeck, 0.3,
-                    0.2, 0.5};
+    FrictionLaw law = i % 2 == 0 ? FrictionLaw{0.3, 0.2} : stribeck_friction(0.3, 0.2, 0.5);
     law.sign = {RegularisedSign::Kind::square_root, std::pow(10.0, 3.0 * uniform(random))};
     LocalProblem problem;
     problem.penetration = uniform(random);

@@ -6,6 +6,7 @@
 #include <Eigen/SparseLU>
 #include <cmath>
 
+#include "coupling/stribeck_friction.hpp"
 #include "core/errors.hpp"
 #include "substructures/beam.hpp"
 #include "tests/support/message_of.hpp"
@@ -322,7 +323,7 @@ TEST(Equilibrium, ReversingTheDriveIsReversingTheFriction) {
 
 TEST(Equilibrium, FrictionIsThatOfTheLawAtTheSlidingVelocity) {
   System system = paper_system(trailing_angle);
-  const FrictionLaw stribeck{FrictionLaw::Kind::stribeck, 0.5, 0.2, 0.05};
+  const FrictionLaw stribeck = stribeck_friction(0.5, 0.2, 0.05);
   system.contacts[0].friction = stribeck;
   EquilibriumState state = sliding_state(system, to(0.0905));
   state.friction_factor = 0.5;

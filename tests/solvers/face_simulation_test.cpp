@@ -8,6 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "coupling/static_dynamic_friction.hpp"
+#include "coupling/stribeck_friction.hpp"
 #include "core/errors.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/linearise.hpp"
@@ -281,7 +283,7 @@ TEST(FaceSimulation, ABeltCarriesAMassUntilItsSpringBreaksItLoose) {
   scene.along = 0.1;  // with the belt
   scene.across = 0.0;
   scene.stiffness = 200.0;
-  scene.friction = {FrictionLaw::Kind::static_dynamic, 0.5, 0.3, 1.0};
+  scene.friction = static_dynamic_friction(0.5, 0.3);
   const double loose = 0.5 * scene.load / (scene.stiffness * scene.belt);
   for (const auto integrator : {Integrator::exact, Integrator::central_difference}) {
     constexpr double step = 1e-4;
@@ -306,7 +308,7 @@ TEST(FaceSimulation, EveryFrictionLawBrakesByItsCoefficient) {
   MassOnFace scene;
   scene.belt = 0.5;
   scene.across = 0.0;
-  FrictionLaw stribeck{FrictionLaw::Kind::stribeck, 0.6, 0.2, 0.4};
+  FrictionLaw stribeck = stribeck_friction(0.6, 0.2, 0.4);
   FrictionLaw regularised = constant_friction(0.4);
   regularised.sign = {RegularisedSign::Kind::tanh, 0.8};
   for (const FrictionLaw& law : {stribeck, regularised}) {

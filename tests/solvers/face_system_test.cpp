@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "coupling/stribeck_friction.hpp"
 #include "solvers/dense_eigenvalues.hpp"
 #include "solvers/linear_pencil.hpp"
 #include "solvers/linearise.hpp"
@@ -142,7 +143,7 @@ TEST(FaceEquilibrium, SlopeOfStribecksLawIsThatOfFrictionByVelocity) {
   place.spin = 3.0;
   place.turned = 0.2;
   const FaceKinematics face = make_face_kinematics(place);
-  const FrictionLaw law{FrictionLaw::Kind::stribeck, 0.5, 0.3, 0.4};
+  const FrictionLaw law = stribeck_friction(0.5, 0.3, 0.4);
   FacePorts y, rate;
   y << 1e-4, 2e-3, -3e-3, 1e-2, 2e-2, 1e-4, -2e-4, 3e-5;
   const auto force = [&](const FacePorts& at, const FacePorts& by) -> FacePorts {

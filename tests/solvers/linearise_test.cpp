@@ -11,6 +11,7 @@
 #include <random>
 #include <utility>
 
+#include "coupling/stribeck_friction.hpp"
 #include "core/errors.hpp"
 #include "substructures/beam.hpp"
 #include "tests/support/message_of.hpp"
@@ -34,7 +35,7 @@ constexpr std::array all_assumptions{ContactAssumption::subs_a, ContactAssumptio
 /// depends on the velocity.
 struct RandomContact {
   ContactPositions positions;
-  FrictionLaw law{FrictionLaw::Kind::stribeck, 0.6, 0.2, 0.08};
+  FrictionLaw law = stribeck_friction(0.6, 0.2, 0.08);
   double friction_factor = 0.7;
   Eigen::Vector2d undeformed_tangent;
   SlotVector velocity = SlotVector::Zero(6);
@@ -267,7 +268,7 @@ TEST(ContactLinearisation, IsTheDerivativeOfTheKinematicsOnASmoothSurface) {
   // Complex steps are exact to rounding, which the projection enlarges by 10 at most.
   constexpr double step = 1e-30;
   constexpr double tolerance = 1e-11;
-  const FrictionLaw law{FrictionLaw::Kind::stribeck, 0.6, 0.2, 0.08};
+  const FrictionLaw law = stribeck_friction(0.6, 0.2, 0.08);
   std::mt19937 random(20261121);
   for (const ContactAssumption assumption : all_assumptions) {
     for (int trial = 0; trial < 100; ++trial) {
@@ -593,7 +594,7 @@ TEST(Linearise, AboutTheUndeformedGeometryItIsThePublishedLocus) {
 TEST(Linearise, FrictionThatFallsWithTheVelocityFeedsTheTangentialMotion) {
   for (const auto geometry : {ContactGeometry::undeformed, ContactGeometry::deformed}) {
     System system = linearised_system(trailing_angle);
-    system.contacts[0].friction = {FrictionLaw::Kind::stribeck, 0.5, 0.2, 0.05};
+    system.contacts[0].friction = stribeck_friction(0.5, 0.2, 0.05);
     const Equilibrium equilibrium =
         find_equilibrium(system, sliding_state(system, 0.010, geometry));
     const ContactEquilibrium& contact = equilibrium.contacts.at(0);
@@ -732,7 +733,7 @@ TEST(Perturbation, GrowsAsItsEigenvalueSays) {
   // 66 1/s, the friction of a step is that of the velocity before: 0.5 1/s. Roughness of a slope of
   // 0.003 r.m.s. changes the growth by 12 1/s where the contact stands.
   const FrictionLaw constant = constant_friction(0.30);
-  const FrictionLaw stribeck{FrictionLaw::Kind::stribeck, 0.45, 0.25, 0.03};
+  const FrictionLaw stribeck = stribeck_friction(0.45, 0.25, 0.03);
   constexpr SurfaceKind polyline = SurfaceKind::polyline;
   constexpr SurfaceKind smooth = SurfaceKind::smooth;
   const struct {

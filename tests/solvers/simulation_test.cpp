@@ -193,7 +193,7 @@ ModelParameters two_point_model(double friction) {
   parameters.contact->slave = {"oblique.start_bottom", "oblique.end_bottom"};
   parameters.contact->assumption = ContactAssumption::subs_a;
   parameters.contact->sliding = SlidingMode::frozen;
-  parameters.contact->friction->coefficient = friction;
+  parameters.contact->friction->numbers["coefficient"] = friction;
   parameters.contact->armed_from = 1e9;
   parameters.drive->ramp = 1e-3;
   return parameters;
@@ -359,7 +359,7 @@ TEST(Simulation, JammingIsNamed) {
   bool was_jammed = false;
   for (const double angle : {trailing_angle, leading_angle}) {
     ModelParameters parameters = paper_model(angle);
-    parameters.contact->friction->coefficient = 50.0;
+    parameters.contact->friction->numbers["coefficient"] = 50.0;
     parameters.contact->armed_from = 1e9;
     parameters.drive->ramp = 1e-4;
     const Model model = make_paper_model(parameters);

@@ -8,6 +8,7 @@
 #include <complex>
 #include <functional>
 
+#include "coupling/shear_friction.hpp"
 #include "tests/support/paper_sphere.hpp"
 #include "tests/support/small_systems.hpp"
 
@@ -43,7 +44,7 @@ System paper_system() {
   contact.name = "contact";
   contact.slave_rows = {0, 1};
   contact.assumption = ContactAssumption::film;
-  contact.substrate = make_substrate_contact(normal, 1e-2 * modulus);
+  contact.substrate = make_substrate_contact(normal, shear_friction(1e-2 * modulus));
   contact.substrate->friction_load = FrictionLoad::applied;
   contact.substrate->load = load;
   system.contacts.push_back(contact);

@@ -164,8 +164,8 @@ ModelParameters reed(double youngs_modulus) {
   contact.normal.radius = 2e-3;
   contact.normal.modulus = 4e6 / 3.0;
   contact.normal.creep_time = 1e-2;
-  contact.friction.emplace().law = FrictionKind::shear;
-  contact.friction->strength = 0.02 * 4e6 / 3.0;
+  contact.friction.emplace().law = &friction_law_type("shear");
+  contact.friction->numbers["strength"] = 0.02 * 4e6 / 3.0;
   model.contact = contact;
   model.drive.emplace().velocity = TimeCurve(1e-3);
   model.drive->load = TimeCurve(-0.02);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/static_dynamic_friction.hpp"
+#include "coupling/stribeck_friction.hpp"
 #include "core/errors.hpp"
 #include "solvers/simulation.hpp"
 #include "tests/support/constants.hpp"
@@ -30,7 +32,7 @@ constexpr Coordinates all_forms[] = {Coordinates::modal, Coordinates::craig_bamp
 MassOnGround belt_scene() {
   MassOnGround scene;
   scene.belt_velocity = 0.1;
-  scene.friction = {FrictionLaw::Kind::static_dynamic, 0.4, 0.3, 1.0};
+  scene.friction = static_dynamic_friction(0.4, 0.3);
   return scene;
 }
 
@@ -86,7 +88,7 @@ TEST(UnilateralContact, StopsForGoodWhereTheStaticLimitHoldsItWhateverTheStep) {
     MassOnGround scene;
     scene.stiffness = 1e4;
     scene.displacement = 0.55e-3;
-    scene.friction = {FrictionLaw::Kind::static_dynamic, 0.5, 0.1, 1.0};
+    scene.friction = static_dynamic_friction(0.5, 0.1);
     const double step = 1e-5 * (1.0 + 0.025 * k);
     Simulation simulation(scene.system(), time_of(step));
     ASSERT_EQ(simulation.step_until(std::llround(0.1 / step)), StepOutcome::done);
@@ -100,9 +102,9 @@ TEST(UnilateralContact, FrictionNeverDrives) {
   // λ_t times the slip of the step it acts in is the energy that friction takes out. The steps are
   // coarse, so that the sliding velocity and with it μ changes much within one.
   const FrictionLaw laws[] = {constant_friction(0.3),
-                              {FrictionLaw::Kind::static_dynamic, 0.5, 0.1, 1.0},
-                              {FrictionLaw::Kind::stribeck, 0.5, 0.1, 1e-3},
-                              {FrictionLaw::Kind::stribeck, 0.1, 0.5, 1e-3}};
+                              static_dynamic_friction(0.5, 0.1),
+                              stribeck_friction(0.5, 0.1, 1e-3),
+                              stribeck_friction(0.1, 0.5, 1e-3)};
   for (const FrictionLaw& law : laws) {
     for (int k = 0; k < 20; ++k) {
       MassOnGround scene;

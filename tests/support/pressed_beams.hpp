@@ -41,7 +41,7 @@ inline ModelParameters pressed_beams(double friction, ContactAssumption assumpti
   contact.armed_from = 0.0;
   contact.start = 0.0837;
   contact.sliding = SlidingMode::frozen;
-  contact.friction.emplace().coefficient = friction;
+  contact.friction.emplace().numbers["coefficient"] = friction;
   model.contact = contact;
   model.drive.emplace().velocity = TimeCurve(1.0);
   model.drive->load = TimeCurve(pressed_beams_load);

@@ -11,6 +11,8 @@
 #include <numbers>
 #include <vector>
 
+#include "coupling/static_dynamic_friction.hpp"
+#include "coupling/stribeck_friction.hpp"
 #include "tests/support/small_systems.hpp"
 
 namespace stridor {
@@ -110,7 +112,7 @@ TEST(ClosedForms, MassOnAFrictionalSupportTurnsAndRestsWhereItShould) {
 MassOnGround belt() {
   MassOnGround scene;
   scene.belt_velocity = 0.1;
-  scene.friction = {FrictionLaw::Kind::static_dynamic, 0.4, 0.3, 1.0};
+  scene.friction = static_dynamic_friction(0.4, 0.3);
   return scene;
 }
 
@@ -454,7 +456,7 @@ TEST(ClosedForms, FallingFrictionGrowsAtTheRateOfItsSlope) {
     scene.stiffness = 1e4;
     scene.belt_velocity = 0.1;
     scene.alpha = alpha;
-    scene.friction = {FrictionLaw::Kind::stribeck, mu_s, mu_d, 0.2};
+    scene.friction = stribeck_friction(mu_s, mu_d, 0.2);
     const double slope = sliding_friction_slope(scene.friction, 0.1);
     const double expected = (-alpha * scene.mass - scene.load * slope) / (2.0 * scene.mass);
     for (const ContactAssumption assumption :

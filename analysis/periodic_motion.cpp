@@ -1,0 +1,605 @@
+#include "analysis/periodic_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/errors.hpp"
+#include "core/stop_token.hpp"
+#include "solvers/simulation.hpp"
+
+namespace stridor {
+namespace {
+
+/// A motion that is smaller than this part of the static displacement has died down.
+constexpr double at_rest = 1e-6;
+/// Turns that are looked at, and settling times that they may take together.
+constexpr int num_turns = 25;
+constexpr double longest_look = 2.0;
+
+/// Drive, damping and friction as they are once they no longer change.
+System settled(System system) {
+  const double late = std::numeric_limits<double>::max();
+  system.drive.velocity = TimeCurve(system.drive.velocity.value(late));
+  system.drive.load = TimeCurve(system.drive.load.value(late));
+  for (ContactPoint& contact : system.contacts) {
+    contact.friction_rise = TimeCurve(contact.friction_rise.value(late));
+    contact.armed_from = 0.0;
+  }
+  const auto settle = [](RayleighDamping& damping) { damping.alpha_start.reset(); };
+  for (SystemBody& body : system.bodies) {
+    settle(body.reduced.damping);
+    settle(body.modal.damping);
+  }
+  return system;
+}
+
+/// From this time on nothing that is prescribed changes.
+double settled_from(const System& system) {
+  double from = system.drive.constant_from();
+  for (const ContactPoint& contact : system.contacts)
+    from = std::max(from, contact.friction_rise.constant_from());
+  for (const SystemBody& body : system.bodies)
+    from = std::max(from, body.modal.damping.constant_from());
+  return from;
+}
+
+int row_of(const ContactPoint& contact, bool is_x) {
+  return is_x ? contact.slave_rows.x : contact.slave_rows.y;
+}
+
+void require_no_stop() {
+  if (stop_requested()) throw Interrupted("nothing has been written");
+}
+
+/// Steps in stretches between which a stop is heard. @return the outcome of the last
+StepOutcome step_on(Simulation& simulation, std::int64_t target) {
+  constexpr std::int64_t stretch = 100'000;
+  while (simulation.step_index() < target) {
+    require_no_stop();
+    const StepOutcome outcome =
+        simulation.step_until(std::min(target, simulation.step_index() + stretch));
+    if (outcome != StepOutcome::done) return outcome;
+  }
+  return StepOutcome::done;
+}
+
+/// Reads turns, and integrals between them, from one displacement of a simulation.
+class TurnReader {
+ public:
+  TurnReader(const Simulation& simulation, const System& system, ObservedMotion observed)
+      : simulation_(&simulation),
+        contact_(observed.contact),
+        body_(system.contacts[static_cast<std::size_t>(observed.contact)].slave_body),
+        row_(row_of(system.contacts[static_cast<std::size_t>(observed.contact)], observed.is_x)),
+        meter_(simulation.time(), std::numeric_limits<double>::infinity()) {}
+
+  /// To be called after every step. @return whether a turn lies before the present step
+  bool note() {
+    const double h = simulation_->step_size();
+    const double x = simulation_->displacement(body_, row_);
+    const ContactState state = simulation_->contact_state(contact_);
+    meter_.note_position(simulation_->time(), x, 0.0);
+    const bool has_turned = num_seen_ >= 2 && before_ < last_ && last_ >= x;
+    if (has_turned) {
+      // The parabola through the three displacements.
+      const double curvature = before_ - 2.0 * last_ + x;
+      const double ahead = curvature < 0.0 ? 0.5 * (before_ - x) / curvature : 0.0;
+      CycleMeter::Turn turn = sums_;
+      turn.time = simulation_->time() - h + ahead * h;
+      turn.x = last_ - 0.25 * (before_ - x) * ahead;
+      turn.sum += ahead * h * last_;
+      turn.squares += ahead * h * last_ * last_;
+      meter_.note_turn(turn);
+      ++num_turns_;
+    }
+    sums_.sum += h * x;
+    sums_.squares += h * x * x;
+    if (state == ContactState::stick) sums_.stick += h;
+    if (state == ContactState::open) sums_.free += h;
+    before_ = last_;
+    last_ = x;
+    ++num_seen_;
+    return has_turned;
+  }
+
+  int turns() const { return num_turns_; }
+  CycleMeter::Reading reading() const { return meter_.reading(); }
+
+ private:
+  const Simulation* simulation_;
+  int contact_;
+  int body_;
+  int row_;
+  CycleMeter meter_;
+  CycleMeter::Turn sums_;  ///< integrals up to the present step
+  double before_ = 0.0, last_ = 0.0;
+  std::int64_t num_seen_ = 0;
+  int num_turns_ = 0;
+};
+
+/// The displacement of a slave that moves most over a stretch of steps, how far it moves, and the
+/// largest displacement of any.
+struct Largest {
+  ObservedMotion observed;
+  double width = 0.0;
+  double size = 0.0;
+  StepOutcome outcome = StepOutcome::done;
+};
+
+Largest largest_motion(Simulation& simulation, const System& system, std::int64_t num_steps) {
+  const std::size_t num_rows = 2 * system.contacts.size();
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  std::vector<double> low(num_rows, inf);
+  std::vector<double> high(num_rows, -inf);
+  Largest largest;
+  for (std::int64_t i = 0; i < num_steps; ++i) {
+    if (i % 100'000 == 0) require_no_stop();
+    largest.outcome = simulation.step();
+    if (largest.outcome != StepOutcome::done) return largest;
+    for (std::size_t k = 0; k < num_rows; ++k) {
+      const ContactPoint& contact = system.contacts[k / 2];
+      const double u = simulation.displacement(contact.slave_body, row_of(contact, k % 2 == 0));
+      low[k] = std::min(low[k], u);
+      high[k] = std::max(high[k], u);
+    }
+  }
+  for (std::size_t k = 0; k < num_rows; ++k) {
+    largest.size = std::max({largest.size, std::abs(low[k]), std::abs(high[k])});
+    if (high[k] - low[k] <= largest.width) continue;
+    largest.width = high[k] - low[k];
+    largest.observed = {static_cast<int>(k / 2), k % 2 == 0};
+  }
+  return largest;
+}
+
+/// P_T(z) of a system by N steps of T/N.
+class PeriodMap {
+ public:
+  /// @param system as of settled(); its bodies get the motion of z
+  PeriodMap(System& system, const TimeParameters& time, const Simulation& simulation,
+            std::int64_t num_steps)
+      : system_(&system), time_(time), num_steps_(num_steps) {
+    for (std::size_t b = 0; b < system.bodies.size(); ++b)
+      sizes_.push_back(simulation.motion(static_cast<int>(b)).displacement.size());
+    for (const Eigen::Index n : sizes_) num_unknowns_ += 2 * n;
+  }
+
+  Eigen::Index num_unknowns() const { return num_unknowns_; }
+
+  /// (q, q̇) of all bodies at the present step of a simulation, which is then one step further on.
+  /// Nothing where that fails.
+  std::optional<Eigen::VectorXd> state_of(Simulation& simulation) const {
+    const std::vector<Propagator::Motion> before = motions_of(simulation);
+    if (simulation.step() != StepOutcome::done) return std::nullopt;
+    const std::vector<Propagator::Motion> after = motions_of(simulation);
+    Eigen::VectorXd z(num_unknowns_);
+    Eigen::Index first = 0;
+    for (std::size_t b = 0; b < sizes_.size(); ++b) {
+      const Eigen::Index n = sizes_[b];
+      z.segment(first, n) = before[b].displacement;
+      // Both are backward differences: their mean is the velocity between them, to second order.
+      z.segment(first + n, n) = 0.5 * (before[b].velocity + after[b].velocity);
+      first += 2 * n;
+    }
+    return z;
+  }
+
+  /// Puts the bodies of the system into a state.
+  void set(const Eigen::VectorXd& z) {
+    Eigen::Index first = 0;
+    for (std::size_t b = 0; b < sizes_.size(); ++b) {
+      SystemBody& body = system_->bodies[b];
+      const Eigen::Index n = sizes_[b];
+      const bool is_modal = time_.coordinates == Coordinates::modal;
+      const auto reduced = [&](const Eigen::VectorXd& q) -> Eigen::VectorXd {
+        if (!is_modal || n == 0) return q;
+        return body.modal.shapes.leftCols(n) * q;
+      };
+      body.initial_displacement = reduced(z.segment(first, n));
+      body.initial_velocity = reduced(z.segment(first + n, n));
+      first += 2 * n;
+    }
+  }
+
+  std::optional<Eigen::VectorXd> operator()(const Eigen::VectorXd& z, double period) {
+    require_no_stop();
+    set(z);
+    TimeParameters time = time_;
+    time.step = period / static_cast<double>(num_steps_);
+    try {
+      Simulation simulation(*system_, time);
+      if (simulation.step_until(num_steps_) != StepOutcome::done) return std::nullopt;
+      return state_of(simulation);
+    } catch (const NumericalError&) {
+      return std::nullopt;
+    } catch (const ConfigError&) {  // the step is above the limit of stability
+      return std::nullopt;
+    }
+  }
+
+  /// Velocity of a row of a body as a row on z.
+  Eigen::RowVectorXd velocity_row(int body, int row) const {
+    Eigen::RowVectorXd of_z = Eigen::RowVectorXd::Zero(num_unknowns_);
+    Eigen::Index first = 0;
+    for (int b = 0; b < body; ++b) first += 2 * sizes_[static_cast<std::size_t>(b)];
+    const SystemBody& of = system_->bodies[static_cast<std::size_t>(body)];
+    const Eigen::Index n = sizes_[static_cast<std::size_t>(body)];
+    const bool is_modal = time_.coordinates == Coordinates::modal;
+    const Eigen::MatrixXd& rows = is_modal ? of.modal.rows : of.reduced.rows;
+    of_z.segment(first + n, n) = rows.row(row).head(n);
+    return of_z;
+  }
+
+ private:
+  std::vector<Propagator::Motion> motions_of(const Simulation& simulation) const {
+    std::vector<Propagator::Motion> motions;
+    for (std::size_t b = 0; b < sizes_.size(); ++b)
+      motions.push_back(simulation.motion(static_cast<int>(b)));
+    return motions;
+  }
+
+  System* system_;
+  TimeParameters time_;
+  std::int64_t num_steps_;
+  std::vector<Eigen::Index> sizes_;
+  Eigen::Index num_unknowns_ = 0;
+};
+
+/// Sizes of the displacements and velocities over a stretch of steps: half of what each moves
+/// through, at least 1e-4 of that of its kind that moves most.
+Eigen::VectorXd sizes_of_motion(const PeriodMap& map, Simulation& simulation,
+                                std::int64_t num_steps) {
+  const Eigen::Index size = map.num_unknowns();
+  Eigen::VectorXd low = Eigen::VectorXd::Constant(size, std::numeric_limits<double>::infinity());
+  Eigen::VectorXd high = -low;
+  constexpr std::int64_t num_looks = 64;
+  const std::int64_t first = simulation.step_index();
+  for (std::int64_t i = 1; i <= num_looks; ++i) {
+    const std::int64_t target = first + num_steps * i / num_looks;
+    if (target <= simulation.step_index()) continue;
+    if (step_on(simulation, target - 1) != StepOutcome::done) break;
+    const auto z = map.state_of(simulation);
+    if (!z) break;
+    low = low.cwiseMin(*z);
+    high = high.cwiseMax(*z);
+  }
+  return 0.5 * (high - low).cwiseMax(0.0);
+}
+
+/// z and T over their sizes: T counts in steps, so that it is of the size of the other unknowns.
+class ScaledPeriodMap {
+ public:
+  ScaledPeriodMap(PeriodMap& map, const Eigen::RowVectorXd& velocity, const Eigen::VectorXd& scale,
+                  double step)
+      : map_(&map), scale_(scale), step_(step) {
+    velocity_ = velocity.cwiseProduct(scale.transpose());
+    velocity_ /= velocity_.cwiseAbs().sum();
+  }
+
+  Eigen::VectorXd scaled(const Eigen::VectorXd& z, double period) const {
+    Eigen::VectorXd y(z.size() + 1);
+    y << z.cwiseQuotient(scale_), period / step_;
+    return y;
+  }
+  Eigen::VectorXd state(const Eigen::VectorXd& y) const {
+    return y.head(scale_.size()).cwiseProduct(scale_);
+  }
+  double period(const Eigen::VectorXd& y) const { return step_ * y[scale_.size()]; }
+
+  /// P_T(z) over its sizes; nothing where a step fails.
+  std::optional<Eigen::VectorXd> operator()(const Eigen::VectorXd& y) const {
+    std::optional<Eigen::VectorXd> next = (*map_)(state(y), period(y));
+    if (next) *next = next->cwiseQuotient(scale_);
+    return next;
+  }
+  /// (P_T(z) − z, v(z)).
+  std::optional<Eigen::VectorXd> miss(const Eigen::VectorXd& y) const {
+    const auto next = (*this)(y);
+    if (!next) return std::nullopt;
+    const Eigen::Index m = scale_.size();
+    Eigen::VectorXd all(m + 1);
+    all << *next - y.head(m), velocity_.dot(y.head(m));
+    return all;
+  }
+  /// ∂P_T(z)/∂(z, T) by central differences; P jumps where a contact breaks loose a step earlier or
+  /// later, and beside a jump the difference to the other side is taken.
+  std::optional<Eigen::MatrixXd> derivative(const Eigen::VectorXd& y) const {
+    constexpr double change = 1e-5;
+    constexpr double jump = 0.1;
+    const Eigen::Index m = scale_.size();
+    const auto here = (*this)(y);
+    if (!here) return std::nullopt;
+    Eigen::MatrixXd derivative(m, m + 1);
+    for (Eigen::Index k = 0; k <= m; ++k) {
+      Eigen::VectorXd moved = y;
+      moved[k] = y[k] + change;
+      const auto after = (*this)(moved);
+      moved[k] = y[k] - change;
+      const auto before = (*this)(moved);
+      if (!after || !before) return std::nullopt;
+      const Eigen::VectorXd ahead = (*after - *here) / change;
+      const Eigen::VectorXd behind = (*here - *before) / change;
+      if ((ahead - behind).norm() < jump * std::min(ahead.norm(), behind.norm()) + jump) {
+        derivative.col(k) = 0.5 * (ahead + behind);
+      } else {
+        derivative.col(k) = ahead.norm() < behind.norm() ? ahead : behind;
+      }
+    }
+    return derivative;
+  }
+  /// −J⁻¹ miss with the derivative of (P_T(z) − z, v(z)).
+  Eigen::VectorXd correction(const Eigen::MatrixXd& derivative, const Eigen::VectorXd& miss) const {
+    const Eigen::Index m = scale_.size();
+    Eigen::MatrixXd bordered = Eigen::MatrixXd::Zero(m + 1, m + 1);
+    bordered.topRows(m) = derivative;
+    bordered.diagonal().head(m).array() -= 1.0;
+    bordered.row(m).head(m) = velocity_;
+    return -bordered.fullPivLu().solve(miss);
+  }
+
+ private:
+  PeriodMap* map_;
+  Eigen::VectorXd scale_;
+  double step_;
+  Eigen::RowVectorXd velocity_;
+};
+
+/// Multipliers of ∂P/∂z, largest first, without that of a shift along the cycle.
+std::vector<std::complex<double>> multipliers_of(const Eigen::MatrixXd& derivative) {
+  const Eigen::VectorXcd all = Eigen::EigenSolver<Eigen::MatrixXd>(derivative, false).eigenvalues();
+  std::vector<std::complex<double>> multipliers(all.data(), all.data() + all.size());
+  multipliers.erase(std::min_element(multipliers.begin(), multipliers.end(), [](auto a, auto b) {
+    return std::abs(a - 1.0) < std::abs(b - 1.0);
+  }));
+  std::sort(multipliers.begin(), multipliers.end(),
+            [](auto a, auto b) { return std::abs(a) > std::abs(b); });
+  return multipliers;
+}
+
+/// Newton's method for P_T(z) = z with v(z) = 0 from z and the period found; `residual` is that of
+/// the start where it does not converge. @return whether it came to a cycle
+bool solve_period(const ScaledPeriodMap& map, Eigen::VectorXd& z, PeriodicMotion& found) {
+  Eigen::VectorXd y = map.scaled(z, found.period);
+  const double first_period = found.period;
+  double last_residual = std::numeric_limits<double>::infinity();
+  std::optional<Eigen::MatrixXd> derivative;
+  constexpr int most_steps = 15;
+  for (int step = 0; step < most_steps; ++step) {
+    const auto miss = map.miss(y);
+    if (!miss) return false;
+    const double residual = miss->norm();
+    if (step == 0) found.residual = residual;  // of the start, unless it converges
+    // Small motions end in the rounding of large displacements.
+    const bool is_done = residual < 1e-10 || (residual < 1e-5 && residual > 0.3 * last_residual);
+    if (residual > 1e3) return false;
+    // Close to the cycle its derivative no longer changes.
+    if (step == 0 || (!is_done && residual > 1e-5)) derivative = map.derivative(y);
+    if (!derivative) return false;
+    if (is_done) {
+      z = map.state(y);
+      found.period = map.period(y);
+      found.residual = residual;
+      found.newton_steps = step;
+      found.multipliers = multipliers_of(derivative->leftCols(z.size()));
+      return true;
+    }
+    last_residual = residual;
+    y += map.correction(*derivative, *miss);
+    if (std::abs(map.period(y) - first_period) > 0.5 * first_period) return false;
+  }
+  return false;
+}
+
+/// Statistics over the cycle that was solved for.
+void measure(PeriodicMotion& cycle, const TimeParameters& time) {
+  CycleMeter::Reading& seen = cycle.seen;
+  seen = {};
+  seen.smallest = std::numeric_limits<double>::infinity();
+  seen.largest = -seen.smallest;
+  double sum = 0.0;
+  double squares = 0.0;
+  std::int64_t sticking = 0;
+  std::int64_t open = 0;
+  follow_cycle(cycle, time, [&](const Simulation& simulation) {
+    const double x = observed_displacement(cycle, simulation);
+    const ContactState state = simulation.contact_state(cycle.observed.contact);
+    seen.smallest = std::min(seen.smallest, x);
+    seen.largest = std::max(seen.largest, x);
+    if (simulation.step_index() == 0) return;
+    sum += x;
+    squares += x * x;
+    sticking += state == ContactState::stick;
+    open += state == ContactState::open;
+  });
+  const auto count = static_cast<double>(cycle.num_steps);
+  seen.period = cycle.period;
+  seen.mean = sum / count;
+  seen.rms = std::sqrt(std::max(0.0, squares / count - *seen.mean * *seen.mean));
+  seen.stick_fraction = static_cast<double>(sticking) / count;
+  seen.free_fraction = static_cast<double>(open) / count;
+}
+
+/// Looks at the motion for some turns: what moves most, and whether it repeats itself.
+/// @return whether the simulation has gone on
+bool observe(Simulation& simulation, const System& system, std::int64_t settling,
+             PeriodicMotion& found) {
+  // A tenth of the time that it was given to settle shows what moves most.
+  const Largest largest =
+      largest_motion(simulation, system, std::max<std::int64_t>(settling / 10, 100));
+  if (largest.outcome != StepOutcome::done) return false;
+  found.observed = largest.observed;
+  TurnReader reader(simulation, system, found.observed);
+  const bool is_still = largest.width < at_rest * largest.size;
+  const auto most_steps =
+      static_cast<std::int64_t>(longest_look * static_cast<double>(settling)) + 1000;
+  for (std::int64_t i = 0; i < most_steps && reader.turns() < num_turns && !is_still; ++i) {
+    if (i % 100'000 == 0) require_no_stop();
+    if (simulation.step() != StepOutcome::done) return false;
+    (void)reader.note();
+  }
+  found.seen = reader.reading();
+  if (is_still || reader.turns() < 3) {
+    const bool sticks = simulation.contact_state(found.observed.contact) == ContactState::stick;
+    found.status = sticks     ? CycleStatus::sticking
+                   : is_still ? CycleStatus::at_rest
+                              : CycleStatus::settling;
+    return true;
+  }
+  found.status = found.seen.period ? CycleStatus::periodic : CycleStatus::irregular;
+  return true;
+}
+
+/// @return whether the simulation has come to a turn
+bool go_to_turn(Simulation& simulation, const System& system, ObservedMotion observed) {
+  TurnReader next(simulation, system, observed);
+  do {
+    if (simulation.step() != StepOutcome::done) return false;
+  } while (!next.note());
+  return true;
+}
+
+/// The sizes by which Newton's method measures the unknowns.
+Eigen::VectorXd scale_of(const PeriodMap& map, Simulation& simulation,
+                         const PeriodicMotion& found) {
+  Eigen::VectorXd scale = sizes_of_motion(map, simulation, found.num_steps);
+  constexpr double least = 1e-6;
+  Eigen::Index first = 0;
+  for (std::size_t b = 0; b < found.at_turn.bodies.size(); ++b) {
+    const Eigen::Index n = simulation.motion(static_cast<int>(b)).displacement.size();
+    for (const Eigen::Index part : {first, first + n}) {
+      if (n == 0) continue;
+      const double most = scale.segment(part, n).maxCoeff();
+      scale.segment(part, n) = scale.segment(part, n).cwiseMax(std::max(least * most, 1e-300));
+    }
+    first += 2 * n;
+  }
+  return scale;
+}
+
+/// Newton's method with `found.num_steps` steps, and where it ends at a jump of P with a few more:
+/// a contact with a static coefficient breaks loose at the end of a step, and with another length
+/// of it the cycle lies between two jumps. @return of what it came to, and of the first start where
+/// it did not
+std::optional<PeriodicMotion> solve_with_steps(const TimeParameters& time,
+                                               const Simulation& simulation,
+                                               const Eigen::VectorXd& start,
+                                               const Eigen::VectorXd& scale,
+                                               PeriodicMotion& found) {
+  constexpr int most_tries = 4;
+  constexpr double far = 0.1;
+  const ContactPoint& contact =
+      found.at_turn.contacts[static_cast<std::size_t>(found.observed.contact)];
+  for (int attempt = 0; attempt < most_tries; ++attempt) {
+    PeriodicMotion solved = found;
+    solved.num_steps += attempt;
+    PeriodMap map(solved.at_turn, time, simulation, solved.num_steps);
+    const Eigen::RowVectorXd velocity =
+        map.velocity_row(contact.slave_body, row_of(contact, found.observed.is_x));
+    const ScaledPeriodMap scaled(map, velocity, scale,
+                                 solved.period / static_cast<double>(solved.num_steps));
+    Eigen::VectorXd z = start;
+    if (solve_period(scaled, z, solved)) {
+      map.set(z);
+      solved.step = solved.period / static_cast<double>(solved.num_steps);
+      return solved;
+    }
+    if (attempt == 0) found.residual = solved.residual;
+    if (solved.residual > far) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+/// Solves for the cycle from a turn of a motion that seems to repeat itself, and puts `at_turn` on
+/// it. @return whether the simulation has gone on
+bool solve(Simulation& simulation, const TimeParameters& time, const PeriodicMotionOptions& options,
+           PeriodicMotion& found) {
+  found.period = *found.seen.period;
+  found.num_steps = std::max<std::int64_t>(std::llround(found.period / time.step), 2);
+  found.step = found.period / static_cast<double>(found.num_steps);
+  PeriodMap map(found.at_turn, time, simulation, found.num_steps);
+  const std::optional<Eigen::VectorXd> start = map.state_of(simulation);
+  if (!start) return false;
+  const Eigen::VectorXd scale = scale_of(map, simulation, found);
+  map.set(*start);
+  if (map.num_unknowns() > options.most_unknowns) {
+    const auto next = map(*start, found.period);
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    found.residual = next ? (*next - *start).cwiseQuotient(scale).norm() : inf;
+  } else if (auto solved = solve_with_steps(time, simulation, *start, scale, found)) {
+    measure(*solved, time);
+    // A motion that dies down slowly seems to repeat itself, but the only cycle is at rest.
+    const double before = found.seen.largest - found.seen.smallest;
+    if (solved->seen.largest - solved->seen.smallest > 0.01 * before) {
+      found = *std::move(solved);
+    } else {
+      found.status = CycleStatus::settling;
+    }
+    return true;
+  }
+  constexpr double close = 0.03;
+  if (!(found.residual < close)) found.status = CycleStatus::irregular;
+  return true;
+}
+
+}  // namespace
+
+double observed_displacement(const PeriodicMotion& cycle, const Simulation& simulation) {
+  const ContactPoint& contact =
+      cycle.at_turn.contacts[static_cast<std::size_t>(cycle.observed.contact)];
+  return simulation.displacement(contact.slave_body, row_of(contact, cycle.observed.is_x));
+}
+
+void follow_cycle(const PeriodicMotion& cycle, const TimeParameters& time,
+                  const std::function<void(const Simulation&)>& visit) {
+  TimeParameters own = time;
+  own.step = cycle.step;
+  Simulation simulation(cycle.at_turn, own);
+  visit(simulation);
+  for (std::int64_t i = 0; i < cycle.num_steps; ++i) {
+    if (simulation.step() != StepOutcome::done) throw NumericalError(simulation.failure());
+    visit(simulation);
+  }
+}
+
+std::optional<std::string> why_not_periodic(const System& system) {
+  if (system.contacts.empty()) return "nothing touches its bodies, so nothing keeps them moving";
+  const bool is_driven =
+      !system.drive.is_frozen && system.drive.velocity.value(system.drive.constant_from()) != 0.0;
+  for (const ContactPoint& contact : system.contacts) {
+    const MasterSurface& surface = system.surface_of(contact);
+    if (!is_driven || surface.is_endless) continue;
+    return fmt::format(
+        "contact '{}' moves along {} and comes to its end; hold its place by `sliding: frozen`, in "
+        "which friction acts as if it moved",
+        contact.name, surface.name);
+  }
+  return std::nullopt;
+}
+
+PeriodicMotion find_periodic_motion(const System& system, const TimeParameters& time,
+                                    const PeriodicMotionOptions& options) {
+  PeriodicMotion found;
+  Simulation simulation(system, time);
+  const double settle = std::max(options.settle, settled_from(system));
+  const auto settling = static_cast<std::int64_t>(std::ceil(settle / time.step));
+  const auto failed = [&] {
+    found.status = CycleStatus::diverged;
+    found.failure = simulation.failure();
+    return found;
+  };
+  if (step_on(simulation, settling) != StepOutcome::done) return failed();
+  if (!observe(simulation, system, settling, found)) return failed();
+  if (found.status != CycleStatus::periodic) return found;
+  found.at_turn = settled(system);
+  if (!go_to_turn(simulation, system, found.observed)) return failed();
+  if (!solve(simulation, time, options, found)) return failed();
+  return found;
+}
+
+}  // namespace stridor
