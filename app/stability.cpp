@@ -179,6 +179,7 @@ SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry
   const System& system = member.model->system;
   const std::string where = what.empty() ? "" : " at " + what;
   SlidingState state;
+  state.leading_drive = system.leading_drive();
   try {
     const EquilibriumState asked =
         stridor::sliding_state(system, member.drive_displacement, geometry);
