@@ -76,7 +76,7 @@ TEST(Drives, MotionsUnderSeveralAreTheSumOfThoseUnderEach) {
         System one = both;
         one.drives[alone] = drives[alone];
         const Eigen::Vector4d motion = motion_after(one, time);
-        EXPECT_GT(motion.cwiseAbs().minCoeff(), 1e-4);
+        EXPECT_GT(motion.cwiseAbs().maxCoeff(), 1e-3);
         sum += motion;
       }
       both.drives = drives;
