@@ -77,10 +77,7 @@ std::vector<double> kinks_along_drive(const System& system) {
   for (const ContactPoint& contact : system.contacts) {
     if (contact.face) continue;  // it stays where it is
     const MasterSurface& surface = system.surfaces[static_cast<std::size_t>(contact.surface)];
-    const auto drive_share = [&](int body) {
-      return system.bodies[static_cast<std::size_t>(body)].follows_drive ? 1.0 : 0.0;
-    };
-    const double share = drive_share(contact.slave_body) - drive_share(surface.body);
+    const double share = system.path_share(contact);
     for (int i = 0; share != 0.0 && i + 1 < surface.num_segments(); ++i) {
       const Segment segment = surface.undeformed_segment(i);
       const Eigen::Vector2d along = segment.second - segment.first;

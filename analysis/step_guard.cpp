@@ -38,9 +38,9 @@ bool may_open(const ContactPoint& contact) {
   return std::isfinite(contact.unilateral_from()) || contact.assumption == ContactAssumption::film;
 }
 
-/// Displacements of the drive.
+/// Displacements of the leading drive.
 std::vector<double> places_of(const System& system, const TimeParameters& time) {
-  const auto [least, most] = drive_range(system.drive, time.end);
+  const auto [least, most] = drive_range(system.leading_drive(), time.end);
   double shortest = std::numeric_limits<double>::infinity();
   for (const MasterSurface& surface : system.surfaces) {
     for (std::size_t k = 1; k < surface.arc_length.size(); ++k)
@@ -94,7 +94,6 @@ Eigen::VectorXd compliance_of(const System& system) {
 
 /// B_E is linear in the friction coefficient.
 SlidingContacts on_undeformed_masters(const System& system, double displacement) {
-  const EquilibriumState state = sliding_state(system, displacement);
   SlidingContacts sliding;
   sliding.rows = make_modal_pencil(system);
   Pencil rough = sliding.rows;
@@ -102,12 +101,8 @@ SlidingContacts on_undeformed_masters(const System& system, double displacement)
   place_undeformed(rough, system, displacement, 1.0, 1.0);
   for (std::size_t c = 0; c < system.contacts.size(); ++c) {
     const ContactPoint& contact = system.contacts[c];
-    const double share =
-        (system.bodies[static_cast<std::size_t>(contact.slave_body)].follows_drive ? 1.0 : 0.0) -
-        (system.bodies[static_cast<std::size_t>(system.master_of(contact))].follows_drive ? 1.0
-                                                                                          : 0.0);
     const double slip = contact.face ? contact.face->spin * contact.face->radius
-                                     : share * state.drive_velocity;
+                                     : system.driven_motion(contact).end_velocity();
     const double factor = (slip < 0.0 ? -1.0 : 1.0) * sliding_friction(contact.friction, slip);
     const auto row = static_cast<Eigen::Index>(c);
     sliding.rows.equilibrium.row(row) +=

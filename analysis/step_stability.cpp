@@ -184,7 +184,7 @@ std::vector<PathStability> stability_along_path(const System& system, const Time
                                                 int num_places,
                                                 const std::function<void(int)>& on_place) {
   const FrozenStep step(system, time);
-  const auto [least, most] = drive_range(system.drive, time.end);
+  const auto [least, most] = drive_range(system.leading_drive(), time.end);
   std::vector<PathStability> path;
   for (int i = 0; i < num_places; ++i) {
     if (on_place) on_place(i);

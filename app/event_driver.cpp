@@ -172,7 +172,9 @@ void EventDriver::keep_final_motion() {
   if (!final_motion_.arrays().empty()) return;
   const SubstrateMotion::State& s = motion_.state();
   final_motion_.put("time", time());
-  final_motion_.put("drive_displacement", model_->system.drive.displacement(time()));
+  std::vector<double> driven;
+  for (const Drive& drive : model_->system.drives) driven.push_back(drive.displacement(time()));
+  final_motion_.put("drive_displacement", driven);
   const std::string& body =
       model_->system.bodies[static_cast<std::size_t>(oscillator_.mass.body)].name;
   const auto keep = [&](const char* name, const Eigen::Vector2d& in_contact) {

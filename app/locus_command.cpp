@@ -39,16 +39,16 @@ constexpr double never = std::numeric_limits<double>::quiet_NaN();
 class PassingTimes {
  public:
   PassingTimes(const Scene& scene, BodyStabilityFamily& family)
-      : drive_(make_drive(scene.model.drive_or_rest(), scene.model.pairs().begin()->second.sliding)),
-        end_(scene.time->end),
-        family_(&family) {}
+      : end_(scene.time->end), family_(&family) {}
 
   /// @param place position of the contact, or displacement of the drive
   double at(double place) const {
     const SlidingState state = family_->at(std::array{place});
     if (!state.is_on_the_way) return never;
     const double wanted = state.equilibrium.state.drive_displacement;
-    const auto missing = [&](double time) { return drive_.displacement(time) - wanted; };
+    const auto missing = [&](double time) {
+      return state.leading_drive.displacement(time) - wanted;
+    };
     if (missing(0.0) == 0.0) return 0.0;
     constexpr int num_steps = 1000;
     double before = 0.0;
@@ -71,7 +71,6 @@ class PassingTimes {
     }
   }
 
-  Drive drive_;
   double end_;
   BodyStabilityFamily* family_;
 };

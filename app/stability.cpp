@@ -200,6 +200,7 @@ SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry
   const System& system = member.model->system;
   const std::string where = what.empty() ? "" : " at " + what;
   SlidingState state;
+  state.leading_drive = system.leading_drive();
   try {
     EquilibriumState asked = stridor::sliding_state(system, member.drive_displacement, geometry);
     asked.terms = contact_terms(terms);

@@ -75,6 +75,7 @@ struct SlidingState {
   Equilibrium equilibrium;
   Pencil pencil;
   bool is_on_the_way = false;  ///< the drive puts the scene there, by `equilibrium.state`
+  Drive leading_drive{};       ///< of the system
 };
 
 /// The state of a member of a family, with what the scene keeps of its terms. In the deformed geometry the contact is at the position on

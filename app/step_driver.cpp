@@ -70,7 +70,10 @@ MarchEnd StepDriver::run_until(double time) {
 void StepDriver::keep_final_motion() {
   if (!final_motion_.arrays().empty()) return;
   final_motion_.put("time", simulation_.time());
-  final_motion_.put("drive_displacement", simulation_.drive_displacement());
+  std::vector<double> driven;
+  for (std::size_t d = 0; d < model_->system.drives.size(); ++d)
+    driven.push_back(simulation_.drive_displacement(static_cast<int>(d)));
+  final_motion_.put("drive_displacement", driven);
   for (std::size_t b = 0; b < model_->system.bodies.size(); ++b) {
     const SystemBody& body = model_->system.bodies[b];
     if (body.modal.size() == 0) continue;

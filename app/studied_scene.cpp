@@ -30,7 +30,7 @@ NormParameters norms_of(const StudiedScene& study, const char* end_key) {
   const Scene& scene = study.loaded.scene;
   NormParameters norms;
   const bool is_given = study.loaded.tree.entry("measure") != nullptr;
-  norms.window.from = is_given ? scene.measure.from : study.model.system.drive.constant_from();
+  norms.window.from = is_given ? scene.measure.from : study.model.system.drives_constant_from();
   norms.window.to = std::min(end, scene.measure.to.value_or(end));
   const double clean = 0.4 / study.interval;
   norms.band = scene.measure.band.size() == 2

@@ -40,10 +40,13 @@ void store_bursts(RunFileWriter& writer, const std::vector<Burst>& bursts) {
   }
 }
 
-/// How the bodies and the drive were when the run began, so that one that goes on begins likewise:
+/// How the bodies and the drives were when the run began, so that one that goes on begins likewise:
 /// what they were taken from may be gone.
 void save_start(const System& system, State& state) {
-  state.put("start/drive", system.drive.displaced);
+  std::vector<double> displaced;
+  displaced.reserve(system.drives.size());
+  for (const Drive& drive : system.drives) displaced.push_back(drive.displaced);
+  state.put("start/drive", displaced);
   const auto put = [&](const std::string& name, const Eigen::VectorXd& motion) {
     if (motion.size() > 0)
       state.put(name, {motion.data(), static_cast<std::size_t>(motion.size())});
@@ -55,7 +58,9 @@ void save_start(const System& system, State& state) {
 }
 
 void load_start(const State& state, System& system) {
-  system.drive.displaced = state.get("start/drive");
+  std::vector<double> displaced(system.drives.size());
+  state.get("start/drive", displaced);
+  for (std::size_t d = 0; d < displaced.size(); ++d) system.drives[d].displaced = displaced[d];
   const auto get = [&](const std::string& name, Eigen::VectorXd& motion) {
     const auto found = state.arrays().find(name);
     if (found == state.arrays().end()) return;

@@ -119,7 +119,7 @@ Json left_out_json(const System& system, double highest, bool has_ledger) {
     rest.push_back(until > 0.0 ? fmt::format("changes of {} from {:.4g} s on", of, until)
                                : fmt::format("changes of {}", of));
   };
-  push_changes("load and drive", system.drive.constant_from());
+  push_changes("load and drive", system.drives_constant_from());
   push_changes("damping", damping_until);
   return {{"modes", {{"left_out", modes - moving}, {"of", modes}}},
           {"contact_rows", {{"left_out", all_rows - rows}, {"of", all_rows}}},

@@ -39,9 +39,9 @@ class SlidingPair {
       size_ += body.modal.size();
       rows_.push_back(body.modal.rows);
       squares_.emplace_back(body.modal.omega.array().square());
-      loads_.emplace_back(body.load_row < 0
+      loads_.emplace_back(body.loads.empty()
                               ? Eigen::VectorXd(Eigen::VectorXd::Zero(body.modal.size()))
-                              : Eigen::VectorXd(body.modal.rows.row(body.load_row)));
+                              : Eigen::VectorXd(body.modal.rows.row(body.loads.front().row)));
     }
     segment_ = contact().first_segment;
     enter_segment();
@@ -58,8 +58,8 @@ class SlidingPair {
   Contact accelerations(double t, const Eigen::Ref<const Eigen::VectorXd>& q,
                         const Eigen::Ref<const Eigen::VectorXd>& v,
                         Eigen::Ref<Eigen::VectorXd> a) const {
-    const double load = system_.drive.load.value(t);
-    const double drive_acceleration = system_.drive.acceleration(t);
+    const double load = system_.drives[0].load.value(t);
+    const double drive_acceleration = system_.drives[0].acceleration(t);
     for (std::size_t b = 0; b < system_.bodies.size(); ++b) {
       const SystemBody& body = system_.bodies[b];
       const auto n = body.modal.size();
@@ -68,11 +68,11 @@ class SlidingPair {
       const auto velocity = v.segment(first_[b], n).array();
       a.segment(first_[b], n) =
           -alpha * velocity - squares_[b] * (q.segment(first_[b], n).array() + beta * velocity);
-      if (!body.follows_drive) continue;
+      if (!body.follows_drive()) continue;
       a.segment(first_[b], n) += load * loads_[b] - drive_acceleration * body.modal.base_inertia;
     }
     const Frame frame = frame_at(t, q);
-    const Points velocity = points(v, system_.drive.velocity.value(t));
+    const Points velocity = points(v, system_.drives[0].velocity.value(t));
     const Points free = points(a, drive_acceleration);
     Contact contact;
     const Eigen::Vector2d s_dot = velocity.second - velocity.first;
@@ -93,7 +93,7 @@ class SlidingPair {
   std::pair<double, double> place_and_slip(double t, const Eigen::Ref<const Eigen::VectorXd>& q,
                                            const Eigen::Ref<const Eigen::VectorXd>& v) const {
     const Frame frame = frame_at(t, q);
-    return {frame.xi, slip_of(frame, points(v, system_.drive.velocity.value(t)))};
+    return {frame.xi, slip_of(frame, points(v, system_.drives[0].velocity.value(t)))};
   }
 
   /// The contact has reached an end of its segment: goes over to the next one, with an impulse.
@@ -104,7 +104,7 @@ class SlidingPair {
       throw std::runtime_error("run_arkode: the slave has left its master");
     enter_segment();
     const Frame frame = frame_at(t, q);
-    const Points velocity = points(v, system_.drive.velocity.value(t));
+    const Points velocity = points(v, system_.drives[0].velocity.value(t));
     const double rate = cross(velocity.second - velocity.first, frame.a) +
                         cross(frame.s, velocity.slave - velocity.first);
     const Eigen::Vector2d f = force_direction(t, frame);
@@ -154,8 +154,8 @@ class SlidingPair {
     const Eigen::Vector4d nodes = master_rows_ * x.segment(first_[master], master_rows_.cols());
     result.first = nodes.head<2>();
     result.second = nodes.tail<2>();
-    if (system_.bodies[slave].follows_drive) result.slave.x() += drive;
-    if (system_.bodies[master].follows_drive) {
+    if (system_.bodies[slave].follows_drive()) result.slave.x() += drive;
+    if (system_.bodies[master].follows_drive()) {
       result.first.x() += drive;
       result.second.x() += drive;
     }
@@ -163,7 +163,7 @@ class SlidingPair {
   }
 
   Frame frame_at(double t, const Eigen::Ref<const Eigen::VectorXd>& q) const {
-    const Points u = points(q, system_.drive.displacement(t));
+    const Points u = points(q, system_.drives[0].displacement(t));
     const Eigen::Vector2d& first = surface().positions[static_cast<std::size_t>(segment_)];
     const Eigen::Vector2d& second = surface().positions[static_cast<std::size_t>(segment_) + 1];
     Frame frame;

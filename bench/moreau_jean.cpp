@@ -31,9 +31,9 @@ class Body {
     modes(answer_) = 1.0 / (1.0 + h * theta * damping + h * h * theta * theta * square);
     modes(kept_) = 1.0 - h * modes(answer_) * (damping + h * theta * square);
     modes(pulled_) = -h * modes(answer_) * square;
-    if (body.load_row >= 0) {
+    if (!body.loads.empty()) {
       modes(loaded_) =
-          h * load * modes(answer_) * body.modal.rows.row(body.load_row).transpose().array();
+          h * load * modes(answer_) * body.modal.rows.row(body.loads.front().row).transpose().array();
     }
     const ModalStart start = modal_start(body);
     modes(position_) = start.position;
@@ -104,10 +104,10 @@ class MoreauJean {
       : system_(window.system),
         parameters_(parameters),
         slave_(system_.bodies[static_cast<std::size_t>(contact().slave_body)],
-               system_.drive.load.value(0.0), parameters),
+               system_.drives[0].load.value(0.0), parameters),
         master_(system_.bodies[static_cast<std::size_t>(surface().body)],
-                system_.drive.load.value(0.0), parameters),
-        drive_velocity_(system_.drive.velocity.value(0.0)),
+                system_.drives[0].load.value(0.0), parameters),
+        drive_velocity_(system_.drives[0].velocity.value(0.0)),
         friction_(contact().friction.dynamic_coefficient * contact().friction_rise.value(0.0)),
         solver_(1) {
     slave_.watch({contact().slave_rows.x, contact().slave_rows.y});

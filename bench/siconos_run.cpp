@@ -19,8 +19,8 @@ SiconosBody body_of(const System& system, int index) {
   given.displacement = body.initial_displacement;
   given.velocity = body.initial_velocity;
   given.load = Eigen::VectorXd::Zero(reduced.size());
-  if (body.load_row >= 0)
-    given.load = system.drive.load.value(0.0) * reduced.rows.row(body.load_row);
+  if (!body.loads.empty())
+    given.load = system.drives[0].load.value(0.0) * reduced.rows.row(body.loads.front().row);
   return given;
 }
 
@@ -33,7 +33,7 @@ class SlidingContact : public MovingContact {
         surface_(system.surfaces[0]),
         all_rows_(master_rows),
         slave_(pick(slave_rows, contact_.slave_rows)),
-        drive_velocity_(system.drive.velocity.value(0.0)) {
+        drive_velocity_(system.drives[0].velocity.value(0.0)) {
     enter(contact_.first_segment);
   }
 

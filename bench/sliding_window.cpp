@@ -34,7 +34,7 @@ void close_gap_rate(System& system) {
                     first * master.initial_displacement, second * master.initial_displacement);
   const auto on_master = ((1.0 - frame.xi) * first + frame.xi * second).eval();
   Eigen::Vector2d rate = c * slave.initial_velocity - on_master * master.initial_velocity;
-  rate.x() += system.drive.velocity.value(0.0);
+  rate.x() += system.drives[0].velocity.value(0.0);
   const Eigen::Vector2d force = frame.normal - contact.friction.dynamic_coefficient * frame.tangent;
   const Eigen::VectorXd slave_answer = slave.reduced.mass.llt().solve(c.transpose() * force).eval();
   const Eigen::VectorXd master_answer =
@@ -90,7 +90,7 @@ SlidingWindow make_sliding_window(const Model& model, ObservedRow observed, doub
 
   SlidingWindow window{system, observed, interval,
                        static_cast<std::int64_t>(std::llround((to - from) / interval))};
-  Drive& drive = window.system.drive;
+  Drive& drive = window.system.drives[0];
   ContactPoint& contact = window.system.contacts[0];
   contact.slave_position.x() += drive.displacement(from);
   contact.friction_rise = TimeCurve(contact.friction_rise.value(from));

@@ -110,8 +110,8 @@ void against_modes(const System& system, int rounds) {
 /// share of the load.
 System with_contacts(const System& system, int count) {
   System many = system;
-  const double load = system.drive.load.value(system.drive.load.constant_from());
-  many.drive.load = TimeCurve::ramp(load / count, system.drive.load.constant_from());
+  const double load = system.drives[0].load.value(system.drives[0].load.constant_from());
+  many.drives[0].load = TimeCurve::ramp(load / count, system.drives[0].load.constant_from());
   const ContactPoint contact = system.contacts[0];
   constexpr int nodes_apart = 6;
   const MasterSurface& surface = system.surfaces[0];

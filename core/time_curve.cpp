@@ -72,4 +72,9 @@ double TimeCurve::integral(double time) const {
   return integral_from_first(time) - integral_from_first(0.0);
 }
 
+bool TimeCurve::is_zero() const {
+  return std::all_of(table_.values.begin(), table_.values.end(),
+                     [](double value) { return value == 0.0; });
+}
+
 }  // namespace stridor

@@ -39,6 +39,8 @@ class TimeCurve {
   double integral(double time) const;
 
   bool is_constant() const { return table_.times.size() == 1; }
+  /// Whether it is 0 at all times.
+  bool is_zero() const;
   /// From this time on the value no longer changes.
   double constant_from() const { return table_.times.back(); }
   const TimeTable& table() const { return table_; }

@@ -160,36 +160,72 @@ const Schema& DriveParameters::schema() {
   static const Schema keys =
       SchemaOf<DriveParameters>("drive")
           .curve("velocity", &DriveParameters::velocity,
-                 {.doc = "Velocity of guided supports in +x: a number, which rises over `ramp`, or "
-                         "{times, values}.",
-                  .unit = "m s-1"})
+                 {.doc = "Velocity of what it moves in +x: a number, which rises over `ramp`, or "
+                         "{times, values}; default 0.",
+                  .unit = "m s-1",
+                  .optional = true})
           .curve("load", &DriveParameters::load,
-                 {.doc = "Force on guided supports in +y: a number, which rises over `ramp`, or "
-                         "{times, values}.",
-                  .unit = "N"})
+                 {.doc = "Force in +y on each thing that it loads: a number, which rises over "
+                         "`ramp`, or {times, values}; default 0.",
+                  .unit = "N",
+                  .optional = true})
+          .curve("displacement", &DriveParameters::displacement,
+                 {.doc = "Displacement in +y of the ground ends of springs: a number, which rises "
+                         "over `ramp`, or {times, values}; of drives with a name. Their dampers "
+                         "stay where they are.",
+                  .unit = "m",
+                  .optional = true})
           .real(
               "ramp", &DriveParameters::ramp,
-              {.doc =
-                   "Time over which velocity, load and friction rise from 0 (quintic smoothstep).",
+              {.doc = "Time over which velocity, load, displacement and friction rise from 0 "
+                      "(quintic smoothstep); friction with the drive that moves one of its bodies, "
+                      "else with one that loads them.",
                .unit = "s",
                .range = Range::non_negative()})
           .text_list("moves", &DriveParameters::moves,
-                     {.doc = "What moves with the velocity: `guided` (all guided supports), "
-                             "<contact>.master (a rigid or half_space one, along itself), or a "
-                             "list of them; default: guided.",
+                     {.doc = "What moves with the velocity: `guided` (all guided supports), <body> "
+                             "(those of it), <contact>.master (a rigid or half_space one, along "
+                             "itself), or a list of them; default: guided.",
                       .optional = true})
           .text_list("load_on", &DriveParameters::load_on,
-                     {.doc = "What the load acts on: `guided`, <body>.<point>, or a list of them; "
-                             "default: guided.",
-                      .optional = true});
+                     {.doc = "What the load acts on: `guided`, <body> (its guided supports), "
+                             "<body>.<point>, <body>.<surface> (spread evenly over it), or a list "
+                             "of them; default: guided.",
+                      .optional = true})
+          .text_list("displaces", &DriveParameters::displaces,
+                     {.doc = "What the displacement moves: the ground end of <body>.<spring>, or "
+                             "of a list of them.",
+                      .optional = true})
+          .check([](const DriveParameters& drive, std::vector<Problem>& problems) {
+            if (!drive.displacement.is_zero() && drive.displaces.empty())
+              problems.push_back(
+                  {"displaces", "is missing: name the springs that `displacement` moves", {}, 0, 0});
+          });
   return keys;
 }
 
-Drive make_drive(const DriveParameters& parameters, SlidingMode sliding) {
+bool SceneDrive::moves_guided() const {
+  if (parameters.moves.empty()) return is_only || !parameters.velocity.is_zero();
+  return std::find(parameters.moves.begin(), parameters.moves.end(), guided_supports) !=
+         parameters.moves.end();
+}
+
+bool SceneDrive::loads_guided() const {
+  if (parameters.load_on.empty()) return is_only || !parameters.load.is_zero();
+  return std::find(parameters.load_on.begin(), parameters.load_on.end(), guided_supports) !=
+         parameters.load_on.end();
+}
+
+Drive make_drive(const DriveParameters& parameters, SlidingMode sliding, const std::string& key) {
   const auto ramped = [&](const TimeCurve& curve) {
     return curve.is_constant() ? TimeCurve::ramp(curve.value(0.0), parameters.ramp) : curve;
   };
-  return {ramped(parameters.velocity), ramped(parameters.load), sliding == SlidingMode::frozen};
+  return {ramped(parameters.velocity),
+          ramped(parameters.load),
+          sliding == SlidingMode::frozen,
+          0.0,
+          ramped(parameters.displacement),
+          key};
 }
 
 }  // namespace stridor

@@ -1,4 +1,4 @@
-// Parameters of contacts and of the drive in a scene.
+// Parameters of contacts and drives in a scene.
 #pragma once
 
 #include <optional>
@@ -22,7 +22,7 @@ enum class SlidingMode {
 inline constexpr const char* rigid_master = "rigid";
 inline constexpr const char* half_space_master = "half_space";
 
-/// Stands for all guided supports in the lists of the drive.
+/// Stands for all guided supports in the lists of a drive.
 inline constexpr const char* guided_supports = "guided";
 
 /// Where a slave is at the start: on a curve, or on the face of a plate.
@@ -65,11 +65,32 @@ struct DriveParameters {
   TimeCurve velocity;  ///< of guided supports in +x, m/s; a constant rises over `ramp`
   TimeCurve load;      ///< on guided supports in +y, N; a constant rises over `ramp`
   double ramp = 0.0;   ///< s, >= 0
-  /// What the velocity moves: guided_supports, "<contact>.master"; empty: the guided supports.
+  /// What the velocity moves: guided_supports, "<body>", "<contact>.master"; empty: all guided supports.
   std::vector<std::string> moves{};
-  /// What the load acts on: guided_supports, "<body>.<point>"; empty: the guided supports.
+  /// What the load acts on: guided_supports, "<body>", "<body>.<point>", "<body>.<surface>"; empty: all
+  /// guided supports.
   std::vector<std::string> load_on{};
+  TimeCurve displacement{};  ///< of ground ends of springs in +y, m; a constant rises over `ramp`
+  std::vector<std::string> displaces{};  ///< "<body>.<spring>"
   static const Schema& schema();
+};
+
+/// A drive of a scene with its name.
+struct SceneDrive {
+  std::string key;   ///< key path of its section, "drive" or "drives.NAME"
+  std::string name;  ///< empty of the only one without a name
+  DriveParameters parameters;
+  bool is_only = true;  ///< there is no other
+
+  std::string key_of(const std::string& below) const { return key + "." + below; }
+  std::string key_of(const std::string& list, std::size_t entry) const {
+    return key_of(list) + "." + std::to_string(entry);
+  }
+  /// Whether the velocity moves the guided supports of all bodies. Where nothing is said, it does where
+  /// there is one, or no other drive.
+  bool moves_guided() const;
+  /// Whether the load acts on the guided supports of all bodies; likewise.
+  bool loads_guided() const;
 };
 
 /// The force law of a contact with a viscoelastic normal law, in SI units.
@@ -78,6 +99,8 @@ struct DriveParameters {
 SubstrateContact make_substrate_contact(const ContactParameters& contact, double load);
 
 /// The drive as it acts: constants turned into ramps.
-Drive make_drive(const DriveParameters& parameters, SlidingMode sliding);
+/// @param key of its section
+Drive make_drive(const DriveParameters& parameters, SlidingMode sliding,
+                 const std::string& key = "drive");
 
 }  // namespace stridor

@@ -1,4 +1,4 @@
-// The coupled system: bodies, the surfaces and points where they may touch, and the drive.
+// The coupled system: bodies, the surfaces and points where they may touch, and the drives.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 
 #include "core/time_curve.hpp"
 #include "coupling/contact.hpp"
+#include "coupling/drive.hpp"
 #include "coupling/friction_law.hpp"
 #include "coupling/roughness.hpp"
 #include "coupling/substrate_contact.hpp"
@@ -50,8 +51,8 @@ struct SystemBody {
   std::string name;
   ReducedBody reduced;
   ModalBody modal;  ///< the same body in its modes
-  bool follows_drive = false;
-  int load_row = -1;  ///< row on which the drive's load acts; −1 where none
+  int drive = -1;  ///< index into System::drives of the one that its supports follow; −1 where none
+  std::vector<BodyLoad> loads;  ///< of drives
   /// Motion at t = 0 in reduced coordinates, m and m/s; empty for a body at rest.
   Eigen::VectorXd initial_displacement;
   Eigen::VectorXd initial_velocity;
@@ -60,8 +61,9 @@ struct SystemBody {
   /// Lowest ω among modes that the body never had, rad/s (BodyMatrices::lowest_omitted).
   double lowest_omitted = std::numeric_limits<double>::infinity();
 
-  /// Whether the drive moves or loads it.
-  bool feels_drive() const { return follows_drive || load_row >= 0; }
+  bool follows_drive() const { return drive >= 0; }
+  /// Whether a drive moves or loads it.
+  bool feels_drive() const { return follows_drive() || !loads.empty(); }
 };
 
 /// A master surface: nodes in order, the body on their right-hand side.
@@ -171,27 +173,11 @@ struct ContactPoint {
   }
 };
 
-/// Prescribed motion that drives the system from outside.
-struct Drive {
-  TimeCurve velocity;      ///< of the bodies that follow the drive in +x, m/s
-  TimeCurve load;          ///< on the load row of every body that has one, N
-  bool is_frozen = false;  ///< the bodies stay where they are, friction acts as if they moved
-  double displaced = 0.0;  ///< of these bodies in +x at t = 0, m
-
-  /// Displacement of the bodies that follow the drive in +x, m.
-  double displacement(double time) const {
-    return displaced + (is_frozen ? 0.0 : velocity.integral(time));
-  }
-  double acceleration(double time) const { return is_frozen ? 0.0 : velocity.slope(time); }
-  /// From this time on velocity and load no longer change.
-  double constant_from() const { return std::max(velocity.constant_from(), load.constant_from()); }
-};
-
 struct System {
   std::vector<SystemBody> bodies;
   std::vector<MasterSurface> surfaces;
   std::vector<ContactPoint> contacts;
-  Drive drive;
+  std::vector<Drive> drives{Drive()};  ///< one at least
 
   const MasterSurface& surface_of(const ContactPoint& contact) const {
     return surfaces[static_cast<std::size_t>(contact.surface)];
@@ -203,6 +189,31 @@ struct System {
   /// The body that a contact touches with its slave point.
   int master_of(const ContactPoint& contact) const {
     return contact.face ? contact.face->body : surface_of(contact).body;
+  }
+  /// The drive that a body follows; null where there is none.
+  const Drive* drive_of(int body) const {
+    const int drive = bodies[static_cast<std::size_t>(body)].drive;
+    return drive < 0 ? nullptr : &drives[static_cast<std::size_t>(drive)];
+  }
+  /// Motion of the slave of a contact against its master by the drives.
+  DrivenMotion driven_motion(const ContactPoint& contact) const {
+    return {drive_of(contact.slave_body), drive_of(master_of(contact))};
+  }
+  /// From this time on nothing changes of any drive.
+  double drives_constant_from() const {
+    double time = 0.0;
+    for (const Drive& drive : drives) time = std::max(time, drive.constant_from());
+    return time;
+  }
+  /// The drive by whose displacement places on the way of the system are counted: the first one
+  /// that some body follows and that moves in the end, else the first that some body follows.
+  const Drive& leading_drive() const;
+  /// Displacement in +x of a body per displacement of the leading drive: 1 of what follows that,
+  /// the ratio of the velocities in the end of what follows another, 0 of what follows none.
+  double path_share(int body) const;
+  /// Of the slave of a contact against its master.
+  double path_share(const ContactPoint& contact) const {
+    return path_share(contact.slave_body) - path_share(master_of(contact));
   }
   bool has_faces() const {
     return std::any_of(contacts.begin(), contacts.end(),

@@ -59,8 +59,8 @@ double EventRecorder::value_at_point(const Channel& channel, double time,
       oscillator_->mass.to_body * motion_in_contact(channel.derivative, *oscillator_, motion);
   const double relative =
       body.reduced.rows.row(point.rows.row(channel.direction)).dot(reduced);
-  if (channel.direction != 0 || !body.follows_drive) return relative;
-  const Drive& drive = model_->system.drive;
+  if (channel.direction != 0 || !body.follows_drive()) return relative;
+  const Drive& drive = *model_->system.drive_of(point.body);
   if (channel.derivative == Derivative::none) return relative + drive.displacement(time);
   return channel.derivative == Derivative::first ? relative + drive.velocity.value(time) : relative;
 }
@@ -87,9 +87,8 @@ double EventRecorder::value_of_contact(ContactQuantity quantity, double time,
       const System& system = model_->system;
       const ContactPoint& contact = system.contacts.front();
       const auto carried = [&](int body) {
-        return system.bodies[static_cast<std::size_t>(body)].follows_drive
-                   ? system.drive.displacement(time)
-                   : 0.0;
+        const Drive* const drive = system.drive_of(body);
+        return drive == nullptr ? 0.0 : drive->displacement(time);
       };
       return contact.slave_position.x() + place.x() + carried(mass.body) -
              carried(system.surface_of(contact).body);

@@ -48,15 +48,22 @@ void check_modes(const RunFileReader& file, const std::string& path, const Syste
   }
 }
 
-/// Gives the drive and the bodies the positions and velocities at the end of the run.
+/// Gives the drives and the bodies the positions and velocities at the end of the run.
 void start_from_file(System& system, const std::string& path) {
   constexpr const char* drive = "/final/drive_displacement";
   const DamageGuard guard(path);
   const RunFileReader file(path);
   const std::vector<double> displaced = file.static_array(drive);
-  if (displaced.size() != 1 || !std::isfinite(displaced.front()))
-    throw FileError(path, drive, "should be one finite number");
-  system.drive.displaced = displaced.front();
+  const bool is_finite = std::all_of(displaced.begin(), displaced.end(),
+                                     [](double one) { return std::isfinite(one); });
+  if (displaced.size() != system.drives.size() || !is_finite) {
+    throw FileError(path, drive,
+                    system.drives.size() == 1
+                        ? std::string("should be one finite number")
+                        : fmt::format("should be {} finite numbers, one of each drive",
+                                      system.drives.size()));
+  }
+  for (std::size_t d = 0; d < displaced.size(); ++d) system.drives[d].displaced = displaced[d];
   for (SystemBody& body : system.bodies) {
     if (body.modal.size() == 0) continue;
     check_modes(file, path, body);
@@ -76,8 +83,7 @@ void start_from_file(System& system, const std::string& path) {
 /// Steady sliding under the loads at t = 0.
 Equilibrium equilibrium_at_start(const System& system) {
   EquilibriumState state;
-  state.drive_velocity = system.drive.velocity.value(0.0);
-  state.load = system.drive.load.value(0.0);
+  state.drives = drive_states(system, 0.0);
   state.friction_factor = 1.0;
   for (const ContactPoint& contact : system.contacts)
     state.friction_factor = std::min(state.friction_factor, contact.friction_rise.value(0.0));

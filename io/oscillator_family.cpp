@@ -28,7 +28,8 @@ bool is_idle(const std::string& path) {
 
 /// Whether a number changes laws, load or speed alone.
 bool leaves_body(const std::string& path) {
-  if (path == "drive.velocity" || path == "drive.load") return true;
+  const bool is_drive = path.starts_with("drive.") || path.starts_with("drives.");
+  if (is_drive && (path.ends_with(".velocity") || path.ends_with(".load"))) return true;
   return path.starts_with("contact") && (path.find(".normal.") != std::string::npos ||
                                          path.find(".friction.") != std::string::npos);
 }
@@ -80,10 +81,13 @@ bool OscillatorFamily::find_mass() {
   const Model model = build_model(loaded_, cache_);
   std::optional<SlidingMass> mass = as_sliding_mass(model.system);
   if (!mass) return false;
-  const auto follows = [&](int body) {
-    return model.system.bodies[static_cast<std::size_t>(body)].follows_drive ? 1.0 : 0.0;
-  };
-  speed_share_ = follows(model.system.surfaces.front().body) - follows(mass->body);
+  const SystemBody& body = model.system.bodies[static_cast<std::size_t>(mass->body)];
+  // Without a load of its own the body says nothing of what presses it.
+  if (body.loads.empty() || body.loads.front().by != BodyLoad::By::force) makes_body_ = true;
+  if (!body.loads.empty()) load_drive_ = body.loads.front().drive;
+  base_drive_ = body.drive;
+  const int master = model.system.surfaces.front().body;
+  master_drive_ = model.system.bodies[static_cast<std::size_t>(master)].drive;
   oscillator_ = scaled(*std::move(mass));
   return true;
 }
@@ -224,10 +228,15 @@ void OscillatorFamily::refuse(std::span<const double> values) const {
 }
 
 void OscillatorFamily::renew_laws() {
-  const DriveParameters drive = loaded_.scene.model.drive_or_rest();
+  const std::vector<SceneDrive> drives = loaded_.scene.model.scene_drives();
+  const auto speed_of = [&](int drive) {
+    return drive < 0 ? 0.0
+                     : drives[static_cast<std::size_t>(drive)].parameters.velocity.value(0.0);
+  };
   SlidingMass& mass = oscillator_->mass;
-  mass.load = drive.load.value(0.0);
-  mass.speed = speed_share_ * drive.velocity.value(0.0);
+  mass.load = drives[static_cast<std::size_t>(load_drive_)].parameters.load.value(0.0);
+  mass.base_speed = speed_of(base_drive_);
+  mass.speed = speed_of(master_drive_) - mass.base_speed;
   mass.contact = make_substrate_contact(pair(), std::abs(mass.load));
   oscillator_ = scaled(mass);
 }

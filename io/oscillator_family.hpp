@@ -80,7 +80,10 @@ class OscillatorFamily {
   std::vector<Parameter> parameters_;      ///< in an order in which they can be computed
   std::vector<Number> changes_;
   bool makes_body_ = false;
-  double speed_share_ = 1.0;  ///< of the half-space under the body, of the drive's velocity
+  // Indices of drives, −1 where there is none.
+  int load_drive_ = 0;     ///< that loads the body
+  int base_drive_ = -1;    ///< that the body follows
+  int master_drive_ = -1;  ///< that the half-space follows
   BodyCache cache_;
   std::optional<SlidingOscillator> oscillator_;
 };

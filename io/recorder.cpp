@@ -59,7 +59,7 @@ double Recorder::Stream::value(const Simulation& simulation) const {
   if (point) {
     const double relative =
         simulation.displacement(point->body, point->rows.row(direction));
-    return follows_drive ? relative + simulation.drive_displacement() : relative;
+    return drive >= 0 ? relative + simulation.drive_displacement(drive) : relative;
   }
   if (energy != nullptr) {
     if (simulation.energy() == nullptr)
@@ -96,7 +96,7 @@ Recorder::Recorder(const Model& model, std::vector<Channel> channels, double ste
     } else if (channel.energy != nullptr) {
       columns_.push_back({streams_.size()});
       streams_.push_back(
-          {std::nullopt, 0, false, 0, channel.quantity, channel.energy, Decimator(filter)});
+          {std::nullopt, 0, -1, 0, channel.quantity, channel.energy, Decimator(filter)});
     } else {
       for (const int contact : contacts_of(model.system, channel.pair))
         add_contact(channel, contact, filter);
@@ -124,9 +124,10 @@ void Recorder::add_motion(const Model& model, const Channel& channel,
     ++stream;
   }
   if (stream == streams_.size()) {
-    const bool follows = channel.direction == 0 &&
-                         model.system.bodies[static_cast<std::size_t>(point.body)].follows_drive;
-    streams_.push_back({point, channel.direction, follows, 0, ContactQuantity::force, nullptr,
+    const int drive = channel.direction == 0
+                          ? model.system.bodies[static_cast<std::size_t>(point.body)].drive
+                          : -1;
+    streams_.push_back({point, channel.direction, drive, 0, ContactQuantity::force, nullptr,
                         Decimator(filter)});
   }
   columns_.push_back({stream, channel.derivative});
@@ -190,7 +191,7 @@ void Recorder::sample(const Simulation& simulation) {
 std::optional<DisplacementSink::Row> Recorder::sole_row() const {
   if (streams_.size() != 1) return std::nullopt;
   const Stream& stream = streams_.front();
-  if (!stream.point || stream.follows_drive) return std::nullopt;
+  if (!stream.point || stream.drive >= 0) return std::nullopt;
   const PointRows& rows = stream.point->rows;
   return Row{stream.point->body, rows.row(stream.direction)};
 }

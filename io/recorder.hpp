@@ -64,7 +64,7 @@ class Recorder : public DisplacementSink {
   struct Stream {
     std::optional<Model::Point> point;  ///< of a motion
     int direction = 0;
-    bool follows_drive = false;  ///< the drive's displacement is added
+    int drive = -1;  ///< of which the displacement is added; −1: of none
     int contact = 0;
     ContactQuantity quantity = ContactQuantity::force;
     const EnergyEntry* energy = nullptr;

@@ -342,13 +342,12 @@ std::optional<double> SceneFamily::displacement_to(double start) const {
   const System& system = model_->system;
   const ContactPoint& point = system.contacts.front();
   const MasterSurface& surface = system.surfaces[static_cast<std::size_t>(point.surface)];
-  const auto follows = [&](int body) {
-    return system.bodies[static_cast<std::size_t>(body)].follows_drive;
-  };
   const bool is_on_master =
       surface.is_endless || (start >= 0.0 && start <= surface.arc_length.back());
-  if (!is_on_master || !follows(point.slave_body) || follows(surface.body) ||
-      !is_straight_along_drive(surface)) {
+  // One drive alone slides it: then only the slave is elsewhere.
+  const bool is_slid = system.path_share(point.slave_body) == 1.0 &&
+                       system.drive_of(surface.body) == nullptr;
+  if (!is_on_master || !is_slid || !is_straight_along_drive(surface)) {
     return std::nullopt;
   }
   return drive_displacement_at(system, 0, start);

@@ -89,20 +89,17 @@ void visit_numbers(const Schema& schema, const void* object, const std::string& 
 std::optional<double> leaving_time(const System& system, const ContactPoint& contact, double end) {
   if (contact.face) return std::nullopt;
   const MasterSurface& surface = system.surface_of(contact);
-  if (surface.is_endless || system.drive.is_frozen) return std::nullopt;
-  const auto driven = [&](int body) {
-    return system.bodies[static_cast<std::size_t>(body)].follows_drive ? 1.0 : 0.0;
-  };
+  const DrivenMotion driven = system.driven_motion(contact);
+  if (surface.is_endless || driven.is_frozen()) return std::nullopt;
   const Projection start =
       surface.project_undeformed(contact.first_segment, contact.slave_position);
-  const double rate = (driven(contact.slave_body) - driven(surface.body)) * start.tangent.x();
   const double begin = surface.arc_at(contact.first_segment, start.weights);
   const double length = surface.arc_length.back();
   const double rounding = 1e-9 * length;
   constexpr int num_instants = 1000;
   for (int i = 0; i <= num_instants; ++i) {
     const double time = end * i / num_instants;
-    const double place = begin + rate * system.drive.displacement(time);
+    const double place = begin + start.tangent.x() * driven.displacement(time);
     if (place < -rounding || place > length + rounding) return time;
   }
   return std::nullopt;
@@ -140,7 +137,7 @@ void look_at_channels(const Scene& scene, const Model& model, std::vector<Proble
     const Model::Point& point = model.points.at(*channel.point);
     const SystemBody& body = model.system.bodies[static_cast<std::size_t>(point.body)];
     // What the drive carries along moves with it.
-    const bool is_driven = body.follows_drive && channel.direction == 0;
+    const bool is_driven = body.follows_drive() && channel.direction == 0;
     if (is_driven || !is_held(body, point.rows.row(channel.direction))) continue;
     warnings.push_back(
         {channel.key,

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/suggestion.hpp"
-#include "models/model_drive.hpp"
 
 namespace stridor {
 namespace {
@@ -146,8 +145,7 @@ void refuse_shared_nodes(const std::vector<ContactPair>& pairs) {
   }
 }
 
-ContactPoint make_contact_point(const ContactPair& pair, std::size_t k,
-                                const DriveParameters& drive) {
+ContactPoint make_contact_point(const ContactPair& pair, std::size_t k, const PairDrive& drive) {
   const ContactParameters& parameters = *pair.parameters;
   ContactPoint point;
   point.name = pair.point_name(k);
@@ -156,7 +154,7 @@ ContactPoint make_contact_point(const ContactPair& pair, std::size_t k,
   if (parameters.friction) point.friction = make_friction_law(*parameters.friction);
   point.penalty = parameters.normal.stiffness;
   if (parameters.normal.law == NormalLaw::viscoelastic)
-    point.substrate = make_substrate_contact(parameters, final_load(drive));
+    point.substrate = make_substrate_contact(parameters, drive.load);
   point.friction_rise = TimeCurve::ramp(1.0, drive.ramp);
   point.on_violation = parameters.on_violation;
   point.armed_from = parameters.armed_from.value_or(drive.ramp);

@@ -10,6 +10,12 @@
 
 namespace stridor {
 
+/// What presses and starts a pair.
+struct PairDrive {
+  double ramp = 0.0;  ///< over which its friction rises, s
+  double load = 0.0;  ///< size of the load on it in the end, N
+};
+
 /// A contact pair with its names resolved to nodes. A master without end has no nodes, nor has a
 /// face.
 struct ContactPair {
@@ -44,8 +50,6 @@ ContactPair resolve_pair(const std::string& name, const std::string& key,
 void refuse_shared_nodes(const std::vector<ContactPair>& pairs);
 
 /// Laws, names and times of a contact of a pair; its place is left to the kind of master.
-/// @param load of the drive in the end, N
-ContactPoint make_contact_point(const ContactPair& pair, std::size_t k,
-                                const DriveParameters& drive);
+ContactPoint make_contact_point(const ContactPair& pair, std::size_t k, const PairDrive& drive);
 
 }  // namespace stridor

@@ -153,7 +153,7 @@ void check_side(const ContactPair& pair, const MasterSurface& surface, const Mod
 
 /// Contact k of a pair, under which the surface has its number in the system.
 ContactPoint make_curve_contact(const ContactPair& pair, std::size_t k,
-                                const DriveParameters& drive, const MasterSurface& surface,
+                                const PairDrive& drive, const MasterSurface& surface,
                                 ModelBody& slave) {
   const int node = pair.slave_nodes[k];
   slave.keep_node(node);
@@ -183,7 +183,7 @@ ContactPoint make_curve_contact(const ContactPair& pair, std::size_t k,
 
 }  // namespace
 
-void add_curve_contacts(const ContactPair& pair, const DriveParameters& drive,
+void add_curve_contacts(const ContactPair& pair, const PairDrive& drive,
                         std::vector<ModelBody>& bodies, System& system) {
   if (pair.parameters->normal.preload) {
     throw ConfigError(pair.key_of("normal.preload"),

@@ -7,7 +7,7 @@ namespace stridor {
 
 /// Places the slave of a pair on the curve of its master, and adds surface and contacts to a system.
 /// @throws ConfigError where the slave stands off its master or on its inner side
-void add_curve_contacts(const ContactPair& pair, const DriveParameters& drive,
+void add_curve_contacts(const ContactPair& pair, const PairDrive& drive,
                         std::vector<ModelBody>& bodies, System& system);
 
 }  // namespace stridor

@@ -110,7 +110,7 @@ void place_on_face(const ContactPair& pair, const BodyFace& face, const FaceStar
 
 }  // namespace
 
-void add_face_contacts(const ContactPair& pair, const DriveParameters& drive,
+void add_face_contacts(const ContactPair& pair, const PairDrive& drive,
                        std::vector<ModelBody>& bodies, System& system) {
   ModelBody& slave = bodies[static_cast<std::size_t>(pair.slave_body)];
   ModelBody& master = bodies[static_cast<std::size_t>(pair.master_body)];

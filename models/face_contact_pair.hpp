@@ -12,7 +12,7 @@ namespace stridor {
 /// turn with it. The face is flat: all points of the slave have the same y.
 /// @throws ConfigError where the slave stands off the face, is bent, is placed by another contact,
 ///         or the pair has keys that mean nothing on a face
-void add_face_contacts(const ContactPair& pair, const DriveParameters& drive,
+void add_face_contacts(const ContactPair& pair, const PairDrive& drive,
                        std::vector<ModelBody>& bodies, System& system);
 
 /// Makes the state of rest with preloaded contacts that of undeformed bodies: each contact on a

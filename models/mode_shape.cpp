@@ -32,7 +32,10 @@ std::vector<BodyShape> mode_shape(const Model& model, const Equilibrium& equilib
     shape.name = body.name;
     shape.displacement = node_displacements(matrices, recovery * (body.modal.shapes * part));
     shape.nodes = matrices.nodes.rowwise() + placement.place.transpose();
-    if (body.follows_drive) shape.nodes.col(0).array() += equilibrium.state.drive_displacement;
+    if (body.follows_drive()) {
+      shape.nodes.col(0).array() += model.system.path_share(static_cast<int>(b)) *
+                                    equilibrium.state.drive_displacement;
+    }
     if (equilibrium.state.geometry == ContactGeometry::deformed) {
       const Eigen::VectorXd static_part =
           recovery * (body.modal.shapes * equilibrium.displacement[b]);

@@ -23,7 +23,7 @@ class ModelBuilder {
 
   ModelBuilder(const ModelParameters& parameters, BodyCache& cache)
       : parameters_(parameters), cache_(cache), pairs_(parameters.pairs()),
-        drive_(parameters.drive_or_rest()), bodies_(make_bodies(parameters.substructures, cache)) {
+        drives_(parameters.scene_drives()), bodies_(make_bodies(parameters.substructures, cache)) {
     model_.substructures = parameters.substructures;
     resolve();
   }
@@ -35,7 +35,7 @@ class ModelBuilder {
       ModelBody& body = bodies_[static_cast<std::size_t>(b)];
       model_.points[name] = {b, body.rows_of(node_at(body, point, key))};
     }
-    check_loads(drive_, bodies_);
+    check_loads(drives_, bodies_);
     finish();
     hold_preloads(preloads_of(resolved_, model_.system), model_.system);
     return std::move(model_);
@@ -44,23 +44,27 @@ class ModelBuilder {
  private:
   /// Resolves the names of all pairs.
   void resolve() {
-    check_drive(drive_, pairs_);
-    const EndlessMasters endless = add_endless_masters(drive_, pairs_, bodies_);
+    check_drives(drives_, pairs_, bodies_);
+    assign_drives(drives_, bodies_);
+    const EndlessMasters endless = add_endless_masters(drives_, pairs_, bodies_);
     resolved_.reserve(pairs_.size());
     for (const auto& [name, pair] : pairs_) {
+      const auto master = endless.find(mover_of_master(drives_, name));
       resolved_.push_back(resolve_pair(name, parameters_.contact ? name : "contacts." + name, pair,
-                                       bodies_,
-                                       moves_master(drive_, name) ? endless.moving
-                                                                  : endless.at_rest));
+                                       bodies_, master == endless.end() ? -1 : master->second));
     }
     for (const ContactPair& pair : resolved_) {
       for (const int body : {pair.slave_body, pair.master_body})
         bodies_[static_cast<std::size_t>(body)].is_touched = true;
     }
     System& system = model_.system;
-    system.drive = make_drive(
-        drive_, pairs_.empty() ? SlidingMode::moving : pairs_.begin()->second.sliding);
-    if (!pairs_.empty()) check_something_follows(drive_, system.drive, bodies_, endless);
+    system.drives.clear();
+    for (const SceneDrive& drive : drives_) {
+      system.drives.push_back(make_drive(
+          drive.parameters,
+          pairs_.empty() ? SlidingMode::moving : pairs_.begin()->second.sliding, drive.key));
+    }
+    if (!pairs_.empty()) check_something_follows(drives_, system.drives, bodies_);
   }
 
   /// Places the slaves on their masters. A body that carries others is placed before them; chains
@@ -84,10 +88,12 @@ class ModelBuilder {
                           "the pairs form a circle: no body of it can be placed first");
       }
       const ContactPair& pair = **ready;
+      const PairDrive drive =
+          drive_of_pair(drives_, bodies_, pair.slave_body, pair.master_body);
       if (pair.is_on_face) {
-        add_face_contacts(pair, drive_, bodies_, model_.system);
+        add_face_contacts(pair, drive, bodies_, model_.system);
       } else {
-        add_curve_contacts(pair, drive_, bodies_, model_.system);
+        add_curve_contacts(pair, drive, bodies_, model_.system);
       }
       waiting.erase(ready);
     }
@@ -104,14 +110,14 @@ class ModelBuilder {
     std::vector<SparseSystem> blocks;
     for (ModelBody& body : bodies_) {
       if (body.parameters == nullptr) {
-        system.bodies.push_back(make_rigid_body(body.name));
+        system.bodies.push_back(make_rigid_body(body));
         model_.placements.emplace_back();
         continue;
       }
       SystemBody finished;
       finished.name = body.name;
-      finished.follows_drive = follows_drive(body, drive_);
-      finished.load_row = load_row_of(body, drive_);
+      finished.drive = body.drive;
+      finished.loads = loads_of(body, drives_);
       finished.lowest_omitted = body.matrices.lowest_omitted;
       if (is_sparse && body.is_whole()) {
         blocks.push_back(make_sparse(body.matrices));
@@ -141,11 +147,34 @@ class ModelBuilder {
   const ModelParameters& parameters_;
   BodyCache& cache_;
   std::map<std::string, ContactParameters> pairs_;
-  DriveParameters drive_;
+  std::vector<SceneDrive> drives_;
   std::vector<ModelBody> bodies_;
   std::vector<ContactPair> resolved_;
   Model model_;
 };
+
+}  // namespace
+
+namespace {
+
+void check_drive_sections(const ModelParameters& model, std::vector<Problem>& problems) {
+  const auto refuse = [&](const std::string& key, const char* text) {
+    problems.push_back({key, text, {}, 0, 0});
+  };
+  if (model.drive && !model.drives.empty())
+    refuse("drives", "give either `drive` (one) or `drives` (several), not both");
+  if (model.drive && !model.drive->displaces.empty()) {
+    refuse("drive.displaces",
+           "is of a drive with a name: `drive.displacement` is how far the drive has moved the "
+           "bodies, which verbs vary; write drives: {NAME: {...}}");
+  }
+  for (const auto& [name, drive] : model.drives) {
+    const bool does = !drive.velocity.is_zero() || !drive.load.is_zero() ||
+                      !drive.displacement.is_zero() || !drive.moves.empty() ||
+                      !drive.load_on.empty() || !drive.displaces.empty();
+    if (!does) refuse("drives." + name, "does nothing: give velocity, load or displacement");
+  }
+}
 
 }  // namespace
 
@@ -161,8 +190,10 @@ const Schema& ModelParameters::schema() {
           .named_sections("contacts", &ModelParameters::contacts,
                           {.doc = "Several contact pairs, by name.", .optional = true})
           .section("drive", &ModelParameters::drive,
-                   {.doc = "What moves and loads guided supports; default: nothing does.",
+                   {.doc = "What moves and loads bodies, where it is one; default: nothing does.",
                     .optional = true})
+          .named_sections("drives", &ModelParameters::drives,
+                          {.doc = "Several drives, by name.", .optional = true})
           .section("initial", &ModelParameters::initial,
                    {.doc = "State at the start of a run.", .optional = true})
           .check([](const ModelParameters& model, std::vector<Problem>& problems) {
@@ -177,11 +208,12 @@ const Schema& ModelParameters::schema() {
                    0,
                    0});
             }
+            check_drive_sections(model, problems);
             const auto pairs = model.pairs();
             for (const auto& [name, pair] : pairs) {
               if (pair.sliding != pairs.begin()->second.sliding) {
                 problems.push_back({"contacts." + name + ".sliding",
-                                    "must be the same for all pairs: one drive moves them",
+                                    "must be the same for all pairs: one drive may move several",
                                     {},
                                     0,
                                     0});
@@ -194,6 +226,14 @@ const Schema& ModelParameters::schema() {
 std::map<std::string, ContactParameters> ModelParameters::pairs() const {
   if (contact) return {{"contact", *contact}};
   return contacts;
+}
+
+std::vector<SceneDrive> ModelParameters::scene_drives() const {
+  if (drives.empty()) return {{"drive", "", drive.value_or(DriveParameters{}), true}};
+  std::vector<SceneDrive> all;
+  for (const auto& [name, parameters] : drives)
+    all.push_back({"drives." + name, name, parameters, drives.size() == 1});
+  return all;
 }
 
 void require_modes(const Model& model) {

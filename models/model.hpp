@@ -19,14 +19,15 @@ struct ModelParameters {
   Substructures substructures;
   std::optional<ContactParameters> contact;           ///< one pair, named "contact"
   std::map<std::string, ContactParameters> contacts;  ///< several pairs by name
-  std::optional<DriveParameters> drive;               ///< absent: nothing moves or loads
+  std::optional<DriveParameters> drive;               ///< the only one
+  std::map<std::string, DriveParameters> drives;      ///< several by name
   InitialParameters initial;
   static const Schema& schema();
 
   /// All pairs by name, under whichever key they are.
   std::map<std::string, ContactParameters> pairs() const;
-  /// The drive; one at rest without load where there is none.
-  DriveParameters drive_or_rest() const { return drive.value_or(DriveParameters{}); }
+  /// All drives in the order of System::drives; one at rest without load where there is none.
+  std::vector<SceneDrive> scene_drives() const;
 };
 
 /// A point of a body whose motion is wanted: "<body>.<point>".
@@ -68,7 +69,7 @@ void require_modes(const Model& model);
 /// left at rest where `initial.state` is another than that; see initial_state.hpp of io and
 /// find_equilibrium().
 ///
-/// Contacts and drive may be absent. A body that nothing touches, and of which nothing says that it
+/// Contacts and drives may be absent. A body that nothing touches, and of which nothing says that it
 /// be reduced, keeps every unknown, may be free to move, and have negative stiffness.
 ///
 /// The first body that is only ever a master keeps its frame as the global one; a slave body is

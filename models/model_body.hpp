@@ -21,6 +21,7 @@ struct ModelBody {
   bool is_mirrored = false;    ///< its frame is that of a place on the lower face of a plate
   bool is_placed = false;
   bool is_touched = false;     ///< by a contact
+  int drive = -1;              ///< index of the one that its supports, or the master, follow
   std::vector<int> interface;  ///< DoFs kept
   std::vector<DofSum> rows;    ///< displacements with a row, in the order of the rows
 

@@ -131,12 +131,11 @@ struct LaneAccess {
       set(to.tangent, i, end(k) / end.norm());
     }
     set(to.length, 0, end.norm());
-    set(to.drive_share, 0, point.drive_share_);
     set(to.friction, 0, contact.rise * contact.point().friction.dynamic_coefficient);
-    set(to.drive_displacement, 0, run.end_displacement);
-    set(to.drive_velocity, 0, run.drive.is_frozen ? 0.0 : run.end_velocity);
-    set(to.drive_from, 0, run.drive_constant_from);
-    set(to.sliding_velocity, 0, run.end_velocity);
+    set(to.driven_displacement, 0, contact.driven.end_displacement());
+    set(to.driven_rate, 0, contact.driven.end_rate());
+    set(to.driven_from, 0, contact.driven.constant_from());
+    set(to.sliding_velocity, 0, contact.driven.end_velocity());
     set(lanes.step, 0, run.step);
   }
 
@@ -210,8 +209,7 @@ std::optional<Shape> shape_of(Run& run) {
 /// the first one that does, `index` itself where they change in the step from there.
 std::int64_t quiet_until(const Run& run, std::int64_t index) {
   const double now = run.time(index);
-  if (now < run.loads_constant_from || now < run.drive_constant_from ||
-      now < run.contacts.front().constant_from)
+  if (now < run.loads_constant_from || now < run.contacts.front().constant_from)
     return index;
   std::int64_t last = std::numeric_limits<std::int64_t>::max();
   for (const RayleighDamping& damping : run.damping) {
@@ -368,10 +366,10 @@ class LaneGroup {
          {&contact.origin, &contact.end, &contact.tangent, &contact.found_tangent})
       take(*entries, 2);
     for (double** entries :
-         {&contact.length, &contact.drive_share, &contact.friction, &contact.xi, &contact.force,
+         {&contact.length, &contact.friction, &contact.xi, &contact.force,
           &contact.friction_force, &contact.slip_velocity, &contact.force_min, &contact.force_max,
-          &contact.friction_min, &contact.friction_max, &contact.drive_displacement,
-          &contact.drive_velocity, &contact.drive_from, &contact.sliding_velocity, &lanes_.step,
+          &contact.friction_min, &contact.friction_max, &contact.driven_displacement,
+          &contact.driven_rate, &contact.driven_from, &contact.sliding_velocity, &lanes_.step,
           &lanes_.index, &lanes_.is_used, &flagged_})
       take(*entries, 1);
     take(lanes_.trace, max_traced);

@@ -26,11 +26,8 @@ DriveRange drive_range(const Drive& drive, double end) {
 
 std::vector<WeightedRows> path_of(const System& system, const ContactPoint& contact, double end) {
   const MasterSurface& surface = system.surface_of(contact);
-  const auto driven = [&](int body) {
-    return system.bodies[static_cast<std::size_t>(body)].follows_drive ? 1.0 : 0.0;
-  };
-  const double share = driven(contact.slave_body) - driven(surface.body);
-  const DriveRange range = drive_range(system.drive, end);
+  const double share = system.path_share(contact);
+  const DriveRange range = drive_range(system.leading_drive(), end);
   const double least = std::min(share * range.least, share * range.most);
   const double most = std::max(share * range.least, share * range.most);
   double longest = 0.0;

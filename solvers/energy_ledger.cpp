@@ -98,8 +98,8 @@ EnergyLedger::Body EnergyLedger::make_body(const SystemBody& system_body,
   const ModalBody& modal = system_body.modal;
   const bool is_modal = time.coordinates == Coordinates::modal;
   Body body;
-  body.follows_drive = system_body.follows_drive;
-  body.load_row = system_body.load_row;
+  body.drive = system_body.drive;
+  body.loads = system_body.loads;
   body.damping = is_modal ? modal.damping : reduced.damping;
   body.size = static_cast<std::size_t>(is_modal ? modal.size() : reduced.size());
   body.padded_size = padded(body.size);
@@ -111,7 +111,7 @@ EnergyLedger::Body EnergyLedger::make_body(const SystemBody& system_body,
           rows(row, i);
     }
   }
-  if (body.follows_drive) {
+  if (system_body.follows_drive()) {
     body.base_inertia = AlignedArray(body.padded_size);
     copy_to(is_modal ? modal.base_inertia : reduced.base_inertia, body.base_inertia);
   }
@@ -148,7 +148,7 @@ EnergyLedger::Body EnergyLedger::make_body(const SystemBody& system_body,
 }
 
 EnergyLedger::EnergyLedger(const System& system, const TimeParameters& time)
-    : step_(time.step), drive_(system.drive) {
+    : step_(time.step), drives_(system.drives) {
   double kinetic = 0.0;
   double strain = 0.0;
   for (const SystemBody& body : system.bodies) {
@@ -162,17 +162,14 @@ EnergyLedger::EnergyLedger(const System& system, const TimeParameters& time)
       std::vector<PointRows> rows;
       for (const int row : point.face->rows) rows.push_back({row, row});
       contacts_.push_back({point.slave_body, point.face->body, point.slave_rows, std::move(rows),
-                           SurfaceKind::polyline, 0.0, point.compliance(), not_yet, not_yet,
+                           SurfaceKind::polyline, {}, point.compliance(), not_yet, not_yet,
                            not_yet, not_yet, make_face_kinematics(*point.face)});
       continue;
     }
     const MasterSurface& surface = system.surfaces[static_cast<std::size_t>(point.surface)];
-    const auto follows = [&](int body) {
-      return system.bodies[static_cast<std::size_t>(body)].follows_drive ? 1.0 : 0.0;
-    };
     contacts_.push_back({point.slave_body, surface.body, point.slave_rows, surface.rows,
-                         surface.kind, follows(point.slave_body) - follows(surface.body),
-                         point.compliance(), not_yet, not_yet, not_yet, not_yet, {}});
+                         surface.kind, system.driven_motion(point), point.compliance(), not_yet,
+                         not_yet, not_yet, not_yet, {}});
   }
   initial_ = kinetic + strain;
   enter_stored(kinetic, strain);
@@ -213,6 +210,13 @@ EnergyLedger::Forms EnergyLedger::forms_of_step(Body& body) {
   return {forms[0], forms[1], forms[2], forms[3]};
 }
 
+/// Of the drive that a body follows, m/s²; 0 where there is none.
+double EnergyLedger::acceleration_of(const Body& body, double time) const {
+  if (body.drive < 0) return 0.0;
+  const Drive& drive = drives_[static_cast<std::size_t>(body.drive)];
+  return time >= drive.velocity.constant_from() ? 0.0 : drive.acceleration(time);
+}
+
 double EnergyLedger::mean_increment(const Body& body, int row) const {
   return dot(body.rows.data() + static_cast<std::size_t>(row) * body.padded_size,
              body.mean_increment.data(), body.padded_size);
@@ -238,9 +242,6 @@ Eigen::Vector2d EnergyLedger::mean_increment(const Contact& contact,
 
 void EnergyLedger::add(double time, std::span<const ContactAction> contacts,
                        std::span<const double> slip_velocities) {
-  const bool is_steady = time >= drive_.velocity.constant_from();
-  const double acceleration = is_steady ? 0.0 : drive_.acceleration(time);
-  const double load = drive_.load.value(time);
   double kinetic = 0.0;
   double strain = 0.0;
   for (Body& body : bodies_) {
@@ -250,17 +251,18 @@ void EnergyLedger::add(double time, std::span<const ContactAction> contacts,
     damping_loss_.add((body.damping.alpha_at(time) * forms.mass_damping +
                        body.damping.beta * forms.stiffness_damping) /
                       step_);
-    if (body.load_row >= 0) load_work_.add(load * mean_increment(body, body.load_row));
+    for (const BodyLoad& load : body.loads)
+      load_work_.add(load.size(drives_, time) * mean_increment(body, load.row));
     if (body.held_load.size() > 0) {
       load_work_.add(
           dot(body.held_load.data(), body.mean_increment.data(), body.padded_size));
     }
-    if (body.follows_drive && acceleration != 0.0) {
+    const double acceleration = acceleration_of(body, time);
+    if (acceleration != 0.0) {
       drive_work_.add(-acceleration *
                       dot(body.base_inertia.data(), body.mean_increment.data(), body.padded_size));
     }
   }
-  const double driven = step_ * drive_.velocity.value(time);
   double given = 0.0;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const ContactAction& action = contacts[i];
@@ -269,7 +271,7 @@ void EnergyLedger::add(double time, std::span<const ContactAction> contacts,
     if (action.state == ContactState::open) continue;
     const bool is_on_face = contacts_[i].face.has_value();
     given += is_on_face ? enter_face(contacts_[i], action)
-                        : enter_contact(contacts_[i], action, contacts_[i].driven * driven) -
+                        : enter_contact(contacts_[i], action, step_ * contacts_[i].driven.velocity(time)) -
                               action.force * raised;
     const double power = is_on_face ? -action.friction_force * action.sliding.x() -
                                           action.friction_across * action.sliding.y()
@@ -339,7 +341,7 @@ double EnergyLedger::enter_face(const Contact& contact, const ContactAction& act
   return work;
 }
 
-/// @param driven displacement of the slave against the master by the drive in +x, m
+/// @param driven displacement of the slave against the master by drives in +x, m
 /// @return contact work of the step, J
 double EnergyLedger::enter_contact(const Contact& contact, const ContactAction& action,
                                  double driven) {
@@ -347,10 +349,10 @@ double EnergyLedger::enter_contact(const Contact& contact, const ContactAction& 
   const Eigen::Vector2d relative = mean_increment(contact, action);
   friction_loss_.add(action.friction_force * (p.tangent.dot(relative) + p.tangent.x() * driven));
   const double opening =
-      p.normal.dot(relative) + (drive_.is_frozen ? 0.0 : p.normal.x() * driven);
+      p.normal.dot(relative) + (contact.driven.is_frozen() ? 0.0 : p.normal.x() * driven);
   const double work = action.force * opening;
   contact_work_.add(work);
-  if (drive_.is_frozen) {
+  if (contact.driven.is_frozen()) {
     drive_work_.add(action.friction_force * p.tangent.x() * driven);
   } else {
     drive_work_.add(-(action.force * p.normal.x() - action.friction_force * p.tangent.x()) *

@@ -59,8 +59,8 @@ struct EnergyBalance {
   double damping_loss = 0.0;   ///< taken out by the damping of the bodies
   double friction_loss = 0.0;  ///< taken out by λ_t along the sliding
   double contact_work = 0.0;   ///< done by λ_n along the opening of the gap; negative: a loss
-  double drive_work = 0.0;     ///< done by the drive
-  double load_work = 0.0;      ///< done by the load
+  double drive_work = 0.0;     ///< done by the motion of drives
+  double load_work = 0.0;      ///< done by loads and by springs whose ground ends are displaced
   /// kinetic + strain − initial + damping_loss + friction_loss − contact_work − drive_work −
   /// load_work
   double balance_error = 0.0;
@@ -92,13 +92,13 @@ struct ContactGain {
 ///   kinetic        ½ d_{n+1}ᵀ M d_{n+1}/h²          at t_{n+1/2}
 ///   strain         ½ q_nᵀ K q_{n+1}                 at t_{n+1/2}
 ///   damping loss   d̄_nᵀ C(t_n) d_n/h
-///   load work      F_y(t_n) d̄_n of the loaded DoF
+///   load work      F(t_n) d̄_n of every load, k d(t_n) d̄_n of springs displaced by d
 ///   friction loss  λ_t t·(d̄_r + δ x̂)
 ///   contact work   λ_n n·(d̄_r + δ x̂)
 ///   drive work     −a_A(t_n) (M r)ᵀ d̄_n − δ x̂·(λ_n n − λ_t t)
 ///
-/// where d̄_r is the mean increment of the slave relative to the master and δ = h v_x(t_n) what the
-/// drive adds to it. With these the central difference with backward-difference damping balances
+/// where d̄_r is the mean increment of the slave relative to the master and δ = h v_x(t_n) what
+/// drives add to it. With these the central difference with backward-difference damping balances
 /// exactly, whatever the contact forces: the balance error is rounding. Where sliding is frozen,
 /// the master is imagined to slide along t: contact work lacks δ, and the drive feeds friction
 /// alone. On a face that slides with Ω r the two directions of friction τ do
@@ -153,8 +153,8 @@ class EnergyLedger {
 
  private:
   struct Body {
-    bool follows_drive = false;
-    int load_row = -1;
+    int drive = -1;
+    std::vector<BodyLoad> loads;
     RayleighDamping damping;
     std::size_t size = 0;
     std::size_t padded_size = 0;
@@ -181,7 +181,7 @@ class EnergyLedger {
     PointRows slave_rows;
     std::vector<PointRows> master_rows;
     SurfaceKind surface_kind;
-    double driven;  ///< +1, −1 or 0: how the drive moves the slave against the master
+    DrivenMotion driven;  ///< of the slave against the master
     double compliance;  ///< of its spring, 1/k, m/N; 0 where it is rigid
     /// Of the last two steps, t_{n−1} and t_n, N.
     double force_before_last = std::numeric_limits<double>::quiet_NaN();
@@ -194,6 +194,7 @@ class EnergyLedger {
 
   static Body make_body(const SystemBody& body, const TimeParameters& time);
   static Forms forms_of_step(Body& body);
+  double acceleration_of(const Body& body, double time) const;
   double mean_increment(const Body& body, int row) const;
   Eigen::Vector2d mean_increment(const Contact& contact, const ContactAction& action) const;
   double enter_face(const Contact& contact, const ContactAction& action);
@@ -204,7 +205,7 @@ class EnergyLedger {
   void enter_stored(double kinetic, double strain);
 
   double step_;
-  Drive drive_;
+  std::vector<Drive> drives_;
   std::vector<Body> bodies_;
   std::vector<Contact> contacts_;
 

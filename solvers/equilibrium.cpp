@@ -36,11 +36,10 @@ SlotVector relative(const Stencil& stencil, const NodeWeights& weights,
   return slots;
 }
 
-/// How often the drive moves the slave of a contact against its master: +1, 0 or −1 times.
-double share_of_drive(const System& system, const ContactPoint& point) {
-  const int master = system.master_of(point);
-  return (system.bodies[at(point.slave_body)].follows_drive ? 1.0 : 0.0) -
-         (system.bodies[at(master)].follows_drive ? 1.0 : 0.0);
+double size_of(const BodyLoad& load, const EquilibriumState& state) {
+  if (state.drives.empty()) return 0.0;
+  const DriveState& drive = state.drives[at(load.drive)];
+  return load.by == BodyLoad::By::force ? drive.load : drive.shift;
 }
 
 /// Segment and ξ of a position along the undeformed surface; at a node the segment before it.
@@ -170,15 +169,19 @@ void set_roughness(ContactPositions& positions, const MasterSurface& surface, in
     positions.arc_length[at(k)] = surface.arc_length[at(stencil.first + k)];
 }
 
+std::vector<DriveState> drive_states(const System& system, double time) {
+  std::vector<DriveState> states;
+  states.reserve(system.drives.size());
+  for (const Drive& drive : system.drives)
+    states.push_back(
+        {drive.velocity.value(time), drive.load.value(time), drive.shift.value(time)});
+  return states;
+}
+
 EquilibriumState sliding_state(const System& system, double drive_displacement,
                                ContactGeometry geometry) {
   const auto last = std::numeric_limits<double>::infinity();
-  return {drive_displacement,
-          system.drive.velocity.value(last),
-          system.drive.load.value(last),
-          1.0,
-          geometry,
-          {}};
+  return {drive_displacement, drive_states(system, last), 1.0, geometry, {}};
 }
 
 double drive_displacement_at(const System& system, int contact, double position) {
@@ -191,7 +194,7 @@ double drive_displacement_at(const System& system, int contact, double position)
   const auto [segment, xi] = place_on(surface, position);
   const Segment undeformed = surface.undeformed_segment(segment);
   const Projection start = project(undeformed, point.slave_position);
-  const double rate = share_of_drive(system, point) * start.tangent.x();
+  const double rate = system.path_share(point) * start.tangent.x();
   constexpr double negligible = 1e-9;
   if (std::abs(rate) < negligible) {
     throw std::invalid_argument(fmt::format(
@@ -207,7 +210,7 @@ struct SoughtContact {
   const ContactPoint* point = nullptr;
   const MasterSurface* surface = nullptr;  ///< null on a face
   std::optional<FaceKinematics> face;
-  double share_of_drive = 0.0;
+  double path_share = 0.0;  ///< System::path_share()
   bool is_unilateral = false;
   Eigen::Index first_slot = 0;  ///< among all
   Eigen::Index num_slots = 0;
@@ -239,6 +242,11 @@ class Search {
       : system_(system), parameters_(parameters), target_(target) {
     if (!(state.friction_factor >= 0.0))
       throw std::invalid_argument("find_equilibrium: the friction factor is negative");
+    if (!state.drives.empty() && state.drives.size() != system.drives.size()) {
+      throw std::invalid_argument(fmt::format(
+          "find_equilibrium: the state is of {} drives, the system has {}", state.drives.size(),
+          system.drives.size()));
+    }
     answer_.state = state;
     if (state.geometry == ContactGeometry::undeformed)
       answer_.state.terms.friction_damping = answer_.state.terms.geometric = false;
@@ -280,14 +288,21 @@ class Search {
     } else {
       contact.surface = &system_.surfaces[at(point.surface)];
     }
-    contact.share_of_drive = share_of_drive(system_, point);
+    contact.path_share = system_.path_share(point);
     contact.is_unilateral = point.unilateral_from() < std::numeric_limits<double>::infinity();
     contact.result.segment = point.first_segment;
     contact.result.positions.assumption = state.geometry == ContactGeometry::undeformed
                                               ? ContactAssumption::subs_a
                                               : point.assumption;
-    contact.result.positions.driven_velocity = contact.share_of_drive * state.drive_velocity;
+    contact.result.positions.driven_velocity =
+        velocity_of(point.slave_body) - velocity_of(system_.master_of(point));
     return contact;
+  }
+
+  /// By the drive that a body follows, m/s.
+  double velocity_of(int body) const {
+    const int drive = system_.bodies[at(body)].drive;
+    return drive < 0 || answer_.state.drives.empty() ? 0.0 : answer_.state.drives[at(drive)].velocity;
   }
 
   Eigen::Index num_targets() const { return target_ ? 1 : 0; }
@@ -343,7 +358,7 @@ class Search {
   }
 
   void prescribe(SoughtContact& contact) const {
-    const double displacement = contact.share_of_drive * answer_.state.drive_displacement;
+    const double displacement = contact.path_share * answer_.state.drive_displacement;
     contact.result.positions.prescribed = contact.surface->project_undeformed(
         contact.result.segment, contact.point->slave_position + Eigen::Vector2d(displacement, 0.0));
   }
@@ -400,11 +415,11 @@ class Search {
     }
   }
 
-  /// On the modes of a body: the drive's and what it holds.
+  /// On the modes of a body: loads of drives and what it holds.
   Eigen::VectorXd load_on(const SystemBody& body) const {
     Eigen::VectorXd load = Eigen::VectorXd::Zero(body.modal.size());
-    if (body.load_row >= 0)
-      load += answer_.state.load * body.modal.rows.row(body.load_row).transpose();
+    for (const BodyLoad& one : body.loads)
+      load += size_of(one, answer_.state) * body.modal.rows.row(one.row).transpose();
     // BLAS takes no empty matrix.
     if (body.held_load.size() > 0) load += body.modal.shapes.transpose() * body.held_load;
     return load;
@@ -431,7 +446,7 @@ class Search {
     const Eigen::Vector2d& origin = contact.surface->positions[at(contact.result.segment)];
     ContactPositions& positions = contact.result.positions;
     positions.slave = contact.point->slave_position - origin + slots.head<2>();
-    positions.slave.x() += contact.share_of_drive * answer_.state.drive_displacement;
+    positions.slave.x() += contact.path_share * answer_.state.drive_displacement;
     positions.undeformed = contact.surface->undeformed_piece(contact.result.segment);
     positions.master = positions.undeformed;
     set_roughness(positions, *contact.surface, contact.result.segment);
@@ -546,7 +561,7 @@ class Search {
 
     auto& [values, scale, derivative, residual] = equations;
     const SlotMatrix by_position = force * local.force_by_position;
-    const SlotVector by_drive = contact.share_of_drive * by_position.col(0);
+    const SlotVector by_drive = contact.path_share * by_position.col(0);
     const auto flexibility = flexibility_.middleCols(first, width);
     values.head(num_slots_) += flexibility * (force * local.force_row);
     derivative.block(0, first, num_slots_, width) += flexibility * by_position;
@@ -569,7 +584,7 @@ class Search {
       values(row) = local.gap + law.indentation;
       derivative.block(row, first, 1, width) = -local.gap_row.transpose();
       derivative(row, row) = law.compliance;
-      if (target_) derivative(row, last) = -local.gap_row[0] * contact.share_of_drive;
+      if (target_) derivative(row, last) = -local.gap_row[0] * contact.path_share;
     } else {
       values(row) = force;
       derivative(row, row) = 1.0;
@@ -581,7 +596,7 @@ class Search {
     if (is_target(contact)) {
       values(last) = segment_length * (local.projection.xi - target_->xi);
       derivative.block(last, first, 1, width) = segment_length * local.shift_row.transpose();
-      derivative(last, last) = segment_length * local.shift_row[0] * contact.share_of_drive;
+      derivative(last, last) = segment_length * local.shift_row[0] * contact.path_share;
     }
     const Eigen::Vector2d& T1 = positions.master.nodes[at(positions.master.stencil.before)];
     return std::max(segment_length, (positions.slave - T1).norm());
@@ -775,7 +790,9 @@ namespace {
 std::optional<Equilibrium> at_rest(const System& system, const EquilibriumState& state) {
   const bool is_loaded = std::any_of(
       system.bodies.begin(), system.bodies.end(), [&](const SystemBody& body) {
-        return (state.load != 0.0 && body.load_row >= 0) || body.held_load.size() > 0;
+        return body.held_load.size() > 0 ||
+               std::any_of(body.loads.begin(), body.loads.end(),
+                           [&](const BodyLoad& load) { return size_of(load, state) != 0.0; });
       });
   if (!system.contacts.empty() || is_loaded) return std::nullopt;
   Equilibrium rest;

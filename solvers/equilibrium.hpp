@@ -104,11 +104,18 @@ ContactLinearisation linearise_face(const FaceKinematics& face, const FacePorts&
 /// @param segment of the master that the positions belong to
 void set_roughness(ContactPositions& positions, const MasterSurface& surface, int segment);
 
-/// External loads and drive that hold the system in its equilibrium.
+/// What one drive does in an equilibrium.
+struct DriveState {
+  double velocity = 0.0;  ///< of the bodies that follow it, in +x; gives χ and μ(v) only, m/s
+  double load = 0.0;      ///< N
+  double shift = 0.0;     ///< of the ground ends of springs, m
+};
+
+/// External loads and drives that hold the system in its equilibrium.
 struct EquilibriumState {
-  double drive_displacement = 0.0;  ///< of the bodies that follow the drive, in +x, m
-  double drive_velocity = 0.0;      ///< likewise; gives χ and μ(v) only, m/s
-  double load = 0.0;                ///< on the loaded rows, N
+  /// Of the bodies that follow the leading drive, in +x; the others by System::path_share(), m.
+  double drive_displacement = 0.0;
+  std::vector<DriveState> drives{};  ///< of System::drives; empty: all at rest without loads
   double friction_factor = 0.0;     ///< on every friction law, >= 0
   ContactGeometry geometry = ContactGeometry::deformed;
   /// What of `friction`, `friction_damping` and `geometric` acts on the faces of spinning bodies; in
@@ -116,12 +123,15 @@ struct EquilibriumState {
   LinearisationTerms terms{};
 };
 
-/// Load, velocity and friction as they are once drive and friction no longer rise.
-/// @param drive_displacement of the bodies that follow the drive, in +x, m
+/// Loads and velocities of all drives at a time.
+std::vector<DriveState> drive_states(const System& system, double time);
+
+/// Loads, velocities and friction as they are once drives and friction no longer rise.
+/// @param drive_displacement as of EquilibriumState, m
 EquilibriumState sliding_state(const System& system, double drive_displacement,
                                ContactGeometry geometry = ContactGeometry::deformed);
 
-/// Displacement of the drive that puts the undeformed slave point of a contact at a position.
+/// Displacement of the leading drive that puts the undeformed slave point of a contact at a position.
 ///
 /// @param contact  index into System::contacts
 /// @param position along the undeformed master from its first node, m; within its length, or
@@ -177,7 +187,7 @@ struct EquilibriumParameters {
 ///   K q = f − B_E(q)ᵀ λ,   gap(q) = 0, or gap(q) = −y(λ) for a force law
 ///
 /// for the contacts that slide bilaterally, y = λ/k of a penalty; 0 ≤ λ ⟂ gap ≥ 0 for those that may lift off, at
-/// whatever time (ContactPoint::unilateral_from). χ and μ(v) are those of the drive's velocity.
+/// whatever time (ContactPoint::unilateral_from). χ and μ(v) are those of the velocities of the drives.
 /// Elastic modes are eliminated; unknown are the displacements of the contact ports, λ and the
 /// amplitudes of the rigid modes. Newton's method with the exact derivative, halving the step until
 /// the residual falls. As in `Simulation`, a contact moves from segment to segment without turning
@@ -192,7 +202,8 @@ struct EquilibriumParameters {
 ///         it has not converged
 /// @throws NumericalError if the system is singular, naming the body that is free to move or the
 ///         contact whose force is undetermined, or if its numbers are not finite
-/// @throws std::invalid_argument if the friction factor is negative
+/// @throws std::invalid_argument if the friction factor is negative, or the state is of another number
+///         of drives
 /// Cost: a dense system of 7 unknowns per contact (11 on a smooth master) and one per rigid mode in
 /// each Newton step.
 Equilibrium find_equilibrium(const System& system, const EquilibriumState& state,

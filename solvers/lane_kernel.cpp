@@ -112,10 +112,9 @@ STRIDOR_INLINE V solve_contact(const Lanes& lanes) {
   const V zero = {};
   const V one = zero + 1.0;
   const V h = at<V>(lanes.step, 0);
-  const V share = at<V>(c.drive_share, 0);
   const V sought = (is_prompt ? at<V>(lanes.index, 0) : at<V>(lanes.index, 0) + 1.0) * h;
-  const V driven = share * (at<V>(c.drive_displacement, 0) +
-                            at<V>(c.drive_velocity, 0) * (sought - at<V>(c.drive_from, 0)));
+  const V driven = at<V>(c.driven_displacement, 0) +
+                   at<V>(c.driven_rate, 0) * (sought - at<V>(c.driven_from, 0));
 
   double* const slave_seen = is_prompt ? slave.expected : slave.predicted;
   double* const master_seen = is_prompt ? master.expected : master.predicted;
@@ -177,7 +176,7 @@ STRIDOR_INLINE V solve_contact(const Lanes& lanes) {
   auto is_allowed =
       (xi >= zero) & (xi <= one) & (compliance > zero) & (force >= zero) & (force < zero + largest);
   V slip = last_slip;
-  const V driven_velocity = share * at<V>(c.sliding_velocity, 0) * tx;
+  const V driven_velocity = at<V>(c.sliding_velocity, 0) * tx;
   V slave_force[2] = {force * pull_x, force * pull_y};
   V master_force[4];
   for (std::size_t s = 0; s < 4; ++s) master_force[s] = force * master_pull[s];
@@ -239,7 +238,7 @@ STRIDOR_INLINE V update_slip(const Lanes& lanes) {
   double* const master = lanes.master.increment;
   const V moved = tx * (at<V>(slave, 0) + w0 * at<V>(master, 0) + w1 * at<V>(master, 2)) +
                   ty * (at<V>(slave, 1) + w0 * at<V>(master, 1) + w1 * at<V>(master, 3));
-  const V driven = at<V>(c.drive_share, 0) * at<V>(c.sliding_velocity, 0) * tx;
+  const V driven = at<V>(c.sliding_velocity, 0) * tx;
   const V slip = moved / at<V>(lanes.step, 0) + driven;
   at<V>(c.slip_velocity, 0) = slip;
   return (slip * driven < zero) & (at<V>(lanes.is_used, 0) > zero) ? zero + 1.0 : zero;

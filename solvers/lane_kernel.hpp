@@ -52,7 +52,6 @@ struct ContactLanes {
   double* end = nullptr;      ///< T2 from T1, undeformed
   double* tangent = nullptr;  ///< of the undeformed segment
   double* length = nullptr;   ///< of the undeformed segment
-  double* drive_share = nullptr;
   double* friction = nullptr;  ///< μ
 
   double* xi = nullptr;
@@ -65,11 +64,11 @@ struct ContactLanes {
   double* friction_min = nullptr;  ///< of friction_force
   double* friction_max = nullptr;
 
-  // Drive: displacement = drive_displacement + drive_velocity (t − drive_from), moving or not.
-  double* drive_displacement = nullptr;
-  double* drive_velocity = nullptr;  ///< with which it moves
-  double* drive_from = nullptr;
-  double* sliding_velocity = nullptr;  ///< with which it would slide
+  // DrivenMotion: displacement = driven_displacement + driven_rate (t − driven_from).
+  double* driven_displacement = nullptr;
+  double* driven_rate = nullptr;
+  double* driven_from = nullptr;
+  double* sliding_velocity = nullptr;  ///< with which it would slide where it is frozen
 };
 
 /// Everything that a step of all lanes reads and writes.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <tuple>
 
 #include "solvers/coupled_propagator.hpp"
 #include "solvers/dense_two_step.hpp"
@@ -12,17 +11,18 @@
 namespace stridor {
 namespace {
 
-/// Load patterns of a body in given coordinates: the drive's load, the inertia of its motion, and the
-/// load that the body holds. None of a body without any.
+/// Load patterns of a body in given coordinates: its loads, the inertia of the motion of its drive, and
+/// the load that it holds. None of a body without any.
 /// @param held in these coordinates; empty where there is none
 Eigen::MatrixXd load_patterns(const SystemBody& body, const Eigen::MatrixXd& rows,
                               const Eigen::VectorXd& base_inertia, const Eigen::VectorXd& held) {
-  if (!is_loaded(body)) return Eigen::MatrixXd(rows.cols(), 0);
-  Eigen::MatrixXd patterns =
-      Eigen::MatrixXd::Zero(rows.cols(), std::tuple_size_v<LoadAmplitudes>);
-  if (body.load_row >= 0) patterns.col(0) = rows.row(body.load_row).transpose();
-  if (body.follows_drive) patterns.col(1) = -base_inertia;
-  if (held.size() > 0) patterns.col(2) = held;
+  if (!BodyLoading(body).is_any()) return Eigen::MatrixXd(rows.cols(), 0);
+  const auto num_loads = static_cast<Eigen::Index>(body.loads.size());
+  Eigen::MatrixXd patterns = Eigen::MatrixXd::Zero(rows.cols(), num_loads + 2);
+  for (Eigen::Index k = 0; k < num_loads; ++k)
+    patterns.col(k) = rows.row(body.loads[static_cast<std::size_t>(k)].row).transpose();
+  if (body.follows_drive()) patterns.col(num_loads) = -base_inertia;
+  if (held.size() > 0) patterns.col(num_loads + 1) = held;
   return patterns;
 }
 
@@ -82,6 +82,19 @@ StartingMotion starting_motion(const SystemBody& body, const TimeParameters& tim
 }
 
 }  // namespace
+
+BodyLoading::BodyLoading(const SystemBody& body) : loads_(body.loads), drive_(body.drive) {
+  if (body.feels_drive() || body.held_load.size() > 0) amplitudes_.assign(loads_.size() + 2, 0.0);
+}
+
+std::span<const double> BodyLoading::amplitudes(const std::vector<Drive>& drives, double time) {
+  if (!is_any()) return {};
+  for (std::size_t k = 0; k < loads_.size(); ++k) amplitudes_[k] = loads_[k].size(drives, time);
+  amplitudes_[loads_.size()] =
+      drive_ < 0 ? 0.0 : drives[static_cast<std::size_t>(drive_)].acceleration(time);
+  amplitudes_[loads_.size() + 1] = 1.0;
+  return amplitudes_;
+}
 
 std::unique_ptr<Propagator> make_propagator(const SystemBody& body, const TimeParameters& time,
                                             std::optional<double> surplus, int num_slots,

@@ -1,11 +1,11 @@
 // The propagator that a scene's time section asks for.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "coupling/system.hpp"
 #include "solvers/propagator.hpp"
@@ -13,22 +13,28 @@
 
 namespace stridor {
 
-/// Amplitudes of the load patterns of a body: the drive's load, N, its acceleration, m/s², and 1 for the
-/// load that the body holds.
-using LoadAmplitudes = std::array<double, 3>;
-inline LoadAmplitudes load_amplitudes(const Drive& drive, double time) {
-  return {drive.load.value(time), drive.acceleration(time), 1.0};
-}
-/// Whether a body has load patterns.
-inline bool is_loaded(const SystemBody& body) {
-  return body.feels_drive() || body.held_load.size() > 0;
-}
+/// What drives do to a body over time, as amplitudes of its load patterns: one of every BodyLoad in
+/// their order, N or m, the acceleration of the drive that it follows, m/s², and 1 for the load that it
+/// holds. None of a body without any of them.
+class BodyLoading {
+ public:
+  explicit BodyLoading(const SystemBody& body);
+
+  bool is_any() const { return !amplitudes_.empty(); }
+  std::size_t num_loads() const { return loads_.size(); }
+  /// At a time; valid until the next call. No allocation.
+  std::span<const double> amplitudes(const std::vector<Drive>& drives, double time);
+
+ private:
+  std::vector<BodyLoad> loads_;
+  int drive_ = -1;
+  std::vector<double> amplitudes_;
+};
 
 /// A body of the system, at rest at t = 0, ready to be marched.
 ///
-/// Load patterns of a body: the drive's load on its guided support (N), the acceleration of the drive
-/// (m/s²), which acts as −base_inertia where the body follows it, and the load that it holds.
-/// Bodies without any of them have none.
+/// Load patterns of a body: the rows of its loads, −base_inertia where it follows a drive, and the load
+/// that it holds, with the amplitudes of BodyLoading.
 ///
 /// @param surplus   prompt_surplus()
 /// @param num_slots ports for contacts, two per point

@@ -397,13 +397,9 @@ void place_undeformed(Pencil& pencil, const System& system, double drive_displac
       continue;
     }
     const MasterSurface& surface = system.surfaces[static_cast<std::size_t>(point.surface)];
-    const auto driven = [&](int body) {
-      return system.bodies[static_cast<std::size_t>(body)].follows_drive ? drive_displacement : 0.0;
-    };
-    // The surface may follow the drive, too; seen from it, only the difference moves the slave.
+    // The surface may follow a drive, too; seen from it, only the difference moves the slave.
     const Eigen::Vector2d slave =
-        point.slave_position +
-        Eigen::Vector2d(driven(point.slave_body) - driven(surface.body), 0.0);
+        point.slave_position + Eigen::Vector2d(system.path_share(point) * drive_displacement, 0.0);
     const auto [segment, projection] = undeformed_place(surface, slave, point.first_segment);
     constexpr double rounding = 1e-9;
     const bool is_off = (segment == 0 && projection.xi < -rounding) ||

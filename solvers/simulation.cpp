@@ -49,8 +49,8 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
   for (const ContactPoint& point : given.contacts) {
     if (!point.face) continue;
     for (const int body : {point.slave_body, point.face->body}) {
-      if (!given.bodies[static_cast<std::size_t>(body)].follows_drive) continue;
-      throw ConfigError("drive.moves",
+      if (!given.bodies[static_cast<std::size_t>(body)].follows_drive()) continue;
+      throw ConfigError(given.drive_of(body)->key + ".moves",
                         fmt::format("'{}' touches a face of a spinning body, on which contacts "
                                     "stay where they are: the drive cannot move it",
                                     given.bodies[static_cast<std::size_t>(body)].name));
@@ -79,12 +79,10 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
   }
   Implementation& run = *implementation_;
   run.surfaces = system.surfaces;
-  run.drive = system.drive;
+  run.drives = system.drives;
+  for (const Drive& drive : run.drives) run.driven_by.emplace_back(&drive, nullptr);
   run.step = time.step;
-  run.drive_constant_from = system.drive.velocity.constant_from();
-  run.loads_constant_from = system.drive.constant_from();
-  run.end_velocity = system.drive.velocity.value(run.drive_constant_from);
-  run.end_displacement = system.drive.displacement(run.drive_constant_from);
+  run.loads_constant_from = system.drives_constant_from();
 
   std::vector<int> num_slots(system.bodies.size(), 0);
   for (const ContactPoint& point : system.contacts) {
@@ -99,17 +97,14 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
   }
   const std::optional<double> surplus = prompt_surplus(system, time);
   run.is_prompt = surplus.has_value();
-  const LoadAmplitudes loads = load_amplitudes(system.drive, 0.0);
   for (std::size_t b = 0; b < system.bodies.size(); ++b) {
     const SystemBody& body = system.bodies[b];
-    run.bodies.push_back(make_propagator(
-        body, time, surplus, num_slots[b],
-        is_loaded(body) ? std::span<const double>(loads) : std::span<const double>()));
+    run.loading.emplace_back(body);
+    run.bodies.push_back(make_propagator(body, time, surplus, num_slots[b],
+                                         run.loading.back().amplitudes(system.drives, 0.0)));
     const bool is_modal = time.coordinates == Coordinates::modal;
     run.shapes.push_back(is_modal ? body.modal.shapes : Eigen::MatrixXd());
     run.names.push_back(body.name);
-    run.follows_drive.push_back(body.follows_drive);
-    run.feels_drive.push_back(is_loaded(body));
     run.damping.push_back(body.modal.damping);
     run.forces.emplace_back(static_cast<std::size_t>(num_slots[b]), 0.0);
   }
@@ -180,8 +175,8 @@ Propagator::Motion Simulation::reduced_motion(int body) const {
   return motion;
 }
 
-double Simulation::drive_displacement() const {
-  return implementation_->drive_displacement(time());
+double Simulation::drive_displacement(int drive) const {
+  return implementation_->driven_by[static_cast<std::size_t>(drive)].displacement(time());
 }
 
 int Simulation::num_contacts() const {
@@ -225,7 +220,8 @@ ContactPlace Simulation::contact_place(int contact) const {
     return {kinematics.face().gap(kinematics.current()) - face->point().overlap,
             place.radius * place.angle};
   }
-  return implementation_->line(contact)->sliding.present_place(drive_displacement());
+  const RunningContact& on_line = *implementation_->line(contact);
+  return on_line.sliding.present_place(on_line.driven.displacement(time()));
 }
 
 double Simulation::friction_across(int contact) const {

@@ -90,7 +90,7 @@ enum class Accounts {
   energy,  ///< a step costs two and a half times as much
 };
 
-/// Bodies, contacts and drive marched together under the contact assumptions Subs-a, -b, -c and
+/// Bodies, contacts and drives marched together under the contact assumptions Subs-a, -b, -c and
 /// FiLM (docs/theory.md, 3.1). After construction and after every `step` everything at t_n is
 /// known, contact forces λ_n included.
 class Simulation {
@@ -114,14 +114,15 @@ class Simulation {
   double time() const;
   double step_size() const;
 
-  /// u_n of a row of a body, m, relative to its place that follows the drive.
+  /// u_n of a row of a body, m, relative to its place that follows a drive.
   double displacement(int body, int row) const;
   /// u_n and its rate by backward difference, of a body in the coordinates that it is marched in.
   Propagator::Motion motion(int body) const;
   /// The same in the reduced coordinates of the body, including the truncated modes.
   Propagator::Motion reduced_motion(int body) const;
-  /// Displacement of the bodies that follow the drive, m.
-  double drive_displacement() const;
+  /// Displacement of the bodies that follow a drive, m.
+  /// @param drive index into System::drives
+  double drive_displacement(int drive) const;
 
   int num_contacts() const;
   /// λ_n, N, compression positive.

@@ -43,6 +43,7 @@ struct RunningContact : ContactRecord {
   explicit RunningContact(SlidingPoint point) : sliding(std::move(point)) {}
 
   SlidingPoint sliding;
+  DrivenMotion driven;         ///< of the slave against the master
   bool tracks_slip = false;    ///< it is unilateral or may become so, or its friction is a function
                                ///< of the slip in the step
 
@@ -65,10 +66,10 @@ struct RunningContact : ContactRecord {
 struct Simulation::Implementation {
   std::vector<MasterSurface> surfaces;
   std::vector<std::string> names;  ///< of the bodies
-  std::vector<bool> follows_drive;
-  std::vector<bool> feels_drive;
+  std::vector<BodyLoading> loading;  ///< of the bodies
   std::vector<RayleighDamping> damping;
-  Drive drive;
+  std::vector<Drive> drives;
+  std::vector<DrivenMotion> driven_by;  ///< of what follows each drive
   double step;
   std::int64_t next_health_check = 0;
   bool is_prompt = false;  ///< bodies have direct feedthrough (Propagator::is_prompt)
@@ -85,9 +86,6 @@ struct Simulation::Implementation {
 
   // Quantities that no longer change are not computed again.
   double loads_constant_from = 0.0;
-  double drive_constant_from = 0.0;
-  double end_displacement = 0.0;  ///< of the drive at drive_constant_from
-  double end_velocity = 0.0;
 
   std::optional<EnergyLedger> ledger;
   std::vector<ContactAction> actions;   ///< of the ledger's step, per contact
@@ -116,24 +114,20 @@ struct Simulation::Implementation {
   /// Step at which gap and slip satisfy the contact conditions.
   std::int64_t sought_index() const { return index + (is_prompt && !is_foreseeing_start ? 0 : 1); }
 
-  double drive_displacement(double at) const {
-    if (at < drive_constant_from) return drive.displacement(at);
-    return end_displacement + (drive.is_frozen ? 0.0 : end_velocity * (at - drive_constant_from));
+  /// Displacement in +x of the slave of a contact against its master by drives, m.
+  double driven(const RunningContact& contact, std::int64_t at_index) const {
+    return contact.driven.displacement(time(at_index));
   }
 
-  double sliding_velocity(double at) const {
-    return at < drive_constant_from ? drive.velocity.value(at) : end_velocity;
-  }
-
-  /// Sliding distance of the drive in the step from an instant on, m, frozen or not.
-  double drawn_in_step(std::int64_t from) const {
-    return 0.5 * step * (sliding_velocity(time(from)) + sliding_velocity(time(from + 1)));
+  /// Sliding distance of a contact by drives in the step from an instant on, m, frozen or not.
+  double drawn_in_step(const RunningContact& contact, std::int64_t from) const {
+    return 0.5 * step *
+           (contact.driven.velocity(time(from)) + contact.driven.velocity(time(from + 1)));
   }
 
   void set_loads(double at) {
-    const LoadAmplitudes amplitudes = load_amplitudes(drive, at);
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      if (feels_drive[b]) bodies[b]->set_loads(amplitudes);
+      if (loading[b].is_any()) bodies[b]->set_loads(loading[b].amplitudes(drives, at));
     }
   }
 
@@ -157,9 +151,9 @@ struct Simulation::Implementation {
       next_slot[slave] += slave_slots;
       const int master_slot = next_slot[master];
       next_slot[master] += 2 * surface.stencil_size();
-      const double share = (follows_drive[slave] ? 1.0 : 0.0) - (follows_drive[master] ? 1.0 : 0.0);
-      RunningContact contact(SlidingPoint(point, surface, *bodies[slave], *bodies[master],
-                                          slave_slot, master_slot, share));
+      RunningContact contact(
+          SlidingPoint(point, surface, *bodies[slave], *bodies[master], slave_slot, master_slot));
+      contact.driven = system.driven_motion(point);
       contact.begin(point);
       contact.tracks_slip = contact.unilateral_from < std::numeric_limits<double>::infinity() ||
                             point.friction.is_regularised();
@@ -189,19 +183,20 @@ struct Simulation::Implementation {
 
   /// Takes projection, material point and slip velocity from the motion at the present time.
   void stand(RunningContact& contact) {
-    contact.sliding.stand(drive_displacement(time(index)));
+    contact.sliding.stand(driven(contact, index));
     contact.anchor = contact.sliding.place();
-    update_slip_velocity(contact, sliding_velocity(time(index)));
+    update_slip_velocity(contact, contact.driven.velocity(time(index)));
   }
 
   /// Poses the problem of one contact for its forces at t_n. @returns false where it has left its
   /// master
-  bool pose(RunningContact& contact, LocalProblem& problem, double drive_at, double rise) {
+  bool pose(RunningContact& contact, LocalProblem& problem, double sought_time, double rise) {
     SlidingPoint& sliding = contact.sliding;
-    if (!sliding.find(drive_at)) return false;
+    const double driven_to = contact.driven.displacement(sought_time);
+    if (!sliding.find(driven_to)) return false;
     // Gap and slip are those without the contact forces; the instantaneous response to these is
     // part of the Delassus operator.
-    problem.penetration = sliding.roughness() - sliding.predicted_gap(drive_at);
+    problem.penetration = sliding.roughness() - sliding.predicted_gap(driven_to);
     problem.sliding_friction =
         rise * sliding_friction(contact.point().friction, contact.slip_velocity);
     problem.direction = contact.slip_velocity < 0.0 ? -1.0 : 1.0;
@@ -223,11 +218,11 @@ struct Simulation::Implementation {
     }
     if (const auto& substrate = contact.point().substrate) {
       problem.substrate = &*substrate;
-      problem.indentation = -sliding.present_place(drive_displacement(time(index))).gap;
+      problem.indentation = -sliding.present_place(driven(contact, index)).gap;
     }
-    if (drive.is_frozen && sought_index() > 0) {
+    if (contact.driven.is_frozen() && sought_index() > 0) {
       // Held in place, the material of the master slides away below.
-      contact.anchor -= sliding.driven(drawn_in_step(sought_index() - 1));
+      contact.anchor -= sliding.along_tangent(drawn_in_step(contact, sought_index() - 1));
     }
     problem.slip = (sliding.place() - contact.anchor) * contact.stretch;
     if (is_prompt) problem.slip += sliding.predicted_slip();
@@ -263,27 +258,29 @@ struct Simulation::Implementation {
 
   /// Poses the problem of one contact anew, with gap and slip at t_{n+1} under forces that are
   /// constant from t_n on.
-  void pose_ahead(RunningContact& contact, LocalProblem& problem, double drive_at, double rise) {
+  void pose_ahead(RunningContact& contact, LocalProblem& problem, double sought_time,
+                  double rise) {
     contact.looks_ahead = true;
     const SlidingPoint& sliding = contact.sliding;
     // A sticking contact keeps its material point, another one that of t_n, where the step begins.
     if (contact.state != ContactState::stick) contact.anchor = sliding.place();
-    const double drawn = drawn_in_step(index);
+    const double drawn = drawn_in_step(contact, index);
     problem.penetration =
-        sliding.roughness() - sliding.gap_ahead(drive_at, drive.is_frozen ? 0.0 : drawn);
+        sliding.roughness() - sliding.gap_ahead(contact.driven.displacement(sought_time),
+                                                contact.driven.is_frozen() ? 0.0 : drawn);
     problem.slip = (sliding.place() - contact.anchor) * contact.stretch + sliding.slip_ahead(drawn);
     set_sticking_friction(contact, problem, rise);
   }
 
   /// Solves the contacts as posed; those that are unsteady, or change, ahead.
-  ContactAnswer solve_contacts(double drive_at, double rise_time) {
+  ContactAnswer solve_contacts(double sought_time) {
     if (slides_only) {
       fill_delassus();
       return solver.solve(local);
     }
-    if (!faces.empty()) faces.pose(instant(rise_time));
+    if (!faces.empty()) faces.pose(instant(sought_time));
     if (!is_prompt || is_foreseeing_start) return solve_posed();
-    return solve_unsteady_contacts(drive_at, rise_time);
+    return solve_unsteady_contacts(sought_time);
   }
 
   RunningFaces::Instant instant(double sought) const {
@@ -303,7 +300,7 @@ struct Simulation::Implementation {
     return solver.solve(local, faces.problems());
   }
 
-  [[gnu::noinline]] ContactAnswer solve_unsteady_contacts(double drive_at, double rise_time) {
+  [[gnu::noinline]] ContactAnswer solve_unsteady_contacts(double sought_time) {
     bool is_ahead = false;
     const auto look_ahead_with_bodies = [&] {
       if (!is_ahead) {
@@ -313,11 +310,11 @@ struct Simulation::Implementation {
     };
     const auto look_ahead = [&](std::size_t i) {
       look_ahead_with_bodies();
-      pose_ahead(contacts[i], local[i], drive_at, contacts[i].rise_at(rise_time));
+      pose_ahead(contacts[i], local[i], sought_time, contacts[i].rise_at(sought_time));
     };
     const auto look_ahead_on_face = [&](std::size_t i) {
       look_ahead_with_bodies();
-      faces.pose_ahead(i, instant(rise_time));
+      faces.pose_ahead(i, instant(sought_time));
     };
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       if (is_unsteady(i)) look_ahead(i);
@@ -363,7 +360,10 @@ struct Simulation::Implementation {
       faces.stand(system, instant(time(sought_index())));
       if (solve() != StepOutcome::done) throw NumericalError(failure);
     };
-    const bool is_loaded = drive.load.value(0.0) != 0.0 || drive.acceleration(0.0) != 0.0;
+    const bool is_loaded = std::any_of(drives.begin(), drives.end(), [](const Drive& drive) {
+      return drive.load.value(0.0) != 0.0 || drive.shift.value(0.0) != 0.0 ||
+             drive.acceleration(0.0) != 0.0;
+    });
     if (is_prompt && (is_loaded || !starts_at_rest(system))) {
       // The instantaneous part of the motion is known with the forces only.
       is_foreseeing_start = true;
@@ -389,8 +389,7 @@ struct Simulation::Implementation {
       if (!substrate) continue;
       has_any = true;
       stand(contact);
-      const double indentation =
-          -contact.sliding.present_place(drive_displacement(time(index))).gap;
+      const double indentation = -contact.sliding.present_place(driven(contact, index)).gap;
       const double direction = contact.slip_velocity > 0.0 ? 1.0 : -1.0;
       const SubstrateForces acting = substrate->at(indentation, contact.slip_velocity, direction);
       contact.force = acting.normal.value;
@@ -404,13 +403,12 @@ struct Simulation::Implementation {
   /// Contact forces at t_n: those with which gap and slip satisfy the contact conditions.
   StepOutcome solve() {
     const double sought_time = time(sought_index());
-    const double drive_at = drive_displacement(sought_time);
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       RunningContact& contact = contacts[i];
-      if (!pose(contact, local[i], drive_at, contact.rise_at(sought_time)))
+      if (!pose(contact, local[i], sought_time, contact.rise_at(sought_time)))
         return fail(contact, StepOutcome::master_lost);
     }
-    const ContactAnswer answer = solve_contacts(drive_at, sought_time);
+    const ContactAnswer answer = solve_contacts(sought_time);
     if (answer.status != ContactStatus::converged) {
       if (answer.contact >= static_cast<int>(contacts.size())) return fail_on_face(answer);
       RunningContact& contact = contacts[static_cast<std::size_t>(answer.contact)];
@@ -595,10 +593,9 @@ struct Simulation::Implementation {
   bool update_slip_velocities() {
     bool is_allowed = true;
     const double now = time(index);
-    const double drive_velocity = sliding_velocity(now);
     for (RunningContact& contact : contacts) {
-      const double driven = update_slip_velocity(contact, drive_velocity);
-      if (contact.slip_velocity * driven < 0.0 && now < contact.unilateral_from &&
+      const double drawn = update_slip_velocity(contact, contact.driven.velocity(now));
+      if (contact.slip_velocity * drawn < 0.0 && now < contact.unilateral_from &&
           !tolerate(contact, contact.violations.reversed_sliding)) {
         fail(contact, StepOutcome::sliding_reversed);
         is_allowed = false;
@@ -664,11 +661,11 @@ struct Simulation::Implementation {
     return action;
   }
 
-  /// t·(v_C − v_M) from the increments of the last step. @returns the drive's part of it
-  double update_slip_velocity(RunningContact& contact, double drive_velocity) const {
-    const double driven = contact.sliding.driven(drive_velocity);
-    contact.slip_velocity = contact.sliding.increment() / step + driven;
-    return driven;
+  /// t·(v_C − v_M) from the increments of the last step. @returns the drives' part of it
+  double update_slip_velocity(RunningContact& contact, double driven_velocity) const {
+    const double drawn = contact.sliding.along_tangent(driven_velocity);
+    contact.slip_velocity = contact.sliding.increment() / step + drawn;
+    return drawn;
   }
 
   void note(ContactRecord& contact, std::int64_t& counter) {

@@ -42,8 +42,8 @@ std::string fault_of_parts(const System& system, int& body) {
 /// What changes over time, or does not move; empty where nothing is wrong.
 std::string fault_of_drive(const System& system, const SlidingMass& mass) {
   const SystemBody& body = system.bodies[static_cast<std::size_t>(mass.body)];
-  if (system.drive.is_frozen) return "its contact is frozen";
-  if (system.drive.constant_from() > 0.0)
+  if (system.driven_motion(system.contacts.front()).is_frozen()) return "its contact is frozen";
+  if (system.drives_constant_from() > 0.0)
     return "its drive is not constant from the start (drive.ramp: 0, numbers without a table)";
   if (body.modal.damping.constant_from() > 0.0) return "its damping changes over time";
   if (mass.speed == 0.0)
@@ -63,8 +63,6 @@ std::optional<SlidingMass> as_sliding_mass(const System& system, std::string* wh
     return refuse(fault);
   const ContactPoint& contact = system.contacts.front();
   const SystemBody& body = system.bodies[static_cast<std::size_t>(made.body)];
-  const SystemBody& master =
-      system.bodies[static_cast<std::size_t>(system.surface_of(contact).body)];
   const ReducedBody& reduced = body.reduced;
   made.to_contact.row(0) = reduced.rows.row(contact.slave_rows.x);
   made.to_contact.row(1) = reduced.rows.row(contact.slave_rows.y);
@@ -86,12 +84,18 @@ std::optional<SlidingMass> as_sliding_mass(const System& system, std::string* wh
     if (!reduced.coupled.position.isZero(0.0)) return refuse("its body has circulatory terms");
     made.damping += at_contact(reduced.coupled.velocity);
   }
-  made.load = system.drive.load.value(0.0);
-  if (body.load_row >= 0)
-    made.load_direction = made.to_body.transpose() * reduced.rows.row(body.load_row).transpose();
-  const double driven = system.drive.velocity.value(0.0);
-  made.base_speed = body.follows_drive ? driven : 0.0;
-  made.speed = (master.follows_drive ? driven : 0.0) - made.base_speed;
+  if (body.loads.size() > 1) return refuse(fmt::format("its body has {} loads", body.loads.size()));
+  if (!body.loads.empty()) {
+    const BodyLoad& load = body.loads.front();
+    made.load = load.size(system.drives, 0.0);
+    made.load_direction = made.to_body.transpose() * reduced.rows.row(load.row).transpose();
+  }
+  const auto speed_of = [&](int index) {
+    const Drive* const drive = system.drive_of(index);
+    return drive == nullptr ? 0.0 : drive->velocity.value(0.0);
+  };
+  made.base_speed = speed_of(made.body);
+  made.speed = speed_of(system.surface_of(contact).body) - made.base_speed;
   made.contact = *contact.substrate;
   if (const std::string fault = fault_of_drive(system, made); !fault.empty()) return refuse(fault);
   return made;

@@ -96,15 +96,13 @@ const double* block_of(const Propagator& body, int slot_a, int slot_b) {
 }  // namespace
 
 SlidingPoint::SlidingPoint(const ContactPoint& point, const MasterSurface& surface,
-                           Propagator& slave, Propagator& master, int slave_slot, int master_slot,
-                           double drive_share)
+                           Propagator& slave, Propagator& master, int slave_slot, int master_slot)
     : point_(point),
       surface_(&surface),
       slave_(&slave),
       master_(&master),
       slave_slot_(slave_slot),
       master_slot_(master_slot),
-      drive_share_(drive_share),
       last_segment_(surface.num_segments() - 1) {
   slave_->watch(slave_slot, point.slave_rows.x);
   slave_->watch(slave_slot + 1, point.slave_rows.y);
@@ -123,11 +121,11 @@ void SlidingPoint::watch(int segment) {
   }
 }
 
-void SlidingPoint::set_place(const double* slave, const double* master, double drive_at,
+void SlidingPoint::set_place(const double* slave, const double* master, double driven,
                              Place& place) const {
   const double* const s = slave + slave_slot_;
   const double* const m = master + master_slot_;
-  place.slave = {slave_origin_.x() + drive_share_ * drive_at + s[0], slave_origin_.y() + s[1]};
+  place.slave = {slave_origin_.x() + driven + s[0], slave_origin_.y() + s[1]};
   place.master.stencil = undeformed_.stencil;
   for (int k = 0; k < undeformed_.stencil.count; ++k) {
     const Eigen::Vector2d& node = undeformed_.nodes[static_cast<std::size_t>(k)];
@@ -136,7 +134,7 @@ void SlidingPoint::set_place(const double* slave, const double* master, double d
   }
 }
 
-Projection SlidingPoint::project_place(const Place& place, double drive_at) const {
+Projection SlidingPoint::project_place(const Place& place, double driven) const {
   const double guess = projection_.xi;
   switch (point_.assumption) {
     case ContactAssumption::subs_b:
@@ -147,14 +145,14 @@ Projection SlidingPoint::project_place(const Place& place, double drive_at) cons
     case ContactAssumption::subs_a:
       break;
   }
-  return project(undeformed_, slave_origin_ + Eigen::Vector2d(drive_share_ * drive_at, 0.0), guess);
+  return project(undeformed_, slave_origin_ + Eigen::Vector2d(driven, 0.0), guess);
 }
 
-bool SlidingPoint::find(double drive_at) {
+bool SlidingPoint::find(double driven) {
   int heading = 0;
   while (true) {
-    set_place(slave_->expected(), master_->expected(), drive_at, place_);
-    projection_ = project_place(place_, drive_at);
+    set_place(slave_->expected(), master_->expected(), driven, place_);
+    projection_ = project_place(place_, driven);
     const double xi = projection_.xi;
     const int wanted = xi > 1.0 ? 1 : xi < 0.0 ? -1 : 0;
     if (wanted == 0 || wanted == -heading) break;
@@ -171,9 +169,9 @@ bool SlidingPoint::find(double drive_at) {
   return true;
 }
 
-void SlidingPoint::stand(double drive_at) {
-  set_place(slave_->current(), master_->current(), drive_at, place_);
-  projection_ = project_place(place_, drive_at);
+void SlidingPoint::stand(double driven) {
+  set_place(slave_->current(), master_->current(), driven, place_);
+  projection_ = project_place(place_, driven);
   set_rows();
 }
 
@@ -191,9 +189,9 @@ void SlidingPoint::set_rows() {
   }
 }
 
-double SlidingPoint::undeformed_arm(const Eigen::Vector2d& direction, double drive_at) const {
+double SlidingPoint::undeformed_arm(const Eigen::Vector2d& direction, double driven) const {
   const Eigen::Vector2d on_master = undeformed_.combine(projection_.weights);
-  return direction.x() * (slave_origin_.x() + drive_share_ * drive_at - on_master.x()) +
+  return direction.x() * (slave_origin_.x() + driven - on_master.x()) +
          direction.y() * (slave_origin_.y() - on_master.y());
 }
 
@@ -205,8 +203,8 @@ double SlidingPoint::relative(const SlotRow& row, const double* slave, const dou
          dot(2 * static_cast<std::size_t>(undeformed_.stencil.count), row.master.data(), m);
 }
 
-double SlidingPoint::predicted_gap(double drive_at) const {
-  return undeformed_arm(projection_.normal, drive_at) +
+double SlidingPoint::predicted_gap(double driven) const {
+  return undeformed_arm(projection_.normal, driven) +
          relative(normal_, slave_->predicted(), master_->predicted());
 }
 
@@ -215,13 +213,13 @@ double SlidingPoint::predicted_slip() const {
          relative(tangent_, slave_->expected(), master_->expected());
 }
 
-double SlidingPoint::gap_ahead(double drive_at, double advance) const {
-  return undeformed_arm(projection_.normal, drive_at + advance) +
+double SlidingPoint::gap_ahead(double driven, double advance) const {
+  return undeformed_arm(projection_.normal, driven + advance) +
          relative(normal_, slave_->ahead(), master_->ahead());
 }
 
 double SlidingPoint::slip_ahead(double advance) const {
-  return driven(advance) + relative(tangent_, slave_->ahead(), master_->ahead()) -
+  return along_tangent(advance) + relative(tangent_, slave_->ahead(), master_->ahead()) -
          relative(tangent_, slave_->expected(), master_->expected());
 }
 
@@ -243,9 +241,9 @@ double SlidingPoint::stretch() const {
          surface_->arc_slope(segment_, slopes);
 }
 
-ContactPlace SlidingPoint::present_place(double drive_at) const {
+ContactPlace SlidingPoint::present_place(double driven) const {
   Place now;
-  set_place(slave_->current(), master_->current(), drive_at, now);
+  set_place(slave_->current(), master_->current(), driven, now);
   const Projection here = project(now.master, now.slave, projection_.xi);
   return {here.normal.dot(now.slave - now.master.combine(here.weights)) -
               surface_->roughness_at(segment_, here.weights),

@@ -41,31 +41,33 @@ class SlidingPoint {
   /// Watches the rows of the slave and of the first segment.
   /// @param surface, slave, master referenced from here on
   /// @param slave_slot, master_slot first of its ports on either body
-  /// @param drive_share share of the drive in the motion of slave against master: 1, 0 or −1
   SlidingPoint(const ContactPoint& point, const MasterSurface& surface, Propagator& slave,
-               Propagator& master, int slave_slot, int master_slot, double drive_share);
+               Propagator& master, int slave_slot, int master_slot);
+
+  // In all that follows `driven` is what drives have displaced the slave against the master in +x,
+  // DrivenMotion::displacement(), m.
 
   /// Finds segment and projection with the displacements expected. Starts from the segment of the
   /// last step and never turns back: on a sagging polyline the projections on two neighbours can
   /// both point at each other.
   /// @return false where the slave has left the end of the surface
-  bool find(double drive_at);
+  bool find(double driven);
   /// The projection of the present motion on the present segment.
-  void stand(double drive_at);
+  void stand(double driven);
 
   /// Distance of the slave from its projection along the normal, with the displacements predicted,
   /// m.
-  double predicted_gap(double drive_at) const;
+  double predicted_gap(double driven) const;
   /// Distance along the tangent from the displacements expected to those predicted, m.
   double predicted_slip() const;
   /// The same two at t_{n+1} by Propagator::ahead(), with the rows of t_n.
-  /// @param advance of the drive in the step, m
-  double gap_ahead(double drive_at, double advance) const;
+  /// @param advance of that in the step, m
+  double gap_ahead(double driven, double advance) const;
   double slip_ahead(double advance) const;
   /// Relative velocity along the tangent times the step, from the increments, m.
   double increment() const;
-  /// The drive's part in the motion of the slave against the master along the tangent.
-  double driven(double drive) const { return drive_share_ * drive * projection_.tangent.x(); }
+  /// Part along the tangent of a displacement or velocity in +x.
+  double along_tangent(double in_x) const { return in_x * projection_.tangent.x(); }
 
   /// Place along the undeformed master, as far as slip is concerned, m: the projection itself;
   /// under Subs-a, whose projection is prescribed, that and the displacements along it.
@@ -75,7 +77,7 @@ class SlidingPoint {
   /// Height of the rough surface, m.
   double roughness() const { return surface_->roughness_at(segment_, projection_.weights); }
   /// Of the present motion.
-  ContactPlace present_place(double drive_at) const;
+  ContactPlace present_place(double driven) const;
   /// Of the last projection along the undeformed master, m.
   double position() const { return surface_->arc_at(segment_, projection_.weights); }
 
@@ -113,11 +115,11 @@ class SlidingPoint {
   template <class Visit>
   void for_shared_bodies(const SlidingPoint& other, const Visit& visit) const;
   void watch(int segment);
-  void set_place(const double* slave, const double* master, double drive_at, Place& place) const;
-  Projection project_place(const Place& place, double drive_at) const;
+  void set_place(const double* slave, const double* master, double driven, Place& place) const;
+  Projection project_place(const Place& place, double driven) const;
   void set_rows();
   /// From the projection to the slave without displacements, along a direction.
-  double undeformed_arm(const Eigen::Vector2d& direction, double drive_at) const;
+  double undeformed_arm(const Eigen::Vector2d& direction, double driven) const;
   double relative(const SlotRow& row, const double* slave, const double* master) const;
 
   ContactPoint point_;
@@ -126,7 +128,6 @@ class SlidingPoint {
   Propagator* master_;
   int slave_slot_;
   int master_slot_;
-  double drive_share_;
   int last_segment_;
 
   int segment_ = -1;

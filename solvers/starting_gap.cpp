@@ -16,20 +16,11 @@ Eigen::Vector2d displaced(const SystemBody& body, const PointRows& rows) {
           body.reduced.rows.row(rows.y).dot(body.initial_displacement)};
 }
 
-/// Displacement of the slave against the master by the drive in +x, m.
-double driven(const System& system, const ContactPoint& contact) {
-  const auto share = [&](int index) {
-    return body_at(system, index).follows_drive ? 1.0 : 0.0;
-  };
-  return (share(contact.slave_body) - share(system.surface_of(contact).body)) *
-         system.drive.displacement(0.0);
-}
-
 /// Slave and master of one contact as seen from the undeformed T1 of a segment.
 struct Setting {
   SurfacePiece undeformed;
   SurfacePiece deformed;
-  Eigen::Vector2d slave;       ///< undeformed, moved by the drive
+  Eigen::Vector2d slave;       ///< undeformed, moved by drives
   Eigen::Vector2d slave_moved; ///< by its initial displacement too
 };
 
@@ -45,7 +36,7 @@ Setting setting_of(const System& system, const ContactPoint& contact, int segmen
   }
   setting.slave = contact.slave_position -
                   surface.positions[static_cast<std::size_t>(segment)] +
-                  Eigen::Vector2d(driven(system, contact), 0.0);
+                  Eigen::Vector2d(system.driven_motion(contact).displacement(0.0), 0.0);
   setting.slave_moved =
       setting.slave + displaced(body_at(system, contact.slave_body), contact.slave_rows);
   return setting;

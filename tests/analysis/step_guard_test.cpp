@@ -112,8 +112,8 @@ TEST(StepGuard, PlacesFollowThePathOfTheDrive) {
     System system = random_sliding_bodies(4, 0.0, true);
     system.contacts[0].slave_position.x() = 0.5;
     system.contacts[0].first_segment = 0;
-    system.drive.is_frozen = false;
-    system.drive.velocity = TimeCurve(moved);
+    system.drives[0].is_frozen = false;
+    system.drives[0].velocity = TimeCurve(moved);
     if (gyroscopic > 0.0) system = with_coupling(system, 1, {.gyroscopic = gyroscopic});
     TimeParameters time = steps_of(Integrator::exact, 1e-4);
     time.end = 1.0;

@@ -90,6 +90,31 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ContinuationTest,
                                                {"--set", "substructures.bridge.angle=3 deg",
                                                 "--set", "contact.assumption=film"}}));
 
+TEST(Continuation, EveryDriveGoesOnFromWhereItWas) {
+  const TemporaryFolder folder;
+  const std::string scene = scene_path("examples/opposite_drives.yaml");
+  const std::string straight = (folder / "straight.h5").string();
+  const std::string first = (folder / "first.h5").string();
+  const std::string second = (folder / "second.h5").string();
+  expect_run(scene, straight, {"--set", "time.end=20"});
+  expect_run(scene, first, {});
+  std::vector<std::string> rest{"--set", "initial.state=" + first};
+  for (const char* drive : {"belt", "feed", "piston"})
+    rest.insert(rest.end(), {"--set", std::string("drives.") + drive + ".ramp=0"});
+  expect_run(scene, second, rest);
+  const RunFileReader a(straight);
+  const RunFileReader b(second);
+  for (const RunFileReader* file : {&a, &b}) {
+    // Less half of the ramp of 0.1 s.
+    const std::vector<double> displaced = file->static_array("/final/drive_displacement");
+    ASSERT_EQ(displaced.size(), 3);
+    EXPECT_NEAR(displaced[0], -0.2 * 19.95, 1e-12);
+    EXPECT_NEAR(displaced[1], 0.3 * 19.95, 1e-12);
+    EXPECT_EQ(displaced[2], 0.0);
+  }
+  EXPECT_LT(largest_difference(a, b, "slider/displacement"), 1e-9);
+}
+
 TEST(Continuation, PathInASceneIsFromItsFolder) {
   const TemporaryFolder folder;
   const std::string scene = (folder / "scene.yaml").string();

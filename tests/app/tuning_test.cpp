@@ -70,7 +70,7 @@ TEST_P(Tuning, KeepsWhatItPromisesWithinAFactorOfOneAndAHalf) {
   const LoadedScene scene = load_scene((folder / "tuned.yaml").string(), tuned.sets);
 
   Model model = build_model(scene);
-  set_initial_state(model.system, scene);
+  (void)set_initial_state(model.system, scene);
   const std::string channel = object["channel"].get<std::string>();
   const std::size_t dot = channel.find('.');
   const std::size_t second = channel.find('.', dot + 1);

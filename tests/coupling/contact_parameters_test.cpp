@@ -72,6 +72,33 @@ TEST(MakeDrive, MovingSlidesByTheIntegralOfTheVelocity) {
   EXPECT_EQ(drive.acceleration(1.0), 0.0);
 }
 
+TEST(MakeDrive, DisplacementsOfSpringsRiseOverTheRamp) {
+  DriveParameters parameters = paper_drive();
+  parameters.displacement = TimeCurve(2e-3);
+  parameters.displaces = {"pad.backing"};
+  const Drive drive = make_drive(parameters, SlidingMode::moving, "drives.piston");
+  EXPECT_EQ(drive.shift.table(), (TimeTable{{0.0, 0.1}, {0.0, 2e-3}}));
+  EXPECT_EQ(drive.key, "drives.piston");
+}
+
+TEST(SceneDrive, MovesAndLoadsGuidedSupportsWhereNothingElseIsSaid) {
+  SceneDrive drive{"drives.a", "a", {}, true};
+  EXPECT_TRUE(drive.moves_guided());
+  EXPECT_TRUE(drive.loads_guided());
+  drive.is_only = false;
+  EXPECT_FALSE(drive.moves_guided());
+  EXPECT_FALSE(drive.loads_guided());
+  drive.parameters.velocity = TimeCurve(-1.0);
+  EXPECT_TRUE(drive.moves_guided());
+  drive.parameters.moves = {"pad"};
+  EXPECT_FALSE(drive.moves_guided());
+  drive.parameters.load = TimeCurve(1.0);
+  EXPECT_TRUE(drive.loads_guided());
+  drive.parameters.load_on = {"pad.top", guided_supports};
+  EXPECT_TRUE(drive.loads_guided());
+  EXPECT_EQ(drive.key_of("load_on", 1), "drives.a.load_on.1");
+}
+
 TEST(MakeDrive, FrozenStaysInPlaceButKeepsTheVelocity) {
   const Drive drive = make_drive(paper_drive(), SlidingMode::frozen);
   EXPECT_TRUE(drive.is_frozen);
@@ -139,8 +166,8 @@ TEST(ContactParameters, ChoicesMeanWhatTheySay) {
 TEST(ContactParameters, PhysicalQuantitiesHaveNoDefault) {
   // A slave and an assumption are needed but where only the law is evaluated; see check_laws().
   EXPECT_FALSE(ContactParameters::schema().find("master")->is_optional);
-  for (const char* key : {"velocity", "load", "ramp"})
-    EXPECT_FALSE(DriveParameters::schema().find(key)->is_optional) << key;
+  // A drive may leave out what it does not do.
+  EXPECT_FALSE(DriveParameters::schema().find("ramp")->is_optional);
   // Which numbers are needed depends on the laws, see NormalParameters and FrictionParameters.
   EXPECT_EQ(NormalParameters{}.stiffness, std::nullopt);
   EXPECT_EQ(NormalParameters{}.radius, std::nullopt);

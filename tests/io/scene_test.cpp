@@ -61,6 +61,56 @@ TEST(Scene, ErrorsOfTheModelAreGivenTheirPlaceInTheFile) {
   }
 }
 
+std::string refusal_of_drives(const std::vector<std::string>& sets) {
+  try {
+    build_model(load_scene(scene_path("examples/opposite_drives.yaml"), sets));
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+TEST(Scene, DrivesAreReadByName) {
+  const LoadedScene loaded = load_scene(scene_path("examples/opposite_drives.yaml"), {});
+  const std::vector<SceneDrive> drives = loaded.scene.model.scene_drives();
+  ASSERT_EQ(drives.size(), 3);
+  EXPECT_EQ(drives[0].key, "drives.belt");
+  EXPECT_EQ(drives[0].parameters.velocity.value(0.0), -0.2);
+  EXPECT_EQ(drives[1].parameters.moves, std::vector<std::string>{"slider"});
+  EXPECT_EQ(drives[2].parameters.displacement.value(0.0), -0.05);
+  const Model model = build_model(loaded);
+  ASSERT_EQ(model.system.drives.size(), 3);
+  EXPECT_EQ(model.system.bodies[0].drive, 1);
+  EXPECT_EQ(model.system.bodies[1].drive, 0);
+  EXPECT_EQ(model.system.bodies[1].name, "moving rigid of belt");
+  ASSERT_EQ(model.system.bodies[0].loads.size(), 1);
+  EXPECT_EQ(model.system.bodies[0].loads[0].drive, 2);
+}
+
+TEST(Scene, DrivesAreRefusedWithTheirKeys) {
+  EXPECT_THAT(refusal_of_drives({"drive={velocity: 1, load: 0, ramp: 0}"}),
+              HasSubstr("drives: give either `drive` (one) or `drives` (several), not both"));
+  EXPECT_THAT(refusal_of_drives({"drives.idle={ramp: 0}"}),
+              HasSubstr("drives.idle: does nothing: give velocity, load or displacement"));
+  EXPECT_THAT(refusal_of_drives({"drives.lift={displacement: 1 mm, ramp: 0}"}),
+              HasSubstr("drives.lift.displaces: is missing: name the springs"));
+  EXPECT_THAT(refusal_of_drives({"drives.belt.velocty=1"}), HasSubstr("did you mean 'velocity'?"));
+  EXPECT_THAT(refusal_of_drives({"drives.belt.moves=slidr"}),
+              HasSubstr("drives.belt.moves.0: there is no 'slidr' to move, did you mean 'slider'?"));
+  EXPECT_THAT(refusal_of_drives({"drives.piston.displaces=slider.puling"}),
+              HasSubstr("drives.piston.displaces.0: 'slider' has no spring to ground 'puling', did "
+                        "you mean 'pulling'?"));
+  EXPECT_THAT(refusal_of_drives({"drives.piston.displaces=slider.pulling"}),
+              HasSubstr("'slider.pulling' exerts nothing when its ground end moves in y"));
+  try {
+    load_scene(scene_path("examples/continued.yaml"),
+               {"drive.displacement=1 mm", "drive.displaces=beam.spring"});
+    FAIL() << "not refused";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("drive.displaces: is of a drive with a name"));
+  }
+}
+
 TEST(Scene, EnergyIsRecordedWhereAskedFor) {
   EXPECT_FALSE(load_scene(scene_path("beam_on_beam.yaml"), {}).scene.record->energy);
   EXPECT_TRUE(

@@ -152,7 +152,7 @@ TEST(MatrixBody, KeepsEveryUnknownWhereNoReductionIsGiven) {
   const ReducedBody& reduced = model.system.bodies[0].reduced;
   EXPECT_EQ(reduced.size(), 3);
   EXPECT_EQ(reduced.num_interface, 3);
-  EXPECT_TRUE(model.system.bodies[0].follows_drive);
+  EXPECT_TRUE(model.system.bodies[0].follows_drive());
   // The unknowns of the points on the surface come first, as they are: 1, 2 and 3.
   EXPECT_EQ(reduced.mass, Eigen::MatrixXd(body.matrices->mass));
   EXPECT_EQ(reduced.base_inertia, Eigen::Vector3d(2.0, 0.0, 2.0));

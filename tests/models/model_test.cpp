@@ -37,8 +37,8 @@ TEST(Model, PaperBeamsReduceToTheirPublishedSizes) {
   EXPECT_EQ(model.system.bodies[1].reduced.size(), 23);
   EXPECT_EQ(model.system.bodies[0].reduced.num_interface, 200);
   EXPECT_EQ(model.system.bodies[1].reduced.num_interface, 3);
-  EXPECT_FALSE(model.system.bodies[0].follows_drive);
-  EXPECT_TRUE(model.system.bodies[1].follows_drive);
+  EXPECT_FALSE(model.system.bodies[0].follows_drive());
+  EXPECT_TRUE(model.system.bodies[1].follows_drive());
 }
 
 TEST(Model, SlavePointIsPlacedOnTheMasterAtItsStart) {
@@ -230,7 +230,7 @@ TEST(Model, ABodyThatIsFreeToTurnIsRefused) {
 
 TEST(Model, ConstantsOfTheDriveRiseOverTheRamp) {
   const Model model = make_paper_model(paper_model());
-  const Drive& drive = model.system.drive;
+  const Drive& drive = model.system.drives[0];
   EXPECT_EQ(drive.velocity.value(0.0), 0.0);
   EXPECT_EQ(drive.velocity.value(0.1), 0.030);
   EXPECT_EQ(drive.load.value(0.2), -0.20);
@@ -256,7 +256,7 @@ TEST(Model, TheRigidMasterIsAnEndlessLineUnderTheSlave) {
   EXPECT_EQ(system.bodies[1].name, "rigid");
   EXPECT_EQ(system.bodies[1].reduced.size(), 0);
   EXPECT_EQ(system.bodies[1].modal.size(), 0);
-  EXPECT_FALSE(system.bodies[1].follows_drive);
+  EXPECT_FALSE(system.bodies[1].follows_drive());
   const MasterSurface& surface = system.surfaces.at(0);
   EXPECT_EQ(surface.name, "rigid");
   EXPECT_EQ(surface.body, 1);

@@ -179,13 +179,13 @@ TEST(EnergyLedger, BalanceIsExactWhereTheMotionIsOfFirstOrder) {
 /// Two bodies without freedom, one driven along the other: all work is that of the drive.
 System driven_system(bool slave_is_driven) {
   System system;
-  system.drive.velocity = TimeCurve(TimeTable{{0.0, 1.0}, {0.2, 0.6}});
+  system.drives[0].velocity = TimeCurve(TimeTable{{0.0, 1.0}, {0.2, 0.6}});
   for (int b = 0; b < 2; ++b) {
     SystemBody body;
     body.reduced.rows.resize(1, 0);
     body.modal.rows.resize(1, 0);
-    body.follows_drive = (b == 0) == slave_is_driven;
-    body.load_row = 0;
+    body.drive = (b == 0) == slave_is_driven ? 0 : -1;
+    body.loads = {BodyLoad{0}};
     system.bodies.push_back(body);
   }
   MasterSurface surface;
@@ -227,7 +227,7 @@ TEST(EnergyLedger, TheDriveFeedsFrictionAndPushesAgainstTheNormalForce) {
 
 TEST(EnergyLedger, InFrozenSlidingTheDriveFeedsFrictionAlone) {
   System system = driven_system(true);
-  system.drive.is_frozen = true;
+  system.drives[0].is_frozen = true;
   EnergyLedger ledger(system, time_of(0.5, Coordinates::modal));
   const ContactAction action[] = {inclined_action(3.0, 2.0)};
   const double slip[] = {0.1};
@@ -339,7 +339,7 @@ TEST(EnergyLedger, BalancesUnderEveryContactAssumption) {
       System system = lively_system(assumption);
       system.surfaces[0].kind = kind;
       if (rms > 0.0) system.surfaces[0].roughness = Roughness({rms, 2e-5, 1}, 0.1);
-      system.drive.is_frozen = is_frozen;
+      system.drives[0].is_frozen = is_frozen;
       const Simulation simulation = marched(system, 10'000, paper_time());
       const EnergyLedger& ledger = *simulation.energy();
       EXPECT_LT(ledger.relative_error(), rounding);

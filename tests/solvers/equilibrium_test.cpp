@@ -67,7 +67,7 @@ TEST(Equilibrium, OfBodiesThatNothingTouchesOrLoadsIsRest) {
     ASSERT_EQ(rest.displacement[b].size(), system.bodies[b].modal.size());
     EXPECT_EQ(rest.displacement[b].norm(), 0.0);
   }
-  state.load = -load;
+  state.drives = {{0.0, -load}};
   EXPECT_THAT(message_of<NumericalError>([&] { find_equilibrium(system, state); }),
               HasSubstr("is free to move"));
 }
@@ -96,7 +96,7 @@ TEST(Equilibrium, UnderSubsBTheForceBalancesTheLoadOnTheInclinedSegment) {
       for (const double velocity : {0.030, -0.030}) {
         for (const double position : {0.030, 0.0477, 0.074, 0.0955, 0.099}) {
           EquilibriumState state = sliding_state(system, to(position));
-          state.drive_velocity = velocity;
+          state.drives[0].velocity = velocity;
           const Equilibrium equilibrium = find_equilibrium(system, state);
           ASSERT_EQ(equilibrium.status, EquilibriumStatus::converged) << equilibrium.failure;
           EXPECT_LE(equilibrium.residual, 1e-12);
@@ -144,7 +144,7 @@ TEST(Equilibrium, LiesWithinTheForcesOfTheTransients) {
 /// in its equilibrium.
 void expect_transient_to_end_in_equilibrium(System system, double step) {
   // So fast that vibration does not turn the sliding round.
-  system.drive = {TimeCurve(10.0), TimeCurve(-load), true};
+  system.drives[0] = {TimeCurve(10.0), TimeCurve(-load), true};
   for (ContactPoint& point : system.contacts) {
     point.friction_rise = TimeCurve(1.0);
     point.armed_from = 1.0;
@@ -304,15 +304,15 @@ TEST(Equilibrium, BodiesStandWhereTheContactsSayTheyDo) {
 TEST(Equilibrium, ReversingTheDriveIsReversingTheFriction) {
   const System system = paper_system(trailing_angle);
   EquilibriumState state = sliding_state(system, to(0.0905));
-  EXPECT_EQ(state.drive_velocity, 0.030);
-  EXPECT_EQ(state.load, -load);
+  EXPECT_EQ(state.drives[0].velocity, 0.030);
+  EXPECT_EQ(state.drives[0].load, -load);
   EXPECT_EQ(state.friction_factor, 1.0);
   const double forward = find_equilibrium(system, state).contacts[0].force;
-  state.drive_velocity = 0.0;
+  state.drives[0].velocity = 0.0;
   EXPECT_EQ(find_equilibrium(system, state).contacts[0].force, forward);
   state.friction_factor = 0.0;
   const double without = find_equilibrium(system, state).contacts[0].force;
-  state.drive_velocity = -0.030;
+  state.drives[0].velocity = -0.030;
   state.friction_factor = 1.0;
   const Equilibrium backward = find_equilibrium(system, state);
   EXPECT_EQ(backward.contacts[0].direction, -1.0);
@@ -439,9 +439,9 @@ TEST(Equilibrium, OnARigidMasterTheForceIsTheLoadWhereverTheBodyIs) {
 TEST(Equilibrium, WithoutContactsEachBodyBendsUnderItsLoadAlone) {
   System system = paper_system(trailing_angle);
   system.contacts.clear();
-  system.bodies[1].load_row = -1;
+  system.bodies[1].loads.clear();
   system.bodies.pop_back();
-  system.bodies[0].load_row = system.surfaces[0].rows.back().y;
+  system.bodies[0].loads = {BodyLoad{system.surfaces[0].rows.back().y}};
   EquilibriumState state = sliding_state(system, 0.0);
   const Equilibrium equilibrium = find_equilibrium(system, state);
   ASSERT_EQ(equilibrium.status, EquilibriumStatus::converged) << equilibrium.failure;
@@ -462,12 +462,12 @@ TEST(Equilibrium, ABodyThatNothingHoldsIsNamed) {
   // Pulled off its unilateral contact.
   const System lifted = paper_system(trailing_angle, ContactAssumption::film);
   EquilibriumState upwards = sliding_state(lifted, 0.0);
-  upwards.load = load;
+  upwards.drives[0].load = load;
   EXPECT_THAT(message_of<NumericalError>([&] { find_equilibrium(lifted, upwards); }),
               HasSubstr("the body 'oblique' is free to move"));
 
   // Without any load it is in equilibrium, but free all the same.
-  upwards.load = 0.0;
+  upwards.drives[0].load = 0.0;
   EXPECT_EQ(find_equilibrium(lifted, upwards).contacts[0].force, 0.0);
 }
 
@@ -612,7 +612,7 @@ TEST(Equilibrium, DriveIsDisplacedToWhereTheUndeformedSlaveIsWanted) {
   EXPECT_THAT(message_of<std::invalid_argument>([&] { drive_displacement_at(system, 0, -0.001); }),
               HasSubstr("off the master"));
   System still = system;
-  still.bodies[1].follows_drive = false;
+  still.bodies[1].drive = -1;
   EXPECT_THAT(message_of<std::invalid_argument>([&] { drive_displacement_at(still, 0, 0.05); }),
               HasSubstr("the drive does not move contact along its master"));
 }
@@ -621,7 +621,7 @@ TEST(Equilibrium, ASimulationThatStartsInItStaysThere) {
   for (const auto assumption :
        {ContactAssumption::subs_a, ContactAssumption::subs_b, ContactAssumption::subs_c}) {
     System system = paper_system(trailing_angle, assumption);
-    system.drive = {TimeCurve(0.030), TimeCurve(-load), true};
+    system.drives[0] = {TimeCurve(0.030), TimeCurve(-load), true};
     system.contacts[0].friction_rise = TimeCurve(1.0);
     const Equilibrium equilibrium = find_equilibrium(system, sliding_state(system, 0.0));
     apply_initial_motion(system, equilibrium);

@@ -454,7 +454,7 @@ TEST(FaceSimulation, ResumesBitIdentically) {
 
 TEST(FaceSimulation, RefusesASlaveThatTheDriveMoves) {
   System system = MassOnFace().system();
-  system.bodies[1].follows_drive = true;
+  system.bodies[1].drive = 0;
   EXPECT_NE(test::message_of<ConfigError>([&] {
               (void)Simulation(system, face_time(1e-3));
             }).find("the drive cannot move it"),

@@ -446,14 +446,14 @@ TEST(Linearise, IsTheTangentOfTheEquilibrium) {
       Eigen::VectorXd right_side = Eigen::VectorXd::Zero(n + 1);
       const ModalBody& oblique = system.bodies[1].modal;
       right_side.segment(system.bodies[0].modal.size(), oblique.size()) =
-          oblique.rows.row(system.bodies[1].load_row);
+          oblique.rows.row(system.bodies[1].loads.front().row);
       const Eigen::VectorXd tangent = matrix.partialPivLu().solve(right_side);
 
       // Central difference: error (step/load)² ~ 1e-8 times the curvature, of order 1 at most.
       const double step = 1e-4 * paper_load;
-      state.load += step;
+      state.drives[0].load += step;
       const Equilibrium more = find_equilibrium(system, state);
-      state.load -= 2.0 * step;
+      state.drives[0].load -= 2.0 * step;
       const Equilibrium less = find_equilibrium(system, state);
       const Eigen::VectorXd slope = (stacked(more) - stacked(less)) / (2.0 * step);
       EXPECT_LT((tangent.head(n) - slope).norm(), 1e-7 * slope.norm());
@@ -764,7 +764,7 @@ TEST(Perturbation, GrowsAsItsEigenvalueSays) {
     point.first_segment = static_cast<int>(start / 0.001);
     point.friction = law;
     point.friction_rise = TimeCurve(1.0);
-    system.drive = {TimeCurve(0.030), TimeCurve(-paper_load), true};
+    system.drives[0] = {TimeCurve(0.030), TimeCurve(-paper_load), true};
     for (SystemBody& body : system.bodies) body.modal.damping.alpha_start.reset();
 
     const Equilibrium equilibrium = find_equilibrium(system, sliding_state(system, 0.0));

@@ -217,9 +217,9 @@ TEST(Simulation, SeveralContactsSettleOnTheSolutionOfTheStaticSaddlePointProblem
   const auto offset = [&](int body) { return body == 0 ? Eigen::Index{0} : n0; };
   for (std::size_t b = 0; b < 2; ++b) {
     const SystemBody& body = system.bodies[b];
-    if (!body.follows_drive) continue;
+    if (!body.follows_drive()) continue;
     right.segment(offset(static_cast<int>(b)), body.reduced.size()) =
-        -0.2 * body.reduced.rows.row(body.load_row).transpose();
+        -0.2 * body.reduced.rows.row(body.loads.front().row).transpose();
   }
   for (int i = 0; i < 2; ++i) {
     const ContactPoint& contact = system.contacts[static_cast<std::size_t>(i)];

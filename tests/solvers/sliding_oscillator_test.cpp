@@ -31,9 +31,9 @@ System paper_system() {
   System system;
   system.bodies.push_back(test::driven_body("sphere", mass * Eigen::Matrix2d::Identity(), stiffness,
                                             Eigen::Matrix2d::Identity(), 1, damping / mass));
-  system.bodies[0].follows_drive = false;
+  system.bodies[0].drive = -1;
   system.bodies.push_back(test::rigid_body("moving rigid"));
-  system.bodies[1].follows_drive = true;
+  system.bodies[1].drive = 0;
   system.surfaces.push_back(test::rigid_line(1));
   NormalParameters normal;
   normal.law = NormalLaw::viscoelastic;
@@ -48,8 +48,8 @@ System paper_system() {
   contact.substrate->friction_load = FrictionLoad::applied;
   contact.substrate->load = load;
   system.contacts.push_back(contact);
-  system.drive.velocity = TimeCurve(5e-3 * radius / creep);
-  system.drive.load = TimeCurve(-load);
+  system.drives[0].velocity = TimeCurve(5e-3 * radius / creep);
+  system.drives[0].load = TimeCurve(-load);
   return system;
 }
 
@@ -85,15 +85,15 @@ TEST(SlidingOscillator, SystemInSiUnitsSaysTheSameAsThePaper) {
 
 TEST(SlidingOscillator, BodyDraggedOverAHalfSpaceAtRestIsItsMirrorImage) {
   System system = paper_system();
-  system.bodies[0].follows_drive = true;
-  system.bodies[1].follows_drive = false;
+  system.bodies[0].drive = 0;
+  system.bodies[1].drive = -1;
   // Against the motion of the body, as the half-space moved before; x is mirrored with it.
   Eigen::MatrixXd& stiffness = system.bodies[0].reduced.stiffness;
   stiffness(0, 1) = stiffness(1, 0) = -stiffness(0, 1);
   const std::optional<SlidingOscillator> found = as_oscillator(system);
   ASSERT_TRUE(found.has_value());
   EXPECT_EQ(found->direction, -1.0);
-  EXPECT_EQ(found->mass.base_speed, system.drive.velocity.value(0.0));
+  EXPECT_EQ(found->mass.base_speed, system.drives[0].velocity.value(0.0));
   expect_paper_sphere(*found);
 }
 
@@ -130,11 +130,11 @@ TEST(SlidingOscillator, SaysWhatASystemHasInstead) {
               HasSubstr("not the same in x and y"));
   EXPECT_THAT(why([](System& s) { s.bodies[0].reduced.stiffness.setZero(); }),
               HasSubstr("no spring holds it in x"));
-  EXPECT_THAT(why([](System& s) { s.drive.velocity = TimeCurve::ramp(1.0, 1.0); }),
+  EXPECT_THAT(why([](System& s) { s.drives[0].velocity = TimeCurve::ramp(1.0, 1.0); }),
               HasSubstr("not constant from the start"));
-  EXPECT_THAT(why([](System& s) { s.drive.velocity = TimeCurve(0.0); }),
+  EXPECT_THAT(why([](System& s) { s.drives[0].velocity = TimeCurve(0.0); }),
               HasSubstr("does not move against it"));
-  EXPECT_THAT(why([](System& s) { s.drive.is_frozen = true; }), HasSubstr("frozen"));
+  EXPECT_THAT(why([](System& s) { s.drives[0].is_frozen = true; }), HasSubstr("frozen"));
   EXPECT_THAT(why([](System& s) {
                 s.bodies[0].modal.damping = {1.0, 0.0, 2.0, 1.0, 1.0};
               }),

@@ -53,8 +53,8 @@ System as_system(const SubstrateOscillator& oscillator, const Eigen::Vector2d& d
   contact.assumption = ContactAssumption::film;
   contact.substrate = oscillator.contact;
   system.contacts.push_back(contact);
-  system.drive.velocity = TimeCurve(-oscillator.substrate_speed);
-  system.drive.load = TimeCurve(-oscillator.load.y());
+  system.drives[0].velocity = TimeCurve(-oscillator.substrate_speed);
+  system.drives[0].load = TimeCurve(-oscillator.load.y());
   return system;
 }
 

@@ -132,7 +132,7 @@ TEST(UnilateralContact, LiftsOffLandsAndNeverPenetrates) {
   // Pressed with 10 N, lifted with 5 N from 0.1 to 0.15 s, pressed again.
   MassOnGround scene;
   System system = scene.system();
-  system.drive.load = TimeCurve(TimeTable{{0.099, 0.101, 0.149, 0.151}, {-10.0, 5.0, 5.0, -10.0}});
+  system.drives[0].load = TimeCurve(TimeTable{{0.099, 0.101, 0.149, 0.151}, {-10.0, 5.0, 5.0, -10.0}});
   Simulation simulation(system, time_of(1e-4));
   std::int64_t open = 0;
   double highest = 0.0;
@@ -210,7 +210,7 @@ TEST(UnilateralContact, BeforeItIsArmedItStaysBilateral) {
   MassOnGround scene;
   scene.assumption = ContactAssumption::subs_b;
   System system = scene.system();
-  system.drive.load = TimeCurve(TimeTable{{0.05, 0.06}, {-10.0, 5.0}});
+  system.drives[0].load = TimeCurve(TimeTable{{0.05, 0.06}, {-10.0, 5.0}});
   system.contacts[0].armed_from = 0.1;
   system.contacts[0].on_violation = OnViolation::unilateral;
   Simulation simulation(system, time_of(1e-4));
@@ -262,7 +262,7 @@ TEST(UnilateralContact, NodesOfAStraightMasterDoNotDisturbIt) {
 TEST(UnilateralContact, AFrozenDriveSlidesTheMasterAwayBelow) {
   System system = belt_scene().system();
   Simulation moving(system, time_of(1e-3));
-  system.drive.is_frozen = true;
+  system.drives[0].is_frozen = true;
   Simulation frozen(system, time_of(1e-3));
   for (int n = 0; n < 3000; ++n) {
     ASSERT_EQ(moving.step(), StepOutcome::done);
@@ -298,9 +298,9 @@ TEST(UnilateralContact, FrozenSlipDoesNotDependOnHowFarTheDriveHasCome) {
   // A pulse of the drive's velocity in the first millisecond stands for 10 m that it came before.
   // Friction is the same for any speed, so the motion must be the same.
   System system = bobbing_plank(-0.03, 0.03);
-  system.drive.is_frozen = true;
+  system.drives[0].is_frozen = true;
   Simulation fresh(system, time_of(1e-4));
-  system.drive.velocity = TimeCurve(TimeTable{{0.0, 1e-3}, {-2e4, -0.1}});
+  system.drives[0].velocity = TimeCurve(TimeTable{{0.0, 1e-3}, {-2e4, -0.1}});
   Simulation seasoned(system, time_of(1e-4));
   for (int n = 0; n < 5000; ++n) {
     ASSERT_EQ(fresh.step(), StepOutcome::done) << fresh.failure();
@@ -371,7 +371,7 @@ TEST(UnilateralContact, ResumesBitwiseInTheMiddleOfStick) {
 TEST(UnilateralContact, ResumesBitwiseInStickSlipAndFlightAndFrozen) {
   const System plank = bobbing_plank(-0.02, 0.01);  // the mass starts above it
   System frozen = plank;
-  frozen.drive.is_frozen = true;
+  frozen.drives[0].is_frozen = true;
   for (const System& system : {plank, frozen}) {
     Simulation probe(system, time_of(1e-4));
     bool has_been[3] = {false, false, false};
@@ -491,7 +491,7 @@ TEST(UnilateralContact, TheFirstStepKnowsTheVelocityOfTheSlavePoint) {
         SystemBody& body = system.bodies[0];
         body.reduced.rows = Eigen::Matrix2d{{0.0, 1.0}, {1.0, 0.0}};
         body.modal = make_modal(body.reduced);
-        body.load_row = 0;
+        body.loads = {BodyLoad{0}};
         system.contacts[0].slave_rows = {1, 0};
       }
       const Simulation simulation(system, time_of(1e-3, form));

@@ -46,8 +46,8 @@ inline System random_sliding_bodies(unsigned seed, double friction, bool is_damp
   System system;
   system.bodies.push_back(random_body("slave", engine, num_points, is_damped));
   system.bodies.push_back(random_body("master", engine, 4, is_damped));
-  system.bodies[1].follows_drive = false;
-  system.bodies[1].load_row = -1;
+  system.bodies[1].drive = -1;
+  system.bodies[1].loads.clear();
   MasterSurface surface;
   surface.name = "master.top";
   surface.body = 1;
@@ -68,9 +68,9 @@ inline System random_sliding_bodies(unsigned seed, double friction, bool is_damp
     contact.armed_from = 1e9;
     system.contacts.push_back(contact);
   }
-  system.drive.velocity = TimeCurve(1e9);
-  system.drive.load = TimeCurve(0.0);
-  system.drive.is_frozen = true;
+  system.drives[0].velocity = TimeCurve(1e9);
+  system.drives[0].load = TimeCurve(0.0);
+  system.drives[0].is_frozen = true;
   return system;
 }
 

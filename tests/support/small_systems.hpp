@@ -24,8 +24,8 @@ inline SystemBody driven_body(std::string name, Eigen::MatrixXd mass, Eigen::Mat
   body.reduced.rows = std::move(rows);
   body.reduced.damping.alpha = alpha;
   body.modal = make_modal(body.reduced);
-  body.follows_drive = true;
-  body.load_row = load_row;
+  body.drive = 0;
+  body.loads = {BodyLoad{load_row}};
   return body;
 }
 
@@ -87,8 +87,8 @@ struct MassOnGround {
     contact.friction = friction;
     contact.armed_from = 1e9;
     result.contacts.push_back(contact);
-    result.drive.velocity = TimeCurve(-belt_velocity);
-    result.drive.load = TimeCurve(-load);
+    result.drives[0].velocity = TimeCurve(-belt_velocity);
+    result.drives[0].load = TimeCurve(-load);
     return result;
   }
 };
@@ -143,7 +143,7 @@ struct FallingBar {
     contact.slave_position = {0.0, height};
     contact.assumption = ContactAssumption::film;
     result.contacts.push_back(contact);
-    result.drive.load = TimeCurve(-gravity);
+    result.drives[0].load = TimeCurve(-gravity);
     return result;
   }
 };
@@ -207,8 +207,8 @@ struct MovingForce {
     contact.assumption = ContactAssumption::subs_a;
     contact.armed_from = 1e9;
     result.contacts.push_back(contact);
-    result.drive.velocity = TimeCurve(speed());
-    result.drive.load = TimeCurve(-force);
+    result.drives[0].velocity = TimeCurve(speed());
+    result.drives[0].load = TimeCurve(-force);
     return result;
   }
 };

@@ -38,8 +38,8 @@ inline StaticContact static_contact(const System& system, double load) {
     const SystemBody& body = system.bodies[b];
     const Eigen::Index size = body.reduced.size();
     stiffness.block(offset[b], offset[b], size, size) = body.reduced.stiffness;
-    if (body.follows_drive)
-      forces.segment(offset[b], size) = load * body.reduced.rows.row(body.load_row).transpose();
+    if (body.follows_drive())
+      forces.segment(offset[b], size) = load * body.reduced.rows.row(body.loads.front().row).transpose();
   }
 
   Eigen::MatrixXd compatibility = Eigen::MatrixXd::Zero(num_contacts, n);

@@ -124,9 +124,9 @@ TEST(EnergyGrowth, ImpactsOnRigidGroundOnlyLose) {
     std::mt19937 engine(seed);
     System system = MassOnGround{}.system();
     system.bodies[0] = random_body("body", engine, 1, seed % 2 == 0);
-    system.bodies[0].load_row = 1;
-    system.drive.velocity = TimeCurve(0.0);
-    system.drive.load = TimeCurve(-1.0);
+    system.bodies[0].loads = {BodyLoad{1}};
+    system.drives[0].velocity = TimeCurve(0.0);
+    system.drives[0].load = TimeCurve(-1.0);
     system.contacts[0].slave_position = {0.0, 0.01};
     std::normal_distribution<double> normal;
     system.bodies[0].initial_velocity = Eigen::VectorXd::NullaryExpr(

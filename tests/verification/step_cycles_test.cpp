@@ -16,7 +16,7 @@ namespace {
 TEST(StepCycles, SphereOnRubberIsThatOfTheEvents) {
   const LoadedScene loaded = load_scene(test::scene_path("examples/sphere_on_rubber.yaml"), {});
   Model model = build_model(loaded);
-  set_initial_state(model.system, loaded);
+  (void)set_initial_state(model.system, loaded);
   const SlidingOscillator oscillator = as_oscillator(model.system).value();
   CycleOptions options;
   options.settle = 200.0;

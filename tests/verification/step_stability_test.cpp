@@ -300,8 +300,8 @@ System body_on_ground(double friction) {
   system.bodies[0].reduced.stiffness = Eigen::Matrix2d{{100.0, 20.0}, {20.0, 20.0}};
   system.bodies[0].modal = make_modal(system.bodies[0].reduced);
   system.bodies[0].initial_displacement = Eigen::Vector2d(0.01, 0.0);
-  system.drive.velocity = TimeCurve(1e6);
-  system.drive.is_frozen = true;
+  system.drives[0].velocity = TimeCurve(1e6);
+  system.drives[0].is_frozen = true;
   return system;
 }
 
