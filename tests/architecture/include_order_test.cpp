@@ -324,7 +324,9 @@ TEST(BodyTypes, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
   const std::vector<OwnedName> types{
       // Elastic pads are meshed as beams are.
       {"BeamParameters",
-       {list, "substructures/beam.hpp", "substructures/beam.cpp", "substructures/brake_pad.cpp"}},
+       {list, "substructures/beam.hpp", "substructures/beam.cpp",
+        "substructures/beam_additions.hpp", "substructures/beam_additions.cpp",
+        "substructures/brake_pad.cpp"}},
       {"LumpedParameters",
        {list, "substructures/lumped_body.hpp", "substructures/lumped_body.cpp"}},
       {"TouchedMatrixBodyParameters",

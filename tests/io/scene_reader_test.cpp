@@ -89,7 +89,7 @@ TEST(SceneReader, EveryKindOfKeyIsRead) {
   EXPECT_EQ(std::get<test::Lumped>(scene.bodies.at("tip")).mass, 0.002);
   EXPECT_EQ(scene.materials.at("steel").poissons_ratio, 0.3);
   ASSERT_TRUE(scene.friction);
-  EXPECT_EQ(scene.friction->numbers.at("decay_velocity"), 0.01);
+  EXPECT_EQ(scene.friction->decay_velocity, 0.01);
   ASSERT_THAT(scene.expect, SizeIs(2));
   EXPECT_EQ(scene.expect[1].result, "force.max");
   EXPECT_FALSE(scene.recording.energy);
