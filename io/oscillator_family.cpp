@@ -82,9 +82,12 @@ bool OscillatorFamily::find_mass() {
   std::optional<SlidingMass> mass = as_sliding_mass(model.system);
   if (!mass) return false;
   const SystemBody& body = model.system.bodies[static_cast<std::size_t>(mass->body)];
-  // Without a load of its own the body says nothing of what presses it.
-  if (body.loads.empty() || body.loads.front().by != BodyLoad::By::force) makes_body_ = true;
-  if (!body.loads.empty()) load_drive_ = body.loads.front().drive;
+  // One force presses it, of which the law may know; else all is made anew.
+  if (body.loads.size() == 1 && body.loads.front().by == BodyLoad::By::force) {
+    load_drive_ = body.loads.front().drive;
+  } else {
+    makes_body_ = true;
+  }
   base_drive_ = body.drive;
   const int master = model.system.surfaces.front().body;
   master_drive_ = model.system.bodies[static_cast<std::size_t>(master)].drive;

@@ -84,11 +84,16 @@ std::optional<SlidingMass> as_sliding_mass(const System& system, std::string* wh
     if (!reduced.coupled.position.isZero(0.0)) return refuse("its body has circulatory terms");
     made.damping += at_contact(reduced.coupled.velocity);
   }
-  if (body.loads.size() > 1) return refuse(fmt::format("its body has {} loads", body.loads.size()));
-  if (!body.loads.empty()) {
-    const BodyLoad& load = body.loads.front();
-    made.load = load.size(system.drives, 0.0);
-    made.load_direction = made.to_body.transpose() * reduced.rows.row(load.row).transpose();
+  const auto direction_of = [&](const BodyLoad& load) -> Eigen::Vector2d {
+    return made.to_body.transpose() * reduced.rows.row(load.row).transpose();
+  };
+  if (body.loads.size() == 1) {
+    made.load = body.loads.front().size(system.drives, 0.0);
+    made.load_direction = direction_of(body.loads.front());
+  } else if (!body.loads.empty()) {
+    made.load = 1.0;
+    for (const BodyLoad& load : body.loads)
+      made.load_direction += load.size(system.drives, 0.0) * direction_of(load);
   }
   const auto speed_of = [&](int index) {
     const Drive* const drive = system.drive_of(index);

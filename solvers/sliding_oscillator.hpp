@@ -21,8 +21,8 @@ struct SlidingMass {
   double mass = 0.0;                                         ///< m, kg, > 0
   Eigen::Matrix2d damping = Eigen::Matrix2d::Zero();         ///< C, N s/m
   Eigen::Matrix2d stiffness = Eigen::Matrix2d::Zero();       ///< K, N/m
-  Eigen::Vector2d load_direction = Eigen::Vector2d::Zero();  ///< p per unit of the drive's load
-  double load = 0.0;                                         ///< of the drive, N
+  Eigen::Vector2d load_direction = Eigen::Vector2d::Zero();  ///< p per unit of `load`
+  double load = 0.0;  ///< of a single BodyLoad, N or m; 1 where the direction is the sum of several
   double base_speed = 0.0;   ///< of the frame in which u is counted, along +x, m/s
   double speed = 0.0;        ///< of the half-space in that frame, along +x, m/s, not 0
   SubstrateContact contact;  ///< SI

@@ -81,6 +81,34 @@ TEST_P(OscillatorFamilyOf, KeysIsTheSceneReadAnewToTheLastBit) {
   }
 }
 
+TEST(OscillatorFamily, TakesDrivesByName) {
+  const TemporaryFolder folder;
+  std::string text = contents_of(scene_path("viscoelastic_sphere.yaml"));
+  const std::size_t at = text.find("drive: {");
+  const std::size_t end = text.find('\n', at);
+  text.replace(at, end - at,
+               "drives:\n  belt: {velocity: =v*R/tau, ramp: 0, moves: contact.master}\n  weight: "
+               "{load: =-F*E*R^2, ramp: 0, load_on: sphere.center}");
+  write_file(folder / "named.yaml", text);
+  const LoadedScene named = load_scene((folder / "named.yaml").string(), {});
+  const LoadedScene single = mass_scene();
+  std::vector<NumericKey> keys;
+  for (const char* path : {"drives.belt.velocity", "drives.weight.load"})
+    keys.push_back(find_numeric_key(named.scene, path, "--x"));
+  std::vector<NumericKey> of_single;
+  for (const char* path : {"drive.velocity", "drive.load"})
+    of_single.push_back(find_numeric_key(single.scene, path, "--x"));
+  const auto family = OscillatorFamily::make(named, keys);
+  const auto expected = OscillatorFamily::make(single, of_single);
+  ASSERT_NE(family, nullptr);
+  EXPECT_TRUE(family->keeps_body());
+  for (const std::vector<double>& values :
+       {std::vector<double>{0.01, -0.1}, std::vector<double>{0.3, -0.02}}) {
+    expect_same(*family->at(values), *expected->at(values));
+    expect_same(*family->at(values), read_anew(named, keys, values));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Scenes, OscillatorFamilyOf,
     ::testing::Values(

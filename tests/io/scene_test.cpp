@@ -23,7 +23,7 @@ TEST(Scene, MainSceneHoldsThePublishedModel) {
   EXPECT_EQ(oblique.supports.end, Support::guided);
   EXPECT_EQ(*oblique.damping.alpha_start, 40.0);
   EXPECT_EQ(scene.model.contact->assumption, ContactAssumption::subs_b);
-  EXPECT_DOUBLE_EQ(scene.model.contact->start, 0.030);
+  EXPECT_DOUBLE_EQ(scene.model.contact->start.along.value(), 0.030);
   EXPECT_DOUBLE_EQ(scene.measure.band.at(0), 2500.0);
   EXPECT_EQ(scene.time->step, 2e-7);
 }

@@ -341,7 +341,7 @@ TEST(SceneReference, SaysTypeUnitRangeAndDefault) {
   EXPECT_THAT(sections.at("measure"), HasSubstr("| `to` | number, s | `> 0` | optional | "));
   EXPECT_THAT(sections.at("contact"),
               HasSubstr("| `sliding` | choice | `moving`, `frozen` | `moving` | "));
-  EXPECT_THAT(sections.at("drive"), HasSubstr("| `load` | curve, N |  | required | "));
+  EXPECT_THAT(sections.at("drive"), HasSubstr("| `load` | curve, N |  | `0` | "));
   EXPECT_THAT(sections.at("contacts.NAME"), HasSubstr("The keys of [contact](#contact)."));
   EXPECT_THAT(sections.at("contacts.NAME"), Not(HasSubstr(kTable)));
 }

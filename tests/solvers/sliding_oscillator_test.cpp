@@ -97,6 +97,25 @@ TEST(SlidingOscillator, BodyDraggedOverAHalfSpaceAtRestIsItsMirrorImage) {
   expect_paper_sphere(*found);
 }
 
+TEST(SlidingOscillator, TakesSpeedsAndLoadsOfSeveralDrives) {
+  System system = paper_system();
+  const double speed = system.drives[0].velocity.value(0.0);
+  system.drives.resize(3);
+  // The body is dragged one way and the half-space moves three times as fast the same way, a third
+  // of the load comes from another drive.
+  system.drives[0].velocity = TimeCurve(1.5 * speed);
+  system.drives[1].velocity = TimeCurve(0.5 * speed);
+  system.drives[0].load = TimeCurve(-load / 3.0);
+  system.drives[2].load = TimeCurve(-load / 1.5);
+  system.bodies[0].drive = 1;
+  system.bodies[0].loads = {{1, 0, BodyLoad::By::force}, {1, 2, BodyLoad::By::force}};
+  const std::optional<SlidingOscillator> found = as_oscillator(system);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->mass.base_speed, 0.5 * speed);
+  EXPECT_EQ(found->direction, 1.0);
+  expect_paper_sphere(*found);
+}
+
 TEST(SlidingOscillator, StartsWhereTheBodyDoes) {
   System system = paper_system();
   system.bodies[0].initial_displacement = Eigen::Vector2d(1e-4, -2e-4);
