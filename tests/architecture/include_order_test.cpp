@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <regex>
 #include <stdexcept>
@@ -25,6 +26,19 @@ using Strings = std::vector<std::string>;
 /// The folders of the program; each includes only from itself and from those before it.
 const Strings folders_in_order{"core",   "substructures", "coupling", "solvers",
                                "models", "analysis",      "io",       "app"};
+
+/// The rooms of a folder; each includes only from itself and from those before it. What stands in
+/// none, as main.cpp, may include from all of its folder.
+const std::map<std::string, Strings> rooms_in_order{
+    {"substructures", {"matrices", "elements", "reduction", "bodies"}},
+    {"coupling", {"kinematics", "laws", "system"}},
+    {"solvers",
+     {"algebra", "half_space", "eigenvalues", "equilibrium", "integrators", "contact",
+      "transient"}},
+    {"io", {"hdf5", "imports", "scene", "run_file", "results", "figures"}},
+    {"app", {"terminal", "results", "stability", "runs", "verbs"}}};
+/// The files that stand in no room of a folder that has rooms.
+const Strings files_without_room{"app/main.cpp"};
 
 /// Only these know in which formats scenes and runs are stored.
 constexpr std::array<std::string_view, 2> storage_folders{"io", "app"};
@@ -149,9 +163,20 @@ bool is_storage_header(const std::string& header) {
   return std::regex_match(header, storage);
 }
 
-/// Problems of one #include of a file in `folder`.
-Strings problems_of_include(const std::string& folder, const std::string& header, bool is_quoted,
+/// The room of a file, or nothing where its folder has none or it stands outside of them.
+std::optional<std::size_t> room_of(const fs::path& file) {
+  const auto rooms = rooms_in_order.find(file.begin()->string());
+  if (rooms == rooms_in_order.end()) return std::nullopt;
+  const std::string name = std::next(file.begin())->string();
+  const auto room = std::find(rooms->second.begin(), rooms->second.end(), name);
+  if (room == rooms->second.end()) return std::nullopt;
+  return static_cast<std::size_t>(room - rooms->second.begin());
+}
+
+/// Problems of one #include of a file, both with their paths from the root.
+Strings problems_of_include(const fs::path& file, const std::string& header, bool is_quoted,
                             const Strings& folders) {
+  const std::string folder = file.begin()->string();
   Strings problems;
   if (is_storage_header(header)) {
     if (!contains(storage_folders, folder)) {
@@ -174,7 +199,28 @@ Strings problems_of_include(const std::string& folder, const std::string& header
     problems.push_back(folder + " includes \"" + header + "\", but " + from +
                        " does not stand above it");
   }
+  const auto room = room_of(file);
+  const auto other = room_of(path);
+  if (from == folder && room && other && *other > *room) {
+    problems.push_back(file.parent_path().generic_string() + " includes \"" + header +
+                       "\", but that room does not stand above it");
+  }
   return problems;
+}
+
+/// Files that stand in no room though their folder has rooms.
+Strings files_outside_rooms(const fs::path& root) {
+  Strings outside;
+  for (const auto& [folder, rooms] : rooms_in_order) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      if (!is_header(entry.path()) && !is_source(entry.path())) continue;
+      const fs::path file = entry.path().lexically_relative(root);
+      if (!room_of(file) && !contains(files_without_room, file.generic_string()))
+        outside.push_back(file.generic_string());
+    }
+  }
+  std::sort(outside.begin(), outside.end());
+  return outside;
 }
 
 /// Checks every C++ file below the folders of `root`.
@@ -216,7 +262,7 @@ Strings check_tree(const fs::path& root, const Strings& folders) {
         std::smatch match;
         if (!lines[i].starts_in_literal && std::regex_match(line, match, include_line)) {
           for (const std::string& problem :
-               problems_of_include(folder, match[2], match[1] == "\"", folders)) {
+               problems_of_include(name, match[2], match[1] == "\"", folders)) {
             report(i + 1, problem);
           }
           continue;
@@ -319,14 +365,27 @@ TEST(IncludeOrder, HoldsInThisSourceTree) {
   EXPECT_THAT(check_tree(STRIDOR_SOURCE_DIR, folders_in_order), IsEmpty());
 }
 
+TEST(Rooms, HoldEveryFile) {
+  EXPECT_THAT(files_outside_rooms(STRIDOR_SOURCE_DIR), IsEmpty());
+}
+
+TEST_F(SourceText, RoomsIncludeFromThoseAboveThem) {
+  write("coupling/laws/friction.hpp", "#pragma once\n#include \"coupling/kinematics/gap.hpp\"\n");
+  write("coupling/kinematics/gap.hpp", "#pragma once\n#include \"coupling/laws/friction.hpp\"\n");
+  write("app/main.cpp", "#include \"app/verbs/run.hpp\"\n#include \"app/terminal/bar.hpp\"\n");
+  write("coupling/lost.cpp", "");
+  EXPECT_THAT(problems(),
+              ElementsAre("coupling/kinematics/gap.hpp:2: coupling/kinematics includes "
+                          "\"coupling/laws/friction.hpp\", but that room does not stand above it"));
+  EXPECT_THAT(files_outside_rooms(root_), ElementsAre("coupling/lost.cpp"));
+}
+
 TEST(BodyTypes, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
   const std::string list = "substructures/body_types.cpp";
   const std::vector<OwnedName> types{
-      // Elastic pads are meshed as beams are.
       {"BeamParameters",
        {list, "substructures/beam.hpp", "substructures/beam.cpp",
-        "substructures/beam_additions.hpp", "substructures/beam_additions.cpp",
-        "substructures/brake_pad.cpp"}},
+        "substructures/beam_additions.hpp", "substructures/beam_additions.cpp"}},
       {"LumpedParameters",
        {list, "substructures/lumped_body.hpp", "substructures/lumped_body.cpp"}},
       {"TouchedMatrixBodyParameters",
@@ -339,7 +398,7 @@ TEST(FrictionLaws, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
   const std::string list = "coupling/friction_laws.cpp";
   std::vector<OwnedName> names;
   for (const std::string law : {"constant", "static_dynamic", "stribeck", "shear"}) {
-    const Strings own{list, "coupling/" + law + "_friction.hpp"};
+    const Strings own{list, "coupling/laws/" + law + "_friction.hpp"};
     names.push_back({law + "_friction_type", own});
     // A constant coefficient is also what discs have and what a law without a section is.
     if (law != "constant") names.push_back({law + "_friction", own});
@@ -381,8 +440,8 @@ TEST_F(SourceText, SourcesThatNoListNamesAreFound) {
 
 TEST_F(SourceText, MayIncludeFromItsOwnFolderAndThoseAbove) {
   write("coupling/gap.hpp", "#pragma once\n#include <vector>\n#include \"core/units.hpp\"\n");
-  write("coupling/gap.cpp", "#include \"coupling/gap.hpp\"\n#include \"substructures/beam.hpp\"\n");
-  write("app/main.cpp", "#include \"io/run_file.hpp\"\n#include \"core/version.hpp\"\n");
+  write("coupling/gap.cpp", "#include \"coupling/gap.hpp\"\n#include \"substructures/bodies/beam.hpp\"\n");
+  write("app/main.cpp", "#include \"io/run_file/run_file.hpp\"\n#include \"core/version.hpp\"\n");
   EXPECT_THAT(problems(), IsEmpty());
 }
 
@@ -420,12 +479,12 @@ TEST_F(SourceText, QuotedIncludesAreWrittenFromTheRoot) {
 }
 
 TEST_F(SourceText, AngleBracketsDoNotGetRoundTheOrder) {
-  write("core/units.cpp", "#include <io/run_file.hpp>\n#include <fmt/core.h>\n");
+  write("core/units.cpp", "#include <io/run_file/run_file.hpp>\n#include <fmt/core.h>\n");
   EXPECT_THAT(
       problems(),
       ElementsAre(
-          "core/units.cpp:1: <io/run_file.hpp> is a header of this program; write it in quotes",
-          "core/units.cpp:1: core includes \"io/run_file.hpp\", but io does not stand above it"));
+          "core/units.cpp:1: <io/run_file/run_file.hpp> is a header of this program; write it in quotes",
+          "core/units.cpp:1: core includes \"io/run_file/run_file.hpp\", but io does not stand above it"));
 }
 
 TEST_F(SourceText, OnlyIoAndAppIncludeStorageHeaders) {
@@ -434,7 +493,7 @@ TEST_F(SourceText, OnlyIoAndAppIncludeStorageHeaders) {
       "#include <yaml-cpp/yaml.h>\n";
   write("analysis/ledger.cpp", text);
   write("app/main.cpp", text);
-  write("io/run_file.cpp", text);
+  write("io/run_file/run_file.cpp", text);
   EXPECT_THAT(
       problems(),
       ElementsAre("analysis/ledger.cpp:1: includes hdf5.h, which only io and app may",
