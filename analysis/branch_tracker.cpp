@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/errors.hpp"
-#include "solvers/search_failure.hpp"
+#include "solvers/eigenvalues/search_failure.hpp"
 
 namespace stridor {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "analysis/spectrum_sampler.hpp"
-#include "solvers/sparse_spectrum.hpp"
+#include "solvers/eigenvalues/sparse_spectrum.hpp"
 
 namespace stridor {
 

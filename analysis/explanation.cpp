@@ -9,19 +9,19 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Sᵀ(A S q) for a matrix on the slots that may be empty.
-Eigen::VectorXcd through_slots(const Pencil& pencil, const Eigen::MatrixXd& matrix,
+/// Sᵀ(A S q) for a matrix on the ports that may be empty.
+Eigen::VectorXcd through_ports(const Pencil& pencil, const Eigen::MatrixXd& matrix,
                                const Eigen::VectorXcd& q) {
   if (matrix.size() == 0) return Eigen::VectorXcd::Zero(q.size());
-  return pencil.slots.transpose() * (matrix * (pencil.slots * q));
+  return pencil.ports.transpose() * (matrix * (pencil.ports * q));
 }
 
 }  // namespace
 
 ModeQuotients mode_quotients(const Pencil& pencil, Complex s, const Eigen::VectorXcd& right) {
   const Eigen::VectorXcd q = right.normalized();
-  const Eigen::MatrixXd gap_rows = pencil.compatibility * pencil.slots;
-  const Eigen::MatrixXd force_rows = pencil.equilibrium * pencil.slots;
+  const Eigen::MatrixXd gap_rows = pencil.compatibility * pencil.ports;
+  const Eigen::MatrixXd force_rows = pencil.equilibrium * pencil.ports;
   const Eigen::PartialPivLU<Eigen::MatrixXd> delassus(
       Eigen::MatrixXd(gap_rows * force_rows.transpose()));
   // q̄ᵀ P v
@@ -33,10 +33,10 @@ ModeQuotients mode_quotients(const Pencil& pencil, Complex s, const Eigen::Vecto
     return q.dot(v) - q.dot(force_rows.transpose() * forces);
   };
   const Eigen::VectorXcd damped = pencil.damping.cast<Complex>().cwiseProduct(q) +
-                                  through_slots(pencil, pencil.slot_damping, q);
+                                  through_ports(pencil, pencil.port_damping, q);
   const Eigen::VectorXcd stiff =
       pencil.omega.array().square().matrix().cast<Complex>().cwiseProduct(q) +
-      through_slots(pencil, pencil.slot_stiffness, q);
+      through_ports(pencil, pencil.port_stiffness, q);
   const Complex velocity = form(damped);
   const Complex position = form(stiff);
   ModeQuotients quotients;
@@ -59,19 +59,19 @@ ModeEnergy mode_energy(const Pencil& pencil, Complex s, const Eigenvector& vecto
   const double length = vector.right.norm();
   const Eigen::VectorXcd q = vector.right / length;
   const Eigen::VectorXcd velocity = s * q;
-  Eigen::VectorXcd slot_force = pencil.equilibrium.transpose() * (vector.force / length);
-  if (pencil.slot_stiffness.size() > 0) slot_force += pencil.slot_stiffness * (pencil.slots * q);
-  if (pencil.slot_damping.size() > 0) slot_force += pencil.slot_damping * (pencil.slots * velocity);
+  Eigen::VectorXcd port_force = pencil.equilibrium.transpose() * (vector.force / length);
+  if (pencil.port_stiffness.size() > 0) port_force += pencil.port_stiffness * (pencil.ports * q);
+  if (pencil.port_damping.size() > 0) port_force += pencil.port_damping * (pencil.ports * velocity);
   const auto growth_by = [&](Eigen::Index first, Eigen::Index count) {
-    const Eigen::VectorXcd motion = pencil.slots.middleRows(first, count) * velocity;
-    return -0.25 * motion.dot(slot_force.segment(first, count)).real();
+    const Eigen::VectorXcd motion = pencil.ports.middleRows(first, count) * velocity;
+    return -0.25 * motion.dot(port_force.segment(first, count)).real();
   };
-  const Eigen::Index num_contact_slots = pencil.num_slots() - pencil.num_body_slots;
+  const Eigen::Index num_contact_ports = pencil.num_ports() - pencil.num_body_ports;
   const double energy =
       0.25 * (std::norm(s) + pencil.omega.cwiseProduct(q.cwiseAbs()).squaredNorm());
   ModeEnergy result;
-  result.from_contact = growth_by(0, num_contact_slots) / energy;
-  result.by_coupled = growth_by(num_contact_slots, pencil.num_body_slots) / energy;
+  result.from_contact = growth_by(0, num_contact_ports) / energy;
+  result.by_coupled = growth_by(num_contact_ports, pencil.num_body_ports) / energy;
   result.by_damping = -0.25 * (pencil.damping.array() * velocity.array().abs2()).sum() / energy;
   result.residual =
       std::abs(result.from_contact + result.by_damping + result.by_coupled - s.real()) /
@@ -83,8 +83,8 @@ Pencil frictionless(const Pencil& pencil) {
   Pencil without = pencil;
   without.damping.setZero();
   without.equilibrium = without.compatibility;
-  without.slot_stiffness.resize(0, 0);
-  without.slot_damping.resize(0, 0);
+  without.port_stiffness.resize(0, 0);
+  without.port_damping.resize(0, 0);
   return without;
 }
 

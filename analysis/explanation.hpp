@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "solvers/pencil.hpp"
-#include "substructures/matrix_body.hpp"
+#include "solvers/eigenvalues/pencil.hpp"
+#include "substructures/bodies/matrix_body.hpp"
 
 namespace stridor {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "coupling/viscoelastic_law.hpp"
+#include "coupling/laws/viscoelastic_law.hpp"
 
 namespace stridor {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "solvers/substrate_motion.hpp"
+#include "solvers/transient/substrate_motion.hpp"
 
 namespace stridor {
 

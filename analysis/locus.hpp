@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "solvers/pencil.hpp"
+#include "solvers/eigenvalues/pencil.hpp"
 
 namespace stridor {
 

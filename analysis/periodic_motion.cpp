@@ -11,7 +11,7 @@
 
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
-#include "solvers/simulation.hpp"
+#include "solvers/transient/simulation.hpp"
 
 namespace stridor {
 namespace {

@@ -11,9 +11,9 @@
 
 #include "analysis/cycle_meter.hpp"
 #include "analysis/limit_cycle.hpp"
-#include "coupling/system.hpp"
-#include "solvers/simulation.hpp"
-#include "solvers/time_parameters.hpp"
+#include "coupling/system/system.hpp"
+#include "solvers/integrators/time_parameters.hpp"
+#include "solvers/transient/simulation.hpp"
 
 namespace stridor {
 

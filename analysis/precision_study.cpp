@@ -6,8 +6,8 @@
 
 #include "analysis/step_guard.hpp"
 #include "core/errors.hpp"
-#include "solvers/make_propagator.hpp"
-#include "solvers/retained_modes.hpp"
+#include "solvers/integrators/make_propagator.hpp"
+#include "solvers/integrators/retained_modes.hpp"
 
 namespace stridor {
 namespace {

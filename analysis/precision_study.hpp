@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "analysis/error_norms.hpp"
-#include "coupling/system.hpp"
-#include "solvers/march.hpp"
+#include "coupling/system/system.hpp"
+#include "solvers/transient/march.hpp"
 
 namespace stridor {
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <tuple>
 
-#include "solvers/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
 
 namespace stridor {
 namespace {

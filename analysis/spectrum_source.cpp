@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "core/blas.hpp"
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/secular_eigenvalues.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/secular_eigenvalues.hpp"
 
 namespace stridor {
 namespace {
@@ -78,7 +78,7 @@ class SecularSource : public SpectrumSource {
   /// Where bodies have coupled terms, BLAS diagonalises them.
   static std::optional<BlasGuard> guard_of(const Pencil& pencil) {
     std::optional<BlasGuard> guard;
-    if (pencil.num_body_slots > 0) guard.emplace();
+    if (pencil.num_body_ports > 0) guard.emplace();
     return guard;
   }
 

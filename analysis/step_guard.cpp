@@ -12,11 +12,11 @@
 #include <stdexcept>
 
 #include "core/errors.hpp"
-#include "coupling/face_kinematics.hpp"
-#include "solvers/contact_path.hpp"
-#include "solvers/equilibrium.hpp"
-#include "solvers/linearise.hpp"
-#include "solvers/make_propagator.hpp"
+#include "coupling/kinematics/face_kinematics.hpp"
+#include "solvers/equilibrium/equilibrium.hpp"
+#include "solvers/equilibrium/linearise.hpp"
+#include "solvers/integrators/contact_path.hpp"
+#include "solvers/integrators/make_propagator.hpp"
 
 namespace stridor {
 namespace {
@@ -125,35 +125,35 @@ std::optional<SlidingContacts> sliding_at(const System& system, double displacem
   }
 }
 
-/// The tangents of contacts held as well: t = (n_y, −n_x) in every pair of slots, or both of a face.
+/// The tangents of contacts held as well: t = (n_y, −n_x) in every pair of ports, or both of a face.
 Pencil sticking(const System& system, const SlidingContacts& at) {
   const Pencil& sliding = at.rows;
   Pencil held = sliding;
   const Eigen::Index k = sliding.num_constraints();
   Eigen::Index num_rows = k;
   for (const std::size_t c : at.contacts) num_rows += system.contacts[c].face ? 2 : 1;
-  held.compatibility.setZero(num_rows, sliding.num_slots());
+  held.compatibility.setZero(num_rows, sliding.num_ports());
   held.compatibility.topRows(k) = sliding.compatibility;
   Eigen::Index row = k;
-  Eigen::Index slot = 0;
+  Eigen::Index port = 0;
   for (std::size_t i = 0; i < at.contacts.size(); ++i) {
     const ContactPoint& contact = system.contacts[at.contacts[i]];
-    const Eigen::Index num_slots = system.num_contact_slots(contact);
+    const Eigen::Index num_ports = system.num_contact_ports(contact);
     const auto normal = sliding.compatibility.row(static_cast<Eigen::Index>(i));
     if (contact.face) {
       const FaceKinematics face = make_face_kinematics(*contact.face);
-      held.compatibility.row(row++).segment(slot, num_slots) =
-          face.along.head(num_slots).transpose();
-      held.compatibility.row(row++).segment(slot, num_slots) =
-          face.across.head(num_slots).transpose();
+      held.compatibility.row(row++).segment(port, num_ports) =
+          face.along.head(num_ports).transpose();
+      held.compatibility.row(row++).segment(port, num_ports) =
+          face.across.head(num_ports).transpose();
     } else {
-      for (Eigen::Index s = slot; s < slot + num_slots; s += 2) {
+      for (Eigen::Index s = port; s < port + num_ports; s += 2) {
         held.compatibility(row, s) = normal(s + 1);
         held.compatibility(row, s + 1) = -normal(s);
       }
       ++row;
     }
-    slot += num_slots;
+    port += num_ports;
   }
   held.equilibrium = held.compatibility;
   if (sliding.compliance.size() > 0) {

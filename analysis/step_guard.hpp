@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/step_stability.hpp"
-#include "solvers/simulation.hpp"
+#include "solvers/transient/simulation.hpp"
 
 namespace stridor {
 

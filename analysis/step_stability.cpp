@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "core/errors.hpp"
-#include "solvers/contact_path.hpp"
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/equilibrium.hpp"
-#include "solvers/linearise.hpp"
-#include "solvers/secular_eigenvalues.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/secular_eigenvalues.hpp"
+#include "solvers/equilibrium/equilibrium.hpp"
+#include "solvers/equilibrium/linearise.hpp"
+#include "solvers/integrators/contact_path.hpp"
 
 namespace stridor {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "solvers/frozen_step.hpp"
+#include "solvers/transient/frozen_step.hpp"
 
 namespace stridor {
 

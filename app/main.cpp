@@ -14,15 +14,15 @@
 #include <system_error>
 #include <vector>
 
-#include "app/command.hpp"
-#include "app/progress.hpp"
-#include "app/remark.hpp"
+#include "app/terminal/command.hpp"
+#include "app/terminal/progress.hpp"
+#include "app/terminal/remark.hpp"
 #include "core/blas_memory.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
 #include "core/suggestion.hpp"
 #include "core/version.hpp"
-#include "io/damage_guard.hpp"
+#include "io/hdf5/damage_guard.hpp"
 
 namespace stridor {
 namespace {

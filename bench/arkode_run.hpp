@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "analysis/precision_study.hpp"
-#include "coupling/system.hpp"
+#include "coupling/system/system.hpp"
 
 namespace stridor::bench {
 

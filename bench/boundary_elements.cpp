@@ -14,8 +14,8 @@
 #include <ctime>
 #include <vector>
 
-#include "solvers/half_space_convolution.hpp"
-#include "solvers/master_curve.hpp"
+#include "solvers/half_space/half_space_convolution.hpp"
+#include "solvers/half_space/master_curve.hpp"
 
 using namespace stridor;
 

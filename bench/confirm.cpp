@@ -8,8 +8,8 @@
 #include <cstdlib>
 
 #include "bench/arkode_run.hpp"
-#include "io/channels.hpp"
-#include "io/scene.hpp"
+#include "io/scene/channels.hpp"
+#include "io/scene/scene.hpp"
 #include "models/model.hpp"
 
 using namespace stridor;

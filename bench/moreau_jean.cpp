@@ -6,17 +6,17 @@
 
 #include "bench/moreau_jean_kernel.hpp"
 #include "bench/processor_clock.hpp"
-#include "solvers/aligned_array.hpp"
-#include "solvers/contact_solver.hpp"
+#include "solvers/algebra/aligned_array.hpp"
+#include "solvers/contact/contact_solver.hpp"
 
 namespace stridor::bench {
 namespace {
 
 /// A body in modes with the displacements and velocities that its contact sees.
-template <int num_slots>
+template <int num_ports>
 class Body {
  public:
-  using Slots = Eigen::Matrix<double, num_slots, 1>;
+  using Ports = Eigen::Matrix<double, num_ports, 1>;
 
   Body(const SystemBody& body, double load, const MoreauJeanParameters& parameters)
       : all_rows_(body.modal.rows) {
@@ -44,10 +44,10 @@ class Body {
     shares_[1] = h * (1.0 - theta);
   }
 
-  void watch(const std::array<int, num_slots>& slots) {
-    Eigen::Matrix<double, Eigen::Dynamic, num_slots> rows(num_modes_, num_slots);
-    for (std::size_t j = 0; j < num_slots; ++j) {
-      rows.col(static_cast<Eigen::Index>(j)) = all_rows_.row(slots[j]).transpose();
+  void watch(const std::array<int, num_ports>& ports) {
+    Eigen::Matrix<double, Eigen::Dynamic, num_ports> rows(num_modes_, num_ports);
+    for (std::size_t j = 0; j < num_ports; ++j) {
+      rows.col(static_cast<Eigen::Index>(j)) = all_rows_.row(ports[j]).transpose();
       rows_[j] = AlignedArray(padded_size());
       modes(rows_[j]) = rows.col(static_cast<Eigen::Index>(j));
     }
@@ -57,12 +57,12 @@ class Body {
     free_velocity = rows.transpose() * modes(free_).matrix();
   }
 
-  void advance(const Slots& impulses) {
-    const Slots next = free_velocity + compliance_ * impulses;
+  void advance(const Ports& impulses) {
+    const Ports next = free_velocity + compliance_ * impulses;
     displacement += shares_[0] * next + shares_[1] * velocity;
     velocity = next;
-    std::array<const double*, num_slots> rows;
-    for (std::size_t j = 0; j < num_slots; ++j) rows[j] = rows_[j].data();
+    std::array<const double*, num_ports> rows;
+    for (std::size_t j = 0; j < num_ports; ++j) rows[j] = rows_[j].data();
     const MoreauJeanModes fields{static_cast<int>(padded_size()),
                                  position_.data(),
                                  velocity_.data(),
@@ -71,18 +71,18 @@ class Body {
                                  kept_.data(),
                                  pulled_.data(),
                                  loaded_.data()};
-    advance_moreau_jean<num_slots>(fields, rows.data(), impulses.data(), shares_[0], shares_[1],
+    advance_moreau_jean<num_ports>(fields, rows.data(), impulses.data(), shares_[0], shares_[1],
                                    free_velocity.data());
   }
 
   double displacement_of(int row) const {
     return all_rows_.row(row).dot(Eigen::Map<const Eigen::VectorXd>(position_.data(), num_modes_));
   }
-  const Eigen::Matrix<double, num_slots, num_slots>& compliance() const { return compliance_; }
+  const Eigen::Matrix<double, num_ports, num_ports>& compliance() const { return compliance_; }
 
-  Slots displacement = Slots::Zero();   ///< at t_k, m
-  Slots velocity = Slots::Zero();       ///< at t_k, m/s
-  Slots free_velocity = Slots::Zero();  ///< at t_{k+1} without the contact, m/s
+  Ports displacement = Ports::Zero();   ///< at t_k, m
+  Ports velocity = Ports::Zero();       ///< at t_k, m/s
+  Ports free_velocity = Ports::Zero();  ///< at t_{k+1} without the contact, m/s
 
  private:
   /// Whole vectors of the widest instruction set.
@@ -93,8 +93,8 @@ class Body {
   Eigen::Index num_modes_ = 0;
   AlignedArray answer_, kept_, pulled_, loaded_;
   AlignedArray position_, velocity_, free_;
-  std::array<AlignedArray, num_slots> rows_;
-  Eigen::Matrix<double, num_slots, num_slots> compliance_;
+  std::array<AlignedArray, num_ports> rows_;
+  Eigen::Matrix<double, num_ports, num_ports> compliance_;
   double shares_[2];
 };
 
@@ -124,8 +124,8 @@ class MoreauJean {
       frame = frame_after(h);
     }
     const Eigen::Vector2d weights(1.0 - frame.xi, frame.xi);
-    const auto of_master = [&](const Eigen::Vector4d& slots) -> Eigen::Vector2d {
-      return weights[0] * slots.head<2>() + weights[1] * slots.tail<2>();
+    const auto of_master = [&](const Eigen::Vector4d& ports) -> Eigen::Vector2d {
+      return weights[0] * ports.head<2>() + weights[1] * ports.tail<2>();
     };
     Eigen::Vector2d free = slave_.free_velocity - of_master(master_.free_velocity);
     free.x() += drive_velocity_;

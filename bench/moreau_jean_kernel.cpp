@@ -10,7 +10,7 @@ Double* aligned(Double* values) {
 
 }  // namespace
 
-template <int num_slots>
+template <int num_ports>
 void advance_moreau_jean(const MoreauJeanModes& modes, const double* const* rows,
                          const double* impulses, double new_share, double old_share, double* seen) {
   double* const position = aligned(modes.position);
@@ -22,13 +22,13 @@ void advance_moreau_jean(const MoreauJeanModes& modes, const double* const* rows
   const double* const loaded = aligned(modes.loaded);
   const double* const r0 = aligned(rows[0]);
   const double* const r1 = aligned(rows[1]);
-  const double* const r2 = aligned(rows[num_slots > 2 ? 2 : 0]);
-  const double* const r3 = aligned(rows[num_slots > 2 ? 3 : 1]);
+  const double* const r2 = aligned(rows[num_ports > 2 ? 2 : 0]);
+  const double* const r3 = aligned(rows[num_ports > 2 ? 3 : 1]);
   const int count = modes.count / 8 * 8;
   const double p0 = impulses[0];
   const double p1 = impulses[1];
-  const double p2 = num_slots > 2 ? impulses[2] : 0.0;
-  const double p3 = num_slots > 2 ? impulses[3] : 0.0;
+  const double p2 = num_ports > 2 ? impulses[2] : 0.0;
+  const double p3 = num_ports > 2 ? impulses[3] : 0.0;
   double s0 = 0.0;
   double s1 = 0.0;
   double s2 = 0.0;
@@ -36,7 +36,7 @@ void advance_moreau_jean(const MoreauJeanModes& modes, const double* const* rows
 #pragma omp simd reduction(+ : s0, s1, s2, s3)
   for (int i = 0; i < count; ++i) {
     double push = r0[i] * p0 + r1[i] * p1;
-    if constexpr (num_slots > 2) push += r2[i] * p2 + r3[i] * p3;
+    if constexpr (num_ports > 2) push += r2[i] * p2 + r3[i] * p3;
     const double next = free[i] + answer[i] * push;
     const double place = position[i] + new_share * next + old_share * velocity[i];
     const double free_next = kept[i] * next + pulled[i] * place + loaded[i];
@@ -45,14 +45,14 @@ void advance_moreau_jean(const MoreauJeanModes& modes, const double* const* rows
     free[i] = free_next;
     s0 += r0[i] * free_next;
     s1 += r1[i] * free_next;
-    if constexpr (num_slots > 2) {
+    if constexpr (num_ports > 2) {
       s2 += r2[i] * free_next;
       s3 += r3[i] * free_next;
     }
   }
   seen[0] = s0;
   seen[1] = s1;
-  if constexpr (num_slots > 2) {
+  if constexpr (num_ports > 2) {
     seen[2] = s2;
     seen[3] = s3;
   }

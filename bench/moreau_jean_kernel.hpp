@@ -21,8 +21,8 @@ struct MoreauJeanModes {
 ///   v_{k+1} = v_free + answer Σ_j row_j P_j,   q_{k+1} = q_k + h (θ v_{k+1} + (1 − θ) v_k),
 ///   v_free  = kept v_{k+1} + pulled q_{k+1} + loaded,   seen_j = row_j · v_free
 ///
-/// @tparam num_slots forces on the body and velocities seen
-template <int num_slots>
+/// @tparam num_ports forces on the body and velocities seen
+template <int num_ports>
 void advance_moreau_jean(const MoreauJeanModes& modes, const double* const* rows,
                          const double* impulses, double new_share, double old_share, double* seen);
 

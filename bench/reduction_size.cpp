@@ -22,8 +22,8 @@
 #include <string>
 #include <vector>
 
-#include "substructures/beam.hpp"
-#include "substructures/modal_body.hpp"
+#include "substructures/bodies/beam.hpp"
+#include "substructures/reduction/modal_body.hpp"
 
 using namespace stridor;
 

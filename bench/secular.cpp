@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "analysis/locus.hpp"
-#include "io/scene.hpp"
-#include "solvers/dense_eigenvalues.hpp"
+#include "io/scene/scene.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
 
 using namespace stridor;
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "solvers/simulation.hpp"
+#include "solvers/transient/simulation.hpp"
 
 namespace stridor::bench {
 namespace {

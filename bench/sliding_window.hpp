@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "analysis/precision_study.hpp"
-#include "coupling/system.hpp"
+#include "coupling/system/system.hpp"
 #include "models/model.hpp"
 
 namespace stridor::bench {

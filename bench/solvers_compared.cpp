@@ -23,9 +23,9 @@
 #include "bench/processor_clock.hpp"
 #include "bench/siconos_run.hpp"
 #include "bench/sliding_window.hpp"
-#include "io/channels.hpp"
-#include "io/scene.hpp"
-#include "solvers/simulation.hpp"
+#include "io/scene/channels.hpp"
+#include "io/scene/scene.hpp"
+#include "solvers/transient/simulation.hpp"
 
 using namespace stridor;
 using namespace stridor::bench;

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "solvers/substrate_motion.hpp"
+#include "solvers/transient/substrate_motion.hpp"
 #include "tests/support/paper_sphere.hpp"
 
 namespace stridor {

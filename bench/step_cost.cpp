@@ -19,9 +19,9 @@
 
 #include "analysis/precision_study.hpp"
 #include "bench/processor_clock.hpp"
-#include "io/scene.hpp"
-#include "solvers/batch.hpp"
-#include "solvers/simulation.hpp"
+#include "io/scene/scene.hpp"
+#include "solvers/transient/batch.hpp"
+#include "solvers/transient/simulation.hpp"
 
 using namespace stridor;
 using namespace stridor::bench;

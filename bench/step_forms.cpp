@@ -20,9 +20,9 @@
 #include <string>
 #include <vector>
 
-#include "io/recorder.hpp"
-#include "io/scene.hpp"
-#include "solvers/march.hpp"
+#include "io/run_file/recorder.hpp"
+#include "io/scene/scene.hpp"
+#include "solvers/transient/march.hpp"
 
 using namespace stridor;
 

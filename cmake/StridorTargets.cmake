@@ -22,7 +22,7 @@ target_include_directories(stridor_options SYSTEM INTERFACE
 # still includes what it uses; the dev preset compiles without these.
 set(STRIDOR_HEADERS <algorithm> <array> <cmath> <complex> <filesystem> <functional> <map> <memory>
   <optional> <span> <string> <vector> <Eigen/Dense> <Eigen/Sparse> <fmt/format.h>
-  "${PROJECT_SOURCE_DIR}/substructures/dense_factors.hpp" "${PROJECT_SOURCE_DIR}/substructures/dense_spectra.hpp")
+  "${PROJECT_SOURCE_DIR}/substructures/matrices/dense_factors.hpp" "${PROJECT_SOURCE_DIR}/substructures/matrices/dense_spectra.hpp")
 add_library(stridor_headers OBJECT "${PROJECT_SOURCE_DIR}/cmake/headers.cpp")
 target_link_libraries(stridor_headers PRIVATE stridor_options Eigen3::Eigen fmt::fmt)
 target_precompile_headers(stridor_headers PRIVATE ${STRIDOR_HEADERS})

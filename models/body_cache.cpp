@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "models/keys_text.hpp"
-#include "substructures/whole_body.hpp"
+#include "substructures/bodies/whole_body.hpp"
 
 namespace stridor {
 namespace {

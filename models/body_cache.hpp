@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "models/model.hpp"
-#include "substructures/matrix_body.hpp"
+#include "substructures/bodies/matrix_body.hpp"
 
 namespace stridor {
 

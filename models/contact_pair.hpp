@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "coupling/contact_parameters.hpp"
+#include "coupling/system/contact_parameters.hpp"
 #include "models/model_body.hpp"
 
 namespace stridor {

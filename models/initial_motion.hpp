@@ -9,7 +9,7 @@
 
 #include "models/initial_parameters.hpp"
 #include "models/model_body.hpp"
-#include "substructures/modal_body.hpp"
+#include "substructures/reduction/modal_body.hpp"
 
 namespace stridor {
 

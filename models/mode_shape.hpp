@@ -5,8 +5,8 @@
 
 #include "models/body_cache.hpp"
 #include "models/model.hpp"
-#include "solvers/equilibrium.hpp"
-#include "substructures/recovery.hpp"
+#include "solvers/equilibrium/equilibrium.hpp"
+#include "substructures/reduction/recovery.hpp"
 
 namespace stridor {
 

@@ -11,7 +11,7 @@
 #include "models/initial_motion.hpp"
 #include "models/model_drive.hpp"
 #include "models/set_up_estimate.hpp"
-#include "substructures/whole_body.hpp"
+#include "substructures/bodies/whole_body.hpp"
 
 namespace stridor {
 namespace {

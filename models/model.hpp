@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "coupling/contact_parameters.hpp"
-#include "coupling/system.hpp"
+#include "coupling/system/contact_parameters.hpp"
+#include "coupling/system/system.hpp"
 #include "models/initial_parameters.hpp"
-#include "substructures/body_parameters.hpp"
-#include "substructures/matrix_body.hpp"
+#include "substructures/bodies/body_parameters.hpp"
+#include "substructures/bodies/matrix_body.hpp"
 
 namespace stridor {
 

@@ -6,7 +6,7 @@
 
 #include "core/activity.hpp"
 #include "core/suggestion.hpp"
-#include "coupling/contact_parameters.hpp"
+#include "coupling/system/contact_parameters.hpp"
 #include "models/model.hpp"
 
 namespace stridor {

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "coupling/system.hpp"
+#include "coupling/system/system.hpp"
 #include "models/body_cache.hpp"
-#include "substructures/body_parameters.hpp"
+#include "substructures/bodies/body_parameters.hpp"
 
 namespace stridor {
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/memory.hpp"
-#include "coupling/sliding_contact_parameters.hpp"
+#include "coupling/laws/sliding_contact_parameters.hpp"
 #include "models/model.hpp"
-#include "substructures/reduction_size.hpp"
+#include "substructures/reduction/reduction_size.hpp"
 
 namespace stridor {
 

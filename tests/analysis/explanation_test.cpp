@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "solvers/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
 
 namespace stridor {
 namespace {
@@ -22,11 +22,11 @@ Pencil random_pencil(unsigned seed) {
   Pencil pencil;
   pencil.omega = Eigen::VectorXd::LinSpaced(n, 1.0, 6.0);
   pencil.damping = 0.02 * pencil.omega.array().square();
-  pencil.slots = random(m, n);
+  pencil.ports = random(m, n);
   pencil.compatibility = random(1, m);
   pencil.equilibrium = pencil.compatibility + 0.2 * random(1, m);
-  pencil.slot_stiffness = 0.3 * random(m, m);
-  pencil.slot_damping = 0.05 * random(m, m);
+  pencil.port_stiffness = 0.3 * random(m, m);
+  pencil.port_damping = 0.05 * random(m, m);
   return pencil;
 }
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "core/errors.hpp"
-#include "solvers/secular_eigenvalues.hpp"
+#include "solvers/eigenvalues/secular_eigenvalues.hpp"
 #include "tests/support/constants.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/message_of.hpp"
@@ -37,7 +37,7 @@ std::vector<double> range(double from, double to, int number) {
 PencilFamily flutter_family(double damping) {
   return {[damping](double p, Pencil& pencil) {
             pencil = test::two_masses({1.0, 1.4}, {damping, damping});
-            pencil.slot_stiffness = test::circulatory(p);
+            pencil.port_stiffness = test::circulatory(p);
           },
           {}};
 }
@@ -46,7 +46,7 @@ PencilFamily flutter_family(double damping) {
 PencilFamily crossing_family(double a, double b, double damping = 0.0) {
   return {[=](double v, Pencil& pencil) {
             pencil = test::two_masses({1.0, 1.0 + v}, {damping, damping});
-            pencil.slot_stiffness = Eigen::Matrix2d{{0.0, a}, {b, 0.0}};
+            pencil.port_stiffness = Eigen::Matrix2d{{0.0, a}, {b, 0.0}};
           },
           {}};
 }
@@ -114,10 +114,10 @@ PencilFamily twice(const PencilFamily& family) {
             };
             pencil.omega = one.omega.replicate(2, 1);
             pencil.damping = one.damping.replicate(2, 1);
-            pencil.slots = both(one.slots);
+            pencil.ports = both(one.ports);
             pencil.compatibility = both(one.compatibility);
             pencil.equilibrium = both(one.equilibrium);
-            pencil.slot_stiffness = both(one.slot_stiffness);
+            pencil.port_stiffness = both(one.port_stiffness);
           },
           family.kinks};
 }
@@ -150,7 +150,7 @@ TEST(Locus, HoffmannsModelLosesStabilityAtThreeQuarters) {
   const PencilFamily family{
       [](double friction, Pencil& pencil) {
         pencil = test::two_masses({2.0, 2.0}, {0.0, 0.0});
-        pencil.slot_stiffness = Eigen::Matrix2d{{0.0, 1.0 - 4.0 * friction / 3.0}, {1.0, 0.0}};
+        pencil.port_stiffness = Eigen::Matrix2d{{0.0, 1.0 - 4.0 * friction / 3.0}, {1.0, 0.0}};
       },
       {}};
   const Locus locus = trace_locus(family, range(0.0, 1.0, 4));
@@ -234,7 +234,7 @@ TEST(Locus, APairThatBecomesRealIsFollowedIntoDivergence) {
   // s² + 0.2 s + 1 − v = 0: real from v = 0.99, one root positive from v = 1.
   const PencilFamily family{[](double v, Pencil& pencil) {
                               pencil = test::two_masses({1.0, 9.0}, {0.2, 0.2});
-                              pencil.slot_stiffness = Eigen::Matrix2d{{-v, 0.0}, {0.0, 0.0}};
+                              pencil.port_stiffness = Eigen::Matrix2d{{-v, 0.0}, {0.0, 0.0}};
                             },
                             {}};
   const Locus locus = trace_locus(family, range(0.0, 1.5, 4));
@@ -265,8 +265,8 @@ TEST(Locus, WhatComesDownFromAboveIsNotOverlooked) {
                                                                Eigen::MatrixXd(0, 11),
                                                                Eigen::MatrixXd(0, 11));
                               pencil.damping(10) = 0.1;
-                              pencil.slot_stiffness.setZero(11, 11);
-                              pencil.slot_stiffness(10, 10) = -v;
+                              pencil.port_stiffness.setZero(11, 11);
+                              pencil.port_stiffness(10, 10) = -v;
                             },
                             {}};
   LocusOptions options;
@@ -295,9 +295,9 @@ TEST(Locus, WhatMeetsFarAboveIsNotFollowed) {
         Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, 9);
         row.leftCols(4) << 1.0, 1.0, 1.0, 10.0;
         pencil = test::constrained_modes(omega, Eigen::VectorXd::Constant(9, 0.01), row, row);
-        pencil.slot_stiffness.setZero(9, 9);
-        pencil.slot_stiffness(7, 8) = v - 0.3141;
-        pencil.slot_stiffness(8, 7) = 0.3141 - v;
+        pencil.port_stiffness.setZero(9, 9);
+        pencil.port_stiffness(7, 8) = v - 0.3141;
+        pencil.port_stiffness(8, 7) = 0.3141 - v;
       },
       {}};
   LocusOptions options;
@@ -522,8 +522,8 @@ TEST(LocusDense, EndsWhereRoundingMovesAnEigenvalueFromValueToValue) {
         pencil = test::constrained_modes(
             Eigen::Vector4d(0.3, 0.45, 1.0, 2.0), Eigen::Vector4d(0.02, 0.03, 0.0, 0.0),
             Eigen::RowVector4d(0.0, 0.0, 1.0, 1.0), Eigen::RowVector4d(0.0, 0.0, 1.0, 6e-14 - 1.0));
-        pencil.slot_stiffness = Eigen::Matrix4d::Zero();
-        pencil.slot_stiffness.topLeftCorner<2, 2>() = test::circulatory(v);
+        pencil.port_stiffness = Eigen::Matrix4d::Zero();
+        pencil.port_stiffness.topLeftCorner<2, 2>() = test::circulatory(v);
       },
       {}};
   LocusOptions options;

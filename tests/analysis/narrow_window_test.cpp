@@ -9,7 +9,7 @@
 
 #include "analysis/pair_model.hpp"
 #include "analysis/sampled_locus.hpp"
-#include "solvers/linear_pencil.hpp"
+#include "solvers/eigenvalues/linear_pencil.hpp"
 
 namespace stridor {
 namespace {

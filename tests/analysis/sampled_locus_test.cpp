@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "solvers/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
 #include "tests/support/constants.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/reference_brake.hpp"

@@ -1,8 +1,8 @@
-#include "app/axis_units.hpp"
+#include "app/stability/axis_units.hpp"
 
 #include <gtest/gtest.h>
 
-#include "io/scene_tree.hpp"
+#include "io/scene/scene_tree.hpp"
 
 namespace stridor {
 namespace {

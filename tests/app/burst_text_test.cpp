@@ -1,4 +1,4 @@
-#include "app/burst_text.hpp"
+#include "app/results/burst_text.hpp"
 
 #include <gtest/gtest.h>
 

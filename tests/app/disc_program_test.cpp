@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "io/run_file.hpp"
+#include "io/run_file/run_file.hpp"
 #include "tests/support/eigenvalue_program.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -15,9 +15,9 @@
 #include <tuple>
 #include <vector>
 
-#include "io/law_table_file.hpp"
-#include "io/part_file.hpp"
-#include "io/scene.hpp"
+#include "io/hdf5/part_file.hpp"
+#include "io/imports/law_table_file.hpp"
+#include "io/scene/scene.hpp"
 #include "tests/app/resume_fixture.hpp"
 #include "tests/support/temporary_folder.hpp"
 

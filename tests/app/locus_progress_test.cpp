@@ -1,4 +1,4 @@
-#include "app/locus_progress.hpp"
+#include "app/stability/locus_progress.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "app/pace.hpp"
+#include "app/terminal/pace.hpp"
 
 #include <gtest/gtest.h>
 

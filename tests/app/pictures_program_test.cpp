@@ -10,9 +10,9 @@
 #include <numbers>
 #include <random>
 
-#include "io/damage_guard.hpp"
-#include "io/locus_file.hpp"
-#include "io/run_file.hpp"
+#include "io/hdf5/damage_guard.hpp"
+#include "io/results/locus_file.hpp"
+#include "io/run_file/run_file.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "io/run_file.hpp"
+#include "io/run_file/run_file.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "io/run_file.hpp"
+#include "io/run_file/run_file.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor::test {

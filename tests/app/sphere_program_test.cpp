@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "io/run_file.hpp"
+#include "io/run_file/run_file.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {

@@ -1,4 +1,4 @@
-#include "app/stability.hpp"
+#include "app/stability/stability.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/search_failure.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/search_failure.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 #include "tests/support/pencils.hpp"
@@ -134,14 +134,14 @@ class NearlyJammed : public StabilityFamily {
     Pencil pencil = constrained_modes(
         Eigen::Vector4d(0.3, 0.45, 1.0, 2.0), Eigen::Vector4d(0.02, 0.03, 0.0, 0.0),
         Eigen::RowVector4d(0.0, 0.0, 1.0, 1.0), Eigen::RowVector4d(0.0, 0.0, 1.0, 6e-14 - 1.0));
-    pencil.slot_stiffness = Eigen::Matrix4d::Zero();
-    pencil.slot_stiffness.topLeftCorner<2, 2>() = circulatory(v);
+    pencil.port_stiffness = Eigen::Matrix4d::Zero();
+    pencil.port_stiffness.topLeftCorner<2, 2>() = circulatory(v);
     return pencil;
   }
   /// The two modes alone.
   static Pencil coupled_modes_of(double v) {
     Pencil pencil = two_masses({0.09, 0.2025}, {0.02, 0.03});
-    pencil.slot_stiffness = circulatory(v);
+    pencil.port_stiffness = circulatory(v);
     return pencil;
   }
 };

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/precision_study.hpp"
-#include "io/initial_state.hpp"
-#include "io/scene.hpp"
-#include "solvers/make_propagator.hpp"
+#include "io/run_file/initial_state.hpp"
+#include "io/scene/scene.hpp"
+#include "solvers/integrators/make_propagator.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {

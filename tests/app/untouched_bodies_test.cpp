@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "io/run_file.hpp"
-#include "substructures/annular_plate.hpp"
+#include "io/run_file/run_file.hpp"
+#include "substructures/bodies/annular_plate.hpp"
 #include "tests/app/resume_fixture.hpp"
 #include "tests/support/eigenvalue_program.hpp"
 #include "tests/support/program.hpp"

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "app/transient.hpp"
+#include "app/runs/transient.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
 #include "tests/app/resume_fixture.hpp"

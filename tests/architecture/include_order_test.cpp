@@ -381,21 +381,21 @@ TEST_F(SourceText, RoomsIncludeFromThoseAboveThem) {
 }
 
 TEST(BodyTypes, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
-  const std::string list = "substructures/body_types.cpp";
+  const std::string list = "substructures/bodies/body_types.cpp";
   const std::vector<OwnedName> types{
       {"BeamParameters",
-       {list, "substructures/beam.hpp", "substructures/beam.cpp",
-        "substructures/beam_additions.hpp", "substructures/beam_additions.cpp"}},
+       {list, "substructures/bodies/beam.hpp", "substructures/bodies/beam.cpp",
+        "substructures/bodies/beam_additions.hpp", "substructures/bodies/beam_additions.cpp"}},
       {"LumpedParameters",
-       {list, "substructures/lumped_body.hpp", "substructures/lumped_body.cpp"}},
+       {list, "substructures/bodies/lumped_body.hpp", "substructures/bodies/lumped_body.cpp"}},
       {"TouchedMatrixBodyParameters",
-       {list, "substructures/matrix_body.hpp", "substructures/matrix_body.cpp",
-        "io/matrix_reader.cpp"}}};
+       {list, "substructures/bodies/matrix_body.hpp", "substructures/bodies/matrix_body.cpp",
+        "io/scene/matrix_reader.cpp"}}};
   EXPECT_THAT(strangers_to(STRIDOR_SOURCE_DIR, types), IsEmpty());
 }
 
 TEST(FrictionLaws, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
-  const std::string list = "coupling/friction_laws.cpp";
+  const std::string list = "coupling/laws/friction_laws.cpp";
   std::vector<OwnedName> names;
   for (const std::string law : {"constant", "static_dynamic", "stribeck", "shear"}) {
     const Strings own{list, "coupling/laws/" + law + "_friction.hpp"};
@@ -404,9 +404,9 @@ TEST(FrictionLaws, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
     if (law != "constant") names.push_back({law + "_friction", own});
   }
   // As words of scenes; the other two are words of the language, too.
-  names.push_back({"static_dynamic", {"coupling/static_dynamic_friction.hpp"}});
-  names.push_back({"stribeck", {"coupling/stribeck_friction.hpp"}});
-  names.push_back({"StribeckFriction", {"coupling/stribeck_friction.hpp"}});
+  names.push_back({"static_dynamic", {"coupling/laws/static_dynamic_friction.hpp"}});
+  names.push_back({"stribeck", {"coupling/laws/stribeck_friction.hpp"}});
+  names.push_back({"StribeckFriction", {"coupling/laws/stribeck_friction.hpp"}});
   EXPECT_THAT(strangers_to(STRIDOR_SOURCE_DIR, names), IsEmpty());
   // The words are where they should be, so that the search finds what there is.
   EXPECT_THAT(strangers_to(STRIDOR_SOURCE_DIR, {{"stribeck", {}}}), ::testing::SizeIs(1));

@@ -1,6 +1,6 @@
-#include "coupling/contact_parameters.hpp"
-#include "coupling/shear_friction.hpp"
-#include "coupling/stribeck_friction.hpp"
+#include "coupling/laws/shear_friction.hpp"
+#include "coupling/laws/stribeck_friction.hpp"
+#include "coupling/system/contact_parameters.hpp"
 #include "tests/support/constants.hpp"
 
 #include <gmock/gmock.h>

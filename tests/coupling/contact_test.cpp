@@ -1,4 +1,4 @@
-#include "coupling/contact.hpp"
+#include "coupling/kinematics/contact.hpp"
 #include "tests/support/constants.hpp"
 
 #include <gtest/gtest.h>

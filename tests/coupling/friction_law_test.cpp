@@ -1,6 +1,6 @@
-#include "coupling/friction_law.hpp"
-#include "coupling/static_dynamic_friction.hpp"
-#include "coupling/stribeck_friction.hpp"
+#include "coupling/laws/friction_law.hpp"
+#include "coupling/laws/static_dynamic_friction.hpp"
+#include "coupling/laws/stribeck_friction.hpp"
 #include "tests/support/constants.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "coupling/indenter_profile.hpp"
+#include "coupling/laws/indenter_profile.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "coupling/monotone_cubic.hpp"
+#include "coupling/kinematics/monotone_cubic.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

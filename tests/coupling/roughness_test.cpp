@@ -1,4 +1,4 @@
-#include "coupling/roughness.hpp"
+#include "coupling/kinematics/roughness.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "coupling/substrate_contact.hpp"
+#include "coupling/laws/substrate_contact.hpp"
 
 #include <gtest/gtest.h>
 

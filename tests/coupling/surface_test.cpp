@@ -1,4 +1,4 @@
-#include "coupling/surface.hpp"
+#include "coupling/kinematics/surface.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "coupling/system.hpp"
+#include "coupling/system/system.hpp"
 
 namespace stridor {
 namespace {

@@ -1,4 +1,4 @@
-#include "coupling/viscoelastic_law.hpp"
+#include "coupling/laws/viscoelastic_law.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

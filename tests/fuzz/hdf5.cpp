@@ -1,5 +1,5 @@
 // Any content of an HDF5 file for all readers: run files, loci and contact laws. The file itself is
-// well-formed, since a damaged one is for the library to refuse (io/damage_guard.hpp); the bytes
+// well-formed, since a damaged one is for the library to refuse (io/hdf5/damage_guard.hpp); the bytes
 // say which objects it has, of which types, extents and values.
 #include <hdf5.h>
 #include <unistd.h>
@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "io/hdf5_handles.hpp"
-#include "io/law_table_file.hpp"
-#include "io/locus_file.hpp"
-#include "io/run_file.hpp"
+#include "io/hdf5/hdf5_handles.hpp"
+#include "io/imports/law_table_file.hpp"
+#include "io/results/locus_file.hpp"
+#include "io/run_file/run_file.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "io/matrix_market.hpp"
+#include "io/imports/matrix_market.hpp"
 
 namespace {
 

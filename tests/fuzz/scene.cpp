@@ -6,9 +6,9 @@
 #include <string>
 
 #include "core/errors.hpp"
-#include "io/resolved_scene.hpp"
-#include "io/scene_reader.hpp"
-#include "io/scene_tree.hpp"
+#include "io/scene/resolved_scene.hpp"
+#include "io/scene/scene_reader.hpp"
+#include "io/scene/scene_tree.hpp"
 #include "tests/io/example_scene.hpp"
 
 namespace {

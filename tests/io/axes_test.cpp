@@ -1,4 +1,4 @@
-#include "io/axes.hpp"
+#include "io/figures/axes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "io/channels.hpp"
+#include "io/scene/channels.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

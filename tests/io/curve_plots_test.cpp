@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "io/phase_plot.hpp"
-#include "io/spectrum_plot.hpp"
+#include "io/figures/phase_plot.hpp"
+#include "io/figures/spectrum_plot.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/program.hpp"
 

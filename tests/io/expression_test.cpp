@@ -1,4 +1,4 @@
-#include "io/expression.hpp"
+#include "io/scene/expression.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

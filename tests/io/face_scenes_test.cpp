@@ -9,16 +9,16 @@
 #include <tuple>
 #include <vector>
 
+#include "io/scene/scene.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/linear_pencil.hpp"
+#include "solvers/equilibrium/equilibrium.hpp"
+#include "solvers/equilibrium/linearise.hpp"
 #include "tests/support/face_contact.hpp"
-#include "io/scene.hpp"
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/equilibrium.hpp"
-#include "solvers/linearise.hpp"
-#include "solvers/linear_pencil.hpp"
-#include "tests/support/sliding_state.hpp"
 #include "tests/support/message_of.hpp"
-#include "tests/support/reference_brake.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/reference_brake.hpp"
+#include "tests/support/sliding_state.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace stridor {

@@ -1,4 +1,4 @@
-#include "io/gnuplot.hpp"
+#include "io/figures/gnuplot.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "io/history_plot.hpp"
+#include "io/figures/history_plot.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace stridor {

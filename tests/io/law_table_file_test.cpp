@@ -1,4 +1,4 @@
-#include "io/law_table_file.hpp"
+#include "io/imports/law_table_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "io/locus_file.hpp"
+#include "io/results/locus_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "io/locus_plot.hpp"
+#include "io/figures/locus_plot.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

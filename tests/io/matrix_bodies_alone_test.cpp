@@ -5,10 +5,10 @@
 #include <fstream>
 
 #include "core/errors.hpp"
-#include "io/scene.hpp"
-#include "io/scene_family.hpp"
-#include "io/scene_files.hpp"
-#include "substructures/linear_system.hpp"
+#include "io/scene/scene.hpp"
+#include "io/scene/scene_family.hpp"
+#include "io/scene/scene_files.hpp"
+#include "substructures/matrices/linear_system.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/program.hpp"
 

@@ -1,4 +1,4 @@
-#include "io/oscillator_family.hpp"
+#include "io/scene/oscillator_family.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "io/panel_plot.hpp"
+#include "io/figures/panel_plot.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "io/recorder.hpp"
+#include "io/run_file/recorder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "solvers/march.hpp"
-#include "substructures/beam.hpp"
+#include "solvers/transient/march.hpp"
+#include "substructures/bodies/beam.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 #include "tests/support/program.hpp"

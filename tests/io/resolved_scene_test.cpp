@@ -1,4 +1,4 @@
-#include "io/resolved_scene.hpp"
+#include "io/scene/resolved_scene.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <random>
 #include <string>
 
-#include "io/scene_reader.hpp"
-#include "io/scene_tree.hpp"
+#include "io/scene/scene_reader.hpp"
+#include "io/scene/scene_tree.hpp"
 #include "tests/io/example_scene.hpp"
 
 namespace stridor {

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "io/run_file.hpp"
+#include "io/run_file/run_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace stridor::test {

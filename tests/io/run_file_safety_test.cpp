@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "io/run_file.hpp"
+#include "io/run_file/run_file.hpp"
 #include "tests/io/run_file_fixture.hpp"
 
 namespace stridor {

@@ -1,4 +1,4 @@
-#include "io/run_file.hpp"
+#include "io/run_file/run_file.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "io/run_panels.hpp"
+#include "io/figures/run_panels.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "io/phase_plot.hpp"
+#include "io/figures/phase_plot.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace stridor {

@@ -1,5 +1,5 @@
 // What a run is summed up in, from a run file.
-#include "io/run_summary.hpp"
+#include "io/run_file/run_summary.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "io/run_file.hpp"
+#include "io/run_file/run_file.hpp"
 #include "tests/io/run_file_fixture.hpp"
 
 namespace stridor {

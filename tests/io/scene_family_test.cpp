@@ -1,4 +1,4 @@
-#include "io/scene_family.hpp"
+#include "io/scene/scene_family.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "solvers/linearise.hpp"
+#include "solvers/equilibrium/linearise.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/program.hpp"
 

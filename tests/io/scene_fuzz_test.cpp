@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "io/scene.hpp"
-#include "io/scene_reader.hpp"
+#include "io/scene/scene.hpp"
+#include "io/scene/scene_reader.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace stridor {

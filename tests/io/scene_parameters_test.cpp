@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "io/scene.hpp"
-#include "io/resolved_scene.hpp"
-#include "io/scene_family.hpp"
-#include "io/scene_reader.hpp"
-#include "io/scene_tree.hpp"
+#include "io/scene/resolved_scene.hpp"
+#include "io/scene/scene.hpp"
+#include "io/scene/scene_family.hpp"
+#include "io/scene/scene_reader.hpp"
+#include "io/scene/scene_tree.hpp"
 #include "tests/io/example_scene.hpp"
 #include "tests/support/message_of.hpp"
 

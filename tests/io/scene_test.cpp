@@ -1,11 +1,11 @@
-#include "io/scene.hpp"
+#include "io/scene/scene.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/errors.hpp"
-#include "io/scene_reader.hpp"
-#include "substructures/beam.hpp"
+#include "io/scene/scene_reader.hpp"
+#include "substructures/bodies/beam.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {

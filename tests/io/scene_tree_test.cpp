@@ -1,4 +1,4 @@
-#include "io/scene_tree.hpp"
+#include "io/scene/scene_tree.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

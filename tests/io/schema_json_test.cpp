@@ -1,6 +1,6 @@
 // What is said of scenes outside the program: the JSON Schema, the reference page, and the copies
 // of both that are kept in docs/.
-#include "io/schema_json.hpp"
+#include "io/scene/schema_json.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@
 #include <sstream>
 
 #include "core/units.hpp"
-#include "io/scene.hpp"
-#include "io/scene_reference.hpp"
+#include "io/scene/scene.hpp"
+#include "io/scene/scene_reference.hpp"
 #include "tests/io/example_scene.hpp"
 
 namespace stridor {

@@ -1,4 +1,4 @@
-#include "io/shape_plot.hpp"
+#include "io/figures/shape_plot.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "core/errors.hpp"
-#include "io/vtk_writer.hpp"
+#include "io/results/vtk_writer.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/program.hpp"
 

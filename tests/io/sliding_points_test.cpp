@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/scene.hpp"
-#include "io/scene_reader.hpp"
+#include "io/scene/scene.hpp"
+#include "io/scene/scene_reader.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/program.hpp"
 

@@ -1,4 +1,4 @@
-#include "io/spectrogram_plot.hpp"
+#include "io/figures/spectrogram_plot.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "io/spectrogram_file.hpp"
+#include "io/results/spectrogram_file.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/program.hpp"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/errors.hpp"
-#include "io/scene.hpp"
+#include "io/scene/scene.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/program.hpp"
 

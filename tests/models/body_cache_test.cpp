@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "models/mode_shape.hpp"
-#include "substructures/beam.hpp"
+#include "substructures/bodies/beam.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
 #include "tests/support/disc_model.hpp"
-#include "solvers/dense_eigenvalues.hpp"
 #include "tests/support/reference_brake.hpp"
 
 namespace stridor {

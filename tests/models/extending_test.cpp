@@ -8,20 +8,20 @@
 #include <string>
 
 #include "models/model.hpp"
-#include "solvers/equilibrium.hpp"
-#include "solvers/simulation.hpp"
+#include "solvers/equilibrium/equilibrium.hpp"
+#include "solvers/transient/simulation.hpp"
 // example: includes
 #include "core/schema.hpp"
-#include "substructures/body_parameters.hpp"
-#include "substructures/lumped_body.hpp"
+#include "substructures/bodies/body_parameters.hpp"
+#include "substructures/bodies/lumped_body.hpp"
 // end of example
 // example: includes of a law
 #include <memory>
 
-#include "coupling/friction_law_type.hpp"
+#include "coupling/laws/friction_law_type.hpp"
 // end of example
-#include "solvers/linearise.hpp"
-#include "solvers/secular_eigenvalues.hpp"
+#include "solvers/eigenvalues/secular_eigenvalues.hpp"
+#include "solvers/equilibrium/linearise.hpp"
 
 namespace stridor {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "substructures/beam.hpp"
+#include "substructures/bodies/beam.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"

@@ -1,5 +1,5 @@
 // Bodies given by their matrices, in contact.
-#include "substructures/matrix_body.hpp"
+#include "substructures/bodies/matrix_body.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 #include "core/errors.hpp"
 #include "models/model.hpp"
-#include "substructures/beam.hpp"
+#include "substructures/bodies/beam.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 

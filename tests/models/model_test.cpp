@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "core/errors.hpp"
-#include "solvers/make_propagator.hpp"
-#include "substructures/beam.hpp"
+#include "solvers/integrators/make_propagator.hpp"
+#include "substructures/bodies/beam.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "models/model.hpp"
-#include "solvers/equilibrium.hpp"
-#include "solvers/simulation.hpp"
-#include "substructures/beam.hpp"
-#include "substructures/lumped_body.hpp"
+#include "solvers/equilibrium/equilibrium.hpp"
+#include "solvers/transient/simulation.hpp"
+#include "substructures/bodies/beam.hpp"
+#include "substructures/bodies/lumped_body.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 

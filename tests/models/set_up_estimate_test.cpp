@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "core/errors.hpp"
-#include "substructures/beam.hpp"
-#include "substructures/plate_body.hpp"
+#include "substructures/bodies/beam.hpp"
+#include "substructures/bodies/plate_body.hpp"
 #include "tests/support/paper_beams.hpp"
 
 namespace stridor {

@@ -1,5 +1,5 @@
 // Simulations stepped together in lanes.
-#include "solvers/batch.hpp"
+#include "solvers/transient/batch.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "substructures/beam.hpp"
+#include "substructures/bodies/beam.hpp"
 #include "tests/support/paper_model.hpp"
 
 namespace stridor {

@@ -1,4 +1,4 @@
-#include "solvers/contact_complementarity.hpp"
+#include "solvers/half_space/contact_complementarity.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "solvers/contact_edge.hpp"
+#include "solvers/half_space/contact_edge.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

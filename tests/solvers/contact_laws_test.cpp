@@ -10,14 +10,14 @@
 #include <random>
 #include <vector>
 
-#include "coupling/stribeck_friction.hpp"
-#include "solvers/contact_solver.hpp"
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/equilibrium.hpp"
-#include "solvers/frozen_step.hpp"
-#include "solvers/linearise.hpp"
-#include "solvers/secular_eigenvalues.hpp"
-#include "solvers/simulation.hpp"
+#include "coupling/laws/stribeck_friction.hpp"
+#include "solvers/contact/contact_solver.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/secular_eigenvalues.hpp"
+#include "solvers/equilibrium/equilibrium.hpp"
+#include "solvers/equilibrium/linearise.hpp"
+#include "solvers/transient/frozen_step.hpp"
+#include "solvers/transient/simulation.hpp"
 #include "tests/support/paper_model.hpp"
 #include "tests/support/small_systems.hpp"
 

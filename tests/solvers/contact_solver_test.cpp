@@ -1,4 +1,4 @@
-#include "solvers/contact_solver.hpp"
+#include "solvers/contact/contact_solver.hpp"
 #include "tests/support/constants.hpp"
 
 #include <gtest/gtest.h>

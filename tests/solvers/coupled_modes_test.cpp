@@ -1,13 +1,13 @@
 // Bodies with gyroscopic, circulatory and non-proportional damping terms by their complex modes.
-#include "solvers/coupled_modes.hpp"
+#include "solvers/eigenvalues/coupled_modes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 #include <random>
 
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/secular_eigenvalues.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/secular_eigenvalues.hpp"
 #include "tests/support/pencils.hpp"
 
 namespace stridor {
@@ -22,22 +22,22 @@ Pencil coupled_pencil(unsigned seed, Eigen::Index n, Eigen::Index k, ContactTerm
   const Pencil plain = test::random_pencil(seed, n, k, terms);
   std::mt19937 engine(seed);
   std::normal_distribution<double> normal;
-  const Eigen::Index m = plain.num_slots();
+  const Eigen::Index m = plain.num_ports();
   const Eigen::Index q = n / 2;
   Pencil pencil = plain;
-  pencil.num_body_slots = q;
-  pencil.slots.setZero(m + q, n);
-  pencil.slots.topRows(m) = plain.slots;
-  pencil.slots.bottomLeftCorner(q, q).setIdentity();
+  pencil.num_body_ports = q;
+  pencil.ports.setZero(m + q, n);
+  pencil.ports.topRows(m) = plain.ports;
+  pencil.ports.bottomLeftCorner(q, q).setIdentity();
   for (Eigen::MatrixXd* rows : {&pencil.compatibility, &pencil.equilibrium}) {
     rows->conservativeResize(k, m + q);
     rows->rightCols(q).setZero();
   }
-  pencil.slot_stiffness.setZero(m + q, m + q);
-  pencil.slot_damping.setZero(m + q, m + q);
-  if (plain.slot_stiffness.size() > 0)
-    pencil.slot_stiffness.topLeftCorner(m, m) = plain.slot_stiffness;
-  if (plain.slot_damping.size() > 0) pencil.slot_damping.topLeftCorner(m, m) = plain.slot_damping;
+  pencil.port_stiffness.setZero(m + q, m + q);
+  pencil.port_damping.setZero(m + q, m + q);
+  if (plain.port_stiffness.size() > 0)
+    pencil.port_stiffness.topLeftCorner(m, m) = plain.port_stiffness;
+  if (plain.port_damping.size() > 0) pencil.port_damping.topLeftCorner(m, m) = plain.port_damping;
   const Eigen::Index half = q / 2;
   for (const auto& [first, size] : {std::pair(Eigen::Index{0}, half), std::pair(half, q - half)}) {
     const auto matrix = [&, size = size] {
@@ -47,9 +47,9 @@ Pencil coupled_pencil(unsigned seed, Eigen::Index n, Eigen::Index k, ContactTerm
     const Eigen::MatrixXd gyroscopic = matrix();
     const Eigen::MatrixXd damping = matrix();
     const Eigen::MatrixXd circulatory = matrix();
-    pencil.slot_damping.block(m + first, m + first, size, size) =
+    pencil.port_damping.block(m + first, m + first, size, size) =
         3.0 * (gyroscopic - gyroscopic.transpose()) + 0.3 * damping * damping.transpose();
-    pencil.slot_stiffness.block(m + first, m + first, size, size) =
+    pencil.port_stiffness.block(m + first, m + first, size, size) =
         0.01 * (circulatory - circulatory.transpose());
   }
   return pencil;
@@ -62,7 +62,7 @@ TEST(CoupledModes, AnswerForcesAsTheirBodiesDo) {
   ASSERT_EQ(modes->modes.size(), 8U);
   ASSERT_EQ(modes->poles.size(), 16);
   Pencil bodies = pencil;
-  bodies.slot_stiffness.topLeftCorner(6, 6).setZero();
+  bodies.port_stiffness.topLeftCorner(6, 6).setZero();
   for (const Complex s : {Complex(-0.5, 30.0), Complex(10.0, 0.1), Complex(0.0, 2000.0)}) {
     const Eigen::MatrixXcd whole = test::dynamic_stiffness(bodies, s).inverse();
     const Eigen::MatrixXcd expected = whole(modes->modes, modes->modes);
@@ -81,9 +81,9 @@ TEST(CoupledModes, AreNoneWhereNothingIsCoupledAndNotGivenWhereVectorsAreMissing
   Pencil pencil = coupled_pencil(3, 16, 1, ContactTerms::rows_only);
   pencil.omega(0) = 5.0;
   pencil.damping(0) = 0.0;
-  pencil.slot_stiffness.setZero();
-  pencil.slot_damping.setZero();
-  pencil.slot_damping(6, 6) = 10.0;
+  pencil.port_stiffness.setZero();
+  pencil.port_damping.setZero();
+  pencil.port_damping(6, 6) = 10.0;
   EXPECT_FALSE(coupled_modes(pencil));
 }
 
@@ -126,7 +126,7 @@ TEST(CoupledModes, LeaveEigenvectorsAndCountsAsTheyAre) {
 TEST(CoupledModes, AreFoundAnewWhereTheirTermsChange) {
   Pencil pencil = coupled_pencil(7, 14, 1, ContactTerms::rows_only);
   SecularFunction function(pencil);
-  pencil.slot_damping *= 1.5;
+  pencil.port_damping *= 1.5;
   function.assign(pencil);
   const auto expected = dense_eigenvalues(pencil);
   const SecularSpectrum found = secular_spectrum(function, SpectrumWindow::all());

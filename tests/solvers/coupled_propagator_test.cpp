@@ -1,4 +1,4 @@
-#include "solvers/coupled_propagator.hpp"
+#include "solvers/integrators/coupled_propagator.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "solvers/coupled_step.hpp"
-#include "solvers/modal_recurrence.hpp"
+#include "solvers/integrators/coupled_step.hpp"
+#include "solvers/integrators/modal_recurrence.hpp"
 
 namespace stridor {
 namespace {
@@ -79,28 +79,28 @@ struct FullMatrices {
 
 constexpr double added = 0.02;
 
-/// Slots on masses 0 and 2, which then move to 1 and 3; loads, damping and motion change too.
+/// Ports on masses 0 and 2, which then move to 1 and 3; loads, damping and motion change too.
 struct Driven {
-  static constexpr int num_slots = 2;
+  static constexpr int num_ports = 2;
   std::vector<double> seen;
 
   void look(Propagator& body, const double* forces) {
-    for (int slot = 0; slot < num_slots; ++slot) {
+    for (int port = 0; port < num_ports; ++port) {
       seen.insert(seen.end(),
-                  {body.predicted(slot), body.expected(slot), body.current(slot),
-                   body.increment(slot), body.compliance(slot, 0), body.compliance(slot, 1)});
+                  {body.predicted(port), body.expected(port), body.current(port),
+                   body.increment(port), body.compliance(port, 0), body.compliance(port, 1)});
     }
     for (int row = 0; row < 4; ++row) seen.push_back(body.displacement(row));
     const Propagator::Motion motion = body.motion(forces);
     seen.insert(seen.end(), motion.displacement.begin(), motion.displacement.end());
     seen.insert(seen.end(), motion.velocity.begin(), motion.velocity.end());
     std::vector<double> position(4), increment(4);
-    body.foresee(forces, position, increment);
+    body.predict_step(forces, position, increment);
     seen.insert(seen.end(), position.begin(), position.end());
     seen.insert(seen.end(), increment.begin(), increment.end());
-    if (!body.is_prompt()) return;
-    body.look_ahead();
-    seen.insert(seen.end(), body.ahead(), body.ahead() + num_slots);
+    if (!body.has_feedthrough()) return;
+    body.predict_ahead();
+    seen.insert(seen.end(), body.ahead(), body.ahead() + num_ports);
     seen.insert(seen.end(), body.ahead_compliances(), body.ahead_compliances() + 4);
   }
 
@@ -108,12 +108,12 @@ struct Driven {
     body.watch(0, 0);
     body.watch(1, 2);
     const Eigen::Vector4d u(0.3, -0.2, 0.1, 0.4), v(1.0, 2.0, -1.0, 0.5);
-    if (body.is_prompt()) {
-      body.foresee_start(u, v);
-      for (int slot = 0; slot < num_slots; ++slot)
-        seen.insert(seen.end(), {body.predicted(slot), body.compliance(slot, 0)});
+    if (body.has_feedthrough()) {
+      body.predict_start(u, v);
+      for (int port = 0; port < num_ports; ++port)
+        seen.insert(seen.end(), {body.predicted(port), body.compliance(port, 0)});
     }
-    std::array<double, num_slots> forces{3.0, -1.0};
+    std::array<double, num_ports> forces{3.0, -1.0};
     body.set_motion(u, v, forces.data());
     for (int n = 0; n < 60; ++n) {
       if (n == 20) body.watch(0, 1);
@@ -140,10 +140,10 @@ TEST_P(WithoutCoupling, EveryNumberIsThatOfTheModes) {
   ASSERT_TRUE(coupled.shapes.isApprox(modes.shapes, 1e-12));
   const Eigen::MatrixXd pattern = modes.shapes.transpose().col(0);
   const double load[] = {0.7};
-  ModalRecurrence expected(modes, pattern, Integrator::exact, step, GetParam(), Driven::num_slots,
+  ModalRecurrence expected(modes, pattern, Integrator::exact, step, GetParam(), Driven::num_ports,
                            0.4, load);
-  CoupledPropagator found(coupled, pattern, step, GetParam(), Driven::num_slots, 0.4, load, "body");
-  ASSERT_EQ(found.is_prompt(), GetParam().has_value());
+  CoupledPropagator found(coupled, pattern, step, GetParam(), Driven::num_ports, 0.4, load, "body");
+  ASSERT_EQ(found.has_feedthrough(), GetParam().has_value());
   Driven by_modes, by_matrices;
   by_modes.run(expected);
   by_matrices.run(found);
@@ -152,7 +152,7 @@ TEST_P(WithoutCoupling, EveryNumberIsThatOfTheModes) {
     EXPECT_NEAR(by_matrices.seen[i], by_modes.seen[i], 1e-11) << i;
 }
 
-INSTANTIATE_TEST_SUITE_P(Prompt, WithoutCoupling,
+INSTANTIATE_TEST_SUITE_P(Feedthrough, WithoutCoupling,
                          ::testing::Values(std::nullopt, std::optional(0.0), std::optional(added)));
 
 /// A body without forces, in its modes, and where it is after `num_steps`.
@@ -352,11 +352,11 @@ TEST(CoupledStep, KeepsTheSymplecticFormOfAGyroscopicBody) {
     // on others is as theirs on it but for the skew impulse, half of which G holds.
     const Eigen::MatrixXd impulse = step.free.partialPivLu().solve(step.by_force);
     const Eigen::Matrix4d at_once = impulse.topRows(4);
-    EXPECT_GT(at_once.norm(), 1e-3 * step.prompt.norm());
-    EXPECT_LT((at_once + at_once.transpose()).norm(), 1e-12 * step.prompt.norm());
-    EXPECT_LT((step.prompt - step.prompt.transpose() - at_once).norm(), 1e-12 * step.prompt.norm());
-    const Eigen::MatrixXd excess = step.prompt - step.alternating();
-    EXPECT_LT((excess - excess.transpose()).norm(), 1e-11 * step.prompt.norm());
+    EXPECT_GT(at_once.norm(), 1e-3 * step.feedthrough.norm());
+    EXPECT_LT((at_once + at_once.transpose()).norm(), 1e-12 * step.feedthrough.norm());
+    EXPECT_LT((step.feedthrough - step.feedthrough.transpose() - at_once).norm(), 1e-12 * step.feedthrough.norm());
+    const Eigen::MatrixXd excess = step.feedthrough - step.alternating();
+    EXPECT_LT((excess - excess.transpose()).norm(), 1e-11 * step.feedthrough.norm());
   }
 }
 

@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "solvers/coupled_propagator.hpp"
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/equilibrium.hpp"
-#include "solvers/frozen_step.hpp"
-#include "solvers/linearise.hpp"
-#include "solvers/secular_eigenvalues.hpp"
-#include "solvers/simulation.hpp"
-#include "substructures/beam.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/secular_eigenvalues.hpp"
+#include "solvers/equilibrium/equilibrium.hpp"
+#include "solvers/equilibrium/linearise.hpp"
+#include "solvers/integrators/coupled_propagator.hpp"
+#include "solvers/transient/frozen_step.hpp"
+#include "solvers/transient/simulation.hpp"
+#include "substructures/bodies/beam.hpp"
 #include "tests/support/paper_model.hpp"
 
 namespace stridor {
@@ -121,7 +121,7 @@ TEST(CoupledSystem, HasTheEigenvaluesAndStepsOfTheModesWhereNothingIsCoupled) {
   EXPECT_NEAR(same.contacts[0].force, equilibrium.contacts[0].force, 1e-12);
   const Pencil pencil = linearise(model.system, equilibrium);
   const Pencil other = linearise(coupled, same);
-  EXPECT_GT(other.num_body_slots, 0);
+  EXPECT_GT(other.num_body_ports, 0);
   expect_same_spectrum(values_of(dense_eigenvalues(other)), values_of(dense_eigenvalues(pencil)),
                        1e-12);
   const TimeParameters time = resolving_time(model.system);
@@ -165,9 +165,9 @@ TEST(CoupledSystem, EquilibriumBalancesTheCirculatoryForces) {
   Eigen::VectorXd pushed = Eigen::VectorXd::Zero(modal.size());
   for (int k = 0; k < stencil.count; ++k) {
     const PointRows& node = system.surfaces[0].rows[static_cast<std::size_t>(stencil.first + k)];
-    const auto slot = static_cast<std::size_t>(2 * k);
-    pushed -= contact.force * (rows.equilibrium.master[slot] * modal.rows.row(node.x) +
-                               rows.equilibrium.master[slot + 1] * modal.rows.row(node.y))
+    const auto port = static_cast<std::size_t>(2 * k);
+    pushed -= contact.force * (rows.equilibrium.master[port] * modal.rows.row(node.x) +
+                               rows.equilibrium.master[port + 1] * modal.rows.row(node.y))
                                   .transpose();
   }
   EXPECT_LT((force - pushed).norm(), 1e-9 * pushed.norm());

@@ -1,4 +1,4 @@
-#include "solvers/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "solvers/linear_pencil.hpp"
+#include "solvers/eigenvalues/linear_pencil.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/pencils.hpp"
@@ -41,7 +41,7 @@ TEST(DenseEigenvalues, TwoModesInContactAreOneOscillator) {
 TEST(DenseEigenvalues, CirculatoryAndGyroscopicPairsHaveTheirClosedForms) {
   // q̈1 + q1 + p q2 = 0, q̈2 + 1.4 q2 − p q1 = 0: s² = −1.2 ± √(0.04 − p²).
   Pencil pencil = test::two_masses({1.0, 1.4}, {0.0, 0.0});
-  pencil.slot_stiffness = test::circulatory(0.3);
+  pencil.port_stiffness = test::circulatory(0.3);
   auto found = dense_eigenvalues(pencil);
   ASSERT_EQ(found.size(), 2);
   // Of equal frequency, so rounding orders them.
@@ -51,8 +51,8 @@ TEST(DenseEigenvalues, CirculatoryAndGyroscopicPairsHaveTheirClosedForms) {
   EXPECT_NEAR(found[1].growth(), 0.1016256896, 1e-10);
   EXPECT_NEAR(found[1].s.imag(), std::abs(root.imag()), 100 * eps);
 
-  pencil.slot_stiffness = test::circulatory(0.05);
-  pencil.slot_damping = test::circulatory(0.1);
+  pencil.port_stiffness = test::circulatory(0.05);
+  pencil.port_damping = test::circulatory(0.1);
   found = dense_eigenvalues(pencil);
   ASSERT_EQ(found.size(), 2);
   EXPECT_NEAR(std::abs(found[0].growth()), 0.0111662740, 1e-10);
@@ -133,9 +133,9 @@ TEST(DenseEigenvalues, ConditionsTellEigenvaluesThatAreAboutToMeet) {
     Pencil pencil;
     pencil.omega = Eigen::Vector2d(1.0, std::sqrt(1.4));
     pencil.damping = Eigen::Vector2d::Zero();
-    pencil.slots = Eigen::Matrix2d::Identity();
+    pencil.ports = Eigen::Matrix2d::Identity();
     pencil.compatibility = pencil.equilibrium = Eigen::MatrixXd(0, 2);
-    pencil.slot_stiffness = Eigen::Matrix2d{{0.0, p}, {-p, 0.0}};
+    pencil.port_stiffness = Eigen::Matrix2d{{0.0, p}, {-p, 0.0}};
     return dense_spectrum(pencil, DenseWork::conditions).conditions;
   };
   for (const double one : conditions(0.0)) EXPECT_NEAR(one, 1.0, 1e-12);
@@ -151,8 +151,8 @@ TEST(DenseEigenvalues, ConditionsNearTheAxisAreThoseOfAllVectors) {
   Pencil pencil = test::random_pencil(5, 25, 1, test::ContactTerms::with_stiffness);
   pencil.damping.setConstant(20.0);
   pencil.damping(3) = pencil.damping(11) = 0.0;
-  pencil.slots.col(3) *= 1e-5;
-  pencil.slots.col(11) *= 1e-5;
+  pencil.ports.col(3) *= 1e-5;
+  pencil.ports.col(11) *= 1e-5;
   const DenseSpectrum some = dense_spectrum(pencil, DenseWork::near_axis);
   const DenseSpectrum all = dense_spectrum(pencil, DenseWork::conditions);
   ASSERT_EQ(some.conditions.size(), all.conditions.size());

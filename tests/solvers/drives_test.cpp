@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "solvers/batch.hpp"
-#include "solvers/equilibrium.hpp"
-#include "solvers/simulation.hpp"
+#include "solvers/equilibrium/equilibrium.hpp"
+#include "solvers/transient/batch.hpp"
+#include "solvers/transient/simulation.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 #include "tests/support/small_systems.hpp"

@@ -1,4 +1,4 @@
-#include "solvers/eigenvalue_count.hpp"
+#include "solvers/eigenvalues/eigenvalue_count.hpp"
 
 #include <gtest/gtest.h>
 

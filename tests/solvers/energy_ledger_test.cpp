@@ -1,4 +1,4 @@
-#include "solvers/energy_ledger.hpp"
+#include "solvers/transient/energy_ledger.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "solvers/make_propagator.hpp"
-#include "substructures/beam.hpp"
+#include "solvers/integrators/make_propagator.hpp"
+#include "substructures/bodies/beam.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 #include "tests/support/small_systems.hpp"
@@ -51,7 +51,7 @@ class FreeBody {
   }
   void march(int num_steps) {
     for (int n = 0; n < num_steps; ++n, ++index_) {
-      propagator_->foresee(nullptr, ledger.position(0), ledger.increment(0));
+      propagator_->predict_step(nullptr, ledger.position(0), ledger.increment(0));
       propagator_->advance(nullptr);
       ledger.add(index_ * step_, {}, {});
     }

@@ -1,4 +1,4 @@
-#include "solvers/equilibrium.hpp"
+#include "solvers/equilibrium/equilibrium.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,9 +6,9 @@
 #include <Eigen/SparseLU>
 #include <cmath>
 
-#include "coupling/stribeck_friction.hpp"
 #include "core/errors.hpp"
-#include "substructures/beam.hpp"
+#include "coupling/laws/stribeck_friction.hpp"
+#include "substructures/bodies/beam.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 
@@ -271,12 +271,12 @@ TEST(Equilibrium, IsThatOfTheFullModel) {
   const ContactPoint& point = system.contacts[0];
   const MasterSurface& master = system.surfaces[0];
   const auto s = static_cast<std::size_t>(segment);
-  Eigen::Matrix<double, 6, 1> slots;
-  slots << moved(system, equilibrium, point.slave_body, point.slave_rows),
+  Eigen::Matrix<double, 6, 1> ports;
+  ports << moved(system, equilibrium, point.slave_body, point.slave_rows),
       moved(system, equilibrium, master.body, master.rows[s]),
       moved(system, equilibrium, master.body, master.rows[s + 1]);
   const Eigen::Matrix<double, 6, 1> full = solution(dofs);
-  EXPECT_LT((slots - full).norm(), tolerance * full.norm());
+  EXPECT_LT((ports - full).norm(), tolerance * full.norm());
 }
 
 TEST(Equilibrium, BodiesStandWhereTheContactsSayTheyDo) {

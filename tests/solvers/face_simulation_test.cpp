@@ -8,12 +8,12 @@
 #include <optional>
 #include <vector>
 
-#include "coupling/static_dynamic_friction.hpp"
-#include "coupling/stribeck_friction.hpp"
 #include "core/errors.hpp"
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/linearise.hpp"
-#include "solvers/simulation.hpp"
+#include "coupling/laws/static_dynamic_friction.hpp"
+#include "coupling/laws/stribeck_friction.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/equilibrium/linearise.hpp"
+#include "solvers/transient/simulation.hpp"
 #include "tests/support/face_contacts.hpp"
 #include "tests/support/face_system.hpp"
 #include "tests/support/message_of.hpp"

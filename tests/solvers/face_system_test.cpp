@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "coupling/stribeck_friction.hpp"
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/linear_pencil.hpp"
-#include "solvers/linearise.hpp"
+#include "coupling/laws/stribeck_friction.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/linear_pencil.hpp"
+#include "solvers/equilibrium/linearise.hpp"
 #include "tests/support/face_contacts.hpp"
 #include "tests/support/face_system.hpp"
 

@@ -1,4 +1,4 @@
-#include "solvers/half_space_convolution.hpp"
+#include "solvers/half_space/half_space_convolution.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

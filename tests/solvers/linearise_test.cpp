@@ -1,4 +1,4 @@
-#include "solvers/linearise.hpp"
+#include "solvers/equilibrium/linearise.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@
 #include <random>
 #include <utility>
 
-#include "coupling/stribeck_friction.hpp"
 #include "core/errors.hpp"
-#include "substructures/beam.hpp"
+#include "coupling/laws/stribeck_friction.hpp"
+#include "substructures/bodies/beam.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 
@@ -38,7 +38,7 @@ struct RandomContact {
   FrictionLaw law = stribeck_friction(0.6, 0.2, 0.08);
   double friction_factor = 0.7;
   Eigen::Vector2d undeformed_tangent;
-  SlotVector velocity = SlotVector::Zero(6);
+  PortVector velocity = PortVector::Zero(6);
 };
 
 RandomContact random_contact(std::mt19937& random, ContactAssumption assumption) {
@@ -61,7 +61,7 @@ RandomContact random_contact(std::mt19937& random, ContactAssumption assumption)
 }
 
 /// The kinematics of a contact, written out once more for real and for complex numbers: gap, ξ and
-/// the slot forces per unit of λ.
+/// the port forces per unit of λ.
 template <class Number>
 struct ContactMap {
   Number gap;
@@ -73,8 +73,8 @@ template <class Number>
 ContactMap<Number> contact_map(const RandomContact& contact, const std::array<Number, 6>& shift,
                                const std::array<Number, 6>& velocity) {
   const ContactPositions& positions = contact.positions;
-  const auto moved = [&](const Eigen::Vector2d& point, std::size_t slot) {
-    return std::array<Number, 2>{point.x() + shift[slot], point.y() + shift[slot + 1]};
+  const auto moved = [&](const Eigen::Vector2d& point, std::size_t port) {
+    return std::array<Number, 2>{point.x() + shift[port], point.y() + shift[port + 1]};
   };
   const auto slave = moved(positions.slave, 0);
   const auto first = moved(positions.master.nodes[0], 2);
@@ -118,10 +118,10 @@ ContactMap<Number> contact_map(const RandomContact& contact, const std::array<Nu
 
 /// All derivatives by complex steps: exact to rounding.
 struct ExactDerivatives {
-  SlotVector gap = SlotVector::Zero(6);
-  SlotVector xi = gap;
-  SlotMatrix force_by_position = SlotMatrix::Zero(6, 6);
-  SlotMatrix force_by_velocity = force_by_position;
+  PortVector gap = PortVector::Zero(6);
+  PortVector xi = gap;
+  PortMatrix force_by_position = PortMatrix::Zero(6, 6);
+  PortMatrix force_by_velocity = force_by_position;
 };
 
 ExactDerivatives exact_derivatives(const RandomContact& contact) {
@@ -194,7 +194,7 @@ ContactPositions random_smooth_contact(std::mt19937& random, ContactAssumption a
 }
 
 /// The kinematics of a smooth contact, written out once more for complex displacements of its
-/// slots: gap, ξ and the slot forces per unit of λ, one after the other.
+/// ports: gap, ξ and the port forces per unit of λ, one after the other.
 std::array<Complex, 12> smooth_contact_map(const ContactPositions& positions,
                                            const FrictionLaw& law, double friction_factor,
                                            const std::array<Complex, 10>& shift, double xi_guess) {
@@ -279,9 +279,9 @@ TEST(ContactLinearisation, IsTheDerivativeOfTheKinematicsOnASmoothSurface) {
       EXPECT_NEAR(linear.gap, here[0].real(), 1e-17);
       EXPECT_NEAR(xi, here[1].real(), tolerance);
       ASSERT_EQ(linear.force_row.size(), 10);
-      SlotVector gap(10);
-      SlotVector shift(10);
-      SlotMatrix force(10, 10);
+      PortVector gap(10);
+      PortVector shift(10);
+      PortMatrix force(10, 10);
       for (std::size_t k = 0; k < 10; ++k) {
         std::array<Complex, 10> displaced{};
         displaced[k] = Complex(0.0, step);
@@ -349,8 +349,8 @@ TEST(ContactLinearisation, RowsAreThoseOfTheContactButForTheSlopeOfSubsC) {
           linearise_contact(contact.positions, contact.law, contact.friction_factor, terms);
       const ContactRows rows = make_rows(linear.projection, linear.friction, linear.direction);
       const auto& [c, e] = rows;
-      SlotVector compatibility(6);
-      SlotVector equilibrium(6);
+      PortVector compatibility(6);
+      PortVector equilibrium(6);
       compatibility << c.slave[0], c.slave[1], c.master[0], c.master[1], c.master[2], c.master[3];
       equilibrium << e.slave[0], e.slave[1], e.master[0], e.master[1], e.master[2], e.master[3];
       EXPECT_LT((linear.force_row - equilibrium).norm(), 1e-15);
@@ -369,11 +369,11 @@ TEST(ContactLinearisation, TermsAddUpToTheWhole) {
     };
     const ContactLinearisation whole = linear({});
     const ContactLinearisation nothing = linear(no_terms);
-    EXPECT_EQ(nothing.force_by_position, SlotMatrix::Zero(6, 6).eval());
-    EXPECT_EQ(nothing.force_by_velocity, SlotMatrix::Zero(6, 6).eval());
-    SlotMatrix position = SlotMatrix::Zero(6, 6);
-    SlotMatrix velocity = SlotMatrix::Zero(6, 6);
-    SlotVector gap = nothing.gap_row;
+    EXPECT_EQ(nothing.force_by_position, PortMatrix::Zero(6, 6).eval());
+    EXPECT_EQ(nothing.force_by_velocity, PortMatrix::Zero(6, 6).eval());
+    PortMatrix position = PortMatrix::Zero(6, 6);
+    PortMatrix velocity = PortMatrix::Zero(6, 6);
+    PortVector gap = nothing.gap_row;
     int num_active = 0;
     for (bool LinearisationTerms::*term :
          {&LinearisationTerms::turning_normal, &LinearisationTerms::turning_friction,
@@ -437,12 +437,12 @@ TEST(Linearise, IsTheTangentOfTheEquilibrium) {
       const Eigen::Index n = pencil.num_modes();
       Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + 1, n + 1);
       matrix.diagonal().head(n) = pencil.omega.array().square();
-      if (pencil.slot_stiffness.size() > 0) {
+      if (pencil.port_stiffness.size() > 0) {
         matrix.topLeftCorner(n, n) +=
-            pencil.slots.transpose() * pencil.slot_stiffness * pencil.slots;
+            pencil.ports.transpose() * pencil.port_stiffness * pencil.ports;
       }
-      matrix.topRightCorner(n, 1) = pencil.slots.transpose() * pencil.equilibrium.transpose();
-      matrix.bottomLeftCorner(1, n) = pencil.compatibility * pencil.slots;
+      matrix.topRightCorner(n, 1) = pencil.ports.transpose() * pencil.equilibrium.transpose();
+      matrix.bottomLeftCorner(1, n) = pencil.compatibility * pencil.ports;
       Eigen::VectorXd right_side = Eigen::VectorXd::Zero(n + 1);
       const ModalBody& oblique = system.bodies[1].modal;
       right_side.segment(system.bodies[0].modal.size(), oblique.size()) =
@@ -463,10 +463,10 @@ TEST(Linearise, IsTheTangentOfTheEquilibrium) {
       // The test can tell: without the terms it is off by more than that.
       if (assumption == ContactAssumption::subs_a) continue;
       const Pencil rows_only = linearise(system, equilibrium, no_terms);
-      EXPECT_EQ(rows_only.slot_stiffness.size(), 0);
+      EXPECT_EQ(rows_only.port_stiffness.size(), 0);
       matrix.topLeftCorner(n, n).setZero();
       matrix.diagonal().head(n) = pencil.omega.array().square();
-      matrix.bottomLeftCorner(1, n) = rows_only.compatibility * rows_only.slots;
+      matrix.bottomLeftCorner(1, n) = rows_only.compatibility * rows_only.ports;
       EXPECT_GT((matrix.partialPivLu().solve(right_side).head(n) - slope).norm(),
                 1e-5 * slope.norm());
     }
@@ -476,16 +476,16 @@ TEST(Linearise, IsTheTangentOfTheEquilibrium) {
 /// The determinant whose zeros are the eigenvalues: 1 + Z(G + s H), Z B_Eᵀ; B_C, 0 with
 /// Z = S diag(1/(s² + c s + ω²)) Sᵀ.
 Complex characteristic(const Pencil& pencil, Complex s) {
-  const Eigen::Index m = pencil.num_slots();
+  const Eigen::Index m = pencil.num_ports();
   const Eigen::Index k = pencil.num_constraints();
   const Eigen::VectorXcd inverse = (s * s + s * pencil.damping.array().cast<Complex>() +
                                     pencil.omega.array().square().cast<Complex>())
                                        .inverse();
-  const Eigen::MatrixXcd slots = pencil.slots.cast<Complex>();
-  const Eigen::MatrixXcd receptance = slots * inverse.asDiagonal() * slots.transpose();
+  const Eigen::MatrixXcd ports = pencil.ports.cast<Complex>();
+  const Eigen::MatrixXcd receptance = ports * inverse.asDiagonal() * ports.transpose();
   Eigen::MatrixXcd forces = Eigen::MatrixXcd::Zero(m, m);
-  if (pencil.slot_stiffness.size() > 0) forces += pencil.slot_stiffness.cast<Complex>();
-  if (pencil.slot_damping.size() > 0) forces += s * pencil.slot_damping.cast<Complex>();
+  if (pencil.port_stiffness.size() > 0) forces += pencil.port_stiffness.cast<Complex>();
+  if (pencil.port_damping.size() > 0) forces += s * pencil.port_damping.cast<Complex>();
   Eigen::MatrixXcd matrix(m + k, m + k);
   matrix << Eigen::MatrixXcd::Identity(m, m) + receptance * forces,
       receptance * pencil.equilibrium.transpose().cast<Complex>(),
@@ -576,18 +576,18 @@ TEST(Linearise, AboutTheUndeformedGeometryItIsThePublishedLocus) {
         find_equilibrium(system, sliding_state(system, drive_displacement_at(system, 0, position),
                                                ContactGeometry::undeformed));
     const Pencil pencil = linearise(system, equilibrium);
-    EXPECT_EQ(pencil.slot_stiffness.size(), 0);
-    EXPECT_EQ(pencil.slot_damping.size(), 0);
+    EXPECT_EQ(pencil.port_stiffness.size(), 0);
+    EXPECT_EQ(pencil.port_damping.size(), 0);
     const Complex s = eigenvalue_near(pencil, at_frequency(growth, frequency));
     EXPECT_NEAR(s.real(), growth, 0.01 + 1e-3 * std::abs(growth));
     EXPECT_NEAR(s.imag() / (2.0 * std::numbers::pi), frequency, 0.01 + 1e-5 * frequency);
 
     Pencil placed = make_modal_pencil(system);
     place_undeformed(placed, system, equilibrium.state.drive_displacement, 0.30, 1.0);
-    EXPECT_LT((placed.compatibility * placed.slots - pencil.compatibility * pencil.slots).norm(),
-              1e-12 * placed.slots.norm());
-    EXPECT_LT((placed.equilibrium * placed.slots - pencil.equilibrium * pencil.slots).norm(),
-              1e-12 * placed.slots.norm());
+    EXPECT_LT((placed.compatibility * placed.ports - pencil.compatibility * pencil.ports).norm(),
+              1e-12 * placed.ports.norm());
+    EXPECT_LT((placed.equilibrium * placed.ports - pencil.equilibrium * pencil.ports).norm(),
+              1e-12 * placed.ports.norm());
   }
 }
 
@@ -599,19 +599,19 @@ TEST(Linearise, FrictionThatFallsWithTheVelocityFeedsTheTangentialMotion) {
         find_equilibrium(system, sliding_state(system, 0.010, geometry));
     const ContactEquilibrium& contact = equilibrium.contacts.at(0);
     const Pencil pencil = linearise(system, equilibrium);
-    ASSERT_EQ(pencil.slot_damping.rows(), 6);
-    // H = λ χ (dμ/dv) τ τᵀ with τ the sliding velocity per velocity of the slots.
+    ASSERT_EQ(pencil.port_damping.rows(), 6);
+    // H = λ χ (dμ/dv) τ τᵀ with τ the sliding velocity per velocity of the ports.
     const auto& [xi, tangent, normal, weights] = contact.projection;
-    SlotVector sliding(6);
+    PortVector sliding(6);
     sliding << tangent, -(1.0 - xi) * tangent, -xi * tangent;
     const double slope = sliding_friction_slope(system.contacts[0].friction, contact.slip_velocity);
     EXPECT_LT(slope, 0.0);
-    const SlotMatrix expected = contact.force * slope * sliding * sliding.transpose();
-    EXPECT_LT((pencil.slot_damping - expected).norm(), 1e-14 * expected.norm());
-    EXPECT_EQ(pencil.slot_stiffness.size() > 0, geometry == ContactGeometry::deformed);
+    const PortMatrix expected = contact.force * slope * sliding * sliding.transpose();
+    EXPECT_LT((pencil.port_damping - expected).norm(), 1e-14 * expected.norm());
+    EXPECT_EQ(pencil.port_stiffness.size() > 0, geometry == ContactGeometry::deformed);
     LinearisationTerms terms;
     terms.friction_slope = false;
-    EXPECT_EQ(linearise(system, equilibrium, terms).slot_damping.size(), 0);
+    EXPECT_EQ(linearise(system, equilibrium, terms).port_damping.size(), 0);
   }
 }
 
@@ -634,14 +634,14 @@ TEST(Linearise, OpenContactsDoNotAppear) {
   ASSERT_LT(closed.size(), system.contacts.size());
   const Pencil pencil = linearise(system, equilibrium);
   EXPECT_EQ(pencil.num_constraints(), static_cast<Eigen::Index>(closed.size()));
-  EXPECT_EQ(pencil.num_slots(), 6 * static_cast<Eigen::Index>(closed.size()));
-  EXPECT_EQ(pencil.slot_stiffness.rows(), pencil.num_slots());
+  EXPECT_EQ(pencil.num_ports(), 6 * static_cast<Eigen::Index>(closed.size()));
+  EXPECT_EQ(pencil.port_stiffness.rows(), pencil.num_ports());
   EXPECT_NO_THROW(check_pencil(pencil));
   for (std::size_t k = 0; k < closed.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(k);
     const ModalBody& body = system.bodies[1].modal;
     const Eigen::RowVectorXd expected = body.rows.row(system.contacts[closed[k]].slave_rows.y);
-    EXPECT_EQ(pencil.slots.row(6 * row + 1).tail(body.size()), expected);
+    EXPECT_EQ(pencil.ports.row(6 * row + 1).tail(body.size()), expected);
     EXPECT_NE(pencil.compatibility(row, 6 * row + 1), 0.0);
   }
 }

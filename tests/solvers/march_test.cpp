@@ -1,4 +1,4 @@
-#include "solvers/march.hpp"
+#include "solvers/transient/march.hpp"
 
 #include <gtest/gtest.h>
 

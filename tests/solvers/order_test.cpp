@@ -4,7 +4,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "substructures/beam.hpp"
+#include "substructures/bodies/beam.hpp"
 #include "tests/support/paper_model.hpp"
 #include "tests/support/relative_difference.hpp"
 

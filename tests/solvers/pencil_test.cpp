@@ -1,4 +1,4 @@
-#include "solvers/pencil.hpp"
+#include "solvers/eigenvalues/pencil.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 #include <numbers>
 #include <random>
 
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/linear_pencil.hpp"
-#include "solvers/secular_eigenvalues.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/linear_pencil.hpp"
+#include "solvers/eigenvalues/secular_eigenvalues.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
@@ -37,20 +37,20 @@ TEST(Pencil, RefusesWhatDoesNotFitTogether) {
   EXPECT_EQ(message_after([](Pencil&) {}), "<no exception>");
   EXPECT_EQ(message_after([](Pencil& p) { p.damping.conservativeResize(11); }),
             "pencil: damping is 11 x 1 instead of 12 x 1");
-  EXPECT_EQ(message_after([](Pencil& p) { p.slots.conservativeResize(12, 11); }),
-            "pencil: slots is 12 x 11 instead of 12 x 12");
+  EXPECT_EQ(message_after([](Pencil& p) { p.ports.conservativeResize(12, 11); }),
+            "pencil: ports is 12 x 11 instead of 12 x 12");
   EXPECT_EQ(message_after([](Pencil& p) { p.compatibility.conservativeResize(2, 6); }),
             "pencil: compatibility is 2 x 6 instead of 2 x 12");
   EXPECT_EQ(message_after([](Pencil& p) { p.equilibrium.conservativeResize(1, 12); }),
             "pencil: equilibrium is 1 x 12 instead of 2 x 12");
-  EXPECT_EQ(message_after([](Pencil& p) { p.slot_stiffness.conservativeResize(12, 6); }),
-            "pencil: slot_stiffness is 12 x 6 instead of 12 x 12");
-  EXPECT_EQ(message_after([](Pencil& p) { p.slot_damping.conservativeResize(6, 12); }),
-            "pencil: slot_damping is 6 x 12 instead of 12 x 12");
+  EXPECT_EQ(message_after([](Pencil& p) { p.port_stiffness.conservativeResize(12, 6); }),
+            "pencil: port_stiffness is 12 x 6 instead of 12 x 12");
+  EXPECT_EQ(message_after([](Pencil& p) { p.port_damping.conservativeResize(6, 12); }),
+            "pencil: port_damping is 6 x 12 instead of 12 x 12");
   EXPECT_EQ(message_after([](Pencil& p) { p.omega(3) = std::nan(""); }),
             "pencil: omega is not finite");
-  EXPECT_EQ(message_after([](Pencil& p) { p.slots(3, 3) = INFINITY; }),
-            "pencil: slots is not finite");
+  EXPECT_EQ(message_after([](Pencil& p) { p.ports(3, 3) = INFINITY; }),
+            "pencil: ports is not finite");
   EXPECT_EQ(message_after([](Pencil& p) { p.omega(3) = -1.0; }), "pencil: omega is negative");
   EXPECT_EQ(message_after([](Pencil& p) {
               p = test::constrained_modes(Eigen::Vector2d(1, 2), Eigen::Vector2d::Zero(),
@@ -85,8 +85,8 @@ TEST(Pencil, EigenvectorsSolveTheRightAndTheLeftProblem) {
   for (const auto terms : {test::ContactTerms::rows_only, test::ContactTerms::with_stiffness,
                            test::ContactTerms::with_stiffness_and_damping}) {
     const Pencil pencil = test::random_pencil(7, 20, 2, terms);
-    const Eigen::MatrixXd gap_rows = pencil.compatibility * pencil.slots;
-    const Eigen::MatrixXd force_rows = pencil.equilibrium * pencil.slots;
+    const Eigen::MatrixXd gap_rows = pencil.compatibility * pencil.ports;
+    const Eigen::MatrixXd force_rows = pencil.equilibrium * pencil.ports;
     const Eigen::MatrixXd allowed = Eigen::FullPivLU<Eigen::MatrixXd>(gap_rows).kernel();
     for (const Eigenvalue& eigenvalue : secular_eigenvalues(pencil, SpectrumWindow::all())) {
       const Eigenvector vector = eigenvector(pencil, eigenvalue.s);
@@ -125,8 +125,8 @@ TEST(Pencil, EigenvectorsOfManyCoupledModesSolveBothProblems) {
   system.gaps = random(2, n);
   system.forces = system.gaps + 0.2 * random(2, n);
   const Pencil pencil = make_pencil(system);
-  const Eigen::MatrixXd gap_rows = pencil.compatibility * pencil.slots;
-  const Eigen::MatrixXd force_rows = pencil.equilibrium * pencil.slots;
+  const Eigen::MatrixXd gap_rows = pencil.compatibility * pencil.ports;
+  const Eigen::MatrixXd force_rows = pencil.equilibrium * pencil.ports;
   const Eigen::MatrixXd allowed = Eigen::FullPivLU<Eigen::MatrixXd>(gap_rows).kernel();
   const std::vector<Eigenvalue> eigenvalues = dense_eigenvalues(pencil);
   ASSERT_GE(eigenvalues.size(), 38U);
@@ -166,9 +166,9 @@ TEST(Pencil, ModalAssuranceIsOneForTheSameShapeAndZeroForOrthogonalOnes) {
 
 TEST(Pencil, ResidualModesKeepFlexibilityItsDampingAndItsInertia) {
   Pencil pencil = test::random_pencil(3, 40, 1, test::ContactTerms::rows_only);
-  // Proportional damping, and a slot that nothing moves.
+  // Proportional damping, and a port that nothing moves.
   pencil.damping = 0.2 + 1e-3 * pencil.omega.array().square();
-  pencil.slots.row(4).setZero();
+  pencil.ports.row(4).setZero();
   const double cutoff = 30.0;
   const Pencil reduced = with_residual_modes(pencil, cutoff);
   const auto num_kept = (pencil.omega.array() <= cutoff).count();
@@ -177,7 +177,7 @@ TEST(Pencil, ResidualModesKeepFlexibilityItsDampingAndItsInertia) {
 
   const auto moment = [&](const Pencil& of, const Eigen::ArrayXd& factor) {
     const Eigen::VectorXd weight = (of.omega.array() > cutoff).select(factor, 0.0);
-    return Eigen::MatrixXd(of.slots * weight.asDiagonal() * of.slots.transpose());
+    return Eigen::MatrixXd(of.ports * weight.asDiagonal() * of.ports.transpose());
   };
   const auto expect_same = [&](auto&& factor) {
     const Eigen::MatrixXd full = moment(pencil, factor(pencil));
@@ -232,16 +232,16 @@ TEST_F(PaperPencil, RowsAreThoseOfTheSlidingContact) {
     EXPECT_NEAR(pencil.compatibility(0, 2 + i), rows.compatibility.master[entry], xi_rounding);
     EXPECT_NEAR(pencil.equilibrium(0, 2 + i), rows.equilibrium.master[entry], xi_rounding);
   }
-  // Slots are rows of the bodies, zero for the modes of the other one.
+  // Ports are rows of the bodies, zero for the modes of the other one.
   const System& system = trailing().system;
   const ModalBody& first = system.bodies[0].modal;
   const MasterSurface& surface = system.surfaces[0];
   const bool master_first = surface.body == 0;
   const PointRows& watched = master_first ? surface.rows[48] : system.contacts[0].slave_rows;
-  const int slot = master_first ? 2 : 0;
-  EXPECT_EQ(pencil.slots.row(slot).head(first.size()), first.rows.row(watched.x));
-  EXPECT_EQ(pencil.slots.row(slot + 1).head(first.size()), first.rows.row(watched.y));
-  EXPECT_EQ(pencil.slots.row(slot).tail(243 - first.size()).norm(), 0.0);
+  const int port = master_first ? 2 : 0;
+  EXPECT_EQ(pencil.ports.row(port).head(first.size()), first.rows.row(watched.x));
+  EXPECT_EQ(pencil.ports.row(port + 1).head(first.size()), first.rows.row(watched.y));
+  EXPECT_EQ(pencil.ports.row(port).tail(243 - first.size()).norm(), 0.0);
 }
 
 TEST_F(PaperPencil, DampingIsThatAtTheEndOfTheSchedule) {
@@ -256,7 +256,7 @@ TEST_F(PaperPencil, LinearBetweenTwoNodes) {
   const Pencil left = at(0.0481);
   const Pencil right = at(0.0489);
   const Pencil middle = at(0.0485);
-  EXPECT_EQ(left.slots, right.slots);
+  EXPECT_EQ(left.ports, right.ports);
   // ξ of positions of 0.1 m on segments of 1 mm is rounded to 100 eps.
   EXPECT_LT((0.5 * (left.equilibrium + right.equilibrium) - middle.equilibrium).norm(), 1e3 * eps);
 }

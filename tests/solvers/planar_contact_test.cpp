@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "solvers/contact_solver.hpp"
+#include "solvers/contact/contact_solver.hpp"
 
 namespace stridor {
 namespace {

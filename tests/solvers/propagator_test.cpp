@@ -1,5 +1,5 @@
 // One suite for every way to march one body.
-#include "solvers/propagator.hpp"
+#include "solvers/integrators/propagator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@
 #include <optional>
 #include <type_traits>
 
-#include "solvers/coupled_propagator.hpp"
-#include "solvers/dense_two_step.hpp"
-#include "solvers/modal_recurrence.hpp"
+#include "solvers/integrators/coupled_propagator.hpp"
+#include "solvers/integrators/dense_two_step.hpp"
+#include "solvers/integrators/modal_recurrence.hpp"
 
 namespace stridor {
 namespace {
@@ -41,19 +41,19 @@ ReducedBody single_mass(double mass, double stiffness, double alpha, double beta
 }
 
 /// δ of the exact forms.
-constexpr double surplus = 0.02;
+constexpr double added = 0.02;
 
 /// Modes marched by a scheme; those above a cut-off truncated to their residual flexibility.
 template <Integrator scheme>
 std::unique_ptr<Propagator> make_modal_form(const ReducedBody& body,
-                                            const Eigen::MatrixXd& patterns, double step, int slots,
+                                            const Eigen::MatrixXd& patterns, double step, int ports,
                                             std::span<const double> loads, double cutoff = 1e300) {
   const ModalBody modal = with_static_residual(make_modal(body), cutoff);
   // Patterns are given in reduced coordinates, ΦᵀMΦ = I.
   const Eigen::MatrixXd forces = body.rows.transpose().inverse() * patterns;
   return std::make_unique<ModalRecurrence>(
       modal, modal.shapes.transpose() * patterns, scheme, step,
-      scheme == Integrator::exact ? std::optional(surplus) : std::nullopt, slots,
+      scheme == Integrator::exact ? std::optional(added) : std::nullopt, ports,
       body.damping.alpha_at(0.0), loads,
       Propagator::Residual{modal.residual,
                            modal.residual.flexibility.size() > 0
@@ -67,27 +67,27 @@ std::unique_ptr<Propagator> make_modal_form(const ReducedBody& body,
 
 struct ModalForm {
   static std::unique_ptr<Propagator> make(const ReducedBody& body, const Eigen::MatrixXd& patterns,
-                                          double step, int slots, std::span<const double> loads) {
-    return make_modal_form<Integrator::central_difference>(body, patterns, step, slots, loads);
+                                          double step, int ports, std::span<const double> loads) {
+    return make_modal_form<Integrator::central_difference>(body, patterns, step, ports, loads);
   }
 };
 struct ExactForm {
   static std::unique_ptr<Propagator> make(const ReducedBody& body, const Eigen::MatrixXd& patterns,
-                                          double step, int slots, std::span<const double> loads) {
-    return make_modal_form<Integrator::exact>(body, patterns, step, slots, loads);
+                                          double step, int ports, std::span<const double> loads) {
+    return make_modal_form<Integrator::exact>(body, patterns, step, ports, loads);
   }
 };
 /// The highest of the three modes of chain(), 24 rad/s, is truncated.
 struct ResidualForm {
   static std::unique_ptr<Propagator> make(const ReducedBody& body, const Eigen::MatrixXd& patterns,
-                                          double step, int slots, std::span<const double> loads) {
-    return make_modal_form<Integrator::exact>(body, patterns, step, slots, loads, 20.0);
+                                          double step, int ports, std::span<const double> loads) {
+    return make_modal_form<Integrator::exact>(body, patterns, step, ports, loads, 20.0);
   }
 };
 /// All damping as terms that might couple the modes.
 struct CoupledForm {
   static std::unique_ptr<Propagator> make(const ReducedBody& given, const Eigen::MatrixXd& patterns,
-                                          double step, int slots, std::span<const double> loads) {
+                                          double step, int ports, std::span<const double> loads) {
     ReducedBody body = given;
     const Eigen::MatrixXd damping =
         given.damping.alpha * given.mass + given.damping.beta * given.stiffness;
@@ -95,20 +95,20 @@ struct CoupledForm {
     body.coupled = {damping, Eigen::MatrixXd::Zero(given.size(), given.size())};
     const ModalBody modal = make_modal(body);
     return std::make_unique<CoupledPropagator>(modal, modal.shapes.transpose() * patterns, step,
-                                               surplus, slots, 0.0, loads, "chain");
+                                               added, ports, 0.0, loads, "chain");
   }
 };
 struct PublishedForm {
   static std::unique_ptr<Propagator> make(const ReducedBody& body, const Eigen::MatrixXd& patterns,
-                                          double step, int slots, std::span<const double> loads) {
-    return std::make_unique<PublishedTwoStep>(body, patterns, step, slots,
+                                          double step, int ports, std::span<const double> loads) {
+    return std::make_unique<PublishedTwoStep>(body, patterns, step, ports,
                                               body.damping.alpha_at(0.0), loads);
   }
 };
 struct FusedForm {
   static std::unique_ptr<Propagator> make(const ReducedBody& body, const Eigen::MatrixXd& patterns,
-                                          double step, int slots, std::span<const double> loads) {
-    return std::make_unique<FusedTwoStep>(body, patterns, step, slots, body.damping.alpha_at(0.0),
+                                          double step, int ports, std::span<const double> loads) {
+    return std::make_unique<FusedTwoStep>(body, patterns, step, ports, body.damping.alpha_at(0.0),
                                           loads);
   }
 };
@@ -216,9 +216,9 @@ TYPED_TEST(PropagatorTest, CorrectionIsComplianceTimesForce) {
   EXPECT_NEAR(body->compliance(0, 1), 0.0, 1e-18);
 }
 
-TYPED_TEST(PropagatorTest, ForeseesTheStepThatItThenMakes) {
+TYPED_TEST(PropagatorTest, PredictsTheStepThatItThenMakes) {
   // Any number of ports; nine masses, so that the modes do not fill whole blocks.
-  for (const int num_slots : {0, 1, 2, 5}) {
+  for (const int num_ports : {0, 1, 2, 5}) {
     ReducedBody many;
     many.mass = Eigen::VectorXd::LinSpaced(9, 1.0, 2.0).asDiagonal();
     many.stiffness = Eigen::VectorXd::LinSpaced(9, 100.0, 900.0).asDiagonal();
@@ -229,16 +229,16 @@ TYPED_TEST(PropagatorTest, ForeseesTheStepThatItThenMakes) {
     many.rows = Eigen::MatrixXd::Identity(9, 9);
     const double load[] = {3.0};
     const auto body =
-        TypeParam::make(many, Eigen::VectorXd::LinSpaced(9, -1.0, 1.0), 0.01, num_slots, load);
-    for (int slot = 0; slot < num_slots; ++slot) body->watch(slot, 2 * slot);
-    std::vector<double> forces(static_cast<std::size_t>(num_slots));
+        TypeParam::make(many, Eigen::VectorXd::LinSpaced(9, -1.0, 1.0), 0.01, num_ports, load);
+    for (int port = 0; port < num_ports; ++port) body->watch(port, 2 * port);
+    std::vector<double> forces(static_cast<std::size_t>(num_ports));
     std::vector<double> position(9);
     std::vector<double> increment(9);
     for (int n = 0; n < 50; ++n) {
-      for (int slot = 0; slot < num_slots; ++slot)
-        forces[static_cast<std::size_t>(slot)] = std::sin(0.3 * n + slot);
+      for (int port = 0; port < num_ports; ++port)
+        forces[static_cast<std::size_t>(port)] = std::sin(0.3 * n + port);
       const Eigen::VectorXd before = body->motion(forces.data()).displacement;
-      body->foresee(forces.data(), position, increment);
+      body->predict_step(forces.data(), position, increment);
       body->advance(forces.data());
       const Propagator::Motion after = body->motion(forces.data());
       for (Eigen::Index i = 0; i < 9; ++i) {
@@ -262,13 +262,13 @@ TYPED_TEST(AnyPropagatorTest, WatchingAnotherRowShowsItsPresentAndPredictedPlace
   }
   body->watch(0, 2);
   EXPECT_EQ(body->row(0), 2);
-  if (!body->is_prompt()) {
+  if (!body->has_feedthrough()) {
     EXPECT_NEAR(body->current(0), body->displacement(2), 1e-16);
   }
   const double predicted = body->predicted(0);
   const double none = 0.0;
   body->settle(&none);
-  if (!body->is_prompt()) body->advance(&none);
+  if (!body->has_feedthrough()) body->advance(&none);
   // Without the force the prediction is what happens.
   EXPECT_NEAR(body->current(0), predicted, 1e-16);
   // On new rows the lag of the truncated modes begins anew.
@@ -285,7 +285,7 @@ TYPED_TEST(AnyPropagatorTest, ExpectsItsPlaceUnderTheLastForces) {
     body->settle(&push);
     body->advance(&push);
   }
-  if (!body->is_prompt()) {
+  if (!body->has_feedthrough()) {
     EXPECT_EQ(body->expected(0), body->predicted(0));
     return;
   }
@@ -299,22 +299,22 @@ TYPED_TEST(AnyPropagatorTest, ExpectsItsPlaceUnderTheLastForces) {
   EXPECT_NEAR(body->displacement(2), expected_there, 1e-16);
 }
 
-TYPED_TEST(AnyPropagatorTest, MoreSlotsThanAreFusedGiveTheSameMotion) {
+TYPED_TEST(AnyPropagatorTest, MorePortsThanAreFusedGiveTheSameMotion) {
   // Five ports on the same row share a force that one port carries alone.
   const auto one = TypeParam::make(chain(0.5, 1e-3), Eigen::MatrixXd(3, 0), 0.01, 1, {});
   const auto five = TypeParam::make(chain(0.5, 1e-3), Eigen::MatrixXd(3, 0), 0.01, 5, {});
   one->watch(0, 1);
-  for (int slot = 0; slot < 5; ++slot) five->watch(slot, 1);
+  for (int port = 0; port < 5; ++port) five->watch(port, 1);
   for (int n = 0; n < 100; ++n) {
     const double whole = std::sin(0.1 * n);
     const double parts[] = {0.4 * whole, 0.3 * whole, 0.2 * whole, 0.05 * whole, 0.05 * whole};
     one->settle(&whole);
     five->settle(parts);
-    for (int slot = 0; slot < 5; ++slot) ASSERT_NEAR(five->current(slot), one->current(0), 1e-14);
+    for (int port = 0; port < 5; ++port) ASSERT_NEAR(five->current(port), one->current(0), 1e-14);
     one->advance(&whole);
     five->advance(parts);
-    for (int slot = 0; slot < 5; ++slot)
-      ASSERT_NEAR(five->predicted(slot), one->predicted(0), 1e-14);
+    for (int port = 0; port < 5; ++port)
+      ASSERT_NEAR(five->predicted(port), one->predicted(0), 1e-14);
   }
 }
 
@@ -340,9 +340,9 @@ TYPED_TEST(AnyPropagatorTest, GoesOnBitwiseAfterSaveAndLoad) {
   march(*resumed, 57, 200);
   for (int row = 0; row < 3; ++row)
     EXPECT_EQ(straight->displacement(row), resumed->displacement(row));
-  for (int slot = 0; slot < 2; ++slot) {
-    EXPECT_EQ(straight->predicted(slot), resumed->predicted(slot));
-    EXPECT_EQ(straight->increment(slot), resumed->increment(slot));
+  for (int port = 0; port < 2; ++port) {
+    EXPECT_EQ(straight->predicted(port), resumed->predicted(port));
+    EXPECT_EQ(straight->increment(port), resumed->increment(port));
   }
 }
 
@@ -475,7 +475,7 @@ TEST(ExactPropagation, IsSecondOrderInTheStepUnderAVaryingForce) {
 /// Displacement per force exp(iΩt) by the recurrence of a mode.
 std::complex<double> transfer(const StepCoefficients& c, double frequency, double step) {
   const std::complex<double> z = std::exp(std::complex<double>(0.0, frequency * step));
-  return c.gain / (z - 1.0 - c.keep * (1.0 - 1.0 / z) + c.pull) + c.prompt;
+  return c.gain / (z - 1.0 - c.keep * (1.0 - 1.0 / z) + c.pull) + c.feedthrough;
 }
 
 TEST(ExactPropagation, AnswersAnOscillatingForceToFourthOrderHoweverStiffTheMode) {
@@ -517,16 +517,16 @@ TEST(ExactPropagation, AnswersASlowForceWithTheRightDelay) {
   EXPECT_NEAR(std::abs(drift * std::complex<double>(0.0, frequency * 300.0) - 1.0), 0.0, 1e-4);
 }
 
-TEST(ExactPropagation, PromptAnswerHasNoJumpsWhereItsFormulaChanges) {
+TEST(ExactPropagation, FeedthroughAnswerHasNoJumpsWhereItsFormulaChanges) {
   for (const double damping : {0.0, 50.0, 99.99, 100.01, 3000.0}) {
-    const double below = exact_propagation(0.0999, damping, 1e-3).prompt;
-    const double above = exact_propagation(0.1001, damping, 1e-3).prompt;
+    const double below = exact_propagation(0.0999, damping, 1e-3).feedthrough;
+    const double above = exact_propagation(0.1001, damping, 1e-3).feedthrough;
     EXPECT_NEAR(above / below, 1.0, 1e-6) << "c " << damping;
   }
   EXPECT_NEAR(
-      exact_propagation(0.0, 99.999, 1e-3).prompt / exact_propagation(0.0, 100.001, 1e-3).prompt,
+      exact_propagation(0.0, 99.999, 1e-3).feedthrough / exact_propagation(0.0, 100.001, 1e-3).feedthrough,
       1.0, 1e-7);
-  EXPECT_NEAR(exact_propagation(0.0, 0.0, 1e-3).prompt, 1e-6 / 12.0, 1e-20);
+  EXPECT_NEAR(exact_propagation(0.0, 0.0, 1e-3).feedthrough, 1e-6 / 12.0, 1e-20);
 }
 
 TEST(ExactPropagation, NoModeAnswersAtOnceByMoreThanItsFlexibility) {
@@ -534,13 +534,13 @@ TEST(ExactPropagation, NoModeAnswersAtOnceByMoreThanItsFlexibility) {
   for (const double turn : {1.9, 2.0}) {
     for (const double damping : {0.0, 0.01}) {
       const StepCoefficients c = exact_propagation(turn, damping, 1.0, 0.309);
-      EXPECT_NEAR(c.prompt, 1.0 / (turn * turn), 1e-15);
+      EXPECT_NEAR(c.feedthrough, 1.0 / (turn * turn), 1e-15);
       EXPECT_EQ(c.gain, 0.0);
     }
   }
   EXPECT_GT(exact_propagation(1.7, 0.0, 1.0, 0.309).gain, 0.0);
   const StepCoefficients central = central_difference(1.9, 0.0, 1.0, 0.4);
-  EXPECT_NEAR(central.prompt, 1.0 / (1.9 * 1.9), 1e-15);
+  EXPECT_NEAR(central.feedthrough, 1.0 / (1.9 * 1.9), 1e-15);
   EXPECT_EQ(central.gain, 0.0);
 }
 

@@ -1,4 +1,4 @@
-#include "solvers/secular_eigenvalues.hpp"
+#include "solvers/eigenvalues/secular_eigenvalues.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <random>
 
 #include "core/errors.hpp"
-#include "solvers/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
@@ -183,16 +183,16 @@ TEST(SecularEigenvalues, EqualBodiesThatFrictionDrivesApartGrowAlike) {
     Pencil pencil;
     pencil.omega.resize(n);
     pencil.damping = Eigen::VectorXd::Zero(n);
-    pencil.slots = Eigen::MatrixXd::Zero(2 * count, n);
+    pencil.ports = Eigen::MatrixXd::Zero(2 * count, n);
     pencil.compatibility = Eigen::MatrixXd::Zero(count, 2 * count);
     for (int i = 0; i < count; ++i) {
       pencil.omega.segment(3 * i, 3) << 1.0, 4.0, 10.0;
-      pencil.slots.block(2 * i, 3 * i, 2, 3) << 1.0, 0.4, 0.7, 0.3, -1.0, 0.6;
+      pencil.ports.block(2 * i, 3 * i, 2, 3) << 1.0, 0.4, 0.7, 0.3, -1.0, 0.6;
       pencil.compatibility(i, 2 * i) = 1.0;
     }
     pencil.equilibrium = pencil.compatibility;
-    pencil.slot_damping = Eigen::MatrixXd::Zero(2 * count, 2 * count);
-    for (int i = 0; i < count; ++i) pencil.slot_damping(2 * i + 1, 2 * i + 1) = -1e4;
+    pencil.port_damping = Eigen::MatrixXd::Zero(2 * count, 2 * count);
+    for (int i = 0; i < count; ++i) pencil.port_damping(2 * i + 1, 2 * i + 1) = -1e4;
     return pencil;
   };
   const auto one = secular_eigenvalues(bodies(1), SpectrumWindow::lowest(1));
@@ -438,7 +438,7 @@ TEST(SecularEigenvalues, AMeetingOfTwoIsFoundAsTwo) {
   // K = [[2, 1 − 4μ/3], [1, 2]] of Hoffmann's model: s² = −2 ± √(1 − 4μ/3), double at μ = 0.75.
   Pencil pencil = test::two_masses({2.0, 2.0}, {0.0, 0.0});
   for (const double friction : {0.5, 0.75 - 1e-9, 0.75, 0.75 + 1e-9, 0.9}) {
-    pencil.slot_stiffness = Eigen::Matrix2d{{0.0, 1.0 - 4.0 * friction / 3.0}, {1.0, 0.0}};
+    pencil.port_stiffness = Eigen::Matrix2d{{0.0, 1.0 - 4.0 * friction / 3.0}, {1.0, 0.0}};
     const auto found = secular_eigenvalues(pencil, SpectrumWindow::all());
     ASSERT_EQ(found.size(), 2) << friction;
     const Complex root = std::sqrt(Complex(1.0 - 4.0 * friction / 3.0, 0.0));

@@ -1,4 +1,4 @@
-#include "solvers/simulation.hpp"
+#include "solvers/transient/simulation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "core/errors.hpp"
-#include "solvers/make_propagator.hpp"
-#include "solvers/retained_modes.hpp"
-#include "substructures/beam.hpp"
+#include "solvers/integrators/make_propagator.hpp"
+#include "solvers/integrators/retained_modes.hpp"
+#include "substructures/bodies/beam.hpp"
 #include "tests/support/paper_model.hpp"
 #include "tests/support/relative_difference.hpp"
 

@@ -1,4 +1,4 @@
-#include "solvers/sliding_contact.hpp"
+#include "solvers/half_space/sliding_contact.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "solvers/sliding_influence.hpp"
+#include "solvers/half_space/sliding_influence.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

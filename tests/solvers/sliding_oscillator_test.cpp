@@ -1,4 +1,4 @@
-#include "solvers/sliding_oscillator.hpp"
+#include "solvers/transient/sliding_oscillator.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <complex>
 #include <functional>
 
-#include "coupling/shear_friction.hpp"
+#include "coupling/laws/shear_friction.hpp"
 #include "tests/support/paper_sphere.hpp"
 #include "tests/support/small_systems.hpp"
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "core/errors.hpp"
-#include "solvers/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/reference_brake.hpp"
 

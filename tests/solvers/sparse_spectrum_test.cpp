@@ -1,4 +1,4 @@
-#include "solvers/sparse_spectrum.hpp"
+#include "solvers/eigenvalues/sparse_spectrum.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "core/errors.hpp"
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/linear_pencil.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/linear_pencil.hpp"
 #include "tests/support/elastic_pads.hpp"
 #include "tests/support/message_of.hpp"
 

@@ -1,13 +1,13 @@
 // Factors of a frozen step from its characteristic function, against those of its matrix.
-#include "solvers/step_factors.hpp"
+#include "solvers/integrators/step_factors.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 #include <random>
 
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/two_step_scheme.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/integrators/two_step_scheme.hpp"
 
 namespace stridor {
 namespace {
@@ -31,7 +31,7 @@ FrozenModes random_modes(unsigned seed, bool is_exact) {
   modes.keep.resize(n);
   modes.pull.resize(n);
   modes.gain.resize(n);
-  modes.prompt.resize(n);
+  modes.feedthrough.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const double omega = std::pow(300.0, uniform(engine));
     const double damping = (engine() % 8 == 0 ? 2.5 : 0.05 * uniform(engine)) * omega;
@@ -40,7 +40,7 @@ FrozenModes random_modes(unsigned seed, bool is_exact) {
     modes.keep(i) = c.keep;
     modes.pull(i) = c.pull;
     modes.gain(i) = c.gain;
-    modes.prompt(i) = c.prompt;
+    modes.feedthrough(i) = c.feedthrough;
   }
   modes.gaps = matrix(k, n);
   modes.forces = modes.gaps + 0.2 * matrix(k, n);
@@ -64,7 +64,7 @@ Eigen::MatrixXd matrix_of(const FrozenModes& modes) {
   free.block(n, 0, n, n) = (-modes.pull).asDiagonal();
   free.block(n, n, n, n) = modes.keep.asDiagonal();
   Eigen::MatrixXd closed = modes.gaps *
-                           (modes.is_instantaneous ? modes.prompt : modes.gain).asDiagonal() *
+                           (modes.is_instantaneous ? modes.feedthrough : modes.gain).asDiagonal() *
                            modes.forces.transpose();
   Eigen::MatrixXd force = Eigen::MatrixXd::Zero(k, size);
   if (modes.is_instantaneous) {

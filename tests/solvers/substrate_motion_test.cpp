@@ -1,4 +1,4 @@
-#include "solvers/substrate_motion.hpp"
+#include "solvers/transient/substrate_motion.hpp"
 
 #include <gtest/gtest.h>
 

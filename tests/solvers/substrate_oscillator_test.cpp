@@ -1,4 +1,4 @@
-#include "solvers/substrate_oscillator.hpp"
+#include "solvers/transient/substrate_oscillator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "solvers/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
 #include "tests/support/paper_sphere.hpp"
 #include "tests/support/random_spheres.hpp"
 

@@ -9,15 +9,15 @@
 
 #include "core/errors.hpp"
 #include "models/model.hpp"
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/linearise.hpp"
-#include "solvers/secular_eigenvalues.hpp"
-#include "solvers/substrate_motion.hpp"
-#include "tests/support/substrate_stepper.hpp"
-#include "substructures/beam.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/secular_eigenvalues.hpp"
+#include "solvers/equilibrium/linearise.hpp"
+#include "solvers/transient/substrate_motion.hpp"
+#include "substructures/bodies/beam.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_sphere.hpp"
 #include "tests/support/small_systems.hpp"
+#include "tests/support/substrate_stepper.hpp"
 
 namespace stridor {
 namespace {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "coupling/static_dynamic_friction.hpp"
-#include "coupling/stribeck_friction.hpp"
 #include "core/errors.hpp"
-#include "solvers/simulation.hpp"
+#include "coupling/laws/static_dynamic_friction.hpp"
+#include "coupling/laws/stribeck_friction.hpp"
+#include "solvers/transient/simulation.hpp"
 #include "tests/support/constants.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"

@@ -1,4 +1,4 @@
-#include "substructures/annular_plate.hpp"
+#include "substructures/bodies/annular_plate.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "core/errors.hpp"
-#include "substructures/beam.hpp"
+#include "substructures/bodies/beam.hpp"
+#include "substructures/reduction/craig_bampton.hpp"
 #include "tests/support/brake_pad.hpp"
-#include "substructures/craig_bampton.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace stridor {

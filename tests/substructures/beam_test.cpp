@@ -1,4 +1,4 @@
-#include "substructures/beam.hpp"
+#include "substructures/bodies/beam.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "substructures/beam_mesh.hpp"
-#include "substructures/lowest_modes.hpp"
+#include "substructures/bodies/beam_mesh.hpp"
+#include "substructures/reduction/lowest_modes.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_beams.hpp"

@@ -1,4 +1,4 @@
-#include "substructures/craig_bampton.hpp"
+#include "substructures/reduction/craig_bampton.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "substructures/modal_body.hpp"
-#include "substructures/sparse_cholesky.hpp"
+#include "substructures/matrices/sparse_cholesky.hpp"
+#include "substructures/reduction/modal_body.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_beams.hpp"

@@ -1,4 +1,4 @@
-#include "substructures/damping.hpp"
+#include "substructures/matrices/damping.hpp"
 #include "tests/support/constants.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "substructures/lowest_modes.hpp"
+#include "substructures/reduction/lowest_modes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "substructures/lumped_body.hpp"
+#include "substructures/bodies/lumped_body.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

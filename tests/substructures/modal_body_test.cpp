@@ -1,4 +1,4 @@
-#include "substructures/modal_body.hpp"
+#include "substructures/reduction/modal_body.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "substructures/plate_body.hpp"
+#include "substructures/bodies/plate_body.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <complex>
 #include <numbers>
 
-#include "substructures/modal_body.hpp"
-#include "substructures/whole_body.hpp"
+#include "substructures/bodies/whole_body.hpp"
+#include "substructures/reduction/modal_body.hpp"
 
 namespace stridor {
 namespace {

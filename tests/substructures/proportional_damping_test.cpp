@@ -1,4 +1,4 @@
-#include "substructures/proportional_damping.hpp"
+#include "substructures/reduction/proportional_damping.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "substructures/q8_element.hpp"
+#include "substructures/elements/q8_element.hpp"
 
 #include <gtest/gtest.h>
 

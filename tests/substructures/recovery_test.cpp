@@ -1,8 +1,8 @@
-#include "substructures/recovery.hpp"
+#include "substructures/reduction/recovery.hpp"
 
 #include <gtest/gtest.h>
 
-#include "substructures/craig_bampton.hpp"
+#include "substructures/reduction/craig_bampton.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/paper_beams.hpp"
 

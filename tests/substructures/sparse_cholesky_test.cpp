@@ -1,4 +1,4 @@
-#include "substructures/sparse_cholesky.hpp"
+#include "substructures/matrices/sparse_cholesky.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "substructures/symmetric_eigenpairs.hpp"
+#include "substructures/matrices/symmetric_eigenpairs.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "substructures/viscoelastic_material.hpp"
+#include "substructures/elements/viscoelastic_material.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "substructures/whole_body.hpp"
+#include "substructures/bodies/whole_body.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

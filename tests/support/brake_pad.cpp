@@ -8,7 +8,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "substructures/craig_bampton.hpp"
+#include "substructures/reduction/craig_bampton.hpp"
 
 namespace stridor {
 namespace {

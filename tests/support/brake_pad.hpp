@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "substructures/beam.hpp"
+#include "substructures/bodies/beam.hpp"
 
 namespace stridor {
 

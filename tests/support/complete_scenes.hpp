@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "core/schema.hpp"
-#include "io/scene_reader.hpp"
-#include "io/scene_tree.hpp"
+#include "io/scene/scene_reader.hpp"
+#include "io/scene/scene_tree.hpp"
 #include "tests/support/scene_draft.hpp"
 
 namespace stridor::test {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "substructures/linear_system.hpp"
+#include "substructures/matrices/linear_system.hpp"
 #include "tests/support/disc_parameters.hpp"
 #include "tests/support/face_contact.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "substructures/annular_plate.hpp"
+#include "substructures/bodies/annular_plate.hpp"
 #include "tests/support/brake_pad.hpp"
 
 namespace stridor {

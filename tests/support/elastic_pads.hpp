@@ -4,9 +4,9 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-#include "substructures/annular_plate.hpp"
-#include "substructures/beam.hpp"
-#include "substructures/matrix_body.hpp"
+#include "substructures/bodies/annular_plate.hpp"
+#include "substructures/bodies/beam.hpp"
+#include "substructures/bodies/matrix_body.hpp"
 
 namespace stridor::test {
 

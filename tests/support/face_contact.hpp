@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "substructures/annular_plate.hpp"
-#include "substructures/linear_system.hpp"
+#include "substructures/bodies/annular_plate.hpp"
+#include "substructures/matrices/linear_system.hpp"
 
 namespace stridor {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <complex>
 
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
 #include "tests/support/face_contact.hpp"
-#include "solvers/dense_eigenvalues.hpp"
 #include "tests/support/reference_brake.hpp"
 
 namespace stridor::test {
@@ -47,7 +47,7 @@ inline FastestMode fastest_of(const LinearSystem& system) {
       std::max_element(spectrum.eigenvalues.begin(), spectrum.eigenvalues.end(),
                        [](const auto& a, const auto& b) { return a.growth() < b.growth(); });
   const Eigen::VectorXcd q =
-      pencil.slots * spectrum.right.col(fastest - spectrum.eigenvalues.begin());
+      pencil.ports * spectrum.right.col(fastest - spectrum.eigenvalues.begin());
   // Its largest entry is 1: neither size nor phase depend on the eigensolver.
   Eigen::Index largest = 0;
   q.cwiseAbs().maxCoeff(&largest);

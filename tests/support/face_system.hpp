@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "coupling/face_kinematics.hpp"
-#include "coupling/system.hpp"
+#include "coupling/kinematics/face_kinematics.hpp"
+#include "coupling/system/system.hpp"
+#include "solvers/equilibrium/equilibrium.hpp"
 #include "tests/support/disc_model.hpp"
-#include "solvers/equilibrium.hpp"
 
 namespace stridor::test {
 

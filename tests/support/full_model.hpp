@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "substructures/body_matrices.hpp"
+#include "substructures/matrices/body_matrices.hpp"
 #include "tests/support/constants.hpp"
 
 namespace stridor::test {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "substructures/beam.hpp"
+#include "substructures/bodies/beam.hpp"
 
 namespace stridor::test {
 

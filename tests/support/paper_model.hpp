@@ -2,7 +2,7 @@
 #pragma once
 
 #include "models/model.hpp"
-#include "solvers/simulation.hpp"
+#include "solvers/transient/simulation.hpp"
 #include "tests/support/paper_beams.hpp"
 
 namespace stridor::test {

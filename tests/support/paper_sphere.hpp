@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "coupling/normal_parameters.hpp"
-#include "solvers/substrate_oscillator.hpp"
+#include "coupling/laws/normal_parameters.hpp"
+#include "solvers/transient/substrate_oscillator.hpp"
 
 namespace stridor::test {
 

@@ -5,7 +5,7 @@
 #include <complex>
 #include <random>
 
-#include "solvers/pencil.hpp"
+#include "solvers/eigenvalues/pencil.hpp"
 
 namespace stridor::test {
 
@@ -14,7 +14,7 @@ inline Pencil two_masses(const Eigen::Vector2d& stiffness, const Eigen::Vector2d
   Pencil pencil;
   pencil.omega = stiffness.cwiseSqrt();
   pencil.damping = damping;
-  pencil.slots = Eigen::Matrix2d::Identity();
+  pencil.ports = Eigen::Matrix2d::Identity();
   pencil.compatibility.resize(0, 2);
   pencil.equilibrium.resize(0, 2);
   return pencil;
@@ -32,7 +32,7 @@ inline Pencil constrained_modes(const Eigen::VectorXd& omega, const Eigen::Vecto
   Pencil pencil;
   pencil.omega = omega;
   pencil.damping = damping;
-  pencil.slots = Eigen::MatrixXd::Identity(omega.size(), omega.size());
+  pencil.ports = Eigen::MatrixXd::Identity(omega.size(), omega.size());
   pencil.compatibility = compatibility;
   pencil.equilibrium = equilibrium;
   return pencil;
@@ -55,13 +55,13 @@ inline Pencil random_pencil(unsigned seed, Eigen::Index n, Eigen::Index k, Conta
   pencil.omega = Eigen::VectorXd::NullaryExpr(n, [&] { return std::pow(1000.0, uniform(engine)); });
   pencil.damping = Eigen::VectorXd::NullaryExpr(
       n, [&](Eigen::Index i) { return 0.02 * uniform(engine) * pencil.omega(i); });
-  pencil.slots = matrix(m, n);
+  pencil.ports = matrix(m, n);
   pencil.compatibility = matrix(k, m);
   pencil.equilibrium = pencil.compatibility + 0.3 * matrix(k, m);
   if (terms != ContactTerms::rows_only)
-    pencil.slot_stiffness = 0.1 * matrix(m, 2 * k) * matrix(2 * k, m);
+    pencil.port_stiffness = 0.1 * matrix(m, 2 * k) * matrix(2 * k, m);
   if (terms == ContactTerms::with_stiffness_and_damping)
-    pencil.slot_damping = 1e-4 * matrix(m, 2 * k) * matrix(2 * k, m);
+    pencil.port_damping = 1e-4 * matrix(m, 2 * k) * matrix(2 * k, m);
   return pencil;
 }
 
@@ -107,7 +107,7 @@ inline Pencil awkward_pencil(unsigned seed) {
   if (one_in(3)) {
     const double felt = one_in(3) ? 0.0 : std::pow(10.0, -14.0 + 11.0 * uniform(engine));
     for (Eigen::Index i = 0; i < n; ++i)
-      if (one_in(3)) pencil.slots.col(i) *= felt;
+      if (one_in(3)) pencil.ports.col(i) *= felt;
   }
   if (one_in(3)) {
     const Pencil other = random_pencil(seed + 1, n, k, terms);
@@ -123,10 +123,10 @@ inline Eigen::MatrixXcd dynamic_stiffness(const Pencil& pencil, std::complex<dou
   P.diagonal() = (s * s + s * pencil.damping.array().cast<std::complex<double>>() +
                   pencil.omega.array().square().cast<std::complex<double>>())
                      .matrix();
-  if (pencil.slot_stiffness.size() > 0)
-    P += pencil.slots.transpose() * pencil.slot_stiffness * pencil.slots;
-  if (pencil.slot_damping.size() > 0)
-    P += s * (pencil.slots.transpose() * pencil.slot_damping * pencil.slots);
+  if (pencil.port_stiffness.size() > 0)
+    P += pencil.ports.transpose() * pencil.port_stiffness * pencil.ports;
+  if (pencil.port_damping.size() > 0)
+    P += s * (pencil.ports.transpose() * pencil.port_damping * pencil.ports);
   return P;
 }
 

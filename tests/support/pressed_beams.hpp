@@ -2,7 +2,7 @@
 #pragma once
 
 #include "models/model.hpp"
-#include "substructures/beam.hpp"
+#include "substructures/bodies/beam.hpp"
 
 namespace stridor::test {
 

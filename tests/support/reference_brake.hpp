@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "solvers/eigenvalues/linear_pencil.hpp"
 #include "tests/support/disc_model.hpp"
-#include "solvers/linear_pencil.hpp"
 
 namespace stridor::test {
 

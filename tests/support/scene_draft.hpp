@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/schema.hpp"
-#include "io/scene_tree.hpp"
+#include "io/scene/scene_tree.hpp"
 
 namespace stridor::test {
 

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "substructures/matrix_body.hpp"
+#include "substructures/bodies/matrix_body.hpp"
 
 namespace stridor::test {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "coupling/system.hpp"
-#include "solvers/simulation.hpp"
+#include "coupling/system/system.hpp"
+#include "solvers/transient/simulation.hpp"
 
 namespace stridor::test {
 

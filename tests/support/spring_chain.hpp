@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "substructures/body_matrices.hpp"
+#include "substructures/matrices/body_matrices.hpp"
 
 namespace stridor::test {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "coupling/system.hpp"
+#include "coupling/system/system.hpp"
 
 namespace stridor::test {
 

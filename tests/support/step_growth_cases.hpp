@@ -9,8 +9,8 @@
 
 #include "analysis/step_guard.hpp"
 #include "core/errors.hpp"
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/make_propagator.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/integrators/make_propagator.hpp"
 #include "tests/support/random_bodies.hpp"
 
 namespace stridor::test {

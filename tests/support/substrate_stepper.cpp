@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "solvers/substrate_step.hpp"
+#include "solvers/contact/substrate_step.hpp"
 
 namespace stridor {
 

@@ -6,9 +6,9 @@
 #include <memory>
 #include <string>
 
-#include "solvers/make_propagator.hpp"
-#include "solvers/substrate_motion.hpp"
-#include "solvers/substrate_oscillator.hpp"
+#include "solvers/integrators/make_propagator.hpp"
+#include "solvers/transient/substrate_motion.hpp"
+#include "solvers/transient/substrate_oscillator.hpp"
 
 namespace stridor {
 

@@ -11,8 +11,8 @@
 #include <numbers>
 #include <vector>
 
-#include "coupling/static_dynamic_friction.hpp"
-#include "coupling/stribeck_friction.hpp"
+#include "coupling/laws/static_dynamic_friction.hpp"
+#include "coupling/laws/stribeck_friction.hpp"
 #include "tests/support/small_systems.hpp"
 
 namespace stridor {

@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/secular_eigenvalues.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/secular_eigenvalues.hpp"
 #include "tests/support/paper_model.hpp"
 
 namespace stridor {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "io/scene.hpp"
-#include "solvers/make_propagator.hpp"
+#include "io/scene/scene.hpp"
+#include "solvers/integrators/make_propagator.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/random_bodies.hpp"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "analysis/band_pass.hpp"
-#include "io/scene.hpp"
-#include "solvers/simulation.hpp"
+#include "io/scene/scene.hpp"
+#include "solvers/transient/simulation.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/relative_difference.hpp"
 

@@ -1,5 +1,5 @@
 // As few modes as an error allows, and contacts that stay stable with them.
-#include "solvers/retained_modes.hpp"
+#include "solvers/integrators/retained_modes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,10 +9,10 @@
 #include <random>
 
 #include "core/errors.hpp"
-#include "io/scene.hpp"
-#include "solvers/equilibrium.hpp"
-#include "solvers/frozen_step.hpp"
-#include "solvers/prompt_surplus.hpp"
+#include "io/scene/scene.hpp"
+#include "solvers/equilibrium/equilibrium.hpp"
+#include "solvers/integrators/added_feedthrough.hpp"
+#include "solvers/transient/frozen_step.hpp"
 #include "tests/support/constants.hpp"
 #include "tests/support/program.hpp"
 
@@ -128,7 +128,7 @@ double radius_at(const System& system, const FrozenStep& step, int segment, doub
   return spectral_radius(step.factors(contacts));
 }
 
-TEST(PromptSurplus, KeepsContactsStableAllAlongThePath) {
+TEST(AddedFeedthrough, KeepsContactsStableAllAlongThePath) {
   for (const auto& [size, modes] : {std::pair("5e-6", "30 kHz"),
                                     {"5e-6", "50 kHz"},
                                     {"1e-5", "25 kHz"},
@@ -145,11 +145,11 @@ TEST(PromptSurplus, KeepsContactsStableAllAlongThePath) {
   }
 }
 
-TEST(PromptSurplus, IsNeeded) {
+TEST(AddedFeedthrough, IsNeeded) {
   const Loaded scene =
       load({"time.integrator=exact", "time.step=1e-5", "time.retain.frequency=25 kHz"});
   const System system = retained(scene.system, scene.time);
-  EXPECT_GT(prompt_surplus(system, scene.time).value(), 0.0);
+  EXPECT_GT(added_feedthrough(system, scene.time).value(), 0.0);
   const FrozenStep step(scene.system, scene.time, 0.0);
   double worst = 0.0;
   for (int segment = 30; segment < 97; ++segment)

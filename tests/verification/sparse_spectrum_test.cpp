@@ -1,5 +1,5 @@
 // Thousands of unknowns, two methods.
-#include "solvers/sparse_spectrum.hpp"
+#include "solvers/eigenvalues/sparse_spectrum.hpp"
 
 #include <gtest/gtest.h>
 

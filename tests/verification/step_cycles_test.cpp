@@ -6,8 +6,8 @@
 
 #include "analysis/limit_cycle.hpp"
 #include "analysis/periodic_motion.hpp"
-#include "io/initial_state.hpp"
-#include "solvers/sliding_oscillator.hpp"
+#include "io/run_file/initial_state.hpp"
+#include "solvers/transient/sliding_oscillator.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {

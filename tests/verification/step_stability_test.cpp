@@ -10,12 +10,12 @@
 #include <numbers>
 
 #include "core/errors.hpp"
-#include "io/scene.hpp"
-#include "solvers/dense_eigenvalues.hpp"
-#include "solvers/equilibrium.hpp"
-#include "solvers/linearise.hpp"
-#include "solvers/make_propagator.hpp"
-#include "solvers/retained_modes.hpp"
+#include "io/scene/scene.hpp"
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/equilibrium/equilibrium.hpp"
+#include "solvers/equilibrium/linearise.hpp"
+#include "solvers/integrators/make_propagator.hpp"
+#include "solvers/integrators/retained_modes.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/random_bodies.hpp"
 
@@ -46,13 +46,13 @@ Pencil rows_of_contact(const System& system, double friction) {
 
 Pencil sticking(const System& system) {
   Pencil pencil = rows_of_contact(system, 0.0);
-  const Eigen::Index slots = pencil.num_slots();
-  Eigen::MatrixXd both = Eigen::MatrixXd::Zero(2, slots);
+  const Eigen::Index ports = pencil.num_ports();
+  Eigen::MatrixXd both = Eigen::MatrixXd::Zero(2, ports);
   both.row(0) = pencil.compatibility;
   // B_C = −n on the slave, +w n on the master; the same along t = (n_y, −n_x).
-  for (Eigen::Index slot = 0; slot < slots - pencil.num_body_slots; slot += 2) {
-    both(1, slot) = pencil.compatibility(0, slot + 1);
-    both(1, slot + 1) = -pencil.compatibility(0, slot);
+  for (Eigen::Index port = 0; port < ports - pencil.num_body_ports; port += 2) {
+    both(1, port) = pencil.compatibility(0, port + 1);
+    both(1, port + 1) = -pencil.compatibility(0, port);
   }
   pencil.compatibility = both;
   pencil.equilibrium = both;
@@ -275,8 +275,8 @@ TEST(StepStability, BodiesApartAreUnstableBeyondTheLimit) {
     for (const bool is_damped : {false, true}) {
       const System system = random_sliding_bodies(seed, 0.0, is_damped);
       Pencil apart = make_modal_pencil(system);
-      apart.compatibility.resize(0, apart.num_slots());
-      apart.equilibrium.resize(0, apart.num_slots());
+      apart.compatibility.resize(0, apart.num_ports());
+      apart.equilibrium.resize(0, apart.num_ports());
       const double limit = step_limit(system).step;
       const auto radius = [&](double share) {
         return spectral_radius(

@@ -13,9 +13,9 @@
 #include "analysis/band_pass.hpp"
 #include "analysis/bursts.hpp"
 #include "analysis/statistics.hpp"
-#include "io/recorder.hpp"
-#include "io/scene.hpp"
-#include "solvers/march.hpp"
+#include "io/run_file/recorder.hpp"
+#include "io/scene/scene.hpp"
+#include "solvers/transient/march.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {

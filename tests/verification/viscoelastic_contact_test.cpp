@@ -5,9 +5,9 @@
 #include <numbers>
 #include <vector>
 
-#include "coupling/viscoelastic_law.hpp"
-#include "solvers/master_curve.hpp"
-#include "solvers/sliding_contact.hpp"
+#include "coupling/laws/viscoelastic_law.hpp"
+#include "solvers/half_space/master_curve.hpp"
+#include "solvers/half_space/sliding_contact.hpp"
 
 namespace stridor {
 namespace {

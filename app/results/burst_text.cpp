@@ -1,0 +1,19 @@
+#include "app/results/burst_text.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace stridor {
+
+std::string burst_text(const Json& burst) {
+  const auto value = [&](const char* name) {
+    const Json& number = burst.at(name);
+    return number.is_null() ? std::numeric_limits<double>::quiet_NaN() : number.get<double>();
+  };
+  return fmt::format("{:.3f} to {:.3f} s, {:.0f} Hz, peak {:.4g} m/s^2, gain {:.2f}",
+                     value("start"), value("end"), value("frequency"), value("peak"),
+                     value("gain"));
+}
+
+}  // namespace stridor

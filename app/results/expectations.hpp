@@ -1,0 +1,18 @@
+// Expectations of a scene about its results.
+#pragma once
+
+#include <vector>
+
+#include "app/terminal/command.hpp"
+#include "io/scene/scene.hpp"
+
+namespace stridor {
+
+/// Compares results with the `expect` block of a scene and reports on stderr how many were met.
+/// @param results JSON object; an expectation names a number in it by "a.b.c", an entry of a list
+/// by
+///                its index from 0
+/// @throws NumericalError with a line for each that is not met or not there
+void check_expectations(const std::vector<Expectation>& expectations, const Json& results);
+
+}  // namespace stridor

@@ -1,0 +1,138 @@
+#include "app/runs/contact_laws.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/runs/contact_results.hpp"
+#include "app/terminal/progress.hpp"
+#include "core/errors.hpp"
+#include "core/stop_token.hpp"
+#include "io/hdf5/part_file.hpp"
+#include "io/imports/law_table_file.hpp"
+#include "solvers/contact/contact_table.hpp"
+#include "solvers/half_space/master_curve.hpp"
+
+namespace stridor {
+
+ExitCode make_master_curve(const ContactOptions& options, const LoadedScene& loaded,
+                           const StudiedContact& contact) {
+  require_boundary_elements(loaded, contact, "--master-curve");
+  const ViscoelasticMaterial& material = *contact.normal.material;
+  const SlidingContactParameters solver =
+      contact.normal.solver.value_or(SlidingContactParameters{});
+  const auto refuse = [&](const char* key, const char* message) {
+    throw loaded.located(ConfigError(contact.key + key, message));
+  };
+  if (contact.normal.indenter().shape != ProfileShape::paraboloid)
+    refuse(".profile.shape", "must be paraboloid: only these lie on one curve");
+  if (material.creep_times.size() != 1)
+    refuse(".material.creep_times", "must be one: only then do contacts lie on one curve");
+  const std::string& path = *options.master_curve;
+  check_output(path, options.common.overwrite());
+  const std::vector<double> betas = master_curve_betas();
+  Progress progress("master curve");
+  const ComputedMasterCurve computed =
+      compute_master_curve(material.modulus_ratio(), betas, solver, [&](std::size_t done) {
+        if (stop_requested()) throw Interrupted("nothing has been written");
+        progress.report(static_cast<double>(done) / static_cast<double>(betas.size()),
+                        fmt::format("point {} of {}", done, betas.size()));
+      });
+  progress.finish();
+  std::string text = fmt::format(
+      "// beta, f, g, m, v tau in cells: a paraboloid with E_0/E_inf = {:g} on {} cells a side, "
+      "tolerance\n// {:g}. Made by `stridor contact --master-curve`; do not edit.\n",
+      computed.curve.modulus_ratio, solver.grid, solver.tolerance);
+  Json points = Json::array();
+  for (std::size_t k = 0; k < computed.results.size(); ++k) {
+    const MasterPoint& point = computed.curve.points[k];
+    text += fmt::format("{{{}, {:.8g}, {:.6g}, {:.7g}, {:.6g}}},\n", point.beta, point.force,
+                        point.area, point.friction, point.memory_in_cells);
+    points.push_back({{"beta", point.beta},
+                      {"force", number(point.force)},
+                      {"area", number(point.area)},
+                      {"friction", number(point.friction)},
+                      {"converged", computed.results[k].converged},
+                      {"remarks", computed.results[k].remarks()}});
+  }
+  if (!computed.converged())
+    throw NumericalError("a point of the master curve did not converge; nothing has been written");
+  write_text_file(path, text);
+  if (options.common.json) {
+    print_json(Json{{"modulus_ratio", computed.curve.modulus_ratio}, {"points", points}});
+  } else {
+    fmt::print("{} points\n{}\n", computed.results.size(), path);
+  }
+  return ExitCode::done;
+}
+
+ExitCode make_table(const ContactOptions& options, const LoadedScene& loaded,
+                    const StudiedContact& contact) {
+  require_boundary_elements(loaded, contact, "--table");
+  const NormalParameters& normal = contact.normal;
+  const std::string& path = *options.table;
+  const Overwrite overwrite = options.common.overwrite();
+  check_output(path, overwrite);
+  SlidingPoints points;
+  points.speeds = spaced_values("--speeds", options.table_speeds);
+  points.indentations = spaced_values("--indentations", options.table_indentations);
+  check_reach(loaded, contact, points);
+  const auto num_contacts = static_cast<double>(points.speeds.size() * points.indentations.size());
+  Progress progress("contact table");
+  const ComputedContactTable computed = compute_contact_table(
+      IndenterProfile(normal.indenter()), creep_lengths(*normal.material, normal.tip_radius(), 1.0),
+      points.speeds, points.indentations, normal.solver.value_or(SlidingContactParameters{}),
+      [&](std::size_t done) {
+        if (stop_requested()) throw Interrupted("nothing has been written");
+        progress.report(static_cast<double>(done) / num_contacts,
+                        fmt::format("contact {} of {:g}", done, num_contacts));
+      });
+  progress.finish();
+  const auto count = [&](auto&& is_so) {
+    return std::count_if(computed.results.begin(), computed.results.end(), is_so);
+  };
+  if (!computed.converged()) {
+    throw NumericalError(fmt::format(
+        "{} of {:g} contacts of the table did not converge; nothing has been written",
+        count([](const SlidingContactResult& result) { return !result.converged; }), num_contacts));
+  }
+  const auto is_positive = [](double value) { return value > 0.0; };
+  if (!std::all_of(computed.table.friction.begin(), computed.table.friction.end(), is_positive)) {
+    throw NumericalError(
+        "the friction of a contact of the table is not > 0, since its speed is too low for the "
+        "grid: begin at a higher one, or lower solver.tolerance; nothing has been written");
+  }
+  std::vector<double> memory_in_cells;
+  for (const SlidingContactResult& result : computed.results)
+    memory_in_cells.push_back(result.memory_in_cells);
+  write_law_table(path, overwrite, computed.table, memory_in_cells,
+                  contact_attributes(options, loaded));
+  const auto num_unresolved =
+      count([](const SlidingContactResult& result) { return !result.has_resolved_memory(); });
+  const auto num_touching =
+      count([](const SlidingContactResult& result) { return result.touches_window; });
+  if (options.common.json) {
+    print_json(Json{{"speeds", points.speeds},
+                    {"indentations", points.indentations},
+                    {"force", computed.table.force},
+                    {"area", computed.table.area},
+                    {"friction", computed.table.friction},
+                    {"num_unresolved", num_unresolved},
+                    {"num_touching_window", num_touching}});
+  } else {
+    fmt::print("{} speeds, {} indentations\n", points.speeds.size(), points.indentations.size());
+    if (num_unresolved > 0) {
+      fmt::print(
+          "{} contacts: the layer of length v tau at the edge is less than two cells wide "
+          "and not resolved: the friction is too low\n",
+          num_unresolved);
+    }
+    if (num_touching > 0) {
+      fmt::print("{} contacts reach the border of the window: enlarge it\n", num_touching);
+    }
+    fmt::print("{}\n", path);
+  }
+  return ExitCode::done;
+}
+
+}  // namespace stridor

@@ -1,0 +1,84 @@
+#include "app/stability/prediction.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stridor {
+
+std::vector<PredictedBurst> match_bursts(const std::vector<TimedWindow>& windows,
+                                         const std::vector<NumberedBurst>& bursts) {
+  constexpr double largest_delay = 0.05;  // s
+  constexpr double frequency_tolerance = 0.02;
+  std::vector<PredictedBurst> predictions;
+  for (const TimedWindow& window : windows) {
+    if (!std::isfinite(window.from_time) || !std::isfinite(window.to_time)) continue;
+    PredictedBurst prediction{window, std::nullopt};
+    double best = -largest_delay;
+    for (const NumberedBurst& one : bursts) {
+      const double overlap =
+          std::min(window.to_time, one.burst.end) - std::max(window.from_time, one.burst.start);
+      const double off = std::abs(one.burst.frequency - window.window.frequency);
+      if (overlap > best && off <= frequency_tolerance * window.window.frequency) {
+        best = overlap;
+        prediction.burst = one;
+      }
+    }
+    predictions.push_back(prediction);
+  }
+  return predictions;
+}
+
+std::vector<SpectrogramMark> predicted_marks(const std::vector<PredictedBurst>& predictions) {
+  std::vector<SpectrogramMark> marks;
+  for (const PredictedBurst& prediction : predictions) {
+    SpectrogramMark mark;
+    mark.from = prediction.window.from_time;
+    mark.to = prediction.window.to_time;
+    mark.frequency = prediction.window.window.frequency;
+    mark.style = MarkStyle::predicted;
+    marks.push_back(std::move(mark));
+  }
+  return marks;
+}
+
+Json prediction_json(const std::vector<PredictedBurst>& predictions) {
+  Json rows = Json::array();
+  for (const auto& [timed, burst] : predictions) {
+    Json row = {{"from", timed.from_time},
+                {"to", timed.to_time},
+                {"frequency", timed.window.frequency},
+                {"growth_max", timed.window.growth_max},
+                {"gain", number(timed.gain)},
+                {"burst", nullptr},
+                {"burst_start", nullptr},
+                {"burst_frequency", nullptr},
+                {"burst_gain", nullptr}};
+    if (burst) {
+      row["burst"] = burst->number;
+      row["burst_start"] = burst->burst.start;
+      row["burst_frequency"] = burst->burst.frequency;
+      row["burst_gain"] = number(burst->burst.gain);
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+void print_prediction(const std::vector<PredictedBurst>& predictions) {
+  fmt::print("{:>20}  {:>12} {:>8}   {:>5} {:>9}  {:>12} {:>8}\n", "predicted, s", "Hz", "gain",
+             "burst", "from, s", "Hz", "gain");
+  for (const auto& [timed, burst] : predictions) {
+    fmt::print("{:>9.4f} to {:>7.4f}  {:>12.2f} {:>8.3f}   ", timed.from_time, timed.to_time,
+               timed.window.frequency, timed.gain);
+    if (burst) {
+      fmt::print("{:>5} {:>9.4f}  {:>12.2f} {:>8.3f}\n", burst->number, burst->burst.start,
+                 burst->burst.frequency, burst->burst.gain);
+    } else {
+      fmt::print("{:>5}\n", "-");
+    }
+  }
+}
+
+}  // namespace stridor

@@ -1,0 +1,35 @@
+// Unstable windows of a locus beside the bursts of a run.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/results/pictures.hpp"
+#include "app/terminal/command.hpp"
+#include "io/figures/spectrogram_plot.hpp"
+#include "io/results/locus_file.hpp"
+
+namespace stridor {
+
+/// A window that the run passes, and the burst that it belongs to.
+struct PredictedBurst {
+  TimedWindow window;
+  std::optional<NumberedBurst> burst;
+};
+
+/// Gives every window the burst of like frequency that overlaps it most in time.
+///
+/// Windows without times are omitted. A burst lags behind its window, since it starts where it
+/// rises out of the quiet and ends long after: it counts if it is present in the window, or
+/// starts at most 0.05 s after it, within 2 % of the frequency (at the steepest rise) of the
+/// window.
+std::vector<PredictedBurst> match_bursts(const std::vector<TimedWindow>& windows,
+                                         const std::vector<NumberedBurst>& bursts);
+
+std::vector<SpectrogramMark> predicted_marks(const std::vector<PredictedBurst>& predictions);
+
+Json prediction_json(const std::vector<PredictedBurst>& predictions);
+void print_prediction(const std::vector<PredictedBurst>& predictions);
+
+}  // namespace stridor

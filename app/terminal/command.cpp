@@ -1,0 +1,92 @@
+#include "app/terminal/command.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <utility>
+
+#include "core/errors.hpp"
+#include "io/figures/gnuplot.hpp"
+
+namespace stridor {
+namespace {
+
+std::optional<Json> json_to_print;
+
+}  // namespace
+
+void add_scene_options(CLI::App& verb, CommonOptions& options) {
+  verb.add_option("--set", options.sets,
+                  "Change a key of the scene: --set key.path=value (repeatable)")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  verb.add_option("--threads", options.threads, "Threads to use; a single run uses one")
+      ->check(CLI::Range(1, 1024));
+}
+
+void add_json_option(CLI::App& verb, CommonOptions& options) {
+  verb.add_flag("--json", options.json, "Print one JSON object on stdout and nothing else there");
+}
+
+void add_force_option(CLI::App& verb, CommonOptions& options) {
+  verb.add_flag("--force", options.force, "Overwrite the output file if it exists");
+}
+
+void check_figure(const std::filesystem::path& figure, const CommonOptions& options) {
+  check_figure_name(figure);
+  check_replaceable(figure.string(), options.overwrite());
+}
+
+Json problem_json(const Problem& problem) {
+  return {{"file", problem.source},
+          {"line", problem.line},
+          {"column", problem.column},
+          {"key", problem.key},
+          {"message", problem.message}};
+}
+
+void print_warnings(const std::vector<Problem>& warnings) {
+  for (const Problem& warning : warnings)
+    fmt::print(stderr, "stridor: warning\n{}\n", ConfigError({warning}).report());
+}
+
+void print_json(Json object) {
+  json_to_print = std::move(object);
+}
+
+void finish_json(const std::vector<Problem>& errors) {
+  if (!errors.empty()) {
+    Json list = Json::array();
+    for (const Problem& error : errors) list.push_back(problem_json(error));
+    if (!json_to_print) json_to_print.emplace(Json::object());
+    (*json_to_print)["errors"] = std::move(list);
+  }
+  if (!json_to_print) return;
+  // Names of files need not be UTF-8.
+  const std::string text = json_to_print->dump(2, ' ', false, Json::error_handler_t::replace);
+  // If nothing can be printed this does not throw; main() looks at stdout at the end.
+  std::fputs((text + "\n").c_str(), stdout);
+  json_to_print.reset();
+}
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+std::vector<double> spaced_values(const char* option, const std::vector<double>& range) {
+  const double count = range[2];
+  if (!(range[0] > 0.0) || !(range[1] > range[0]) || !std::isfinite(range[1]))
+    throw ConfigError(option, "needs two positive numbers, the smaller one first");
+  if (!(count >= 4.0) || !(count <= 1000.0) || count != std::trunc(count))
+    throw ConfigError(option, fmt::format("{:g} points are not a whole number, 4 to 1000", count));
+  std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
+  for (int k = 0; k < static_cast<int>(count); ++k)
+    values.push_back(range[0] * std::pow(range[1] / range[0], k / (count - 1.0)));
+  return values;
+}
+
+}  // namespace stridor

@@ -1,0 +1,360 @@
+// stridor eig: sliding equilibrium of a scene and its eigenvalues.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <string>
+
+#include "analysis/explanation.hpp"
+#include "app/stability/eigenvalue_report.hpp"
+#include "app/stability/found_spectrum.hpp"
+#include "app/stability/stability.hpp"
+#include "core/activity.hpp"
+#include "core/errors.hpp"
+#include "io/figures/shape_plot.hpp"
+#include "models/mode_shape.hpp"
+#include "solvers/eigenvalues/secular_eigenvalues.hpp"
+#include "solvers/integrators/retained_modes.hpp"
+
+namespace stridor {
+namespace {
+
+struct EigOptions {
+  StabilityOptions stability;
+  std::optional<std::string> at;
+  bool explain = false;
+  std::optional<int> mode;
+  std::optional<std::string> shapes;
+};
+
+constexpr int num_frames = 24;
+
+/// The scene at the position asked for.
+SceneFamily make_family(const LoadedScene& loaded, const EigOptions& options,
+                        std::vector<double>& values) {
+  if (!options.at) return SceneFamily(loaded, {});
+  loaded.require_section("contact", "eig --at");
+  const auto path = start_key(loaded.scene.model);
+  if (!path) {
+    throw ConfigError("--at",
+                      "the scene has several contact pairs; set the `start` of one of them "
+                      "with --set");
+  }
+  const NumericKey key = find_stability_key(loaded.scene, *path, "--at");
+  values.push_back(parse_value(key, *options.at, "--at"));
+  return SceneFamily(loaded, {key});
+}
+
+/// Of a mode found by the problem on the ports of contacts.
+Json explanation_json(const Pencil& pencil, const Eigenvalue& eigenvalue) {
+  const Eigenvector vector = eigenvector(pencil, eigenvalue.s);
+  const ModeQuotients seen = mode_quotients(pencil, eigenvalue.s, vector.right);
+  const ModeEnergy energy = mode_energy(pencil, eigenvalue.s, vector);
+  const double frequency = eigenvalue.frequency();
+  // Modes far above take no part; those a little above may.
+  const std::vector<Eigenvalue> modes =
+      secular_eigenvalues(frictionless(pencil), SpectrumWindow::below(1.5 * frequency));
+  std::vector<Eigenvalue> vibrating;
+  std::copy_if(modes.begin(), modes.end(), std::back_inserter(vibrating),
+               [](const Eigenvalue& one) { return one.s.imag() > 0.0; });
+  const std::vector<Participation> shares = participations(pencil, vibrating, vector.right);
+  Json frictionless_modes = Json::array();
+  for (std::size_t i = 0; i < std::min<std::size_t>(2, shares.size()); ++i)
+    frictionless_modes.push_back({{"frequency", shares[i].frequency}, {"share", shares[i].share}});
+  return {{"quotients", quotients_json(seen)},
+          {"energy", energy_json(energy, frequency)},
+          {"frictionless_modes", frictionless_modes}};
+}
+
+/// By the problem on the ports of contacts, where it can be solved.
+/// @param whole with all modes, for shapes
+FoundSpectrum find_on_ports(const Pencil& of, const Pencil& whole, const StabilityOptions& options,
+                            double trusted) {
+  const auto pencil = std::make_shared<const Pencil>(of);
+  const LowestEigenvalues lowest = find_lowest(of, options.eigenvalue_method(), options.window());
+  FoundSpectrum found{lowest.method_name(), lowest.eigenvalues};
+  std::vector<std::complex<double>> roots;
+  for (const Eigenvalue& one : found.eigenvalues) roots.push_back(one.s);
+  found.highest = verdict_limit(roots, options.window(), trusted);
+  found.explain = [pencil, all = found.eigenvalues](std::size_t chosen) {
+    return explanation_json(*pencil, all[chosen]);
+  };
+  found.shape = [whole, all = found.eigenvalues](std::size_t chosen) {
+    return eigenvector(whole, all[chosen].s).right;
+  };
+  if (!lowest.remark.empty()) found.more["remark"] = lowest.remark;
+  return found;
+}
+
+/// The largest displacement of any node, 0 where nothing moves.
+std::complex<double> largest_displacement(const std::vector<BodyShape>& bodies) {
+  std::complex<double> largest = 0.0;
+  for (const BodyShape& body : bodies) {
+    for (const std::complex<double>& u : body.displacement.reshaped())
+      if (std::abs(u) > std::abs(largest)) largest = u;
+  }
+  return largest;
+}
+
+/// Draws one mode and writes it for ParaView. @return the files
+std::vector<std::string> write_shapes(const EigOptions& options, const LoadedScene& loaded,
+                                      const SceneFamily::Member& member, const SlidingState& state,
+                                      const Eigenvalue& eigenvalue, const Eigen::VectorXcd& right,
+                                      std::size_t number) {
+  const std::filesystem::path folder = *options.shapes;
+  const std::filesystem::path stem = folder / fmt::format("mode_{:02}", number);
+  std::filesystem::path figure = stem;
+  figure += ".png";
+  check_figure(figure, options.stability.common);
+  // The largest displacement at phase 0 is real.
+  BodyCache cache;
+  ShapePicture picture;
+  picture.bodies = mode_shape(*member.model, state.equilibrium, right, cache);
+  const double of_all = std::abs(largest_displacement(picture.bodies));
+  // Points alone, as of lumped masses, make no picture.
+  std::erase_if(picture.bodies, [](const BodyShape& body) {
+    return body.outlines.empty() && body.elements.empty();
+  });
+  if (picture.bodies.empty())
+    throw ConfigError("--shapes", "needs a mesh, or surfaces, of some body to draw");
+  const std::complex<double> largest = largest_displacement(picture.bodies);
+  constexpr double rounding = 1e-9;
+  if (!(std::abs(largest) > rounding * of_all))
+    throw ConfigError("--mode", "moves none of the bodies that can be drawn");
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw FileError(folder.string(), "", "cannot be made: " + error.message());
+  for (BodyShape& body : picture.bodies) body.displacement /= largest;
+  for (std::size_t i = 0; i < state.equilibrium.contacts.size(); ++i) {
+    if (!state.equilibrium.contacts[i].is_closed) continue;
+    // The positions of a contact are as seen from the undeformed first node of its segment.
+    const ContactEquilibrium& contact = state.equilibrium.contacts[i];
+    const ContactPoint& point = member.model->system.contacts[i];
+    if (point.face) continue;  // the picture shows no face
+    const MasterSurface& surface = member.model->system.surface_of(point);
+    const SurfacePiece& seen = state.equilibrium.state.geometry == ContactGeometry::deformed
+                                   ? contact.positions.master
+                                   : contact.positions.undeformed;
+    picture.contacts.push_back(surface.positions[static_cast<std::size_t>(contact.segment)] +
+                               seen.combine(contact.projection.weights));
+  }
+  picture.caption = fmt::format(
+      "Mode {} at {:.2f} Hz, growth rate {:.4g} 1/s, about the {} geometry; displacements "
+      "enlarged, "
+      "grey: at rest, circle: contact. {}, scene {}.",
+      number, eigenvalue.frequency(), eigenvalue.growth(), options.stability.about,
+      std::filesystem::path(options.stability.scene).filename().string(), loaded.hash());
+  plot_shape(picture, figure);
+  std::vector<std::string> files{figure.string()};
+  for (const auto& file : write_shape_frames(picture, stem, num_frames))
+    files.push_back(file.string());
+  return files;
+}
+
+void print_equilibrium(const System& system, const Equilibrium& equilibrium) {
+  for (std::size_t i = 0; i < system.contacts.size(); ++i) {
+    const ContactEquilibrium& contact = equilibrium.contacts[i];
+    if (!contact.is_closed) {
+      fmt::print("{:<20}open, gap {:.4g} m\n", system.contacts[i].name, contact.gap);
+      continue;
+    }
+    const std::optional<FacePlace>& face = system.contacts[i].face;
+    const std::string place =
+        face ? fmt::format("at radius {:.6g} m and {:.4g} rad of {}", face->radius, face->angle,
+                           face->name)
+             : fmt::format("{:.6g} m along the master", contact.position);
+    fmt::print("{:<20}{}, force {:.6g} N, friction {:.6g} N, sliding at {:.4g} m/s{}\n",
+               system.contacts[i].name, place, contact.force,
+               std::hypot(contact.friction_force, contact.friction_across), contact.slip_velocity,
+               contact.force < 0.0 ? " (pulls: no equilibrium of real bodies)" : "");
+  }
+}
+
+/// Where a contact law is used beyond its range.
+void print_law_ranges(const Json& equilibrium) {
+  const auto print = [](const Json& contact) {
+    if (!contact.contains("law_range") || contact["law_range"] == "inside") return;
+    fmt::print("{:<20}is {}\n", "", contact["law_range"].get<std::string>());
+  };
+  print(equilibrium);
+  if (!equilibrium.contains("contacts")) return;
+  for (const Json& contact : equilibrium["contacts"]) print(contact);
+}
+
+void print_explanation(const Json& explanation) {
+  const auto value = [](const Json& object, const char* key) { return object[key].get<double>(); };
+  const Json& energy = explanation["energy"];
+  fmt::print("\nmode {} at {:.2f} Hz, growth {:.4f} 1/s\n", explanation["mode"].get<int>(),
+             value(explanation, "frequency"), value(explanation, "growth"));
+  print_quotients(explanation["quotients"]);
+  fmt::print("  growth: {:+.4f} 1/s from the contact, {:+.4f} 1/s by damping\n",
+             value(energy, "growth_from_contact"), value(energy, "growth_by_damping"));
+  if (const double coupled = value(energy, "growth_by_coupled_terms"); coupled != 0.0)
+    fmt::print("          {:+.4f} 1/s by coupled terms of bodies\n", coupled);
+  fmt::print(
+      "  of its energy {:+.4f} % enters at the contact in each cycle, {:+.4f} % by damping\n",
+      100.0 * value(energy, "contact_per_cycle"), 100.0 * value(energy, "damping_per_cycle"));
+  for (const Json& mode : explanation["frictionless_modes"]) {
+    fmt::print("  {:.1f} % of it is the mode of {:.2f} Hz without friction\n",
+               100.0 * value(mode, "share"), value(mode, "frequency"));
+  }
+}
+
+/// Sliding state and spectrum of a scene.
+struct Analysis {
+  SceneFamily::Member member;
+  SlidingState state;  ///< empty where the model is sparse
+  FoundSpectrum found;
+  double trusted = std::numeric_limits<double>::infinity();  ///< Hz
+
+  bool is_sparse() const { return member.model->sparse.has_value(); }
+  bool has_contacts() const { return !member.model->system.contacts.empty(); }
+};
+
+Analysis analyse(const EigOptions& options, const LoadedScene& loaded,
+                 const SceneFamily::Member& member) {
+  const Activity solving("equilibrium and eigenvalues");
+  Analysis analysis;
+  analysis.member = member;
+  if (analysis.is_sparse()) {
+    analysis.found = find_sparse(*member.model->sparse, options.stability.window());
+    return analysis;
+  }
+  const System& system = member.model->system;
+  analysis.state = sliding_state_of(member, options.stability.geometry(),
+                                    kept_terms(loaded.scene), "");
+  analysis.trusted =
+      std::min(trusted_frequency(system),
+               asked_frequency(system, loaded.scene.time) / (2.0 * std::numbers::pi));
+  const Pencil& whole = analysis.state.pencil;
+  analysis.found = has_contacts(whole)
+                       ? find_on_ports(retained(whole, system, loaded.scene.time), whole,
+                                       options.stability, analysis.trusted)
+                       : find_dense(whole, options.stability.window(), analysis.trusted);
+  return analysis;
+}
+
+/// The eigenvalue to explain or draw: of those over which the verdict is, where none is named.
+std::size_t mode_of_interest(const Analysis& analysis, const std::optional<int>& mode) {
+  const FoundSpectrum& found = analysis.found;
+  std::vector<Eigenvalue> choice = found.eigenvalues;
+  if (!mode && !analysis.has_contacts())
+    std::erase_if(choice, [&](const auto& one) { return one.frequency() > found.highest; });
+  return chosen_mode(choice, num_real_of(choice), mode);
+}
+
+void print_report(const EigOptions& options, const Analysis& analysis, const Json& object) {
+  const FoundSpectrum& found = analysis.found;
+  if (!analysis.is_sparse())
+    print_equilibrium(analysis.member.model->system, analysis.state.equilibrium);
+  print_law_ranges(object["equilibrium"]);
+  if (object.contains("remark")) fmt::print("{}\n", object["remark"].get<std::string>());
+  print_eigenvalues(found.eigenvalues, analysis.trusted);
+  const char* verdict = object["stable"].get<bool>() ? "stable" : "unstable";
+  const std::string about = analysis.has_contacts()
+                                ? fmt::format(", about the {} geometry", options.stability.about)
+                                : "";
+  const std::string reach = std::isfinite(found.highest)
+                                ? fmt::format("between 0 and {:.6g} Hz{}", found.highest,
+                                              limit_text(found.highest, analysis.trusted))
+                                : "at all frequencies";
+  fmt::print("{} {}{}\n", verdict, reach, about);
+  if (found.more.contains("counted")) {
+    fmt::print("{} eigenvalues with their conjugates, as the argument principle counts\n",
+               found.more["counted"].get<int>());
+  }
+  if (options.explain) {
+    const Json& explanation = object["explanation"];
+    analysis.has_contacts() ? print_explanation(explanation) : print_whole_explanation(explanation);
+  }
+  if (options.shapes) {
+    fmt::print("{} and {} files for ParaView\n", object["files"][0].get<std::string>(),
+               object["files"].size() - 1);
+  }
+}
+
+ExitCode report(const EigOptions& options, const LoadedScene& loaded, const Analysis& analysis) {
+  const FoundSpectrum& found = analysis.found;
+  const std::vector<Eigenvalue>& eigenvalues = found.eigenvalues;
+  const bool is_stable = std::none_of(
+      eigenvalues.begin(), eigenvalues.end(),
+      [&](const Eigenvalue& one) { return one.frequency() <= found.highest && is_growing(one); });
+  Json object = {
+      {"about", options.stability.about},
+      {"method", found.method},
+      {"equilibrium", analysis.is_sparse()
+                          ? Json::object()
+                          : equilibrium_json(*analysis.member.model, analysis.state.equilibrium)},
+      {"eigenvalues", eigenvalues_json(eigenvalues)},
+      {"residuals", Json::array()},
+      {"doubtful", doubtful_json(eigenvalues)},
+      {"stable", is_stable},
+      {"window", {0.0, number(found.highest)}}};
+  object.update(found.more);
+  for (const Eigenvalue& one : eigenvalues) object["residuals"].push_back(number(one.residual));
+  if (options.explain || options.shapes) {
+    const std::size_t chosen = mode_of_interest(analysis, options.mode);
+    const std::size_t number_of_mode = chosen - num_real_of(eigenvalues) + 1;
+    const Eigenvalue& one = eigenvalues[chosen];
+    if (options.explain) {
+      object["explanation"] = {
+          {"mode", number_of_mode}, {"frequency", one.frequency()}, {"growth", one.growth()}};
+      object["explanation"].update(found.explain(chosen));
+    }
+    if (options.shapes) {
+      if (!found.shape) {
+        throw ConfigError("--shapes",
+                          "needs bodies that are reduced (reduction), or fewer "
+                          "unknowns than these");
+      }
+      object["files"] = write_shapes(options, loaded, analysis.member, analysis.state, one,
+                                     found.shape(chosen), number_of_mode);
+    }
+  }
+  if (options.stability.common.json) {
+    print_json(object);
+  } else {
+    print_report(options, analysis, object);
+  }
+  return ExitCode::done;
+}
+
+ExitCode eig(EigOptions options) {
+  if (options.mode && !options.explain && !options.shapes)
+    throw ConfigError("--mode", "names the mode to explain or draw; add --explain or --shapes");
+  const LoadedScene loaded = load_scene(options.stability.scene, options.stability.common.sets);
+  make_choices(options.stability, loaded.scene);
+  std::vector<double> values;
+  SceneFamily family = make_family(loaded, options, values);
+  return report(options, loaded, analyse(options, loaded, family.at(values)));
+}
+
+}  // namespace
+
+void add_eig_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<EigOptions>();
+  CLI::App* verb =
+      program.add_subcommand("eig", "Sliding equilibrium and its eigenvalues at one position");
+  add_stability_options(*verb, options->stability);
+  verb->add_option("--at", options->at,
+                   "Position of the contact along the master, about the deformed geometry on the "
+                   "deformed one, m "
+                   "or with a unit; default: contact.start");
+  verb->add_flag("--explain", options->explain,
+                 "Say why a mode grows: what it sees of damping, stiffness and friction, where its "
+                 "energy comes from, which modes without friction it is made of");
+  verb->add_option("--mode", options->mode,
+                   "Number of the mode to explain or draw; default: the one that grows fastest")
+      ->check(CLI::Range(1, 100000));
+  verb->add_option("--shapes", options->shapes,
+                   "Folder for a picture of the mode and its motion for ParaView (VTK)");
+  add_force_option(*verb, options->stability.common);
+  verb->callback([options, &action] { action = [options] { return eig(*options); }; });
+}
+
+}  // namespace stridor

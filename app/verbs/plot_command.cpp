@@ -1,0 +1,332 @@
+// stridor plot: pictures of a run file.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "app/results/pictures.hpp"
+#include "core/errors.hpp"
+#include "io/figures/axes.hpp"
+#include "io/figures/history_plot.hpp"
+#include "io/figures/phase_plot.hpp"
+#include "io/figures/spectrum_plot.hpp"
+
+namespace stridor {
+namespace {
+
+struct PlotOptions : PictureOptions {
+  std::string kind;
+  std::optional<std::string> scale;
+};
+
+/// An option that only some kinds of pictures have.
+void refuse_option(const PlotOptions& options, const char* name,
+                   const std::optional<std::string>& value) {
+  if (value) throw ConfigError(name, fmt::format("means nothing for --kind {}", options.kind));
+}
+
+/// Channels of a picture where the user names none.
+constexpr std::size_t most_default_channels = 8;
+
+/// Series that a picture shows, and series omitted because they were not asked for.
+struct Wanted {
+  std::vector<std::string> series;
+  std::vector<std::string> left_out;  ///< names of channels
+
+  /// Text of a caption about the rest.
+  std::string rest_text() const {
+    if (left_out.empty()) return "";
+    return fmt::format("{} of {} channels; the others with --channel NAME (stridor info lists them). ",
+                       series.size(), series.size() + left_out.size());
+  }
+};
+
+/// The series asked for; where none was, the most useful ones.
+Wanted wanted_series(const PlotOptions& options, const RecordedStretch& run, SeriesUse use) {
+  Wanted wanted;
+  for (const std::string& channel : options.channels)
+    wanted.series.push_back(find_series(run, channel, "--channel"));
+  if (wanted.series.size() > most_panels) {
+    throw ConfigError("--channel",
+                      fmt::format("{} channels, but one picture holds at most {}; draw several",
+                                  wanted.series.size(), most_panels));
+  }
+  if (!wanted.series.empty()) return wanted;
+  wanted.series = chosen_series(run.file, use, most_default_channels);
+  if (wanted.series.empty()) {
+    throw ConfigError("", run.path + (run.file.series_names().empty()
+                                          ? " holds no series to plot; name channels under `record` "
+                                            "in the scene"
+                                          : " holds no series that has a spectrum; name one with "
+                                            "--channel"));
+  }
+  for (const std::string& series : series_by_use(run.file, use)) {
+    if (std::find(wanted.series.begin(), wanted.series.end(), series) == wanted.series.end())
+      wanted.left_out.push_back(channel_name(series));
+  }
+  return wanted;
+}
+
+/// Addition of a kind of picture to the JSON object.
+using Drawn = Json;
+
+Drawn draw_history(const PlotOptions& options, const RecordedStretch& run) {
+  const auto acceleration = acceleration_channel(run.file);
+  const std::vector<NumberedBurst> bursts = bursts_in(run, options);
+  const Wanted wanted = wanted_series(options, run, SeriesUse::history);
+  std::vector<Panel> panels;
+  for (const std::string& series : wanted.series) {
+    panels.push_back(panel_of(run.file, series, run.samples));
+    panels.back().curves.front().values = run.finite_values(series);
+    if (series != acceleration || bursts.empty()) continue;
+    panels.back().title += "  (shaded: bursts)";
+    for (const auto& [number, burst] : bursts)
+      panels.back().marks.push_back({burst.start, burst.end, std::to_string(number)});
+  }
+  plot_histories(panels, options.output, "",
+                 wanted.rest_text() + filters_text(run.file, wanted.series) + source_text(run) +
+                     ".");
+  return {{"panels", panels.size()}, {"bursts", bursts.size()}, {"left_out", wanted.left_out}};
+}
+
+// ---------------------------------------------------------------- one channel against another
+
+constexpr const char* no_silent_derivatives =
+    "nothing is integrated or differentiated for a picture";
+
+/// Partner of a quantity in a phase plot: displacement with velocity, position along the master
+/// with the slip velocity; empty where there is none.
+std::string partner_of(const std::string& name) {
+  static const std::map<std::string, std::string> partners{{"displacement", "velocity"},
+                                                           {"velocity", "displacement"},
+                                                           {"position", "slip_velocity"},
+                                                           {"slip_velocity", "position"}};
+  const auto [place, quantity] = split_name(name);
+  const auto found = partners.find(quantity);
+  return found == partners.end() ? "" : place + "." + found->second;
+}
+
+bool is_derivative(const std::string& name) {
+  const std::string quantity = split_name(name).second;
+  return quantity == "velocity" || quantity == "slip_velocity";
+}
+
+/// The pair that a phase plot shows where the user names no channel.
+std::pair<std::string, std::string> default_pair(const RecordedStretch& run,
+                                                 const std::vector<std::string>& names) {
+  for (const char* quantity : {"position", "displacement"}) {
+    for (const std::string& name : names) {
+      const std::string partner = partner_of(name);
+      if (split_name(name).second == quantity &&
+          std::find(names.begin(), names.end(), partner) != names.end())
+        return {name, partner};
+    }
+  }
+  std::string remedy;
+  for (const std::string& name : names) {
+    const auto [place, quantity] = split_name(name);
+    if (const std::string partner = partner_of(name); !partner.empty()) {
+      remedy = fmt::format("record {} with {}", partner, name);
+      break;
+    }
+    if (quantity == "acceleration" && remedy.empty())
+      remedy = fmt::format("record {0}.displacement and {0}.velocity", place);
+  }
+  if (remedy.empty()) remedy = "record a displacement and the velocity of the same point";
+  throw ConfigError(
+      "--channel",
+      fmt::format("{} holds no displacement with its velocity, and {}; {} (record.channels of the "
+                  "scene), or name two channels: --channel A --channel B",
+                  run.path, no_silent_derivatives, remedy));
+}
+
+/// The series across and up.
+std::pair<std::string, std::string> phase_series(const PlotOptions& options,
+                                                 const RecordedStretch& run) {
+  std::vector<std::string> names;
+  for (const std::string& series : run.file.series_names()) names.push_back(channel_name(series));
+  const auto series_of = [&](const std::string& name) {
+    return find_series(run, name, "--channel");
+  };
+  const std::vector<std::string>& channels = options.channels;
+  if (channels.size() > 2)
+    throw ConfigError("--channel", "a phase plot shows one channel against one other");
+  if (channels.size() == 2) return {series_of(channels[0]), series_of(channels[1])};
+  if (channels.empty()) {
+    const auto [across, up] = default_pair(run, names);
+    return {series_of(across), series_of(up)};
+  }
+  const std::string series = series_of(channels[0]);
+  const std::string partner = partner_of(channels[0]);
+  if (std::find(names.begin(), names.end(), partner) == names.end()) {
+    throw ConfigError(
+        "--channel",
+        partner.empty()
+            ? fmt::format("name a second channel against which to show {}", channels[0])
+            : fmt::format("{} is not recorded, and {}; add it to record.channels of the scene, or "
+                          "name another channel against which to show {}",
+                          partner, no_silent_derivatives, channels[0]));
+  }
+  return is_derivative(channels[0]) ? std::pair{series_of(partner), series}
+                                    : std::pair{series, series_of(partner)};
+}
+
+/// A word about a path that is too coarse to be smooth; empty where it is fine.
+std::string resolution_text(const PhaseAxis& axis, double interval) {
+  constexpr double enough = 12.0;
+  const auto samples = samples_per_period(axis.values);
+  if (!samples || *samples >= enough) return "";
+  return fmt::format(
+      "Only {:.2g} samples per period: corners are those of the sampling, every {}; record at a "
+      "shorter interval (record.interval of the scene) for a smooth path. ",
+      *samples, quantity_text(interval, "s"));
+}
+
+Drawn draw_phase(const PlotOptions& options, const RecordedStretch& run) {
+  const auto [across, up] = phase_series(options, run);
+  const auto axis = [&](const std::string& series) {
+    return PhaseAxis{channel_name(series), run.file.units(series), run.finite_values(series)};
+  };
+  plot_phase(axis(across), axis(up),
+             fmt::format("From {:.6g} s (ring) to {:.6g} s (dot). {}{}{}.", run.first_time(),
+                         run.last_time(), resolution_text(axis(up), run.interval),
+                         filters_text(run.file, {across, up}), source_text(run)),
+             options.output);
+  return {{"across", channel_name(across)},
+          {"up", channel_name(up)},
+          {"from", run.first_time()},
+          {"to", run.last_time()}};
+}
+
+// ---------------------------------------------------------------- amplitude over frequency
+
+AmplitudeScale amplitude_scale(const PlotOptions& options) {
+  if (!options.scale || *options.scale == "db") return AmplitudeScale::level;
+  if (*options.scale == "linear") return AmplitudeScale::linear;
+  throw ConfigError("--scale", fmt::format("'{}' is neither db nor linear", *options.scale));
+}
+
+Drawn draw_spectrum(const PlotOptions& options, const RecordedStretch& run) {
+  const RecordedSettings scene = recorded_settings(run.file, run.path);
+  // An eighth of the stretch: 15 pieces at half overlap, a compromise of lines and scatter.
+  const auto [parameters, max_frequency] = settle_pieces(
+      options, run, scene, std::nullopt, [&](double) { return run.duration() / 8.0; }, 0.5);
+  SpectrumPicture picture;
+  picture.scale = amplitude_scale(options);
+  picture.max_frequency = max_frequency;
+  if (options.range) picture.range = option_value("--range", *options.range, "", Range::positive());
+  picture.mean_lines = main_lobe_lines(parameters.window);
+
+  Wanted wanted = wanted_series(options, run, SeriesUse::spectrum);
+  std::vector<SpectrumPanel> panels;
+  Json channels = Json::array();
+  for (std::string& series : wanted.series) {
+    series = spectral_series(run.file, series);
+    const std::string units = run.file.units(series);
+    auto panel = std::find_if(panels.begin(), panels.end(),
+                              [&](const SpectrumPanel& other) { return other.units == units; });
+    if (panel == panels.end()) {
+      if (options.reference && !panels.empty()) {
+        throw ConfigError("--reference",
+                          fmt::format("the channels have several units ({}, {}); choose those of "
+                                      "one with --channel",
+                                      panels.front().units, units));
+      }
+      panels.push_back({units, settle_reference(options, units), {}});
+      panel = panels.end() - 1;
+    }
+    panel->curves.push_back(
+        {channel_name(series), make_spectrum(run.finite_values(series), run.interval, parameters)});
+    channels.push_back(
+        {{"channel", channel_name(series)}, {"units", units}, {"reference", panel->reference}});
+  }
+  const std::vector<NumberedBurst> bursts = bursts_in(run, options);
+  for (const auto& [number, burst] : bursts)
+    picture.marks.push_back({burst.frequency, std::to_string(number)});
+  const std::size_t num_pieces = panels.front().curves.front().spectrum.num_pieces;
+  picture.caption = fmt::format(
+      "Peak amplitudes, r.m.s. of {} pieces from {:.6g} to {:.6g} s: {}. {}.", num_pieces,
+      run.first_time(), run.last_time(), pieces_text(parameters, run.interval), source_text(run));
+  if (!bursts.empty())
+    picture.caption += fmt::format(" Dashed: frequencies of the bursts{}.",
+                                   options.band ? " in the band " + *options.band : "");
+  picture.caption += " " + filters_text(run.file, wanted.series) + wanted.rest_text();
+  plot_spectra(panels, picture, options.output);
+  return {{"channels", channels},
+          {"window", window_name(parameters.window)},
+          {"length", static_cast<double>(parameters.length) * run.interval},
+          {"length_samples", parameters.length},
+          {"overlap", parameters.overlap},
+          {"pieces", num_pieces},
+          {"from", run.first_time()},
+          {"to", run.last_time()},
+          {"max_frequency", max_frequency},
+          {"scale", picture.scale == AmplitudeScale::level ? "db" : "linear"},
+          {"bursts", bursts.size()},
+          {"left_out", wanted.left_out}};
+}
+
+// ---------------------------------------------------------------- the verb
+
+void check_options(const PlotOptions& options) {
+  const bool is_spectrogram = options.kind == "spectrogram";
+  const bool is_spectrum = options.kind == "spectrum";
+  if (!is_spectrogram) refuse_option(options, "--data", options.data);
+  if (!is_spectrum) refuse_option(options, "--scale", options.scale);
+  if (is_spectrogram || is_spectrum) return;
+  refuse_option(options, "--window", options.window);
+  refuse_option(options, "--length", options.length);
+  refuse_option(options, "--overlap", options.overlap);
+  refuse_option(options, "--max-frequency", options.max_frequency);
+  refuse_option(options, "--reference", options.reference);
+  refuse_option(options, "--range", options.range);
+  if (options.kind == "phase") refuse_option(options, "--band", options.band);
+}
+
+ExitCode plot(const PlotOptions& options) {
+  check_options(options);
+  if (options.kind == "spectrogram") return draw_spectrogram(options);
+  check_figure(options.output, options.common);
+  const RecordedStretch run = open_stretch(options);
+  const Drawn drawn = options.kind == "history" ? draw_history(options, run)
+                      : options.kind == "phase" ? draw_phase(options, run)
+                                                : draw_spectrum(options, run);
+  if (options.common.json) {
+    Json object = {{"figure", options.output}};
+    object.update(drawn);
+    print_json(object);
+  } else {
+    fmt::print("{}\n", options.output);
+    if (const auto rest = drawn.find("left_out"); rest != drawn.end() && !rest->empty())
+      fmt::print("{} more channels are not drawn; name those wanted with --channel (stridor info "
+                 "lists them)\n",
+                 rest->size());
+  }
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_plot_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<PlotOptions>();
+  CLI::App* verb = program.add_subcommand("plot", "Pictures of a run file");
+  verb->add_option("file", options->file, "Run file (HDF5)")->required();
+  verb->add_option("--kind", options->kind,
+                   "history, spectrogram, phase (one channel against another) or spectrum")
+      ->check(CLI::IsMember({"history", "spectrogram", "phase", "spectrum"}))
+      ->required();
+  verb->add_option("-o,--output", options->output, "Figure to write: .png, .svg or .pdf")
+      ->required();
+  verb->add_option("--channel", options->channels,
+                   "Channel to draw (repeatable); default: the eight of most use, for a phase plot "
+                   "the first pair of displacement and velocity")
+      ->take_all()
+      ->allow_extra_args(false);
+  add_spectrum_options(*verb, *options);
+  verb->add_option("--scale", options->scale, "Amplitudes of a spectrum: db or linear");
+  add_data_option(*verb, *options);
+  add_picture_options(*verb, *options);
+  verb->callback([options, &action] { action = [options] { return plot(*options); }; });
+}
+
+}  // namespace stridor

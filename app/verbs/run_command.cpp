@@ -1,0 +1,317 @@
+// stridor run: transient simulation of a scene.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "app/results/transient_results.hpp"
+#include "app/runs/cycle_motion.hpp"
+#include "app/runs/error_estimate.hpp"
+#include "app/runs/run_ending.hpp"
+#include "app/runs/transient.hpp"
+#include "app/terminal/command.hpp"
+#include "app/terminal/progress.hpp"
+#include "core/errors.hpp"
+#include "core/stop_token.hpp"
+#include "io/hdf5/damage_guard.hpp"
+#include "io/scene/scene_warnings.hpp"
+
+namespace stridor {
+namespace {
+
+struct RunOptions {
+  CommonOptions common;
+  std::string scene;
+  std::string output;
+  std::string resumed;
+  double max_wall = std::numeric_limits<double>::infinity();  ///< s
+  bool verify = false;
+  bool error = false;
+  std::string command_line;
+};
+
+/// Only where it is a violation.
+void print_contact_gain(const Json& gain) {
+  if (gain.is_null() || !gain["violated"].get<bool>()) return;
+  fmt::print(
+      "{:<24}contacts gave {:.4g} J to the bodies until {:.4g} s, {:.3g} of the energy "
+      "exchanged; none can\n",
+      "CONTACT WORK VIOLATED", gain["energy"].get<double>(), gain["last_time"].get<double>(),
+      gain["share"].get<double>());
+}
+
+std::string result_text(const Json& value) {
+  if (value.is_null()) return "-";
+  return value.is_number() ? fmt::format("{:.5g}", value.get<double>()) : value.get<std::string>();
+}
+
+void print_acceleration(const Json& results) {
+  const Json& acceleration = results["free_end_acceleration"];
+  if (acceleration.is_null()) return;
+  fmt::print("{:<24}peak {} m/s^2, r.m.s. {}{} m/s^2, of {}\n", "acceleration",
+             result_text(acceleration["peak"]), results["bursts"].is_null() ? "" : "in band ",
+             result_text(acceleration["rms"]), result_text(acceleration["channel"]));
+}
+
+void print_fractions(const Json& results) {
+  const auto fraction_text = [&](const char* name) {
+    return results[name].is_null() ? std::string("-")
+                                   : fmt::format("{:.4g} %", 100.0 * results[name].get<double>());
+  };
+  fmt::print("{:<24}{} of the time, lifted off {}\n", "sticking", fraction_text("stick_fraction"),
+             fraction_text("free_fraction"));
+}
+
+/// Of a run from event to event.
+void print_cycles(const Json& results, const std::string& output) {
+  const auto print = [](const char* name, const Json& value, const char* units) {
+    const std::string number =
+        value.is_null() ? "-" : fmt::format("{:.10g} {}", value.get<double>(), units);
+    fmt::print("{:<24}{}\n", name, number);
+  };
+  fmt::print("{:<24}{}\n", "status", result_text(results["status"]));
+  fmt::print("{:<24}{} ({:.3g} s)\n", "steps", results["steps"].get<std::int64_t>(),
+             results["wall_s"].get<double>());
+  print("period", results["period"], "s");
+  print("x, r.m.s. about mean", results["x"]["rms"], "m");
+  print("x, smallest", results["x"]["min"], "m");
+  print("x, largest", results["x"]["max"], "m");
+  fmt::print("{:<23} {} to {} N\n", "contact force", result_text(results["contact_force"]["min"]),
+             result_text(results["contact_force"]["max"]));
+  print_acceleration(results);
+  print_bursts(results);
+  print_fractions(results);
+  print_law_exceeded(results);
+  fmt::print("{:<24}{}\n", "run file", output);
+}
+
+void print_summary(const Json& results, const std::string& output) {
+  fmt::print("{:<24}{}\n", "status", result_text(results["status"]));
+  const std::string limit =
+      results["step_limit"].is_null()
+          ? "no limit by the modes"
+          : fmt::format("largest stable {:.4g} s", results["step_limit"].get<double>());
+  fmt::print("{:<24}{} of {:g} s ({})\n", "steps", results["steps"].get<std::int64_t>(),
+             results["step"].get<double>(), limit);
+  for (const auto& [name, modes] : results["modes"].items()) {
+    fmt::print("{:<23} {} moving, {} left to their static residual\n", "modes of " + name,
+               modes["moving"].get<int>(), modes["residual"].get<int>());
+  }
+  const Json& left_out = results["left_out"];
+  const auto part = [](const Json& one) {
+    return fmt::format("{} of {}", one["left_out"].get<std::int64_t>(),
+                       one["of"].get<std::int64_t>());
+  };
+  fmt::print("{:<24}{} modes, {} rows under contacts: {} instead of {} multiplications a step\n",
+             "left out", part(left_out["modes"]), part(left_out["contact_rows"]),
+             left_out["multiplications"]["done"].get<std::int64_t>(),
+             left_out["multiplications"]["of"].get<std::int64_t>());
+  for (const Json& what : left_out["rest"]) fmt::print("{:<24}{}\n", "", what.get<std::string>());
+  const std::string step_time =
+      results["step_ns"].is_null()
+          ? ""
+          : fmt::format(" ({:.0f} ns a step)", results["step_ns"].get<double>());
+  fmt::print("{:<24}{:.3g} s stepping{}, {:.3g} s set-up, {:.3g} s output\n", "time taken",
+             results["wall_s"].get<double>(), step_time, results["setup_s"].get<double>(),
+             results["output_s"].get<double>());
+  const auto print_force = [&](const std::string& name, const Json& force) {
+    fmt::print("{:<23} {} to {} N\n", name, result_text(force["min"]), result_text(force["max"]));
+  };
+  if (results.contains("contact_force")) print_force("contact force", results["contact_force"]);
+  if (results.contains("contacts")) {
+    for (const auto& [name, contact] : results["contacts"].items())
+      print_force("contact force, " + name, contact["contact_force"]);
+  }
+  if (!results["perturbation"].is_null()) {
+    fmt::print("{:<24}{:.6g} Hz, growth {:.6g} 1/s\n", "perturbed mode",
+               results["perturbation"]["frequency"].get<double>(),
+               results["perturbation"]["growth"].get<double>());
+  }
+  print_acceleration(results);
+  print_bursts(results);
+  const bool has_contacts = !results.contains("contacts") || !results["contacts"].empty();
+  if (has_contacts) {
+    print_fractions(results);
+    fmt::print("{:<24}{} steps ({} of them before the contacts were armed)\n", "sliding violated",
+               results["violations"].get<std::int64_t>(),
+               results["violation_details"]["before_armed"].get<std::int64_t>());
+  }
+  if (!results["energy_error"].is_null()) {
+    fmt::print("{:<24}largest error {:.2g} of the energy exchanged\n", "energy balance",
+               results["energy_error"].get<double>());
+  }
+  print_contact_gain(results["contact_gain"]);
+  if (!results["error"].is_null()) {
+    const Json& error = results["error"];
+    if (error["failure"].is_null()) {
+      fmt::print(
+          "{:<24}{} of the envelope of the acceleration, {} of the acceleration, {} of the "
+          "force: {} ({:.3g} s)\n",
+          "error", result_text(error["envelope"]), result_text(error["acceleration"]),
+          result_text(error["force"]), error["is"].get<std::string>(),
+          error["wall_s"].get<double>());
+    } else {
+      fmt::print("{:<24}not estimated: {}\n", "error", error["failure"].get<std::string>());
+    }
+  }
+  fmt::print("{:<24}{}\n", "run file", output);
+}
+
+Json error_json(const ErrorEstimate& estimate) {
+  return {{"force", number(estimate.errors.force)},
+          {"acceleration", number(estimate.errors.acceleration)},
+          {"envelope", number(estimate.errors.envelope)},
+          {"is", fmt::format("difference from exact propagation of all modes at {:.4g} s",
+                             estimate.step)},
+          {"wall_s", number(estimate.seconds)},
+          {"failure", estimate.failure.empty() ? Json(nullptr) : Json(estimate.failure)}};
+}
+
+/// What cannot be studied is refused before the run.
+std::optional<StudiedScene> studied(const LoadedScene& loaded, const RunOptions& options) {
+  if (!options.error) return std::nullopt;
+  if (loaded.scene.time->is_event_driven()) {
+    throw ConfigError("--error",
+                      "is for time.step; of time.integrator: event_driven the verb "
+                      "`precision` says the error");
+  }
+  return study_scene(loaded);
+}
+
+/// A transient whose error is estimated once it is whole, where there is a study of its scene.
+class StudiedRun {
+ public:
+  StudiedRun(Transient& transient, const std::optional<StudiedScene>& study)
+      : transient_(&transient), study_(&study) {}
+
+  RunKeeper& keeper() { return transient_->keeper(); }
+  MarchEnd run_to_end() { return end_ = transient_->run_to_end(); }
+  void write_checkpoint() { transient_->write_checkpoint(); }
+  double time() const { return transient_->time(); }
+  const std::string& failure() const { return transient_->failure(); }
+
+  Json finish() {
+    if (!*study_ || end_ != MarchEnd::finished) return transient_->finish();
+    Progress progress("error");
+    const ErrorEstimate estimate = estimate_error(
+        **study_, [&](double part) { progress.report(part, "a finer run beside it"); });
+    progress.finish();
+    is_cut_short_ = stop_requested() && !estimate.failure.empty();
+    return transient_->finish(error_json(estimate));
+  }
+  /// Whether a request to stop came before the error was known.
+  bool is_cut_short() const { return is_cut_short_; }
+
+ private:
+  Transient* transient_;
+  const std::optional<StudiedScene>* study_;
+  MarchEnd end_ = MarchEnd::finished;
+  bool is_cut_short_ = false;
+};
+
+/// @param study of the scene, where the error is to be estimated
+ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::string& file,
+                    const std::optional<StudiedScene>& study, const RunEnding& ending) {
+  StudiedRun run(transient, study);
+  const ExitCode code = run_and_report(
+      run, loaded.scene.time->end, file, ending, loaded.scene.expect, [&](const Json& results) {
+        loaded.scene.time->is_event_driven() ? print_cycles(results, file)
+                                            : print_summary(results, file);
+      });
+  if (run.is_cut_short())
+    throw Interrupted(file + " holds the whole run; its error was not estimated");
+  return code;
+}
+
+ExitCode begin(const RunOptions& options) {
+  const RunOutput output{options.output, options.common.overwrite(), options.command_line};
+  const RunEnding ending{options.max_wall, options.common.json, options.verify};
+  const LoadedScene loaded = load_scene(options.scene, options.common.sets);
+  loaded.require_section("time", "run");
+  const auto study = studied(loaded, options);
+  Transient transient(loaded, output);
+  print_warnings(scene_warnings(loaded, transient.model()));
+  return run_to_end(transient, loaded, options.output, study, ending);
+}
+
+/// Says what a run gave that is done already.
+ExitCode report_done(const RunOptions& options, const RunFileReader& reader) {
+  if (options.error) {
+    throw ConfigError("--error", options.resumed +
+                                     " holds a whole run; an error is estimated with the run, "
+                                     "so begin it anew");
+  }
+  const Json results = stored_results(reader);
+  if (options.common.json) {
+    print_json(results);
+  } else {
+    fmt::print("{:<24}done; {} holds the whole run, there is nothing left to do\n", "status",
+               options.resumed);
+  }
+  if (options.verify) {
+    const std::string& text = reader.header().scene_resolved;
+    const std::string source = options.resumed + ":/scene/resolved";
+    check_expectations(load_resolved_scene(text, source).scene.expect, results);
+  }
+  return ExitCode::done;
+}
+
+ExitCode resume(const RunOptions& options) {
+  std::optional<DamageGuard> guard(options.resumed);
+  {
+    const RunFileReader reader(options.resumed);
+    if (is_done(reader)) return report_done(options, reader);
+  }
+  const InterruptedRun interrupted = find_interrupted_run(options.resumed);
+  guard.reset();
+  const std::string source = options.resumed + ":/scene/resolved";
+  const RunEnding ending{options.max_wall, options.common.json, options.verify};
+  const LoadedScene loaded = load_resolved_scene(interrupted.scene_text, source);
+  const auto study = studied(loaded, options);
+  Transient transient(loaded, interrupted);
+  return run_to_end(transient, loaded, options.resumed, study, ending);
+}
+
+/// @throws ConfigError where the options do not say what to run, or twice
+ExitCode run(const RunOptions& options) {
+  const bool has_scene = !options.scene.empty();
+  if (options.resumed.empty()) {
+    if (!has_scene) throw ConfigError("", "run: give a scene, or --resume FILE.h5");
+    if (options.output.empty()) throw ConfigError("", "run: --output is required");
+    return begin(options);
+  }
+  if (has_scene || !options.output.empty() || !options.common.sets.empty() ||
+      options.common.force) {
+    throw ConfigError("",
+                      "run: --resume goes on with the scene in the file and writes into it; leave "
+                      "scene, --output, --set and --force away");
+  }
+  return resume(options);
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& program, Action& action, const std::string& command_line) {
+  auto options = std::make_shared<RunOptions>();
+  options->command_line = command_line;
+  CLI::App* verb = program.add_subcommand("run", "Transient simulation of a scene");
+  verb->add_option("scene", options->scene, "Scene file (YAML)");
+  verb->add_option("-o,--output", options->output, "Run file to write (HDF5)");
+  verb->add_option("--resume", options->resumed,
+                   "Go on with an interrupted run, from the latest checkpoint in its file");
+  verb->add_option("--max-wall", options->max_wall,
+                   "Stop after this much wall time (s), resumable; exit 5")
+      ->check(CLI::PositiveNumber);
+  verb->add_flag("--verify", options->verify,
+                 "Compare the results with the scene's `expect` block; exit 3 where they differ");
+  verb->add_flag("--error", options->error, "Estimate the error of the run by a second, finer one");
+  add_scene_options(*verb, options->common);
+  add_json_option(*verb, options->common);
+  add_force_option(*verb, options->common);
+  verb->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace stridor

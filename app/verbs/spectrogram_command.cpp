@@ -1,0 +1,229 @@
+// stridor spectrogram: amplitude over time and frequency of one channel of a run file.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "app/results/pictures.hpp"
+#include "app/stability/prediction.hpp"
+#include "core/activity.hpp"
+#include "core/errors.hpp"
+#include "io/figures/axes.hpp"
+#include "io/figures/spectrogram_plot.hpp"
+#include "io/results/locus_file.hpp"
+#include "io/results/spectrogram_file.hpp"
+#include "io/scene/scene_family.hpp"
+
+namespace stridor {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Amplitudes of a spectrogram held in memory, 2 GB.
+constexpr double most_amplitudes = 2.5e8;
+
+/// Checks before anything is computed that --data can be written.
+void check_data_file(const PictureOptions& options) {
+  if (!options.data) return;
+  std::error_code missing;
+  if (fs::equivalent(*options.data, options.file, missing))
+    throw ConfigError("--data", fmt::format("'{}' is the run file itself", *options.data));
+  if (fs::path(*options.data) == fs::path(options.output))
+    throw ConfigError("--data", fmt::format("'{}' is also the figure", *options.data));
+  check_output(*options.data, options.common.overwrite());
+}
+
+std::string shown_series(const PictureOptions& options, const RecordedStretch& run,
+                         const std::optional<SpectrogramSection>& section) {
+  if (options.channels.size() > 1)
+    throw ConfigError("--channel", "a spectrogram shows one channel; give the option once");
+  if (!options.channels.empty()) return find_series(run, options.channels.front(), "--channel");
+  if (section && section->channel)
+    return find_series(run, *section->channel, "spectrogram.channel");
+  if (const auto series = acceleration_channel(run.file)) return *series;
+  std::vector<std::string> names;
+  for (const std::string& series : run.file.series_names()) names.push_back(channel_name(series));
+  throw ConfigError("--channel", fmt::format("{} has no acceleration; name one of its channels: {}",
+                                             run.path, fmt::join(names, ", ")));
+}
+
+void check_size(const SpectrogramParameters& parameters, const RecordedStretch& run) {
+  const double length = static_cast<double>(parameters.length);
+  const double pieces = static_cast<double>(run.samples.size()) /
+                        std::max(1.0, std::round(length * (1.0 - parameters.overlap)));
+  if (pieces * (0.5 * length + 1.0) <= most_amplitudes) return;
+  throw ConfigError("--overlap",
+                    fmt::format("{} pieces of {} lines do not fit into memory; lower the overlap, "
+                                "or choose a shorter stretch with --from, --to",
+                                std::llround(pieces), parameters.length / 2 + 1));
+}
+
+std::vector<SpectrogramMark> burst_marks(const std::vector<NumberedBurst>& bursts) {
+  std::vector<SpectrogramMark> marks;
+  marks.reserve(bursts.size());
+  for (const auto& [number, burst] : bursts) {
+    marks.push_back({burst.start, burst.end, burst.frequency,
+                     fmt::format("{}: {}", number, quantity_text(burst.frequency, "Hz")),
+                     std::to_string(number), MarkStyle::found});
+  }
+  return marks;
+}
+
+/// The channel in which bursts are sought.
+std::string acceleration_name(const RunFileReader& file) {
+  const auto series = acceleration_channel(file);
+  return series ? channel_name(*series) : "the run";
+}
+
+/// Windows of a locus belong to times of a run only where it is one over the path.
+void check_prediction(const PictureOptions& options) {
+  if (!options.predict) return;
+  const std::string parameter = read_locus_parameter(*options.predict);
+  if (parameter.empty() || parameter.ends_with(".start") || parameter == drive_displacement_name)
+    return;
+  throw ConfigError("--predict",
+                    fmt::format("'{}' is a locus over {}, which a run does not pass through; give "
+                                "one over the contact position (`locus` without --parameter)",
+                                *options.predict, parameter));
+}
+
+/// Bursts are sought in one channel, whichever is shown.
+void check_band(const PictureOptions& options, const RecordedStretch& run,
+                const std::string& series) {
+  const auto searched = acceleration_channel(run.file);
+  if (!options.band || !searched || searched == series) return;
+  throw ConfigError("--band", fmt::format("seeks bursts in {}, but the spectrogram is that of {}; "
+                                          "leave one of --band and --channel away",
+                                          acceleration_name(run.file), channel_name(series)));
+}
+
+Attributes data_attributes(const Json& settings, const RecordedStretch& run) {
+  const RunFileHeader& header = run.file.header();
+  Attributes attributes{{"run_file", run.path},
+                        {"run_command", header.command},
+                        {"scene_hash", header.scene_hash},
+                        {"version", header.version},
+                        {"commit", header.commit},
+                        {"interval", run.interval}};
+  for (const auto& [name, value] : settings.items()) {
+    if (value.is_number()) attributes.emplace_back(name, value.get<double>());
+    if (value.is_string()) attributes.emplace_back(name, value.get<std::string>());
+  }
+  return attributes;
+}
+
+}  // namespace
+
+ExitCode draw_spectrogram(const PictureOptions& options) {
+  check_figure(options.output, options.common);
+  check_data_file(options);
+  const RecordedStretch run = open_stretch(options);
+  const RecordedSettings scene = recorded_settings(run.file, run.path);
+  const std::string series =
+      spectral_series(run.file, shown_series(options, run, scene.spectrogram));
+  check_prediction(options);
+  check_band(options, run, series);
+  const std::string units = run.file.units(series);
+  const auto [parameters, max_frequency] = settle_pieces(
+      options, run, scene, scene.spectrogram,
+      [&](double highest) { return std::sqrt(run.duration() / highest); }, 0.75);
+  check_size(parameters, run);
+  SpectrogramPicture picture;
+  picture.title = channel_name(series);
+  picture.units = units;
+  picture.max_frequency = max_frequency;
+  picture.reference = settle_reference(options, units);
+  if (options.range) picture.range = option_value("--range", *options.range, "", Range::positive());
+  picture.mean_lines = main_lobe_lines(parameters.window);
+  const std::vector<NumberedBurst> bursts = bursts_in(run, options);
+  picture.marks = burst_marks(bursts);
+  picture.caption =
+      fmt::format("Peak amplitudes: {}. {}{}.", pieces_text(parameters, run.interval),
+                  filters_text(run.file, {series}), source_text(run));
+  if (!bursts.empty()) {
+    picture.caption +=
+        fmt::format(" Dashed: bursts in {}{}, frequency at the steepest rise.",
+                    acceleration_name(run.file), options.band ? ", band " + *options.band : "");
+  }
+
+  std::vector<PredictedBurst> predictions;
+  if (options.predict) {
+    predictions = match_bursts(read_locus_windows(*options.predict), bursts);
+    for (SpectrogramMark& mark : predicted_marks(predictions))
+      picture.marks.push_back(std::move(mark));
+    picture.caption += fmt::format(" Dotted: unstable windows of {}.",
+                                   fs::path(*options.predict).filename().string());
+  }
+
+  std::optional<Activity> transforming(std::in_place, "transforming the pieces");
+  const Spectrogram spectrogram =
+      make_spectrogram(run.finite_values(series), run.interval, parameters, run.first_time());
+  const double highest = highest_amplitude(spectrogram, picture.max_frequency, picture.mean_lines);
+  transforming.reset();
+  const Json settings = {{"channel", picture.title},
+                         {"units", units},
+                         {"window", window_name(parameters.window)},
+                         {"length", static_cast<double>(parameters.length) * run.interval},
+                         {"length_samples", parameters.length},
+                         {"overlap", parameters.overlap},
+                         {"from", run.first_time()},
+                         {"to", run.last_time()}};
+  if (options.data) {
+    write_spectrogram_file(*options.data, options.common.overwrite(), spectrogram, units,
+                           data_attributes(settings, run));
+  }
+  plot_spectrogram(spectrogram, picture, options.output);
+
+  if (options.common.json) {
+    Json object = {{"figure", options.output},
+                   {"data", options.data ? Json(*options.data) : Json(nullptr)}};
+    object.update(settings);
+    object["max_frequency"] = max_frequency;
+    object["reference"] = picture.reference;
+    object["range"] = picture.range;
+    object["pieces"] = spectrogram.times.size();
+    object["line_spacing"] = spectrogram.frequencies[1];
+    object["highest_amplitude"] = highest;
+    object["highest_level"] =
+        highest > 0.0 ? number(decibels(highest, picture.reference)) : Json(nullptr);
+    object["bursts"] = bursts.size();
+    if (options.predict) object["prediction"] = prediction_json(predictions);
+    print_json(object);
+  } else {
+    fmt::print("{}\n", options.output);
+    if (options.data) fmt::print("{}\n", *options.data);
+    if (options.band && bursts.empty())
+      fmt::print("no bursts of {} in the band {}\n", acceleration_name(run.file), *options.band);
+    if (options.predict) print_prediction(predictions);
+  }
+  return ExitCode::done;
+}
+
+void add_spectrogram_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<PictureOptions>();
+  CLI::App* verb =
+      program.add_subcommand("spectrogram", "Amplitude over time and frequency of one channel");
+  verb->add_option("file", options->file, "Run file (HDF5)")->required();
+  verb->add_option("-o,--output", options->output,
+                   "Figure to write: .png, .svg or .pdf; default: FILE_spectrogram.png");
+  verb->add_option("--channel", options->channels,
+                   "Channel to show; default: the acceleration in which bursts are sought")
+      ->take_all()
+      ->allow_extra_args(false);
+  verb->add_option("--predict", options->predict,
+                   "Locus file (`locus -o`) whose unstable windows are marked and set beside the "
+                   "bursts");
+  add_spectrum_options(*verb, *options);
+  add_data_option(*verb, *options);
+  add_picture_options(*verb, *options);
+  verb->callback([options, &action] {
+    if (options->output.empty()) {
+      fs::path figure = options->file;
+      figure.replace_filename(figure.stem().string() + "_spectrogram.png");
+      options->output = figure.string();
+    }
+    action = [options] { return draw_spectrogram(*options); };
+  });
+}
+
+}  // namespace stridor

@@ -1,0 +1,168 @@
+#include "coupling/laws/friction_parameters.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace stridor {
+
+void check_coefficient(const char* key, const std::optional<double>& coefficient,
+                       std::vector<Problem>& problems) {
+  constexpr double most = 100.0;
+  if (!coefficient || *coefficient <= most) return;
+  problems.push_back({key,
+                      fmt::format("must be at most {:g}, got {:g}: solids in contact have "
+                                  "coefficients of friction below about 10",
+                                  most, *coefficient),
+                      {},
+                      0,
+                      0});
+}
+
+namespace {
+
+/// The keys of all laws, each once.
+const std::vector<FrictionKey>& keys_of_all_laws() {
+  static const std::vector<FrictionKey> all = [] {
+    std::vector<FrictionKey> keys;
+    for (const FrictionLawType& type : friction_law_types()) {
+      for (const FrictionKey& key : type.keys) {
+        if (std::none_of(keys.begin(), keys.end(),
+                         [&](const FrictionKey& other) { return other.name == key.name; }))
+          keys.push_back(key);
+      }
+    }
+    return keys;
+  }();
+  return all;
+}
+
+void check_keys_of_friction(const FrictionParameters& friction, std::vector<Problem>& problems) {
+  const FrictionLawType& law = *friction.law;
+  const auto demand = [&](const std::string& key, bool is_wanted) {
+    if (friction.numbers.contains(key) == is_wanted) return;
+    problems.push_back({key,
+                        fmt::format("{} by the {} friction law",
+                                    is_wanted ? "missing: needed" : "not used", law.name),
+                        {},
+                        0,
+                        0});
+  };
+  for (const FrictionKey& key : keys_of_all_laws()) {
+    demand(key.name, std::any_of(law.keys.begin(), law.keys.end(),
+                                 [&](const FrictionKey& own) { return own.name == key.name; }));
+  }
+  for (const FrictionKey& key : keys_of_all_laws()) {
+    const auto given = friction.numbers.find(key.name);
+    if (key.is_coefficient && given != friction.numbers.end())
+      check_coefficient(key.name.c_str(), given->second, problems);
+  }
+  if (law.check != nullptr) law.check(friction.numbers, problems);
+  if (friction.regularisation && law.has_jump) {
+    std::string others;
+    for (const FrictionLawType& type : friction_law_types()) {
+      if (!type.has_jump && !type.needs_area) others += (others.empty() ? "" : " or ") + type.name;
+    }
+    problems.push_back({"regularisation",
+                        "goes with a law that is continuous in sliding: a regularised contact "
+                        "never rests, so that `static` would never act; take " +
+                            others,
+                        {},
+                        0,
+                        0});
+  }
+}
+
+/// `law`, by the name of its type.
+Key law_key() {
+  Key key;
+  key.kind = KeyKind::choice;
+  key.name = "law";
+  key.is_optional = true;
+  for (const FrictionLawType& type : friction_law_types()) {
+    key.choices.push_back(type.name);
+    key.doc += (key.doc.empty() ? "" : "; ") + type.name + ": " + type.doc;
+  }
+  key.doc += ".";
+  key.assign = [](void* object, const Value& value) {
+    static_cast<FrictionParameters*>(object)->law =
+        &friction_law_type(std::get<std::string>(value));
+  };
+  key.read = [](const void* object) -> Value {
+    return static_cast<const FrictionParameters*>(object)->law->name;
+  };
+  return key;
+}
+
+Key number_key(const FrictionKey& of) {
+  Key key;
+  key.kind = KeyKind::real;
+  key.name = of.name;
+  key.doc = of.says.doc;
+  key.unit = of.says.unit;
+  key.range = of.says.range;
+  key.is_optional = true;
+  key.assign = [name = of.name](void* object, const Value& value) {
+    static_cast<FrictionParameters*>(object)->numbers[name] = std::get<double>(value);
+  };
+  key.read = [name = of.name](const void* object) -> Value {
+    const FrictionNumbers& numbers = static_cast<const FrictionParameters*>(object)->numbers;
+    const auto given = numbers.find(name);
+    return given == numbers.end() ? Value{} : Value{given->second};
+  };
+  return key;
+}
+
+}  // namespace
+
+const Schema& FrictionRegularisation::schema() {
+  using Kind = RegularisedSign::Kind;
+  static const Schema keys =
+      SchemaOf<FrictionRegularisation>("friction_regularisation")
+          .choice("law", &FrictionRegularisation::law,
+                  {{"tanh", Kind::tanh},
+                   {"linear", Kind::linear},
+                   {"square_root", Kind::square_root},
+                   {"atan", Kind::atan}},
+                  {.doc = "What stands in the place of the sign of the slip, with u the slip over "
+                          "`speed`: tanh u, u up to 1, u/(1 + u²)^1/2 or (2/π) arctan u.",
+                   .optional = true})
+          .real("speed", &FrictionRegularisation::speed,
+                {.doc = "Slip over which friction rises.",
+                 .unit = "m s-1",
+                 .range = Range::positive()});
+  return keys;
+}
+
+const Schema& FrictionParameters::schema() {
+  static const Schema keys = [] {
+    Schema made =
+        SchemaOf<FrictionParameters>("friction")
+            .choice(
+                "viscoelastic", &FrictionParameters::viscoelastic,
+                {{"applied", FrictionLoad::applied}, {"contact", FrictionLoad::contact}},
+                {.doc = "What the friction coefficient of a viscoelastic normal law is multiplied "
+                        "with: the drive's load, or the force of the contact at the instant.",
+                 .optional = true})
+            .section("regularisation", &FrictionParameters::regularisation,
+                     {.doc = "Friction without sticking, as a smooth function of the slip: the "
+                             "contact creeps where it would stick.",
+                      .optional = true})
+            .check(check_keys_of_friction);
+    std::vector<Key> of_laws{law_key()};
+    for (const FrictionKey& key : keys_of_all_laws()) of_laws.push_back(number_key(key));
+    made.keys.insert(made.keys.begin(), of_laws.begin(), of_laws.end());
+    return made;
+  }();
+  return keys;
+}
+
+FrictionLaw make_friction_law(const FrictionParameters& parameters) {
+  FrictionLaw law = parameters.law->make(parameters.numbers);
+  if (parameters.regularisation)
+    law.sign = {parameters.regularisation->law, parameters.regularisation->speed};
+  return law;
+}
+
+}  // namespace stridor

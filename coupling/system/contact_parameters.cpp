@@ -1,0 +1,231 @@
+#include "coupling/system/contact_parameters.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+namespace stridor {
+
+namespace {
+
+/// Which laws go together.
+void check_laws(const ContactParameters& contact, std::vector<Problem>& problems) {
+  const auto refuse = [&](const char* key, std::string text) {
+    problems.push_back({key, std::move(text), {}, 0, 0});
+  };
+  const bool is_viscoelastic = contact.normal.law == NormalLaw::viscoelastic;
+  if (!contact.friction && !is_viscoelastic)
+    refuse("friction", "is missing: this normal law brings none of its own");
+  if (contact.friction && contact.friction->law->needs_area && !is_viscoelastic) {
+    refuse("normal.law",
+           fmt::format("has no area of contact, with which the friction law {} is in proportion; "
+                       "take {{law: viscoelastic, ...}}, or a friction coefficient",
+                       contact.friction->law->name));
+  }
+  if (contact.friction && contact.friction->viscoelastic == FrictionLoad::applied &&
+      !is_viscoelastic) {
+    refuse("normal.law",
+           "has no friction of its own, to which friction.viscoelastic belongs; take {law: "
+           "viscoelastic, ...}, or leave that out");
+  }
+  if (is_viscoelastic && contact.master != half_space_master)
+    refuse("master", "must be `half_space` with the viscoelastic normal law, which is that of one");
+  if (!is_viscoelastic && contact.master == half_space_master)
+    refuse("master", "`half_space` takes the normal law viscoelastic, which `normal` must be");
+  if (contact.slave.empty() && !is_viscoelastic) {
+    refuse("slave",
+           "is missing: only a viscoelastic normal law, which `stridor contact` evaluates, goes "
+           "without; name at least one point");
+  }
+  if (!contact.assumption && !is_viscoelastic)
+    refuse("assumption", "is missing; take subs_a, subs_b, subs_c or film");
+  if (is_viscoelastic && contact.assumption_or_default() != ContactAssumption::film) {
+    refuse("assumption",
+           "must be `film` with the viscoelastic normal law: it sticks, slips and lifts off");
+  }
+}
+
+}  // namespace
+
+SubstrateContact make_substrate_contact(const ContactParameters& contact, double load) {
+  if (!contact.friction) return make_substrate_contact(contact.normal);
+  const FrictionParameters& friction = *contact.friction;
+  SubstrateContact made = make_substrate_contact(contact.normal, make_friction_law(friction));
+  made.friction_load = friction.viscoelastic;
+  made.load = load;
+  return made;
+}
+
+const Schema& StartParameters::schema() {
+  using P = StartParameters;
+  static const Schema keys =
+      SchemaOf<P>("start")
+          .real("along", &P::along,
+                {.doc = "Position of the first slave point along the master surface, from its "
+                        "first node.",
+                 .unit = "m",
+                 .range = Range::non_negative(),
+                 .optional = true})
+          .real("radius", &P::radius,
+                {.doc = "Of the middle of the slave body on the face of a plate, from the axis.",
+                 .unit = "m",
+                 .range = Range::positive(),
+                 .optional = true})
+          .real("angle", &P::angle,
+                {.doc = "Of that middle around the axis; default 0.",
+                 .unit = "rad",
+                 .optional = true})
+          .check([](const P& start, std::vector<Problem>& problems) {
+            if (start.along.has_value() == start.radius.has_value()) {
+              problems.push_back({"",
+                                  "is either a length along the master or, on the face of a plate, "
+                                  "{radius, angle}",
+                                  {},
+                                  0,
+                                  0});
+            } else if (start.along && start.angle) {
+              problems.push_back({"angle", "goes with radius, on the face of a plate", {}, 0, 0});
+            }
+          });
+  return keys;
+}
+
+const Schema& ContactParameters::schema() {
+  static const Schema keys =
+      SchemaOf<ContactParameters>("contact")
+          .text_list(
+              "slave", &ContactParameters::slave,
+              {.doc = "Slave: <body>.<point>, <body>.<surface> (every node of it), or a "
+                      "list of them. May be absent where only `contact` evaluates the normal law.",
+               .optional = true})
+          .text("master", &ContactParameters::master,
+                {.doc = "Master surface: <body>.<surface>, or a face of a plate; `rigid`: a rigid "
+                        "straight line along +x "
+                        "without end, below the slave; or `half_space`: a viscoelastic one there, "
+                        "of which the normal law is that of an indenter at the slave point."})
+          .choice("assumption", &ContactParameters::assumption,
+                  {{"subs_a", ContactAssumption::subs_a},
+                   {"subs_b", ContactAssumption::subs_b},
+                   {"subs_c", ContactAssumption::subs_c},
+                   {"film", ContactAssumption::film}},
+                  {.doc = "subs_a: prescribed sliding on the undeformed master; subs_b: deformed "
+                          "positions and normal; subs_c: deformed positions, undeformed normal; "
+                          "all three slide persistently. film: as subs_b, with stick, slip and "
+                          "lift-off; what a viscoelastic normal law has where nothing is said.",
+                   .optional = true})
+          .choice(
+              "on_violation", &ContactParameters::on_violation,
+              {{"stop", OnViolation::stop}, {"unilateral", OnViolation::unilateral}},
+              {.doc = "What becomes of an armed contact that loses persistent sliding: stop the "
+                      "run, or let it stick, slip and lift off.",
+               .optional = true})
+          .real("armed_from", &ContactParameters::armed_from,
+                {.doc = "Violations of persistent sliding before this time are counted, not acted "
+                        "on; default drive.ramp.",
+                 .unit = "s",
+                 .range = Range::non_negative(),
+                 .optional = true})
+          .section("start", &ContactParameters::start,
+                   {.doc = "Initial position of the first slave point along the master surface, "
+                           "from its first node; on the face of a plate {radius, angle}.",
+                    .optional = true,
+                    .number_key = "along"})
+          .choice("sliding", &ContactParameters::sliding,
+                  {{"moving", SlidingMode::moving}, {"frozen", SlidingMode::frozen}},
+                  {.doc = "moving: the drive slides the slave; frozen: position held, friction as "
+                          "in sliding.",
+                   .optional = true})
+          .choice(
+              "surface", &ContactParameters::surface,
+              {{"polyline", SurfaceKind::polyline}, {"smooth", SurfaceKind::smooth}},
+              {.doc = "Shape of the master between its nodes. polyline: straight segments, with "
+                      "a kink at every node; smooth: a cubic through the nodes with continuous "
+                      "normal.",
+               .optional = true})
+          .section("roughness", &ContactParameters::roughness,
+                   {.doc = "Random roughness of the master, added to the gap.", .optional = true})
+          .section("normal", &ContactParameters::normal,
+                   {.doc = "Normal law; default: a multiplier, which closes the gap exactly.",
+                    .optional = true})
+          .section("friction", &ContactParameters::friction,
+                   {.doc = "Friction law. A viscoelastic normal law has friction of its own, to "
+                           "which this adds that of the interface.",
+                    .optional = true})
+          .check(check_laws);
+  return keys;
+}
+
+const Schema& DriveParameters::schema() {
+  static const Schema keys =
+      SchemaOf<DriveParameters>("drive")
+          .curve("velocity", &DriveParameters::velocity,
+                 {.doc = "Velocity of what it moves in +x: a number, which rises over `ramp`, or "
+                         "{times, values}; default 0.",
+                  .unit = "m s-1",
+                  .optional = true})
+          .curve("load", &DriveParameters::load,
+                 {.doc = "Force in +y on each thing that it loads: a number, which rises over "
+                         "`ramp`, or {times, values}; default 0.",
+                  .unit = "N",
+                  .optional = true})
+          .curve("displacement", &DriveParameters::displacement,
+                 {.doc = "Displacement in +y of the ground ends of springs: a number, which rises "
+                         "over `ramp`, or {times, values}; of drives with a name. Their dampers "
+                         "stay where they are.",
+                  .unit = "m",
+                  .optional = true})
+          .real(
+              "ramp", &DriveParameters::ramp,
+              {.doc = "Time over which velocity, load, displacement and friction rise from 0 "
+                      "(quintic smoothstep); friction with the drive that moves one of its bodies, "
+                      "else with one that loads them.",
+               .unit = "s",
+               .range = Range::non_negative()})
+          .text_list("moves", &DriveParameters::moves,
+                     {.doc = "What moves with the velocity: `guided` (all guided supports), <body> "
+                             "(those of it), <contact>.master (a rigid or half_space one, along "
+                             "itself), or a list of them; default: guided.",
+                      .optional = true})
+          .text_list("load_on", &DriveParameters::load_on,
+                     {.doc = "What the load acts on: `guided`, <body> (its guided supports), "
+                             "<body>.<point>, <body>.<surface> (spread evenly over it), or a list "
+                             "of them; default: guided.",
+                      .optional = true})
+          .text_list("displaces", &DriveParameters::displaces,
+                     {.doc = "What the displacement moves: the ground end of <body>.<spring>, or "
+                             "of a list of them.",
+                      .optional = true})
+          .check([](const DriveParameters& drive, std::vector<Problem>& problems) {
+            if (!drive.displacement.is_zero() && drive.displaces.empty())
+              problems.push_back(
+                  {"displaces", "is missing: name the springs that `displacement` moves", {}, 0, 0});
+          });
+  return keys;
+}
+
+bool SceneDrive::moves_guided() const {
+  if (parameters.moves.empty()) return is_only || !parameters.velocity.is_zero();
+  return std::find(parameters.moves.begin(), parameters.moves.end(), guided_supports) !=
+         parameters.moves.end();
+}
+
+bool SceneDrive::loads_guided() const {
+  if (parameters.load_on.empty()) return is_only || !parameters.load.is_zero();
+  return std::find(parameters.load_on.begin(), parameters.load_on.end(), guided_supports) !=
+         parameters.load_on.end();
+}
+
+Drive make_drive(const DriveParameters& parameters, SlidingMode sliding, const std::string& key) {
+  const auto ramped = [&](const TimeCurve& curve) {
+    return curve.is_constant() ? TimeCurve::ramp(curve.value(0.0), parameters.ramp) : curve;
+  };
+  return {ramped(parameters.velocity),
+          ramped(parameters.load),
+          sliding == SlidingMode::frozen,
+          0.0,
+          ramped(parameters.displacement),
+          key};
+}
+
+}  // namespace stridor

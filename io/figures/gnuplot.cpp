@@ -1,0 +1,246 @@
+#include "io/figures/gnuplot.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/activity.hpp"
+#include "core/errors.hpp"
+#include "core/stop_token.hpp"
+#include "io/hdf5/part_file.hpp"
+
+extern char** environ;
+
+namespace stridor {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* packages = "install the packages gnuplot-nox and fonts-dejavu-core";
+
+// A folder only this user can read, removed with all that is in it.
+class PrivateFolder {
+ public:
+  explicit PrivateFolder(const fs::path& figure) {
+    std::error_code error;
+    const fs::path base = fs::temp_directory_path(error);
+    if (error) {
+      throw FileError(figure.string(), "",
+                      "cannot make a temporary folder (see TMPDIR): " + error.message());
+    }
+    std::string pattern = (base / "stridor-figure-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) {
+      throw FileError(
+          figure.string(), "",
+          fmt::format("cannot make a temporary folder '{}': {}", pattern, std::strerror(errno)));
+    }
+    path_ = pattern;
+    for (const fs::path& made : {script(), messages(), path_})
+      unfinished_.emplace_back(made.string());
+  }
+  PrivateFolder(const PrivateFolder&) = delete;
+  PrivateFolder& operator=(const PrivateFolder&) = delete;
+  ~PrivateFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  fs::path script() const { return path_ / "script.gp"; }
+  fs::path messages() const { return path_ / "messages"; }
+
+ private:
+  fs::path path_;
+  std::deque<UnfinishedFile> unfinished_;
+};
+
+struct Outcome {
+  int spawn_error = 0;
+  int status = 0;
+};
+
+Outcome run_gnuplot(const std::string& script, const std::string& messages) {
+  std::array<std::string, 3> words{"gnuplot", "-d", script};  // -d: no start-up files
+  std::array<char*, 4> arguments{words[0].data(), words[1].data(), words[2].data(), nullptr};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, messages.c_str(),
+                                   O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  pid_t child = -1;
+  Outcome outcome;
+  outcome.spawn_error =
+      posix_spawnp(&child, "gnuplot", &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (outcome.spawn_error != 0) return outcome;
+  const HelperProcess helper(child);
+  while (waitpid(child, &outcome.status, 0) < 0 && errno == EINTR) {
+  }
+  return outcome;
+}
+
+// Messages of gnuplot on one line, without those known to be harmless.
+std::string read_messages(const fs::path& path) {
+  std::ifstream file(path);
+  std::string text;
+  for (std::string line; std::getline(file, line);) {
+    const bool is_blank = line.find_first_not_of(" \t^\r") == std::string::npos;
+    const bool is_harmless = line.find("No writable cache directories") != std::string::npos ||
+                             line.find("adjusting to [") != std::string::npos;
+    if (is_blank || is_harmless) continue;
+    if (!text.empty()) text += "; ";
+    text += line.substr(line.find_first_not_of(" \t"));
+  }
+  // A script may be long; the reason is at the end of the message.
+  constexpr std::size_t longest = 600;
+  return text.size() > longest ? "… " + text.substr(text.size() - longest) : text;
+}
+
+// Commands that choose the terminal for the ending of the name.
+std::string terminal(const std::string& ending, FigureSize size) {
+  // fontscale, so that sizes given in a script are points of the figure with every terminal.
+  const auto font = [&](double scale) {
+    return fmt::format("font 'DejaVu Sans,{:g}' fontscale {:.4f}", size.font_size, scale);
+  };
+  if (ending == ".svg") {
+    constexpr double px_per_cm = 96.0 / 2.54;
+    return fmt::format("set terminal svg size {:.0f},{:.0f} noenhanced {} background '#ffffff'\n",
+                       size.width * px_per_cm, size.height * px_per_cm, font(96.0 / 72.0));
+  }
+  if (ending == ".pdf") {
+    return fmt::format("set terminal pdfcairo size {:g}cm,{:g}cm noenhanced {} linewidth 0.5\n",
+                       size.width, size.height, font(72.0 / 96.0));
+  }
+  constexpr double dots_per_cm = 100.0;
+  // The terminals for PNG take an inch to have 96 dots.
+  const double scale = dots_per_cm * 2.54 / 96.0;
+  return fmt::format(
+      "if (strstrt(GPVAL_TERMINALS, 'pngcairo') > 0) {{\n"
+      "  set terminal pngcairo size {0:.0f},{1:.0f} noenhanced {2} linewidth 2\n"
+      "}} else {{\n"
+      "  set terminal png size {0:.0f},{1:.0f} noenhanced {2} linewidth 2\n"
+      "}}\n",
+      size.width * dots_per_cm, size.height * dots_per_cm, font(scale));
+}
+
+std::vector<fs::path> font_folders() {
+  std::vector<fs::path> folders{"/usr/share/fonts", "/usr/local/share/fonts"};
+  if (const char* home = std::getenv("HOME")) {
+    folders.emplace_back(fs::path(home) / ".fonts");
+    folders.emplace_back(fs::path(home) / ".local/share/fonts");
+  }
+  return folders;
+}
+
+}  // namespace
+
+std::string gnuplot_string(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) {
+    if (c == '\'') {
+      quoted += "''";
+    } else {
+      quoted += (c == '\n' || c == '\r' || c == '\0') ? ' ' : c;
+    }
+  }
+  return quoted + "'";
+}
+
+void check_figure_name(const fs::path& figure) {
+  const std::string ending = figure.extension().string();
+  if (ending == ".png" || ending == ".svg" || ending == ".pdf") return;
+  throw ConfigError(
+      "", fmt::format("figure '{}': the name must end with .png, .svg or .pdf", figure.string()));
+}
+
+bool has_fonts(const std::vector<fs::path>& folders) {
+  for (const fs::path& folder : folders) {
+    std::error_code error;
+    fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied,
+                                           error);
+    for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+      const std::string ending = entry->path().extension().string();
+      if (ending == ".ttf" || ending == ".otf" || ending == ".ttc" || ending == ".pfb") return true;
+    }
+  }
+  return false;
+}
+
+void draw_figure(const fs::path& figure, const std::string& script, FigureSize size) {
+  check_figure_name(figure);
+  if (!(size.width > 0.0 && size.height > 0.0 && size.font_size > 0.0)) {
+    throw std::invalid_argument("draw_figure: the size must be positive");
+  }
+  const std::string ending = figure.extension().string();
+  // Without fonts gnuplot draws figures without any text and reports success.
+  if (ending != ".svg" && std::getenv("FONTCONFIG_FILE") == nullptr && !has_fonts(font_folders())) {
+    throw FileError(figure.string(), "",
+                    fmt::format("there are no fonts to draw it with; {}", packages));
+  }
+  std::error_code error;
+  const fs::path folder = figure.has_parent_path() ? figure.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, error)) {
+    throw FileError(figure.string(), "", fmt::format("there is no folder '{}'", folder.string()));
+  }
+  if (fs::exists(figure, error) && !fs::is_regular_file(figure, error)) {
+    throw FileError(figure.string(), "", "is not a regular file and is not replaced");
+  }
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw FileError(
+        figure.string(), "",
+        fmt::format("cannot write in the folder '{}': {}", folder.string(), std::strerror(errno)));
+  }
+
+  const Activity drawing("drawing " + figure.filename().string());
+  const PrivateFolder scratch(figure);
+  PartFile part(figure.string());
+  part.made();
+  const fs::path script_path = scratch.script();
+  {
+    std::ofstream file(script_path, std::ios::binary);
+    file << "set encoding utf8\n"
+         << terminal(ending, size) << "set output " << gnuplot_string(part.path()) << '\n'
+         << script << "\nset output\n";
+    file.close();
+    if (!file)
+      throw FileError(figure.string(), "", "cannot write a temporary script; is the disk full?");
+  }
+  const fs::path messages_path = scratch.messages();
+  const Outcome outcome = run_gnuplot(script_path.string(), messages_path.string());
+  if (outcome.spawn_error == ENOENT) {
+    throw FileError(figure.string(), "", fmt::format("gnuplot is not installed; {}", packages));
+  }
+  if (outcome.spawn_error != 0) {
+    throw FileError(figure.string(), "",
+                    fmt::format("cannot start gnuplot: {}", std::strerror(outcome.spawn_error)));
+  }
+  const std::string messages = read_messages(messages_path);
+  if (WIFSIGNALED(outcome.status)) {
+    throw FileError(figure.string(), "",
+                    fmt::format("gnuplot was ended by signal {}", WTERMSIG(outcome.status)));
+  }
+  if (WEXITSTATUS(outcome.status) != 0 || !messages.empty()) {
+    throw FileError(
+        figure.string(), "",
+        fmt::format("gnuplot failed: {}", messages.empty() ? "no reason given" : messages));
+  }
+  const auto drawn = fs::file_size(part.path(), error);
+  if (error || drawn == 0) throw FileError(figure.string(), "", "gnuplot wrote no picture");
+  part.replace();
+}
+
+}  // namespace stridor

@@ -1,0 +1,38 @@
+// Pictures and animations of vibrating bodies.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "substructures/reduction/recovery.hpp"
+
+namespace stridor {
+
+struct ShapePicture {
+  std::vector<BodyShape> bodies;
+  std::vector<Eigen::Vector2d> contacts;  ///< where they touch, m
+  std::string caption;
+};
+
+/// Factor by which displacements are enlarged: the largest one becomes 6 % of the extent of the
+/// nodes. 0 where nothing moves.
+double shape_scale(const std::vector<BodyShape>& bodies);
+
+/// Draws the meshes of the bodies displaced by the real and the imaginary part of their motion, a
+/// quarter of a period apart, over their outlines at rest, with the contacts marked. Of a mesh
+/// finer than can be drawn the outline.
+/// @throws std::invalid_argument if there is no node
+/// @throws ConfigError, FileError as draw_figure()
+void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure);
+
+/// Writes a motion on the meshes of the bodies for ParaView: `<stem>.vtk` with its real and
+/// imaginary part as vectors, and `num_frames` frames of one period, `<stem>_frame_000.vtk` and so
+/// on, enlarged by shape_scale().
+/// @return the files
+/// @throws FileError as write_vtk()
+std::vector<std::filesystem::path> write_shape_frames(const ShapePicture& picture,
+                                                      const std::filesystem::path& stem,
+                                                      int num_frames);
+
+}  // namespace stridor

@@ -1,0 +1,25 @@
+// Columns of numbers as an HDF5 file, for results that are tables and histories.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/hdf5/output_options.hpp"
+
+namespace stridor {
+
+/// One dataset. The groups in its path are made.
+struct Column {
+  std::string path;   ///< "/time", "/channels/sphere.x.displacement"
+  std::string units;  ///< "1" where dimensionless
+  std::vector<double> values;
+};
+
+/// Writes columns to a file of their own; the file takes its name when it is whole.
+/// @param kind       kind of the file, an attribute of the root
+/// @param attributes of the root besides
+/// @throws FileError if the file exists, its folder is not writable, or anything cannot be written
+void write_column_file(const std::string& path, Overwrite overwrite, const std::string& kind,
+                       const std::vector<Column>& columns, const Attributes& attributes);
+
+}  // namespace stridor

@@ -1,0 +1,167 @@
+#include "io/results/locus_file.hpp"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numbers>
+
+#include "core/errors.hpp"
+#include "io/hdf5/damage_guard.hpp"
+#include "io/hdf5/hdf5_input.hpp"
+#include "io/hdf5/hdf5_output.hpp"
+
+namespace stridor {
+namespace {
+
+/// A column of /unstable: its name, unit and the member it holds.
+struct WindowColumn {
+  const char* name;
+  const char* units;  ///< null: that of the parameter
+  double& (*of)(TimedWindow&);
+};
+
+const std::array<WindowColumn, 9> columns{{
+    {"from", nullptr, [](TimedWindow& w) -> double& { return w.window.from; }},
+    {"to", nullptr, [](TimedWindow& w) -> double& { return w.window.to; }},
+    {"frequency", "Hz", [](TimedWindow& w) -> double& { return w.window.frequency; }},
+    {"growth_max", "1/s", [](TimedWindow& w) -> double& { return w.window.growth_max; }},
+    {"growth_integral", "unit of the parameter/s",
+     [](TimedWindow& w) -> double& { return w.window.growth_integral; }},
+    {"value_max", nullptr, [](TimedWindow& w) -> double& { return w.window.value_max; }},
+    {"from_time", "s", [](TimedWindow& w) -> double& { return w.from_time; }},
+    {"to_time", "s", [](TimedWindow& w) -> double& { return w.to_time; }},
+    {"gain", "1", [](TimedWindow& w) -> double& { return w.gain; }},
+}};
+
+void write_eigenvalues(const Hdf5Writer& writer, const Locus& locus) {
+  std::size_t most = 0;
+  for (const auto& list : locus.eigenvalues) most = std::max(most, list.size());
+  std::vector<double> growth;
+  std::vector<double> frequency;
+  for (const auto& list : locus.eigenvalues) {
+    for (std::size_t i = 0; i < most; ++i) {
+      constexpr double none = std::numeric_limits<double>::quiet_NaN();
+      growth.push_back(i < list.size() ? list[i].real() : none);
+      frequency.push_back(i < list.size() ? list[i].imag() / (2.0 * std::numbers::pi) : none);
+    }
+  }
+  writer.make_group("/eigenvalues");
+  writer.write("/eigenvalues/growth", {locus.eigenvalues.size(), most}, growth.data(), "1/s");
+  writer.write("/eigenvalues/frequency", {locus.eigenvalues.size(), most}, frequency.data(), "Hz");
+}
+
+void write_branches(const Hdf5Writer& writer, const Locus& locus, const std::string& units) {
+  writer.make_group("/branches");
+  for (std::size_t k = 0; k < locus.branches.size(); ++k) {
+    const Branch& branch = locus.branches[k];
+    std::vector<double> growth;
+    std::vector<double> frequency;
+    for (const std::complex<double>& s : branch.s) {
+      growth.push_back(s.real());
+      frequency.push_back(s.imag() / (2.0 * std::numbers::pi));
+    }
+    const std::string group = fmt::format("/branches/{:03}", k);
+    writer.make_group(group);
+    writer.write(group + "/value", branch.values, units);
+    writer.write(group + "/growth", growth, "1/s");
+    writer.write(group + "/frequency", frequency, "Hz");
+  }
+}
+
+/// The attributes of a file of a kind.
+Attributes of_kind(const char* kind, const Attributes& attributes) {
+  Attributes all{{"kind", std::string(kind)}};
+  all.insert(all.end(), attributes.begin(), attributes.end());
+  return all;
+}
+
+}  // namespace
+
+void write_locus_file(const std::string& path, Overwrite overwrite, const Locus& locus,
+                      const std::vector<TimedWindow>& windows, const std::string& units,
+                      const Attributes& attributes) {
+  write_hdf5_file(path, overwrite, of_kind("locus", attributes), [&](const Hdf5Writer& writer) {
+    writer.write("/values", locus.values, units);
+    write_eigenvalues(writer, locus);
+    write_branches(writer, locus, units);
+    writer.make_group("/unstable");
+    for (const WindowColumn& column : columns) {
+      std::vector<double> values;
+      for (TimedWindow window : windows) values.push_back(column.of(window));
+      writer.write(std::string("/unstable/") + column.name, values,
+                   column.units != nullptr ? column.units : units);
+    }
+  });
+}
+
+void write_map_file(const std::string& path, Overwrite overwrite, const StabilityMap& map,
+                    const std::string& x_units, const std::string& y_units,
+                    const Attributes& attributes) {
+  write_hdf5_file(path, overwrite, of_kind("stability map", attributes),
+                  [&](const Hdf5Writer& writer) {
+                    writer.write("/x", map.x, x_units);
+                    writer.write("/y", map.y, y_units);
+                    std::vector<double> growth;
+                    for (const auto& row : map.growth)
+                      growth.insert(growth.end(), row.begin(), row.end());
+                    writer.write("/growth", {map.y.size(), map.x.size()}, growth.data(), "1/s");
+                    writer.make_group("/boundary");
+                    for (std::size_t k = 0; k < map.boundary.size(); ++k) {
+                      std::vector<double> points;
+                      for (const auto& point : map.boundary[k])
+                        points.insert(points.end(), point.begin(), point.end());
+                      writer.write(fmt::format("/boundary/{:03}", k), {map.boundary[k].size(), 2},
+                                   points.data(), x_units + ", " + y_units);
+                    }
+                  });
+}
+
+std::vector<TimedWindow> read_locus_windows(const std::string& path) {
+  const DamageGuard guard(path);
+  const QuietErrors quiet;
+  const Checker at(path);
+  const Handle file = open_hdf5_file(at);
+  if (H5Lexists(file.id(), "/unstable", H5P_DEFAULT) <= 0)
+    throw FileError(path, "/unstable", "is missing; a file of `stridor locus -o` is needed");
+  // A window takes the memory of all its columns: these are there before it is taken.
+  std::vector<std::vector<double>> values;
+  for (const WindowColumn& column : columns) {
+    const std::string dataset = std::string("/unstable/") + column.name;
+    values.push_back(read_array(at, open_array(at, file.id(), dataset, 1), dataset));
+    if (values.back().size() != values.front().size()) {
+      throw FileError(path, dataset,
+                      fmt::format("has {} entries, /unstable/from {}", values.back().size(),
+                                  values.front().size()));
+    }
+  }
+  std::vector<TimedWindow> windows(values.front().size());
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    for (std::size_t k = 0; k < values.size(); ++k) columns[k].of(windows[i]) = values[k][i];
+  }
+  return windows;
+}
+
+std::string read_locus_parameter(const std::string& path) {
+  constexpr const char* name = "parameter";
+  const DamageGuard guard(path);
+  const QuietErrors quiet;
+  const Checker at(path);
+  const Handle file = open_hdf5_file(at);
+  if (H5Aexists(file.id(), name) <= 0) return "";
+  const Handle attribute =
+      at.own(H5Aopen(file.id(), name, H5P_DEFAULT), H5Aclose, "/", "cannot read an attribute");
+  const Handle type =
+      at.own(H5Aget_type(attribute.id()), H5Tclose, "/", "cannot read an attribute");
+  const Handle space =
+      at.own(H5Aget_space(attribute.id()), H5Sclose, "/", "cannot read an attribute");
+  if (H5Tget_class(type.id()) != H5T_STRING || H5Sget_simple_extent_npoints(space.id()) != 1)
+    return "";
+  return read_text(at, file.id(), type.id(), "/", [&](hid_t memory, void* target) {
+    return H5Aread(attribute.id(), memory, target);
+  });
+}
+
+}  // namespace stridor

@@ -1,0 +1,251 @@
+// The part of RunFileWriter that makes files, and opens those of interrupted runs.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <hdf5.h>
+#include <hdf5_hl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <ctime>
+#include <filesystem>
+#include <set>
+#include <stdexcept>
+
+#include "io/hdf5/part_file.hpp"
+#include "io/hdf5/write_lock.hpp"
+#include "io/run_file/run_file_writer_impl.hpp"
+
+namespace stridor {
+namespace {
+
+// ---------------------------------------------------------------- text and numbers as attributes
+
+// Marked as ASCII though it may hold UTF-8: Octave reads texts of no other kind, and stops at the
+// first that it cannot read.
+void write_text(const Checker& at, hid_t file, const Handle& links, const std::string& path,
+                const std::string& text) {
+  const Handle space = at.own(H5Screate(H5S_SCALAR), H5Sclose, path, "cannot make the dataset");
+  const Handle type = text_type(at, text.size(), path);
+  at.check(H5Tset_cset(type.id(), H5T_CSET_ASCII), path, "cannot make a text type");
+  const Handle dataset = at.own(
+      H5Dcreate2(file, path.c_str(), type.id(), space.id(), links.id(), H5P_DEFAULT, H5P_DEFAULT),
+      H5Dclose, path, "cannot make the dataset");
+  at.check(H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()), path,
+           "cannot write");
+  write_attribute(at, dataset.id(), path, "encoding", std::string("UTF-8"));
+}
+
+// ---------------------------------------------------------------- the temporary file
+
+// @throws FileError unless a file of this name may be made
+void check_target(const std::string& path, Overwrite overwrite) {
+  struct stat status = {};
+  const std::string folder = folder_of(path);
+  if (path.empty() || path.back() == '/') throw FileError(path, "", "is not the name of a file");
+  if (stat(folder.c_str(), &status) != 0) {
+    throw FileError(path, "",
+                    fmt::format("the folder '{}' cannot be used: {}", folder, errno_text(errno)));
+  }
+  if (!S_ISDIR(status.st_mode))
+    throw FileError(path, "", fmt::format("'{}' is not a folder", folder));
+  check_replaceable(path, overwrite);
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw FileError(path, "",
+                    fmt::format("cannot write in the folder '{}': {}", folder, errno_text(errno)));
+  }
+}
+
+// Takes what a run leaves at its end out of its file. In a file of its own, because HDF5 would use
+// the room that becomes free again while the file stays open, and StagedFile rules that out.
+void remove_results(const Checker& at) {
+  StagedFile staged;
+  staged.open(at.path());
+  const Handle access = staged.access(at);
+  Handle file = at.own(H5Fopen(at.path().c_str(), H5F_ACC_RDWR, access.id()), H5Fclose, "",
+                       "is damaged or truncated");
+  staged.opened();
+  for (const char* path : {"/final", "/results", "/bursts"}) {
+    if (H5Lexists(file.id(), path, H5P_DEFAULT) > 0)
+      at.check(H5Ldelete(file.id(), path, H5P_DEFAULT), path, "cannot be removed");
+  }
+  at.check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "", "cannot be flushed");
+  const int error = staged.commit_by_copy();
+  staged.freeze();
+  if (error != 0) throw FileError(at.path(), "", "cannot be written: " + errno_text(error));
+}
+
+}  // namespace
+
+Handle link_creation(const Checker& at) {
+  Handle links = at.own(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "", "cannot set up HDF5");
+  at.check(H5Pset_create_intermediate_group(links.id(), 1), "", "cannot set up HDF5");
+  at.check(H5Pset_char_encoding(links.id(), H5T_CSET_UTF8), "", "cannot set up HDF5");
+  return links;
+}
+
+void check_object_path(const std::string& path) {
+  if (!is_object_path(path)) {
+    throw std::invalid_argument(
+        fmt::format("run file: '{}' is not a path of the form /group/name", path));
+  }
+  for (const char* reserved : {"/time", "/results", "/scene", "/checkpoint"}) {
+    if (path == reserved || path.starts_with(std::string(reserved) + "/")) {
+      throw std::invalid_argument(fmt::format("run file: the path '{}' is reserved", path));
+    }
+  }
+}
+
+void check_output(const std::string& path, Overwrite overwrite) {
+  check_target(path, overwrite);
+}
+
+void check_replaceable(const std::string& path, Overwrite overwrite) {
+  struct stat status = {};
+  if (stat(path.c_str(), &status) != 0) {
+    if (lstat(path.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) return;
+    std::error_code unknown;
+    throw FileError(path, "",
+                    fmt::format("is a broken link, to '{}'; remove it, or name another file",
+                                std::filesystem::read_symlink(path, unknown).string()));
+  }
+  if (S_ISDIR(status.st_mode)) throw FileError(path, "", "is a folder");
+  if (!S_ISREG(status.st_mode))
+    throw FileError(path, "", "is not a regular file and is not replaced");
+  if (overwrite == Overwrite::no) throw FileError(path, "", "exists; use --force to overwrite it");
+  const WriteLock none_writes(path);
+}
+
+std::string utc_now() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+void RunFileWriter::Impl::check_specs() const {
+  if (options.block_rows == 0)
+    throw std::invalid_argument("run file: block_rows must be at least 1");
+  if (options.chunk_rows == 0)
+    throw std::invalid_argument("run file: chunk_rows must be at least 1");
+  std::set<std::string> paths;
+  for (const Column& column : columns) {
+    check_object_path(column.spec.path);
+    if (!paths.insert(column.spec.path).second) {
+      throw std::invalid_argument(
+          fmt::format("run file: the series '{}' appears twice", column.spec.path));
+    }
+    const auto is_meaning = [](const auto& attribute) { return attribute.first == "meaning"; };
+    const auto& attributes = column.spec.attributes;
+    if (column.spec.kind == SeriesKind::state &&
+        std::none_of(attributes.begin(), attributes.end(), is_meaning)) {
+      throw std::invalid_argument(fmt::format(
+          "run file: the state series '{}' needs the attribute 'meaning'", column.spec.path));
+    }
+  }
+}
+
+Handle RunFileWriter::Impl::create_series(const std::string& path, SeriesKind kind,
+                                          const std::string& units) {
+  constexpr hsize_t none = 0;
+  const hsize_t unlimited = H5S_UNLIMITED;
+  const Handle space =
+      at.own(H5Screate_simple(1, &none, &unlimited), H5Sclose, path, "cannot make the dataset");
+  const Handle creation =
+      at.own(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, path, "cannot make the dataset");
+  const hsize_t chunk = options.chunk_rows;
+  at.check(H5Pset_chunk(creation.id(), 1, &chunk), path, "cannot make the dataset");
+  const hid_t type = kind == SeriesKind::real ? H5T_IEEE_F64LE : H5T_STD_U8LE;
+  Handle dataset = at.own(
+      H5Dcreate2(file.id(), path.c_str(), type, space.id(), links.id(), creation.id(), H5P_DEFAULT),
+      H5Dclose, path, "cannot make the dataset");
+  write_attribute(at, dataset.id(), path, "units", units);
+  return dataset;
+}
+
+void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& header) {
+  check_target(at.path(), overwrite);
+  PartFile part(at.path());
+
+  staged.create(part.path());
+  part.made();
+  file = at.own(H5Fcreate(part.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose,
+                "", "cannot be made");
+
+  try {
+    const Handle space = at.own(H5Screate(H5S_SCALAR), H5Sclose, "", "cannot make an attribute");
+    const Handle format =
+        at.own(H5Acreate2(file.id(), "format", H5T_STD_I32LE, space.id(), H5P_DEFAULT, H5P_DEFAULT),
+               H5Aclose, "", "cannot write attribute 'format'");
+    at.check(H5Awrite(format.id(), H5T_NATIVE_INT, &run_file_format), "",
+             "cannot write attribute 'format'");
+    for (const auto& [name, text] :
+         {std::pair{"version", &header.version}, std::pair{"commit", &header.commit},
+          std::pair{"command", &header.command}, std::pair{"scene_hash", &header.scene_hash},
+          std::pair{"date", &header.date}}) {
+      write_attribute(at, file.id(), "", name, *text);
+    }
+    write_text(at, file.id(), links, "/scene/text", header.scene_text);
+    write_text(at, file.id(), links, "/scene/resolved", header.scene_resolved);
+    write_text(at, file.id(), links, "/scene/digests", header.scene_digests);
+
+    time_dataset = create_series("/time", SeriesKind::real, "s");
+    at.check(H5DSset_scale(time_dataset.id(), "time"), "/time", "cannot be made a dimension scale");
+    for (Column& column : columns) {
+      const SeriesSpec& spec = column.spec;
+      column.dataset = create_series(spec.path, spec.kind, spec.units);
+      for (const auto& [name, value] : spec.attributes) {
+        write_attribute(at, column.dataset.id(), spec.path, name, value);
+      }
+      at.check(H5DSattach_scale(column.dataset.id(), time_dataset.id(), 0), spec.path,
+               "cannot be tied to /time");
+    }
+    create_checkpoints();
+    commit("");
+    part.move_to_final(overwrite);
+    staged.renamed(at.path());
+    if (options.on_write) staged.observe(options.on_write);
+  } catch (...) {
+    abandon();
+    close_file();
+    throw;
+  }
+}
+
+void RunFileWriter::Impl::create_checkpoints() {
+  constexpr hsize_t none = 0;
+  constexpr hsize_t piece = 65536;
+  const hsize_t unlimited = H5S_UNLIMITED;
+  for (std::size_t i = 0; i < checkpoints.size(); ++i) {
+    const char* path = checkpoint_paths[i];
+    const Handle space =
+        at.own(H5Screate_simple(1, &none, &unlimited), H5Sclose, path, "cannot make the dataset");
+    const Handle creation =
+        at.own(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, path, "cannot make the dataset");
+    at.check(H5Pset_chunk(creation.id(), 1, &piece), path, "cannot make the dataset");
+    checkpoints[i] = at.own(H5Dcreate2(file.id(), path, H5T_STD_U8LE, space.id(), links.id(),
+                                       creation.id(), H5P_DEFAULT),
+                            H5Dclose, path, "cannot make the dataset");
+    write_attribute(at, checkpoints[i].id(), path, "units", "1");
+  }
+}
+
+void RunFileWriter::Impl::reopen(const Checkpoint& checkpoint) {
+  remove_leftovers(at.path());
+  remove_results(at);
+  staged.open(at.path());
+  file = at.own(H5Fopen(at.path().c_str(), H5F_ACC_RDWR, access.id()), H5Fclose, "",
+                "is damaged or truncated");
+  staged.opened();
+  const auto open_dataset = [this](const std::string& path) {
+    return at.own(H5Dopen2(file.id(), path.c_str(), H5P_DEFAULT), H5Dclose, path,
+                  "is not in the file");
+  };
+  time_dataset = open_dataset("/time");
+  for (Column& column : columns) column.dataset = open_dataset(column.spec.path);
+  for (std::size_t i = 0; i < checkpoints.size(); ++i)
+    checkpoints[i] = open_dataset(checkpoint_paths[i]);
+  num_checkpoints = checkpoint.number;
+  num_written = checkpoint.rows;
+  if (options.on_write) staged.observe(options.on_write);
+}
+
+}  // namespace stridor

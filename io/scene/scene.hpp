@@ -1,0 +1,148 @@
+// A whole scene: the model, how it is run, what is recorded and what is expected of it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/spectrogram.hpp"
+#include "io/scene/scene_tree.hpp"
+#include "io/scene/sliding_points.hpp"
+#include "models/model.hpp"
+#include "solvers/equilibrium/equilibrium.hpp"
+#include "solvers/transient/simulation.hpp"
+
+namespace stridor {
+
+/// What every kind of scene says of its key `parameters`.
+PlainKey parameters_key();
+
+struct RecordParameters {
+  double interval = 0.0;  ///< between samples, s, a multiple of time.step
+  std::vector<std::string>
+      channels;         ///< "<body>.<point>.<x|y>.<displacement|velocity|acceleration>",
+                        ///< "<contact>.<quantity>"
+  bool energy = false;  ///< the energy ledger
+  static const Schema& schema();
+};
+
+/// Window and band of the statistics.
+struct MeasureParameters {
+  double from = 0.0;         ///< s
+  std::optional<double> to;  ///< s; the end of the run where absent
+  std::vector<double> band;  ///< two frequencies, Hz; empty: no band-pass
+  static const Schema& schema();
+};
+
+/// When the state of a run is stored, so that it can go on after a kill.
+struct CheckpointParameters {
+  double every = 60.0;  ///< s of wall time
+  static const Schema& schema();
+};
+
+/// How `cycle` seeks the periodic motion that the scene settles to.
+struct CycleParameters {
+  double settle = 0.0;  ///< s, > 0
+  static const Schema& schema();
+};
+
+/// How the spectrogram of a run is made, where its command line does not say otherwise.
+struct SpectrogramSection {
+  std::optional<std::string> channel;  ///< one of record.channels
+  WindowKind window = WindowKind::hann;
+  std::optional<double> length;         ///< of a piece, s
+  double overlap = 0.75;                ///< part of a piece shared with the next
+  std::optional<double> max_frequency;  ///< Hz, end of the picture
+  static const Schema& schema();
+};
+
+/// One expected result of a scene, checked by `run --verify`.
+struct Expectation {
+  std::string result;  ///< path in the JSON object of a verb, e.g. "contact_force.min"
+  double value = 0.0;
+  double tolerance = 0.0;  ///< largest allowed |result − value|
+  static const Schema& schema();
+};
+
+/// Terms that the linearised equations keep; the steps of Hetzler and Seemann.
+struct KeptTerms {
+  bool gyroscopic = true;          ///< and centrifugal ones, of bodies that spin
+  bool friction = true;            ///< of normal forces that vary
+  bool friction_damping = true;    ///< all damping that contacts bring
+  bool geometric = true;           ///< contact forces turn and shift with the motion
+  bool structural_damping = true;  ///< all that bodies bring
+
+  /// Whether nothing is left out but damping.
+  bool has_all_but_damping() const { return gyroscopic && friction && geometric; }
+};
+
+struct Scene {
+  int format = 0;
+  NamedNumbers parameters;
+  ModelParameters model;
+  std::optional<TimeParameters> time;             ///< needed by what marches in time
+  std::optional<std::vector<std::string>> terms;  ///< absent: all
+  std::optional<CycleParameters> cycle;
+  std::optional<SlidingPoints> sliding;  ///< of `contact`
+  std::optional<RecordParameters> record;
+  MeasureParameters measure;
+  std::optional<SpectrogramSection> spectrogram;
+  CheckpointParameters checkpoint;
+  std::vector<Expectation> expect;
+  static const Schema& schema();
+};
+
+/// What `terms` keeps.
+KeptTerms kept_terms(const Scene& scene);
+/// What it keeps of contacts on the faces of spinning bodies.
+LinearisationTerms contact_terms(const KeptTerms& kept);
+/// Whether a master, "<body>.<face>", is the face of a body.
+bool is_face(const ModelParameters& model, const std::string& master);
+/// Whether a contact of the scene is on the face of a body.
+bool has_face_contacts(const ModelParameters& model);
+
+/// What a run of the scene keeps account of.
+Accounts accounts_of(const Scene& scene);
+
+/// A scene together with where its keys stand.
+struct LoadedScene {
+  std::string path;
+  std::string text;  ///< as given, before --set
+  SceneNode tree;    ///< with --set applied
+  Scene scene;
+  std::vector<std::string> sets;
+
+  /// The scene with every key and default written out.
+  std::string resolved() const;
+  /// 16 hexadecimal digits of the resolved scene and the files that it names (FNV-1a).
+  std::string hash() const;
+  /// The same error with the places of its keys in this scene.
+  ConfigError located(const ConfigError& error) const;
+  /// Refuses a scene without a section that a verb needs.
+  /// @param section `time`, `contact` (or `contacts`) or `record`
+  /// @throws ConfigError naming section and verb
+  void require_section(const std::string& section, const std::string& verb) const;
+};
+
+/// 16 hexadecimal digits that change with any character of a resolved scene (FNV-1a).
+std::string scene_hash(const std::string& resolved);
+
+/// Reads a scene file and applies `--set key.path=value` settings.
+/// @throws ConfigError with all problems of the file, each with its place
+/// @throws FileError if the file cannot be read
+LoadedScene load_scene(const std::string& path, const std::vector<std::string>& sets);
+
+/// Reads a scene from its resolved text, as run files hold it.
+/// @param source what messages call it
+/// @throws ConfigError as load_scene
+LoadedScene load_resolved_scene(const std::string& text, const std::string& source);
+
+/// The model of a scene with the points that its channels ask for, for a run.
+/// @throws ConfigError with the place of the key in the scene; also as require_modes()
+Model build_model(const LoadedScene& loaded);
+/// The same with bodies, reductions and matrices from a cache where it has them.
+Model build_runnable_model(const LoadedScene& loaded, BodyCache& cache);
+/// The same for eigenvalues: it may be sparse.
+Model build_model(const LoadedScene& loaded, BodyCache& cache);
+
+}  // namespace stridor

@@ -1,0 +1,328 @@
+#include "solvers/contact/face_contacts.hpp"
+
+#include <algorithm>
+
+namespace stridor {
+
+FacePoint::FacePoint(const ContactPoint& point, Propagator& slave, Propagator& master,
+                     int slave_port, int master_port)
+    : point_(point),
+      face_(make_face_kinematics(*point.face)),
+      slave_(&slave),
+      master_(&master),
+      slave_port_(slave_port),
+      master_port_(master_port),
+      num_slave_ports_(point.slave_rows.z < 0 ? 2 : 3) {
+  for (int k = 0; k < num_face_rows; ++k)
+    master_->watch(master_port + k, point.face->rows[static_cast<std::size_t>(k)]);
+  slave_->watch(slave_port, point.slave_rows.x);
+  slave_->watch(slave_port + 1, point.slave_rows.y);
+  if (num_slave_ports_ > 2) slave_->watch(slave_port + 2, point.slave_rows.z);
+  direct(FacePorts::Zero());
+}
+
+FacePorts FacePoint::ports(const double* slave, const double* master) const {
+  FacePorts y = FacePorts::Zero();
+  for (int k = 0; k < num_face_rows; ++k) y[k] = master[master_port_ + k];
+  for (int k = 0; k < num_slave_ports_; ++k) y[num_face_rows + k] = slave[slave_port_ + k];
+  return y;
+}
+
+void FacePoint::find() {
+  direct(expected());
+}
+
+void FacePoint::direct(const FacePorts& ports) {
+  directed_at_ = ports;
+  normal_ = face_.normal_at(ports);
+  along_ = face_.along_at(ports);
+}
+
+double FacePoint::predicted_gap() const {
+  return face_.gap(directed_at_) + normal_.dot(predicted() - directed_at_) - point_.overlap;
+}
+
+double FacePoint::gap_ahead() const {
+  const FacePorts y = ahead();
+  return face_.gap(directed_at_) + normal_.dot(y - directed_at_) +
+         0.5 * (y - directed_at_).dot(face_.normal_bending.lazyProduct(y - directed_at_)) -
+         point_.overlap;
+}
+
+void FacePoint::blocks(double step, PortBlock& master, PortBlock& slave) const {
+  Eigen::Matrix<double, num_face_ports, 3> sense, push;
+  sense << normal_, face_.along, face_.across + 0.5 * step * face_.sliding * face_.turning;
+  push << normal_, along_, face_.across;
+  master.body = master_;
+  master.port = master_port_;
+  master.count = num_face_rows;
+  slave.body = slave_;
+  slave.port = slave_port_;
+  slave.count = num_slave_ports_;
+  master.width = slave.width = 3;
+  master.sense.topRows<num_face_rows>() = sense.topRows<num_face_rows>();
+  master.push.topRows<num_face_rows>() = push.topRows<num_face_rows>();
+  slave.sense.topRows<3>() = sense.bottomRows<3>();
+  slave.push.topRows<3>() = push.bottomRows<3>();
+}
+
+void FacePoint::apply(double normal, const Eigen::Vector2d& friction, double* slave_forces,
+                      double* master_forces) const {
+  const FacePorts forces = normal * normal_ + friction.x() * along_ + friction.y() * face_.across;
+  for (int k = 0; k < num_face_rows; ++k) master_forces[master_port_ + k] = forces[k];
+  for (int k = 0; k < num_slave_ports_; ++k)
+    slave_forces[slave_port_ + k] = forces[num_face_rows + k];
+}
+
+Eigen::Vector2d RunningFace::half_change() const {
+  constexpr double steady = 0.5;
+  const Eigen::Vector2d change = velocities[0] - velocities[1];
+  if (!(change.norm() <= steady * velocities[0].norm())) return Eigen::Vector2d::Zero();
+  return 0.5 * change;
+}
+
+RunningFace::Numbers RunningFace::numbers() const {
+  Numbers numbers{force,
+                  friction_force,
+                  friction_across,
+                  static_cast<double>(state),
+                  static_cast<double>(last_state),
+                  static_cast<double>(steady_steps),
+                  velocities[0].x(),
+                  velocities[0].y(),
+                  velocities[1].x(),
+                  velocities[1].y(),
+                  crept.x(),
+                  crept.y(),
+                  static_cast<double>(violations.negative_force),
+                  static_cast<double>(violations.reversed_sliding),
+                  static_cast<double>(violations.before_armed),
+                  violations.last_time};
+  const FacePorts& directed = kinematics.directed_at();
+  std::copy(directed.begin(), directed.end(), numbers.end() - 2 * num_face_ports);
+  std::copy(reached.begin(), reached.end(), numbers.end() - num_face_ports);
+  return numbers;
+}
+
+void RunningFace::restore(const Numbers& numbers) {
+  const auto count = [&](std::size_t k) { return static_cast<std::int64_t>(numbers[k]); };
+  force = numbers[0];
+  friction_force = numbers[1];
+  friction_across = numbers[2];
+  state = static_cast<ContactState>(count(3));
+  last_state = static_cast<ContactState>(count(4));
+  steady_steps = static_cast<int>(count(5));
+  velocities = {Eigen::Vector2d(numbers[6], numbers[7]), Eigen::Vector2d(numbers[8], numbers[9])};
+  slip_velocity = numbers[6];
+  crept = {numbers[10], numbers[11]};
+  violations = {count(12), count(13), count(14), numbers[15]};
+  FacePorts directed;
+  std::copy_n(numbers.end() - 2 * num_face_ports, num_face_ports, directed.begin());
+  std::copy_n(numbers.end() - num_face_ports, num_face_ports, reached.begin());
+  kinematics.direct(directed);
+}
+
+void RunningFaces::add(const ContactPoint& point, Propagator& slave, Propagator& master,
+                       int slave_port, int master_port) {
+  RunningFace face(FacePoint(point, slave, master, slave_port, master_port));
+  face.begin(point);
+  faces_.push_back(std::move(face));
+  problems_.emplace_back();
+  blocks_.emplace_back();
+}
+
+void RunningFaces::stand(const System& system, const Instant& at) {
+  const auto row_of = [&](int index, int row, Eigen::VectorXd SystemBody::*motion) {
+    const SystemBody& body = system.bodies[static_cast<std::size_t>(index)];
+    return row < 0 || (body.*motion).size() == 0 ? 0.0
+                                                 : body.reduced.rows.row(row).dot(body.*motion);
+  };
+  for (RunningFace& face : faces_) {
+    const ContactPoint& point = face.point();
+    const auto ports_of = [&](Eigen::VectorXd SystemBody::*motion) {
+      FacePorts y;
+      for (int k = 0; k < num_face_rows; ++k)
+        y[k] = row_of(point.face->body, point.face->rows[static_cast<std::size_t>(k)], motion);
+      y.tail<3>() << row_of(point.slave_body, point.slave_rows.x, motion),
+          row_of(point.slave_body, point.slave_rows.y, motion),
+          row_of(point.slave_body, point.slave_rows.z, motion);
+      return y;
+    };
+    face.forget();
+    face.last_state = ContactState::open;
+    face.crept.setZero();
+    face.reached = ports_of(&SystemBody::initial_displacement);
+    const FacePorts rate = ports_of(&SystemBody::initial_velocity);
+    face.velocities.fill(face.kinematics.face().velocity(face.reached, rate));
+    face.slip_velocity = face.velocities[0].x();
+    if (at.has_feedthrough) face.reached -= at.step * rate;
+  }
+}
+
+/// A slow mode moves twelve times as far by the next step as at once.
+void RunningFaces::set_mobility(std::size_t i) {
+  constexpr double by_next = 12.0;
+  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(3, 3);
+  for (const PortBlock& a : blocks_[i])
+    for (const PortBlock& b : blocks_[i]) add_compliance(a, b, false, own);
+  faces_[i].mobility = by_next * std::max(own(1, 1), own(2, 2));
+  faces_[i].is_soft = faces_[i].compliance >= by_next * own(0, 0);
+}
+
+void RunningFaces::set_coefficients(RunningFace& face, PlanarProblem& problem,
+                                    double rise) const {
+  const FrictionLaw& law = face.point().friction;
+  problem.sliding_friction = rise * sliding_friction(law, face.velocities[0].norm());
+  face.friction = problem.sliding_friction;
+  problem.creep = law.is_regularised() ? &law : nullptr;
+  problem.friction_factor = rise;
+  problem.step = step_;
+  // As with one tangent: a contact that stuck is held by the static limit, and one that passes
+  // through rest; never below the friction of sliding.
+  const bool may_rest =
+      face.state == ContactState::stick || problem.slip.dot(face.velocities[0]) <= 0.0;
+  problem.sticking_friction = problem.sliding_friction;
+  if (may_rest) {
+    problem.sticking_friction =
+        std::max(problem.sticking_friction, rise * law.static_coefficient);
+  }
+}
+
+void RunningFaces::pose(const Instant& at) {
+  step_ = at.step;
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    RunningFace& face = faces_[i];
+    PlanarProblem& problem = problems_[i];
+    FacePoint& kinematics = face.kinematics;
+    kinematics.find();
+    face.predicts_ahead = false;
+    problem.is_unilateral = at.now >= face.unilateral_from;
+    problem.penetration = -kinematics.predicted_gap();
+    const FaceKinematics& of = kinematics.face();
+    problem.slip = of.slip(face.reached, kinematics.predicted(), step_);
+    // The velocity at t_n from the mean one of the step that ends, or begins, there.
+    const Eigen::Vector2d to_end = (at.has_feedthrough ? step_ : -step_) * face.half_change();
+    if (face.state == ContactState::stick) problem.slip += face.crept;
+    if (face.state == ContactState::slip) problem.slip += to_end;
+    if (!problem.is_unilateral) {
+      const Eigen::Vector2d velocity =
+          at.has_feedthrough
+              ? Eigen::Vector2d(of.slip(face.reached, kinematics.expected(), step_) + to_end)
+              : Eigen::Vector2d(face.velocities[0] + face.half_change());
+      problem.direction = velocity.isZero(0.0) ? Eigen::Vector2d(1.0, 0.0) : velocity.normalized();
+    }
+    set_coefficients(face, problem, face.rise_at(at.sought));
+    kinematics.blocks(step_, blocks_[i][0], blocks_[i][1]);
+    if (at.has_feedthrough && problem.is_unilateral) set_mobility(i);
+  }
+}
+
+bool RunningFaces::is_unsteady(std::size_t i) const {
+  const RunningFace& face = faces_[i];
+  const PlanarProblem& problem = problems_[i];
+  if (!problem.is_unilateral) return false;
+  constexpr int steady_after = 6;
+  if (face.steady_steps < steady_after) return true;
+  if (face.state != ContactState::slip) return false;
+  constexpr double share = 0.25;
+  const double speed = face.velocities[0].norm();
+  const double limit = problem.sticking_friction * face.force;
+  return face.mobility * limit > share * speed * step_;
+}
+
+bool RunningFaces::has_changed(std::size_t i) const {
+  const ContactState now = problems_[i].state;
+  const ContactState before = faces_[i].state;
+  if (faces_[i].is_soft) return (now == ContactState::stick) != (before == ContactState::stick);
+  return now != before;
+}
+
+void RunningFaces::pose_ahead(std::size_t i, const Instant& at) {
+  RunningFace& face = faces_[i];
+  PlanarProblem& problem = problems_[i];
+  const FacePoint& kinematics = face.kinematics;
+  const FaceKinematics& of = kinematics.face();
+  face.predicts_ahead = true;
+  if (!face.is_soft) problem.penetration = -kinematics.gap_ahead();
+  const FacePorts& now = kinematics.directed_at();
+  problem.slip = of.slip(now, kinematics.ahead(), step_);
+  if (face.state == ContactState::stick)
+    problem.slip += face.crept + of.slip(face.reached, now, step_);
+  if (face.state == ContactState::slip) problem.slip -= step_ * face.half_change();
+  set_coefficients(face, problem, face.rise_at(at.sought));
+}
+
+void RunningFaces::count_steady() {
+  constexpr int steady_after = 6;
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    RunningFace& face = faces_[i];
+    const bool is_open = problems_[i].state == ContactState::open && !face.is_soft;
+    if (is_open || (face.predicts_ahead && has_changed(i))) {
+      face.steady_steps = 0;
+    } else if (face.steady_steps < steady_after) {
+      ++face.steady_steps;
+    }
+  }
+}
+
+void RunningFaces::fill(ContactSolver& solver, std::span<const std::array<PortBlock, 2>> lines,
+                        std::span<const char> predicts_ahead) const {
+  const auto add = [&](const std::array<PortBlock, 2>& to, const std::array<PortBlock, 2>& from,
+                       bool ahead, Eigen::Index row, Eigen::Index column) {
+    auto block = solver.delassus().block(row, column, to[0].width, from[0].width);
+    block.setZero();
+    for (const PortBlock& a : to)
+      for (const PortBlock& b : from) add_compliance(a, b, ahead, block);
+  };
+  Eigen::MatrixXd at_once(3, 3);
+  const auto keep_normal = [&](const std::array<PortBlock, 2>& to,
+                               const std::array<PortBlock, 2>& from, Eigen::Index row,
+                               Eigen::Index column) {
+    at_once.setZero();
+    for (const PortBlock& a : to)
+      for (const PortBlock& b : from) add_compliance(a, b, false, at_once.leftCols(b.width));
+    solver.delassus().block(row, column, 1, from[0].width) = at_once.topLeftCorner(1, from[0].width);
+  };
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    const Eigen::Index row = solver.first_planar(static_cast<int>(i));
+    const bool ahead = faces_[i].predicts_ahead;
+    for (std::size_t j = 0; j < faces_.size(); ++j) {
+      const Eigen::Index column = solver.first_planar(static_cast<int>(j));
+      add(blocks_[i], blocks_[j], ahead, row, column);
+      if (ahead && faces_[i].is_soft) keep_normal(blocks_[i], blocks_[j], row, column);
+    }
+    for (std::size_t j = 0; j < lines.size(); ++j) {
+      const Eigen::Index column = 2 * static_cast<Eigen::Index>(j);
+      add(blocks_[i], lines[j], ahead, row, column);
+      if (ahead && faces_[i].is_soft) keep_normal(blocks_[i], lines[j], row, column);
+      add(lines[j], blocks_[i], predicts_ahead[j] != 0, 2 * static_cast<Eigen::Index>(j), row);
+    }
+    solver.delassus()(row, row) += faces_[i].compliance;
+  }
+}
+
+void RunningFaces::take() {
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    RunningFace& face = faces_[i];
+    face.last_state = std::exchange(face.state, problems_[i].state);
+    face.force = problems_[i].normal;
+    face.friction_force = problems_[i].tangential.x();
+    face.friction_across = problems_[i].tangential.y();
+    face.count();
+  }
+}
+
+void RunningFaces::follow(double step) {
+  for (RunningFace& face : faces_) {
+    const FacePorts now = face.kinematics.current();
+    const Eigen::Vector2d slip = face.kinematics.face().slip(face.reached, now, step);
+    const bool has_stuck =
+        face.state == ContactState::stick && face.last_state == ContactState::stick;
+    face.crept = has_stuck ? Eigen::Vector2d(face.crept + slip) : Eigen::Vector2d::Zero();
+    face.velocities = {slip / step, face.velocities[0]};
+    face.slip_velocity = face.velocities[0].x();
+    face.reached = now;
+  }
+}
+
+}  // namespace stridor

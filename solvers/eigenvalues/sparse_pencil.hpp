@@ -1,0 +1,68 @@
+// Quadratic eigenvalue problem with sparse matrices: products, factorisations, determinants.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <complex>
+#include <memory>
+
+#include "substructures/bodies/matrix_body.hpp"
+
+namespace stridor {
+
+/// P(s) = s² M + s P + Q at one s, factorised by UMFPACK.
+class SparseFactor {
+ public:
+  ~SparseFactor();
+  SparseFactor(SparseFactor&&) noexcept;
+  SparseFactor& operator=(SparseFactor&&) noexcept;
+
+  /// P(s)⁻¹ B.
+  Eigen::MatrixXcd solve(const Eigen::MatrixXcd& right_hand_sides) const;
+  /// det P(s)/|det P(s)|; 0 where P(s) is singular to working precision.
+  std::complex<double> determinant_phase() const;
+
+ private:
+  friend class SparsePencil;
+  struct Numbers;
+  explicit SparseFactor(std::unique_ptr<Numbers> numbers);
+  std::unique_ptr<Numbers> numbers_;
+};
+
+/// M q̈ + P q̇ + Q q = 0 on one pattern, which is analysed once for all factorisations.
+class SparsePencil {
+ public:
+  /// @throws std::invalid_argument if sizes differ or a number is not finite
+  explicit SparsePencil(const SparseSystem& system);
+  ~SparsePencil();
+  SparsePencil(SparsePencil&&) noexcept;
+  SparsePencil& operator=(SparsePencil&&) noexcept;
+
+  Eigen::Index size() const;
+  const SparseSystem& system() const;
+
+  /// P(s) x.
+  Eigen::VectorXcd multiply(std::complex<double> s, const Eigen::VectorXcd& x) const;
+  /// (P(t) − P(s))/(t − s) x = ((s + t) M + P) x; the derivative where s and t are the same.
+  Eigen::VectorXcd slope(std::complex<double> s, std::complex<double> t,
+                         const Eigen::VectorXcd& x) const;
+
+  /// @throws NumericalError if memory runs out. A singular P(s) is factorised as it is.
+  SparseFactor factorise(std::complex<double> s) const;
+
+  /// Normwise backward error of an eigenpair (Tisseur 2000): the smallest relative change of the
+  /// three matrices for which it is exact,
+  ///
+  ///   |P(s) x|₂ / ((|s|² ‖M‖₁ + |s| ‖P‖₁ + ‖Q‖₁) |x|₂) .
+  ///
+  /// ‖Q‖₁ is of the stiffest element, so that this says little of slow motions of a fine mesh;
+  /// scaled_residual() does.
+  double backward_error(std::complex<double> s, const Eigen::VectorXcd& x) const;
+  /// |P(s) x|₂ / (|s|² |M x|₂ + |s| |P x|₂ + |Q x|₂).
+  double scaled_residual(std::complex<double> s, const Eigen::VectorXcd& x) const;
+
+ private:
+  struct Pattern;
+  std::unique_ptr<Pattern> pattern_;
+};
+
+}  // namespace stridor

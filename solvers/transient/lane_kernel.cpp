@@ -1,0 +1,354 @@
+#include "solvers/transient/lane_kernel.hpp"
+
+#include <cmath>
+
+#include "core/processor.hpp"
+#include "solvers/algebra/ports.hpp"
+
+namespace stridor {
+namespace {
+
+using Lanes2 = double __attribute__((vector_size(16)));
+using Lanes4 = double __attribute__((vector_size(32)));
+using Lanes8 = double __attribute__((vector_size(64)));
+
+/// Entry i of an array of entries.
+template <class V>
+STRIDOR_INLINE V& at(double* entries, std::size_t i) {
+  return reinterpret_cast<V*>(entries)[i];
+}
+
+template <class V>
+constexpr std::size_t width = sizeof(V) / sizeof(double);
+
+template <class V>
+STRIDOR_INLINE V root_of(const V& square) {
+  V root;
+  for (std::size_t i = 0; i < width<V>; ++i) root[i] = std::sqrt(square[i]);
+  return root;
+}
+
+template <class V>
+STRIDOR_INLINE bool has_any(const V& mask) {
+  bool any = false;
+  for (std::size_t i = 0; i < width<V>; ++i) any |= mask[i] != 0.0;
+  return any;
+}
+
+/// ModalRecurrence::advance_body() and the rest of Propagator::advance().
+template <class V, std::size_t num_ports, bool has_feedthrough>
+STRIDOR_INLINE void advance_body(const BodyLanes& body) {
+  V force[num_ports];
+  for (std::size_t s = 0; s < num_ports; ++s) force[s] = at<V>(body.forces, s);
+  if constexpr (!has_feedthrough) {
+    for (std::size_t s = 0; s < num_ports; ++s) {
+      V corrected = at<V>(body.predicted, s);
+      for (std::size_t t = 0; t < num_ports; ++t)
+        corrected += at<V>(body.compliance, t * num_ports + s) * force[t];
+      at<V>(body.increment, s) = corrected - at<V>(body.current, s);
+      at<V>(body.current, s) = corrected;
+    }
+  }
+  double* const positions = body.fields[static_cast<std::size_t>(ModalField::position)];
+  double* const increments = body.fields[static_cast<std::size_t>(ModalField::increment)];
+  double* const keeps = body.fields[static_cast<std::size_t>(ModalField::keep)];
+  double* const pulls = body.fields[static_cast<std::size_t>(ModalField::pull)];
+  double* const gains = body.fields[static_cast<std::size_t>(ModalField::gain)];
+  double* const loads = body.fields[static_cast<std::size_t>(ModalField::load)];
+  V seen[num_ports] = {};
+  for (std::size_t m = 0; m < body.num_modes; ++m) {
+    V row[num_ports];
+#pragma GCC unroll 4
+    for (std::size_t s = 0; s < num_ports; ++s) row[s] = at<V>(body.rows, m * num_ports + s);
+    V modal_force = row[0] * force[0];
+#pragma GCC unroll 4
+    for (std::size_t s = 1; s < num_ports; ++s) modal_force += row[s] * force[s];
+    const V increment = at<V>(increments, m) + at<V>(gains, m) * modal_force;
+    const V position = at<V>(positions, m) + increment;
+    const V next = at<V>(keeps, m) * increment - (at<V>(pulls, m) * position - at<V>(loads, m));
+    at<V>(positions, m) = position;
+    at<V>(increments, m) = next;
+    const V ahead = has_feedthrough ? position : position + next;
+#pragma GCC unroll 4
+    for (std::size_t s = 0; s < num_ports; ++s) seen[s] += row[s] * ahead;
+  }
+  for (std::size_t s = 0; s < num_ports; ++s) {
+    V predicted = seen[s];
+    if constexpr (has_feedthrough) {
+      if (body.has_residual) {
+        predicted += at<V>(body.load, s);
+        for (std::size_t t = 0; t < num_ports; ++t)
+          predicted += at<V>(body.lag, t * num_ports + s) * at<V>(body.lagging, t);
+      }
+      at<V>(body.expected, s) = predicted + at<V>(body.answer, s);
+    }
+    at<V>(body.predicted, s) = predicted;
+  }
+}
+
+/// Propagator::settle(), where `is_taken`.
+template <class V, std::size_t num_ports, class Mask>
+STRIDOR_INLINE void settle_body(const BodyLanes& body, const V* increment, const V* answer,
+                                const V* force, const Mask& is_taken) {
+  for (std::size_t s = 0; s < num_ports; ++s) {
+    V& current = at<V>(body.current, s);
+    current = is_taken ? current + increment[s] : current;
+    V& of_port = at<V>(body.increment, s);
+    of_port = is_taken ? increment[s] : of_port;
+    V& answered = at<V>(body.answer, s);
+    answered = is_taken ? answer[s] : answered;
+    if (!body.has_residual) continue;
+    V& lagging = at<V>(body.lagging, s);
+    lagging = is_taken ? lagging + at<V>(body.share, 0) * (force[s] - lagging) : lagging;
+  }
+}
+
+/// Simulation::Implementation::solve() of one contact that slides.
+template <class V, bool has_feedthrough>
+STRIDOR_INLINE V solve_contact(const Lanes& lanes) {
+  const ContactLanes& c = lanes.contact;
+  const BodyLanes& slave = lanes.slave;
+  const BodyLanes& master = lanes.master;
+  const V zero = {};
+  const V one = zero + 1.0;
+  const V h = at<V>(lanes.step, 0);
+  const V sought = (has_feedthrough ? at<V>(lanes.index, 0) : at<V>(lanes.index, 0) + 1.0) * h;
+  const V driven = at<V>(c.driven_displacement, 0) +
+                   at<V>(c.driven_rate, 0) * (sought - at<V>(c.driven_from, 0));
+
+  double* const slave_seen = has_feedthrough ? slave.expected : slave.predicted;
+  double* const master_seen = has_feedthrough ? master.expected : master.predicted;
+  const V origin_x = at<V>(c.origin, 0) + driven;
+  const V origin_y = at<V>(c.origin, 1);
+  const V end_x = at<V>(c.end, 0);
+  const V end_y = at<V>(c.end, 1);
+  const V from_x = origin_x + at<V>(slave_seen, 0) - at<V>(master_seen, 0);
+  const V from_y = origin_y + at<V>(slave_seen, 1) - at<V>(master_seen, 1);
+  const V along_x = end_x + at<V>(master_seen, 2) - at<V>(master_seen, 0);
+  const V along_y = end_y + at<V>(master_seen, 3) - at<V>(master_seen, 1);
+  V tx = at<V>(c.tangent, 0);
+  V ty = at<V>(c.tangent, 1);
+  V xi;
+  if (lanes.assumption == ContactAssumption::subs_b) {
+    const V inverse_length = one / root_of<V>(along_x * along_x + along_y * along_y);
+    tx = along_x * inverse_length;
+    ty = along_y * inverse_length;
+    xi = (tx * from_x + ty * from_y) * inverse_length;
+  } else if (lanes.assumption == ContactAssumption::subs_c) {
+    xi = (tx * from_x + ty * from_y) / (tx * along_x + ty * along_y);
+  } else {
+    xi = (tx * origin_x + ty * origin_y) / at<V>(c.length, 0);
+  }
+  const V nx = -ty;
+  const V ny = tx;
+
+  // Entries n (or t) on the slave, −w n on the two nodes of the master.
+  const V w0 = xi - one;
+  const V w1 = -xi;
+  const V gap = nx * (origin_x + w1 * end_x) + ny * (origin_y + w1 * end_y) +
+                nx * (at<V>(slave.predicted, 0) + w0 * at<V>(master.predicted, 0) +
+                      w1 * at<V>(master.predicted, 2)) +
+                ny * (at<V>(slave.predicted, 1) + w0 * at<V>(master.predicted, 1) +
+                      w1 * at<V>(master.predicted, 3));
+  const V last_slip = at<V>(c.slip_velocity, 0);
+  const V friction = last_slip < zero ? -at<V>(c.friction, 0) : at<V>(c.friction, 0);
+  const V pull_x = nx - friction * tx;
+  const V pull_y = ny - friction * ty;
+
+  // Response of the ports to unit λ_n.
+  V slave_answer[2];
+  V master_answer[4];
+  const V master_pull[4] = {w0 * pull_x, w0 * pull_y, w1 * pull_x, w1 * pull_y};
+  for (std::size_t s = 0; s < 2; ++s) {
+    slave_answer[s] = at<V>(slave.compliance, s) * pull_x + at<V>(slave.compliance, 2 + s) * pull_y;
+  }
+  for (std::size_t s = 0; s < 4; ++s) {
+    master_answer[s] = at<V>(master.compliance, s) * master_pull[0];
+    for (std::size_t t = 1; t < 4; ++t)
+      master_answer[s] += at<V>(master.compliance, 4 * t + s) * master_pull[t];
+  }
+  const V compliance = nx * slave_answer[0] + ny * slave_answer[1] +
+                       w0 * (nx * master_answer[0] + ny * master_answer[1]) +
+                       w1 * (nx * master_answer[2] + ny * master_answer[3]);
+  const V force = -gap / compliance;
+
+  constexpr double largest = 1e30;
+  auto is_allowed =
+      (xi >= zero) & (xi <= one) & (compliance > zero) & (force >= zero) & (force < zero + largest);
+  V slip = last_slip;
+  const V driven_velocity = at<V>(c.sliding_velocity, 0) * tx;
+  V slave_force[2] = {force * pull_x, force * pull_y};
+  V master_force[4];
+  for (std::size_t s = 0; s < 4; ++s) master_force[s] = force * master_pull[s];
+  V slave_increment[2];
+  V master_increment[4];
+  if constexpr (has_feedthrough) {
+    for (std::size_t s = 0; s < 2; ++s) {
+      slave_answer[s] *= force;
+      slave_increment[s] = at<V>(slave.predicted, s) + slave_answer[s] - at<V>(slave.current, s);
+    }
+    for (std::size_t s = 0; s < 4; ++s) {
+      master_answer[s] *= force;
+      master_increment[s] =
+          at<V>(master.predicted, s) + master_answer[s] - at<V>(master.current, s);
+    }
+    const V moved =
+        tx * (slave_increment[0] + w0 * master_increment[0] + w1 * master_increment[2]) +
+        ty * (slave_increment[1] + w0 * master_increment[1] + w1 * master_increment[3]);
+    slip = moved / h + driven_velocity;
+    is_allowed &= slip * driven_velocity >= zero;
+  }
+  const auto is_taken = is_allowed & (at<V>(lanes.is_used, 0) > zero);
+  const auto take = [&](double* entries, std::size_t i, const V& value) STRIDOR_INLINE_LAMBDA {
+    V& entry = at<V>(entries, i);
+    entry = is_taken ? value : entry;
+  };
+  take(c.xi, 0, xi);
+  take(c.found_tangent, 0, tx);
+  take(c.found_tangent, 1, ty);
+  const auto extend = [&](double* least, double* largest, const V& value) STRIDOR_INLINE_LAMBDA {
+    take(least, 0, value < at<V>(least, 0) ? value : at<V>(least, 0));
+    take(largest, 0, value > at<V>(largest, 0) ? value : at<V>(largest, 0));
+  };
+  const V friction_force = friction * force;
+  take(c.force, 0, force);
+  take(c.friction_force, 0, friction_force);
+  extend(c.force_min, c.force_max, force);
+  extend(c.friction_min, c.friction_max, friction_force);
+  for (std::size_t s = 0; s < 2; ++s) take(slave.forces, s, slave_force[s]);
+  for (std::size_t s = 0; s < 4; ++s) take(master.forces, s, master_force[s]);
+  if constexpr (has_feedthrough) {
+    settle_body<V, 2>(slave, slave_increment, slave_answer, slave_force, is_taken);
+    settle_body<V, 4>(master, master_increment, master_answer, master_force, is_taken);
+    take(c.slip_velocity, 0, slip);
+  }
+  return is_taken | (at<V>(lanes.is_used, 0) == zero) ? zero : one;
+}
+
+/// The slip velocity that a step of the published kind ends with; 1 where it is against the drive.
+template <class V>
+STRIDOR_INLINE V update_slip(const Lanes& lanes) {
+  const ContactLanes& c = lanes.contact;
+  const V zero = {};
+  const V tx = at<V>(c.found_tangent, 0);
+  const V ty = at<V>(c.found_tangent, 1);
+  const V w1 = -at<V>(c.xi, 0);
+  const V w0 = -1.0 - w1;
+  double* const slave = lanes.slave.increment;
+  double* const master = lanes.master.increment;
+  const V moved = tx * (at<V>(slave, 0) + w0 * at<V>(master, 0) + w1 * at<V>(master, 2)) +
+                  ty * (at<V>(slave, 1) + w0 * at<V>(master, 1) + w1 * at<V>(master, 3));
+  const V driven = at<V>(c.sliding_velocity, 0) * tx;
+  const V slip = moved / at<V>(lanes.step, 0) + driven;
+  at<V>(c.slip_velocity, 0) = slip;
+  return (slip * driven < zero) & (at<V>(lanes.is_used, 0) > zero) ? zero + 1.0 : zero;
+}
+
+/// Propagator::displacement() of the row that is watched.
+template <class V, std::size_t num_ports, bool has_feedthrough>
+STRIDOR_INLINE V watched_displacement(const BodyLanes& body) {
+  V sum = {};
+  if (!body.is_watched) return sum;
+  double* const positions = body.fields[static_cast<std::size_t>(ModalField::position)];
+  for (std::size_t m = 0; m < body.num_modes; ++m)
+    sum += at<V>(body.watched_row, m) * at<V>(positions, m);
+  if constexpr (has_feedthrough) {
+    for (std::size_t s = 0; s < num_ports; ++s)
+      sum += at<V>(body.watched_forces, s) * at<V>(body.forces, s);
+    if (body.has_residual) {
+      sum += at<V>(body.watched_load, 0);
+      for (std::size_t s = 0; s < num_ports; ++s)
+        sum += at<V>(body.watched_lagging, s) * at<V>(body.lagging, s);
+    }
+  }
+  return sum;
+}
+
+/// Notes the rows that are watched after step number `done`.
+template <class V, bool has_feedthrough>
+STRIDOR_INLINE void watch(const Lanes& lanes, std::int64_t done) {
+  if (!lanes.slave.is_watched && !lanes.master.is_watched) return;
+  at<V>(lanes.trace, static_cast<std::size_t>(done - 1)) =
+      watched_displacement<V, 2, has_feedthrough>(lanes.slave) +
+      watched_displacement<V, 4, has_feedthrough>(lanes.master);
+}
+
+template <class V, bool has_feedthrough>
+STRIDOR_INLINE std::int64_t step(const Lanes& lanes, std::int64_t max_steps, double* flagged) {
+  V needs_more = {};
+  std::int64_t done = 0;
+  while (done < max_steps) {
+    advance_body<V, 2, has_feedthrough>(lanes.slave);
+    advance_body<V, 4, has_feedthrough>(lanes.master);
+    at<V>(lanes.index, 0) += 1.0;
+    ++done;
+    if constexpr (!has_feedthrough) {
+      const V reverses = update_slip<V>(lanes);
+      // Such a lane has not got to its contact.
+      if (has_any(reverses)) {
+        const V used = at<V>(lanes.is_used, 0);
+        at<V>(lanes.is_used, 0) = reverses > 0.0 ? V{} : used;
+        needs_more = solve_contact<V, has_feedthrough>(lanes) + reverses;
+        at<V>(lanes.is_used, 0) = used;
+        watch<V, has_feedthrough>(lanes, done);
+        break;
+      }
+    }
+    needs_more = solve_contact<V, has_feedthrough>(lanes);
+    watch<V, has_feedthrough>(lanes, done);
+    if (has_any(needs_more)) break;
+  }
+  at<V>(flagged, 0) = needs_more;
+  return done;
+}
+
+template <class V>
+STRIDOR_INLINE std::int64_t step_all(const Lanes& lanes, std::int64_t max_steps, double* flagged) {
+  return lanes.has_feedthrough ? step<V, true>(lanes, max_steps, flagged)
+                         : step<V, false>(lanes, max_steps, flagged);
+}
+
+using Step = std::int64_t (*)(const Lanes&, std::int64_t, double*);
+
+std::int64_t step_portable(const Lanes& lanes, std::int64_t max_steps, double* flagged) {
+  return step_all<Lanes2>(lanes, max_steps, flagged);
+}
+#if defined(__x86_64__)
+__attribute__((target("arch=x86-64-v3"))) std::int64_t step_v3(const Lanes& lanes,
+                                                               std::int64_t max_steps,
+                                                               double* flagged) {
+  return step_all<Lanes4>(lanes, max_steps, flagged);
+}
+__attribute__((target("arch=x86-64-v4,prefer-vector-width=512"))) std::int64_t step_v4(
+    const Lanes& lanes, std::int64_t max_steps, double* flagged) {
+  return step_all<Lanes8>(lanes, max_steps, flagged);
+}
+#endif
+
+struct Kernel {
+  Step step;
+  std::size_t num_lanes;
+};
+
+Kernel kernel_of_this_processor() {
+#if defined(__x86_64__)
+  const KernelSet set = kernel_set();
+  if (set == KernelSet::v4) return {step_v4, 8};
+  if (set == KernelSet::v3) return {step_v3, 4};
+#endif
+  return {step_portable, 2};
+}
+
+const Kernel kernel = kernel_of_this_processor();
+
+}  // namespace
+
+std::size_t num_kernel_lanes() {
+  return kernel.num_lanes;
+}
+
+std::int64_t step_lanes(const Lanes& lanes, std::int64_t max_steps, double* flagged) {
+  return kernel.step(lanes, max_steps, flagged);
+}
+
+}  // namespace stridor

@@ -1,0 +1,116 @@
+// A body given by its matrices.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/schema.hpp"
+#include "substructures/bodies/beam.hpp"
+#include "substructures/matrices/body_matrices.hpp"
+
+namespace stridor {
+
+/// One matrix in a scene: the name of a Matrix Market file, or its rows as texts of
+/// numbers ("1 0 -2.5"). Nothing where it is zero.
+using MatrixText = std::vector<std::string>;
+
+/// Which matrix of a body a term adds to.
+enum class MatrixRole {
+  damping,      ///< of q̇
+  gyroscopic,   ///< of q̇, skew-symmetric
+  stiffness,    ///< of q
+  circulatory,  ///< of q, skew-symmetric
+  velocity,     ///< of q̇, of any kind
+  position,     ///< of q, of any kind
+};
+
+/// Whether a matrix is multiplied with velocities, else with displacements.
+bool is_of_velocity(MatrixRole role);
+
+/// A matrix with a factor, which is added to those of the body.
+struct MatrixTermParameters {
+  MatrixRole role = MatrixRole::damping;
+  MatrixText matrix;
+  double factor = 1.0;
+  static const Schema& schema();
+};
+
+/// M q̈ + (D + G + Σ f_i D_i) q̇ + (K + N + Σ f_j K_j) q = 0   (HS (28); docs/theory.md, 10.3)
+struct MatrixBodyParameters {
+  MatrixText mass;                          ///< M, symmetric positive definite
+  MatrixText damping;                       ///< D
+  MatrixText gyroscopic;                    ///< G, skew-symmetric
+  MatrixText stiffness;                     ///< K
+  MatrixText circulatory;                   ///< N, skew-symmetric
+  std::vector<MatrixTermParameters> terms;  ///< f_i D_i and f_j K_j
+  static const Schema& schema();
+};
+
+/// M q̈ + P q̇ + Q q = 0 with sparse matrices, all n x n.
+struct SparseSystem {
+  SparseMatrix mass, velocity, position;
+  Eigen::Index size() const { return mass.rows(); }
+};
+
+/// The matrices of a body as its scene names them, all n x n.
+struct NamedMatrices {
+  SparseMatrix mass, damping, gyroscopic, stiffness, circulatory;
+  std::vector<SparseMatrix> terms;  ///< as many as the body has, without their factors
+};
+
+/// All of them summed up, the terms with their factors.
+SparseSystem sum(const NamedMatrices& matrices, const MatrixBodyParameters& body);
+
+/// A point of a body given by matrices. Unknowns are counted from 1; 0: it is held there.
+struct MatrixPointParameters {
+  std::vector<double> at;  ///< x and y in the frame of the body, m
+  std::int64_t x = 0;      ///< unknown that is its displacement in x
+  std::int64_t y = 0;      ///< in y
+  static const Schema& schema();
+};
+
+/// An outline of such a body, which lies on the right-hand side of it.
+struct MatrixSurfaceParameters {
+  std::vector<std::string> points;  ///< at least two, in order
+  static const Schema& schema();
+};
+
+/// Guide by which such a body follows the drive.
+struct MatrixGuideParameters {
+  std::int64_t load = 0;            ///< unknown on which the drive's load acts, from 1
+  std::vector<double> translation;  ///< of every unknown as the body moves by one metre in +x
+  static const Schema& schema();
+};
+
+/// A body given by its matrices, with points and surfaces at which others may touch it.
+struct TouchedMatrixBodyParameters : BodyParametersOf<TouchedMatrixBodyParameters> {
+  static constexpr const char* type_name = "matrices";
+
+  MatrixBodyParameters body;
+  std::map<std::string, MatrixPointParameters> points;
+  std::map<std::string, MatrixSurfaceParameters> surfaces;
+  std::optional<MatrixGuideParameters> guided;
+  std::optional<ReductionParameters> reduction;   ///< absent: every unknown is kept
+  std::shared_ptr<const NamedMatrices> matrices;  ///< the matrices that `body` names, read
+  static const Schema& schema();
+
+  BodyMatrices make() const override;
+  std::optional<int> num_modes() const override;
+  double num_slave_nodes(const std::string& name) const override;
+  ReductionSize reduction_size(double interface_nodes) const override;
+  SizeKey size_key() const override;
+};
+
+/// The body. Its stiffness is the symmetric part of the matrix of q. The matrix of q̇ is its
+/// damping where that is proportional (proportional_damping()); otherwise it is an additional term,
+/// like the skew part of the stiffness (CoupledTerms).
+/// @throws ConfigError (key paths below the body) if an unknown or a point is not there, or sizes
+///         do not fit
+/// @throws std::invalid_argument if the matrices have not been read
+BodyMatrices make_matrix_body(const TouchedMatrixBodyParameters& parameters);
+
+}  // namespace stridor

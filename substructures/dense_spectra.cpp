@@ -1,2 +1,0 @@
-#define STRIDOR_TEMPLATE
-#include "substructures/dense_spectra.hpp"

@@ -1,0 +1,2 @@
+#define STRIDOR_TEMPLATE
+#include "substructures/matrices/dense_factors.hpp"

@@ -1,0 +1,92 @@
+#include "substructures/reduction/modal_body.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "core/activity.hpp"
+#include "core/errors.hpp"
+#include "substructures/matrices/symmetric_eigenpairs.hpp"
+
+namespace stridor {
+
+ModalBody make_modal(const ReducedBody& body) {
+  const Activity solving(fmt::format("all modes of {} unknowns", body.size()));
+  const SymmetricEigenpairs pairs = generalised_eigenpairs(body.stiffness, body.mass, "modal form");
+  constexpr double rigid_ratio = 1e-6;
+  const Eigen::VectorXd& squares = pairs.values;
+  const double largest = squares.size() > 0 ? squares(squares.size() - 1) : 0.0;
+  const double rigid_below = rigid_ratio * rigid_ratio * largest;
+
+  ModalBody modal;
+  modal.damping = body.damping;
+  modal.omega.resize(squares.size());
+  for (Eigen::Index i = 0; i < squares.size(); ++i) {
+    const double rounding =
+        body.interface_rounding * pairs.vectors.col(i).head(body.num_interface).squaredNorm();
+    if (squares(i) < -std::max(rigid_below, rounding)) {
+      throw NumericalError(fmt::format("modal form: mode {} has the negative stiffness {:.3e} 1/s²",
+                                       i + 1, squares(i)));
+    }
+    modal.omega(i) = squares(i) <= rigid_below ? 0.0 : std::sqrt(squares(i));
+  }
+  modal.shapes = pairs.vectors;
+  modal.rows = body.rows * modal.shapes;
+  if (body.base_inertia.size() > 0)
+    modal.base_inertia = modal.shapes.transpose() * body.base_inertia;
+  modal.coupled = body.coupled.in(modal.shapes);
+  return modal;
+}
+
+Eigen::VectorXd ModalBody::mode_damping(double alpha) const {
+  Eigen::VectorXd c = alpha + damping.beta * omega.array().square();
+  if (!coupled.is_empty()) c += coupled.velocity.diagonal();
+  return c;
+}
+
+ModalBody with_static_residual(const ModalBody& body, double cutoff) {
+  if (body.residual.num_modes > 0)
+    throw std::invalid_argument("with_static_residual: the body has a residual already");
+  if (!body.coupled.is_empty())
+    throw std::invalid_argument("with_static_residual: the modes of the body are coupled");
+  if (!(cutoff > 0.0)) throw std::invalid_argument("with_static_residual: cutoff must be positive");
+  const auto num_kept = (body.omega.array() <= cutoff).count();  // ω ascends
+  const Eigen::Index num_dropped = body.size() - num_kept;
+  if (num_dropped == 0) return body;
+
+  ModalBody kept;
+  kept.damping = body.damping;
+  kept.omega = body.omega.head(num_kept);
+  kept.rows = body.rows.leftCols(num_kept);
+  kept.shapes = body.shapes.leftCols(num_kept);
+
+  const Eigen::VectorXd flexibility = body.omega.tail(num_dropped).array().square().inverse();
+  const Eigen::MatrixXd rows = body.rows.rightCols(num_dropped);
+  const Eigen::MatrixXd shapes = body.shapes.rightCols(num_dropped) * flexibility.asDiagonal();
+  kept.residual.num_modes = num_dropped;
+  kept.residual.beta = body.damping.beta;
+  kept.residual.flexibility = rows * flexibility.asDiagonal() * rows.transpose();
+  kept.residual.shapes = shapes * rows.transpose();
+  if (body.base_inertia.size() > 0) {
+    kept.base_inertia = body.base_inertia.head(num_kept);
+    const Eigen::VectorXd base = body.base_inertia.tail(num_dropped);
+    kept.residual.base_rows = rows * flexibility.asDiagonal() * base;
+    kept.residual.base_shapes = shapes * base;
+  }
+  return kept;
+}
+
+double central_difference_limit(const ModalBody& body) {
+  double limit = std::numeric_limits<double>::infinity();
+  for (const double omega : body.omega) {
+    const double c = body.damping.alpha_max() + body.damping.beta * omega * omega;
+    const double sum = c + std::sqrt(c * c + 4.0 * omega * omega);
+    if (sum > 0.0) limit = std::min(limit, 4.0 / sum);
+  }
+  return limit;
+}
+
+}  // namespace stridor

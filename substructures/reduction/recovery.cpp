@@ -1,0 +1,28 @@
+#include "substructures/reduction/recovery.hpp"
+
+#include <numeric>
+
+#include "substructures/reduction/craig_bampton.hpp"
+
+namespace stridor {
+
+Eigen::MatrixXd recovery_matrix(const BodyMatrices& body, std::span<const int> interface,
+                                Eigen::Index num_modes) {
+  std::vector<int> all(static_cast<std::size_t>(body.num_dofs()));
+  std::iota(all.begin(), all.end(), 0);
+  return make_craig_bampton(body, interface, num_modes, all).rows;
+}
+
+Eigen::MatrixX2cd node_displacements(const BodyMatrices& body, const Eigen::VectorXcd& dofs) {
+  Eigen::MatrixX2cd displacements = Eigen::MatrixX2cd::Zero(body.nodes.rows(), 2);
+  for (Eigen::Index node = 0; node < displacements.rows(); ++node) {
+    for (Eigen::Index direction = 0; direction < 2; ++direction) {
+      for (const DofWeight& dof :
+           body.displacement(static_cast<int>(node), static_cast<std::size_t>(direction)))
+        displacements(node, direction) += dof.weight * dofs(dof.dof);
+    }
+  }
+  return displacements;
+}
+
+}  // namespace stridor

@@ -1,0 +1,35 @@
+// From reduced coordinates back to every node of a body.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "substructures/matrices/body_matrices.hpp"
+
+namespace stridor {
+
+/// The matrix that gives every DoF of a body from its reduced coordinates, u = T q
+/// (docs/theory.md, 1.2). Dense, N x n; a reduction does not keep it.
+///
+/// @param interface, num_modes as of the reduction that q belongs to
+/// @throws as make_craig_bampton()
+/// Cost: that of the reduction.
+Eigen::MatrixXd recovery_matrix(const BodyMatrices& body, std::span<const int> interface,
+                                Eigen::Index num_modes);
+
+/// Displacement of every node, x and y; 0 where a node is held.
+/// @param dofs of all free DoFs
+Eigen::MatrixX2cd node_displacements(const BodyMatrices& body, const Eigen::VectorXcd& dofs);
+
+/// A body in motion: Re(displacement e^{iφ}) about where its nodes are.
+struct BodyShape {
+  std::string name;
+  Eigen::MatrixX2d nodes;                  ///< global, m
+  Eigen::MatrixX2cd displacement;          ///< of each node
+  std::vector<std::vector<int>> outlines;  ///< nodes in order
+  /// Nodes of its Q8 elements in the order of beam_elements(); empty where it is made of none.
+  std::vector<std::array<int, 8>> elements;
+};
+
+}  // namespace stridor
