@@ -57,7 +57,7 @@ function(stridor_library folder)
 endfunction()
 
 # What is tested stands in the libraries; the tests themselves need not be fast, but must compile fast.
-set(STRIDOR_TEST_OPTIONS -O1)
+set(STRIDOR_TEST_OPTIONS $<IF:$<CONFIG:Release>,-O1,-O0>)
 
 # All programs of tests labelled unit: what the sanitizers run; and those labelled long, which are
 # built for `./run test-all` only.

@@ -13,6 +13,13 @@
 
 namespace stridor {
 
+namespace {
+
+/// Whether this thread works on tasks beside others, all of which keep the machine busy already.
+thread_local bool is_working = false;
+
+}  // namespace
+
 void run_tasks(std::size_t count, int num_threads,
                const std::function<void(std::size_t task, std::size_t thread)>& work,
                const std::function<void(std::size_t num_done, std::size_t task)>& done) {
@@ -21,6 +28,7 @@ void run_tasks(std::size_t count, int num_threads,
   std::exception_ptr failure;
   std::size_t failed_task = count;
   std::mutex telling;
+  const bool is_nested = is_working;
   const auto take_tasks = [&](std::size_t thread) {
     for (std::size_t task = next++; task < count && !stop_requested(); task = next++) {
       try {
@@ -39,14 +47,18 @@ void run_tasks(std::size_t count, int num_threads,
     }
   };
   std::vector<std::thread> threads;
-  const std::size_t num_used = std::min(count, static_cast<std::size_t>(std::max(num_threads, 1)));
+  const std::size_t num_used =
+      is_nested ? 1 : std::min(count, static_cast<std::size_t>(std::max(num_threads, 1)));
   for (std::size_t i = 1; i < num_used; ++i) {
     threads.emplace_back([&take_tasks, i] {
       keep_blas_in_this_thread();
+      is_working = true;
       take_tasks(i);
     });
   }
+  is_working = is_nested || num_used > 1;
   take_tasks(0);
+  is_working = is_nested;
   for (std::thread& thread : threads) thread.join();
   if (failure) std::rethrow_exception(failure);
   if (stop_requested()) throw Interrupted("nothing has been written");

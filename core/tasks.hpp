@@ -9,6 +9,8 @@ namespace stridor {
 /// Does tasks 0 … count − 1, each once, on several threads. Which thread does a task must not
 /// affect its result.
 ///
+/// Called from within a task it uses one thread: the others are busy.
+///
 /// @param work gets the task and the number of the thread, from 0
 /// @param done called after every task, one at a time, with how many are done
 /// @throws the exception of the first task in order that has thrown, whatever the threads do, once

@@ -5,8 +5,12 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <stdexcept>
+#include <thread>
 
+#include "core/errors.hpp"
+#include "core/tasks.hpp"
 #include "models/keys_text.hpp"
 #include "substructures/bodies/whole_body.hpp"
 
@@ -72,6 +76,22 @@ std::string key_of(const BodyParameters& parameters) {
   return text;
 }
 
+std::string key_of(const BodyCache::Wanted& wanted) {
+  const std::string body = key_of(*wanted.parameters);
+  if (wanted.is_whole) return fmt::format("{}|whole|{}", body, fmt::join(wanted.watched, ","));
+  return fmt::format("{}|{}|{}|{}", body, fmt::join(wanted.interface, ","), wanted.num_modes,
+                     fmt::join(wanted.watched, ","));
+}
+
+BodyCache::Reduction make_reduction(const BodyCache::Wanted& wanted) {
+  BodyCache::Reduction made;
+  made.reduced = wanted.is_whole ? make_whole(*wanted.body, wanted.watched)
+                                 : make_craig_bampton(*wanted.body, wanted.interface,
+                                                      wanted.num_modes, wanted.watched);
+  made.modal = make_modal(made.reduced);
+  return made;
+}
+
 }  // namespace
 
 BodyCache::BodyCache(std::size_t capacity) : capacity_(capacity) {
@@ -108,37 +128,43 @@ BodyMatrices BodyCache::matrices(const BodyParameters& parameters) {
   return body;
 }
 
-template <class Make>
-BodyCache::Reduction BodyCache::reduction(const std::string& key, const BodyMatrices& body,
-                                          const Make& make) {
+BodyCache::Reduction BodyCache::reduce(const Wanted& wanted) {
+  const std::string key = key_of(wanted);
   const Reduction* found = find(reductions_, key);
   if (found == nullptr) {
-    Reduction made;
-    made.reduced = make();
-    made.modal = make_modal(made.reduced);
+    found = &keep(reductions_, key, make_reduction(wanted));
     ++num_reductions_;
-    found = &keep(reductions_, key, std::move(made));
   }
   Reduction copied = *found;
-  copied.reduced.damping = body.damping;
-  copied.modal.damping = body.damping;
+  copied.reduced.damping = wanted.body->damping;
+  copied.modal.damping = wanted.body->damping;
   return copied;
 }
 
-BodyCache::Reduction BodyCache::reduce(const BodyParameters& parameters,
-                                       const BodyMatrices& body, std::span<const int> interface,
-                                       Eigen::Index num_modes, std::span<const int> watched) {
-  const std::string key = fmt::format("{}|{}|{}|{}", key_of(parameters), fmt::join(interface, ","),
-                                      num_modes, fmt::join(watched, ","));
-  return reduction(key, body,
-                   [&] { return make_craig_bampton(body, interface, num_modes, watched); });
-}
-
-BodyCache::Reduction BodyCache::keep_whole(const BodyParameters& parameters,
-                                           const BodyMatrices& body,
-                                           std::span<const int> watched) {
-  return reduction(fmt::format("{}|whole|{}", key_of(parameters), fmt::join(watched, ",")), body,
-                   [&] { return make_whole(body, watched); });
+void BodyCache::prepare(std::span<const Wanted> wanted) {
+  std::map<std::string, const Wanted*> missing;
+  for (const Wanted& one : wanted) {
+    const std::string key = key_of(one);
+    if (find(reductions_, key) == nullptr) missing.emplace(key, &one);
+  }
+  if (missing.size() < 2 || missing.size() > capacity_) return;
+  const std::vector<std::pair<std::string, const Wanted*>> tasks(missing.begin(), missing.end());
+  std::vector<std::optional<Reduction>> made(tasks.size());
+  run_tasks(
+      tasks.size(), static_cast<int>(std::thread::hardware_concurrency()),
+      [&](std::size_t task, std::size_t) {
+        try {
+          made[task] = make_reduction(*tasks[task].second);
+        } catch (const NumericalError&) {  // reduce() meets it again and says of which body
+        } catch (const std::invalid_argument&) {
+        }
+      },
+      [](std::size_t, std::size_t) {});
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (!made[i]) continue;
+    keep(reductions_, tasks[i].first, *std::move(made[i]));
+    ++num_reductions_;
+  }
 }
 
 }  // namespace stridor

@@ -33,18 +33,23 @@ class BodyCache {
     ModalBody modal;
   };
 
-  /// Craig-Bampton reduction of a body and its modes; arguments as of make_craig_bampton().
-  /// @param parameters of the body
-  /// @param body       its matrices
-  /// @throws as make_craig_bampton() and make_modal()
-  Reduction reduce(const BodyParameters& parameters, const BodyMatrices& body,
-                   std::span<const int> interface, Eigen::Index num_modes,
-                   std::span<const int> watched);
-
-  /// A body of which every unknown is kept (make_whole()) and its modes.
-  /// @throws as make_whole() and make_modal()
-  Reduction keep_whole(const BodyParameters& parameters, const BodyMatrices& body,
-                       std::span<const int> watched);
+  /// A body and what of it is kept.
+  struct Wanted {
+    const BodyParameters* parameters = nullptr;
+    const BodyMatrices* body = nullptr;  ///< its matrices
+    /// Arguments of make_craig_bampton(); of a body of which every unknown is kept, `watched` alone.
+    bool is_whole = false;
+    std::span<const int> interface{};
+    Eigen::Index num_modes = 0;
+    std::span<const int> watched{};
+  };
+  /// Craig-Bampton reduction of a body, or all of it (make_whole()), and its modes.
+  /// @throws as make_craig_bampton(), make_whole() and make_modal()
+  Reduction reduce(const Wanted& wanted);
+  /// Computes those that are missing, on as many threads as the machine has; reduce() then finds
+  /// them. One that fails is left to reduce(), which says why.
+  /// @throws Interrupted where a stop was requested
+  void prepare(std::span<const Wanted> wanted);
 
   /// Matrices that were read for a body, and what it then named.
   struct ReadMatrices {
@@ -67,8 +72,6 @@ class BodyCache {
   template <class Content>
   using Store = std::vector<Entry<Content>>;
 
-  template <class Make>
-  Reduction reduction(const std::string& key, const BodyMatrices& body, const Make& make);
   template <class Content>
   Content* find(Store<Content>& store, const std::string& key);
   template <class Content>

@@ -108,7 +108,16 @@ class ModelBuilder {
     const bool is_sparse = pairs_.empty() && is_large(bodies_);
     System& system = model_.system;
     std::vector<SparseSystem> blocks;
+    std::vector<std::vector<BodyLoad>> loads;
+    std::vector<ModelBody*> reduced;
     for (ModelBody& body : bodies_) {
+      loads.push_back(body.parameters == nullptr ? std::vector<BodyLoad>{}
+                                                 : loads_of(body, drives_));
+      if (body.parameters != nullptr && !(is_sparse && body.is_whole())) reduced.push_back(&body);
+    }
+    prepare_bodies(reduced, cache_);
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      ModelBody& body = bodies_[b];
       if (body.parameters == nullptr) {
         system.bodies.push_back(make_rigid_body(body));
         model_.placements.emplace_back();
@@ -117,7 +126,7 @@ class ModelBuilder {
       SystemBody finished;
       finished.name = body.name;
       finished.drive = body.drive;
-      finished.loads = loads_of(body, drives_);
+      finished.loads = std::move(loads[b]);
       finished.lowest_omitted = body.matrices.lowest_omitted;
       if (is_sparse && body.is_whole()) {
         blocks.push_back(make_sparse(body.matrices));

@@ -120,11 +120,35 @@ std::vector<ModelBody> make_bodies(const Substructures& substructures, BodyCache
   return bodies;
 }
 
+namespace {
+
+Eigen::Index num_interior_of(const ModelBody& body) {
+  return body.matrices.num_dofs() - static_cast<Eigen::Index>(body.interface.size());
+}
+
+BodyCache::Wanted wanted_of(const ModelBody& body, int num_modes, const WatchedDofs& watched) {
+  return {body.parameters, &body.matrices, body.is_whole(), body.interface, num_modes, watched.dofs};
+}
+
+}  // namespace
+
+void prepare_bodies(std::span<ModelBody* const> bodies, BodyCache& cache) {
+  std::vector<WatchedDofs> watched;
+  watched.reserve(bodies.size());
+  std::vector<BodyCache::Wanted> wanted;
+  for (ModelBody* const body : bodies) {
+    const int num_modes = modes_of(*body);
+    if (num_modes > num_interior_of(*body)) continue;  // reduce_body() says so
+    watched.push_back(watched_dofs(*body));
+    wanted.push_back(wanted_of(*body, num_modes, watched.back()));
+  }
+  const Activity reducing("reducing the bodies");
+  cache.prepare(wanted);
+}
+
 BodyCache::Reduction reduce_body(ModelBody& body, BodyCache& cache) {
-  const bool is_whole = body.is_whole();
   const int num_modes = modes_of(body);
-  const auto num_interior =
-      body.matrices.num_dofs() - static_cast<Eigen::Index>(body.interface.size());
+  const Eigen::Index num_interior = num_interior_of(body);
   if (num_modes > num_interior) {
     throw ConfigError(body.key() + ".reduction.fixed_interface_modes",
                       fmt::format("{} modes asked, but '{}' has only {} DoFs besides its "
@@ -134,10 +158,7 @@ BodyCache::Reduction reduce_body(ModelBody& body, BodyCache& cache) {
   const Activity reducing(fmt::format("reducing '{}'", body.name));
   const WatchedDofs watched = watched_dofs(body);
   try {
-    BodyCache::Reduction made =
-        is_whole ? cache.keep_whole(*body.parameters, body.matrices, watched.dofs)
-                 : cache.reduce(*body.parameters, body.matrices, body.interface, num_modes,
-                                watched.dofs);
+    BodyCache::Reduction made = cache.reduce(wanted_of(body, num_modes, watched));
     if (watched.weights) {
       made.reduced.rows = *watched.weights * made.reduced.rows;
       made.modal.rows = *watched.weights * made.modal.rows;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,6 +46,9 @@ struct ModelBody {
 /// @throws ConfigError as BodyParameters::make(), and for names that are those of masters
 std::vector<ModelBody> make_bodies(const Substructures& substructures, BodyCache& cache);
 
+/// Computes what reduce_body() will want of several bodies and the cache has not, at the same time.
+/// @throws ConfigError as reduce_body() for a body that is too large to be kept whole
+void prepare_bodies(std::span<ModelBody* const> bodies, BodyCache& cache);
 /// Reduces a body, or keeps it whole, with a row for each of ModelBody::rows.
 /// @throws ConfigError where it cannot be reduced
 BodyCache::Reduction reduce_body(ModelBody& body, BodyCache& cache);
