@@ -63,16 +63,11 @@ void collect_paths(const SceneNode& node, const std::string& path,
   }
 }
 
-[[noreturn]] void refuse(std::vector<Problem> problems, const SceneNode& tree) {
-  locate(problems, tree);
-  sort_by_place(problems);
-  throw ConfigError(std::move(problems));
-}
+using Problems = std::vector<Problem>;
 
-void refuse_sphere(const SceneNode& tree) {
+void add_sphere(const SceneNode& tree, Problems& problems) {
   std::vector<std::string> paths;
   collect_paths(tree, "", paths);
-  std::vector<Problem> problems;
   for (const std::string& path : paths) {
     const auto* const former = std::find_if(std::begin(former_keys), std::end(former_keys),
                                             [&](const FormerKey& one) { return path == one.path; });
@@ -89,7 +84,6 @@ void refuse_sphere(const SceneNode& tree) {
                       {},
                       0,
                       0});
-  refuse(std::move(problems), tree);
 }
 
 /// docs/format_2.md, "Disc and pads". UPPER stands for each of the two pads and its contact.
@@ -134,10 +128,9 @@ const FormerKey* former_key_of(const std::string& path) {
   return best;
 }
 
-void refuse_disc(const SceneNode& tree) {
+void add_disc(const SceneNode& tree, Problems& problems) {
   std::vector<std::string> paths;
   collect_paths(tree, "", paths);
-  std::vector<Problem> problems;
   for (const std::string& path : paths) {
     const FormerKey* const former = former_key_of(path);
     if (former == nullptr) continue;
@@ -156,7 +149,6 @@ void refuse_disc(const SceneNode& tree) {
                       {},
                       0,
                       0});
-  refuse(std::move(problems), tree);
 }
 
 /// docs/format_2.md, "Sliding contact on rubber".
@@ -165,11 +157,12 @@ constexpr std::pair<const char*, const char*> former_sections[] = {
     {"profile", "contacts.NAME.normal.profile"},
     {"contact_solver", "contacts.NAME.normal.solver"}};
 
-void refuse_sliding_contact(const SceneNode& tree) {
-  std::vector<Problem> problems;
+void add_sliding_contact(const SceneNode& tree, Problems& problems) {
+  std::string first;
   for (const auto& [section, now] : former_sections) {
     const SceneEntry* const entry = tree.entry(section);
     if (entry == nullptr) continue;
+    if (first.empty()) first = section;
     std::vector<std::string> paths;
     collect_paths(entry->value, section, paths);
     for (const std::string& path : paths) {
@@ -180,14 +173,14 @@ void refuse_sliding_contact(const SceneNode& tree) {
                           0});
     }
   }
-  problems.push_back({problems.front().key.substr(0, problems.front().key.find('.')),
+  if (first.empty()) return;
+  problems.push_back({first,
                       "is no longer of a kind of scene of its own: NAME is a contact with `master: "
                       "half_space` and `normal: {law: viscoelastic, form: solve}` "
                       "(docs/format_2.md; scenes/viscoelastic_contact.yaml)",
                       {},
                       0,
                       0});
-  refuse(std::move(problems), tree);
 }
 
 /// Keys of a body of type `matrices`; docs/format_2.md, "Matrices with factors".
@@ -203,8 +196,7 @@ constexpr FormerKey former_keys_of_matrices[] = {
     {"load_damping", "terms: [{role: velocity, matrix: ..., factor: =load}]"},
     {"load_stiffness", "terms: [{role: position, matrix: ..., factor: =load}]"}};
 
-void refuse_matrices(const SceneNode& bodies, const SceneNode& tree) {
-  std::vector<Problem> problems;
+void add_matrices(const SceneNode& bodies, Problems& problems) {
   for (const SceneEntry& body : bodies.entries) {
     const SceneEntry* const type = body.value.entry("type");
     if (type == nullptr || type->value.text != "matrices") continue;
@@ -227,22 +219,35 @@ void refuse_matrices(const SceneNode& bodies, const SceneNode& tree) {
       }
     }
   }
-  if (!problems.empty()) refuse(std::move(problems), tree);
 }
 
 }  // namespace
 
 void refuse_former_keys(const SceneNode& tree) {
+  Problems problems;
   if (const SceneEntry* const bodies = tree.entry("substructures")) {
-    refuse_matrices(bodies->value, tree);
-    return;
+    add_matrices(bodies->value, problems);
+  } else {
+    if (tree.entry("sphere") != nullptr) add_sphere(tree, problems);
+    if (tree.entry("disc") != nullptr) add_disc(tree, problems);
+    add_sliding_contact(tree, problems);
   }
-  if (tree.entry("sphere") != nullptr) refuse_sphere(tree);
-  if (tree.entry("disc") != nullptr) refuse_disc(tree);
-  const bool is_former =
-      std::any_of(std::begin(former_sections), std::end(former_sections),
-                  [&](const auto& section) { return tree.entry(section.first) != nullptr; });
-  if (is_former) refuse_sliding_contact(tree);
+  const SceneEntry* const format = tree.entry("format");
+  if (format != nullptr && format->value.text == "1") {
+    problems.push_back({"format",
+                        fmt::format("1 is no longer read; {}, and write `format: 2` "
+                                    "(docs/format_2.md lists every key that has moved)",
+                                    problems.empty()
+                                        ? "all keys of this scene stand where they did: try it"
+                                        : "move the keys that are named"),
+                        {},
+                        0,
+                        0});
+  }
+  if (problems.empty()) return;
+  locate(problems, tree);
+  sort_by_place(problems);
+  throw ConfigError(std::move(problems));
 }
 
 }  // namespace stridor

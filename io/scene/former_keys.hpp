@@ -5,8 +5,9 @@
 
 namespace stridor {
 
-/// Refuses a scene with a section that made a kind of its own, `sphere` or `material`, `profile` and
-/// `contact_solver`, and bodies with keys that have moved, by their former keys (docs/format_2.md).
+/// Refuses a scene of `format: 1`, and one with a section that made a kind of its own, `sphere`,
+/// `disc`, or `material`, `profile` and `contact_solver`, or with bodies with keys that have moved
+/// (docs/format_2.md).
 /// @throws ConfigError with a problem for each of them that is written, naming the new one
 void refuse_former_keys(const SceneNode& tree);
 

@@ -236,7 +236,7 @@ const Schema& Scene::schema() {
   static const Schema keys =
       SchemaOf<Scene>("scene")
           .integer("format", &Scene::format,
-                   {.doc = "Version of the scene language: 1.", .range = Range::between(1, 1)})
+                   {.doc = "Version of the scene language: 2.", .range = Range::between(2, 2)})
           .parameters("parameters", &Scene::parameters, parameters_key())
           .include(&Scene::model)
           .section("time", &Scene::time,

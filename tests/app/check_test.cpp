@@ -32,7 +32,7 @@ TEST(Check, ShowsTheLineOfEveryErrorWithACaret) {
   const TemporaryFolder folder;
   const std::string path = folder / "bad.yaml";
   write_file(path,
-             "format: 1  # µ\nsubstructures: {}\ndrive: {velocity: 1 kg, load: 1, ramp: 0}\n"
+             "format: 2  # µ\nsubstructures: {}\ndrive: {velocity: 1 kg, load: 1, ramp: 0}\n"
              "time: {step: 1e-7, end: 1, stepp: 2}\n");
   const ProgramResult result = Program({"check", path}).run();
   EXPECT_EQ(result.exit_code, 2);

@@ -158,7 +158,7 @@ TEST(ContactProgram, LawsOfOrdinaryScenesAreEvaluatedLikewise) {
 }
 
 const std::string solved_on_two =
-    "format: 1\n"
+    "format: 2\n"
     "substructures:\n"
     "  ball: {type: lumped, masses: {center: {mass: 1 g}}, springs: {s: {at: center, stiffness: "
     "1}}}\n"
@@ -238,7 +238,7 @@ TEST(ContactProgram, FormerKeysAreRefusedEachWithTheNewOne) {
   const TemporaryFolder folder;
   const std::string scene = folder / "former.yaml";
   write_file(scene,
-             "format: 1\nmaterial: {rubbery_modulus: 1 MPa, glassy_modulus: 10 MPa}\n"
+             "format: 2\nmaterial: {rubbery_modulus: 1 MPa, glassy_modulus: 10 MPa}\n"
              "profile: {shape: sphere, radius: 1}\ncontact_solver: {grid: 64}\n");
   for (const char* verb : {"contact", "check", "eig"}) {
     const ProgramResult result = Program({verb, scene}).run();

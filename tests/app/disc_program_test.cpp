@@ -219,7 +219,7 @@ TEST(DiscProgram, SaysWhatPadsCannotHave) {
 TEST(DiscProgram, NamesTheNewKeyOfEveryFormerOne) {
   const TemporaryFolder folder;
   const std::string scene = (folder / "former.yaml").string();
-  std::ofstream(scene) << "format: 1\ndisc: {inner_radius: 80 mm, speed: 10}\n"
+  std::ofstream(scene) << "format: 2\ndisc: {inner_radius: 80 mm, speed: 10}\n"
                           "pads: {mass: 0.25, stiffness: {normal: 1.0e+8}, piston: {force: 1}}\n"
                           "contact: {formulation: penalty, penalty: 1.0e+10}\n";
   const ProgramResult result = Program({"check", scene}).run();

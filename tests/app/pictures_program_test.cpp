@@ -34,7 +34,7 @@ struct RunContents {
   std::vector<std::string> channels{"/channels/beam.tip.y.acceleration",
                                     "/channels/beam.tip.y.displacement",
                                     "/channels/beam.tip.y.velocity", "/contact/contact/force"};
-  std::string scene = "format: 1\nmeasure: {from: 0.05, band: [500.0, 2000.0]}\n";
+  std::string scene = "format: 2\nmeasure: {from: 0.05, band: [500.0, 2000.0]}\n";
   bool has_bursts = true;
   std::size_t rows = num_rows;
 };
@@ -68,7 +68,7 @@ class Pictures : public ::testing::Test {
                          .command = "stridor run scene.yaml",
                          .scene_hash = "0123456789abcdef",
                          .date = "2024-05-17T08:30:00Z",
-                         .scene_text = "format: 1\n",
+                         .scene_text = "format: 2\n",
                          .scene_resolved = contents.scene};
     RunFileWriter writer(path(name), Overwrite::yes, header, series);
     for (std::size_t i = 0; i < contents.rows; ++i) {

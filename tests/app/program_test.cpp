@@ -203,7 +203,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{{"measure.band=[15 kHz, 2 kHz]"}, "measure.band"},
         BadInput{{"measure.band=[1 kHz, 60 kHz]"}, "resolves only frequencies below 50000 Hz"},
         BadInput{{"drive.velocity={times: [0, 1, 1], values: [0, 1, 2]}"}, "drive.velocity"},
-        BadInput{{"format=2"}, "format"}, BadInput{{"time.step"}, "time.step"}));
+        BadInput{{"format=3"}, "format"}, BadInput{{"time.step"}, "time.step"}));
 
 TEST(Program, EveryErrorOfAFileIsReportedAtOnceWithItsPlace) {
   const TemporaryFolder folder;

@@ -140,7 +140,7 @@ TEST(Robustness, EveryVerbSaysThatAFolderCannotBeWritten) {
 TEST(Robustness, NumbersBeyondComputationAreRefusedWithTheirPlace) {
   const TemporaryFolder folder;
   write_file(folder / "huge.yaml",
-             "format: 1\nsubstructures:\n  m: {type: matrices, mass: [[1, 0], [0, 1]],\n"
+             "format: 2\nsubstructures:\n  m: {type: matrices, mass: [[1, 0], [0, 1]],\n"
              "      stiffness: [[1e308, 0], [0, 1e308]]}\n");
   const std::string contact = scene_path("viscoelastic_contact.yaml");
   const struct {
@@ -151,7 +151,7 @@ TEST(Robustness, NumbersBeyondComputationAreRefusedWithTheirPlace) {
       {scene_path("beam_on_beam.yaml"), "substructures.oblique.thickness=1e-100 mm",
        "substructures.oblique.thickness: is beyond what can be computed with, 0 or 1e-30 to 1e+30 "
        "m in magnitude; got 1e-103 m"},
-      {folder / "huge.yaml", "format=1",
+      {folder / "huge.yaml", "format=2",
        "substructures.m.stiffness.0.0: is beyond what can be computed with, up to 1e+100 in "
        "magnitude; got 1e+308"},
       {scene_path("disc_and_pads.yaml"), "substructures.disc.spin=1e-308",

@@ -482,7 +482,7 @@ TEST(SphereProgram, FormerKeysAreRefusedEachWithTheNewOne) {
   const TemporaryFolder folder;
   const std::string scene = folder / "former.yaml";
   write_file(scene,
-             "format: 1\n"
+             "format: 2\n"
              "sphere:\n  stiffness_x: 50\n  normal_load: 7.5e-4\n  shear_stress: 1e4\n"
              "contact_law: boundary_element\nsmall_motion: undamped\n"
              "time: {end: 500, settle: 20}\n");

@@ -217,7 +217,7 @@ class TwoReeds {
              " mm, friction: {law: stribeck, static: 0.55, dynamic: 0.3, decay_velocity: 5 mm/s}, "
              "surface: smooth}\n";
     };
-    std::ofstream(path()) << "format: 1\nsubstructures:\n  strip: "
+    std::ofstream(path()) << "format: 2\nsubstructures:\n  strip: "
                           << beam("length: 240 mm, thickness: 4 mm", "0", steel, 80,
                                   "{start: clamped, end: free}", 20)
                           << "  front: "

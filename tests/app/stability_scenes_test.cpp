@@ -260,7 +260,7 @@ std::string scaled_scene(double length, double mass, double time) {
         name, l * length, t * length, w * length, angle, E * pressure, nu, rho * density,
         alpha / time, 4e-8 * time, rest);
   };
-  return "format: 1\nsubstructures:\n" +
+  return "format: 2\nsubstructures:\n" +
          beam("oblique", 0.075, 0.0015, 0.010, "30 deg", 71e9, 0.33, 2770.0, 0.2,
               "    mesh: {along: 20, through: 1}\n    supports: {end: guided}\n") +
          beam("cantilever", 0.1, 0.002, 0.020, "0", 2.38e9, 0.40, 1200.0, 40.0,
@@ -427,7 +427,7 @@ TEST(MapProgram, HasItsBoundaryUpToWhereThereIsNoEquilibrium) {
 TEST(EqualArms, HaveEveryEigenvalueTwiceAllTheWay) {
   const TemporaryFolder folder;
   const std::string scene = (folder / "scene.yaml").string();
-  std::ofstream(scene) << R"(format: 1
+  std::ofstream(scene) << R"(format: 2
 substructures:
   a: &arm
     type: beam

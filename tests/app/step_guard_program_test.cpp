@@ -20,7 +20,7 @@ using Json = nlohmann::json;
 
 /// A mass on two oblique springs that slides on rigid ground: pressed on it, its ω² along x is
 /// 100 + 0.8 · 20 (docs/theory.md, 3.7), that of the faster mode of the mass by itself 104.7.
-constexpr const char* oblique_springs = R"(format: 1
+constexpr const char* oblique_springs = R"(format: 2
 substructures:
   mass:
     type: matrices

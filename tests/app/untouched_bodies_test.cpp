@@ -48,7 +48,7 @@ std::string chain_scene(const TemporaryFolder& folder, int n) {
     for (int i = 1; i < n && !is_mass; ++i) file << i + 1 << ' ' << i << " -1\n";
   }
   const std::string path = (folder / "chain.yaml").string();
-  std::ofstream(path) << "format: 1\nsubstructures:\n  chain: {type: matrices, mass: M.mtx, "
+  std::ofstream(path) << "format: 2\nsubstructures:\n  chain: {type: matrices, mass: M.mtx, "
                          "stiffness: K.mtx, load: 0}\n";
   return path;
 }
@@ -112,7 +112,7 @@ class ManyOscillators {
   }
   std::string scene(const std::string& matrices) const {
     const std::string path = (folder_ / "pairs.yaml").string();
-    std::ofstream(path) << "format: 1\nparameters: {load: 0, d: 1}\nsubstructures:\n  pairs: "
+    std::ofstream(path) << "format: 2\nparameters: {load: 0, d: 1}\nsubstructures:\n  pairs: "
                            "{type: matrices, mass: M.mtx, "
                         << matrices << "}\n";
     return path;
@@ -208,7 +208,7 @@ TEST(UntouchedBodies, FactorsOfMatricesAreVaried) {
   // 0.2280350850.
   const TemporaryFolder folder;
   const std::string scene = (folder / "two.yaml").string();
-  std::ofstream(scene) << "format: 1\nparameters: {n: 1, d: 0, k: 1}\nsubstructures:\n"
+  std::ofstream(scene) << "format: 2\nparameters: {n: 1, d: 0, k: 1}\nsubstructures:\n"
                           "  two: {type: matrices, mass: [[1, 0], [0, 1]], terms: [\n"
                           "    {role: stiffness, matrix: [[1, 0], [0, 1.4]], factor: =k},\n"
                           "    {role: damping, matrix: [[1, 0], [0, 1]], factor: =d},\n"
@@ -279,7 +279,7 @@ TEST(UntouchedBodies, ExamplesHaveTheirClosedForms) {
 /// A scene of one folder.
 std::string scene_of(const TemporaryFolder& folder, const std::string& text) {
   const std::string path = (folder / "scene.yaml").string();
-  std::ofstream(path) << "format: 1\n" << text;
+  std::ofstream(path) << "format: 2\n" << text;
   return path;
 }
 

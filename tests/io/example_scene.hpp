@@ -176,7 +176,7 @@ struct Example {
 };
 
 /// Every key of Example and below, each in a line of its own.
-inline const std::string kExampleText = R"(format: 1
+inline const std::string kExampleText = R"(format: 2
 title: squeal
 scheme: exact
 band: [2.5 kHz, 15 kHz]

@@ -91,7 +91,7 @@ std::string contacts_text(const std::vector<std::string>& points, const std::str
 struct FaceScene {
   explicit FaceScene(const std::string& text, const std::vector<std::string>& sets = {}) {
     const std::string path = (folder / "scene.yaml").string();
-    std::ofstream(path) << "format: 1\nsubstructures:" << text;
+    std::ofstream(path) << "format: 2\nsubstructures:" << text;
     loaded = load_scene(path, sets);
     model = make_model(loaded.scene.model, {});
   }

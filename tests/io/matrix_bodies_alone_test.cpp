@@ -19,7 +19,7 @@ using test::message_of;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-const char* const small_scene = R"(format: 1
+const char* const small_scene = R"(format: 2
 parameters: {load: 0.5}
 substructures:
   body:
@@ -164,7 +164,7 @@ TEST(MatrixBodiesAlone, LargeMatricesStaySparse) {
     for (int i = 1; i < n; ++i) file << i + 1 << ' ' << i << " -1\n";
   }
   const std::string path = (folder / "scene.yaml").string();
-  std::ofstream(path) << "format: 1\nsubstructures:\n  chain: {type: matrices, mass: M.mtx, "
+  std::ofstream(path) << "format: 2\nsubstructures:\n  chain: {type: matrices, mass: M.mtx, "
                          "stiffness: K.mtx}\n";
   BodyCache cache;
   const Model model = build_model(load_scene(path, {}), cache);

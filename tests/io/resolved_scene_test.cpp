@@ -27,7 +27,7 @@ Example read_back(const Example& scene) {
 }
 
 TEST(ResolvedScene, IsWrittenInTheOrderOfDeclaration) {
-  EXPECT_EQ(resolved_yaml(example()), R"(format: 1
+  EXPECT_EQ(resolved_yaml(example()), R"(format: 2
 title: squeal
 scheme: exact
 band: [2500, 15000]
@@ -65,8 +65,8 @@ channels: [force, tip.y]
 
 TEST(ResolvedScene, HoldsDefaultsAndLeavesOutAbsentOptionals) {
   const auto scene =
-      read_as<Example>(read_scene_text("format: 1\nvelocity: 1\nbodies: {}\n", "s.yaml"));
-  EXPECT_EQ(resolved_yaml(scene), R"(format: 1
+      read_as<Example>(read_scene_text("format: 2\nvelocity: 1\nbodies: {}\n", "s.yaml"));
+  EXPECT_EQ(resolved_yaml(scene), R"(format: 2
 title: ""
 scheme: central
 band: []

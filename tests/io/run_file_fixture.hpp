@@ -29,8 +29,8 @@ inline const RunFileHeader header{
     .command = "stridor run 'scène à bielle.yaml' --set time.end=1",
     .scene_hash = "1234",
     .date = "2024-05-17T08:30:00Z",
-    .scene_text = "format: 1 # µ = 0.3\n",
-    .scene_resolved = "format: 1\ntime: {step: 2.0e-7}\n",
+    .scene_text = "format: 2 # µ = 0.3\n",
+    .scene_resolved = "format: 2\ntime: {step: 2.0e-7}\n",
 };
 
 inline std::vector<SeriesSpec> two_series() {

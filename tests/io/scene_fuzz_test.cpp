@@ -39,7 +39,7 @@ std::vector<std::string> scene_texts() {
   std::vector<std::string> texts;
   for (const auto& path : paths) texts.push_back(contents_of(path));
   texts.push_back(
-      "format: 1\nsubstructures:\n  a: &x {type: beam, 'length': [1, 2]}\n  b: *x\n"
+      "format: 2\nsubstructures:\n  a: &x {type: beam, 'length': [1, 2]}\n  b: *x\n"
       "drive: {velocity: \"30 mm/s\"}\nexpect:\n  - result: 1\n    value: |\n      text\n"
       "  - >-\n    folded\n");
   return texts;

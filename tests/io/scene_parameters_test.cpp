@@ -74,7 +74,7 @@ TEST(SceneParameters, AnyNumberMayDependOnThem) {
             0.15);
   EXPECT_EQ(oblique(example_with(parameters, "75 mm", "=length")).length, 0.075);
   EXPECT_EQ(oblique(example_with(parameters, "elements: 37", "elements: =n+3")).elements, 40);
-  EXPECT_EQ(example_with(parameters, "format: 1", "format: =omega/2").format, 1);
+  EXPECT_EQ(example_with(parameters, "format: 2", "format: =omega/2").format, 1);
   EXPECT_THAT(example_with(parameters, "[2.5 kHz, 15 kHz]", "[=k, '=max(k, 100)']").band,
               ElementsAre(8.0, 100.0));
   EXPECT_EQ(example_with(parameters, "velocity: 30 mm/s", "velocity: =fast").velocity.value(0.0),
@@ -203,7 +203,7 @@ TEST(SceneParameters, SettingOneThatIsNotUsedIsRefused) {
 /// Two masses between springs, of which the rows of K depend on parameters.
 LoadedScene two_masses() {
   return load_resolved_scene(
-      "format: 1\n"
+      "format: 2\n"
       "parameters: {k: 8, n: =k/4}\n"
       "substructures:\n"
       "  pair:\n"

@@ -72,7 +72,7 @@ void expect_only(const std::string& from, const std::string& to, int column, con
 
 TEST(SceneReader, EveryKindOfKeyIsRead) {
   const auto scene = read_as<Example>(read_scene_text(kExampleText, "s.yaml"));
-  EXPECT_EQ(scene.format, 1);
+  EXPECT_EQ(scene.format, 2);
   EXPECT_EQ(scene.title, "squeal");
   EXPECT_EQ(scene.scheme, test::Scheme::exact);
   EXPECT_THAT(scene.band, testing::ElementsAre(2500.0, 15000.0));
@@ -98,7 +98,7 @@ TEST(SceneReader, EveryKindOfKeyIsRead) {
 
 TEST(SceneReader, AbsentOptionalsKeepTheirDefaults) {
   const auto scene =
-      read_as<Example>(read_scene_text("format: 1\nvelocity: 1\nbodies: {}\n", "s.yaml"));
+      read_as<Example>(read_scene_text("format: 2\nvelocity: 1\nbodies: {}\n", "s.yaml"));
   EXPECT_EQ(scene.scheme, test::Scheme::central);
   EXPECT_FALSE(scene.load);
   EXPECT_FALSE(scene.friction);
@@ -117,7 +117,7 @@ TEST(SceneReader, QuotesMakeNoDifference) {
 }
 
 TEST(SceneReader, LeadingZeroIsNotOctal) {
-  EXPECT_EQ(read_as<Example>(read_scene_text(with("format: 1", "format: 010"), "s.yaml")).format,
+  EXPECT_EQ(read_as<Example>(read_scene_text(with("format: 2", "format: 010"), "s.yaml")).format,
             10);
   EXPECT_EQ(std::get<test::Lumped>(
                 read_as<Example>(read_scene_text(with("mass: 2 g", "mass: 010"), "s.yaml"))
@@ -134,7 +134,7 @@ TEST(SceneReader, SingleTextIsAListOfOne) {
 
 TEST(SceneReader, AliasFillsASection) {
   const auto scene = read_as<Example>(
-      read_scene_text("format: 1\nvelocity: 1\nmaterials:\n  a: &m {youngs_modulus: 1, "
+      read_scene_text("format: 2\nvelocity: 1\nmaterials:\n  a: &m {youngs_modulus: 1, "
                       "poissons_ratio: 0}\n  b: *m\nbodies: {}\n",
                       "s.yaml"));
   EXPECT_EQ(scene.materials.at("a"), scene.materials.at("b"));
@@ -180,7 +180,7 @@ TEST(SceneReader, DiscriminatorIsAmongTheKnownKeys) {
 
 TEST(SceneReader, MissingSpaceAfterTheColonIsNamed) {
   const auto problems = problems_in(
-      "format: 1\nvelocity: 1\nbodies: {}\nmaterials: {a:1}\nfriction: {coefficient: 1, zz:2}\n");
+      "format: 2\nvelocity: 1\nbodies: {}\nmaterials: {a:1}\nfriction: {coefficient: 1, zz:2}\n");
   ASSERT_THAT(problems, SizeIs(2));
   expect_problem(problems[0], 4, 13, "materials.a:1", "'a:1' cannot be a name");
   expect_problem(problems[1], 5, 28, "friction.zz:2",
@@ -287,7 +287,7 @@ TEST(SceneReader, IntegerRangeIsNamed) {
 }
 
 TEST(SceneReader, IntegerThatItsMemberCannotHoldIsRefused) {
-  expect_only("format: 1", "format: 256", 9, "format", "is too far from 0 to be stored, got '256'");
+  expect_only("format: 2", "format: 256", 9, "format", "is too far from 0 to be stored, got '256'");
   expect_only("elements: 37", "elements: 2147483648", 15, "bodies.oblique.elements",
               "is too far from 0");
   expect_only("modes: 20", "modes: 9223372036854775808", 12, "bodies.oblique.modes",
@@ -387,14 +387,14 @@ TEST(SceneReader, SectionMustBeAMap) {
   expect_only("friction:\n  coefficient: 0.3\n  decay_velocity: 10 mm/s", "friction:", 1,
               "friction", "has no value, expected a map");
   const auto problems =
-      problems_in("format: 1\nvelocity: 1\nbodies: {}\nexpect: {result: a, value: 1}\n");
+      problems_in("format: 2\nvelocity: 1\nbodies: {}\nexpect: {result: a, value: 1}\n");
   ASSERT_THAT(problems, SizeIs(1));
   expect_problem(problems[0], 4, 9, "expect", "expected a list of maps, got a map");
 }
 
 TEST(SceneReader, EntryOfASectionListMustBeAMap) {
   const auto problems =
-      problems_in("format: 1\nvelocity: 1\nbodies: {}\nexpect: [3, {result: a, value: b}]\n");
+      problems_in("format: 2\nvelocity: 1\nbodies: {}\nexpect: [3, {result: a, value: b}]\n");
   ASSERT_THAT(problems, SizeIs(2));
   expect_problem(problems[0], 4, 10, "expect.0", "expected a map, got '3'");
   expect_problem(problems[1], 4, 32, "expect.1.value", "'b' is not a number");
@@ -516,7 +516,7 @@ TEST(SceneReader, ValuesFromSetAreTyped) {
 TEST(SceneReader, AllProblemsComeAtOnceInTheOrderOfTheFile) {
   std::string text = kExampleText;
   for (const auto& [from, to] :
-       std::vector<std::pair<std::string, std::string>>{{"format: 1", "format: one"},
+       std::vector<std::pair<std::string, std::string>>{{"format: 2", "format: one"},
                                                         {"exact", "exakt"},
                                                         {"75 mm", "75 kg"},
                                                         {"mass", "maas"},

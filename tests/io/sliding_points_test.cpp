@@ -30,7 +30,7 @@ TEST(SceneWithoutBodies, IsReadWithTheContactThatItHas) {
 
 TEST(SceneWithoutBodies, HasAContact) {
   const std::string says =
-      message_of<ConfigError>([] { (void)read_as<Scene>(read_scene_text("format: 1", "a")); });
+      message_of<ConfigError>([] { (void)read_as<Scene>(read_scene_text("format: 2", "a")); });
   EXPECT_THAT(says, HasSubstr("substructures: is missing: there is nothing to move"));
 }
 

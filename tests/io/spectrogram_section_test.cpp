@@ -18,7 +18,7 @@ LoadedScene main_scene_with(const std::vector<std::string>& sets) {
   return load_scene(scene_path("beam_on_beam.yaml"), sets);
 }
 
-std::string refusal_of(const std::string& set, const std::string& more = "format=1") {
+std::string refusal_of(const std::string& set, const std::string& more = "format=2") {
   return message_of<ConfigError>([&] { main_scene_with({set, more}); });
 }
 
