@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "analysis/period_map.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
 #include "solvers/transient/simulation.hpp"
@@ -51,22 +52,6 @@ double settled_from(const System& system) {
 
 int row_of(const ContactPoint& contact, bool is_x) {
   return is_x ? contact.slave_rows.x : contact.slave_rows.y;
-}
-
-void require_no_stop() {
-  if (stop_requested()) throw Interrupted("nothing has been written");
-}
-
-/// Steps in stretches between which a stop is heard. @return the outcome of the last
-StepOutcome step_on(Simulation& simulation, std::int64_t target) {
-  constexpr std::int64_t stretch = 100'000;
-  while (simulation.step_index() < target) {
-    require_no_stop();
-    const StepOutcome outcome =
-        simulation.step_until(std::min(target, simulation.step_index() + stretch));
-    if (outcome != StepOutcome::done) return outcome;
-  }
-  return StepOutcome::done;
 }
 
 /// Reads turns, and integrals between them, from one displacement of a simulation.
@@ -139,7 +124,7 @@ Largest largest_motion(Simulation& simulation, const System& system, std::int64_
   std::vector<double> high(num_rows, -inf);
   Largest largest;
   for (std::int64_t i = 0; i < num_steps; ++i) {
-    if (i % 100'000 == 0) require_no_stop();
+    if (i % 100'000 == 0) throw_if_stopped();
     largest.outcome = simulation.step();
     if (largest.outcome != StepOutcome::done) return largest;
     for (std::size_t k = 0; k < num_rows; ++k) {
@@ -156,210 +141,6 @@ Largest largest_motion(Simulation& simulation, const System& system, std::int64_
     largest.observed = {static_cast<int>(k / 2), k % 2 == 0};
   }
   return largest;
-}
-
-/// P_T(z) of a system by N steps of T/N.
-class PeriodMap {
- public:
-  /// @param system as of settled(); its bodies get the motion of z
-  PeriodMap(System& system, const TimeParameters& time, const Simulation& simulation,
-            std::int64_t num_steps)
-      : system_(&system), time_(time), num_steps_(num_steps) {
-    for (std::size_t b = 0; b < system.bodies.size(); ++b)
-      sizes_.push_back(simulation.motion(static_cast<int>(b)).displacement.size());
-    for (const Eigen::Index n : sizes_) num_unknowns_ += 2 * n;
-  }
-
-  Eigen::Index num_unknowns() const { return num_unknowns_; }
-
-  /// (q, q̇) of all bodies at the present step of a simulation, which is then one step further on.
-  /// Nothing where that fails.
-  std::optional<Eigen::VectorXd> state_of(Simulation& simulation) const {
-    const std::vector<Propagator::Motion> before = motions_of(simulation);
-    if (simulation.step() != StepOutcome::done) return std::nullopt;
-    const std::vector<Propagator::Motion> after = motions_of(simulation);
-    Eigen::VectorXd z(num_unknowns_);
-    Eigen::Index first = 0;
-    for (std::size_t b = 0; b < sizes_.size(); ++b) {
-      const Eigen::Index n = sizes_[b];
-      z.segment(first, n) = before[b].displacement;
-      // Both are backward differences: their mean is the velocity between them, to second order.
-      z.segment(first + n, n) = 0.5 * (before[b].velocity + after[b].velocity);
-      first += 2 * n;
-    }
-    return z;
-  }
-
-  /// Puts the bodies of the system into a state.
-  void set(const Eigen::VectorXd& z) {
-    Eigen::Index first = 0;
-    for (std::size_t b = 0; b < sizes_.size(); ++b) {
-      SystemBody& body = system_->bodies[b];
-      const Eigen::Index n = sizes_[b];
-      const bool is_modal = time_.coordinates == Coordinates::modal;
-      const auto reduced = [&](const Eigen::VectorXd& q) -> Eigen::VectorXd {
-        if (!is_modal || n == 0) return q;
-        return body.modal.shapes.leftCols(n) * q;
-      };
-      body.initial_displacement = reduced(z.segment(first, n));
-      body.initial_velocity = reduced(z.segment(first + n, n));
-      first += 2 * n;
-    }
-  }
-
-  std::optional<Eigen::VectorXd> operator()(const Eigen::VectorXd& z, double period) {
-    require_no_stop();
-    set(z);
-    TimeParameters time = time_;
-    time.step = period / static_cast<double>(num_steps_);
-    try {
-      Simulation simulation(*system_, time);
-      if (simulation.step_until(num_steps_) != StepOutcome::done) return std::nullopt;
-      return state_of(simulation);
-    } catch (const NumericalError&) {
-      return std::nullopt;
-    } catch (const ConfigError&) {  // the step is above the limit of stability
-      return std::nullopt;
-    }
-  }
-
-  /// Velocity of a row of a body as a row on z.
-  Eigen::RowVectorXd velocity_row(int body, int row) const {
-    Eigen::RowVectorXd of_z = Eigen::RowVectorXd::Zero(num_unknowns_);
-    Eigen::Index first = 0;
-    for (int b = 0; b < body; ++b) first += 2 * sizes_[static_cast<std::size_t>(b)];
-    const SystemBody& of = system_->bodies[static_cast<std::size_t>(body)];
-    const Eigen::Index n = sizes_[static_cast<std::size_t>(body)];
-    const bool is_modal = time_.coordinates == Coordinates::modal;
-    const Eigen::MatrixXd& rows = is_modal ? of.modal.rows : of.reduced.rows;
-    of_z.segment(first + n, n) = rows.row(row).head(n);
-    return of_z;
-  }
-
- private:
-  std::vector<Propagator::Motion> motions_of(const Simulation& simulation) const {
-    std::vector<Propagator::Motion> motions;
-    for (std::size_t b = 0; b < sizes_.size(); ++b)
-      motions.push_back(simulation.motion(static_cast<int>(b)));
-    return motions;
-  }
-
-  System* system_;
-  TimeParameters time_;
-  std::int64_t num_steps_;
-  std::vector<Eigen::Index> sizes_;
-  Eigen::Index num_unknowns_ = 0;
-};
-
-/// Sizes of the displacements and velocities over a stretch of steps: half of what each moves
-/// through, at least 1e-4 of that of its kind that moves most.
-Eigen::VectorXd sizes_of_motion(const PeriodMap& map, Simulation& simulation,
-                                std::int64_t num_steps) {
-  const Eigen::Index size = map.num_unknowns();
-  Eigen::VectorXd low = Eigen::VectorXd::Constant(size, std::numeric_limits<double>::infinity());
-  Eigen::VectorXd high = -low;
-  constexpr std::int64_t num_looks = 64;
-  const std::int64_t first = simulation.step_index();
-  for (std::int64_t i = 1; i <= num_looks; ++i) {
-    const std::int64_t target = first + num_steps * i / num_looks;
-    if (target <= simulation.step_index()) continue;
-    if (step_on(simulation, target - 1) != StepOutcome::done) break;
-    const auto z = map.state_of(simulation);
-    if (!z) break;
-    low = low.cwiseMin(*z);
-    high = high.cwiseMax(*z);
-  }
-  return 0.5 * (high - low).cwiseMax(0.0);
-}
-
-/// z and T over their sizes: T counts in steps, so that it is of the size of the other unknowns.
-class ScaledPeriodMap {
- public:
-  ScaledPeriodMap(PeriodMap& map, const Eigen::RowVectorXd& velocity, const Eigen::VectorXd& scale,
-                  double step)
-      : map_(&map), scale_(scale), step_(step) {
-    velocity_ = velocity.cwiseProduct(scale.transpose());
-    velocity_ /= velocity_.cwiseAbs().sum();
-  }
-
-  Eigen::VectorXd scaled(const Eigen::VectorXd& z, double period) const {
-    Eigen::VectorXd y(z.size() + 1);
-    y << z.cwiseQuotient(scale_), period / step_;
-    return y;
-  }
-  Eigen::VectorXd state(const Eigen::VectorXd& y) const {
-    return y.head(scale_.size()).cwiseProduct(scale_);
-  }
-  double period(const Eigen::VectorXd& y) const { return step_ * y[scale_.size()]; }
-
-  /// P_T(z) over its sizes; nothing where a step fails.
-  std::optional<Eigen::VectorXd> operator()(const Eigen::VectorXd& y) const {
-    std::optional<Eigen::VectorXd> next = (*map_)(state(y), period(y));
-    if (next) *next = next->cwiseQuotient(scale_);
-    return next;
-  }
-  /// (P_T(z) − z, v(z)).
-  std::optional<Eigen::VectorXd> miss(const Eigen::VectorXd& y) const {
-    const auto next = (*this)(y);
-    if (!next) return std::nullopt;
-    const Eigen::Index m = scale_.size();
-    Eigen::VectorXd all(m + 1);
-    all << *next - y.head(m), velocity_.dot(y.head(m));
-    return all;
-  }
-  /// ∂P_T(z)/∂(z, T) by central differences; P jumps where a contact breaks loose a step earlier or
-  /// later, and beside a jump the difference to the other side is taken.
-  std::optional<Eigen::MatrixXd> derivative(const Eigen::VectorXd& y) const {
-    constexpr double change = 1e-5;
-    constexpr double jump = 0.1;
-    const Eigen::Index m = scale_.size();
-    const auto here = (*this)(y);
-    if (!here) return std::nullopt;
-    Eigen::MatrixXd derivative(m, m + 1);
-    for (Eigen::Index k = 0; k <= m; ++k) {
-      Eigen::VectorXd moved = y;
-      moved[k] = y[k] + change;
-      const auto after = (*this)(moved);
-      moved[k] = y[k] - change;
-      const auto before = (*this)(moved);
-      if (!after || !before) return std::nullopt;
-      const Eigen::VectorXd ahead = (*after - *here) / change;
-      const Eigen::VectorXd behind = (*here - *before) / change;
-      if ((ahead - behind).norm() < jump * std::min(ahead.norm(), behind.norm()) + jump) {
-        derivative.col(k) = 0.5 * (ahead + behind);
-      } else {
-        derivative.col(k) = ahead.norm() < behind.norm() ? ahead : behind;
-      }
-    }
-    return derivative;
-  }
-  /// −J⁻¹ miss with the derivative of (P_T(z) − z, v(z)).
-  Eigen::VectorXd correction(const Eigen::MatrixXd& derivative, const Eigen::VectorXd& miss) const {
-    const Eigen::Index m = scale_.size();
-    Eigen::MatrixXd bordered = Eigen::MatrixXd::Zero(m + 1, m + 1);
-    bordered.topRows(m) = derivative;
-    bordered.diagonal().head(m).array() -= 1.0;
-    bordered.row(m).head(m) = velocity_;
-    return -bordered.fullPivLu().solve(miss);
-  }
-
- private:
-  PeriodMap* map_;
-  Eigen::VectorXd scale_;
-  double step_;
-  Eigen::RowVectorXd velocity_;
-};
-
-/// Multipliers of ∂P/∂z, largest first, without that of a shift along the cycle.
-std::vector<std::complex<double>> multipliers_of(const Eigen::MatrixXd& derivative) {
-  const Eigen::VectorXcd all = Eigen::EigenSolver<Eigen::MatrixXd>(derivative, false).eigenvalues();
-  std::vector<std::complex<double>> multipliers(all.data(), all.data() + all.size());
-  multipliers.erase(std::min_element(multipliers.begin(), multipliers.end(), [](auto a, auto b) {
-    return std::abs(a - 1.0) < std::abs(b - 1.0);
-  }));
-  std::sort(multipliers.begin(), multipliers.end(),
-            [](auto a, auto b) { return std::abs(a) > std::abs(b); });
-  return multipliers;
 }
 
 /// Newton's method for P_T(z) = z with v(z) = 0 from z and the period found; `residual` is that of
@@ -439,7 +220,7 @@ bool observe(Simulation& simulation, const System& system, std::int64_t settling
   const auto most_steps =
       static_cast<std::int64_t>(longest_look * static_cast<double>(settling)) + 1000;
   for (std::int64_t i = 0; i < most_steps && reader.turns() < num_turns && !is_still; ++i) {
-    if (i % 100'000 == 0) require_no_stop();
+    if (i % 100'000 == 0) throw_if_stopped();
     if (simulation.step() != StepOutcome::done) return false;
     (void)reader.note();
   }
@@ -459,27 +240,10 @@ bool observe(Simulation& simulation, const System& system, std::int64_t settling
 bool go_to_turn(Simulation& simulation, const System& system, ObservedMotion observed) {
   TurnReader next(simulation, system, observed);
   do {
+    throw_if_stopped();
     if (simulation.step() != StepOutcome::done) return false;
   } while (!next.note());
   return true;
-}
-
-/// The sizes by which Newton's method measures the unknowns.
-Eigen::VectorXd scale_of(const PeriodMap& map, Simulation& simulation,
-                         const PeriodicMotion& found) {
-  Eigen::VectorXd scale = sizes_of_motion(map, simulation, found.num_steps);
-  constexpr double least = 1e-6;
-  Eigen::Index first = 0;
-  for (std::size_t b = 0; b < found.at_turn.bodies.size(); ++b) {
-    const Eigen::Index n = simulation.motion(static_cast<int>(b)).displacement.size();
-    for (const Eigen::Index part : {first, first + n}) {
-      if (n == 0) continue;
-      const double most = scale.segment(part, n).maxCoeff();
-      scale.segment(part, n) = scale.segment(part, n).cwiseMax(std::max(least * most, 1e-300));
-    }
-    first += 2 * n;
-  }
-  return scale;
 }
 
 /// Newton's method with `found.num_steps` steps, and where it ends at a jump of P with a few more:
@@ -525,7 +289,7 @@ bool solve(Simulation& simulation, const TimeParameters& time, const PeriodicMot
   PeriodMap map(found.at_turn, time, simulation, found.num_steps);
   const std::optional<Eigen::VectorXd> start = map.state_of(simulation);
   if (!start) return false;
-  const Eigen::VectorXd scale = scale_of(map, simulation, found);
+  const Eigen::VectorXd scale = map.sizes_of_motion(simulation);
   map.set(*start);
   if (map.num_unknowns() > options.most_unknowns) {
     const auto next = map(*start, found.period);

@@ -31,11 +31,14 @@ constexpr LinearisationTerms no_terms{false, false, false, false, false, false};
 constexpr std::array all_assumptions{ContactAssumption::subs_a, ContactAssumption::subs_b,
                                      ContactAssumption::subs_c, ContactAssumption::film};
 
+/// v_d of the laws that depend on the velocity, m/s.
+constexpr double falling_over = 0.08;
+
 /// A contact anywhere on an inclined, deformed segment, open or penetrating, with friction that
 /// depends on the velocity.
 struct RandomContact {
   ContactPositions positions;
-  FrictionLaw law = stribeck_friction(0.6, 0.2, 0.08);
+  FrictionLaw law = stribeck_friction(0.6, 0.2, falling_over);
   double friction_factor = 0.7;
   Eigen::Vector2d undeformed_tangent;
   PortVector velocity = PortVector::Zero(6);
@@ -108,7 +111,7 @@ ContactMap<Number> contact_map(const RandomContact& contact, const std::array<Nu
   const Number friction =
       contact.friction_factor *
       (law.dynamic_coefficient + (law.static_coefficient - law.dynamic_coefficient) *
-                                     std::exp(-direction * speed / law.decay_velocity));
+                                     std::exp(-direction * speed / falling_over));
   const Number px = -ty - direction * friction * tx;
   const Number py = tx - direction * friction * ty;
   // The bodies feel −B_Eᵀλ.
@@ -251,10 +254,9 @@ std::array<Complex, 12> smooth_contact_map(const ContactPositions& positions,
   map[1] = xi;
   const Complex speed = tx * positions.driven_velocity;
   const double direction = speed.real() < 0.0 ? -1.0 : 1.0;
-  const Complex friction =
-      friction_factor *
-      (law.dynamic_coefficient + (law.static_coefficient - law.dynamic_coefficient) *
-                                     std::exp(-direction * speed / law.decay_velocity));
+  const Complex friction = friction_factor * (law.dynamic_coefficient +
+                                              (law.static_coefficient - law.dynamic_coefficient) *
+                                                  std::exp(-direction * speed / falling_over));
   const Complex push[] = {-ty - direction * friction * tx, tx - direction * friction * ty};
   for (std::size_t i = 0; i < 2; ++i) {
     map[2 + i] = push[i];
@@ -268,7 +270,7 @@ TEST(ContactLinearisation, IsTheDerivativeOfTheKinematicsOnASmoothSurface) {
   // Complex steps are exact to rounding, which the projection enlarges by 10 at most.
   constexpr double step = 1e-30;
   constexpr double tolerance = 1e-11;
-  const FrictionLaw law = stribeck_friction(0.6, 0.2, 0.08);
+  const FrictionLaw law = stribeck_friction(0.6, 0.2, falling_over);
   std::mt19937 random(20261121);
   for (const ContactAssumption assumption : all_assumptions) {
     for (int trial = 0; trial < 100; ++trial) {
