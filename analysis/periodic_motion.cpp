@@ -26,8 +26,10 @@ constexpr double longest_look = 2.0;
 /// Drive, damping and friction as they are once they no longer change.
 System settled(System system) {
   const double late = std::numeric_limits<double>::max();
-  system.drive.velocity = TimeCurve(system.drive.velocity.value(late));
-  system.drive.load = TimeCurve(system.drive.load.value(late));
+  for (Drive& drive : system.drives) {
+    for (TimeCurve* curve : {&drive.velocity, &drive.load, &drive.shift})
+      *curve = TimeCurve(curve->value(late));
+  }
   for (ContactPoint& contact : system.contacts) {
     contact.friction_rise = TimeCurve(contact.friction_rise.value(late));
     contact.armed_from = 0.0;
@@ -42,7 +44,7 @@ System settled(System system) {
 
 /// From this time on nothing that is prescribed changes.
 double settled_from(const System& system) {
-  double from = system.drive.constant_from();
+  double from = system.drives_constant_from();
   for (const ContactPoint& contact : system.contacts)
     from = std::max(from, contact.friction_rise.constant_from());
   for (const SystemBody& body : system.bodies)
@@ -333,11 +335,12 @@ void follow_cycle(const PeriodicMotion& cycle, const TimeParameters& time,
 
 std::optional<std::string> why_not_periodic(const System& system) {
   if (system.contacts.empty()) return "nothing touches its bodies, so nothing keeps them moving";
-  const bool is_driven =
-      !system.drive.is_frozen && system.drive.velocity.value(system.drive.constant_from()) != 0.0;
   for (const ContactPoint& contact : system.contacts) {
+    if (contact.face) continue;
+    const DrivenMotion driven = system.driven_motion(contact);
+    const bool moves_on = !driven.is_frozen() && driven.end_velocity() != 0.0;
     const MasterSurface& surface = system.surface_of(contact);
-    if (!is_driven || surface.is_endless) continue;
+    if (!moves_on || surface.is_endless) continue;
     return fmt::format(
         "contact '{}' moves along {} and comes to its end; hold its place by `sliding: frozen`, in "
         "which friction acts as if it moved",

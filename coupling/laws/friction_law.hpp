@@ -43,12 +43,18 @@ inline FrictionLaw constant_friction(double coefficient) {
   return {coefficient, coefficient};
 }
 
+/// sliding_friction() where the speed matters.
+[[gnu::noinline]] inline double sliding_friction_at(const FrictionLaw& law, double speed) {
+  const double friction =
+      law.sliding ? law.sliding->coefficient(speed * law.velocity_unit) : law.dynamic_coefficient;
+  return law.is_regularised() ? friction * law.sign.at(speed).value : friction;
+}
+
 /// μ while sliding at a velocity of either sign; of a regularised law with its factor s.
 inline double sliding_friction(const FrictionLaw& law, double velocity) {
-  const double friction = law.sliding
-                              ? law.sliding->coefficient(std::abs(velocity) * law.velocity_unit)
-                              : law.dynamic_coefficient;
-  return law.is_regularised() ? friction * law.sign.at(std::abs(velocity)).value : friction;
+  // Most laws are constant in sliding, and every step asks.
+  if (!law.sliding && !law.is_regularised()) return law.dynamic_coefficient;
+  return sliding_friction_at(law, std::abs(velocity));
 }
 
 /// dμ/d|v| while sliding, likewise.
