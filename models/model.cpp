@@ -172,11 +172,6 @@ void check_drive_sections(const ModelParameters& model, std::vector<Problem>& pr
   };
   if (model.drive && !model.drives.empty())
     refuse("drives", "give either `drive` (one) or `drives` (several), not both");
-  if (model.drive && !model.drive->displaces.empty()) {
-    refuse("drive.displaces",
-           "is of a drive with a name: `drive.displacement` is how far the drive has moved the "
-           "bodies, which verbs vary; write drives: {NAME: {...}}");
-  }
   for (const auto& [name, drive] : model.drives) {
     const bool does = !drive.velocity.is_zero() || !drive.load.is_zero() ||
                       !drive.displacement.is_zero() || !drive.moves.empty() ||

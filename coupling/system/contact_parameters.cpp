@@ -171,8 +171,9 @@ const Schema& DriveParameters::schema() {
                   .optional = true})
           .curve("displacement", &DriveParameters::displacement,
                  {.doc = "Displacement in +y of the ground ends of springs: a number, which rises "
-                         "over `ramp`, or {times, values}; of drives with a name. Their dampers "
-                         "stay where they are.",
+                         "over `ramp`, or {times, values}; their dampers stay where they "
+                         "are. (What verbs vary as drive.displacement is how far the drive has "
+                         "moved bodies.)",
                   .unit = "m",
                   .optional = true})
           .real(
