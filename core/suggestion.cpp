@@ -51,11 +51,17 @@ std::string nearest(const std::string& written, const std::vector<std::string>& 
   const std::string word = folded(written);
   std::string best;
   std::size_t best_distance = allowed + 1;
+  std::size_t best_same = word.size();  // more than any has that is too far away
   for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(word, folded(candidate));
-    if (distance < best_distance) {
+    const std::string known = folded(candidate);
+    const std::size_t distance = edit_distance(word, known);
+    // Of equals the one that begins likewise: "xyx" is rather "xy" than "xx".
+    const std::size_t same = static_cast<std::size_t>(
+        std::mismatch(word.begin(), word.end(), known.begin(), known.end()).first - word.begin());
+    if (distance < best_distance || (distance == best_distance && same > best_same)) {
       best = candidate;
       best_distance = distance;
+      best_same = same;
     }
   }
   if (!best.empty() || written.size() < 3) return best;

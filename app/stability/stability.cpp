@@ -439,7 +439,10 @@ SpectrumMethod BodyStabilityFamily::method(std::span<const double> values) {
   const BlasGuard guard;
   const Model& model = *family_.at(values).model;
   if (model.sparse) return SpectrumMethod::counted;
-  return model.system.contacts.empty() ? SpectrumMethod::sampled : SpectrumMethod::followed;
+  // Bodies that spin couple their modes, of which there are few: all eigenvalues cost less than to
+  // follow some.
+  const bool is_sampled = model.system.contacts.empty() || model.system.has_faces();
+  return is_sampled ? SpectrumMethod::sampled : SpectrumMethod::followed;
 }
 
 SparseSystem BodyStabilityFamily::sparse_system(std::span<const double> values) {

@@ -243,8 +243,9 @@ Analysis analyse(const EigOptions& options, const LoadedScene& loaded,
 std::size_t mode_of_interest(const Analysis& analysis, const std::optional<int>& mode) {
   const FoundSpectrum& found = analysis.found;
   std::vector<Eigenvalue> choice = found.eigenvalues;
-  if (!mode && !analysis.has_contacts())
-    std::erase_if(choice, [&](const auto& one) { return one.frequency() > found.highest; });
+  const auto is_above = [&](const auto& one) { return one.frequency() > found.highest; };
+  if (!mode && !std::all_of(choice.begin(), choice.end(), is_above))
+    std::erase_if(choice, is_above);
   return chosen_mode(choice, num_real_of(choice), mode);
 }
 

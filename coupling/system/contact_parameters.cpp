@@ -77,7 +77,7 @@ const Schema& StartParameters::schema() {
                  .unit = "rad",
                  .optional = true})
           .check([](const P& start, std::vector<Problem>& problems) {
-            if (start.along.has_value() == start.radius.has_value()) {
+            if (start.along && start.radius) {
               problems.push_back({"",
                                   "is either a length along the master or, on the face of a plate, "
                                   "{radius, angle}",

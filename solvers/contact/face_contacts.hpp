@@ -92,7 +92,8 @@ struct RunningFace : ContactRecord {
   }
   /// Whether its spring has let the slave through the middle of the plate, of which it says nothing.
   bool is_through() const {
-    return force * point().compliance() > point().face->half_thickness;
+    const double half_thickness = point().face->half_thickness;
+    return half_thickness > 0.0 && force * point().compliance() > half_thickness;
   }
   /// Half of what the mean velocity has changed by from step to step: with it that of a step becomes
   /// that at its end. Where sliding ends or turns round, by more than half, it is left out.

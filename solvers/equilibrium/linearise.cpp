@@ -33,13 +33,16 @@ ContactLinearisation linearised(const System& system, const ContactPoint& point,
   return linearise_contact(positions, point.friction, state.friction_factor, terms);
 }
 
-/// Rows of a body that carry derivatives of a displacement at contacts on its faces.
-std::vector<int> slope_rows(const System& system, int body) {
+/// Rows of a body that carry no displacement: derivatives at contacts on its faces, and forces of
+/// springs that a drive displaces.
+std::vector<int> other_rows(const System& system, int body) {
   std::vector<int> rows;
   for (const ContactPoint& contact : system.contacts) {
     if (!contact.face || contact.face->body != body) continue;
     rows.insert(rows.end(), contact.face->rows.begin() + 1, contact.face->rows.end());
   }
+  for (const BodyLoad& load : system.bodies[static_cast<std::size_t>(body)].loads)
+    if (load.by == BodyLoad::By::shift) rows.push_back(load.row);
   std::erase_if(rows, [](int row) { return row < 0; });
   return rows;
 }
@@ -142,7 +145,7 @@ void add_perturbation(System& system, const Eigen::VectorXcd& vector, std::compl
   for (std::size_t b = 0; b < system.bodies.size(); ++b) {
     const SystemBody& body = system.bodies[b];
     Eigen::VectorXcd rows = body.modal.rows * vector.segment(first, body.modal.size());
-    for (const int slope : slope_rows(system, static_cast<int>(b))) rows(slope) = 0.0;
+    for (const int row : other_rows(system, static_cast<int>(b))) rows(row) = 0.0;
     for (const std::complex<double>& row : rows)
       if (std::abs(row) > std::abs(largest)) largest = row;
     first += body.modal.size();

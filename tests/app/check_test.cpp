@@ -120,7 +120,7 @@ TEST(Check, ConditionsBetweenKeysAreNamed) {
       {disc, {"contacts.upper.normal={law: penalty}"}, "contacts.upper.normal.stiffness"},
       {disc,
        {"substructures.disc.outer_radius=100 mm"},
-       "contacts.upper.start.radius: must lie between the edges of the plate, 0.08 and 0.1 m, got "
+       "contacts.lower.start.radius: must lie between the edges of the plate, 0.08 and 0.1 m, got "
        "0.13 m"},
       {disc,
        {"substructures.disc.outer_radius=70 mm"},
@@ -289,7 +289,7 @@ TEST(Check, WarnsOfWhatIsHardlyMeantWithoutRefusing) {
        "record.channels.0: 'cantilever.start.y.displacement' will be recorded as zeros: "
        "'cantilever' is held in y at this point"},
       {"disc_and_pads.yaml",
-       {"substructures.disc.outer_radius=160"},
+       {"substructures.disc.outer_radius=160", "initial={}"},
        "disc.outer_radius: is 160 m, since bare numbers are in SI units"},
       {"beam_on_beam.yaml",
        {"substructures.cantilever.thickness=0.2"},

@@ -22,9 +22,9 @@ const std::string support_scene = scene_path("examples/rotating_support.yaml");
 /// The scene with its gyroscopic matrix in a file beside it.
 std::string scene_with_file(const std::filesystem::path& folder) {
   std::string text = contents_of(support_scene);
-  const std::size_t from = text.find("    stiffness:\n");
-  const std::size_t to = text.find("    stiffness:\n");
-  text.replace(from, to - from, "    gyroscopic: G.mtx\n");
+  const std::size_t from = text.find("        matrix:\n");
+  const std::size_t to = text.find("\n    ", text.find("[0, 0, 0, 0, 0.04, 0]")) + 1;
+  text.replace(from, to - from, "        matrix: G.mtx\n");
   std::ofstream(folder / "scene.yaml") << text;
   std::ofstream(folder / "G.mtx") << "%%MatrixMarket matrix coordinate real skew-symmetric\n"
                                      "6 6 3\n2 1 0.04\n4 3 0.04\n6 5 0.04\n";

@@ -147,7 +147,7 @@ TEST(ParametersProgram, MapOfTheDiscIsThatOfTheKeys) {
   const TemporaryFolder folder;
   const std::string scene =
       scene_with(folder, "disc_and_pads.yaml", "{mu: 0.3, preload: 3000, speed: 10}",
-                 {{"spin: 10 rad/s", "spin: =speed"}});
+                 {{"spin: 10 rad/s", "spin: =speed"}, {"parameters: {mu: 0.3, preload: 3000}", ""}});
   const auto growth = [&](const std::string& x, const std::string& y) {
     return json_of(
         {"map", scene, "--x", x, "0", "0.6", "3", "--y", y, "5", "20", "2"})["growth"];

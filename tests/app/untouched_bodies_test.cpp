@@ -48,8 +48,9 @@ std::string chain_scene(const TemporaryFolder& folder, int n) {
     for (int i = 1; i < n && !is_mass; ++i) file << i + 1 << ' ' << i << " -1\n";
   }
   const std::string path = (folder / "chain.yaml").string();
-  std::ofstream(path) << "format: 2\nsubstructures:\n  chain: {type: matrices, mass: M.mtx, "
-                         "stiffness: K.mtx, load: 0}\n";
+  std::ofstream(path) << "format: 2\nparameters: {load: 0}\nsubstructures:\n  chain: {type: "
+                         "matrices, mass: M.mtx, stiffness: K.mtx, terms: [{role: position, matrix: "
+                         "K.mtx, factor: =0*load}]}\n";
   return path;
 }
 
@@ -76,7 +77,7 @@ TEST(UntouchedBodies, LargeMatricesAreCountedInTheirWindow) {
   EXPECT_NEAR(lowest["explanation"]["quotients"]["stiffness"].get<double>(), omega(2) * omega(2),
               1e-9 * omega(2) * omega(2));
   EXPECT_NEAR(lowest["explanation"]["frictionless_modes"][0]["share"].get<double>(), 1.0, 1e-9);
-  const Json locus = json_of({"locus", scene, "--parameter", "substructures.chain.load", "--from",
+  const Json locus = json_of({"locus", scene, "--parameter", "parameters.load", "--from",
                               "0", "--to", "1", "--points", "2", "--count", "4"});
   EXPECT_EQ(locus["eigenvalues"][1], lowest["eigenvalues"]);
   EXPECT_TRUE(locus["unstable"].empty());

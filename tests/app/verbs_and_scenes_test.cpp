@@ -133,7 +133,10 @@ const std::vector<Reason>& reasons() {
       {"event_driven",
        "the integrator goes from event to event and has no steps of a given length"},
       {"without bodies", "there are no bodies, which could move"},
-      {"`compare` needs this section", "there is no contact, whose assumptions could be compared"}};
+      {"`compare` needs this section", "there is no contact, whose assumptions could be compared"},
+      {"contacts stay at their place, so that no motion is prescribed",
+       "two of the four assumptions prescribe the motion of a contact along its master, and on the "
+       "face of a plate it stays at its place"}};
   return all;
 }
 

@@ -133,7 +133,7 @@ TEST(SceneFamily, PositionIsReachedByTheDriveAsByTheScene) {
     const Model built = build_model(scene);
     const Pencil expected = pencil_of({&built, 0.0, std::nullopt});
     EXPECT_EQ(member.position, start);
-    EXPECT_LT((moved.slots - expected.slots).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_LT((moved.ports - expected.ports).cwiseAbs().maxCoeff(), 1e-12);
     EXPECT_LT((moved.equilibrium - expected.equilibrium).cwiseAbs().maxCoeff(), 1e-10) << start;
   }
   EXPECT_EQ(family.cache().num_reductions(), 2);

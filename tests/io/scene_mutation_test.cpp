@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/excerpt.hpp"
@@ -17,6 +19,7 @@
 #include "io/scene/scene_reader.hpp"
 #include "tests/io/example_scene.hpp"
 #include "tests/support/complete_scenes.hpp"
+#include "tests/support/program.hpp"
 #include "tests/support/scene_draft.hpp"
 
 namespace stridor {
@@ -386,7 +389,7 @@ class MutantMaker {
       case KeyKind::section_list:
       case KeyKind::parameters:
         if (const Key* number = number_in_place_of(key)) {
-          put(path, "zz", "expected " + expected_of(*number) + ", got 'zz'");
+          put(path, "zz", "'zz' is not a number, expected");
         } else {
           refuse("1", "'1'");
         }
@@ -496,6 +499,25 @@ std::string loneliness(const Mutant& mutant, const Draft& valid) {
   return problems.empty() ? "" : "no valid scene has it; nearest\n" + text + joined(problems);
 }
 
+/// Values that take more other keys than are found by trial: shapes of a profile, which take a
+/// viscoelastic law of the form `solve` with its material and solver. Empty where a scene with the
+/// value is read, else what is wrong with it; nothing for other mutants.
+std::optional<std::string> without_trial(const Mutant& mutant) {
+  constexpr std::string_view shape = "normal.profile.shape";
+  if (!mutant.path.ends_with(shape)) return std::nullopt;
+  Draft scene = mutant.scene;
+  const std::string value = find_draft(scene, mutant.path)->text;
+  const std::string table = value == "table" ? ", radii: [0, 1, 2], heights: [0, 1, 4]" : "";
+  try {
+    (void)load_scene(
+        scene_path("viscoelastic_contact.yaml"),
+        {"contacts.tip.normal.profile={shape: " + value + ", radius: 0.5" + table + "}"});
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
 template <class T>
 class SceneMutation : public ::testing::Test {};
 
@@ -523,7 +545,10 @@ TYPED_TEST(SceneMutation, EveryKeySpoiltInEveryWayIsAnsweredAtItsPlaceAndNothing
         // Now the one and now the other, to keep the test short.
         const YamlStyle style = ++num_mutants % 2 == 0 ? YamlStyle::block : YamlStyle::flow;
         std::string said = objection<TypeParam>(mutant, style);
-        if (!mutant.path.empty()) said += loneliness<TypeParam>(mutant, scene.draft);
+        if (!mutant.path.empty()) {
+          const std::optional<std::string> known = without_trial(mutant);
+          said += known ? *known : loneliness<TypeParam>(mutant, scene.draft);
+        }
         EXPECT_TRUE(said.empty()) << path << " " << mutant.what << ": " << said;
       }
     }

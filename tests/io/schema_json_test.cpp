@@ -113,8 +113,8 @@ TEST(JsonSchema, IntegersHoldTheTighterOfRangeAndStorage) {
   EXPECT_EQ(format["type"], Json::array({"integer", "string"}));
   EXPECT_TRUE(matches(format, "=2*n"));
   EXPECT_FALSE(matches(format, "1"));
-  EXPECT_EQ(format["minimum"], 1);
-  EXPECT_EQ(format["maximum"], 1);
+  EXPECT_EQ(format["minimum"], 2);
+  EXPECT_EQ(format["maximum"], 2);
   EXPECT_EQ(scene_key({"substructures", "NAME", "mesh", "along"})["maximum"], 1'000'000);
   const Json byte = example_key({"format"});  // std::uint8_t, declared > 0
   EXPECT_EQ(byte["exclusiveMinimum"], 0);

@@ -289,7 +289,7 @@ std::vector<Problem> problems_of(const InitialMotionParameters<kind>& motion) {
 TEST(InitialMotionParameters, AMotionOfNothingIsRefused) {
   const auto none = problems_of(InitialMotionParameters<MotionKind::velocity>{"oblique", 0.0, 0.0});
   ASSERT_THAT(none, SizeIs(1));
-  EXPECT_EQ(none[0].text(), "at: moves nothing: give `x`, `y` or both");
+  EXPECT_EQ(none[0].text(), "at: moves nothing: give some of `x`, `y` and `z`");
   EXPECT_THAT(problems_of(InitialMotionParameters<MotionKind::displacement>{"oblique", 0.0, 0.0}),
               SizeIs(1));
   EXPECT_THAT(problems_of(InitialMotionParameters<MotionKind::velocity>{"oblique", 0.1, 0.0}),
