@@ -190,7 +190,7 @@ struct Simulation::Implementation {
 
   /// Poses the problem of one contact for its forces at t_n. @returns false where it has left its
   /// master
-  bool pose(RunningContact& contact, LocalProblem& problem, double sought_time, double rise) {
+  [[gnu::always_inline]] bool pose(RunningContact& contact, LocalProblem& problem, double sought_time, double rise) {
     SlidingPoint& sliding = contact.sliding;
     const double driven_to = contact.driven.displacement(sought_time);
     if (!sliding.find(driven_to)) return false;
@@ -447,7 +447,7 @@ struct Simulation::Implementation {
     }
     if (has_feedthrough && !is_predicting_start) {
       for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b]->settle(forces[b].data());
-      if (!update_slip_velocities()) outcome = StepOutcome::sliding_reversed;
+      if (!update_slip_velocities(sought_time)) outcome = StepOutcome::sliding_reversed;
     }
     return outcome;
   }
@@ -474,7 +474,7 @@ struct Simulation::Implementation {
     return outcome;
   }
 
-  StepOutcome fail_on_face(const ContactAnswer& answer) {
+  [[gnu::cold]] StepOutcome fail_on_face(const ContactAnswer& answer) {
     const std::size_t i = static_cast<std::size_t>(answer.contact) - contacts.size();
     RunningFace& face = faces[i];
     const PlanarProblem& problem = faces.problems()[i];
@@ -579,8 +579,8 @@ struct Simulation::Implementation {
 
   /// With the bodies at t_n, before the contacts are solved.
   StepOutcome arrive() {
-    return has_feedthrough || update_slip_velocities() ? StepOutcome::done
-                                                 : StepOutcome::sliding_reversed;
+    return has_feedthrough || update_slip_velocities(time(index)) ? StepOutcome::done
+                                                                  : StepOutcome::sliding_reversed;
   }
 
   /// Completion of a step once the bodies are at t_n.
@@ -589,10 +589,10 @@ struct Simulation::Implementation {
     return outcome == StepOutcome::done ? solve() : outcome;
   }
 
+  /// @param now t_n
   /// @returns false where an armed contact slides against the drive
-  bool update_slip_velocities() {
+  [[gnu::always_inline]] bool update_slip_velocities(double now) {
     bool is_allowed = true;
-    const double now = time(index);
     for (RunningContact& contact : contacts) {
       const double drawn = update_slip_velocity(contact, contact.driven.velocity(now));
       if (contact.slip_velocity * drawn < 0.0 && now < contact.unilateral_from &&
@@ -699,7 +699,7 @@ struct Simulation::Implementation {
     return StepOutcome::done;
   }
 
-  StepOutcome fail(const RunningContact& contact, StepOutcome outcome) {
+  [[gnu::cold]] StepOutcome fail(const RunningContact& contact, StepOutcome outcome) {
     std::string what;
     std::string remedy;
     switch (outcome) {
@@ -748,7 +748,7 @@ struct Simulation::Implementation {
     return outcome;
   }
 
-  StepOutcome fail(const RunningFace& face, StepOutcome outcome) {
+  [[gnu::cold]] StepOutcome fail(const RunningFace& face, StepOutcome outcome) {
     const FacePlace& place = *face.point().face;
     const std::string where =
         fmt::format("radius {:.6g} m, angle {:.4g} rad", place.radius, place.angle);
