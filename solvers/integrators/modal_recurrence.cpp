@@ -1,5 +1,7 @@
 #include "solvers/integrators/modal_recurrence.hpp"
 
+#include <cstring>
+
 #include <limits>
 #include <utility>
 
@@ -7,13 +9,6 @@
 
 namespace stridor {
 namespace {
-
-/// A block of one field or row; split by the compiler where the instruction set has shorter
-/// vectors.
-using Block = double __attribute__((vector_size(modal_block * sizeof(double))));
-/// The same in an array that need not be aligned.
-using LooseBlock =
-    double __attribute__((vector_size(modal_block * sizeof(double)), aligned(alignof(double))));
 
 /// d_{n+1} = d*_{n+1} + e Σ_j row_j f_j, and q_n out of its blocks. Arguments as advance_modes().
 STRIDOR_CLONES
@@ -28,8 +23,9 @@ void predict_modes(const double* blocks, std::size_t num_modes, const double* co
                        fields[static_cast<std::size_t>(ModalField::gain)] * force;
     const Block& present = fields[static_cast<std::size_t>(ModalField::position)];
     if (first + modal_block <= num_modes) {
-      *reinterpret_cast<LooseBlock*>(position + first) = present;
-      *reinterpret_cast<LooseBlock*>(increment + first) = next;
+      // They need not be aligned as blocks are.
+      std::memcpy(position + first, &present, sizeof present);
+      std::memcpy(increment + first, &next, sizeof next);
     } else {
       for (std::size_t j = 0; first + j < num_modes; ++j) {
         position[first + j] = present[j];
