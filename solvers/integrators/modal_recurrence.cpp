@@ -1,7 +1,6 @@
 #include "solvers/integrators/modal_recurrence.hpp"
 
 #include <cstring>
-
 #include <limits>
 #include <utility>
 
@@ -9,6 +8,10 @@
 
 namespace stridor {
 namespace {
+
+/// A block of one field or row; split by the compiler where the instruction set has shorter
+/// vectors.
+using Block = double __attribute__((vector_size(modal_block * sizeof(double))));
 
 /// d_{n+1} = d*_{n+1} + e Σ_j row_j f_j, and q_n out of its blocks. Arguments as advance_modes().
 STRIDOR_CLONES
