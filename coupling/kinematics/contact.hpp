@@ -91,6 +91,10 @@ inline Projection project_along(const SurfacePiece& piece, const Eigen::Vector2d
   double low = -1.0;
   double high = 2.0;
   double xi = std::clamp(guess, 0.0, 1.0);
+  const auto ahead_at = [&](double at) {
+    const NodeWeights w = weights_at(piece.stencil, at);
+    return directions.combine(w.slope).dot(slave - piece.combine(w.value));
+  };
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     const NodeWeights w = weights_at(piece.stencil, xi);
     const Eigen::Vector2d arm = slave - piece.combine(w.value);
@@ -101,6 +105,11 @@ inline Projection project_along(const SurfacePiece& piece, const Eigen::Vector2d
     (ahead > 0.0 ? low : high) = xi;
     // If the slave is further away than the centre of curvature, the distance has no minimum.
     double next = xi + ahead / (slope > 0.0 ? slope : square);
+    // Its continuation may turn back and be orthogonal once more: the segment itself goes first.
+    if (iteration == 0 && (next < 0.0 || next > 1.0) && ahead_at(0.0) > 0.0 && ahead_at(1.0) < 0.0) {
+      low = 0.0;
+      high = 1.0;
+    }
     const bool is_within = low <= next && next <= high;
     if (!is_within) next = 0.5 * (low + high);
     const double step = next - xi;
