@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   const Model model = build_model(loaded);
   const ContactParameters contact = loaded.scene.model.contact.value();
   const PencilFamily family = undeformed_family(
-      model.system, contact.friction.value().coefficient.value(), 1.0, contact.start);
+      model.system, model.system.contacts[0].friction.dynamic_coefficient, 1.0, contact.start.along.value());
   std::vector<double> positions;
   for (int i = 0; i < num_positions; ++i) {
     positions.push_back(0.030 + 0.068 * i / (num_positions - 1));
