@@ -1,6 +1,7 @@
 #include "core/memory.hpp"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <fstream>
@@ -74,6 +75,15 @@ MemoryLimit memory_limit() {
                                         : std::numeric_limits<double>::infinity());
   }();
   return limit;
+}
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  constexpr int largest_kept = 32 << 20;  // the largest that mallopt() takes here
+  constexpr int all_free = 1 << 30;
+  mallopt(M_MMAP_THRESHOLD, largest_kept);
+  mallopt(M_TRIM_THRESHOLD, all_free);
+#endif
 }
 
 std::string memory_text(double bytes) {

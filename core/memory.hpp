@@ -22,6 +22,10 @@ MemoryLimit memory_limit();
 /// @param address_space limit of it, bytes; may be infinite
 MemoryLimit memory_limit(const std::filesystem::path& root, double address_space);
 
+/// Lets this process keep blocks that it has freed, to be used again. Given back, they come anew as
+/// pages that the kernel clears, for one thread of a process at a time.
+void keep_freed_memory();
+
 /// "18.9 GB", in powers of 1000.
 std::string memory_text(double bytes);
 

@@ -9,6 +9,7 @@
 
 #include "core/blas.hpp"
 #include "core/errors.hpp"
+#include "core/memory.hpp"
 #include "core/stop_token.hpp"
 
 namespace stridor {
@@ -49,6 +50,7 @@ void run_tasks(std::size_t count, int num_threads,
   std::vector<std::thread> threads;
   const std::size_t num_used =
       is_nested ? 1 : std::min(count, static_cast<std::size_t>(std::max(num_threads, 1)));
+  if (num_used > 1) keep_freed_memory();
   for (std::size_t i = 1; i < num_used; ++i) {
     threads.emplace_back([&take_tasks, i] {
       keep_blas_in_this_thread();
