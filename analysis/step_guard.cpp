@@ -6,12 +6,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <span>
 #include <stdexcept>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include "core/errors.hpp"
+#include "core/tasks.hpp"
 #include "coupling/kinematics/face_kinematics.hpp"
 #include "solvers/equilibrium/equilibrium.hpp"
 #include "solvers/equilibrium/linearise.hpp"
@@ -192,6 +198,13 @@ void add_states(const System& system, const SlidingContacts& at, double displace
         {fmt::format("{} sticking {}", all, at.place(system, 0, displacement)), sticking(system, at)});
 }
 
+/// Does work(0) … work(count − 1) on all processors: every state of a scene by itself.
+void for_each_of(std::size_t count, const std::function<void(std::size_t)>& work) {
+  run_tasks(
+      count, static_cast<int>(std::thread::hardware_concurrency()),
+      [&](std::size_t task, std::size_t) { work(task); }, [](std::size_t, std::size_t) {});
+}
+
 std::string remedy_text(const StepRemedy& remedy, const TimeParameters& time) {
   if (remedy.is_empty()) {
     return fmt::format(
@@ -219,10 +232,14 @@ std::vector<HeldContacts> held_contacts(const System& system, const TimeParamete
       std::any_of(system.contacts.begin(), system.contacts.end(),
                   [](const ContactPoint& contact) { return contact.substrate.has_value(); }))
     return states;
-  for (const double displacement : places_of(system, time)) {
-    if (const auto at = sliding_at(system, displacement))
-      add_states(system, *at, displacement, states);
-  }
+  const std::vector<double> places = places_of(system, time);
+  std::vector<std::vector<HeldContacts>> at_places(places.size());
+  for_each_of(places.size(), [&](std::size_t i) {
+    if (const auto at = sliding_at(system, places[i]))
+      add_states(system, *at, places[i], at_places[i]);
+  });
+  for (std::vector<HeldContacts>& here : at_places)
+    std::move(here.begin(), here.end(), std::back_inserter(states));
   return states;
 }
 
@@ -230,15 +247,19 @@ std::optional<OwnGrowth> own_growth(const System& system, const TimeParameters& 
                                     const std::vector<HeldContacts>& contacts) {
   if (contacts.empty()) return std::nullopt;
   const FrozenStep step(system, time);
-  std::optional<OwnGrowth> worst;
-  for (const HeldContacts& held : contacts) {
+  std::vector<StepStability> stability(contacts.size());
+  for_each_of(contacts.size(), [&](std::size_t i) {
     try {
-      const StepStability found = step_stability(step, held.rows, tolerance_of(time));
-      if (found.verdict != StepVerdict::step_grows) continue;
-      if (!worst || found.own_growth() > worst->stability.own_growth())
-        worst = OwnGrowth{held.name, found};
+      stability[i] = step_stability(step, contacts[i].rows, tolerance_of(time));
     } catch (const NumericalError&) {  // it jams, which the run finds out
     }
+  });
+  std::optional<OwnGrowth> worst;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const StepStability& found = stability[i];
+    if (found.verdict != StepVerdict::step_grows) continue;
+    if (!worst || found.own_growth() > worst->stability.own_growth())
+      worst = OwnGrowth{contacts[i].name, found};
   }
   return worst;
 }

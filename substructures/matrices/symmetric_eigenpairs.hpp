@@ -1,4 +1,4 @@
-// All eigenpairs of dense symmetric matrices, by divide and conquer.
+// Eigenpairs of dense symmetric matrices: all of them, or those at one end of the spectrum.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,6 +20,23 @@ struct SymmetricEigenpairs {
 /// @param what   named in the message of an error
 /// @throws NumericalError if an entry is not finite, or the method does not converge
 SymmetricEigenpairs symmetric_eigenpairs(Eigen::MatrixXd matrix, const std::string& what);
+
+/// The `count` lowest pairs of A x = ν x, ascending, with orthonormal x.
+///
+/// By relatively robust representations (LAPACK's dstemr), which find vectors one by one: for a
+/// third of the pairs of some hundred unknowns two thirds of the instructions of
+/// symmetric_eigenpairs(), for an eighth less than half.
+///
+/// @param matrix A; its lower triangle is read
+/// @param count  from 0 to the size of A
+/// @param what   named in the message of an error
+/// @throws NumericalError as symmetric_eigenpairs()
+SymmetricEigenpairs lowest_eigenpairs(Eigen::MatrixXd matrix, Eigen::Index count,
+                                      const std::string& what);
+
+/// The `count` highest pairs, ascending; else as lowest_eigenpairs().
+SymmetricEigenpairs highest_eigenpairs(Eigen::MatrixXd matrix, Eigen::Index count,
+                                       const std::string& what);
 
 /// Solves K x = ν M x with xᵀ M x = 1, by the Cholesky factor of M.
 ///

@@ -104,8 +104,7 @@ void correct_softest(const Blocks& stiffness, const VectorBlock& psi, Eigen::Mat
   auto interface = reduced.topLeftCorner(nb, nb);
   const Eigen::MatrixXd symmetric = 0.5 * (interface + interface.transpose());
   const Eigen::MatrixXd motions =
-      symmetric_eigenpairs(symmetric, "softest motions of the interface")
-          .vectors.leftCols(num_motions);
+      lowest_eigenpairs(symmetric, num_motions, "softest motions of the interface").vectors;
   const VectorBlock interior = psi * motions;
   VectorBlock residual = stiffness.ii * interior;
   residual += stiffness.ib * motions;

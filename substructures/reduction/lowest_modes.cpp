@@ -121,7 +121,7 @@ class Lanczos {
   void append(const VectorBlock& block);
   void apply(VectorBlock& block);
   Split split(VectorBlock& block);
-  void restart(const SymmetricEigenpairs& ritz);
+  void restart();
 
   const SparseCholesky& stiffness_;
   const SparseMatrix& mass_;
@@ -155,10 +155,10 @@ Modes Lanczos::solve() {
     const bool is_full = dim_ + block.cols() > basis_.cols();
     if (!looks.is_due(dim_) && !is_exhausted && !is_full) continue;
     const Eigen::Index num_looked_at = std::min(count_, dim_);
-    const SymmetricEigenpairs ritz =
-        symmetric_eigenpairs(projection_.topLeftCorner(dim_, dim_), "fixed-interface modes");
-    const Eigen::VectorXd values = ritz.values.tail(num_looked_at).reverse();
-    const Eigen::MatrixXd vectors = ritz.vectors.rightCols(num_looked_at).rowwise().reverse();
+    const SymmetricEigenpairs ritz = highest_eigenpairs(projection_.topLeftCorner(dim_, dim_),
+                                                        num_looked_at, "fixed-interface modes");
+    const Eigen::VectorXd values = ritz.values.reverse();
+    const Eigen::MatrixXd vectors = ritz.vectors.rowwise().reverse();
     const Eigen::ArrayXd residuals =
         (parts.outside * vectors.bottomRows(newest_width)).colwise().norm().transpose();
     const Eigen::ArrayXd relative = residuals / values.array().abs();
@@ -171,7 +171,7 @@ Modes Lanczos::solve() {
       return {values.cwiseInverse(), shapes};
     }
     if (is_full) {
-      restart(ritz);
+      restart();
       looks = LookSchedule(dim_ + 5 * block_width);
     } else {
       looks.looked(dim_, relative.maxCoeff());
@@ -235,18 +235,19 @@ Lanczos::Split Lanczos::split(VectorBlock& block) {
 }
 
 /// Keeps the better half of the approximations.
-/// @param ritz all eigenpairs of T
-void Lanczos::restart(const SymmetricEigenpairs& ritz) {
+void Lanczos::restart() {
+  const Eigen::Index kept = count_ + (dim_ - count_) / 2;
+  const SymmetricEigenpairs ritz = highest_eigenpairs(projection_.topLeftCorner(dim_, dim_), kept,
+                                                      "fixed-interface modes");
   const Eigen::VectorXd values = ritz.values.reverse();
   const Eigen::MatrixXd vectors = ritz.vectors.rowwise().reverse();
-  const Eigen::Index kept = count_ + (dim_ - count_) / 2;
   constexpr Eigen::Index rows_at_once = 4096;
   for (Eigen::Index row = 0; row < basis_.rows(); row += rows_at_once) {
     const Eigen::Index num_rows = std::min(rows_at_once, basis_.rows() - row);
-    const Eigen::MatrixXd part = basis_.block(row, 0, num_rows, dim_) * vectors.leftCols(kept);
+    const Eigen::MatrixXd part = basis_.block(row, 0, num_rows, dim_) * vectors;
     basis_.block(row, 0, num_rows, kept) = part;
   }
-  projection_.topLeftCorner(kept, kept) = values.head(kept).asDiagonal();
+  projection_.topLeftCorner(kept, kept) = values.asDiagonal();
   dim_ = kept;
   newest_ = 0;  // all of them couple to the next block
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -45,6 +46,33 @@ TEST(SymmetricEigenpairs, SolveTheirEquationAndAscend) {
   }
 }
 
+// Spectra over eight decades, in pairs that rounding tells apart by little: those of a Krylov space.
+TEST(SymmetricEigenpairs, ThoseAtAnEndAreThoseOfAll) {
+  for (const Eigen::Index n : {1, 2, 26, 120, 200}) {
+    const Eigen::MatrixXd orthogonal =
+        Eigen::HouseholderQR<Eigen::MatrixXd>(random_matrix(n, 10)).householderQ();
+    Eigen::VectorXd spectrum(n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      spectrum(i) = std::pow(10.0, -8.0 * static_cast<double>(i / 2) / static_cast<double>(n)) *
+                    (1.0 + 1e-9 * static_cast<double>(i % 2));
+    const Eigen::MatrixXd A = orthogonal * spectrum.asDiagonal() * orthogonal.transpose();
+    const SymmetricEigenpairs all = symmetric_eigenpairs(A, "here");
+    for (const Eigen::Index count : {Eigen::Index{0}, Eigen::Index{1}, (n + 2) / 3, n}) {
+      for (const bool is_lowest : {true, false}) {
+        const SymmetricEigenpairs some = is_lowest ? lowest_eigenpairs(lower_of(A), count, "here")
+                                                   : highest_eigenpairs(lower_of(A), count, "here");
+        ASSERT_EQ(some.values.size(), count);
+        const Eigen::MatrixXd& X = some.vectors;
+        const double rounding = 10.0 * static_cast<double>(n) * eps;
+        const Eigen::VectorXd expected = is_lowest ? all.values.head(count) : all.values.tail(count);
+        EXPECT_LE((some.values - expected).norm(), rounding * A.norm());
+        EXPECT_LE((A * X - X * some.values.asDiagonal()).norm(), rounding * A.norm());
+        EXPECT_LE((X.transpose() * X - Eigen::MatrixXd::Identity(count, count)).norm(), rounding);
+      }
+    }
+  }
+}
+
 TEST(SymmetricEigenpairs, OfTwoMatricesSolveTheirEquationAndAreNormalised) {
   for (const Eigen::Index n : {1, 2, 26, 120}) {
     const Eigen::MatrixXd random = random_matrix(n, 8);
@@ -73,6 +101,8 @@ TEST(SymmetricEigenpairs, WhatIsNotFiniteOrNotPositiveDefiniteThrows) {
   Eigen::MatrixXd wrong = unit;
   wrong(2, 0) = std::numeric_limits<double>::infinity();
   EXPECT_EQ(message_of<NumericalError>([&] { symmetric_eigenpairs(wrong, "here"); }),
+            "here: the eigenproblem of 3 unknowns is not finite");
+  EXPECT_EQ(message_of<NumericalError>([&] { lowest_eigenpairs(wrong, 2, "here"); }),
             "here: the eigenproblem of 3 unknowns is not finite");
   EXPECT_EQ(message_of<NumericalError>([&] { generalised_eigenpairs(wrong, unit, "here"); }),
             "here: the eigenproblem of 3 unknowns is not finite");
