@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "models/model.hpp"
-#include "substructures/bodies/matrix_body.hpp"
+#include "substructures/bodies/body_parameters.hpp"
 
 namespace stridor {
 
@@ -51,13 +51,8 @@ class BodyCache {
   /// @throws Interrupted where a stop was requested
   void prepare(std::span<const Wanted> wanted);
 
-  /// Matrices that were read for a body, and what it then named.
-  struct ReadMatrices {
-    MatrixBodyParameters named;
-    std::shared_ptr<const NamedMatrices> matrices;
-  };
-  /// Those read last for each body, by its name, so that a file is read once.
-  std::map<std::string, ReadMatrices> read;
+  /// Bodies as they were read last, by name, so that a file is read once.
+  std::map<std::string, std::shared_ptr<const BodyParameters>> read;
 
   /// Reductions computed so far, those forgotten included.
   std::int64_t num_reductions() const { return num_reductions_; }

@@ -13,7 +13,7 @@
 #include "io/imports/law_table_file.hpp"
 #include "io/scene/channels.hpp"
 #include "io/scene/former_keys.hpp"
-#include "io/scene/matrix_reader.hpp"
+#include "io/scene/body_reader.hpp"
 #include "io/scene/resolved_scene.hpp"
 #include "io/scene/scene_files.hpp"
 #include "io/scene/scene_reader.hpp"

@@ -12,8 +12,7 @@
 #include "core/checksum.hpp"
 #include "core/errors.hpp"
 #include "io/hdf5/regular_file.hpp"
-#include "io/scene/matrix_reader.hpp"
-#include "substructures/bodies/matrix_body.hpp"
+#include "io/scene/body_reader.hpp"
 
 namespace stridor {
 namespace {
@@ -102,8 +101,9 @@ std::vector<SceneFile> scene_files(const LoadedScene& loaded) {
   std::vector<SceneFile> files;
   const ModelParameters& model = loaded.scene.model;
   for (const auto& [body, parameters] : model.substructures) {
-    for (const auto& [key, name] : files_of("substructures." + body, *parameters))
-      add_file(files, loaded.tree, key, name);
+    const std::unique_ptr<BodyParameters> named = parameters->clone();
+    for (const NamedFile& file : named->files())
+      add_file(files, loaded.tree, "substructures." + body + "." + file.key, *file.name);
   }
   for (const auto& [name, pair] : model.pairs()) {
     const std::string key = model.contact ? name : "contacts." + name;

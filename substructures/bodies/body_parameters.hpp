@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/schema.hpp"
+#include "substructures/bodies/body_files.hpp"
 #include "substructures/matrices/body_matrices.hpp"
 #include "substructures/reduction/reduction_size.hpp"
 
@@ -40,6 +41,15 @@ class BodyParameters {
   /// Terms that make() keeps.
   const BodyTerms& terms() const { return terms_; }
   void keep_terms(const BodyTerms& terms) { terms_ = terms; }
+
+  /// The files that it names.
+  virtual std::vector<NamedFile> files() { return {}; }
+  /// Takes up what its files hold, before make().
+  /// @throws ConfigError, with key paths below that of the body or the place in a file; FileError
+  virtual void read(const BodyFiles& /*files*/) {}
+  /// Takes up what a body has read that names the same files.
+  /// @return whether `other` is such a body
+  virtual bool take_contents(const BodyParameters& /*other*/) { return false; }
 
   /// Matrices, points and surfaces with the supports applied.
   /// @throws ConfigError with key paths below that of the body

@@ -234,6 +234,17 @@ BodyMatrices make_matrix_body(const TouchedMatrixBodyParameters& parameters) {
   return body;
 }
 
+void TouchedMatrixBodyParameters::read(const BodyFiles& files) {
+  matrices = std::make_shared<const NamedMatrices>(read_matrices(body, files));
+}
+
+bool TouchedMatrixBodyParameters::take_contents(const BodyParameters& other) {
+  const auto* given = dynamic_cast<const TouchedMatrixBodyParameters*>(&other);
+  if (given == nullptr || !given->matrices || !have_same_matrices(given->body, body)) return false;
+  matrices = given->matrices;
+  return true;
+}
+
 BodyMatrices TouchedMatrixBodyParameters::make() const {
   return make_matrix_body(*this);
 }

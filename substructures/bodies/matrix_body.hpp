@@ -10,6 +10,7 @@
 
 #include "core/schema.hpp"
 #include "substructures/bodies/beam.hpp"
+#include "substructures/bodies/body_files.hpp"
 #include "substructures/matrices/body_matrices.hpp"
 
 namespace stridor {
@@ -62,6 +63,17 @@ struct NamedMatrices {
   std::vector<SparseMatrix> terms;  ///< as many as the body has, without their factors
 };
 
+/// Reads them.
+/// @throws ConfigError with the key below that of the body, or the place in a matrix file;
+///         FileError
+NamedMatrices read_matrices(const MatrixBodyParameters& body, const BodyFiles& files);
+
+/// The files among them.
+std::vector<NamedFile> matrix_files(MatrixBodyParameters& body);
+
+/// Whether two bodies name the same files and have the same rows; factors may differ.
+bool have_same_matrices(const MatrixBodyParameters& one, const MatrixBodyParameters& other);
+
 /// All of them summed up, the terms with their factors.
 SparseSystem sum(const NamedMatrices& matrices, const MatrixBodyParameters& body);
 
@@ -98,6 +110,9 @@ struct TouchedMatrixBodyParameters : BodyParametersOf<TouchedMatrixBodyParameter
   std::shared_ptr<const NamedMatrices> matrices;  ///< the matrices that `body` names, read
   static const Schema& schema();
 
+  std::vector<NamedFile> files() override { return matrix_files(body); }
+  void read(const BodyFiles& files) override;
+  bool take_contents(const BodyParameters& other) override;
   BodyMatrices make() const override;
   std::optional<int> num_modes() const override;
   double num_slave_nodes(const std::string& name) const override;

@@ -389,8 +389,7 @@ TEST(BodyTypes, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
       {"LumpedParameters",
        {list, "substructures/bodies/lumped_body.hpp", "substructures/bodies/lumped_body.cpp"}},
       {"TouchedMatrixBodyParameters",
-       {list, "substructures/bodies/matrix_body.hpp", "substructures/bodies/matrix_body.cpp",
-        "io/scene/matrix_reader.cpp"}}};
+       {list, "substructures/bodies/matrix_body.hpp", "substructures/bodies/matrix_body.cpp"}}};
   EXPECT_THAT(strangers_to(STRIDOR_SOURCE_DIR, types), IsEmpty());
 }
 

@@ -1,0 +1,31 @@
+// Files that bodies name in a scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "substructures/matrices/body_matrices.hpp"
+
+namespace stridor {
+
+/// A file that a body names.
+struct NamedFile {
+  std::string key;              ///< below that of the body
+  std::string* name = nullptr;  ///< as written, or from the root once that has been made so
+};
+
+/// What the files of one body hold. Whoever knows scenes and formats reads them.
+class BodyFiles {
+ public:
+  virtual ~BodyFiles() = default;
+
+  /// @param key  that names the file, below that of the body
+  /// @param name as written
+  /// @throws ConfigError with the place in the file; FileError
+  virtual SparseMatrix matrix(const std::string& key, const std::string& name) const = 0;
+  /// A square matrix from rows of numbers, given in the place of a file.
+  /// @throws std::invalid_argument saying which row is wrong
+  virtual SparseMatrix matrix(const std::vector<std::string>& rows) const = 0;
+};
+
+}  // namespace stridor
