@@ -32,12 +32,12 @@ bool is_blas_reentrant() {
 }
 
 void keep_blas_in_this_thread() {
-  // That of OpenMP is for the calling thread, that of OpenBLAS for all.
-  const bool is_openmp = threads_of_blas() == Threads::openmp;
-  if (!is_openmp && threads_of_blas() != Threads::posix) return;
-  const auto set_number =
-      library_function<void(int)>(is_openmp ? "omp_set_num_threads" : "openblas_set_num_threads");
-  if (set_number != nullptr) set_number(1);
+  // Those of OpenMP are for the calling thread, that of OpenBLAS for all.
+  if (const auto set = library_function<void(int)>("omp_set_num_threads")) set(1);
+  // Whatever that number is, CHOLMOD asks for four threads, which then wait in a loop.
+  if (const auto set = library_function<void(int)>("omp_set_max_active_levels")) set(0);
+  if (threads_of_blas() != Threads::posix) return;
+  if (const auto set = library_function<void(int)>("openblas_set_num_threads")) set(1);
 }
 
 BlasGuard::BlasGuard() {

@@ -11,7 +11,7 @@ namespace stridor {
 /// former.
 bool is_blas_reentrant();
 
-/// Makes BLAS compute in the calling thread alone: tasks share the processors' time, and sums must
+/// Makes BLAS, and CHOLMOD, which uses it, compute in the calling thread alone: tasks share the processors' time, and sums must
 /// not depend on the number of processors. Done for the first thread before main().
 void keep_blas_in_this_thread();
 
