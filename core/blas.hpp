@@ -11,8 +11,9 @@ namespace stridor {
 /// former.
 bool is_blas_reentrant();
 
-/// Makes BLAS, and CHOLMOD, which uses it, compute in the calling thread alone: tasks share the processors' time, and sums must
-/// not depend on the number of processors. Done for the first thread before main().
+/// Makes BLAS, and CHOLMOD, which uses it, compute in the calling thread alone: tasks share the
+/// processors' time, and sums must not depend on the number of processors. Done for the first
+/// thread before main().
 void keep_blas_in_this_thread();
 
 /// Held while work in several threads may pass dense products to BLAS: where BLAS is not reentrant,

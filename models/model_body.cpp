@@ -56,7 +56,7 @@ WatchedDofs watched_dofs(const ModelBody& body) {
 /// unknowns become interface.
 int modes_of(ModelBody& body) {
   if (const std::optional<int> asked = body.parameters->num_modes()) {
-    for (const int dof : body.matrices.across) body.keep(dof);
+    for (const int dof : body.matrices.kept) body.keep(dof);
     return *asked;
   }
   if (body.matrices.num_dofs() > largest_dense_size && !body.matrices.is_modal) {

@@ -56,14 +56,27 @@ std::string line_data(const std::string& block, const std::vector<std::vector<in
   return data + "END_OF_DATA\n";
 }
 
-/// The sides of the elements, each through its middle node; none where they would lie closer than
-/// can be drawn.
+/// The sides of the elements, each edge through its middle node; none where they would lie closer
+/// than can be drawn.
 std::vector<std::vector<int>> element_sides(const BodyShape& body) {
   constexpr std::size_t most_drawn = 5000;
   std::vector<std::vector<int>> sides;
   if (body.elements.size() > most_drawn) return sides;
-  for (const auto& e : body.elements)
-    sides.push_back({e[0], e[4], e[1], e[5], e[2], e[6], e[3], e[7], e[0]});
+  for (const DrawnElement& element : body.elements) {
+    const auto node = [&](int of_element) {
+      return element.nodes[static_cast<std::size_t>(of_element)];
+    };
+    for (const SideNodes& side : facts_of(element.shape).sides) {
+      std::vector<int>& line = sides.emplace_back();
+      const int num_edges = side.num_corners == 2 ? 1 : side.num_corners;
+      for (int edge = 0; edge < num_edges; ++edge) {
+        line.push_back(node(side.nodes[static_cast<std::size_t>(edge)]));
+        if (side.count > side.num_corners)
+          line.push_back(node(side.nodes[static_cast<std::size_t>(side.num_corners + edge)]));
+      }
+      line.push_back(node(side.nodes[static_cast<std::size_t>(num_edges % side.num_corners)]));
+    }
+  }
   return sides;
 }
 
@@ -179,23 +192,23 @@ std::vector<std::filesystem::path> write_shape_frames(const ShapePicture& pictur
   VtkMesh mesh;
   mesh.title = picture.caption;
   int num_points = 0;
-  std::vector<int> parts_of_lines;
   for (std::size_t b = 0; b < picture.bodies.size(); ++b) {
     const BodyShape& body = picture.bodies[b];
-    for (std::array<int, 8> element : body.elements) {
-      for (int& node : element) node += num_points;
-      mesh.quads.push_back(element);
+    for (const DrawnElement& element : body.elements) {
+      VtkMesh::Cell& cell =
+          mesh.cells.emplace_back(VtkMesh::Cell{vtk_cell_type(element.shape), element.nodes});
+      for (int& node : cell.points) node += num_points;
       mesh.parts.push_back(static_cast<int>(b));
     }
     // A body of another kind shows its outline.
     for (std::size_t i = 0; body.elements.empty() && i < body.outlines.size(); ++i) {
-      std::vector<int>& line = mesh.lines.emplace_back(body.outlines[i]);
-      for (int& node : line) node += num_points;
-      parts_of_lines.push_back(static_cast<int>(b));
+      VtkMesh::Cell& line =
+          mesh.cells.emplace_back(VtkMesh::Cell{VtkMesh::poly_line, body.outlines[i]});
+      for (int& node : line.points) node += num_points;
+      mesh.parts.push_back(static_cast<int>(b));
     }
     num_points += static_cast<int>(body.nodes.rows());
   }
-  mesh.parts.insert(mesh.parts.end(), parts_of_lines.begin(), parts_of_lines.end());
   // The points of all bodies, displaced.
   const auto stacked = [&](double scale, double phase) {
     Eigen::MatrixX2d points(num_points, 2);

@@ -12,10 +12,6 @@
 namespace stridor {
 namespace {
 
-// Of vtkCellType.h.
-constexpr int poly_line = 4;
-constexpr int quadratic_quad = 23;
-
 void append_plane_vectors(std::string& text, const Eigen::MatrixX2d& values) {
   for (Eigen::Index i = 0; i < values.rows(); ++i)
     fmt::format_to(std::back_inserter(text), "{:.9g} {:.9g} 0\n", values(i, 0), values(i, 1));
@@ -35,13 +31,13 @@ void append_cell(std::string& text, std::span<const int> points, Eigen::Index nu
 
 void write_vtk(const std::filesystem::path& path, const VtkMesh& mesh) {
   const Eigen::Index num_points = mesh.points.rows();
-  const std::size_t num_cells = mesh.quads.size() + mesh.lines.size();
+  const std::size_t num_cells = mesh.cells.size();
   if (mesh.parts.size() != num_cells) {
     throw std::invalid_argument(fmt::format("write_vtk: the bodies of {} cells are given, of {}",
                                             mesh.parts.size(), num_cells));
   }
-  std::size_t num_indices = 9 * mesh.quads.size();
-  for (const auto& line : mesh.lines) num_indices += line.size() + 1;
+  std::size_t num_indices = 0;
+  for (const VtkMesh::Cell& cell : mesh.cells) num_indices += cell.points.size() + 1;
 
   std::string title = mesh.title.substr(0, 255);
   std::replace(title.begin(), title.end(), '\n', ' ');
@@ -50,11 +46,9 @@ void write_vtk(const std::filesystem::path& path, const VtkMesh& mesh) {
       num_points);
   append_plane_vectors(text, mesh.points);
   text += fmt::format("CELLS {} {}\n", num_cells, num_indices);
-  for (const auto& quad : mesh.quads) append_cell(text, quad, num_points);
-  for (const auto& line : mesh.lines) append_cell(text, line, num_points);
+  for (const VtkMesh::Cell& cell : mesh.cells) append_cell(text, cell.points, num_points);
   text += fmt::format("CELL_TYPES {}\n", num_cells);
-  for (std::size_t i = 0; i < num_cells; ++i)
-    text += fmt::format("{}\n", i < mesh.quads.size() ? quadratic_quad : poly_line);
+  for (const VtkMesh::Cell& cell : mesh.cells) text += fmt::format("{}\n", cell.type);
   text += fmt::format("CELL_DATA {}\nSCALARS body int 1\nLOOKUP_TABLE default\n", num_cells);
   for (const int part : mesh.parts) text += fmt::format("{}\n", part);
   if (!mesh.vectors.empty()) text += fmt::format("POINT_DATA {}\n", num_points);

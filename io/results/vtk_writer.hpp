@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -14,10 +13,13 @@ namespace stridor {
 struct VtkMesh {
   std::string title;  ///< one line
   Eigen::MatrixX2d points;
-  /// VTK_QUADRATIC_QUAD: four corners, then the middle of each side from corner to corner.
-  std::vector<std::array<int, 8>> quads;
-  std::vector<std::vector<int>> lines;  ///< VTK_POLY_LINE: points in order
-  std::vector<int> parts;               ///< number of the body of each cell, quads first
+  struct Cell {
+    int type = 0;             ///< of vtkCellType.h
+    std::vector<int> points;  ///< in the order of VTK
+  };
+  static constexpr int poly_line = 4;  ///< type of a line through points in order
+  std::vector<Cell> cells;
+  std::vector<int> parts;  ///< number of the body of each cell
   std::vector<std::pair<std::string, Eigen::MatrixX2d>>
       vectors;  ///< name without blanks, per point
 };

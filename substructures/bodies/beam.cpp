@@ -376,8 +376,11 @@ BodyMatrices BeamParameters::make() const {
   return make_beam(*this);
 }
 
-std::vector<std::array<int, 8>> BeamParameters::elements() const {
-  return beam_elements(mesh);
+std::vector<DrawnElement> BeamParameters::elements() const {
+  std::vector<DrawnElement> drawn;
+  for (const std::array<int, 8>& nodes : beam_elements(mesh))
+    drawn.push_back({ElementShape::quad8, {nodes.begin(), nodes.end()}});
+  return drawn;
 }
 
 double BeamParameters::num_slave_nodes(const std::string& name) const {

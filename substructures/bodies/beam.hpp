@@ -3,7 +3,7 @@
 
 #include "core/schema.hpp"
 #include "substructures/bodies/body_parameters.hpp"
-#include "substructures/bodies/spring_stiffness.hpp"
+#include "substructures/bodies/surface_springs.hpp"
 #include "substructures/matrices/body_matrices.hpp"
 
 namespace stridor {
@@ -52,14 +52,6 @@ struct BeamPointParameters {
   static const Schema& schema();
 };
 
-/// A spring to the ground, spread evenly over a surface or at a point.
-struct BeamSpringParameters {
-  std::string on;  ///< a surface or point
-  SpringMatrixParameters stiffness;
-  std::optional<SpringDirectionParameters> direction;  ///< of a stiffness along one
-  static const Schema& schema();
-};
-
 /// Motion of a beam across its plane.
 enum class AcrossMotion {
   held,
@@ -78,7 +70,7 @@ struct BeamParameters : BodyParametersOf<BeamParameters> {
   RayleighDamping damping;
   SupportParameters supports;
   std::map<std::string, BeamPointParameters> points;
-  std::map<std::string, BeamSpringParameters> springs;
+  std::map<std::string, SurfaceSpringParameters> springs;
   AcrossMotion across = AcrossMotion::held;
   InterfaceParameters interface;
   ReductionParameters reduction;
@@ -89,7 +81,7 @@ struct BeamParameters : BodyParametersOf<BeamParameters> {
   std::optional<int> num_modes() const override { return reduction.fixed_interface_modes; }
   std::optional<double> interface_spacing() const override { return interface.spacing; }
   bool is_filled() const override { return true; }
-  std::vector<std::array<int, 8>> elements() const override;
+  std::vector<DrawnElement> elements() const override;
   double num_slave_nodes(const std::string& name) const override;
   double num_master_nodes(const std::string& name) const override;
   ReductionSize reduction_size(double interface_nodes) const override;

@@ -1,7 +1,6 @@
 // The keys of a substructure, whatever its type.
 #pragma once
 
-#include <array>
 #include <concepts>
 #include <map>
 #include <memory>
@@ -12,6 +11,7 @@
 
 #include "core/schema.hpp"
 #include "substructures/bodies/body_files.hpp"
+#include "substructures/elements/mesh.hpp"
 #include "substructures/matrices/body_matrices.hpp"
 #include "substructures/reduction/reduction_size.hpp"
 
@@ -69,8 +69,8 @@ class BodyParameters {
   virtual bool is_filled() const { return false; }
   /// Whether it has a face of this name (BodyMatrices::faces).
   virtual bool has_face(const std::string& /*name*/) const { return false; }
-  /// Elements of eight nodes to draw; none for a body without mesh.
-  virtual std::vector<std::array<int, 8>> elements() const { return {}; }
+  /// Elements to draw; none for a body without mesh.
+  virtual std::vector<DrawnElement> elements() const { return {}; }
 
   /// Nodes of a surface or point that contacts keep, of a slave and of a master; 1 for a name that
   /// the body does not have.

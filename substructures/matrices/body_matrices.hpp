@@ -55,6 +55,7 @@ struct BodyMatrices {
   Eigen::Matrix<double, Eigen::Dynamic, 2> nodes;  ///< undeformed positions in the body's frame, m
   std::vector<std::array<int, 2>> node_dofs;       ///< (x, y) DoF of every node, or `held`
   std::vector<int> across;  ///< z DoF of every node, or `held`; empty where no node moves along z
+  std::vector<int> kept;    ///< DoFs that a reduction keeps whatever touches the body
   /// Displacements of nodes that move with others: along x, y and z, in the place of their DoFs.
   std::map<int, std::array<DofSum, 3>> dependent;
   std::map<std::string, int> points;               ///< named nodes

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "substructures/elements/mesh.hpp"
 #include "substructures/matrices/body_matrices.hpp"
 
 namespace stridor {
@@ -28,8 +29,7 @@ struct BodyShape {
   Eigen::MatrixX2d nodes;                  ///< global, m
   Eigen::MatrixX2cd displacement;          ///< of each node
   std::vector<std::vector<int>> outlines;  ///< nodes in order
-  /// Nodes of its Q8 elements in the order of beam_elements(); empty where it is made of none.
-  std::vector<std::array<int, 8>> elements;
+  std::vector<DrawnElement> elements;      ///< empty where it is made of none
 };
 
 }  // namespace stridor

@@ -28,7 +28,7 @@ BodyShape square() {
   body.displacement(2, 0) = {0.0, -0.5};
   body.displacement(3, 0) = 1.0;
   body.outlines = {{0, 1, 2, 3, 0}};
-  body.elements = {{0, 1, 2, 3, 4, 5, 6, 7}};
+  body.elements = {{ElementShape::quad8, {0, 1, 2, 3, 4, 5, 6, 7}}};
   return body;
 }
 
@@ -151,22 +151,22 @@ TEST(ShapeFrames, OfABodyWithoutElementsHoldItsOutline) {
       read_vtk(write_shape_frames({{outline, square()}, {}, ""}, folder / "mode", 1)[0]);
   constexpr int poly_line = 4;
   constexpr int quadratic_quad = 23;
-  EXPECT_EQ(parts.types, (std::vector<int>{quadratic_quad, poly_line}));
-  EXPECT_EQ(parts.bodies, (std::vector<int>{1, 0}));
-  EXPECT_EQ(parts.cells[1], (std::vector<int>{0, 1, 2, 3, 0}));
+  EXPECT_EQ(parts.types, (std::vector<int>{poly_line, quadratic_quad}));
+  EXPECT_EQ(parts.bodies, (std::vector<int>{0, 1}));
+  EXPECT_EQ(parts.cells[0], (std::vector<int>{0, 1, 2, 3, 0}));
 }
 
 TEST(VtkWriter, WrongIndicesAndVectorsAreRefused) {
   const TemporaryFolder folder;
   VtkMesh data;
   data.points = Eigen::MatrixX2d::Zero(2, 2);
-  data.lines = {{0, 2}};
+  data.cells = {{VtkMesh::poly_line, {0, 2}}};
   EXPECT_THAT(message_of<std::invalid_argument>([&] { write_vtk(folder / "a.vtk", data); }),
               HasSubstr("write_vtk: the bodies of 0 cells are given, of 1"));
   data.parts = {0};
   EXPECT_THAT(message_of<std::invalid_argument>([&] { write_vtk(folder / "a.vtk", data); }),
               HasSubstr("write_vtk: there is no point 2"));
-  data.lines = {{0, 1}};
+  data.cells = {{VtkMesh::poly_line, {0, 1}}};
   data.vectors = {{"u", Eigen::MatrixX2d::Zero(3, 2)}};
   EXPECT_THAT(message_of<std::invalid_argument>([&] { write_vtk(folder / "a.vtk", data); }),
               HasSubstr("write_vtk: 3 vectors 'u' for 2 points"));

@@ -32,7 +32,7 @@ BeamParameters sprung_bar() {
   bar.mesh.along = 4;
   bar.mesh.through = 1;
   bar.reduction.fixed_interface_modes = 46;
-  BeamSpringParameters spring;
+  SurfaceSpringParameters spring;
   spring.on = "top";
   spring.stiffness.xx = 4e7;
   spring.stiffness.yy = 1e8;
@@ -193,7 +193,7 @@ ModelParameters beams_against_each_other(double of_oblique, double of_cantilever
   ModelParameters model = driven_by({{"feed", feed}, {"table", table}});
   auto& cantilever = model.substructures["cantilever"].get<BeamParameters>();
   cantilever.supports.start = Support::guided;
-  BeamSpringParameters spring;
+  SurfaceSpringParameters spring;
   spring.on = "start_top";
   spring.stiffness.yy = 1e5;
   cantilever.springs["table"] = spring;
