@@ -11,11 +11,13 @@
 #include "core/memory.hpp"
 #include "core/suggestion.hpp"
 #include "io/imports/law_table_file.hpp"
+#include "io/scene/assignment.hpp"
 #include "io/scene/channels.hpp"
 #include "io/scene/former_keys.hpp"
 #include "io/scene/matrix_reader.hpp"
 #include "io/scene/resolved_scene.hpp"
 #include "io/scene/scene_files.hpp"
+#include "io/scene/scene_problems.hpp"
 #include "io/scene/scene_reader.hpp"
 #include "models/set_up_estimate.hpp"
 

@@ -9,6 +9,7 @@
 
 #include "core/suggestion.hpp"
 #include "core/units.hpp"
+#include "io/scene/assignment.hpp"
 #include "io/scene/channels.hpp"
 #include "io/scene/scene_reader.hpp"
 #include "solvers/equilibrium/equilibrium.hpp"

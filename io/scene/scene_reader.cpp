@@ -14,6 +14,7 @@
 #include "core/units.hpp"
 #include "io/scene/expression.hpp"
 #include "io/scene/scene_parameters.hpp"
+#include "io/scene/scene_problems.hpp"
 
 namespace stridor {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "core/errors.hpp"
 #include "core/schema.hpp"
+#include "io/scene/scene_problems.hpp"
 #include "io/scene/scene_tree.hpp"
 
 namespace stridor {
