@@ -12,6 +12,7 @@
 #include "io/scene/assignment.hpp"
 #include "io/scene/channels.hpp"
 #include "io/scene/scene_reader.hpp"
+#include "io/scene/scene_words.hpp"
 #include "solvers/equilibrium/equilibrium.hpp"
 
 namespace stridor {

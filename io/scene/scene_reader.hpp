@@ -47,7 +47,4 @@ T read_as(const SceneNode& node) {
   return object;
 }
 
-/// What a key holds, in words: "a number in m", "one of free, clamped", "a map".
-std::string expected_of(const Key& key);
-
 }  // namespace stridor
