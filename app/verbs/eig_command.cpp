@@ -12,8 +12,11 @@
 
 #include "analysis/explanation.hpp"
 #include "app/stability/eigenvalue_report.hpp"
+#include "app/stability/equilibrium_report.hpp"
 #include "app/stability/found_spectrum.hpp"
+#include "app/stability/sliding_state.hpp"
 #include "app/stability/stability.hpp"
+#include "app/stability/verdict.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "io/figures/shape_plot.hpp"

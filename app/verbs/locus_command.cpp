@@ -12,8 +12,10 @@
 
 #include "app/stability/axis_units.hpp"
 #include "app/stability/eigenvalue_report.hpp"
+#include "app/stability/family_locus.hpp"
 #include "app/stability/locus_progress.hpp"
 #include "app/stability/stability.hpp"
+#include "app/stability/verdict.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "core/version.hpp"

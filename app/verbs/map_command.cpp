@@ -10,7 +10,9 @@
 
 #include "analysis/boundary_continuation.hpp"
 #include "app/stability/axis_units.hpp"
+#include "app/stability/family_locus.hpp"
 #include "app/stability/stability.hpp"
+#include "app/stability/verdict.hpp"
 #include "app/terminal/progress.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
