@@ -385,9 +385,8 @@ void plot_histories(const std::vector<Panel>& panels, const std::filesystem::pat
   const double right = size.width - 0.8;
   const std::vector<std::string> lines = wrapped(caption, caption_font, size.width - left - 0.3);
   const double axis_height = 3.3 * line;
-  const double caption_height =
-      lines.empty() ? 0.0 : 0.2 + static_cast<double>(lines.size()) * line_height(caption_font);
-  height += axis_height + caption_height;
+  const double room_below = caption_height(lines);
+  height += axis_height + room_below;
   size.height = height;
 
   std::string data_blocks;
@@ -410,7 +409,7 @@ void plot_histories(const std::vector<Panel>& panels, const std::filesystem::pat
       plots += fmt::format(
           "set label {} {} at screen {:.6f}, screen {:.6f} left font ',{:g}'\n", 10000 + i,
           gnuplot_string(lines[i]), left / size.width,
-          (caption_height - 0.1 - (static_cast<double>(i) + 0.5) * line_height(caption_font)) /
+          (room_below - 0.1 - (static_cast<double>(i) + 0.5) * line_height(caption_font)) /
               height,
           caption_font);
     }
@@ -424,10 +423,8 @@ void plot_histories(const std::vector<Panel>& panels, const std::filesystem::pat
                         left / size.width, right / size.width);
   script += fmt::format("set xrange [{:.12g}:{:.12g}]\n", as_number(time_range.lower, time),
                         as_number(time_range.upper, time));
-  script +=
-      "set minussign\nset border 3 linecolor '#404040'\nset tics nomirror out scale 0.6\n"
-      "set grid linetype 1 linecolor '#d0d0d0' linewidth 0.5\n";
-  script += plots + "unset multiplot\n";
+  script += axes_style;
+  script += "\n" + plots + "unset multiplot\n";
   draw_figure(figure, script, size);
 }
 

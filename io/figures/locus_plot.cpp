@@ -162,57 +162,12 @@ std::string curve_data(const LocusPicture& picture, const AxisScale& parameter,
   return data + "END_OF_DATA\n";
 }
 
-template <std::size_t size>
-std::string palette(const std::array<const char*, size>& colours) {
-  std::string text = "set palette defined (";
-  for (std::size_t i = 0; i < size; ++i)
-    text += fmt::format("{}{} '{}'", i == 0 ? "" : ", ", i, colours[i]);
-  return text + ")\n";
-}
-
-void add_caption(FigureScript& script, const std::vector<std::string>& lines, double left,
-                 double top) {
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    script.add_text(lines[i], left,
-                    top - (static_cast<double>(i) + 0.5) * line_height(caption_font), "left",
-                    caption_font);
-  }
-}
-
-double caption_height(const std::vector<std::string>& lines) {
-  return lines.empty() ? 0.0 : 0.2 + static_cast<double>(lines.size()) * line_height(caption_font);
-}
-
-/// The label of the parameter's axis with what was taken off its numbers.
-std::string parameter_label(const std::string& name, const std::string& units,
-                            const AxisScale& scale) {
-  std::string label = axis_label(name, typeset_units(units), scale);
-  if (scale.offset != 0.0) label += ", " + offset_text(typeset_units(units), scale);
-  return label;
-}
-
-void add_colour_box(FigureScript& script, double left, double bottom, double width,
-                    double height) {
-  script.add(
-      "set colorbox vertical user origin screen {:.6f}, screen {:.6f} size screen {:.6f}, screen "
-      "{:.6f} noborder",
-      script.across(left), script.up(bottom), script.across(width), script.up(height));
-}
-
 void add_colour_bar(FigureScript& script, const ValueRange& range, const AxisScale& scale,
                     double left, double bottom, double width, double height) {
   script.add("set cbrange [{:.12g}:{:.12g}]\nset cbtics {:.12g} format '%.{}f' scale 0.6",
              as_number(range.lower, scale), as_number(range.upper, scale), scale.step,
              scale.decimals);
-  add_colour_box(script, left, bottom, width, height);
-}
-
-constexpr const char* axes_style =
-    "set minussign\nset border 3 linecolor '#404040'\nset tics nomirror out scale 0.6\n"
-    "set grid linetype 1 linecolor '#d0d0d0' linewidth 0.5\nunset key";
-
-double character_width(const FigureSize& size) {
-  return 0.64 * size.font_size * 2.54 / 72.0;
+  script.set_colour_bar(left, bottom, width, height);
 }
 
 }  // namespace
@@ -255,7 +210,7 @@ void plot_locus(const LocusPicture& picture, const std::filesystem::path& figure
   // All lengths in cm.
   FigureSize size;
   const double line = line_height(size.font_size);
-  const double character = character_width(size);
+  const double character = character_width(size.font_size);
   constexpr double plane_height = 8.4;
   constexpr double bar_width = 0.45;
   const double left =
@@ -282,12 +237,12 @@ void plot_locus(const LocusPicture& picture, const std::filesystem::path& figure
 
   FigureScript script(size);
   script.append(curve_data(picture, parameter, growth, frequency));
-  script.append(palette(dark_viridis));
+  script.set_palette(dark_viridis);
   script.set_margins(left, right, below, below + plane_height);
   script.set_axis('x', growth_range, growth);
   script.set_axis('y', frequency_range, frequency);
   add_colour_bar(script, parameter_range, parameter, bar_left, below, bar_width, plane_height);
-  script.add("{}", axes_style);
+  script.add("{}\nunset key", axes_style);
   script.add(
       "set object 1 rectangle from {:.9g}, graph 0 to graph 1, graph 1 behind fillcolor '#fbeae6' "
       "fillstyle solid noborder",
@@ -312,9 +267,9 @@ void plot_locus(const LocusPicture& picture, const std::filesystem::path& figure
   script.add_text(axis_label("growth rate", "1/s", growth), 0.5 * (left + right),
                   below - 1.9 * line, "center");
   script.add_text(axis_label("frequency", "Hz", frequency), 0.7 * line, middle, "center rotate");
-  script.add_text(parameter_label(picture.parameter, picture.units, parameter),
+  script.add_text(offset_axis_label(picture.parameter, typeset_units(picture.units), parameter),
                   size.width - 0.6 * line, middle, "center rotate");
-  add_caption(script, caption, left, below - 2.7 * line);
+  script.add_caption(caption, left, below - 2.7 * line);
   script.add(
       "plot $curves using 2:3:1 with lines linewidth 1.6 linecolor palette, $curves using "
       "2:3:1 with points pointtype 7 pointsize 0.2 linecolor palette");
@@ -336,7 +291,7 @@ void plot_locus_histories(const LocusPicture& picture, const std::filesystem::pa
   // All lengths in cm.
   FigureSize size;
   const double line = line_height(size.font_size);
-  const double character = character_width(size);
+  const double character = character_width(size.font_size);
   constexpr double panel_height = 5.6;
   const double digits = static_cast<double>(
       std::max(tick_characters(frequency_range, frequency), tick_characters(growth_range, growth)));
@@ -369,7 +324,7 @@ void plot_locus_histories(const LocusPicture& picture, const std::filesystem::pa
   FigureScript script(size);
   script.append(curve_data(picture, parameter, growth, frequency));
   script.add("set multiplot");
-  script.add("{}", axes_style);
+  script.add("{}\nunset key", axes_style);
   int object = 1;
   for (const LocusWindow& window : picture.windows) {
     // A window narrower than a line is still to be seen.
@@ -410,9 +365,9 @@ void plot_locus_histories(const LocusPicture& picture, const std::filesystem::pa
   script.set_axis('y', frequency_range, frequency);
   script.add_text(axis_label("frequency", "Hz", frequency), 0.7 * line, below + 0.5 * panel_height,
                   "center rotate");
-  script.add_text(parameter_label(picture.parameter, picture.units, parameter),
+  script.add_text(offset_axis_label(picture.parameter, typeset_units(picture.units), parameter),
                   0.5 * (left + right), below - 1.9 * line, "center");
-  add_caption(script, caption, left, below - 2.7 * line);
+  script.add_caption(caption, left, below - 2.7 * line);
   plot(3);
   script.add("unset multiplot");
   draw_figure(figure, script.text(), size);
@@ -546,12 +501,12 @@ void plot_stability_map(const StabilityMapPicture& picture, const std::filesyste
   // All lengths in cm.
   FigureSize size;
   const double line = line_height(size.font_size);
-  const double character = character_width(size);
+  const double character = character_width(size.font_size);
   constexpr double plane_height = 8.4;
   constexpr double bar_width = 0.45;
   const auto label_of = [](const MapAxis& axis, const AxisScale& scale) {
     return axis.is_logarithmic ? axis_label(axis.label, typeset_units(axis.units), {})
-                               : parameter_label(axis.label, axis.units, scale);
+                               : offset_axis_label(axis.label, typeset_units(axis.units), scale);
   };
   const double y_digits = static_cast<double>(map_tick_characters(picture.y, y_scale));
   const double left = 1.4 * line + (y_digits + 1.3) * character;
@@ -602,16 +557,14 @@ void plot_stability_map(const StabilityMapPicture& picture, const std::filesyste
   for (const auto& [place, text] : colour.ticks)
     ticks += fmt::format("{}{} {:.6g}", ticks.empty() ? "" : ", ", gnuplot_string(text), place);
   script.add("set cbrange [-1:1]\nset cbtics ({}) scale 0.6", ticks);
-  add_colour_box(script, right + 0.5, below, bar_width, plane_height);
-  script.add(
-      "set minussign\nset border 15 linecolor '#404040'\nset tics nomirror out scale 0.6\nunset "
-      "key");
+  script.set_colour_bar(right + 0.5, below, bar_width, plane_height);
+  script.add("{}\nunset key", map_style);
   const double middle = below + 0.5 * plane_height;
   script.add_text(label_of(picture.x, x_scale), 0.5 * (left + right), below - 1.9 * line, "center");
   script.add_text(label_of(picture.y, y_scale), 0.7 * line, middle, "center rotate");
   script.add_text(axis_label("largest growth rate", "1/s", colour.scale), size.width - 0.6 * line,
                   middle, "center rotate");
-  add_caption(script, caption, left, below - 2.7 * line);
+  script.add_caption(caption, left, below - 2.7 * line);
   script.add(
       "plot $map matrix using 1:2:($3 < -1e29 ? NaN : $3) with image axes x2y2, NaN, $boundary "
       "using 1:2 with "

@@ -316,7 +316,7 @@ void plot_spectrograms(const std::vector<SpectrogramPanel>& panels,
   // All lengths in cm.
   FigureSize size;
   const double line = line_height(size.font_size);
-  const double character = 0.64 * size.font_size * 2.54 / 72.0;
+  const double character = character_width(size.font_size);
   const double map_height = is_stack ? 3.6 : 7.2;
   constexpr double bar_width = 0.45;
   const double frequency_digits = static_cast<double>(
@@ -340,20 +340,15 @@ void plot_spectrograms(const std::vector<SpectrogramPanel>& panels,
   }
   const std::vector<std::string> caption = wrapped(picture.caption + unlabelled_text(panels, maps),
                                                    caption_font, size.width - left - 0.3);
-  const double below = 2.7 * line +
-                       static_cast<double>(caption.size()) * line_height(caption_font) +
-                       (caption.empty() ? 0.0 : 0.2);
+  const double below = 2.7 * line + caption_height(caption);
   const double pitch = above + map_height;
   size.height = static_cast<double>(panels.size()) * pitch + below;
 
   FigureScript script(size);
-  script.append("set palette defined (");
-  for (std::size_t i = 0; i < viridis.size(); ++i)
-    script.append(fmt::format("{}{} '{}'", i == 0 ? "" : ", ", i, viridis[i]));
-  script.append(")\n");
+  script.set_palette(viridis);
   script.add("set cbrange [{:.12g}:{:.12g}]\nset cbtics {:.12g} format '%.{}f' scale 0.6",
              lowest_level, highest_level, level.step, level.decimals);
-  script.add("set minussign\nset border 15 linecolor '#404040'\nset tics nomirror out scale 0.6");
+  script.add("{}", map_style);
   if (is_stack) script.add("set multiplot");
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const SpectrogramPanel& panel = panels[i];
@@ -379,11 +374,7 @@ void plot_spectrograms(const std::vector<SpectrogramPanel>& panels,
     script.add_text(panel.title, left, bottom + map_height + 0.65 * line, "left");
     if (i == 0) {
       const double bar_bottom = is_stack ? bottom : below;
-      script.add(
-          "set colorbox vertical user origin screen {:.6f}, screen {:.6f} size screen {:.6f}, "
-          "screen {:.6f} noborder",
-          script.across(right + 0.35), script.up(bar_bottom), script.across(bar_width),
-          script.up(map_height));
+      script.set_colour_bar(right + 0.35, bar_bottom, bar_width, map_height);
       const double middle = below + 0.5 * (size.height - above - below);
       script.add_text(axis_label("frequency", "Hz", frequency), 0.7 * line, middle,
                       "center rotate");
@@ -395,12 +386,7 @@ void plot_spectrograms(const std::vector<SpectrogramPanel>& panels,
     if (is_last) {
       script.add_text(axis_label("time", "s", time), 0.5 * (left + right), below - 1.9 * line,
                       "center");
-      for (std::size_t row = 0; row < caption.size(); ++row) {
-        script.add_text(
-            caption[row], left,
-            below - 2.7 * line - (static_cast<double>(row) + 0.5) * line_height(caption_font),
-            "left", caption_font);
-      }
+      script.add_caption(caption, left, below - 2.7 * line);
     }
     add_marks(script, panel.marks, maps[i], left, bottom);
     const double cell_time = (raster.to - raster.from) /
