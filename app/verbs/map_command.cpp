@@ -20,7 +20,7 @@
 #include "core/tasks.hpp"
 #include "core/version.hpp"
 #include "io/figures/gnuplot.hpp"
-#include "io/figures/locus_plot.hpp"
+#include "io/figures/stability_map_plot.hpp"
 #include "io/results/locus_file.hpp"
 #include "models/set_up_estimate.hpp"
 
