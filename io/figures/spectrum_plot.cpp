@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "io/figures/axes.hpp"
+#include "io/figures/envelope.hpp"
 #include "io/figures/gnuplot.hpp"
-#include "io/figures/history_plot.hpp"
 
 namespace stridor {
 namespace {
