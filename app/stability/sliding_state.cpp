@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/errors.hpp"
+#include "solvers/eigenvalues/residual_modes.hpp"
 #include "solvers/integrators/retained_modes.hpp"
 
 namespace stridor {

@@ -13,6 +13,7 @@
 #include "core/blas.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
+#include "solvers/eigenvalues/residual_modes.hpp"
 #include "solvers/integrators/retained_modes.hpp"
 
 namespace stridor {

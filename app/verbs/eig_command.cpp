@@ -21,6 +21,7 @@
 #include "core/errors.hpp"
 #include "io/figures/shape_plot.hpp"
 #include "models/mode_shape.hpp"
+#include "solvers/eigenvalues/eigenvector.hpp"
 #include "solvers/eigenvalues/secular_eigenvalues.hpp"
 #include "solvers/integrators/retained_modes.hpp"
 
