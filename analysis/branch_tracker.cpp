@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "analysis/continuation.hpp"
 #include "core/errors.hpp"
 #include "solvers/eigenvalues/search_failure.hpp"
 
@@ -285,8 +286,12 @@ class Tracker {
                       "equal bodies? Ask for single values, or vary what makes the bodies differ",
                       grid_.values.front(), grid_.values.back()));
     }
-    std::vector<Complex> before;
-    for (const std::size_t index : active_) before.push_back(tracks_[index].last());
+    FormerSpectrum former;
+    former.value = value_;
+    for (const std::size_t index : active_) {
+      former.s.push_back(tracks_[index].last());
+      former.spacing.push_back(tracks_[index].spacing.back());
+    }
     source_.move_to(value);
     std::vector<Complex> after;
     const auto found = source_.search();
@@ -308,7 +313,7 @@ class Tracker {
       }
     }
 
-    const std::vector<int> partner = connect(before, after, value);
+    const std::vector<int> partner = continuations(source_, former, after, value);
     std::vector<std::size_t> still_active;
     next_.clear();
     std::vector<bool> is_taken(after.size(), false);
@@ -327,64 +332,6 @@ class Tracker {
       if (!is_taken[k]) newcomers_.push_back(after[k]);
     }
     accept(value);
-  }
-
-  /// For every eigenvalue before, the index of the one after that continues it, or −1.
-  std::vector<int> connect(const std::vector<Complex>& before, const std::vector<Complex>& after,
-                           double value) {
-    std::vector<int> partner(before.size(), -1);
-    std::vector<bool> is_taken(after.size(), false);
-    const auto nearest = [&](Complex s, const std::vector<Complex>& others) {
-      return std::min_element(
-                 others.begin(), others.end(),
-                 [&](Complex a, Complex b) { return std::abs(a - s) < std::abs(b - s); }) -
-             others.begin();
-    };
-    // Those that have hardly moved, in proportion to their distance to the others.
-    for (std::size_t j = 0; j < before.size() && !after.empty(); ++j) {
-      const auto k = static_cast<std::size_t>(nearest(before[j], after));
-      const bool is_clear =
-          std::abs(after[k] - before[j]) <= 0.1 * tracks_[active_[j]].spacing.back();
-      if (!is_clear || is_taken[k] || is_pair(before[j]) != is_pair(after[k])) continue;
-      partner[j] = static_cast<int>(k);
-      is_taken[k] = true;
-    }
-    struct Candidate {
-      double assurance;
-      std::size_t j, k;
-    };
-    std::vector<std::size_t> open_before;
-    std::vector<std::size_t> open_after;
-    for (std::size_t j = 0; j < before.size(); ++j)
-      if (partner[j] < 0) open_before.push_back(j);
-    for (std::size_t k = 0; k < after.size(); ++k)
-      if (!is_taken[k]) open_after.push_back(k);
-    if (open_before.empty() || open_after.empty()) return partner;
-
-    std::vector<Eigen::VectorXcd> shapes_after;
-    shapes_after.reserve(open_after.size());
-    for (const std::size_t k : open_after) shapes_after.push_back(source_.shape(after[k]));
-    source_.move_to(value_);
-    std::vector<Candidate> candidates;
-    for (const std::size_t j : open_before) {
-      const Eigen::VectorXcd shape = source_.shape(before[j]);
-      for (std::size_t i = 0; i < open_after.size(); ++i) {
-        const Complex s = after[open_after[i]];
-        // Only what is about as near as the nearest can be its continuation.
-        if (std::abs(s - before[j]) > 0.1 * std::abs(before[j])) continue;
-        candidates.push_back({modal_assurance(shape, shapes_after[i]), j, open_after[i]});
-      }
-    }
-    source_.move_to(value);
-    std::stable_sort(
-        candidates.begin(), candidates.end(),
-        [](const Candidate& a, const Candidate& b) { return a.assurance > b.assurance; });
-    for (const Candidate& candidate : candidates) {
-      if (partner[candidate.j] >= 0 || is_taken[candidate.k]) continue;
-      partner[candidate.j] = static_cast<int>(candidate.k);
-      is_taken[candidate.k] = true;
-    }
-    return partner;
   }
 
   /// Keeps the eigenvalues wanted at the present value.
@@ -425,38 +372,6 @@ class Tracker {
 };
 
 }  // namespace
-
-Grid make_grid(const std::vector<double>& wanted, const std::vector<double>& kinks) {
-  constexpr int least_per_piece = 4;
-  constexpr int least_in_all = 64;
-  const double range = wanted.back() - wanted.front();
-  const double rounding = 1e-12 * range;
-  Grid grid;
-  for (const double kink : kinks) {
-    if (kink <= wanted.front() + rounding || kink >= wanted.back() - rounding) continue;
-    // A kink that a value was meant to hit is hit by it.
-    const auto next = std::lower_bound(wanted.begin(), wanted.end(), kink - rounding);
-    grid.kinks.push_back(next != wanted.end() && *next <= kink + rounding ? *next : kink);
-  }
-  std::vector<double> nodes;
-  std::set_union(wanted.begin(), wanted.end(), grid.kinks.begin(), grid.kinks.end(),
-                 std::back_inserter(nodes));
-  grid.values.push_back(nodes.front());
-  auto piece_end = grid.kinks.begin();
-  double piece_begin = nodes.front();
-  for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
-    while (piece_end != grid.kinks.end() && *piece_end <= nodes[i]) piece_begin = *piece_end++;
-    const double end = piece_end != grid.kinks.end() ? *piece_end : nodes.back();
-    const double longest = std::min((end - piece_begin) / least_per_piece, range / least_in_all);
-    const double length = nodes[i + 1] - nodes[i];
-    const auto parts = std::max(1, static_cast<int>(std::ceil(length / longest * (1.0 - 1e-9))));
-    for (int part = 1; part < parts; ++part) {
-      grid.values.push_back(nodes[i] + length * part / parts);
-    }
-    grid.values.push_back(nodes[i + 1]);
-  }
-  return grid;
-}
 
 std::vector<Track> follow_branches(SpectrumSource& source, const LocusOptions& options,
                                    const Grid& grid, Locus& locus) {

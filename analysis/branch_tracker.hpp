@@ -1,10 +1,10 @@
 // Eigenvalues followed from value to value of a parameter.
 #pragma once
 
-#include <algorithm>
 #include <complex>
 #include <vector>
 
+#include "analysis/parameter_grid.hpp"
 #include "analysis/spectrum_source.hpp"
 
 namespace stridor {
@@ -13,18 +13,6 @@ namespace stridor {
 /// Rounding moves a double one by the root of its effect on others, so it has no meaning which of
 /// them continues which.
 inline constexpr double tie = 1e-7;
-
-/// Values to be visited in any case, ascending.
-struct Grid {
-  std::vector<double> values;
-  std::vector<double> kinks;  ///< those inside the range
-
-  bool is_kink(double value) const { return std::binary_search(kinks.begin(), kinks.end(), value); }
-};
-
-/// @param wanted values asked for, ascending
-/// @param kinks  values where the pencil is not smooth, ascending
-Grid make_grid(const std::vector<double>& wanted, const std::vector<double>& kinks);
 
 /// A branch with the data needed to come back to it.
 struct Track {

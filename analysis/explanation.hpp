@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "solvers/eigenvalues/eigenvector.hpp"
 #include "solvers/eigenvalues/pencil.hpp"
 #include "substructures/bodies/matrix_body.hpp"
 

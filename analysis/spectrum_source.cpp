@@ -9,6 +9,7 @@
 
 #include "core/blas.hpp"
 #include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/eigenvector.hpp"
 #include "solvers/eigenvalues/secular_eigenvalues.hpp"
 
 namespace stridor {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/stability/stability.hpp"
+#include "app/stability/key_range.hpp"
 #include "app/terminal/command.hpp"
 
 namespace stridor {

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "app/stability/stability.hpp"
+#include "app/stability/key_range.hpp"
 #include "core/units.hpp"
 
 namespace stridor {

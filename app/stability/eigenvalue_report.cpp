@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/stability/stability.hpp"
+#include "app/stability/lowest_eigenvalues.hpp"
 #include "core/errors.hpp"
 
 namespace stridor {
@@ -50,6 +50,12 @@ const char* doubt_text(const Eigenvalue& one, double trusted) {
 }
 
 }  // namespace
+
+Json eigenvalues_json(const std::vector<Eigenvalue>& eigenvalues) {
+  Json list = Json::array();
+  for (const Eigenvalue& one : eigenvalues) list.push_back({one.s.real(), one.s.imag()});
+  return list;
+}
 
 void print_eigenvalues(const std::vector<Eigenvalue>& eigenvalues, double trusted) {
   fmt::print("{:>4}  {:>14}  {:>12}  {:>13}\n", "mode", "frequency (Hz)", "growth (1/s)",

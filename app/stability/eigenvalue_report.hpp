@@ -19,6 +19,8 @@ std::size_t chosen_mode(const std::vector<Eigenvalue>& eigenvalues, std::size_t 
 /// Number of real eigenvalues.
 std::size_t num_real_of(const std::vector<Eigenvalue>& eigenvalues);
 
+Json eigenvalues_json(const std::vector<Eigenvalue>& eigenvalues);
+
 /// @param trusted frequency above which the model is not valid for them, Hz
 void print_eigenvalues(const std::vector<Eigenvalue>& eigenvalues, double trusted);
 

@@ -9,7 +9,8 @@
 
 #include "analysis/counted_spectra.hpp"
 #include "app/stability/eigenvalue_report.hpp"
-#include "app/stability/stability.hpp"
+#include "app/stability/lowest_eigenvalues.hpp"
+#include "app/stability/verdict.hpp"
 #include "solvers/eigenvalues/dense_eigenvalues.hpp"
 
 namespace stridor {

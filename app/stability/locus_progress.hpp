@@ -1,7 +1,8 @@
 // Progress of the computations that follow eigenvalues along a key.
 #pragma once
 
-#include "app/stability/stability.hpp"
+#include "app/stability/key_range.hpp"
+#include "app/stability/stability_family.hpp"
 #include "app/terminal/progress.hpp"
 
 namespace stridor {

@@ -12,12 +12,16 @@
 
 #include "analysis/explanation.hpp"
 #include "app/stability/eigenvalue_report.hpp"
+#include "app/stability/equilibrium_report.hpp"
 #include "app/stability/found_spectrum.hpp"
+#include "app/stability/sliding_state.hpp"
 #include "app/stability/stability.hpp"
+#include "app/stability/verdict.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "io/figures/shape_plot.hpp"
 #include "models/mode_shape.hpp"
+#include "solvers/eigenvalues/eigenvector.hpp"
 #include "solvers/eigenvalues/secular_eigenvalues.hpp"
 #include "solvers/integrators/retained_modes.hpp"
 

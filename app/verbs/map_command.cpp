@@ -10,7 +10,9 @@
 
 #include "analysis/boundary_continuation.hpp"
 #include "app/stability/axis_units.hpp"
+#include "app/stability/family_locus.hpp"
 #include "app/stability/stability.hpp"
+#include "app/stability/verdict.hpp"
 #include "app/terminal/progress.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
@@ -18,7 +20,7 @@
 #include "core/tasks.hpp"
 #include "core/version.hpp"
 #include "io/figures/gnuplot.hpp"
-#include "io/figures/locus_plot.hpp"
+#include "io/figures/stability_map_plot.hpp"
 #include "io/results/locus_file.hpp"
 #include "models/set_up_estimate.hpp"
 

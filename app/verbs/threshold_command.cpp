@@ -7,8 +7,10 @@
 #include <numbers>
 #include <optional>
 
+#include "app/stability/family_locus.hpp"
 #include "app/stability/locus_progress.hpp"
 #include "app/stability/stability.hpp"
+#include "app/stability/verdict.hpp"
 #include "core/activity.hpp"
 
 namespace stridor {

@@ -78,6 +78,26 @@ void FigureScript::add_text(const std::string& text, double x, double y, const c
       gnuplot_string(text), across(x), up(y), how, font_size > 0.0 ? font_size : size_.font_size);
 }
 
+void FigureScript::add_caption(const std::vector<std::string>& lines, double left, double top) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    add_text(lines[i], left, top - (static_cast<double>(i) + 0.5) * line_height(caption_font),
+             "left", caption_font);
+  }
+}
+
+void FigureScript::set_palette(std::span<const char* const> colours) {
+  append("set palette defined (");
+  for (std::size_t i = 0; i < colours.size(); ++i)
+    append(fmt::format("{}{} '{}'", i == 0 ? "" : ", ", i, colours[i]));
+  append(")\n");
+}
+
+void FigureScript::set_colour_bar(double left, double bottom, double width, double height) {
+  add("set colorbox vertical user origin screen {:.6f}, screen {:.6f} size screen {:.6f}, screen "
+      "{:.6f} noborder",
+      across(left), up(bottom), across(width), up(height));
+}
+
 void FigureScript::set_margins(double left, double right, double bottom, double top) {
   add("set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}", across(left), across(right));
   add("set bmargin at screen {:.6f}\nset tmargin at screen {:.6f}", up(bottom), up(top));
@@ -181,6 +201,13 @@ std::string offset_text(const std::string& units, const AxisScale& scale) {
                      units);
 }
 
+std::string offset_axis_label(const std::string& label, const std::string& units,
+                              const AxisScale& scale) {
+  std::string text = axis_label(label, units, scale);
+  if (scale.offset != 0.0) text += ", " + offset_text(units, scale);
+  return text;
+}
+
 std::string typeset_units(const std::string& units) {
   if (units == "1") return {};
   std::string text;
@@ -221,6 +248,14 @@ std::string level_label(double reference, const std::string& units) {
 
 double line_height(double font_size) {
   return 1.35 * font_size * 2.54 / 72.0;
+}
+
+double caption_height(const std::vector<std::string>& lines) {
+  return lines.empty() ? 0.0 : 0.2 + static_cast<double>(lines.size()) * line_height(caption_font);
+}
+
+double character_width(double font_size) {
+  return 0.64 * font_size * 2.54 / 72.0;
 }
 
 double text_width(const std::string& text, double font_size) {

@@ -70,6 +70,11 @@ std::string axis_label(const std::string& label, const std::string& units, const
 /// "minus 0.2 N", the offset subtracted from the numbers of an axis; empty if none.
 std::string offset_text(const std::string& units, const AxisScale& scale);
 
+/// Both: the label of an axis with what was taken off its numbers.
+/// @param units as typeset_units() gives them
+std::string offset_axis_label(const std::string& label, const std::string& units,
+                              const AxisScale& scale);
+
 /// Units of a run file as they are printed: "m/s²" for "m/s^2", "" for "1".
 std::string typeset_units(const std::string& units);
 
@@ -84,6 +89,14 @@ std::string level_label(double reference, const std::string& units);
 /// "3.53 kHz", "12.2 ms"; "0.02" where dimensionless.
 /// @param units as in a run file; prefixes are set to m…, N, s, Hz
 std::string quantity_text(double value, const std::string& units);
+
+/// Tick marks and lines of diagrams with an axis below and one on the left.
+inline constexpr const char* axes_style =
+    "set minussign\nset border 3 linecolor '#404040'\nset tics nomirror out scale 0.6\n"
+    "set grid linetype 1 linecolor '#d0d0d0' linewidth 0.5";
+/// Of maps, which have a frame and no grid.
+inline constexpr const char* map_style =
+    "set minussign\nset border 15 linecolor '#404040'\nset tics nomirror out scale 0.6";
 
 /// Commands of gnuplot, a line each, on a page laid out in cm from its lower left corner.
 class FigureScript {
@@ -101,6 +114,12 @@ class FigureScript {
   /// unless `font_size` says otherwise.
   void add_text(const std::string& text, double x, double y, const char* how,
                 double font_size = 0.0);
+  /// Appends the lines of a caption from its upper left corner, cm.
+  void add_caption(const std::vector<std::string>& lines, double left, double top);
+  /// Appends the colours of a scale, at equal steps.
+  void set_palette(std::span<const char* const> colours);
+  /// Sets the place of the bar that shows the colours of the next map, cm.
+  void set_colour_bar(double left, double bottom, double width, double height);
   /// Sets the position of the axes of the next diagram, cm.
   void set_margins(double left, double right, double bottom, double top);
   /// Sets range and tick marks of the axis 'x' or 'y'.
@@ -122,6 +141,12 @@ class FigureScript {
 
 /// Height of a line of text, cm.
 double line_height(double font_size);
+
+/// Height of a caption with the gap above it, cm; 0 without lines.
+double caption_height(const std::vector<std::string>& lines);
+
+/// Room for a character of the numbers along an axis, cm: wider than that of a text.
+double character_width(double font_size);
 
 /// Width of a text, cm, about: a character is 0.52 of the font size wide.
 double text_width(const std::string& text, double font_size);

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <stdexcept>
 
 #include "io/figures/axes.hpp"
@@ -100,91 +99,6 @@ Shading shading(const Panel& panel, const AxisScale& time, ValueRange shown, dou
 bool has_names(const Panel& panel) {
   return std::any_of(panel.curves.begin(), panel.curves.end(),
                      [](const Curve& c) { return !c.name.empty(); });
-}
-
-void check(const Curve& curve) {
-  if (curve.times.size() != curve.values.size()) {
-    throw std::invalid_argument(fmt::format("history plot: {} times for {} values",
-                                            curve.times.size(), curve.values.size()));
-  }
-  const auto descends = [](double a, double b) { return !(a <= b); };
-  if (std::adjacent_find(curve.times.begin(), curve.times.end(), descends) != curve.times.end()) {
-    throw std::invalid_argument("history plot: the times do not ascend");
-  }
-}
-
-}  // namespace
-
-Curve envelope(const Curve& curve, std::size_t columns) {
-  check(curve);
-  if (columns == 0)
-    throw std::invalid_argument("history plot: an envelope needs at least one column");
-  const std::size_t count = curve.times.size();
-  if (count <= 2 * columns) return curve;
-  Curve reduced;
-  reduced.name = curve.name;
-  const double first = curve.times.front();
-  const double width = (curve.times.back() - first) / static_cast<double>(columns);
-  const auto add = [&](std::size_t i) {
-    reduced.times.push_back(curve.times[i]);
-    reduced.values.push_back(curve.values[i]);
-  };
-  for (std::size_t begin = 0, column = 1; begin < count; ++column) {
-    const double limit = column >= columns ? std::numeric_limits<double>::infinity()
-                                           : first + width * static_cast<double>(column);
-    std::size_t lowest = count;
-    std::size_t highest = count;
-    std::size_t i = begin;
-    for (; i < count && curve.times[i] < limit; ++i) {
-      if (!std::isfinite(curve.values[i])) continue;
-      if (lowest == count || curve.values[i] < curve.values[lowest]) lowest = i;
-      if (highest == count || curve.values[i] > curve.values[highest]) highest = i;
-    }
-    if (lowest != count) {
-      add(std::min(lowest, highest));
-      if (lowest != highest) add(std::max(lowest, highest));
-    } else if (i > begin) {
-      reduced.times.push_back(curve.times[begin]);
-      reduced.values.push_back(std::numeric_limits<double>::quiet_NaN());
-    }
-    begin = i;
-  }
-  return reduced;
-}
-
-namespace {
-
-/// The largest and smallest values of a band in each of `columns` equal parts of its time.
-ValueBand thinned(const ValueBand& band, std::size_t columns) {
-  const std::size_t count = band.times.size();
-  if (count <= columns) return band;
-  ValueBand thin;
-  const double first = band.times.front();
-  const double width = (band.times.back() - first) / static_cast<double>(columns);
-  for (std::size_t begin = 0, column = 1; begin < count; ++column) {
-    const double limit = column >= columns ? std::numeric_limits<double>::infinity()
-                                           : first + width * static_cast<double>(column);
-    std::size_t end = begin;
-    ValueRange range;
-    for (; end < count && band.times[end] < limit; ++end) {
-      range.include({&band.lower[end], 1});
-      range.include({&band.upper[end], 1});
-    }
-    if (end > begin && !range.is_empty()) {
-      thin.times.push_back(band.times[end - 1]);
-      thin.lower.push_back(range.lower);
-      thin.upper.push_back(range.upper);
-    }
-    begin = end;
-  }
-  return thin;
-}
-
-void check(const ValueBand& band) {
-  if (band.times.size() != band.lower.size() || band.times.size() != band.upper.size())
-    throw std::invalid_argument(fmt::format("history plot: a band of {} times has {} and {} values",
-                                            band.times.size(), band.lower.size(),
-                                            band.upper.size()));
 }
 
 /// How a panel is laid out; lengths in cm, from the top.
@@ -308,10 +222,10 @@ ValueRange shown_times(const std::vector<Panel>& panels) {
   for (const Panel& panel : panels) {
     if (panel.curves.empty()) throw std::invalid_argument("history plot: a panel without a curve");
     for (const Curve& curve : panel.curves) {
-      check(curve);
+      check_curve(curve);
       range.include(curve.times);
     }
-    check(panel.band);
+    check_band(panel.band);
   }
   return range.widened(0.0);
 }
@@ -385,9 +299,8 @@ void plot_histories(const std::vector<Panel>& panels, const std::filesystem::pat
   const double right = size.width - 0.8;
   const std::vector<std::string> lines = wrapped(caption, caption_font, size.width - left - 0.3);
   const double axis_height = 3.3 * line;
-  const double caption_height =
-      lines.empty() ? 0.0 : 0.2 + static_cast<double>(lines.size()) * line_height(caption_font);
-  height += axis_height + caption_height;
+  const double room_below = caption_height(lines);
+  height += axis_height + room_below;
   size.height = height;
 
   std::string data_blocks;
@@ -410,7 +323,7 @@ void plot_histories(const std::vector<Panel>& panels, const std::filesystem::pat
       plots += fmt::format(
           "set label {} {} at screen {:.6f}, screen {:.6f} left font ',{:g}'\n", 10000 + i,
           gnuplot_string(lines[i]), left / size.width,
-          (caption_height - 0.1 - (static_cast<double>(i) + 0.5) * line_height(caption_font)) /
+          (room_below - 0.1 - (static_cast<double>(i) + 0.5) * line_height(caption_font)) /
               height,
           caption_font);
     }
@@ -424,10 +337,8 @@ void plot_histories(const std::vector<Panel>& panels, const std::filesystem::pat
                         left / size.width, right / size.width);
   script += fmt::format("set xrange [{:.12g}:{:.12g}]\n", as_number(time_range.lower, time),
                         as_number(time_range.upper, time));
-  script +=
-      "set minussign\nset border 3 linecolor '#404040'\nset tics nomirror out scale 0.6\n"
-      "set grid linetype 1 linecolor '#d0d0d0' linewidth 0.5\n";
-  script += plots + "unset multiplot\n";
+  script += axes_style;
+  script += "\n" + plots + "unset multiplot\n";
   draw_figure(figure, script, size);
 }
 

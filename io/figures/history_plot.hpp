@@ -3,34 +3,20 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "io/figures/axes.hpp"
+#include "io/figures/envelope.hpp"
 #include "io/figures/gnuplot.hpp"
 
 namespace stridor {
-
-/// A line in a panel. Values that are not finite leave a gap.
-struct Curve {
-  std::vector<double> times;   ///< s, ascending
-  std::vector<double> values;  ///< as many as times
-  std::string name;            ///< in the key; no key where all names of a panel are empty
-};
 
 /// A stretch of time that is shaded behind the curves.
 struct TimeMark {
   double from = 0.0;  ///< s
   double to = 0.0;    ///< s, >= from
   std::string label;  ///< at its top
-};
-
-/// Range of the values between two points of a curve; drawn behind the curves.
-struct ValueBand {
-  std::vector<double> times;  ///< s, ascending; the band reaches from the time before to each
-  std::vector<double> lower;
-  std::vector<double> upper;
 };
 
 /// A value that has a name, e.g. 2 "slip".
@@ -49,16 +35,6 @@ struct Panel {
   ValueBand band{};
   std::vector<NamedValue> named_values{};  ///< at the axis, instead of numbers
 };
-
-/// Points to draw instead of a long series so that the picture looks the same.
-///
-/// Time is cut into `num_columns` equal parts; each gives its smallest and its largest value at
-/// their own times. A series of at most 2·num_columns points is returned as it is. Parts in which
-/// nothing is finite give one NaN, a gap.
-///
-/// @throws std::invalid_argument if times and values differ in length, times do not ascend or
-///         num_columns is 0
-Curve envelope(const Curve& curve, std::size_t num_columns);
 
 /// A label above a stretch of time, or above several whose labels would overlap.
 struct TimeLabel {

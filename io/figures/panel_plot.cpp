@@ -140,8 +140,7 @@ void plot_panels(const std::vector<DiagramPanel>& panels, const std::string& cap
   size.height = caption_height + static_cast<double>(num_rows) * panel_height;
 
   FigureScript script(size);
-  script.add("set minussign\nset border 3 linecolor '#404040'\nset tics nomirror out scale 0.6");
-  script.add("set grid linetype 1 linecolor '#d0d0d0' linewidth 0.5");
+  script.add("{}", axes_style);
   script.add("set key above horizontal Left reverse samplen 1.5 spacing 1.05 font ',{}'",
              caption_font);
   std::vector<PanelAxis> x_axes;

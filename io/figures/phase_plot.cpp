@@ -172,7 +172,7 @@ void plot_phase(const PhaseAxis& across, const PhaseAxis& up, const std::string&
   // All lengths in cm.
   FigureSize size;
   const double line = line_height(size.font_size);
-  const double character = 0.64 * size.font_size * 2.54 / 72.0;
+  const double character = character_width(size.font_size);
   constexpr double plane_height = 8.4;
   std::vector<std::string> y_label = wrapped_label(
       axis_label(up.label, typeset_units(up.units), y_scale), size.font_size, plane_height + 0.5);
@@ -180,13 +180,12 @@ void plot_phase(const PhaseAxis& across, const PhaseAxis& up, const std::string&
   const double left = (static_cast<double>(y_label.size()) + 0.3) * line +
                       (static_cast<double>(tick_characters(y_range, y_scale)) + 1.2) * character;
   const double right = size.width - 0.8;
-  std::string x_label = axis_label(across.label, typeset_units(across.units), x_scale);
-  if (x_scale.offset != 0.0) x_label += ", " + offset_text(typeset_units(across.units), x_scale);
+  const std::string x_label =
+      offset_axis_label(across.label, typeset_units(across.units), x_scale);
   const std::vector<std::string> x_lines = wrapped(x_label, size.font_size, right - left + 1.0);
   const std::vector<std::string> lines = wrapped(caption, caption_font, size.width - left - 0.3);
   const double below_axis = (1.7 + static_cast<double>(x_lines.size())) * line;
-  const double below = below_axis + (lines.empty() ? 0.0 : 0.2) +
-                       static_cast<double>(lines.size()) * line_height(caption_font);
+  const double below = below_axis + caption_height(lines);
   size.height = below + plane_height + 0.5 * line;
 
   FigureScript script(size);
@@ -196,9 +195,7 @@ void plot_phase(const PhaseAxis& across, const PhaseAxis& up, const std::string&
   script.set_margins(left, right, below, below + plane_height);
   script.set_axis('x', x_range, x_scale);
   script.set_axis('y', y_range, y_scale);
-  script.add(
-      "set minussign\nset border 3 linecolor '#404040'\nset tics nomirror out scale 0.6\n"
-      "set grid linetype 1 linecolor '#d0d0d0' linewidth 0.5\nunset key");
+  script.add("{}\nunset key", axes_style);
   for (std::size_t i = 0; i < x_lines.size(); ++i) {
     script.add_text(x_lines[i], 0.5 * (left + right), below - (1.9 + static_cast<double>(i)) * line,
                     "center");
@@ -207,11 +204,7 @@ void plot_phase(const PhaseAxis& across, const PhaseAxis& up, const std::string&
     script.add_text(y_label[i], (0.7 + static_cast<double>(i)) * line, below + 0.5 * plane_height,
                     "center rotate");
   }
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    script.add_text(lines[i], left,
-                    below - below_axis - (static_cast<double>(i) + 0.5) * line_height(caption_font),
-                    "left", caption_font);
-  }
+  script.add_caption(lines, left, below - below_axis);
   script.append("plot NaN");  // without a point to draw nothing else would be left
   if (!ends.x.empty()) {
     script.append(

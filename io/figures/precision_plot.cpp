@@ -91,9 +91,7 @@ void plot_precision(const PrecisionPicture& picture, const std::filesystem::path
   script.set_margins(left, right, below, below + plane_height);
   script.set_log_axis('x', x_range);
   script.set_log_axis('y', y_range);
-  script.add(
-      "set minussign\nset border 3 linecolor '#404040'\nset tics nomirror out scale 0.6\n"
-      "set grid linetype 1 linecolor '#d0d0d0' linewidth 0.5\nunset key");
+  script.add("{}\nunset key", axes_style);
   script.add_text("time of stepping (s)", 0.5 * (left + right), below - 1.9 * line, "center");
   script.add_text(picture.error_label, 0.7 * line, below + 0.5 * plane_height, "center rotate");
   for (std::size_t i = 0; i < caption.size(); ++i) {

@@ -110,7 +110,7 @@ void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure
   // All lengths in cm; one length is the same along both axes.
   FigureSize size;
   const double line = line_height(size.font_size);
-  const double character = 0.64 * size.font_size * 2.54 / 72.0;
+  const double character = character_width(size.font_size);
   const double left =
       1.4 * line + (static_cast<double>(tick_characters(y_range, y)) + 1.3) * character;
   double right = size.width - 0.8;
@@ -120,8 +120,7 @@ void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure
   right = left + panel_height / ratio;
   const std::vector<std::string> caption =
       wrapped(picture.caption, caption_font, size.width - left - 1.2);
-  const double below = 2.7 * line + (caption.empty() ? 0.0 : 0.2) +
-                       static_cast<double>(caption.size()) * line_height(caption_font);
+  const double below = 2.7 * line + caption_height(caption);
   const double upper = below + panel_height + 1.6 * line;
   size.height = upper + panel_height + 1.5 * line;
 
@@ -141,9 +140,7 @@ void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure
       script.append(line_data(fmt::format("$moved_{}_{}", b, p), body.outlines, moved, x, y));
     }
   }
-  script.add(
-      "set multiplot\nset minussign\nset border 3 linecolor '#404040'\nset tics nomirror out scale "
-      "0.6\nset grid linetype 1 linecolor '#d0d0d0' linewidth 0.5\nunset key");
+  script.add("set multiplot\n{}\nunset key", axes_style);
   for (std::size_t p = 0; p < phases.size(); ++p) {
     const bool is_last = p + 1 == phases.size();
     const double bottom = is_last ? below : upper;
@@ -157,12 +154,7 @@ void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure
                     "center rotate");
     if (is_last) {
       script.add_text(axis_label("x", "m", x), 0.5 * (left + right), below - 1.9 * line, "center");
-      for (std::size_t i = 0; i < caption.size(); ++i) {
-        script.add_text(
-            caption[i], left,
-            below - 2.7 * line - (static_cast<double>(i) + 0.5) * line_height(caption_font), "left",
-            caption_font);
-      }
+      script.add_caption(caption, left, below - 2.7 * line);
     }
     std::string plot = "plot NaN";
     for (std::size_t b = 0; b < picture.bodies.size(); ++b)

@@ -6,10 +6,10 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <stdexcept>
 
 #include "analysis/statistics.hpp"
+#include "io/figures/amplitude_raster.hpp"
 #include "io/figures/axes.hpp"
 #include "io/figures/gnuplot.hpp"
 
@@ -34,14 +34,6 @@ bool is_positive(double value) {
   return value > 0.0 && std::isfinite(value);
 }
 
-// From the beginning of the first piece to the end of the last one.
-ValueRange times_of(const Spectrogram& spectrogram) {
-  if (spectrogram.times.empty() || spectrogram.frequencies.size() < 2)
-    refuse_spectrogram("a spectrogram without a column or with a single line");
-  const double half_piece = 0.5 / spectrogram.frequencies[1];
-  return {spectrogram.times.front() - half_piece, spectrogram.times.back() + half_piece};
-}
-
 // " Without room for the whole label: 3: 3.5 kHz."; empty where every mark has its whole label.
 std::string unlabelled_text(const std::vector<SpectrogramPanel>& panels,
                             const std::vector<MapArea>& maps) {
@@ -54,103 +46,6 @@ std::string unlabelled_text(const std::vector<SpectrogramPanel>& panels,
     }
   }
   return names.empty() ? "" : " Without room for the whole label: " + names + ".";
-}
-
-// The sources that each cell of an axis touches. Source k reaches from edges[k] to edges[k+1].
-std::vector<IndexRange> touched(const std::vector<double>& edges, double from, double to,
-                                Eigen::Index cells) {
-  const std::size_t count = edges.size() - 1;
-  const double width = (to - from) / static_cast<double>(cells);
-  const double rounding = 1e-9 * width;  // an edge upon an edge touches nothing
-  std::vector<IndexRange> ranges;
-  std::size_t begin = 0;
-  for (Eigen::Index cell = 0; cell < cells; ++cell) {
-    const double lower = from + width * static_cast<double>(cell) + rounding;
-    const double upper = from + width * static_cast<double>(cell + 1) - rounding;
-    while (begin + 1 < count && edges[begin + 1] <= lower) ++begin;
-    std::size_t end = begin + 1;
-    while (end < count && edges[end] < upper) ++end;
-    ranges.push_back({begin, end});
-  }
-  return ranges;
-}
-
-// Half-way between neighbours; the outermost edges are given.
-std::vector<double> edges_between(const std::vector<double>& centres, double first, double last) {
-  std::vector<double> edges{first};
-  for (std::size_t i = 1; i < centres.size(); ++i)
-    edges.push_back(0.5 * (centres[i - 1] + centres[i]));
-  edges.push_back(last);
-  return edges;
-}
-
-bool overlap(const PictureBox& a, const PictureBox& b) {
-  return a.left < b.right && b.left < a.right && a.bottom < b.top && b.bottom < a.top;
-}
-
-PictureBox grown(const PictureBox& box, double margin) {
-  return {box.left - margin, box.right + margin, box.bottom - margin, box.top + margin};
-}
-
-// What labels and their leaders must keep clear of.
-struct Obstacles {
-  std::vector<PictureBox> boxes;
-  std::vector<PictureBox> texts;
-  std::vector<PictureBox> leaders;
-
-  static bool is_hit(const PictureBox& box, const std::vector<PictureBox>& others) {
-    return std::any_of(others.begin(), others.end(),
-                       [&](const PictureBox& other) { return overlap(box, other); });
-  }
-};
-
-// From a box to a label above or below it.
-PictureBox leader_between(const PictureBox& box, const PictureBox& label) {
-  const double x = std::clamp(0.5 * (box.left + box.right), label.left, label.right);
-  return label.bottom > box.top ? PictureBox{x, x, box.top, label.bottom}
-                                : PictureBox{x, x, label.top, box.bottom};
-}
-
-// Puts a label at the first place beside its box that is free and within the map. @return whether
-// there is one
-bool add_label(MarkPlace& place, const std::string& text, const MapArea& map,
-               Obstacles& obstacles) {
-  constexpr double gap = 0.08;
-  constexpr int num_levels = 6;
-  const double width = text_width(text, map.font_size) + 0.15;
-  const double height = 0.85 * line_height(map.font_size);
-  const PictureBox& box = place.box;
-  const double middle = 0.5 * (box.left + box.right);
-  const auto within = [&](double left) {
-    return std::clamp(left, 0.0, std::max(0.0, map.width - width));
-  };
-  for (int level = 0; level < num_levels; ++level) {
-    const double away = gap + level * (height + gap);
-    for (const double bottom : {box.top + away, box.bottom - away - height}) {
-      for (const double left :
-           {within(middle - 0.5 * width), within(box.left), within(box.right - width)}) {
-        const PictureBox label{left, left + width, bottom, bottom + height};
-        const PictureBox clearance = grown(label, 0.5 * gap);
-        if (label.bottom < 0.0 || label.top > map.height || label.right > map.width + 1e-9)
-          continue;
-        if (Obstacles::is_hit(clearance, obstacles.boxes) ||
-            Obstacles::is_hit(clearance, obstacles.texts) ||
-            Obstacles::is_hit(clearance, obstacles.leaders))
-          continue;
-        if (level > 0) {
-          const PictureBox leader = leader_between(box, label);
-          if (Obstacles::is_hit(grown(leader, 0.5 * gap), obstacles.texts)) continue;
-          place.leader = leader;
-          obstacles.leaders.push_back(leader);
-        }
-        place.text = text;
-        place.label = label;
-        obstacles.texts.push_back(label);
-        return true;
-      }
-    }
-  }
-  return false;
 }
 
 // Tenths of a dB above the lowest colour, a row per frequency.
@@ -206,46 +101,153 @@ void add_marks(FigureScript& script, const std::vector<SpectrogramMark>& marks, 
   }
 }
 
-}  // namespace
-
-AmplitudeRaster rasterise(const Spectrogram& spectrogram, double max_frequency, Eigen::Index rows,
-                          Eigen::Index columns) {
-  if (spectrogram.times.empty() || spectrogram.frequencies.size() < 2)
-    refuse_spectrogram("a spectrogram without a column or with a single line");
-  if (rows < 1 || columns < 1) refuse_spectrogram("a raster without cells");
-  if (!is_positive(max_frequency)) refuse_spectrogram("the highest frequency must be positive");
-  const double spacing = spectrogram.frequencies[1];
-  const ValueRange times = times_of(spectrogram);
-  const double highest = spectrogram.frequencies.back() + 0.5 * spacing;
-
-  AmplitudeRaster raster;
-  raster.from = times.lower;
-  raster.to = times.upper;
-  raster.max_frequency = std::min(max_frequency, highest);
-  const std::vector<IndexRange> lines =
-      touched(edges_between(spectrogram.frequencies, -0.5 * spacing, highest), 0.0,
-              raster.max_frequency, rows);
-  const std::vector<IndexRange> pieces = touched(
-      edges_between(spectrogram.times, raster.from, raster.to), raster.from, raster.to, columns);
-
-  raster.amplitude.resize(rows, columns);
-  for (Eigen::Index column = 0; column < columns; ++column) {
-    const IndexRange& piece = pieces[static_cast<std::size_t>(column)];
-    const Eigen::VectorXd largest = spectrogram.amplitude
-                                        .middleCols(static_cast<Eigen::Index>(piece.begin),
-                                                    static_cast<Eigen::Index>(piece.size()))
-                                        .rowwise()
-                                        .maxCoeff();
-    for (Eigen::Index row = 0; row < rows; ++row) {
-      const IndexRange& line = lines[static_cast<std::size_t>(row)];
-      raster.amplitude(row, column) = largest
-                                          .segment(static_cast<Eigen::Index>(line.begin),
-                                                   static_cast<Eigen::Index>(line.size()))
-                                          .maxCoeff();
-    }
-  }
-  return raster;
+void check_spectrograms(const std::vector<SpectrogramPanel>& panels,
+                        const SpectrogramPicture& picture) {
+  if (panels.empty()) refuse_spectrogram("there is no spectrogram to draw");
+  if (!is_positive(picture.max_frequency))
+    refuse_spectrogram("the highest frequency must be positive");
+  if (!is_positive(picture.reference)) refuse_spectrogram("the reference must be positive");
+  if (!is_positive(picture.range)) refuse_spectrogram("the range must be positive");
 }
+
+/// The levels that the colours span, dB.
+struct LevelRange {
+  double lowest = 0.0;
+  double highest = 0.0;
+};
+
+LevelRange level_range(const std::vector<SpectrogramPanel>& panels,
+                       const SpectrogramPicture& picture) {
+  double highest = 0.0;
+  for (const SpectrogramPanel& panel : panels) {
+    highest = std::max(
+        highest, highest_amplitude(*panel.spectrogram, picture.max_frequency, picture.mean_lines));
+  }
+  if (highest <= 0.0) highest = picture.reference;  // all zero: the lowest colour everywhere
+  const double highest_level = decibels(highest, picture.reference);
+  return {highest_level - picture.range, highest_level};
+}
+
+/// Places on the page, cm from its lower left corner.
+struct SpectrogramLayout {
+  FigureSize size;
+  AxisScale frequency;
+  double left = 0.0;   ///< of the maps
+  double right = 0.0;  ///< likewise
+  double above = 0.0;  ///< room above each map
+  double below = 0.0;  ///< lower edge of the last one
+  std::vector<MapArea> maps;
+  std::vector<std::string> caption;
+
+  double line() const { return line_height(size.font_size); }
+  double map_height() const { return maps.front().height; }
+  /// Lower edge of a map.
+  double bottom(std::size_t map) const {
+    return below + static_cast<double>(maps.size() - 1 - map) * (above + map_height());
+  }
+};
+
+constexpr double level_bar_width = 0.45;  // cm
+
+SpectrogramLayout spectrogram_layout(const std::vector<SpectrogramPanel>& panels,
+                                     const SpectrogramPicture& picture) {
+  const bool is_stack = panels.size() > 1;
+  SpectrogramLayout layout;
+  layout.frequency = frequency_scale(picture.max_frequency, is_stack ? 4 : 8);
+  const double line = layout.line();
+  const double character = character_width(layout.size.font_size);
+  const double frequency_digits =
+      static_cast<double>(fmt::format("{:.{}f}", as_number(picture.max_frequency, layout.frequency),
+                                      layout.frequency.decimals)
+                              .size());
+  layout.left = 1.5 * line + (frequency_digits + 1.3) * character;
+  layout.right = layout.size.width - (0.35 + level_bar_width + 5.2 * character + 1.3 * line);
+  const bool has_titles = std::any_of(panels.begin(), panels.end(),
+                                      [](const auto& panel) { return !panel.title.empty(); });
+  layout.above = has_titles ? 1.6 * line : 0.5 * line;
+  for (const SpectrogramPanel& panel : panels) {
+    const ValueRange times = times_of(*panel.spectrogram);
+    MapArea map;
+    map.width = layout.right - layout.left;
+    map.height = is_stack ? 3.6 : 7.2;
+    map.from = times.lower;
+    map.to = times.upper;
+    map.max_frequency = picture.max_frequency;
+    layout.maps.push_back(map);
+  }
+  layout.caption = wrapped(picture.caption + unlabelled_text(panels, layout.maps), caption_font,
+                           layout.size.width - layout.left - 0.3);
+  layout.below = 2.7 * line + caption_height(layout.caption);
+  const double pitch = layout.above + layout.map_height();
+  layout.size.height = static_cast<double>(panels.size()) * pitch + layout.below;
+  return layout;
+}
+
+/// The bar of colours beside the first map, and the labels of the axes that all maps share.
+void add_common_labels(FigureScript& script, const SpectrogramPicture& picture,
+                       const SpectrogramLayout& layout) {
+  const double line = layout.line();
+  script.set_colour_bar(layout.right + 0.35, layout.bottom(0), level_bar_width,
+                        layout.map_height());
+  const double middle = layout.below + 0.5 * (layout.size.height - layout.above - layout.below);
+  script.add_text(axis_label("frequency", "Hz", layout.frequency), 0.7 * line, middle,
+                  "center rotate");
+  script.add_text(level_label(picture.reference, picture.units), layout.size.width - 0.7 * line,
+                  middle, "center rotate");
+}
+
+/// Draws one of the spectrograms with its marks.
+/// @param i of the panels; the first has what is common to all, the last the axis of time
+void add_spectrogram(FigureScript& script, const std::vector<SpectrogramPanel>& panels,
+                     std::size_t i, const SpectrogramPicture& picture,
+                     const SpectrogramLayout& layout, const LevelRange& levels) {
+  const SpectrogramPanel& panel = panels[i];
+  const Spectrogram& spectrogram = *panel.spectrogram;
+  const AxisScale& frequency = layout.frequency;
+  const bool is_last = i + 1 == panels.size();
+  const double line = layout.line();
+  const double bottom = layout.bottom(i);
+  const double top = bottom + layout.map_height();
+  const auto num_lines = static_cast<std::size_t>(
+      std::count_if(spectrogram.frequencies.begin(), spectrogram.frequencies.end(),
+                    [&](double one) { return one <= picture.max_frequency; }));
+  const AmplitudeRaster raster =
+      rasterise(spectrogram, picture.max_frequency, raster_cells(num_lines, 600),
+                raster_cells(spectrogram.times.size(), 1000));
+  const AxisScale time = axis_scale(raster.from, raster.to, 6);
+  script.append(fmt::format("$map{} << END_OF_DATA\n", i) +
+                map_data(raster.amplitude, levels.lowest, picture.range, picture.reference) +
+                "END_OF_DATA\n");
+  script.set_margins(layout.left, layout.right, bottom, top);
+  script.set_axis('x', {raster.from, raster.to}, time);
+  if (!is_last) script.add("set xtics format ''");
+  script.set_axis('y', {0.0, picture.max_frequency}, frequency);
+  // Texts instead of gnuplot's own labels, which move about with the tick marks.
+  script.add_text(panel.title, layout.left, top + 0.65 * line, "left");
+  if (i == 0) {
+    add_common_labels(script, picture, layout);
+  } else {
+    script.add("unset colorbox");
+  }
+  if (is_last) {
+    script.add_text(axis_label("time", "s", time), 0.5 * (layout.left + layout.right),
+                    layout.below - 1.9 * line, "center");
+    script.add_caption(layout.caption, layout.left, layout.below - 2.7 * line);
+  }
+  add_marks(script, panel.marks, layout.maps[i], layout.left, bottom);
+  const double cell_time = (raster.to - raster.from) /
+                           static_cast<double>(raster.amplitude.cols()) /
+                           std::pow(10.0, time.exponent);
+  const double cell_frequency = raster.max_frequency /
+                                static_cast<double>(raster.amplitude.rows()) /
+                                std::pow(10.0, frequency.exponent);
+  script.add(
+      "plot $map{} matrix using ({:.12g} + ($1 + 0.5) * {:.12g}):(($2 + 0.5) * {:.12g}):({:.12g} "
+      "+ 0.1 * $3) with image notitle",
+      i, as_number(raster.from, time), cell_time, cell_frequency, levels.lowest);
+}
+
+}  // namespace
 
 double highest_amplitude(const Spectrogram& spectrogram, double max_frequency,
                          std::size_t mean_lines) {
@@ -259,35 +261,6 @@ double highest_amplitude(const Spectrogram& spectrogram, double max_frequency,
   return highest > 0.0 ? highest : highest_mean;
 }
 
-std::vector<MarkPlace> place_marks(const std::vector<SpectrogramMark>& marks, const MapArea& map) {
-  constexpr double least_width = 0.12;  // cm, so that a short stretch remains a box
-  std::vector<MarkPlace> places;
-  Obstacles obstacles;
-  const double across = map.width / (map.to - map.from);
-  for (std::size_t i = 0; i < marks.size(); ++i) {
-    const SpectrogramMark& mark = marks[i];
-    if (!(mark.from <= map.to && mark.to >= map.from && mark.frequency >= 0.0 &&
-          mark.frequency <= map.max_frequency)) {
-      continue;
-    }
-    const double middle = (0.5 * (mark.from + mark.to) - map.from) * across;
-    const double half = std::max(0.5 * (mark.to - mark.from) * across, 0.5 * least_width);
-    const double height = map.height * mark.frequency / map.max_frequency;
-    const auto within = [](double x, double limit) { return std::clamp(x, 0.0, limit); };
-    const PictureBox box{within(middle - half, map.width), within(middle + half, map.width),
-                         within(height - map.half_box, map.height),
-                         within(height + map.half_box, map.height)};
-    places.push_back({i, box, "", std::nullopt, std::nullopt});
-    obstacles.boxes.push_back(box);
-  }
-  for (MarkPlace& place : places) {
-    for (const std::string& text : {marks[place.mark].label, marks[place.mark].short_label}) {
-      if (!text.empty() && add_label(place, text, map, obstacles)) break;
-    }
-  }
-  return places;
-}
-
 void plot_spectrogram(const Spectrogram& spectrogram, const SpectrogramPicture& picture,
                       const std::filesystem::path& figure) {
   plot_spectrograms({{picture.title, &spectrogram, picture.marks}}, picture, figure);
@@ -296,126 +269,24 @@ void plot_spectrogram(const Spectrogram& spectrogram, const SpectrogramPicture& 
 void plot_spectrograms(const std::vector<SpectrogramPanel>& panels,
                        const SpectrogramPicture& picture, const std::filesystem::path& figure) {
   check_figure_name(figure);
-  if (panels.empty()) refuse_spectrogram("there is no spectrogram to draw");
-  if (!is_positive(picture.max_frequency))
-    refuse_spectrogram("the highest frequency must be positive");
-  if (!is_positive(picture.reference)) refuse_spectrogram("the reference must be positive");
-  if (!is_positive(picture.range)) refuse_spectrogram("the range must be positive");
-  double highest = 0.0;
-  for (const SpectrogramPanel& panel : panels) {
-    highest = std::max(
-        highest, highest_amplitude(*panel.spectrogram, picture.max_frequency, picture.mean_lines));
-  }
-  if (highest <= 0.0) highest = picture.reference;  // all zero: the lowest colour everywhere
-  const double highest_level = decibels(highest, picture.reference);
-  const double lowest_level = highest_level - picture.range;
-  const bool is_stack = panels.size() > 1;
-  const AxisScale frequency = frequency_scale(picture.max_frequency, is_stack ? 4 : 8);
-  const AxisScale level = axis_scale(lowest_level, highest_level, 6);
+  check_spectrograms(panels, picture);
+  const LevelRange levels = level_range(panels, picture);
+  const SpectrogramLayout layout = spectrogram_layout(panels, picture);
+  const AxisScale level = axis_scale(levels.lowest, levels.highest, 6);
 
-  // All lengths in cm.
-  FigureSize size;
-  const double line = line_height(size.font_size);
-  const double character = 0.64 * size.font_size * 2.54 / 72.0;
-  const double map_height = is_stack ? 3.6 : 7.2;
-  constexpr double bar_width = 0.45;
-  const double frequency_digits = static_cast<double>(
-      fmt::format("{:.{}f}", as_number(picture.max_frequency, frequency), frequency.decimals)
-          .size());
-  const double left = 1.5 * line + (frequency_digits + 1.3) * character;
-  const double right = size.width - (0.35 + bar_width + 5.2 * character + 1.3 * line);
-  const bool has_titles = std::any_of(panels.begin(), panels.end(),
-                                      [](const auto& panel) { return !panel.title.empty(); });
-  const double above = has_titles ? 1.6 * line : 0.5 * line;
-  std::vector<MapArea> maps;
-  for (const SpectrogramPanel& panel : panels) {
-    const ValueRange times = times_of(*panel.spectrogram);
-    MapArea map;
-    map.width = right - left;
-    map.height = map_height;
-    map.from = times.lower;
-    map.to = times.upper;
-    map.max_frequency = picture.max_frequency;
-    maps.push_back(map);
-  }
-  const std::vector<std::string> caption = wrapped(picture.caption + unlabelled_text(panels, maps),
-                                                   caption_font, size.width - left - 0.3);
-  const double below = 2.7 * line +
-                       static_cast<double>(caption.size()) * line_height(caption_font) +
-                       (caption.empty() ? 0.0 : 0.2);
-  const double pitch = above + map_height;
-  size.height = static_cast<double>(panels.size()) * pitch + below;
-
-  FigureScript script(size);
-  script.append("set palette defined (");
-  for (std::size_t i = 0; i < viridis.size(); ++i)
-    script.append(fmt::format("{}{} '{}'", i == 0 ? "" : ", ", i, viridis[i]));
-  script.append(")\n");
+  FigureScript script(layout.size);
+  script.set_palette(viridis);
   script.add("set cbrange [{:.12g}:{:.12g}]\nset cbtics {:.12g} format '%.{}f' scale 0.6",
-             lowest_level, highest_level, level.step, level.decimals);
-  script.add("set minussign\nset border 15 linecolor '#404040'\nset tics nomirror out scale 0.6");
+             levels.lowest, levels.highest, level.step, level.decimals);
+  script.add("{}", map_style);
+  const bool is_stack = panels.size() > 1;
   if (is_stack) script.add("set multiplot");
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    const SpectrogramPanel& panel = panels[i];
-    const Spectrogram& spectrogram = *panel.spectrogram;
-    const bool is_last = i + 1 == panels.size();
-    const double bottom = below + static_cast<double>(panels.size() - 1 - i) * pitch;
-    const auto num_lines = static_cast<std::size_t>(
-        std::count_if(spectrogram.frequencies.begin(), spectrogram.frequencies.end(),
-                      [&](double one) { return one <= picture.max_frequency; }));
-    const AmplitudeRaster raster =
-        rasterise(spectrogram, picture.max_frequency, raster_cells(num_lines, 600),
-                  raster_cells(spectrogram.times.size(), 1000));
-    const AxisScale time = axis_scale(raster.from, raster.to, 6);
     if (i > 0) script.add("unset label\nunset object\nunset arrow");
-    script.append(fmt::format("$map{} << END_OF_DATA\n", i) +
-                  map_data(raster.amplitude, lowest_level, picture.range, picture.reference) +
-                  "END_OF_DATA\n");
-    script.set_margins(left, right, bottom, bottom + map_height);
-    script.set_axis('x', {raster.from, raster.to}, time);
-    if (!is_last) script.add("set xtics format ''");
-    script.set_axis('y', {0.0, picture.max_frequency}, frequency);
-    // Texts instead of gnuplot's own labels, which move about with the tick marks.
-    script.add_text(panel.title, left, bottom + map_height + 0.65 * line, "left");
-    if (i == 0) {
-      const double bar_bottom = is_stack ? bottom : below;
-      script.add(
-          "set colorbox vertical user origin screen {:.6f}, screen {:.6f} size screen {:.6f}, "
-          "screen {:.6f} noborder",
-          script.across(right + 0.35), script.up(bar_bottom), script.across(bar_width),
-          script.up(map_height));
-      const double middle = below + 0.5 * (size.height - above - below);
-      script.add_text(axis_label("frequency", "Hz", frequency), 0.7 * line, middle,
-                      "center rotate");
-      script.add_text(level_label(picture.reference, picture.units), size.width - 0.7 * line,
-                      middle, "center rotate");
-    } else {
-      script.add("unset colorbox");
-    }
-    if (is_last) {
-      script.add_text(axis_label("time", "s", time), 0.5 * (left + right), below - 1.9 * line,
-                      "center");
-      for (std::size_t row = 0; row < caption.size(); ++row) {
-        script.add_text(
-            caption[row], left,
-            below - 2.7 * line - (static_cast<double>(row) + 0.5) * line_height(caption_font),
-            "left", caption_font);
-      }
-    }
-    add_marks(script, panel.marks, maps[i], left, bottom);
-    const double cell_time = (raster.to - raster.from) /
-                             static_cast<double>(raster.amplitude.cols()) /
-                             std::pow(10.0, time.exponent);
-    const double cell_frequency = raster.max_frequency /
-                                  static_cast<double>(raster.amplitude.rows()) /
-                                  std::pow(10.0, frequency.exponent);
-    script.add(
-        "plot $map{} matrix using ({:.12g} + ($1 + 0.5) * {:.12g}):(($2 + 0.5) * {:.12g}):({:.12g} "
-        "+ 0.1 * $3) with image notitle",
-        i, as_number(raster.from, time), cell_time, cell_frequency, lowest_level);
+    add_spectrogram(script, panels, i, picture, layout, levels);
   }
   if (is_stack) script.add("unset multiplot");
-  draw_figure(figure, script.text(), size);
+  draw_figure(figure, script.text(), layout.size);
 }
 
 }  // namespace stridor

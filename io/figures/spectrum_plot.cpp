@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "io/figures/axes.hpp"
+#include "io/figures/envelope.hpp"
 #include "io/figures/gnuplot.hpp"
-#include "io/figures/history_plot.hpp"
 
 namespace stridor {
 namespace {
@@ -131,7 +131,7 @@ void plot_spectra(const std::vector<SpectrumPanel>& panels, const SpectrumPictur
   FigureSize size;
   const double line = line_height(size.font_size);
   const double key_line = line_height(mark_font);
-  const double character = 0.64 * size.font_size * 2.54 / 72.0;
+  const double character = character_width(size.font_size);
   const double panel_height = panels.size() == 1 ? 6.0 : 4.2;
 
   std::vector<Layout> layouts;
@@ -183,8 +183,7 @@ void plot_spectra(const std::vector<SpectrumPanel>& panels, const SpectrumPictur
 
   const std::vector<std::string> caption =
       wrapped(picture.caption, caption_font, size.width - left - 0.3);
-  double height = 2.7 * line + (caption.empty() ? 0.0 : 0.2) +
-                  static_cast<double>(caption.size()) * line_height(caption_font);
+  double height = 2.7 * line + caption_height(caption);
   for (std::size_t p = panels.size(); p-- > 0;) {
     layouts[p].bottom = height;
     height += panel_height + 0.3 + key_line * static_cast<double>(panels[p].curves.size()) +
@@ -200,16 +199,9 @@ void plot_spectra(const std::vector<SpectrumPanel>& panels, const SpectrumPictur
     }
   }
   script.add("set multiplot");
-  script.add(
-      "set minussign\nset border 3 linecolor '#404040'\nset tics nomirror out scale 0.6\n"
-      "set grid linetype 1 linecolor '#d0d0d0' linewidth 0.5\nunset key");
+  script.add("{}\nunset key", axes_style);
   script.set_axis('x', frequencies, frequency);
-  for (std::size_t i = 0; i < caption.size(); ++i) {
-    script.add_text(caption[i], left,
-                    layouts.back().bottom - 2.7 * line -
-                        (static_cast<double>(i) + 0.5) * line_height(caption_font),
-                    "left", caption_font);
-  }
+  script.add_caption(caption, left, layouts.back().bottom - 2.7 * line);
   for (std::size_t p = 0; p < panels.size(); ++p) {
     const Layout& layout = layouts[p];
     const double top = layout.bottom + panel_height;

@@ -15,6 +15,7 @@
 #include "models/initial_motion.hpp"
 #include "solvers/contact/starting_gap.hpp"
 #include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/eigenvector.hpp"
 #include "solvers/equilibrium/equilibrium.hpp"
 #include "solvers/equilibrium/linearise.hpp"
 

@@ -1,4 +1,5 @@
 #include "io/scene/former_keys.hpp"
+#include "io/scene/scene_problems.hpp"
 
 #include <fmt/format.h>
 

@@ -9,8 +9,10 @@
 
 #include "core/suggestion.hpp"
 #include "core/units.hpp"
+#include "io/scene/assignment.hpp"
 #include "io/scene/channels.hpp"
 #include "io/scene/scene_reader.hpp"
+#include "io/scene/scene_words.hpp"
 #include "solvers/equilibrium/equilibrium.hpp"
 
 namespace stridor {

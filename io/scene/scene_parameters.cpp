@@ -7,6 +7,7 @@
 
 #include "core/units.hpp"
 #include "io/scene/expression.hpp"
+#include "io/scene/scene_problems.hpp"
 
 namespace stridor {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "core/errors.hpp"
 #include "core/schema.hpp"
+#include "io/scene/scene_problems.hpp"
 #include "io/scene/scene_tree.hpp"
 
 namespace stridor {
@@ -45,8 +46,5 @@ T read_as(const SceneNode& node) {
   }
   return object;
 }
-
-/// What a key holds, in words: "a number in m", "one of free, clamped", "a map".
-std::string expected_of(const Key& key);
 
 }  // namespace stridor

@@ -1,11 +1,12 @@
 // The text of a scene as a tree of maps, lists and scalars that know where they were written.
 //
-// YAML is read with yaml-cpp. Errors that the library lets pass are caught here: duplicate keys,
-// merge keys, tags, several documents, alias bombs. Numbers stay text; what a scalar means is
-// decided by the key that it fills (io/scene/scene_reader.hpp).
+// The text is YAML (io/scene/yaml_text.hpp), of which `--set` may change values
+// (io/scene/assignment.hpp). Numbers stay text; what a scalar means is decided by the key that it
+// fills (io/scene/scene_reader.hpp).
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,9 @@ struct SceneEntry {
   SceneNode value;
 };
 
+/// Levels of maps and lists: 0 for a scalar.
+std::size_t num_levels(const SceneNode& node);
+
 /// Limits of a scene text; a scene beyond them is refused, because it is a mistake or an attack.
 struct SceneLimits {
   static constexpr std::size_t bytes = 4 * 1024 * 1024;  ///< of a file
@@ -76,19 +80,6 @@ SceneNode read_scene_text(const std::string& text, const std::string& source_nam
 ///         SceneLimits::bytes; ConfigError as read_scene_text
 SceneNode read_scene_file(const std::string& path);
 
-/// Applies one `--set key.path=value` to the tree.
-///
-/// The value is read as YAML (a scalar, or a list or map in one line) and replaces the old one;
-/// maps missing on the way are made. A number in the path counts the entries of a list from 0.
-///
-/// @param root       map at the top; unchanged where this throws
-/// @param assignment "key.path=value"
-/// @throws ConfigError, with the source "--set key.path=value", if there is no '=', no key or no
-/// value,
-///         if it passes SceneLimits, if the value is not YAML, or if the path leads through a
-///         single value, through a name in a list or past the end of a list
-void set_value(SceneNode& root, const std::string& assignment);
-
 /// The value at a dotted path ("substructures.oblique.length", "expect.0.value"), or nullptr.
 /// The empty path is the root.
 const SceneNode* find(const SceneNode& root, const std::string& path);
@@ -96,35 +87,19 @@ const SceneNode* find(const SceneNode& root, const std::string& path);
 /// The place of the value at a dotted path, or of its nearest ancestor that was written.
 Place place_of(const SceneNode& root, const std::string& path);
 
-/// A problem at a place. One of `--set` has its excerpt, the assignment, from the beginning; one of
-/// a file gets it from `add_excerpts`, since the place does not hold the line.
-/// @param key path of the key that is meant
-Problem problem_at(const Place& place, std::string key, std::string message);
-
 /// The path of a file that a scene names: from the folder of the scene where the name was written
 /// in it, from the working directory where it comes from `--set`.
 /// @param key  path of the key that holds the name
 /// @param name as written
 std::string path_of_file(const SceneNode& root, const std::string& key, const std::string& name);
 
-/// Gives the problems that lie in the file of this scene the line there as their excerpt.
-/// @param root map at the top
-void add_excerpts(std::vector<Problem>& problems, const SceneNode& root);
-
-/// Gives every problem without a source the place of its key, or of the nearest ancestor that was
-/// written, and its excerpt. A problem without key, which means the whole scene, gets the source
-/// alone.
-void locate(std::vector<Problem>& problems, const SceneNode& root);
-
-/// Sorts by place, those of the file before those of `--set`; equal places keep their order.
-void sort_by_place(std::vector<Problem>& problems);
-
-/// Adds the faults of the text itself at this node and below it (SceneNode::problems).
-/// @param path key path of `node`, which goes before the keys
-void collect_text_problems(const SceneNode& node, const std::string& path,
-                           std::vector<Problem>& problems);
-
 /// "a.b" from "a" and "b"; either may be empty.
 std::string join_path(const std::string& path, const std::string& key);
+
+/// "a" and "b" from "a.b".
+std::vector<std::string> path_names(const std::string& path);
+
+/// The index that a path element names, if it is one of a list of this size.
+std::optional<std::size_t> list_index(const std::string& name, std::size_t size);
 
 }  // namespace stridor

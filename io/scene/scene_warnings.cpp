@@ -8,6 +8,7 @@
 #include <string>
 
 #include "io/scene/channels.hpp"
+#include "io/scene/scene_problems.hpp"
 
 namespace stridor {
 namespace {

@@ -11,6 +11,7 @@
 
 #include "core/errors.hpp"
 #include "solvers/algebra/matrix_modes.hpp"
+#include "solvers/eigenvalues/eigenvector.hpp"
 #include "solvers/eigenvalues/hessenberg_eigenvalues.hpp"
 
 extern "C" void dgeevx_(const char* balance, const char* left, const char* right, const char* sense,

@@ -98,25 +98,6 @@ void place_face(Pencil& pencil, const System& system, int contact,
 void place_undeformed(Pencil& pencil, const System& system, double drive_displacement,
                       double friction, double direction);
 
-/// Modes above a frequency replaced by few that answer at lower frequencies as they do.
-///
-/// Between the ports the dropped modes answer as
-///
-///   Σ φφᵀ/(s² + c s + ω²) = R₀ − s R₁ − s² R₂ + …,
-///   R₀ = Σ φφᵀ/ω²,  R₁ = Σ c φφᵀ/ω⁴,  R₂ = Σ φφᵀ/ω⁴ up to (c/ω)²
-///
-/// (docs/theory.md, 7.1): static flexibility, its damping, its inertia. In the basis x with
-/// xᵀ R₀ x = 1 in which R₂ is diagonal, with entries 1/ω_r², at most m residual modes of
-/// frequencies ω_r and damping c_r = ω_r² xᵀ R₁ x reproduce R₀ and R₂ exactly, and R₁ as well where
-/// the damping of every body is proportional.
-///
-/// @param cutoff ω, rad/s, > 0: modes with a larger ω are replaced, but for those with coupled terms
-/// @return the modes up to `cutoff`, in their order, then the residual modes, all above it; the
-///         rest as in `pencil`
-/// @throws std::invalid_argument if `cutoff` is not positive, or as check_pencil() for either
-/// pencil
-Pencil with_residual_modes(const Pencil& pencil, double cutoff);
-
 /// The contacts as the modes feel them: what the small problem on the contacts is made of
 /// (docs/theory.md, 7.1).
 ///
@@ -135,39 +116,10 @@ ModalRows modal_rows(const Pencil& pencil);
 /// One eigenvalue.
 struct Eigenvalue {
   std::complex<double> s;  ///< 1/s; the imaginary part is a circular frequency
-  double residual = 0.0;   ///< relative_residual() of the pair
+  double residual = 0.0;   ///< relative_residual() of the pair (eigenvector.hpp)
 
   double growth() const { return s.real(); }  ///< 1/s
   double frequency() const;                   ///< Hz
 };
-
-/// Motion that belongs to an eigenvalue, in modal coordinates.
-struct Eigenvector {
-  Eigen::VectorXcd right;  ///< q, n, unit length
-  Eigen::VectorXcd left;   ///< n, unit length: leftᴴ (s² + s C + K) q = 0 for all q that fit B_C
-  Eigen::VectorXcd force;  ///< δλ, k, for this q
-};
-
-/// Eigenvector of an eigenvalue, from the small problem on the ports.
-///
-///   q_i = (Sᵀ f)_i/(s² + c_i s + ω_i²)
-///
-/// @param s an eigenvalue of the pencil, as accurate as can be had
-/// @throws std::invalid_argument as check_pencil()
-/// Cost: n (k + rank of G and H). Where s is a multiple eigenvalue, one vector of its space.
-Eigenvector eigenvector(const Pencil& pencil, std::complex<double> s);
-
-/// What is left of the equations of motion, in proportion to their terms.
-///
-///   ‖W⁻¹ (P(s) q + Sᵀ B_Eᵀ δλ)‖ / Σ ‖W⁻¹ term‖ + ‖B_C S q‖/‖ |B_C S| |q| ‖,
-///   P(s) = s² + s C + Ω² + Sᵀ (G + s H) S,   W = diag(|s| + ω)
-///
-/// with the δλ that makes it least. W weighs slow and fast modes alike. Of the order of rounding,
-/// 1e-16 to 1e-12, for an exact pair.
-double relative_residual(const Pencil& pencil, std::complex<double> s,
-                         const Eigen::VectorXcd& right);
-
-/// Modal assurance criterion |aᴴb|²/(aᴴa bᴴb): 1 for the same shape, 0 for orthogonal ones.
-double modal_assurance(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b);
 
 }  // namespace stridor

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/errors.hpp"
+#include "solvers/eigenvalues/eigenvector.hpp"
 #include "solvers/eigenvalues/search_failure.hpp"
 
 namespace stridor {

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/eigenvector.hpp"
 
 namespace stridor {
 namespace {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/errors.hpp"
+#include "solvers/eigenvalues/residual_modes.hpp"
 #include "solvers/eigenvalues/secular_eigenvalues.hpp"
 #include "tests/support/constants.hpp"
 #include "tests/support/full_model.hpp"

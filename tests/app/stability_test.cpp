@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "app/stability/family_locus.hpp"
+#include "app/stability/verdict.hpp"
 #include "solvers/eigenvalues/dense_eigenvalues.hpp"
 #include "solvers/eigenvalues/search_failure.hpp"
 #include "tests/support/message_of.hpp"

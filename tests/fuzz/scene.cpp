@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/errors.hpp"
+#include "io/scene/assignment.hpp"
 #include "io/scene/resolved_scene.hpp"
 #include "io/scene/scene_reader.hpp"
 #include "io/scene/scene_tree.hpp"

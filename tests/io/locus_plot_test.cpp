@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/errors.hpp"
+#include "io/figures/stability_map_plot.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/program.hpp"
 

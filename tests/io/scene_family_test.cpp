@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "io/scene/assignment.hpp"
 #include "solvers/equilibrium/linearise.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/program.hpp"

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
+#include "io/scene/assignment.hpp"
 #include "io/scene/scene.hpp"
 #include "io/scene/scene_reader.hpp"
 #include "tests/support/temporary_folder.hpp"

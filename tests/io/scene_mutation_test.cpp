@@ -17,6 +17,7 @@
 #include "core/units.hpp"
 #include "io/scene/scene.hpp"
 #include "io/scene/scene_reader.hpp"
+#include "io/scene/scene_words.hpp"
 #include "tests/io/example_scene.hpp"
 #include "tests/support/complete_scenes.hpp"
 #include "tests/support/program.hpp"

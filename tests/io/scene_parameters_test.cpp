@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "io/scene/assignment.hpp"
 #include "io/scene/resolved_scene.hpp"
 #include "io/scene/scene.hpp"
 #include "io/scene/scene_family.hpp"

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "io/scene/assignment.hpp"
 #include "tests/io/example_scene.hpp"
 
 namespace stridor {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "io/scene/assignment.hpp"
+#include "io/scene/scene_problems.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace stridor {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
+#include "io/figures/amplitude_raster.hpp"
 #include "io/results/spectrogram_file.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/program.hpp"

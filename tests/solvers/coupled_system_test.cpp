@@ -10,6 +10,7 @@
 
 #include "core/errors.hpp"
 #include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/eigenvector.hpp"
 #include "solvers/eigenvalues/secular_eigenvalues.hpp"
 #include "solvers/equilibrium/equilibrium.hpp"
 #include "solvers/equilibrium/linearise.hpp"

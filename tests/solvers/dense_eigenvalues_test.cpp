@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
+#include "solvers/eigenvalues/eigenvector.hpp"
 #include "solvers/eigenvalues/linear_pencil.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/message_of.hpp"

@@ -13,6 +13,7 @@
 
 #include "core/errors.hpp"
 #include "coupling/laws/stribeck_friction.hpp"
+#include "solvers/eigenvalues/eigenvector.hpp"
 #include "substructures/bodies/beam.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"

@@ -9,7 +9,9 @@
 #include <random>
 
 #include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/eigenvector.hpp"
 #include "solvers/eigenvalues/linear_pencil.hpp"
+#include "solvers/eigenvalues/residual_modes.hpp"
 #include "solvers/eigenvalues/secular_eigenvalues.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/message_of.hpp"

@@ -9,6 +9,7 @@
 
 #include "core/errors.hpp"
 #include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/residual_modes.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"

@@ -10,6 +10,7 @@
 #include "core/errors.hpp"
 #include "models/model.hpp"
 #include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/eigenvector.hpp"
 #include "solvers/eigenvalues/secular_eigenvalues.hpp"
 #include "solvers/equilibrium/linearise.hpp"
 #include "solvers/transient/substrate_motion.hpp"

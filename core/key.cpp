@@ -1,4 +1,4 @@
-#include "core/schema.hpp"
+#include "core/key.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,96 @@
+#include "app/stability/equilibrium_report.hpp"
+
+#include <cmath>
+
+namespace stridor {
+namespace {
+
+/// Displacement of a point of a body, without that of the drive.
+Json displacement_json(const System& system, const Equilibrium& equilibrium, int body,
+                       const PointRows& rows) {
+  const auto b = static_cast<std::size_t>(body);
+  const Eigen::MatrixXd& shapes = system.bodies[b].modal.rows;
+  const Eigen::VectorXd& modal = equilibrium.displacement[b];
+  return {number(shapes.row(rows.x).dot(modal)), number(shapes.row(rows.y).dot(modal))};
+}
+
+const char* range_text(LawRange range) {
+  switch (range) {
+    case LawRange::inside:
+      return "inside";
+    case LawRange::no_contact:
+      return "no contact";
+    case LawRange::too_deep:
+      return "deeper than the contact law was made for (y/R > 0.3)";
+    case LawRange::beyond_data:
+      return "at a speed or indentation beyond the data of the contact law";
+  }
+  return "";
+}
+
+/// On the face of a body.
+Json face_contact_json(const System& system, const Equilibrium& equilibrium, std::size_t i) {
+  const ContactEquilibrium& contact = equilibrium.contacts[i];
+  const ContactPoint& point = system.contacts[i];
+  const FacePlace& face = *point.face;
+  return {
+      {"closed", contact.is_closed},
+      {"force", number(contact.force)},
+      {"friction_force", number(contact.friction_force)},
+      {"friction_across", number(contact.friction_across)},
+      {"friction", number(contact.friction)},
+      {"velocity", {number(contact.velocity.x()), number(contact.velocity.y())}},
+      {"slip_velocity", number(contact.slip_velocity)},
+      {"gap", number(contact.gap)},
+      {"radius", face.radius},
+      {"angle", face.angle},
+      {"displacement", displacement_json(system, equilibrium, point.slave_body, point.slave_rows)}};
+}
+
+Json contact_json(const System& system, const Equilibrium& equilibrium, std::size_t i) {
+  const ContactEquilibrium& contact = equilibrium.contacts[i];
+  const ContactPoint& point = system.contacts[i];
+  if (point.face) return face_contact_json(system, equilibrium, i);
+  Json object = {
+      {"closed", contact.is_closed},
+      {"force", number(contact.force)},
+      {"friction_force", number(contact.friction_force)},
+      {"friction", number(contact.friction)},
+      {"direction", contact.direction},
+      {"slip_velocity", number(contact.slip_velocity)},
+      {"position", number(contact.position)},
+      {"gap", number(contact.gap)},
+      {"angle", number(std::atan2(contact.projection.tangent.y(), contact.projection.tangent.x()))},
+      {"displacement", displacement_json(system, equilibrium, point.slave_body, point.slave_rows)}};
+  if (!point.substrate || !contact.is_closed) return object;
+  const SubstrateContact& law = *point.substrate;
+  const SubstrateForces forces = law.at(-contact.gap, contact.slip_velocity, contact.direction);
+  object["indentation"] = number(-contact.gap / law.indentation_unit);
+  object["area"] = number(law.area(-contact.gap, contact.slip_velocity));
+  object["damping"] = number(-forces.tangential.by_slip);
+  object["law_range"] = range_text(forces.range);
+  return object;
+}
+
+}  // namespace
+
+Json equilibrium_json(const Model& model, const Equilibrium& equilibrium) {
+  const System& system = model.system;
+  Json object;
+  if (system.contacts.size() == 1) {
+    object = contact_json(system, equilibrium, 0);
+  } else {
+    for (std::size_t i = 0; i < system.contacts.size(); ++i)
+      object["contacts"][system.contacts[i].name] = contact_json(system, equilibrium, i);
+  }
+  object["drive_displacement"] = number(equilibrium.state.drive_displacement);
+  object["residual"] = number(equilibrium.residual);
+  object["points"] = Json::object();
+  for (const auto& [name, point] : model.points) {
+    object["points"][name.body + "." + name.point] =
+        displacement_json(system, equilibrium, point.body, point.rows);
+  }
+  return object;
+}
+
+}  // namespace stridor

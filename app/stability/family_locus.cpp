@@ -1,0 +1,142 @@
+#include "app/stability/family_locus.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "app/stability/key_range.hpp"
+#include "app/stability/lowest_eigenvalues.hpp"
+#include "app/terminal/remark.hpp"
+#include "core/memory.hpp"
+#include "models/set_up_estimate.hpp"
+#include "solvers/eigenvalues/search_failure.hpp"
+
+namespace stridor {
+namespace {
+
+/// The locus along whole numbers.
+Locus locus_at(const PencilFamily& family, const std::vector<double>& range,
+               const LocusOptions& options) {
+  Locus locus;
+  locus.values = range;
+  Pencil pencil;
+  const EigenvalueMethod method =
+      options.method == LocusMethod::dense ? EigenvalueMethod::dense : EigenvalueMethod::secular;
+  bool was_growing = false;
+  for (const double value : range) {
+    family.place(value, pencil);
+    locus.eigenvalues.emplace_back();
+    const Eigenvalue* fastest = nullptr;
+    const std::vector<Eigenvalue> eigenvalues =
+        lowest_eigenvalues(pencil, method, {options.count, options.frequency});
+    for (const Eigenvalue& one : eigenvalues) {
+      locus.eigenvalues.back().push_back(one.s);
+      if (is_growing(one) && (fastest == nullptr || one.growth() > fastest->growth()))
+        fastest = &one;
+    }
+    if (fastest != nullptr) {
+      if (!was_growing) locus.unstable.push_back({value, value, 0.0, 0.0, 0.0, value, 0});
+      UnstableWindow& window = locus.unstable.back();
+      window.to = value;
+      if (fastest->growth() > window.growth_max) {
+        window.growth_max = fastest->growth();
+        window.frequency = fastest->frequency();
+        window.value_max = value;
+      }
+    }
+    const bool is_change = !locus.eigenvalues.empty() && locus.eigenvalues.size() > 1 &&
+                           was_growing != (fastest != nullptr);
+    if (is_change) {
+      locus.crossings.push_back({value, locus.unstable.back().frequency, was_growing ? -1 : 1, 0});
+    }
+    was_growing = fastest != nullptr;
+  }
+  return locus;
+}
+
+/// The branches along a range, by the dense method where the search for zeros of the secular
+/// function fails.
+/// @throws NumericalError as trace_locus()
+Locus trace(const PencilFamily& family, const NumericKey& varied, const std::vector<double>& range,
+            const LocusOptions& options) {
+  try {
+    return trace_locus(family, range, options);
+  } catch (const SearchFailure& error) {
+    if (options.method == LocusMethod::dense) throw;
+    Pencil first;
+    family.place(range.front(), first);
+    if (first.num_eigenvalues() > most_dense) throw;
+    print_remark(
+        "the search for zeros of the secular function did not converge at {}: all {} eigenvalues "
+        "by the dense method; fewer modes (time.retain) are faster\n",
+        value_text(varied, range.front()), first.num_eigenvalues());
+  }
+  LocusOptions dense = options;
+  dense.method = LocusMethod::dense;
+  return trace_locus(family, range, dense);
+}
+
+}  // namespace
+
+Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t key,
+                  const std::vector<double>& values, const std::vector<double>& range,
+                  const LocusOptions& options, SearchFor wanted) {
+  // An end that is not allowed is named as it was given, before anything is computed in between.
+  std::vector<double> ends = values;
+  ends[key] = range.front();
+  const SpectrumMethod method = family.method(ends);
+  double trusted = std::numeric_limits<double>::infinity();
+  Eigen::Index num_wanted = 0;
+  for (const double end : {range.front(), range.back()}) {
+    ends[key] = end;
+    if (method != SpectrumMethod::counted)
+      num_wanted = std::max(num_wanted, family.pencil(ends).num_eigenvalues() / 2);
+    trusted = std::min(trusted, family.trusted_frequency(ends));
+  }
+  if (method == SpectrumMethod::counted) num_wanted = options.count;
+  num_wanted = std::min<Eigen::Index>(num_wanted, options.count);
+  // Measured: tracks, results and their JSON.
+  constexpr double bytes_per_eigenvalue = 500.0;
+  const auto num_values = static_cast<double>(range.size());
+  require_memory_for(
+      {"--points", fmt::format("{} eigenvalues at {} values", num_wanted, range.size()),
+       "ask for fewer", bytes_per_eigenvalue * num_values * static_cast<double>(num_wanted)},
+      memory_limit());
+  LocusOptions within = options;
+  within.trusted = trusted;
+  if (method == SpectrumMethod::counted)
+    return sample_locus(family.spectra(key, values, within), range, within, sparing_effort);
+  const PencilFamily pencils = family.along(key, values, range.front(), range.back());
+  if (varied.is_integer) {
+    LocusOptions wholes = options;
+    if (method == SpectrumMethod::sampled) wholes.method = LocusMethod::dense;
+    return locus_at(pencils, range, wholes);
+  }
+  if (method == SpectrumMethod::followed) return trace(pencils, varied, range, options);
+  return sample_locus(pencils, range, within,
+                      wanted == SearchFor::stability ? stability_effort : SamplingEffort{});
+}
+
+std::vector<StabilityChange> stability_changes(const Locus& locus) {
+  // Between two crossings the number of growing eigenvalues is that of the windows there.
+  const auto num_growing = [&](double value) {
+    return std::count_if(locus.unstable.begin(), locus.unstable.end(), [&](const auto& window) {
+      return window.from < value && value < window.to;
+    });
+  };
+  std::vector<StabilityChange> changes;
+  for (std::size_t i = 0; i < locus.crossings.size(); ++i) {
+    const Crossing& crossing = locus.crossings[i];
+    const double before = i == 0 ? locus.values.front() : locus.crossings[i - 1].value;
+    const double after =
+        i + 1 == locus.crossings.size() ? locus.values.back() : locus.crossings[i + 1].value;
+    const bool was_stable = num_growing(0.5 * (before + crossing.value)) == 0;
+    const bool is_stable = num_growing(0.5 * (crossing.value + after)) == 0;
+    if (was_stable != is_stable)
+      changes.push_back({crossing.value, crossing.frequency, was_stable});
+  }
+  return changes;
+}
+
+}  // namespace stridor

@@ -1,0 +1,90 @@
+// Small motions of a scene as some of its keys vary.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/locus.hpp"
+#include "analysis/sampled_locus.hpp"
+#include "app/stability/sliding_state.hpp"
+#include "io/scene/scene_family.hpp"
+#include "solvers/eigenvalues/sparse_pencil.hpp"
+
+namespace stridor {
+
+/// How eigenvalues along a key are found, by what the system is.
+enum class SpectrumMethod {
+  followed,  ///< from value to value, by the problem on the ports that contacts join
+  sampled,   ///< all of the dense problem at every value (analysis/sampled_locus.hpp)
+  counted,   ///< those in a window of large sparse matrices (analysis/counted_spectra.hpp)
+};
+
+/// Small motions of a scene as some of its keys vary.
+class StabilityFamily {
+ public:
+  virtual ~StabilityFamily() = default;
+
+  /// @param values one per key
+  /// @throws ConfigError, NumericalError naming the values
+  virtual Pencil pencil(std::span<const double> values) = 0;
+  /// Frequency up to which the model responds as the bodies do, Hz; may be infinite.
+  virtual double trusted_frequency(std::span<const double> values) = 0;
+  /// Where eigenvalues are counted there is no pencil(), and spectra() takes its place.
+  /// @throws as pencil()
+  virtual SpectrumMethod method(std::span<const double>) { return SpectrumMethod::followed; }
+  /// The eigenvalues wanted along one of the keys; arguments as of along(). They throw
+  /// NumericalError naming the values if one may be missing.
+  SpectrumFamily spectra(std::size_t key, const std::vector<double>& values,
+                         const LocusOptions& options);
+
+  /// The pencils along one of the keys.
+  /// @param key      its index
+  /// @param values   of all keys; that of `key` varies
+  /// @param from, to where master nodes count as kinks
+  /// @return refers to this object
+  PencilFamily along(std::size_t key, std::vector<double> values, double from, double to);
+
+  /// Called with the value of the key that varies whenever a pencil along it is made.
+  void on_value(std::function<void(double)> report) { report_ = std::move(report); }
+
+ private:
+  /// M, P and Q where eigenvalues are counted.
+  virtual SparseSystem sparse_system(std::span<const double>) { return {}; }
+  virtual std::vector<double> kinks(std::size_t, const std::vector<double>&, double, double) {
+    return {};
+  }
+
+  std::function<void(double)> report_;
+};
+
+/// That of bodies, in contact or not.
+class BodyStabilityFamily : public StabilityFamily {
+ public:
+  BodyStabilityFamily(const LoadedScene& loaded, std::vector<NumericKey> keys,
+                      ContactGeometry geometry);
+
+  /// With the modes that `time.retain` keeps.
+  SlidingState at(std::span<const double> values);
+  Pencil pencil(std::span<const double> values) override { return at(values).pencil; }
+  double trusted_frequency(std::span<const double> values) override;
+  SpectrumMethod method(std::span<const double> values) override;
+
+ private:
+  std::string values_text(std::span<const double> values) const;
+  SparseSystem sparse_system(std::span<const double> values) override;
+  std::vector<double> kinks(std::size_t key, const std::vector<double>& values, double from,
+                            double to) override;
+
+  SceneFamily family_;
+  std::optional<TimeParameters> time_;
+  KeptTerms terms_;
+  std::optional<double> asked_;  ///< asked_frequency() of the first values
+  ContactGeometry geometry_;
+  std::optional<std::string> start_key_;
+};
+
+}  // namespace stridor
