@@ -18,7 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr ElementShape all_shapes[] = {
+constexpr ElementShape every_shape[] = {
     ElementShape::tri3,   ElementShape::tri6,   ElementShape::quad4, ElementShape::quad8,
     ElementShape::tet4,   ElementShape::tet10,  ElementShape::hex8,  ElementShape::hex20,
     ElementShape::wedge6, ElementShape::wedge15};
@@ -51,7 +51,7 @@ Eigen::MatrixXd corners_of(ElementShape shape) {
 }
 
 TEST(ElementShapes, NormalsOfSidesPointOutwards) {
-  for (const ElementShape shape : all_shapes) {
+  for (const ElementShape shape : every_shape) {
     const Eigen::MatrixXd corners = corners_of(shape);
     const Eigen::RowVector3d middle = corners.colwise().mean();
     for (const SideNodes& side : facts_of(shape).sides) {
@@ -69,7 +69,7 @@ TEST(ElementShapes, NormalsOfSidesPointOutwards) {
 // Every edge of an element belongs to two of its sides, which pass it in opposite directions, and
 // both say the same of its middle.
 TEST(ElementShapes, SidesOfAVolumeCloseItAndAgreeOnTheMiddlesOfEdges) {
-  for (const ElementShape shape : all_shapes) {
+  for (const ElementShape shape : every_shape) {
     if (facts_of(shape).dimension == 2) continue;
     std::set<std::array<int, 3>> passed;
     std::set<int> nodes;
