@@ -6,6 +6,7 @@
 
 #include "core/errors.hpp"
 #include "io/imports/matrix_market.hpp"
+#include "io/imports/mesh_file.hpp"
 
 namespace stridor {
 namespace {
@@ -17,6 +18,9 @@ class FilesOfScene : public BodyFiles {
 
   SparseMatrix matrix(const std::string& key, const std::string& name) const override {
     return read_matrix_file(path_of_file(tree_, key_ + "." + key, name));
+  }
+  Mesh mesh(const std::string& key, const std::string& name) const override {
+    return read_mesh_file(path_of_file(tree_, key_ + "." + key, name)).mesh;
   }
   SparseMatrix matrix(const std::vector<std::string>& rows) const override {
     return parse_matrix_rows(rows);

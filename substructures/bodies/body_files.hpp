@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "substructures/elements/mesh.hpp"
 #include "substructures/matrices/body_matrices.hpp"
 
 namespace stridor {
@@ -23,6 +24,8 @@ class BodyFiles {
   /// @param name as written
   /// @throws ConfigError with the place in the file; FileError
   virtual SparseMatrix matrix(const std::string& key, const std::string& name) const = 0;
+  /// A finite element mesh. Parameters and errors as matrix().
+  virtual Mesh mesh(const std::string& key, const std::string& name) const = 0;
   /// A square matrix from rows of numbers, given in the place of a file.
   /// @throws std::invalid_argument saying which row is wrong
   virtual SparseMatrix matrix(const std::vector<std::string>& rows) const = 0;

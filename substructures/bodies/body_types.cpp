@@ -7,6 +7,7 @@
 #include "substructures/bodies/body_parameters.hpp"
 #include "substructures/bodies/lumped_body.hpp"
 #include "substructures/bodies/matrix_body.hpp"
+#include "substructures/bodies/mesh_body.hpp"
 #include "substructures/bodies/plate_body.hpp"
 
 namespace stridor {
@@ -17,6 +18,7 @@ const std::vector<Substructure::Type>& Substructure::types() {
       body_type<LumpedParameters>(),
       body_type<TouchedMatrixBodyParameters>(),
       body_type<PlateBodyParameters>(),
+      body_type<MeshBodyParameters>(),
   };
   return all;
 }
