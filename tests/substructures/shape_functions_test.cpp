@@ -88,7 +88,7 @@ TEST(ShapeFunctions, GiveLinearFieldsExactly) {
 }
 
 template <class Shape>
-void expect_derivatives(Shape shape) {
+void expect_natural_derivatives(Shape shape) {
   // Central differences of polynomials of degree 4 at most are wrong by h²/6 of the third
   // derivative, below 4, and by the rounding eps/h.
   constexpr double h = 1e-5;
@@ -109,9 +109,9 @@ void expect_derivatives(Shape shape) {
 TEST(ShapeFunctions, DerivativesAreThoseOfTheValues) {
   for (const ElementShape shape : all_shapes) {
     SCOPED_TRACE(facts_of(shape).name);
-    expect_derivatives(shape);
+    expect_natural_derivatives(shape);
   }
-  for (const SideShape shape : all_sides) expect_derivatives(shape);
+  for (const SideShape shape : all_sides) expect_natural_derivatives(shape);
 }
 
 TEST(ShapeFunctions, OfAnElementAreThoseOfItsSideOnIt) {
@@ -155,7 +155,7 @@ double line_moment(int p) {
 }
 
 /// ∫ ξ^p η^q ζ^r over a shape.
-double moment(ElementShape shape, int p, int q, int r) {
+double natural_moment(ElementShape shape, int p, int q, int r) {
   using enum ElementShape;
   switch (shape) {
     case tri3:
@@ -181,7 +181,7 @@ enum class Degrees { total, each, wedge };
 
 /// Largest difference from the integrals of all monomials up to a degree: of the sum of exponents,
 /// of each exponent, or of the sum of two and of the third.
-double quadrature_error(ElementShape shape, const std::vector<QuadraturePoint>& rule,
+double quadrature_error(ElementShape shape, const std::vector<IntegrationPoint>& rule,
                         Degrees degrees, int degree, int through = 0) {
   const int third = facts_of(shape).dimension == 2 ? 0
                     : degrees == Degrees::wedge    ? through
@@ -195,7 +195,7 @@ double quadrature_error(ElementShape shape, const std::vector<QuadraturePoint>& 
         double sum = 0.0;
         for (const auto& [place, weight] : rule)
           sum += weight * std::pow(place.x(), p) * std::pow(place.y(), q) * std::pow(place.z(), r);
-        error = std::max(error, std::abs(sum - moment(shape, p, q, r)));
+        error = std::max(error, std::abs(sum - natural_moment(shape, p, q, r)));
       }
     }
   }
@@ -205,16 +205,16 @@ double quadrature_error(ElementShape shape, const std::vector<QuadraturePoint>& 
 TEST(Quadrature, IsExactForThePolynomialsOfItsDegreeAndNoMore) {
   struct Case {
     ElementShape shape;
-    const std::vector<QuadraturePoint>& rule;
+    const std::vector<IntegrationPoint>& rule;
     std::size_t num_points;
     Degrees degrees;
     int degree, through;
   };
   using enum ElementShape;
-  const auto stiffness = [](ElementShape shape) -> const std::vector<QuadraturePoint>& {
+  const auto stiffness = [](ElementShape shape) -> const std::vector<IntegrationPoint>& {
     return stiffness_points(shape, Integration::full);
   };
-  const auto reduced = [](ElementShape shape) -> const std::vector<QuadraturePoint>& {
+  const auto reduced = [](ElementShape shape) -> const std::vector<IntegrationPoint>& {
     return stiffness_points(shape, Integration::reduced);
   };
   for (const Case& of : {Case{tri3, stiffness(tri3), 1, Degrees::total, 1, 0},
@@ -245,7 +245,7 @@ TEST(Quadrature, IsExactForThePolynomialsOfItsDegreeAndNoMore) {
               few_operations * eps);
     EXPECT_GT(quadrature_error(of.shape, of.rule, of.degrees, of.degree + 1, of.through), 1e-6);
     double size = 0.0;
-    for (const QuadraturePoint& point : of.rule) {
+    for (const IntegrationPoint& point : of.rule) {
       EXPECT_GT(point.weight, 0.0);
       size += point.weight;
     }

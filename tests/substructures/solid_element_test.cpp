@@ -31,7 +31,7 @@ ElementSection aluminium(int dimension, Integration integration = Integration::f
 }
 
 /// Matrices of up to 60 rows summed over up to 27 points.
-constexpr double sums = 200.0;
+constexpr double summing = 200.0;
 
 double largest_entry(const Eigen::MatrixXd& matrix) {
   return matrix.cwiseAbs().maxCoeff();
@@ -79,7 +79,7 @@ int num_zero_eigenvalues(const Eigen::MatrixXd& stiffness) {
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(stiffness, Eigen::EigenvaluesOnly)
           .eigenvalues();
   const double largest = values(values.size() - 1);
-  EXPECT_GT(values(0), -sums * eps * largest);
+  EXPECT_GT(values(0), -summing * eps * largest);
   return static_cast<int>((values.array() < 1e-10 * largest).count());
 }
 
@@ -92,7 +92,7 @@ TEST(SolidElement, OnlyRigidMotionsGiveNoForce) {
         element_matrices(shape, nodes, aluminium(dimension), 1).stiffness;
     EXPECT_EQ(stiffness, stiffness.transpose());
     EXPECT_LE(largest_entry(stiffness * rigid_motions_of(nodes, dimension)),
-              sums * eps * largest_entry(stiffness));
+              summing * eps * largest_entry(stiffness));
     EXPECT_EQ(num_zero_eigenvalues(stiffness), dimension == 2 ? 3 : 6);
   }
 }
@@ -123,7 +123,7 @@ TEST(SolidElement, MassIsPositiveDefiniteAndSumsToDensityTimesVolume) {
                                   0.2 * (0.1 * 0.2 - 1.1 * 0.2);
     const double expected =
         density * size * natural_size(shape) * (dimension == 2 ? thickness : 1.0);
-    EXPECT_NEAR(mass.sum(), expected, sums * eps * expected);
+    EXPECT_NEAR(mass.sum(), expected, summing * eps * expected);
     const Eigen::VectorXd values =
         Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(mass, Eigen::EigenvaluesOnly).eigenvalues();
     EXPECT_GT(values(0), 1e-3 * values(values.size() - 1));
@@ -154,7 +154,7 @@ TEST(SolidElement, ConstantStrainStoresItsEnergy) {
       const double size = element.nodal_mass.sum() / density;  // exact, as edges are straight
       const double expected = size * strain.dot(section.law.matrix() * strain);
       EXPECT_NEAR(field.dot(element.stiffness * field), expected,
-                  sums * eps * largest_entry(element.stiffness) * field.squaredNorm());
+                  summing * eps * largest_entry(element.stiffness) * field.squaredNorm());
     }
   }
 }
@@ -185,8 +185,9 @@ TEST(SolidElement, LinearSimplicesHaveTheirClosedForm) {
         density * size / ((d + 1) * (d + 2)) *
         (Eigen::MatrixXd::Ones(d + 1, d + 1) + Eigen::MatrixXd::Identity(d + 1, d + 1));
     const ElementMatrices element = element_matrices(shape, nodes, section, 1);
-    EXPECT_LE(largest_entry(element.stiffness - stiffness), sums * eps * largest_entry(stiffness));
-    EXPECT_LE(largest_entry(element.nodal_mass - mass), sums * eps * largest_entry(mass));
+    EXPECT_LE(largest_entry(element.stiffness - stiffness),
+              summing * eps * largest_entry(stiffness));
+    EXPECT_LE(largest_entry(element.nodal_mass - mass), summing * eps * largest_entry(mass));
   }
 }
 
@@ -202,7 +203,7 @@ TEST(SolidElement, MassOfABrickIsThatOfItsTrilinearFunctions) {
       const auto apart = (nodes.row(a).array() != nodes.row(b).array()).count();
       EXPECT_NEAR(mass(a, b),
                   density * volume / 216.0 * std::ldexp(1.0, 3 - static_cast<int>(apart)),
-                  sums * eps * density * volume / 216.0);
+                  summing * eps * density * volume / 216.0);
     }
   }
 }
@@ -239,7 +240,7 @@ TEST(SolidElement, MassOfQuadraticElementsIsExact) {
           kind = a == b ? 4 : touch ? 5 : 6;
         }
         const double total = element.sum();
-        EXPECT_NEAR(element(a, b), total / unit * entries[kind], sums * eps * total)
+        EXPECT_NEAR(element(a, b), total / unit * entries[kind], summing * eps * total)
             << a << " " << b;
       }
     }
@@ -266,7 +267,7 @@ TEST(SolidElement, BrickBendsAsABeam) {
   const double second_moment = 2.0 * half(1) * std::pow(2.0 * half(2), 3) / 12.0;
   const double expected = 0.5 * modulus * second_moment * 2.0 * half(0);
   EXPECT_NEAR(0.5 * field.dot(stiffness * field), expected,
-              sums * eps * largest_entry(stiffness) * field.squaredNorm());
+              summing * eps * largest_entry(stiffness) * field.squaredNorm());
 }
 
 TEST(SolidElement, TurningElementAndMaterialTurnsTheMatrices) {
@@ -294,9 +295,9 @@ TEST(SolidElement, TurningElementAndMaterialTurnsTheMatrices) {
     // The law is turned twice, with moduli that differ by two powers of ten.
     EXPECT_LE(
         largest_entry(turned.stiffness - turn_all * straight.stiffness * turn_all.transpose()),
-        100.0 * sums * eps * largest_entry(straight.stiffness));
+        100.0 * summing * eps * largest_entry(straight.stiffness));
     EXPECT_LE(largest_entry(turned.nodal_mass - straight.nodal_mass),
-              sums * eps * largest_entry(straight.nodal_mass));
+              summing * eps * largest_entry(straight.nodal_mass));
   }
 }
 
@@ -311,7 +312,7 @@ TEST(SolidElement, PlanarMatricesAreProportionalToThickness) {
   }
 }
 
-std::string degenerate(ElementShape shape) {
+std::string degenerate_element(ElementShape shape) {
   return std::string("element 17 (") + facts_of(shape).name +
          ") is degenerate or turned inside out";
 }
@@ -329,12 +330,12 @@ TEST(SolidElement, InsideOutFlatOrUndefinedElementsThrow) {
     for (const Mesh::Nodes& nodes : {mirrored, flat, undefined}) {
       EXPECT_EQ(message_of<std::invalid_argument>(
                     [&] { element_matrices(shape, nodes, aluminium(dimension), 17); }),
-                degenerate(shape));
+                degenerate_element(shape));
       with_shape(shape, [&]<ElementShape of>() {
         const ElementNodes<of> places = nodes.leftCols<ElementSizes<of>::dimension>();
         EXPECT_EQ(message_of<std::invalid_argument>(
                       [&] { element_mass<of>(places, aluminium(dimension), 17); }),
-                  degenerate(shape));
+                  degenerate_element(shape));
       });
     }
   }
@@ -345,7 +346,7 @@ TEST(SolidElement, ReentrantQuadrilateralThrows) {
   dart << 0, 0, 0, 1, 0, 0, 0.1, 0.1, 0, 0, 1, 0;
   EXPECT_EQ(message_of<std::invalid_argument>(
                 [&] { element_matrices(ElementShape::quad4, dart, aluminium(2), 17); }),
-            degenerate(ElementShape::quad4));
+            degenerate_element(ElementShape::quad4));
 }
 
 TEST(SolidElement, LawOfAnotherDimensionThrows) {
