@@ -183,7 +183,7 @@ void for_points_of_side(const Mesh& mesh, const MeshSections& sections, const El
     const int within = nodes.nodes[static_cast<std::size_t>(k)];
     places.row(k) = mesh.nodes.row(mesh.nodes_of(element)[static_cast<std::size_t>(within)]);
   }
-  for (const QuadraturePoint& point : side_points(shape)) {
+  for (const IntegrationPoint& point : side_points(shape)) {
     const ShapeFunctions functions = shape_functions(shape, point.place);
     const Eigen::Vector3d first = places.transpose() * functions.derivatives.col(0);
     Eigen::Vector3d normal;

@@ -6,12 +6,12 @@
 namespace stridor {
 namespace {
 
-using Rule = std::vector<QuadraturePoint>;
+using Rule = std::vector<IntegrationPoint>;
 
 /// Gauss points of [−1, 1]: exact to degree 2 n − 1.
 Rule gauss_line(int num_points) {
   const auto point = [](double place, double weight) {
-    return QuadraturePoint{{place, 0.0, 0.0}, weight};
+    return IntegrationPoint{{place, 0.0, 0.0}, weight};
   };
   if (num_points == 1) return {point(0.0, 2.0)};
   if (num_points == 2) return {point(-std::sqrt(1.0 / 3.0), 1.0), point(std::sqrt(1.0 / 3.0), 1.0)};
@@ -22,8 +22,8 @@ Rule gauss_line(int num_points) {
 /// Product of a rule of the first coordinates with one of a line for coordinate `direction`.
 Rule times_line(const Rule& base, const Rule& line, Eigen::Index direction) {
   Rule product;
-  for (const QuadraturePoint& a : base) {
-    for (const QuadraturePoint& b : line) {
+  for (const IntegrationPoint& a : base) {
+    for (const IntegrationPoint& b : line) {
       product.push_back({a.place, a.weight * b.weight});
       product.back().place(direction) = b.place.x();
     }
@@ -175,7 +175,7 @@ constexpr std::size_t num_side_shapes = 6;
 
 }  // namespace
 
-const std::vector<QuadraturePoint>& stiffness_points(ElementShape shape, Integration integration) {
+const std::vector<IntegrationPoint>& stiffness_points(ElementShape shape, Integration integration) {
   static const auto rules = [] {
     std::array<std::array<Rule, 2>, num_element_shapes> all;
     for (std::size_t k = 0; k < all.size(); ++k) {
@@ -188,7 +188,7 @@ const std::vector<QuadraturePoint>& stiffness_points(ElementShape shape, Integra
   return rules[static_cast<std::size_t>(shape)][static_cast<std::size_t>(integration)];
 }
 
-const std::vector<QuadraturePoint>& mass_points(ElementShape shape) {
+const std::vector<IntegrationPoint>& mass_points(ElementShape shape) {
   static const auto rules = [] {
     std::array<Rule, num_element_shapes> all;
     for (std::size_t k = 0; k < all.size(); ++k)
@@ -198,7 +198,7 @@ const std::vector<QuadraturePoint>& mass_points(ElementShape shape) {
   return rules[static_cast<std::size_t>(shape)];
 }
 
-const std::vector<QuadraturePoint>& side_points(SideShape shape) {
+const std::vector<IntegrationPoint>& side_points(SideShape shape) {
   static const auto rules = [] {
     std::array<Rule, num_side_shapes> all;
     for (std::size_t k = 0; k < all.size(); ++k)

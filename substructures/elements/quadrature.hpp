@@ -11,7 +11,7 @@
 namespace stridor {
 
 /// A point in natural coordinates with its weight; the weights of an element sum to natural_size().
-struct QuadraturePoint {
+struct IntegrationPoint {
   Eigen::Vector3d place;
   double weight;
 };
@@ -38,14 +38,14 @@ enum class Integration : std::uint8_t {
 ///
 /// Exact for the products of derivatives where the Jacobian is constant, except the reduced ones
 /// and wedge15, whose corner functions have terms of one degree more in the triangle.
-const std::vector<QuadraturePoint>& stiffness_points(ElementShape shape, Integration integration);
+const std::vector<IntegrationPoint>& stiffness_points(ElementShape shape, Integration integration);
 
 /// Points for the mass: exact for products of shape functions where the Jacobian is constant, with
 /// positive weights (tri6 6, tet10 15, quad8 9, hex20 27, wedge15 6 x 3).
-const std::vector<QuadraturePoint>& mass_points(ElementShape shape);
+const std::vector<IntegrationPoint>& mass_points(ElementShape shape);
 
 /// Points for loads on sides and their areas: exact for shape functions times the area element of
 /// plane sides (line2 2, line3 3, tri3 3, tri6 6, quad4 4, quad8 9).
-const std::vector<QuadraturePoint>& side_points(SideShape shape);
+const std::vector<IntegrationPoint>& side_points(SideShape shape);
 
 }  // namespace stridor

@@ -23,15 +23,15 @@ struct TablePoint {
 };
 
 template <ElementShape shape>
-TablePoint<shape> table_point(const QuadraturePoint& point) {
+TablePoint<shape> table_point(const IntegrationPoint& point) {
   const ShapeFunctions functions = shape_functions(shape, point.place);
   return {point.weight, functions.values, functions.derivatives.transpose(), point.place};
 }
 
 template <ElementShape shape>
-std::vector<TablePoint<shape>> tabulate(const std::vector<QuadraturePoint>& points) {
+std::vector<TablePoint<shape>> tabulate(const std::vector<IntegrationPoint>& points) {
   std::vector<TablePoint<shape>> table;
-  for (const QuadraturePoint& point : points) table.push_back(table_point<shape>(point));
+  for (const IntegrationPoint& point : points) table.push_back(table_point<shape>(point));
   return table;
 }
 

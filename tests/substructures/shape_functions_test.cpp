@@ -181,7 +181,7 @@ enum class Degrees { total, each, wedge };
 
 /// Largest difference from the integrals of all monomials up to a degree: of the sum of exponents,
 /// of each exponent, or of the sum of two and of the third.
-double quadrature_error(ElementShape shape, const std::vector<QuadraturePoint>& rule,
+double quadrature_error(ElementShape shape, const std::vector<IntegrationPoint>& rule,
                         Degrees degrees, int degree, int through = 0) {
   const int third = facts_of(shape).dimension == 2 ? 0
                     : degrees == Degrees::wedge    ? through
@@ -205,16 +205,16 @@ double quadrature_error(ElementShape shape, const std::vector<QuadraturePoint>& 
 TEST(Quadrature, IsExactForThePolynomialsOfItsDegreeAndNoMore) {
   struct Case {
     ElementShape shape;
-    const std::vector<QuadraturePoint>& rule;
+    const std::vector<IntegrationPoint>& rule;
     std::size_t num_points;
     Degrees degrees;
     int degree, through;
   };
   using enum ElementShape;
-  const auto stiffness = [](ElementShape shape) -> const std::vector<QuadraturePoint>& {
+  const auto stiffness = [](ElementShape shape) -> const std::vector<IntegrationPoint>& {
     return stiffness_points(shape, Integration::full);
   };
-  const auto reduced = [](ElementShape shape) -> const std::vector<QuadraturePoint>& {
+  const auto reduced = [](ElementShape shape) -> const std::vector<IntegrationPoint>& {
     return stiffness_points(shape, Integration::reduced);
   };
   for (const Case& of : {Case{tri3, stiffness(tri3), 1, Degrees::total, 1, 0},
@@ -245,7 +245,7 @@ TEST(Quadrature, IsExactForThePolynomialsOfItsDegreeAndNoMore) {
               few_operations * eps);
     EXPECT_GT(quadrature_error(of.shape, of.rule, of.degrees, of.degree + 1, of.through), 1e-6);
     double size = 0.0;
-    for (const QuadraturePoint& point : of.rule) {
+    for (const IntegrationPoint& point : of.rule) {
       EXPECT_GT(point.weight, 0.0);
       size += point.weight;
     }
