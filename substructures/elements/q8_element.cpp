@@ -11,13 +11,13 @@ namespace {
 constexpr std::array<double, 8> node_xi{-1, 1, 1, -1, 0, 1, 0, -1};
 constexpr std::array<double, 8> node_eta{-1, -1, 1, 1, -1, 0, 1, 0};
 
-struct ShapeFunctions {
+struct Q8Shape {
   Eigen::Matrix<double, 8, 1> value;
   Eigen::Matrix<double, 8, 2> gradient;  // with respect to (ξ, η)
 };
 
-ShapeFunctions shape_functions(double xi, double eta) {
-  ShapeFunctions shape;
+Q8Shape q8_shape(double xi, double eta) {
+  Q8Shape shape;
   for (int i = 0; i < 8; ++i) {
     const double a = node_xi[static_cast<std::size_t>(i)];
     const double b = node_eta[static_cast<std::size_t>(i)];
@@ -53,7 +53,7 @@ Q8Element make_q8_element(const Q8Nodes& nodes, const ElasticMaterial& material,
   Q8Element element{Q8Matrix::Zero(), Q8Matrix::Zero()};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
-      const ShapeFunctions shape = shape_functions(points[i], points[j]);
+      const Q8Shape shape = q8_shape(points[i], points[j]);
       const Eigen::Matrix2d jacobian = shape.gradient.transpose() * nodes;
       const double determinant = jacobian.determinant();
       if (!(determinant > 0.0)) {
