@@ -54,14 +54,15 @@ Eigen::MatrixXd corners_of(ElementShape shape) {
 TEST(ElementShapes, NormalsOfSidesPointOutwards) {
   for (const ElementShape shape : every_shape) {
     const Eigen::MatrixXd corners = corners_of(shape);
-    const Eigen::RowVector3d middle = corners.colwise().mean();
+    const Eigen::Vector3d middle = corners.colwise().mean().transpose();
     for (const SideNodes& side : facts_of(shape).sides) {
-      const Eigen::RowVector3d a = corners.row(side.nodes[0]);
-      const Eigen::RowVector3d b = corners.row(side.nodes[1]);
-      Eigen::RowVector3d normal(b.y() - a.y(), a.x() - b.x(), 0.0);
-      if (facts_of(shape).dimension == 3)
-        normal =
-            (b - a).transpose().cross((corners.row(side.nodes[2]) - b).transpose()).transpose();
+      const Eigen::Vector3d a = corners.row(side.nodes[0]).transpose();
+      const Eigen::Vector3d b = corners.row(side.nodes[1]).transpose();
+      Eigen::Vector3d normal(b.y() - a.y(), a.x() - b.x(), 0.0);
+      if (facts_of(shape).dimension == 3) {
+        const Eigen::Vector3d c = corners.row(side.nodes[2]).transpose();
+        normal = (b - a).cross(c - b);
+      }
       EXPECT_GT(normal.dot(a - middle), 0.0) << facts_of(shape).name;
     }
   }
