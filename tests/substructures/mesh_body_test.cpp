@@ -212,8 +212,8 @@ TEST(MeshBody, InSpaceBendsAsASlenderBeam) {
   body.supports = {{"root", {{"root"}, {}}}};
   body.points["tip"].at = {length, 0.0, 0.0};
   const BodyMatrices matrices = body.make();
-  const Eigen::VectorXd spectrum = test::dense_spectrum(Eigen::MatrixXd(matrices.stiffness),
-                                                         Eigen::MatrixXd(matrices.mass));
+  const Eigen::VectorXd spectrum =
+      test::dense_spectrum(Eigen::MatrixXd(matrices.stiffness), Eigen::MatrixXd(matrices.mass));
   const double expected =
       std::pow(1.875104, 2) * std::sqrt(2e11 * side * side / 12.0 / 7800.0) / (length * length);
   EXPECT_NEAR(std::sqrt(spectrum(0)), expected, 5e-3 * expected);
@@ -251,7 +251,7 @@ TEST(MeshBody, WhatDoesNotFitTheMeshIsRefusedWithItsKey) {
               HasSubstr("surfaces.far: no outer side of an element lies there; the mesh reaches"));
   EXPECT_THAT(
       refusal([](auto& b) { b.supports["a"].on = {"topp"}; }),
-      HasSubstr("supports.a.on: there is no surface or node set 'topp'; did you mean 'top'?"));
+      HasSubstr("supports.a.on: there is no surface or node set 'topp', did you mean 'top'?"));
   EXPECT_THAT(refusal([](auto& b) { b.guided->on = {"rail"}; }),
               HasSubstr("guided.on: there is no"));
   EXPECT_THAT(refusal([](auto& b) {
