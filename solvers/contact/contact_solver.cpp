@@ -135,7 +135,7 @@ ContactSolver::ContactSolver(int num_contacts, ContactSolverParameters parameter
       factor_(num_contacts + num_planar),
       jamming_(num_contacts + num_planar),
       num_lines_(2 * num_contacts),
-      all_forces_(Eigen::VectorXd::Zero(num_planar > 0 ? delassus_.rows() : 0)) {}
+      left_(Eigen::VectorXd::Zero(num_planar > 0 ? delassus_.rows() : 0)) {}
 
 ContactAnswer ContactSolver::solve(std::span<LocalProblem> contacts) {
   if (contacts.size() == 1) {

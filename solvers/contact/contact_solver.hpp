@@ -142,8 +142,6 @@ class ContactSolver {
   ContactAnswer iterate(std::span<LocalProblem> contacts);
   ContactAnswer solve_bilateral(std::span<LocalProblem> contacts, std::span<PlanarProblem> planar);
   ContactAnswer iterate(std::span<LocalProblem> contacts, std::span<PlanarProblem> planar);
-  /// Known penetration or slip of a row under the forces of all contacts but those of its own block.
-  double known(double without, Eigen::Index row, Eigen::Index first, Eigen::Index width) const;
 
   ContactSolverParameters parameters_;
   Eigen::MatrixXd delassus_;
@@ -153,7 +151,7 @@ class ContactSolver {
   Eigen::PartialPivLU<Eigen::MatrixXd> factor_;
   JammingTest jamming_;
   Eigen::Index num_lines_;     ///< rows of contacts with one tangent
-  Eigen::VectorXd all_forces_; ///< of all rows; empty without contacts of two tangents
+  Eigen::VectorXd left_;       ///< of gaps and slips, scratch; empty without contacts of two tangents
 };
 
 }  // namespace stridor

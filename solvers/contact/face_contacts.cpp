@@ -39,7 +39,8 @@ void FacePoint::direct(const FacePorts& ports) {
 }
 
 double FacePoint::predicted_gap() const {
-  return face_.gap(directed_at_) + normal_.dot(predicted() - directed_at_) - point_.overlap;
+  const double gap = 0.5 * directed_at_.dot(face_.normal + normal_);
+  return gap + normal_.dot(predicted() - directed_at_) - point_.overlap;
 }
 
 double FacePoint::gap_ahead() const {
@@ -49,10 +50,17 @@ double FacePoint::gap_ahead() const {
          point_.overlap;
 }
 
-void FacePoint::blocks(double step, PortBlock& master, PortBlock& slave) const {
-  Eigen::Matrix<double, num_face_ports, 3> sense, push;
-  sense << normal_, face_.along, face_.across + 0.5 * step * face_.sliding * face_.turning;
-  push << normal_, along_, face_.across;
+FacePoint::Directions FacePoint::directions(double step) const {
+  Directions made;
+  made.sense << normal_, face_.along, face_.across + 0.5 * step * face_.sliding * face_.turning;
+  made.push << normal_, along_, face_.across;
+  return made;
+}
+
+std::array<PortBlock, 2> FacePoint::blocks(double step) const {
+  const auto [sense, push] = directions(step);
+  std::array<PortBlock, 2> made;
+  auto& [master, slave] = made;
   master.body = master_;
   master.port = master_port_;
   master.count = num_face_rows;
@@ -64,6 +72,7 @@ void FacePoint::blocks(double step, PortBlock& master, PortBlock& slave) const {
   master.push.topRows<num_face_rows>() = push.topRows<num_face_rows>();
   slave.sense.topRows<3>() = sense.bottomRows<3>();
   slave.push.topRows<3>() = push.bottomRows<3>();
+  return made;
 }
 
 void FacePoint::apply(double normal, const Eigen::Vector2d& friction, double* slave_forces,
@@ -128,7 +137,7 @@ void RunningFaces::add(const ContactPoint& point, Propagator& slave, Propagator&
   face.begin(point);
   faces_.push_back(std::move(face));
   problems_.emplace_back();
-  blocks_.emplace_back();
+  compliances_.add(slave, master, slave_port, master_port, faces_.back().kinematics.num_slave_ports());
 }
 
 void RunningFaces::stand(const System& system, const Instant& at) {
@@ -159,14 +168,27 @@ void RunningFaces::stand(const System& system, const Instant& at) {
   }
 }
 
-/// A slow mode moves twelve times as far by the next step as at once.
-void RunningFaces::set_mobility(std::size_t i) {
-  constexpr double by_next = 12.0;
-  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(3, 3);
-  for (const PortBlock& a : blocks_[i])
-    for (const PortBlock& b : blocks_[i]) add_compliance(a, b, false, own);
-  faces_[i].mobility = by_next * std::max(own(1, 1), own(2, 2));
-  faces_[i].is_soft = faces_[i].compliance >= by_next * own(0, 0);
+void RunningFaces::find_answers(double step) {
+  // Where a spring and what answers at once give way to a force by less than the next step moves, an
+  // impact would give back more than 4/3, or less than 3/4, of its energy (docs/theory.md, 10.6).
+  constexpr double resolved = 1.0;
+  for (RunningFace& face : faces_) {
+    FacePoint undeformed = face.kinematics;
+    undeformed.direct(FacePorts::Zero());
+    const std::array<PortBlock, 2> blocks = undeformed.blocks(step);
+    Eigen::MatrixXd at_once = Eigen::MatrixXd::Zero(3, 3);
+    Eigen::MatrixXd next = Eigen::MatrixXd::Zero(3, 3);
+    for (const PortBlock& a : blocks) {
+      for (const PortBlock& b : blocks) {
+        add_compliance(a, b, false, at_once);
+        add_compliance(a, b, true, next);
+      }
+    }
+    next -= at_once;
+    face.mobility = std::max(next(1, 1), next(2, 2));
+    face.is_soft = face.compliance > 0.0 &&
+                   next(0, 0) <= resolved * (at_once(0, 0) + face.compliance);
+  }
 }
 
 void RunningFaces::set_coefficients(RunningFace& face, PlanarProblem& problem,
@@ -195,7 +217,7 @@ void RunningFaces::pose(const Instant& at) {
     PlanarProblem& problem = problems_[i];
     FacePoint& kinematics = face.kinematics;
     kinematics.find();
-    face.predicts_ahead = false;
+    face.predicts_ahead = face.seeks_gap_ahead = false;
     problem.is_unilateral = at.now >= face.unilateral_from;
     problem.penetration = -kinematics.predicted_gap();
     const FaceKinematics& of = kinematics.face();
@@ -212,17 +234,23 @@ void RunningFaces::pose(const Instant& at) {
       problem.direction = velocity.isZero(0.0) ? Eigen::Vector2d(1.0, 0.0) : velocity.normalized();
     }
     set_coefficients(face, problem, face.rise_at(at.sought));
-    kinematics.blocks(step_, blocks_[i][0], blocks_[i][1]);
-    if (at.has_feedthrough && problem.is_unilateral) set_mobility(i);
+    const FacePoint::Directions directions = kinematics.directions(step_);
+    compliances_.direct(i, directions.sense, directions.push);
   }
+}
+
+bool RunningFaces::is_settling(std::size_t i) const {
+  constexpr int steady_after = 6;
+  return faces_[i].steady_steps < steady_after;
 }
 
 bool RunningFaces::is_unsteady(std::size_t i) const {
   const RunningFace& face = faces_[i];
   const PlanarProblem& problem = problems_[i];
   if (!problem.is_unilateral) return false;
-  constexpr int steady_after = 6;
-  if (face.steady_steps < steady_after) return true;
+  if (is_settling(i)) return true;
+  // What answers at once need not hold tangents where springs hold the gaps (added_feedthrough()).
+  if (face.state == ContactState::stick) return face.compliance > 0.0;
   if (face.state != ContactState::slip) return false;
   constexpr double share = 0.25;
   const double speed = face.velocities[0].norm();
@@ -243,7 +271,10 @@ void RunningFaces::pose_ahead(std::size_t i, const Instant& at) {
   const FacePoint& kinematics = face.kinematics;
   const FaceKinematics& of = kinematics.face();
   face.predicts_ahead = true;
-  if (!face.is_soft) problem.penetration = -kinematics.gap_ahead();
+  const bool just_sticks = face.state == ContactState::stick && !is_settling(i);
+  face.seeks_gap_ahead = !face.is_soft && !just_sticks;
+  compliances_.seek(i, face.seeks_gap_ahead, true);
+  if (face.seeks_gap_ahead) problem.penetration = -kinematics.gap_ahead();
   const FacePorts& now = kinematics.directed_at();
   problem.slip = of.slip(now, kinematics.ahead(), step_);
   if (face.state == ContactState::stick)
@@ -267,37 +298,36 @@ void RunningFaces::count_steady() {
 
 void RunningFaces::fill(ContactSolver& solver, std::span<const std::array<PortBlock, 2>> lines,
                         std::span<const char> predicts_ahead) const {
-  const auto add = [&](const std::array<PortBlock, 2>& to, const std::array<PortBlock, 2>& from,
-                       bool ahead, Eigen::Index row, Eigen::Index column) {
-    auto block = solver.delassus().block(row, column, to[0].width, from[0].width);
-    block.setZero();
-    for (const PortBlock& a : to)
-      for (const PortBlock& b : from) add_compliance(a, b, ahead, block);
-  };
-  Eigen::MatrixXd at_once(3, 3);
-  const auto keep_normal = [&](const std::array<PortBlock, 2>& to,
-                               const std::array<PortBlock, 2>& from, Eigen::Index row,
-                               Eigen::Index column) {
-    at_once.setZero();
-    for (const PortBlock& a : to)
-      for (const PortBlock& b : from) add_compliance(a, b, false, at_once.leftCols(b.width));
-    solver.delassus().block(row, column, 1, from[0].width) = at_once.topLeftCorner(1, from[0].width);
-  };
+  const Eigen::Index first = solver.first_planar(0);
+  const Eigen::Index size = solver.delassus().rows() - first;
+  compliances_.fill(solver.delassus().bottomRightCorner(size, size));
   for (std::size_t i = 0; i < faces_.size(); ++i) {
     const Eigen::Index row = solver.first_planar(static_cast<int>(i));
-    const bool ahead = faces_[i].predicts_ahead;
-    for (std::size_t j = 0; j < faces_.size(); ++j) {
-      const Eigen::Index column = solver.first_planar(static_cast<int>(j));
-      add(blocks_[i], blocks_[j], ahead, row, column);
-      if (ahead && faces_[i].is_soft) keep_normal(blocks_[i], blocks_[j], row, column);
-    }
-    for (std::size_t j = 0; j < lines.size(); ++j) {
-      const Eigen::Index column = 2 * static_cast<Eigen::Index>(j);
-      add(blocks_[i], lines[j], ahead, row, column);
-      if (ahead && faces_[i].is_soft) keep_normal(blocks_[i], lines[j], row, column);
-      add(lines[j], blocks_[i], predicts_ahead[j] != 0, 2 * static_cast<Eigen::Index>(j), row);
-    }
     solver.delassus()(row, row) += faces_[i].compliance;
+    if (!lines.empty()) fill_with_lines(i, solver, lines, predicts_ahead);
+  }
+}
+
+void RunningFaces::fill_with_lines(std::size_t face, ContactSolver& solver,
+                                   std::span<const std::array<PortBlock, 2>> lines,
+                                   std::span<const char> predicts_ahead) const {
+  const RunningFace& of = faces_[face];
+  const std::array<PortBlock, 2> own = of.kinematics.blocks(step_);
+  const Eigen::Index row = solver.first_planar(static_cast<int>(face));
+  const auto put = [&](const std::array<PortBlock, 2>& to, const std::array<PortBlock, 2>& from,
+                       bool ahead, auto block) {
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(to[0].width, from[0].width);
+    for (const PortBlock& a : to)
+      for (const PortBlock& b : from) add_compliance(a, b, ahead, sum);
+    block = sum.topRows(block.rows());
+  };
+  for (std::size_t j = 0; j < lines.size(); ++j) {
+    const Eigen::Index column = 2 * static_cast<Eigen::Index>(j);
+    Eigen::MatrixXd& delassus = solver.delassus();
+    put(own, lines[j], of.predicts_ahead, delassus.block(row, column, 3, 2));
+    if (of.predicts_ahead && !of.seeks_gap_ahead)
+      put(own, lines[j], false, delassus.block(row, column, 1, 2));
+    put(lines[j], own, predicts_ahead[j] != 0, delassus.block(column, row, 2, 3));
   }
 }
 

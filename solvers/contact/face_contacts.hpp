@@ -8,6 +8,7 @@
 
 #include "coupling/kinematics/face_kinematics.hpp"
 #include "solvers/contact/contact_record.hpp"
+#include "solvers/contact/face_compliance.hpp"
 #include "solvers/contact/port_block.hpp"
 
 namespace stridor {
@@ -44,9 +45,15 @@ class FacePoint {
   const FacePorts& normal() const { return normal_; }
   const FacePorts& along() const { return along_; }
 
-  /// Its blocks at the master and at the slave.
+  /// Gap, and slip with the opposite sign, per displacement of the ports; force per unit of λ_n and of
+  /// friction.
+  struct Directions {
+    FaceCompliances::Directions sense, push;
+  };
   /// @param step h, s: slip in a step turns with the displacement, ½ h Ω r c
-  void blocks(double step, PortBlock& master, PortBlock& slave) const;
+  Directions directions(double step) const;
+  /// The same at the master and at the slave.
+  std::array<PortBlock, 2> blocks(double step) const;
   /// Writes its forces on the ports of either body.
   void apply(double normal, const Eigen::Vector2d& friction, double* slave_forces,
              double* master_forces) const;
@@ -81,8 +88,11 @@ struct RunningFace : ContactRecord {
   Eigen::Vector2d crept = Eigen::Vector2d::Zero();
 
   // Scratch of one step.
+  bool seeks_gap_ahead = false;  ///< at t_{n+1}, besides the slip; only where predicts_ahead
+
+  // Of bodies at rest and the step.
   bool is_soft = false;    ///< on a spring that a step resolves
-  double mobility = 0.0;   ///< displacement along a tangent by the next step per force, m/N, about
+  double mobility = 0.0;   ///< displacement along a tangent in the next step per force, m/N
 
   const ContactPoint& point() const { return kinematics.point(); }
   /// Friction as a vector, along the circumference and along the radius.
@@ -124,14 +134,17 @@ class RunningFaces {
 
   void add(const ContactPoint& point, Propagator& slave, Propagator& master, int slave_port,
            int master_port);
+  /// Takes the answers of the bodies to forces, once they are known.
+  void find_answers(double step);
   /// At the start, from the initial motion of the bodies.
   /// @param at as of pose()
   void stand(const System& system, const Instant& at);
   /// Poses the problems for the forces at t_n.
   void pose(const Instant& at);
-  /// Whether a contact is to be solved at t_{n+1}: as those with one tangent, and where friction could
-  /// change more than a quarter of the sliding velocity within a step. The gap of one on a spring that a
-  /// step resolves stays that of t_n: so it rebounds as the spring does.
+  /// Whether a contact is to be solved at t_{n+1}: as those with one tangent, where friction could
+  /// change more than a quarter of the sliding velocity within a step, and where it sticks while springs
+  /// hold the gaps. The gap of one on a spring that a step resolves stays that of t_n: so it rebounds as
+  /// the spring does.
   bool is_unsteady(std::size_t i) const;
   bool has_changed(std::size_t i) const;
   /// Poses one anew, with gap and slip at t_{n+1} under forces that are constant from t_n on.
@@ -149,12 +162,16 @@ class RunningFaces {
   void follow(double step);
 
  private:
-  void set_mobility(std::size_t i);
+  bool is_settling(std::size_t i) const;
+  /// Rows and columns of a contact against those with one tangent.
+  void fill_with_lines(std::size_t face, ContactSolver& solver,
+                       std::span<const std::array<PortBlock, 2>> lines,
+                       std::span<const char> predicts_ahead) const;
   void set_coefficients(RunningFace& face, PlanarProblem& problem, double rise) const;
 
   std::vector<RunningFace> faces_;
   std::vector<PlanarProblem> problems_;
-  std::vector<std::array<PortBlock, 2>> blocks_;
+  FaceCompliances compliances_;
   double step_ = 0.0;
 };
 

@@ -5,10 +5,23 @@
 #include <limits>
 #include <optional>
 
+#include "core/clones.hpp"
 #include "solvers/contact/contact_solver.hpp"
 
 namespace stridor {
 namespace {
+
+/// Takes forces times the columns of a contact, one after the other, from what is left of gaps and slips.
+STRIDOR_CLONES
+void take_away(std::size_t n, const double* __restrict columns, const double* __restrict forces,
+               std::size_t num_forces, double* __restrict left) {
+  if (num_forces == 3) {
+    for (std::size_t i = 0; i < n; ++i)
+      left[i] -= forces[0] * columns[i] + forces[1] * columns[n + i] + forces[2] * columns[2 * n + i];
+    return;
+  }
+  for (std::size_t i = 0; i < n; ++i) left[i] -= forces[0] * columns[i] + forces[1] * columns[n + i];
+}
 
 /// μ of a contact that slips by a distance, and its derivative by the distance.
 struct SlipFriction {
@@ -16,71 +29,117 @@ struct SlipFriction {
   double slope;
 };
 
-SlipFriction friction_over(const PlanarProblem& contact, double distance) {
+inline SlipFriction friction_over(const PlanarProblem& contact, double distance) {
   if (contact.creep == nullptr) return {contact.sliding_friction, 0.0};
   const double speed = distance / contact.step;
   return {contact.friction_factor * sliding_friction(*contact.creep, speed),
           contact.friction_factor * sliding_friction_slope(*contact.creep, speed) / contact.step};
 }
 
+/// What is left of a contact when its gap is closed: (S + η) τ = b, λ = (p* − D_nt τ)/D_nn.
+struct ClosedContact {
+  Eigen::Matrix2d tangents;      ///< S = D_tt − D_tn D_nt/D_nn
+  Eigen::Vector2d slip;          ///< b = σ* − D_tn p*/D_nn
+  Eigen::Vector2d to_gap;        ///< D_nt/D_nn
+  double pressure;               ///< p*/D_nn
+
+  ClosedContact(const Eigen::Matrix3d& delassus, const Eigen::Vector3d& known) {
+    const double soft = 1.0 / delassus(0, 0);
+    pressure = known(0) * soft;
+    to_gap << delassus(0, 1) * soft, delassus(0, 2) * soft;
+    for (int r = 0; r < 2; ++r) {
+      slip(r) = known(r + 1) - delassus(r + 1, 0) * pressure;
+      for (int c = 0; c < 2; ++c)
+        tangents(r, c) = delassus(r + 1, c + 1) - delassus(r + 1, 0) * to_gap(c);
+    }
+  }
+  double normal(const Eigen::Vector2d& friction) const { return pressure - to_gap.dot(friction); }
+  /// (S + η)⁻¹ x
+  Eigen::Vector2d friction(double eta, const Eigen::Vector2d& x) const {
+    const double a = tangents(0, 0) + eta;
+    const double d = tangents(1, 1) + eta;
+    const double b = tangents(0, 1);
+    const double c = tangents(1, 0);
+    const double share = 1.0 / (a * d - b * c);
+    return {share * (d * x(0) - b * x(1)), share * (a * x(1) - c * x(0))};
+  }
+};
+
 /// Forces for one η, and how far their friction is below its limit: χ = μ λ/|τ| − 1, nearly linear
 /// in η, with its derivative.
 struct SlipTrial {
-  Eigen::Vector3d forces;
+  Eigen::Vector2d friction;
+  double normal;
   double below;
   double slope;
 };
 
-SlipTrial try_slip(const PlanarProblem& contact, const Eigen::Matrix3d& delassus,
-                   const Eigen::Vector3d& known, double eta) {
-  Eigen::Matrix3d matrix = delassus;
-  matrix(1, 1) += eta;
-  matrix(2, 2) += eta;
-  const Eigen::Matrix3d inverse = matrix.inverse();
-  SlipTrial trial{inverse * known, 0.0, 0.0};
-  const Eigen::Vector2d tau = trial.forces.tail<2>();
-  const Eigen::Vector3d change = -inverse.rightCols<2>() * tau;
+SlipTrial try_slip(const PlanarProblem& contact, const ClosedContact& closed, double eta) {
+  SlipTrial trial;
+  const Eigen::Vector2d tau = trial.friction = closed.friction(eta, closed.slip);
+  trial.normal = closed.normal(tau);
+  const Eigen::Vector2d change = -closed.friction(eta, tau);
   const double size = tau.norm();
-  const double size_change = tau.dot(change.tail<2>()) / size;
+  const double size_change = tau.dot(change) / size;
   const SlipFriction friction = friction_over(contact, eta * size);
-  const double share = trial.forces(0) / size;
+  const double share = trial.normal / size;
   trial.below = friction.coefficient * share - 1.0;
-  trial.slope = friction.coefficient * (change(0) - share * size_change) / size +
-                friction.slope * (size + eta * size_change) * share;
+  trial.slope =
+      -friction.coefficient * (closed.to_gap.dot(change) + share * size_change) / size +
+      friction.slope * (size + eta * size_change) * share;
   return trial;
 }
 
-/// η of a contact that slips, by Newton's method in a bracket.
-std::optional<Eigen::Vector3d> slip_forces(const PlanarProblem& contact,
-                                           const Eigen::Matrix3d& delassus,
-                                           const Eigen::Vector3d& known) {
+/// η of the forces from which the iteration starts; none where they do not slip.
+std::optional<double> guess_of(const PlanarProblem& contact, const Eigen::Matrix3d& delassus,
+                               const Eigen::Vector3d& known) {
+  if (contact.state != ContactState::slip || contact.tangential.isZero(0.0)) return std::nullopt;
+  const Eigen::Vector2d& tau = contact.tangential;
+  Eigen::Vector2d slip;
+  for (int r = 0; r < 2; ++r) {
+    slip(r) = known(r + 1) - delassus(r + 1, 0) * contact.normal - delassus(r + 1, 1) * tau(0) -
+              delassus(r + 1, 2) * tau(1);
+  }
+  return std::sqrt(slip.squaredNorm() / tau.squaredNorm());
+}
+
+/// η of a contact that slips, by Newton's method in a bracket. @returns whether there is one
+bool slip(PlanarProblem& contact, const Eigen::Matrix3d& delassus, const Eigen::Vector3d& known,
+          const ClosedContact& closed, std::optional<double> guess) {
   constexpr int max_iterations = 200;
   constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
+  // The next step of Newton's method is then below rounding.
+  constexpr double nearly = 1e-9;
   double low = 0.0;
   double high = std::numeric_limits<double>::infinity();
   const double scale = 0.5 * (delassus(1, 1) + delassus(2, 2));
-  // Without the response of slip to forces η is |σ*|/(μ λ).
-  const double distance = known.tail<2>().norm();
-  const double limit =
-      friction_over(contact, distance).coefficient * known(0) / delassus(0, 0);
-  double eta = limit > 0.0 ? distance / limit : scale;
-  SlipTrial trial = try_slip(contact, delassus, known, eta);
+  double eta = guess.value_or(0.0);
+  if (!(eta > 0.0)) {
+    // Without the response of slip to forces η is |σ*|/(μ λ).
+    const double distance = known.tail<2>().norm();
+    const double limit = friction_over(contact, distance).coefficient * closed.pressure;
+    eta = limit > 0.0 ? distance / limit : scale;
+  }
+  SlipTrial trial = try_slip(contact, closed, eta);
   for (int i = 0; i < max_iterations; ++i) {
-    if (std::isnan(trial.below)) return std::nullopt;
+    if (std::isnan(trial.below)) return false;
     (trial.below > 0.0 ? high : low) = eta;
     double next = eta - trial.below / trial.slope;
     if (!(next > low && next < high))
       next = std::isinf(high) ? 2.0 * eta + scale : 0.5 * (low + high);
-    if (std::abs(next - eta) <= rounding * eta || trial.below == 0.0) break;
+    const double change = std::abs(next - eta);
+    if (change <= rounding * eta || trial.below == 0.0) break;
     eta = next;
-    trial = try_slip(contact, delassus, known, eta);
+    trial = try_slip(contact, closed, eta);
+    if (change <= nearly * eta && contact.creep == nullptr) break;
   }
-  if (!(trial.forces(0) > 0.0)) return std::nullopt;
+  if (!(trial.normal > 0.0)) return false;
   // Friction exactly at its limit.
-  const double size = trial.forces.tail<2>().norm();
+  const double size = trial.friction.norm();
   const double coefficient = friction_over(contact, eta * size).coefficient;
-  trial.forces.tail<2>() *= coefficient * trial.forces(0) / size;
-  return trial.forces;
+  contact.normal = trial.normal;
+  contact.tangential = (coefficient * trial.normal / size) * trial.friction;
+  return true;
 }
 
 /// Friction in a direction that is given; λ_n of either sign.
@@ -98,47 +157,39 @@ bool slide_on(PlanarProblem& contact, const Eigen::Matrix3d& delassus, double pe
 bool solve_planar(PlanarProblem& contact, const Eigen::Matrix3d& delassus,
                   const Eigen::Vector3d& known) {
   if (!contact.is_unilateral) return slide_on(contact, delassus, known(0));
+  const std::optional<double> guess = guess_of(contact, delassus, known);
   contact.normal = 0.0;
   contact.tangential.setZero();
   contact.state = ContactState::open;
   if (!(known(0) > 0.0)) return !known.hasNaN();
   contact.state = ContactState::slip;
+  if (!(delassus(0, 0) > 0.0)) return false;
+  const ClosedContact closed(delassus, known);
   const bool is_frictionless =
       contact.creep == nullptr ? contact.sticking_friction == 0.0
                                : contact.friction_factor == 0.0 || contact.creep->is_frictionless();
   if (is_frictionless) {
-    contact.normal = known(0) / delassus(0, 0);
-    return delassus(0, 0) > 0.0;
+    contact.normal = closed.pressure;
+    return true;
   }
   if (contact.creep == nullptr) {
-    const Eigen::Vector3d sticking = delassus.inverse() * known;
-    if (sticking(0) > 0.0 &&
-        sticking.tail<2>().norm() <= contact.sticking_friction * sticking(0)) {
-      contact.normal = sticking(0);
-      contact.tangential = sticking.tail<2>();
+    const Eigen::Vector2d sticking = closed.friction(0.0, closed.slip);
+    const double normal = closed.normal(sticking);
+    if (normal > 0.0 && sticking.norm() <= contact.sticking_friction * normal) {
+      contact.normal = normal;
+      contact.tangential = sticking;
       contact.state = ContactState::stick;
       return true;
     }
     if (contact.sliding_friction == 0.0) {
-      contact.normal = known(0) / delassus(0, 0);
-      return delassus(0, 0) > 0.0;
+      contact.normal = closed.pressure;
+      return true;
     }
   } else if (known.tail<2>().isZero(0.0) && delassus.block<2, 1>(1, 0).isZero(0.0)) {
-    contact.normal = known(0) / delassus(0, 0);
-    return delassus(0, 0) > 0.0;
+    contact.normal = closed.pressure;
+    return true;
   }
-  const std::optional<Eigen::Vector3d> forces = slip_forces(contact, delassus, known);
-  if (!forces) return false;
-  contact.normal = (*forces)(0);
-  contact.tangential = forces->tail<2>();
-  return true;
-}
-
-double ContactSolver::known(double without, Eigen::Index row, Eigen::Index first,
-                            Eigen::Index width) const {
-  double sum = without - delassus_.row(row).dot(all_forces_);
-  for (Eigen::Index k = first; k < first + width; ++k) sum += delassus_(row, k) * all_forces_(k);
-  return sum;
+  return slip(contact, delassus, known, closed, guess);
 }
 
 ContactAnswer ContactSolver::solve(std::span<LocalProblem> contacts,
@@ -200,23 +251,38 @@ ContactAnswer ContactSolver::iterate(std::span<LocalProblem> contacts,
   const auto num_planar = static_cast<int>(planar.size());
   for (int i = 0; i < num_lines; ++i) {
     const LocalProblem& contact = contacts[static_cast<std::size_t>(i)];
-    all_forces_.segment<2>(2 * i) << contact.normal, contact.tangential;
+    left_.segment<2>(2 * i) << contact.penetration, contact.slip;
   }
   for (int i = 0; i < num_planar; ++i) {
     const PlanarProblem& contact = planar[static_cast<std::size_t>(i)];
-    all_forces_.segment<3>(first_planar(i)) << contact.normal, contact.tangential;
+    left_.segment<3>(first_planar(i)) << contact.penetration, contact.slip;
+  }
+  // What is left of gaps and slips under all forces; a visit takes away what it changes.
+  const auto act = [&](Eigen::Index column, const auto& forces) {
+    if (forces.isZero(0.0)) return;
+    take_away(static_cast<std::size_t>(left_.size()), delassus_.data() + column * left_.size(),
+              forces.data(), static_cast<std::size_t>(forces.size()), left_.data());
+  };
+  for (int i = 0; i < num_lines; ++i) {
+    const LocalProblem& contact = contacts[static_cast<std::size_t>(i)];
+    act(2 * i, Eigen::Vector2d(contact.normal, contact.tangential));
+  }
+  for (int i = 0; i < num_planar; ++i) {
+    const PlanarProblem& contact = planar[static_cast<std::size_t>(i)];
+    act(first_planar(i),
+        Eigen::Vector3d(contact.normal, contact.tangential.x(), contact.tangential.y()));
   }
   ContactAnswer answer{ContactStatus::not_converged, 0, 0};
   double largest_change = 0.0;
   double largest_force = 0.0;
-  const auto take = [&](int contact, Eigen::Index row, const auto& forces) {
-    auto held = all_forces_.segment(row, forces.size());
-    const double change = (forces - held).cwiseAbs().maxCoeff();
+  const auto take = [&](int contact, Eigen::Index row, const auto& forces, const auto& before) {
+    const auto moved = (forces - before).eval();
+    const double change = moved.cwiseAbs().maxCoeff();
     if (!(change <= largest_change)) {
       largest_change = change;
       answer.contact = contact;
     }
-    held = forces;
+    act(row, moved);
     largest_force = std::max(largest_force, forces.cwiseAbs().maxCoeff());
   };
   while (answer.sweeps < parameters_.max_sweeps) {
@@ -225,22 +291,23 @@ ContactAnswer ContactSolver::iterate(std::span<LocalProblem> contacts,
     for (int i = 0; i < num_lines; ++i) {
       LocalProblem& contact = contacts[static_cast<std::size_t>(i)];
       const Eigen::Index row = 2 * i;
-      if (!solve_line(contact, delassus_.block<2, 2>(row, row),
-                      known(contact.penetration, row, row, 2),
-                      known(contact.slip, row + 1, row, 2)))
+      const Eigen::Matrix2d own = delassus_.block<2, 2>(row, row);
+      const Eigen::Vector2d before(contact.normal, contact.tangential);
+      const Eigen::Vector2d known = left_.segment<2>(row) + own.lazyProduct(before);
+      if (!solve_line(contact, own, known(0), known(1)))
         return {ContactStatus::jammed, i, answer.sweeps};
-      take(i, row, Eigen::Vector2d(contact.normal, contact.tangential));
+      take(i, row, Eigen::Vector2d(contact.normal, contact.tangential), before);
     }
     for (int i = 0; i < num_planar; ++i) {
       PlanarProblem& contact = planar[static_cast<std::size_t>(i)];
       const Eigen::Index row = first_planar(i);
-      const Eigen::Vector3d free(known(contact.penetration, row, row, 3),
-                                 known(contact.slip.x(), row + 1, row, 3),
-                                 known(contact.slip.y(), row + 2, row, 3));
-      if (!solve_planar(contact, delassus_.block<3, 3>(row, row), free))
+      const Eigen::Matrix3d own = delassus_.block<3, 3>(row, row);
+      const Eigen::Vector3d before(contact.normal, contact.tangential.x(), contact.tangential.y());
+      const Eigen::Vector3d known = left_.segment<3>(row) + own.lazyProduct(before);
+      if (!solve_planar(contact, own, known))
         return {ContactStatus::jammed, num_lines + i, answer.sweeps};
       take(num_lines + i, row,
-           Eigen::Vector3d(contact.normal, contact.tangential.x(), contact.tangential.y()));
+           Eigen::Vector3d(contact.normal, contact.tangential.x(), contact.tangential.y()), before);
     }
     if (largest_change <= parameters_.tolerance * largest_force) {
       answer.status = ContactStatus::converged;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "coupling/kinematics/face_kinematics.hpp"
 #include "solvers/integrators/contact_path.hpp"
 #include "solvers/integrators/coupled_step.hpp"
 #include "solvers/integrators/modal_recurrence.hpp"
@@ -148,6 +149,64 @@ double added_on_path(const System& system, const std::vector<BodyAnswers>& answe
              : std::numeric_limits<double>::infinity();
 }
 
+/// What a body answers along the normals of contacts on faces.
+Answers<Eigen::MatrixXd> answers_along_normals(const System& system, std::size_t body,
+                                               const BodyAnswers& modes, double step) {
+  const ModalBody& modal = system.bodies[body].modal;
+  const auto num_contacts = static_cast<Eigen::Index>(system.contacts.size());
+  Eigen::MatrixXd shares = Eigen::MatrixXd::Zero(num_contacts, modal.rows.rows());
+  for (Eigen::Index c = 0; c < num_contacts; ++c) {
+    const ContactPoint& contact = system.contacts[static_cast<std::size_t>(c)];
+    const FacePorts normal = make_face_kinematics(*contact.face).normal;
+    const auto add = [&](int on, int row, double share) {
+      if (static_cast<std::size_t>(on) == body && row >= 0) shares(c, row) += share;
+    };
+    for (int k = 0; k < num_face_rows; ++k)
+      add(contact.face->body, contact.face->rows[static_cast<std::size_t>(k)], normal[k]);
+    add(contact.slave_body, contact.slave_rows.x, normal[num_face_rows]);
+    add(contact.slave_body, contact.slave_rows.y, normal[num_face_rows + 1]);
+    add(contact.slave_body, contact.slave_rows.z, normal[num_face_rows + 2]);
+  }
+  const Eigen::MatrixXd entries = shares * modal.rows;
+  const auto seen = [&](const Eigen::MatrixXd& of_modes) -> Eigen::MatrixXd {
+    if (of_modes.cols() == 1)
+      return entries * of_modes.col(0).asDiagonal() * entries.transpose();
+    return entries * of_modes * entries.transpose();
+  };
+  Answers<Eigen::MatrixXd> found{seen(modes.feedthrough), seen(modes.next), seen(modes.added),
+                                 seen(modes.added_next)};
+  const Eigen::MatrixXd& residual = modal.residual.flexibility;
+  if (residual.size() > 0) {
+    // Of a force that changes its sign with every step, w/(2 − w).
+    found.feedthrough += step / (step + 2.0 * modal.residual.beta) *
+                         (shares * residual * shares.transpose());
+  }
+  return found;
+}
+
+/// Least δ of contacts that are all springs on faces, of which those that stick are sought at
+/// t_{n+1}; infinite where some mode cannot take as much.
+double added_on_springs(const System& system, const std::vector<BodyAnswers>& answers,
+                        double step) {
+  const auto num_contacts = static_cast<Eigen::Index>(system.contacts.size());
+  Answers<Eigen::MatrixXd> all;
+  for (Eigen::MatrixXd* one : {&all.feedthrough, &all.next, &all.added, &all.added_next})
+    one->setZero(num_contacts, num_contacts);
+  double most = std::numeric_limits<double>::infinity();
+  for (std::size_t b = 0; b < answers.size(); ++b) {
+    const Answers<Eigen::MatrixXd> one = answers_along_normals(system, b, answers[b], step);
+    all.feedthrough += one.feedthrough;
+    all.next += one.next;
+    all.added += one.added;
+    all.added_next += one.added_next;
+    most = std::min(most, answers[b].most);
+  }
+  for (Eigen::Index c = 0; c < num_contacts; ++c)
+    all.feedthrough(c, c) += system.contacts[static_cast<std::size_t>(c)].compliance();
+  const double added = least_added(all);
+  return added <= most ? added : std::numeric_limits<double>::infinity();
+}
+
 /// With the damping of one instant.
 double added_at(const System& system, const TimeParameters& time, double instant) {
   std::vector<BodyAnswers> answers;
@@ -156,11 +215,21 @@ double added_at(const System& system, const TimeParameters& time, double instant
     answers.push_back(answers_of(body, time, body.modal.damping.alpha_at(instant)));
     enough = std::max(enough, added_of_body(answers.back()));
   }
+  if (has_springs_on_faces(system, time))
+    return std::min(enough, added_on_springs(system, answers, time.step));
   if (system.contacts.size() != 1 || system.has_faces()) return enough;
   return std::min(enough, added_on_path(system, answers, time));
 }
 
 }  // namespace
+
+bool has_springs_on_faces(const System& system, const TimeParameters& time) {
+  return time.integrator == Integrator::exact && !system.contacts.empty() &&
+         std::all_of(system.contacts.begin(), system.contacts.end(),
+                     [](const ContactPoint& contact) {
+                       return contact.face && contact.compliance() > 0.0;
+                     });
+}
 
 std::optional<double> added_feedthrough(const System& system, const TimeParameters& time) {
   if (time.integrator == Integrator::central_difference && !time.retain) return std::nullopt;

@@ -239,7 +239,12 @@ void Propagator::predict_ahead() {
     ahead_[i] = ahead_displacement(rows_[i]);
     if (has_residual()) ahead_[i] += port_load_[i];
   }
-  if (has_ahead_compliance_) return;
+  find_ahead_compliances();
+}
+
+bool Propagator::find_ahead_compliances() {
+  if (has_ahead_compliance_) return false;
+  const std::size_t n = rows_.size();
   for (std::size_t j = 0; j < n; ++j) {
     for (std::size_t i = 0; i < n; ++i) {
       double& compliance = ahead_compliance_[j * n + i];
@@ -249,6 +254,7 @@ void Propagator::predict_ahead() {
     }
   }
   has_ahead_compliance_ = true;
+  return true;
 }
 
 void Propagator::renew_compliance(int port) {

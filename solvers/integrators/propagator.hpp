@@ -95,10 +95,13 @@ class Propagator {
   /// For a body with direct feedthrough: predicts its ports in the next step. Cost: a product of
   /// the length of the body for every port, and `watch` for ports that have changed their rows.
   void predict_ahead();
+  /// The compliances of predict_ahead() alone, where they are not known yet. @returns whether they
+  /// were not
+  bool find_ahead_compliances();
   /// u at the ports at t_{n+1} without forces from t_n on, m, as of the last `predict_ahead`.
   const double* ahead() const { return ahead_.data(); }
   /// Displacement of ports at t_{n+1} per force that is constant from t_n on, m/N, column after
-  /// column, likewise.
+  /// column, as of the last `predict_ahead` or `find_ahead_compliances`.
   const double* ahead_compliances() const { return ahead_compliance_.data(); }
 
   /// Makes u_n = u and its rate v, in the coordinates of the body, and predicts anew from the loads

@@ -27,6 +27,7 @@ struct MovingModes {
   Eigen::MatrixXd gaps;      ///< C
   Eigen::MatrixXd forces;    ///< E
   Eigen::MatrixXd closed;  ///< what a unit of λ closes of the gaps at once: C g Eᵀ, or C e Eᵀ
+  Eigen::MatrixXd closed_next;  ///< and in the next step, C e Eᵀ
 
   Eigen::Index size() const { return gaps.cols(); }
 };
@@ -46,7 +47,7 @@ MovingModes moving_modes(const Pencil& contacts, const System& system, const Tim
   }
   const auto n = static_cast<Eigen::Index>(moving.size());
   MovingModes modes{
-      Eigen::MatrixXd::Zero(2 * n, 2 * n), Eigen::MatrixXd::Zero(2 * n, n), {}, {}, {}};
+      Eigen::MatrixXd::Zero(2 * n, 2 * n), Eigen::MatrixXd::Zero(2 * n, n), {}, {}, {}, {}};
   const Eigen::MatrixXd ports = contacts.ports(Eigen::all, moving);
   modes.gaps = contacts.compatibility * ports;
   modes.forces = contacts.equilibrium * ports;
@@ -75,9 +76,9 @@ MovingModes moving_modes(const Pencil& contacts, const System& system, const Tim
     }
     feedthrough.block(at, at, m, m) = step.feedthrough;
   }
-  modes.closed =
-      added ? Eigen::MatrixXd(modes.gaps * feedthrough * modes.forces.transpose())
-              : Eigen::MatrixXd(modes.gaps * modes.by_force.topRows(n) * modes.forces.transpose());
+  modes.closed_next = modes.gaps * modes.by_force.topRows(n) * modes.forces.transpose();
+  modes.closed = added ? Eigen::MatrixXd(modes.gaps * feedthrough * modes.forces.transpose())
+                       : modes.closed_next;
   return modes;
 }
 
@@ -143,6 +144,16 @@ std::vector<LeftOut> left_out_modes(const Pencil& contacts, const System& system
   return found;
 }
 
+/// Constraints sought at t_{n+1}: the tangents of contacts that stick, where springs hold the gaps.
+std::vector<Eigen::Index> rows_ahead(const Pencil& contacts, const System& system,
+                                     const TimeParameters& time) {
+  std::vector<Eigen::Index> rows;
+  if (!has_springs_on_faces(system, time)) return rows;
+  for (Eigen::Index row = 0; row < contacts.compliance.size(); ++row)
+    if (contacts.compliance(row) == 0.0) rows.push_back(row);
+  return rows;
+}
+
 std::optional<double> added_of(const System& system, const TimeParameters& time) {
   // A copy of all bodies is worth avoiding.
   if (time.integrator == Integrator::central_difference && !time.retain) return std::nullopt;
@@ -170,7 +181,8 @@ std::vector<std::complex<double>> FrozenStep::factors(const Pencil& contacts) co
   if (contacts.num_modes() != make_modal_pencil(*system_).num_modes())
     throw std::invalid_argument("FrozenStep: the contacts are on other modes than the system has");
   const std::vector<LeftOut> left_out = left_out_modes(contacts, *system_, time_.step, cutoff_);
-  if (coupled_.empty()) {
+  const std::vector<Eigen::Index> ahead = rows_ahead(contacts, *system_, time_);
+  if (coupled_.empty() && ahead.empty()) {
     FrozenModes uncoupled = frozen_modes(contacts, time_, added_, cutoff_);
     uncoupled.left_out = left_out;
     // A dense decomposition of few modes takes less than the search for zeros.
@@ -183,6 +195,10 @@ std::vector<std::complex<double>> FrozenStep::factors(const Pencil& contacts) co
   const MovingModes modes = moving_modes(contacts, *system_, time_, added_, cutoff_, coupled_);
   Eigen::MatrixXd closed = modes.closed;
   for (const LeftOut& body : left_out) closed += body.share * body.closed;
+  for (const Eigen::Index row : ahead) {
+    closed.row(row) = modes.closed.row(row) + modes.closed_next.row(row);
+    for (const LeftOut& body : left_out) closed.row(row) += body.closed.row(row);
+  }
   if (contacts.compliance.size() > 0) closed.diagonal() += contacts.compliance;
   check_closed(closed);
   const Eigen::PartialPivLU<Eigen::MatrixXd> close(closed);
@@ -198,6 +214,10 @@ std::vector<std::complex<double>> FrozenStep::factors(const Pencil& contacts) co
     for (std::size_t b = 0; b < left_out.size(); ++b) {
       force.middleCols(2 * n + k * static_cast<Eigen::Index>(b), k) =
           -(1.0 - left_out[b].share) * left_out[b].closed;
+    }
+    for (const Eigen::Index row : ahead) {
+      force.row(row).setZero();
+      force.row(row).head(2 * n) = modes.gaps.row(row) * modes.free.topRows(n);
     }
   } else {
     force.leftCols(2 * n) = modes.gaps * modes.free.topRows(n);

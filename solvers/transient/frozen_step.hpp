@@ -27,7 +27,12 @@ namespace stridor {
 ///   (C e Eᵀ) λ_n = C (r_n + s d_n − k r_n),   or   (C g Eᵀ + Σ w R_b) λ_n = C r_n − Σ (1 − w) R_b
 ///   λ~, λ~_n = w λ_n + (1 − w) λ~_{n−1}
 ///
-/// A penalty adds its compliance c to the diagonal on the left, as the gap is −c λ_n then.
+/// A penalty adds its compliance c to the diagonal on the left, as the gap is −c λ_n then. Tangents
+/// that stick beside springs on faces (has_springs_on_faces()) are sought at t_{n+1}, under a force
+/// that stays:
+///
+///   (C (e + g) Eᵀ + Σ R_b) λ_n = C (r_n + s d_n − k r_n)
+///
 /// Here R_b = B_C R B_Eᵀ of the modes that body b leaves out, and λ~ is the force as they feel it.
 /// Bodies with coupled terms have the matrices of their CoupledStep in place of s, k, e and g.
 class FrozenStep {

@@ -278,9 +278,19 @@ struct Simulation::Implementation {
       fill_delassus();
       return solver.solve(local);
     }
-    if (!faces.empty()) faces.pose(instant(sought_time));
+    if (!faces.empty()) {
+      if (has_feedthrough && !is_predicting_start) find_answers_of_faces();
+      faces.pose(instant(sought_time));
+    }
     if (!has_feedthrough || is_predicting_start) return solve_posed();
     return solve_unsteady_contacts(sought_time);
+  }
+
+  /// The answers of the bodies to forces, where they are others than in the step before.
+  void find_answers_of_faces() {
+    bool has_any_changed = false;
+    for (const auto& body : bodies) has_any_changed |= body->find_ahead_compliances();
+    if (has_any_changed) faces.find_answers(step);
   }
 
   RunningFaces::Instant instant(double sought) const {
@@ -379,6 +389,14 @@ struct Simulation::Implementation {
     set_moving();
     if (apply_substrates()) set_moving();
     stand_and_solve();
+    // The forces at the start are now those of the springs at t_0, not of t_1.
+    const bool has_springs = std::any_of(records.begin(), records.end(), [](const ContactRecord* one) {
+      return one->compliance > 0.0;
+    });
+    if (has_feedthrough && !faces.empty() && has_springs) {
+      set_moving();
+      stand_and_solve();
+    }
   }
 
   /// Forces of the contacts with a force law for the present motion. @returns whether there are any

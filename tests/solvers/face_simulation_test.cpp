@@ -321,6 +321,69 @@ TEST(FaceSimulation, EveryFrictionLawBrakesByItsCoefficient) {
   }
 }
 
+/// The brake with three springs on each of two elastic pads, whose ends lift off and stick.
+System brake_on_springs() {
+  DiscModelParameters brake = test::with_elastic_pads(test::squealing_brake());
+  brake.contact.friction.coefficient = 0.4;
+  brake.contact.penalty = 5e8;
+  brake.contact.preload.reset();
+  brake.pads.piston.emplace().force = 3000.0;
+  return test::disc_system(brake);
+}
+
+/// Displacements of all modes at instants, and how much of the time contacts were open or stuck.
+struct MotionOfSprings {
+  std::vector<Eigen::VectorXd> motion;
+  double open = 0.0;
+  double sticking = 0.0;
+
+  MotionOfSprings(const System& system, double step) {
+    constexpr double end = 4e-4, interval = 2e-5;
+    Simulation simulation(system, face_time(step));
+    const auto num_steps = static_cast<std::int64_t>(std::lround(interval / step));
+    for (std::int64_t n = 1; n <= std::llround(end / interval); ++n) {
+      EXPECT_EQ(simulation.step_until(n * num_steps), StepOutcome::done) << simulation.failure();
+      motion.push_back(whole_motion(simulation, 3).displacement);
+    }
+    ContactStatistics all;
+    for (int i = 0; i < simulation.num_contacts(); ++i) all.add(simulation.statistics(i));
+    open = static_cast<double>(all.open) / static_cast<double>(all.steps);
+    sticking = static_cast<double>(all.sticking) / static_cast<double>(all.steps);
+  }
+
+  double error(const MotionOfSprings& reference) const {
+    double sum = 0.0, size = 0.0;
+    for (std::size_t k = 0; k < motion.size(); ++k) {
+      sum += (motion[k] - reference.motion[k]).squaredNorm();
+      size += (reference.motion[k] - reference.motion.front()).squaredNorm();
+    }
+    return std::sqrt(sum / size);
+  }
+};
+
+TEST(FaceSimulation, OrderIsTwoWhereSpringsLiftOffAndStick) {
+  const System system = brake_on_springs();
+  const Equilibrium equilibrium = test::face_equilibrium(system);
+  ASSERT_EQ(equilibrium.status, EquilibriumStatus::converged);
+  const FastMotion mode = fastest_growing(system, equilibrium);
+  // A motion that lifts off now and then, 5.5e-5 at 0.5 µs, and one that is open most of the time and
+  // sticks, 1.2e-3. With the δ of rigid contacts it is 7.5e-4 and 5.5e-3.
+  struct Case {
+    double amplitude, open, sticking, error, least_order, largest_order;
+  };
+  for (const Case& one : {Case{2e-6, 0.02, 0.0, 1e-4, 1.6, 2.4}, Case{5e-5, 0.5, 0.03, 2e-3, 1.3, 2.4}}) {
+    const System moving = perturbed(system, equilibrium, mode, one.amplitude);
+    const MotionOfSprings reference(moving, 3.125e-8);
+    EXPECT_GT(reference.open, one.open);
+    EXPECT_GE(reference.sticking, one.sticking);
+    const double coarse = MotionOfSprings(moving, 5e-7).error(reference);
+    const double fine = MotionOfSprings(moving, 1.25e-7).error(reference);
+    EXPECT_LT(coarse, one.error);
+    EXPECT_GT(0.5 * std::log2(coarse / fine), one.least_order) << coarse << " " << fine;
+    EXPECT_LT(0.5 * std::log2(coarse / fine), one.largest_order) << coarse << " " << fine;
+  }
+}
+
 /// Largest force, share of time without contact and r.m.s. displacement of the upper pad in a limit cycle.
 struct LimitCycle {
   double open = 0.0;   ///< part of the time
