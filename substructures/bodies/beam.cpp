@@ -8,7 +8,7 @@
 
 #include "substructures/bodies/beam_additions.hpp"
 #include "substructures/bodies/beam_mesh.hpp"
-#include "substructures/elements/q8_element.hpp"
+#include "substructures/elements/solid_element.hpp"
 
 namespace stridor {
 namespace {
@@ -30,7 +30,7 @@ struct NodeGrid {
     return before + (i % 2 == 0 ? j : j / 2);
   }
 
-  /// Nodes of the element in column 0 .. along − 1 and row 0 .. through − 1, as of Q8Nodes.
+  /// Nodes of the element in column 0 .. along − 1 and row 0 .. through − 1, as of quad8.
   std::array<int, 8> element(int column, int row) const {
     const int i = 2 * column;
     const int j = 2 * row;
@@ -38,6 +38,9 @@ struct NodeGrid {
             node(i + 1, j), node(i + 2, j + 1), node(i + 1, j + 2), node(i, j + 1)};
   }
 };
+
+/// Of an element, both directions interleaved.
+using Q8Matrix = ElementStiffness<ElementShape::quad8>;
 
 /// DoFs of an element in the order of its matrices, or `held`.
 using ElementDofs = std::array<int, 16>;
@@ -293,14 +296,19 @@ BodyMatrices make_mesh(const BeamParameters& parameters) {
 
   // All elements are congruent, so one pair of element matrices serves them all.
   const auto element_nodes = [&](int column, int row) { return grid.element(column, row); };
-  Q8Nodes corners;
+  ElementNodes<ElementShape::quad8> corners;
   for (int k = 0; k < 8; ++k)
     corners.row(k) = body.nodes.row(element_nodes(0, 0)[static_cast<std::size_t>(k)]);
   const auto& material = parameters.material;
-  Q8Element element =
-      make_q8_element(corners, {material.youngs_modulus, material.poissons_ratio, material.density},
-                      parameters.width);
-  balance_translations(element.stiffness);
+  const ElementSection section{
+      ElasticLaw(IsotropicElasticity{material.youngs_modulus, material.poissons_ratio},
+                 PlaneState::stress),
+      material.density, parameters.width};
+  Q8Matrix stiffness = element_stiffness<ElementShape::quad8>(corners, section, 1);
+  const auto nodal_mass = element_mass<ElementShape::quad8>(corners, section, 1);
+  Q8Matrix mass = Q8Matrix::Zero();
+  direction_part(mass, 0, 0) = direction_part(mass, 1, 1) = nodal_mass;
+  balance_translations(stiffness);
 
   std::vector<ElementDofs> elements;
   elements.reserve(static_cast<std::size_t>(grid.along) * static_cast<std::size_t>(grid.through));
@@ -312,13 +320,13 @@ BodyMatrices make_mesh(const BeamParameters& parameters) {
         for (const int dof : dofs_of(node)) dofs[k++] = dof;
     }
   }
-  body.mass = assemble(elements, element.mass, num_dofs);
-  body.stiffness = assemble(elements, element.stiffness, num_dofs);
+  body.mass = assemble(elements, mass, num_dofs);
+  body.stiffness = assemble(elements, stiffness, num_dofs);
   if (body.follows_drive()) {
     body.base_inertia = Eigen::VectorXd::Zero(num_dofs);
     // Held nodes move with the support: every x displacement of an element counts.
     Eigen::Vector<double, 16> inertia = Eigen::Vector<double, 16>::Zero();
-    for (Eigen::Index b = 0; b < 16; b += 2) inertia += element.mass.col(b);
+    for (Eigen::Index b = 0; b < 16; b += 2) inertia += mass.col(b);
     for (const ElementDofs& dofs : elements) {
       for (Eigen::Index a = 0; a < 16; ++a) {
         const int dof = dofs[static_cast<std::size_t>(a)];
@@ -408,10 +416,9 @@ std::vector<Problem> BeamParameters::warnings() const {
   const double ratio = length / thickness;
   if (ratio >= 1.0 && ratio <= most_slender) return {};
   return {{"thickness",
-           fmt::format("is {:g} m on a length of {:g} m: {}; check the units of both", thickness,
-                       length,
-                       ratio < 1.0 ? "thicker than long"
-                                   : fmt::format("{:.3g} times slender", ratio)),
+           fmt::format(
+               "is {:g} m on a length of {:g} m: {}; check the units of both", thickness, length,
+               ratio < 1.0 ? "thicker than long" : fmt::format("{:.3g} times slender", ratio)),
            {},
            0,
            0}};

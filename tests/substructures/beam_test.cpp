@@ -447,7 +447,7 @@ TEST(Beam, DegenerateDimensionsThrow) {
   BeamParameters beam = small_beam();
   beam.thickness = 0.0;
   EXPECT_EQ(message_of<std::invalid_argument>([&] { make_beam(beam); }),
-            "make_q8_element: the element is degenerate or turned inside out");
+            "element 1 (quad8) is degenerate or turned inside out");
 }
 
 TEST(Beam, AxisRunsFromTheOriginAtTheGivenAngle) {
