@@ -240,12 +240,14 @@ void plot_stability_map(const StabilityMapPicture& picture, const std::filesyste
   script.add_text(axis_label("largest growth rate", "1/s", colour.scale), size.width - 0.6 * line,
                   middle, "center rotate");
   script.add_caption(caption, left, below - 2.7 * line);
-  script.add(
-      "plot $map matrix using 1:2:($3 < -1e29 ? NaN : $3) with image axes x2y2, NaN, $boundary "
-      "using 1:2 with "
-      "lines linewidth 2 linecolor '#000000', $boundary using 1:2 with points pointtype 7 "
-      "pointsize "
-      "0.3 linecolor '#000000'");
+  // gnuplot fails over a block without lines.
+  const std::string boundary =
+      picture.boundary.empty()
+          ? ""
+          : ", $boundary using 1:2 with lines linewidth 2 linecolor '#000000', $boundary using 1:2 "
+            "with points pointtype 7 pointsize 0.3 linecolor '#000000'";
+  script.add("plot $map matrix using 1:2:($3 < -1e29 ? NaN : $3) with image axes x2y2, NaN{}",
+             boundary);
   draw_figure(figure, script.text(), size);
 }
 

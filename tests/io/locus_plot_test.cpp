@@ -112,6 +112,16 @@ TEST(StabilityMapPlot, IsDrawnOnLinearAndLogarithmicAxes) {
     EXPECT_THAT(svg, HasSubstr(text));
 }
 
+TEST(StabilityMapPlot, WithoutABoundaryItIsAllOneColour) {
+  const TemporaryFolder folder;
+  StabilityMapPicture picture;
+  picture.x = {"x", "1", {0.0, 1.0}, false};
+  picture.y = {"y", "1", {0.0, 1.0}, false};
+  picture.growth = {{-1.0, -2.0}, {-1.0, -3.0}};
+  plot_stability_map(picture, folder / "map.svg");
+  EXPECT_THAT(contents_of(folder / "map.svg"), HasSubstr("largest growth rate"));
+}
+
 TEST(StabilityMapPlot, DecayHasHalfOfTheColoursHoweverFastTheGrowthIs) {
   const TemporaryFolder folder;
   StabilityMapPicture picture;
