@@ -69,10 +69,18 @@ const Schema& MeshPointParameters::schema() {
                         "displacement, or a node set, of which it has that of the nodes.",
                  .optional = true})
           .check([](const P& point, std::vector<Problem>& problems) {
-            const int num_given =
-                (point.at.empty() ? 0 : 1) + (point.node ? 1 : 0) + (point.mean_of.empty() ? 0 : 1);
-            if (num_given != 1)
-              problems.push_back({"at", "give one of `at`, `node` and `mean_of`", {}, 0, 0});
+            const auto superfluous = [&](const char* key) {
+              problems.push_back({key,
+                                  "is not used: the point is given already; leave one of them out",
+                                  {},
+                                  0,
+                                  0});
+            };
+            const bool is_placed = !point.at.empty();
+            if (point.node && is_placed) superfluous("node");
+            if (!point.mean_of.empty() && (point.node || is_placed)) superfluous("mean_of");
+            if (!is_placed && !point.node && point.mean_of.empty())
+              problems.push_back({"at", "is missing; give it, `node` or `mean_of`", {}, 0, 0});
             expect_components(point.at, "at", true, problems);
           });
   return keys;
