@@ -52,12 +52,12 @@ struct LocalProblem {
 /// The same of a contact with two tangents: λ = (λ_n, τ) with friction τ along both, against slip σ
 /// when along it (docs/theory.md, 2.4). Slip is a vector; friction opposes it as such.
 struct PlanarProblem {
-  double penetration = 0.0;                         ///< as LocalProblem, m
-  Eigen::Vector2d slip = Eigen::Vector2d::Zero();   ///< likewise, m
-  double sliding_friction = 0.0;                    ///< μ while sliding
-  double sticking_friction = 0.0;                   ///< μ up to which it sticks in this step
-  Eigen::Vector2d direction{1.0, 0.0};              ///< of persistent sliding, a unit vector
-  bool is_unilateral = false;                       ///< false: persistent sliding
+  double penetration = 0.0;                        ///< as LocalProblem, m
+  Eigen::Vector2d slip = Eigen::Vector2d::Zero();  ///< likewise, m
+  double sliding_friction = 0.0;                   ///< μ while sliding
+  double sticking_friction = 0.0;                  ///< μ up to which it sticks in this step
+  Eigen::Vector2d direction{1.0, 0.0};             ///< of persistent sliding, a unit vector
+  bool is_unilateral = false;                      ///< false: persistent sliding
 
   /// A regularised law of friction in the place of the two coefficients, not owned.
   const FrictionLaw* creep = nullptr;
@@ -70,18 +70,23 @@ struct PlanarProblem {
   ContactState state = ContactState::open;
 };
 
+/// Where the search for η of a slipping contact begins: from the slip under the forces that it has,
+/// which is near where visits settle, or from what is known alone. Where several η solve a contact
+/// the former may take one and the other from visit to visit without end.
+enum class SlipStart { last_forces, known };
+
 /// The solution of one contact with two tangents under forces known. With η ≥ 0 in
 ///
 ///   [D_nn  D_nt    ] [λ]   [p*]
 ///   [D_tn  D_tt + η] [τ] = [σ*],   σ = η τ,   φ(η) = |τ| − μ λ = 0,
 ///
-/// slip is along friction by construction, and φ is a scalar equation: φ(0) > 0 where the contact does
-/// not stick, φ → −μ p*/D_nn as η grows. For a regularised law μ = μ(v) s(v) at v = η |τ|/h.
+/// slip is along friction by construction, and φ is a scalar equation: φ(0) > 0 where the contact
+/// does not stick, φ → −μ p*/D_nn as η grows. For a regularised law μ = μ(v) s(v) at v = η |τ|/h.
 /// @param delassus D, 3 x 3, with the compliance of a penalty
 /// @param known    p* and σ*
 /// @return false where no force closes the gap
 bool solve_planar(PlanarProblem& contact, const Eigen::Matrix3d& delassus,
-                  const Eigen::Vector3d& known);
+                  const Eigen::Vector3d& known, SlipStart start = SlipStart::last_forces);
 
 /// The solution of one contact with one tangent, likewise.
 /// @param delassus 2 x 2
@@ -114,19 +119,20 @@ struct ContactSolverParameters {
 ///
 /// bilateral ones gap = 0 and λ_t = χ μ λ_n. A penalty 1/k on the diagonal of W makes the gap
 /// −λ_n/k in both. Regularised friction is λ_t = μ(v) s(v) λ_n of the mean velocity v = slip/h of
-/// the step. Contacts that all slide bilaterally without it are one linear system. Otherwise the contacts are visited in turn, each solved exactly under the forces of the
-/// others (Gauss-Seidel over 2 x 2 blocks), until no force changes any more; for a single contact
-/// the first visit is the solution. Sticking is tried first, with the sign of its friction force
-/// the direction of sliding where that exceeds the limit (FiLM: Carpenter, Taylor, Katona 1991). A
-/// contact with a force law is solved by solve_substrate_step().
+/// the step. Contacts that all slide bilaterally without it are one linear system. Otherwise the
+/// contacts are visited in turn, each solved exactly under the forces of the others (Gauss-Seidel
+/// over 2 x 2 blocks), until no force changes any more; for a single contact the first visit is the
+/// solution. Sticking is tried first, with the sign of its friction force the direction of sliding
+/// where that exceeds the limit (FiLM: Carpenter, Taylor, Katona 1991). A contact with a force law
+/// is solved by solve_substrate_step().
 class ContactSolver {
  public:
   /// @param num_planar contacts with two tangents, besides
   explicit ContactSolver(int num_contacts, ContactSolverParameters parameters = {},
                          int num_planar = 0);
 
-  /// W, row and column 2i for the normal and 2i+1 for the tangent of contact i; three for each of the
-  /// contacts with two tangents after all others (first_planar()). To be filled before `solve`.
+  /// W, row and column 2i for the normal and 2i+1 for the tangent of contact i; three for each of
+  /// the contacts with two tangents after all others (first_planar()). To be filled before `solve`.
   Eigen::MatrixXd& delassus() { return delassus_; }
 
   /// @param contacts problems in, solutions out
@@ -150,8 +156,8 @@ class ContactSolver {
   Eigen::VectorXd forces_;
   Eigen::PartialPivLU<Eigen::MatrixXd> factor_;
   JammingTest jamming_;
-  Eigen::Index num_lines_;     ///< rows of contacts with one tangent
-  Eigen::VectorXd left_;       ///< of gaps and slips, scratch; empty without contacts of two tangents
+  Eigen::Index num_lines_;  ///< rows of contacts with one tangent
+  Eigen::VectorXd left_;    ///< of gaps and slips, scratch; empty without contacts of two tangents
 };
 
 }  // namespace stridor

@@ -155,9 +155,10 @@ bool slide_on(PlanarProblem& contact, const Eigen::Matrix3d& delassus, double pe
 }  // namespace
 
 bool solve_planar(PlanarProblem& contact, const Eigen::Matrix3d& delassus,
-                  const Eigen::Vector3d& known) {
+                  const Eigen::Vector3d& known, SlipStart start) {
   if (!contact.is_unilateral) return slide_on(contact, delassus, known(0));
-  const std::optional<double> guess = guess_of(contact, delassus, known);
+  const std::optional<double> guess =
+      start == SlipStart::last_forces ? guess_of(contact, delassus, known) : std::nullopt;
   contact.normal = 0.0;
   contact.tangential.setZero();
   contact.state = ContactState::open;
@@ -286,6 +287,10 @@ ContactAnswer ContactSolver::iterate(std::span<LocalProblem> contacts,
     largest_force = std::max(largest_force, forces.cwiseAbs().maxCoeff());
   };
   while (answer.sweeps < parameters_.max_sweeps) {
+    // Visits that settle from the last forces have done so long before.
+    constexpr int most_from_last = 100;
+    const SlipStart start =
+        answer.sweeps < most_from_last ? SlipStart::last_forces : SlipStart::known;
     ++answer.sweeps;
     largest_change = largest_force = 0.0;
     for (int i = 0; i < num_lines; ++i) {
@@ -304,7 +309,7 @@ ContactAnswer ContactSolver::iterate(std::span<LocalProblem> contacts,
       const Eigen::Matrix3d own = delassus_.block<3, 3>(row, row);
       const Eigen::Vector3d before(contact.normal, contact.tangential.x(), contact.tangential.y());
       const Eigen::Vector3d known = left_.segment<3>(row) + own.lazyProduct(before);
-      if (!solve_planar(contact, own, known))
+      if (!solve_planar(contact, own, known, start))
         return {ContactStatus::jammed, num_lines + i, answer.sweeps};
       take(num_lines + i, row,
            Eigen::Vector3d(contact.normal, contact.tangential.x(), contact.tangential.y()), before);
