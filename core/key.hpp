@@ -26,7 +26,7 @@ struct NamedNumber {
 };
 using NamedNumbers = std::vector<NamedNumber>;
 
-/// What a key can hold once read. `monostate` stands for "not given".
+/// Value of a key once read. `monostate` stands for "not given".
 using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string,
                            std::vector<double>, std::vector<std::string>, TimeTable, NamedNumbers>;
 

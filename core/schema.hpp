@@ -33,14 +33,14 @@
 
 namespace stridor {
 
-/// What is said of a number (or of a list of numbers, or a curve) besides its name and member.
+/// Declaration of a number (or of a list of numbers, or a curve) besides its name and member.
 struct RealKey {
   std::string doc;
   std::string unit = "";
   Range range = Range::any();
   bool optional = false;
 };
-/// What is said of any other key besides its name and member.
+/// Declaration of any other key besides its name and member.
 struct PlainKey {
   std::string doc;
   bool optional = false;

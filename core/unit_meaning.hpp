@@ -1,4 +1,4 @@
-// What the text of a unit means: a factor and powers of basic units, as UDUNITS-2 knows them.
+// Meaning of the text of a unit: a factor and powers of basic units, as UDUNITS-2 knows them.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@ struct UnitMeaning {
   bool has_angle() const { return powers.contains("rad"); }
 };
 
-/// What a unit means; nothing where the text is none.
+/// Meaning of a unit; nothing where the text is none.
 /// @throws FileError if the database of units cannot be read
 std::optional<UnitMeaning> meaning_of(const std::string& unit);
 

@@ -39,7 +39,7 @@ struct StabilityOptions {
   LocusOptions locus_options() const;
 };
 
-/// What was not asked for: the method is the secular function; the geometry is the undeformed one,
+/// Defaults of a request: the method is the secular function; the geometry is the undeformed one,
 /// with contacts on the faces of spinning bodies that of the equilibrium, to which the loads press
 /// them.
 void make_choices(StabilityOptions& options, const Scene& scene);

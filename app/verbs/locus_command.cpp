@@ -108,7 +108,7 @@ void check_outputs(const LocusCommandOptions& options) {
   }
 }
 
-/// What was found, and what the outputs say of it.
+/// The locus found, and the texts that the outputs share.
 struct FoundLocus {
   const LocusCommandOptions& options;
   const StabilityScene& scene;
