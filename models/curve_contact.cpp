@@ -116,7 +116,7 @@ void place_slave(const ContactPair& pair, const MasterSurface& surface, ModelBod
       surface.roughness_at(segment, projection.weights) * projection.normal;
   const Eigen::Vector2d shift = target - slave.position(pair.slave_nodes.front());
   if (!slave.is_placed) {
-    slave.place += shift;
+    slave.place.head<2>() += shift;
     slave.is_placed = true;
   } else if (shift.norm() > 1e-9 * length + height_of_roughness(*pair.parameters)) {
     throw ConfigError(pair.key + ".start",

@@ -90,8 +90,8 @@ void check_side_of_face(const ContactPair& pair, const ModelBody& slave, double 
 /// Places the frame of a slave for figures: along the unrolled outer edge of the plate.
 void place_on_face(const ContactPair& pair, const BodyFace& face, const FaceStart& start,
                    const SlaveExtent& extent, ModelBody& slave) {
-  const Eigen::Vector2d place(face.outer_radius * start.angle - extent.middle,
-                              face.half_thickness - extent.height);
+  const Eigen::Vector3d place(face.outer_radius * start.angle - extent.middle,
+                              face.half_thickness - extent.height, 0.0);
   const bool is_mirrored = face.side < 0;
   if (!slave.is_placed) {
     slave.place = place;

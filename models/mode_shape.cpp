@@ -31,7 +31,7 @@ std::vector<BodyShape> mode_shape(const Model& model, const Equilibrium& equilib
     BodyShape shape;
     shape.name = body.name;
     shape.displacement = node_displacements(matrices, recovery * (body.modal.shapes * part));
-    shape.nodes = matrices.nodes.rowwise() + placement.place.transpose();
+    shape.nodes = matrices.nodes.leftCols<2>().rowwise() + placement.place.head<2>().transpose();
     if (body.follows_drive()) {
       shape.nodes.col(0).array() += model.system.path_share(static_cast<int>(b)) *
                                     equilibrium.state.drive_displacement;

@@ -49,7 +49,7 @@ struct Model {
   };
   /// Position of a body and the DoFs that its reduction kept.
   struct Placement {
-    Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< of its frame, m
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< of its frame, m
     std::vector<int> interface;                       ///< DoFs, as of make_craig_bampton()
     bool is_mirrored = false;  ///< y of its frame points downwards, from the lower face of a plate
   };

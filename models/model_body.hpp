@@ -18,7 +18,7 @@ struct ModelBody {
   std::string name;
   const BodyParameters* parameters = nullptr;  ///< null for a master without end
   BodyMatrices matrices;
-  Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< of its frame, m
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< of its frame, m
   bool is_mirrored = false;    ///< its frame is that of a place on the lower face of a plate
   bool is_placed = false;
   bool is_touched = false;     ///< by a contact
@@ -35,7 +35,9 @@ struct ModelBody {
     return parameters != nullptr && !parameters->num_modes() &&
            (!is_touched || matrices.is_modal);
   }
-  Eigen::Vector2d position(int node) const { return matrices.nodes.row(node).transpose() + place; }
+  Eigen::Vector3d place_of(int node) const { return matrices.nodes.row(node).transpose() + place; }
+  /// x and y of a node.
+  Eigen::Vector2d position(int node) const { return place_of(node).head<2>(); }
   void keep(int dof);
   void keep_node(int node);
   /// Key path of its section.

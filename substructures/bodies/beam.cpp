@@ -253,12 +253,12 @@ BodyMatrices make_mesh(const BeamParameters& parameters) {
   double sine = std::sin(parameters.angle);
   if (std::abs(cosine) < 1e-15) cosine = 0.0;
   if (std::abs(sine) < 1e-15) sine = 0.0;
-  body.nodes.resize(grid.num_nodes(), 2);
+  body.nodes.resize(grid.num_nodes(), 3);
   for (int i = 0; i <= last_column; ++i) {
     for (int j = 0; j <= last_row; j += (i % 2 == 0 ? 1 : 2)) {
       const double a = parameters.length * i / last_column;
       const double b = parameters.thickness * (static_cast<double>(j) / last_row - 0.5);
-      body.nodes.row(grid.node(i, j)) << a * cosine - b * sine, a * sine + b * cosine;
+      body.nodes.row(grid.node(i, j)) << a * cosine - b * sine, a * sine + b * cosine, 0.0;
     }
   }
 
@@ -298,7 +298,7 @@ BodyMatrices make_mesh(const BeamParameters& parameters) {
   const auto element_nodes = [&](int column, int row) { return grid.element(column, row); };
   ElementNodes<ElementShape::quad8> corners;
   for (int k = 0; k < 8; ++k)
-    corners.row(k) = body.nodes.row(element_nodes(0, 0)[static_cast<std::size_t>(k)]);
+    corners.row(k) = body.nodes.row(element_nodes(0, 0)[static_cast<std::size_t>(k)]).head<2>();
   const auto& material = parameters.material;
   const ElementSection section{
       ElasticLaw(IsotropicElasticity{material.youngs_modulus, material.poissons_ratio},

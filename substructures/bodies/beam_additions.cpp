@@ -84,7 +84,7 @@ void add_beam_point(const std::string& key, const std::string& name,
                                                known_names(point.on, names)));
   }
   const std::vector<int>& nodes = surface->second;
-  const Eigen::RowVector2d first = body.nodes.row(nodes.front());
+  const Eigen::RowVector3d first = body.nodes.row(nodes.front());
   const double length = (body.nodes.row(nodes.back()) - first).norm();
   const auto num_edges = static_cast<int>(nodes.size() / 2);
   constexpr double on_a_node = 1e-9;  // of an edge
@@ -104,7 +104,7 @@ void add_beam_point(const std::string& key, const std::string& name,
   const NodeShares shares{{node_of(0), 0.5 * x * (x - 1.0)},
                           {node_of(1), 1.0 - x * x},
                           {node_of(2), 0.5 * x * (x + 1.0)}};
-  const Eigen::RowVector2d at = first + place / num_edges * (body.nodes.row(nodes.back()) - first);
+  const Eigen::RowVector3d at = first + place / num_edges * (body.nodes.row(nodes.back()) - first);
   add_dependent_point(name, at.transpose(), shares, body);
 }
 

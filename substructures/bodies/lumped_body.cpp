@@ -239,11 +239,11 @@ const Schema& LumpedParameters::schema() {
 
 BodyMatrices LumpedParameters::make() const {
   BodyMatrices body;
-  body.nodes.resize(static_cast<Eigen::Index>(masses.size()), 2);
+  body.nodes.resize(static_cast<Eigen::Index>(masses.size()), 3);
   std::vector<double> mass_of_dof;
   for (const auto& [name, mass] : masses) {
     const auto node = static_cast<int>(body.node_dofs.size());
-    body.nodes.row(node) = place_of(mass).head<2>().transpose();
+    body.nodes.row(node) = place_of(mass).transpose();
     body.points[name] = node;
     std::array<int, 3> dofs{BodyMatrices::held, BodyMatrices::held, BodyMatrices::held};
     for (std::size_t i = 0; i < 3; ++i) {

@@ -193,11 +193,11 @@ BodyMatrices make_matrix_body(const TouchedMatrixBodyParameters& parameters) {
     body.circulatory = skew;
   }
 
-  body.nodes.resize(static_cast<Eigen::Index>(parameters.points.size()), 2);
+  body.nodes.resize(static_cast<Eigen::Index>(parameters.points.size()), 3);
   for (const auto& [name, point] : parameters.points) {
     const auto node = static_cast<int>(body.node_dofs.size());
     const std::string key = "points." + name;
-    body.nodes.row(node) << point.at[0], point.at[1];
+    body.nodes.row(node) << point.at[0], point.at[1], 0.0;
     body.node_dofs.push_back({dof_of(point.x, n, key + ".x"), dof_of(point.y, n, key + ".y")});
     body.points[name] = node;
   }

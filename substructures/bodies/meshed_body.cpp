@@ -62,7 +62,7 @@ class MeshedBody {
     }();
     BodyMatrices body;
     body.damping = parameters_.damping;
-    body.nodes = mesh_.nodes.leftCols<2>();
+    body.nodes = mesh_.nodes;
     number_dofs(body);
     constrain(all, body);
     add_outlines(body);
@@ -306,9 +306,9 @@ class MeshedBody {
 
   /// A point that moves as Σ share u of nodes, and is where the same sum of places is.
   void add_dependent(const std::string& name, const NodeShares& shares, BodyMatrices& body) const {
-    Eigen::Vector2d place = Eigen::Vector2d::Zero();
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();
     for (const NodeShare& share : shares)
-      place += share.share * mesh_.nodes.row(share.node).head<2>().transpose();
+      place += share.share * mesh_.nodes.row(share.node).transpose();
     add_dependent_point(name, place, shares, body);
   }
 

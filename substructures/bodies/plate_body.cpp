@@ -24,7 +24,7 @@ int add_plate_node(BodyMatrices& body, double x, const AnnularPlate& plate, doub
                    double angle) {
   const auto node = static_cast<int>(body.node_dofs.size());
   body.nodes.conservativeResize(node + 1, Eigen::NoChange);
-  body.nodes.row(node) << x, 0.0;
+  body.nodes.row(node) << x, 0.0, 0.0;
   body.node_dofs.push_back({BodyMatrices::held, BodyMatrices::held});
   body.dependent[node] = {DofSum{}, sum_of_row(plate.rows(radius, angle).w), DofSum{}};
   return node;
@@ -155,7 +155,7 @@ BodyMatrices PlateBodyParameters::make() const {
   }
   body.stiffness = stiffness.sparseView();
 
-  body.nodes.resize(0, 2);
+  body.nodes.resize(0, 3);
   add_edge(body, *modes, plate);
   for (const auto& [name, point] : points) {
     body.points[name] =

@@ -97,7 +97,7 @@ DofSum sum_of(const BodyMatrices& body, const NodeShares& shares, std::size_t ax
   return sum;
 }
 
-void add_dependent_point(const std::string& name, const Eigen::Vector2d& at,
+void add_dependent_point(const std::string& name, const Eigen::Vector3d& at,
                          const NodeShares& shares, BodyMatrices& body) {
   const auto node = static_cast<int>(body.node_dofs.size());
   body.nodes.conservativeResize(node + 1, Eigen::NoChange);

@@ -33,7 +33,7 @@ DofSum sum_of(const BodyMatrices& body, const NodeShares& shares, std::size_t ax
 
 /// A point that moves as Σ share u of nodes.
 /// @param at its place in the frame of the body, m
-void add_dependent_point(const std::string& name, const Eigen::Vector2d& at,
+void add_dependent_point(const std::string& name, const Eigen::Vector3d& at,
                          const NodeShares& shares, BodyMatrices& body);
 
 /// Loads of 1 N along x, y and z that nodes share, BodyMatrices::loads: "<name>.<x|y|z>".

@@ -52,7 +52,7 @@ struct BodyMatrices {
   /// Terms beside these (CoupledTerms), N x N; both empty where there are none.
   SparseMatrix velocity, circulatory;
 
-  Eigen::Matrix<double, Eigen::Dynamic, 2> nodes;  ///< undeformed positions in the body's frame, m
+  Eigen::MatrixX3d nodes;  ///< undeformed positions in the body's frame, m
   std::vector<std::array<int, 2>> node_dofs;       ///< (x, y) DoF of every node, or `held`
   std::vector<int> across;  ///< z DoF of every node, or `held`; empty where no node moves along z
   std::vector<int> kept;    ///< DoFs that a reduction keeps whatever touches the body

@@ -47,7 +47,7 @@ TEST(MatrixBody, KeepsTheSymmetricStiffnessApartFromWhatCouples) {
   EXPECT_EQ(Eigen::MatrixXd(body.circulatory),
             (Eigen::MatrixXd{{0, 2, 2}, {-2, 0, 0}, {-2, 0, 0}}));
   EXPECT_EQ(Eigen::MatrixXd(body.velocity), (Eigen::MatrixXd{{1, 5, 0}, {-5, 0, 0}, {0, 0, 0}}));
-  EXPECT_EQ(body.nodes, (Eigen::MatrixXd{{0.0, 0.0}, {0.1, 0.02}}));
+  EXPECT_EQ(body.nodes, (Eigen::MatrixXd{{0.0, 0.0, 0.0}, {0.1, 0.02, 0.0}}));
   EXPECT_EQ(body.node_dofs[0], (std::array{0, 1}));
   EXPECT_EQ(body.node_dofs[1], (std::array{BodyMatrices::held, 2}));
   EXPECT_EQ(body.surfaces.at("top"), (std::vector{0, 1}));

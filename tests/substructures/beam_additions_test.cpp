@@ -158,7 +158,7 @@ TEST(BeamAdditions, LoadsAreEvenAndGroundEndsCarryTheBodyAlong) {
 TEST(BeamAdditions, PointsStandWhereTheyAreSaidTo) {
   const BodyMatrices body = pad_beam().make();
   const auto place = [&](const std::string& name) -> Eigen::Vector2d {
-    return body.nodes.row(body.points.at(name));
+    return body.nodes.row(body.points.at(name)).head<2>();
   };
   EXPECT_LT((place("a") - Eigen::Vector2d(0.01, -0.0075)).norm(), 1e-15);
   EXPECT_LT((place("b") - Eigen::Vector2d(0.03, -0.0075)).norm(), 1e-15);

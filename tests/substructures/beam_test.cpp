@@ -89,7 +89,7 @@ double tip_compliance(const BeamParameters& beam) {
 }
 
 Eigen::Vector2d position(const BodyMatrices& body, int node) {
-  return body.nodes.row(node).transpose();
+  return body.nodes.row(node).head<2>().transpose();
 }
 Eigen::Vector2d position(const BodyMatrices& body, const std::string& point) {
   return position(body, body.points.at(point));
@@ -520,7 +520,7 @@ TEST(Beam, SurfacesRunAlongTheirEdgeWithTheBodyOnTheRight) {
       // No node of the body lies beyond the edge.
       for (Eigen::Index node = 0; node < body.nodes.rows(); ++node) {
         const Eigen::Vector2d from_edge =
-            body.nodes.row(node).transpose() - position(body, nodes.front());
+            body.nodes.row(node).head<2>().transpose() - position(body, nodes.front());
         EXPECT_LE(from_edge.dot(outward.at(name)), 16.0 * eps * beam.length) << name;
       }
     }

@@ -29,7 +29,7 @@ Mesh mesh_of(BeamParameters beam) {
   const BodyMatrices body = make_beam(beam);
   Mesh mesh;
   mesh.nodes = Mesh::Nodes::Zero(body.nodes.rows(), 3);
-  mesh.nodes.leftCols<2>() = 1e3 * body.nodes;
+  mesh.nodes.leftCols<2>() = 1e3 * body.nodes.leftCols<2>();
   mesh.node_labels.resize(mesh.num_nodes());
   std::iota(mesh.node_labels.begin(), mesh.node_labels.end(), 101);
   for (const std::array<int, 8>& nodes : beam_elements(beam.mesh))

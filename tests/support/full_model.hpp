@@ -19,7 +19,7 @@ inline Eigen::VectorXd rigid_motion(const BodyMatrices& body, const Eigen::Vecto
   for (std::size_t node = 0; node < body.node_dofs.size(); ++node) {
     const auto [x, y] = body.node_dofs[node];
     const Eigen::Vector2d arm =
-        body.nodes.row(static_cast<Eigen::Index>(node)).transpose() - centre;
+        body.nodes.row(static_cast<Eigen::Index>(node)).head<2>().transpose() - centre;
     if (x != BodyMatrices::held) motion(x) = translation.x() - rotation * arm.y();
     if (y != BodyMatrices::held) motion(y) = translation.y() + rotation * arm.x();
   }

@@ -47,9 +47,9 @@ inline BodyMatrices chain_body(int n) {
   BodyMatrices body;
   body.mass = chain_mass(n);
   body.stiffness = chain_stiffness(n);
-  body.nodes.resize(n, 2);
+  body.nodes.resize(n, 3);
   for (int i = 0; i < n; ++i) {
-    body.nodes.row(i) << i + 1.0, 0.0;
+    body.nodes.row(i) << i + 1.0, 0.0, 0.0;
     body.node_dofs.push_back({i, BodyMatrices::held});
   }
   return body;
