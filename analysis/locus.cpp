@@ -75,7 +75,7 @@ void check(const PencilFamily& family, const std::vector<double>& values,
 std::vector<double> kinks_along_drive(const System& system) {
   std::vector<double> kinks;
   for (const ContactPoint& contact : system.contacts) {
-    if (contact.face) continue;  // it stays where it is
+    if (contact.has_two_tangents()) continue;  // no place along a curve
     const MasterSurface& surface = system.surfaces[static_cast<std::size_t>(contact.surface)];
     const double share = system.path_share(contact);
     for (int i = 0; share != 0.0 && i + 1 < surface.num_segments(); ++i) {

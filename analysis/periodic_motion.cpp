@@ -339,12 +339,13 @@ std::optional<std::string> why_not_periodic(const System& system) {
     if (contact.face) continue;
     const DrivenMotion driven = system.driven_motion(contact);
     const bool moves_on = !driven.is_frozen() && driven.end_velocity() != 0.0;
-    const MasterSurface& surface = system.surface_of(contact);
-    if (!moves_on || surface.is_endless) continue;
+    const bool is_endless = contact.space ? system.facets_of(contact) == nullptr
+                                          : system.surface_of(contact).is_endless;
+    if (!moves_on || is_endless) continue;
     return fmt::format(
         "contact '{}' moves along {} and comes to its end; hold its place by `sliding: frozen`, in "
         "which friction acts as if it moved",
-        contact.name, surface.name);
+        contact.name, system.master_name(contact));
   }
   return std::nullopt;
 }

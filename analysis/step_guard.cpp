@@ -18,7 +18,7 @@
 
 #include "core/errors.hpp"
 #include "core/tasks.hpp"
-#include "coupling/kinematics/face_kinematics.hpp"
+#include "coupling/system/undeformed_contact.hpp"
 #include "solvers/equilibrium/equilibrium.hpp"
 #include "solvers/equilibrium/linearise.hpp"
 #include "solvers/integrators/contact_path.hpp"
@@ -48,6 +48,10 @@ bool may_open(const ContactPoint& contact) {
 std::vector<double> places_of(const System& system, const TimeParameters& time) {
   const auto [least, most] = drive_range(system.leading_drive(), time.end);
   double shortest = std::numeric_limits<double>::infinity();
+  for (const FacetSurface& surface : system.facet_surfaces) {
+    for (std::size_t f = 0; f < surface.facets.size(); ++f)
+      shortest = std::min(shortest, surface.patch(static_cast<int>(f)).nodes[1].norm());
+  }
   for (const MasterSurface& surface : system.surfaces) {
     for (std::size_t k = 1; k < surface.arc_length.size(); ++k)
       shortest = std::min(shortest, surface.arc_length[k] - surface.arc_length[k - 1]);
@@ -66,10 +70,11 @@ struct SlidingContacts {
   Pencil rows;
   std::vector<std::size_t> contacts;  ///< of the constraints
   std::vector<double> positions;      ///< along the masters, m; empty on undeformed masters
+  std::vector<TangentPair> tangents;  ///< of the contacts with two of them
 
   std::string place(const System& system, std::size_t constraint, double displacement) const {
-    if (const auto& face = system.contacts[contacts[constraint]].face)
-      return fmt::format("at a radius of {:.4g} m", face->radius);
+    const ContactPoint& contact = system.contacts[contacts[constraint]];
+    if (contact.face) return fmt::format("at a radius of {:.4g} m", contact.face->radius);
     return positions.empty() ? fmt::format("with the drive displaced by {:.4g} m", displacement)
                              : fmt::format("at {:.4g} m of its master", positions[constraint]);
   }
@@ -83,6 +88,13 @@ std::optional<SlidingContacts> in_equilibrium(const System& system, double displ
     if (!equilibrium.contacts[c].is_closed) continue;
     sliding.contacts.push_back(c);
     sliding.positions.push_back(equilibrium.contacts[c].position);
+    const ContactPoint& contact = system.contacts[c];
+    sliding.tangents.emplace_back();
+    if (contact.has_two_tangents()) {
+      sliding.tangents.back() = tangent_kinematics(system, contact, equilibrium.contacts[c],
+                                                   ContactGeometry::deformed)
+                                    .sliding;
+    }
   }
   if (sliding.contacts.empty()) return std::nullopt;
   sliding.rows = linearise_constraints(system, equilibrium);
@@ -107,8 +119,13 @@ SlidingContacts on_undeformed_masters(const System& system, double displacement)
   place_undeformed(rough, system, displacement, 1.0, 1.0);
   for (std::size_t c = 0; c < system.contacts.size(); ++c) {
     const ContactPoint& contact = system.contacts[c];
-    const double slip = contact.face ? contact.face->spin * contact.face->radius
-                                     : system.driven_motion(contact).end_velocity();
+    double slip = system.driven_motion(contact).end_velocity();
+    sliding.tangents.emplace_back();
+    if (contact.has_two_tangents()) {
+      const auto at = undeformed_contact(system, contact, displacement);
+      sliding.tangents.back() = at->kinematics.sliding;
+      slip = contact.face ? at->kinematics.velocity.x() : at->kinematics.velocity.norm();
+    }
     const double factor = (slip < 0.0 ? -1.0 : 1.0) * sliding_friction(contact.friction, slip);
     const auto row = static_cast<Eigen::Index>(c);
     sliding.rows.equilibrium.row(row) +=
@@ -137,7 +154,7 @@ Pencil sticking(const System& system, const SlidingContacts& at) {
   Pencil held = sliding;
   const Eigen::Index k = sliding.num_constraints();
   Eigen::Index num_rows = k;
-  for (const std::size_t c : at.contacts) num_rows += system.contacts[c].face ? 2 : 1;
+  for (const std::size_t c : at.contacts) num_rows += system.contacts[c].has_two_tangents() ? 2 : 1;
   held.compatibility.setZero(num_rows, sliding.num_ports());
   held.compatibility.topRows(k) = sliding.compatibility;
   Eigen::Index row = k;
@@ -146,12 +163,11 @@ Pencil sticking(const System& system, const SlidingContacts& at) {
     const ContactPoint& contact = system.contacts[at.contacts[i]];
     const Eigen::Index num_ports = system.num_contact_ports(contact);
     const auto normal = sliding.compatibility.row(static_cast<Eigen::Index>(i));
-    if (contact.face) {
-      const FaceKinematics face = make_face_kinematics(*contact.face);
-      held.compatibility.row(row++).segment(port, num_ports) =
-          face.along.head(num_ports).transpose();
-      held.compatibility.row(row++).segment(port, num_ports) =
-          face.across.head(num_ports).transpose();
+    if (contact.has_two_tangents()) {
+      for (Eigen::Index k = 0; k < 2; ++k) {
+        held.compatibility.row(row++).segment(port, num_ports) =
+            at.tangents[i].col(k).head(num_ports).transpose();
+      }
     } else {
       for (Eigen::Index s = port; s < port + num_ports; s += 2) {
         held.compatibility(row, s) = normal(s + 1);

@@ -50,7 +50,17 @@ void refuse_second_contact(const ContactPair& pair, const std::string& name) {
   }
 }
 
-/// The slave points of a pair, edges node by node.
+/// Nodes of facets, ascending, each once.
+std::vector<int> nodes_of(const std::vector<Facet>& facets) {
+  std::vector<int> nodes;
+  for (const Facet& facet : facets)
+    nodes.insert(nodes.end(), facet.nodes.begin(), facet.nodes.begin() + facet.count);
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+/// The slave points of a pair, edges and surfaces node by node.
 void resolve_slaves(ContactPair& pair, const std::vector<ModelBody>& bodies) {
   const std::string& key = pair.key;
   const std::vector<std::string>& names = pair.parameters->slave;
@@ -65,13 +75,18 @@ void resolve_slaves(ContactPair& pair, const std::vector<ModelBody>& bodies) {
     }
     const auto node = body.matrices.points.find(point);
     const auto edge = body.matrices.surfaces.find(point);
+    const auto facets = body.matrices.facets.find(point);
     if (node != body.matrices.points.end()) {
       pair.slave_nodes.push_back(node->second);
     } else if (edge != body.matrices.surfaces.end()) {
       pair.slave_nodes.insert(pair.slave_nodes.end(), edge->second.begin(), edge->second.end());
+    } else if (facets != body.matrices.facets.end()) {
+      const std::vector<int> nodes = nodes_of(facets->second);
+      pair.slave_nodes.insert(pair.slave_nodes.end(), nodes.begin(), nodes.end());
     } else {
       std::vector<std::string> known = names_in_map(body.matrices.points);
       for (const std::string& other : names_in_map(body.matrices.surfaces)) known.push_back(other);
+      for (const std::string& other : names_in_map(body.matrices.facets)) known.push_back(other);
       throw ConfigError(key + ".slave",
                         fmt::format("'{}' has no point or surface '{}'{} (it has: {})", body.name,
                                     point, did_you_mean(point, known), listed_names(known)));
@@ -102,6 +117,9 @@ ContactPair resolve_pair(const std::string& name, const std::string& key,
   if (is_endless_master(parameters.master)) {
     pair.master_body = endless_master;
     resolve_slaves(pair, bodies);
+    const ModelBody& slave = bodies[static_cast<std::size_t>(pair.slave_body)];
+    pair.is_in_space = parameters.plane || (parameters.master == rigid_master &&
+                                            slave.parameters->is_spatial());
     return pair;
   }
   const auto [master, surface] = split_name(parameters.master, bodies, key + ".master");
@@ -109,10 +127,12 @@ ContactPair resolve_pair(const std::string& name, const std::string& key,
   const auto found = body.matrices.surfaces.find(surface);
   pair.master_body = master;
   pair.is_on_face = body.matrices.faces.contains(surface);
+  pair.is_on_facets = pair.is_in_space = body.matrices.facets.contains(surface);
   if (found != body.matrices.surfaces.end()) {
     pair.master_nodes = spaced_nodes(body, found->second);
-  } else if (!pair.is_on_face) {
+  } else if (!pair.is_on_face && !pair.is_on_facets) {
     std::vector<std::string> known = names_in_map(body.matrices.surfaces);
+    for (const std::string& facets : names_in_map(body.matrices.facets)) known.push_back(facets);
     for (const std::string& face : names_in_map(body.matrices.faces)) known.push_back(face);
     throw ConfigError(key + ".master",
                       fmt::format("'{}' has no surface '{}'{} (it has: {})", body.name, surface,
@@ -122,6 +142,18 @@ ContactPair resolve_pair(const std::string& name, const std::string& key,
   if (pair.slave_body == pair.master_body) {
     throw ConfigError(key + ".slave", "slave and master must be different bodies");
   }
+  const ModelBody& slave = bodies[static_cast<std::size_t>(pair.slave_body)];
+  if (slave.parameters->is_spatial() && !pair.is_in_space) {
+    throw ConfigError(key + ".master",
+                      fmt::format("'{}' is {}; '{}' is a body in space, which slides on the surface of "
+                                  "another such body or on `rigid`",
+                                  parameters.master,
+                                  pair.is_on_face ? "the face of a plate, on which slaves are planar"
+                                                  : "a curve in the plane",
+                                  slave.name));
+  }
+  if (parameters.adjust && !pair.is_in_space)
+    throw ConfigError(key + ".adjust", "is of contacts in space");
   return pair;
 }
 

@@ -27,10 +27,14 @@ struct ContactPair {
   std::string master_name;
   int master_body = 0;
   std::vector<int> master_nodes;
-  bool is_on_face = false;  ///< the master is one of BodyMatrices::faces
+  bool is_on_face = false;    ///< the master is one of BodyMatrices::faces
+  bool is_on_facets = false;  ///< the master is one of BodyMatrices::facets
+  bool is_in_space = false;   ///< on facets, or on a rigid plane
 
   /// "contacts.NAME.start"
   std::string key_of(const char* below) const { return key + "." + below; }
+  /// Name of the master without that of its body.
+  std::string surface_name() const { return master_name.substr(master_name.find('.') + 1); }
   /// Name of a contact of the pair.
   std::string point_name(std::size_t k) const;
 };

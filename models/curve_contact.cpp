@@ -190,6 +190,10 @@ void add_curve_contacts(const ContactPair& pair, const PairDrive& drive,
                       "is of a contact on the face of a plate; on a curve the loads of the drive "
                       "press bodies together");
   }
+  if (!pair.parameters->start.at.empty()) {
+    throw ConfigError(pair.key_of("start"), "must be a length along the master; {at} is for contacts "
+                                            "in space");
+  }
   ModelBody& slave = bodies[static_cast<std::size_t>(pair.slave_body)];
   ModelBody& master = bodies[static_cast<std::size_t>(pair.master_body)];
   MasterSurface surface = make_surface(pair, master);

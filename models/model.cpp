@@ -11,6 +11,7 @@
 #include "models/initial_motion.hpp"
 #include "models/model_drive.hpp"
 #include "models/set_up_estimate.hpp"
+#include "models/space_contact.hpp"
 #include "substructures/bodies/whole_body.hpp"
 
 namespace stridor {
@@ -92,6 +93,8 @@ class ModelBuilder {
           drive_of_pair(drives_, bodies_, pair.slave_body, pair.master_body);
       if (pair.is_on_face) {
         add_face_contacts(pair, drive, bodies_, model_.system);
+      } else if (pair.is_in_space) {
+        add_space_contacts(pair, drive, bodies_, model_.system);
       } else {
         add_curve_contacts(pair, drive, bodies_, model_.system);
       }

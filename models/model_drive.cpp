@@ -30,13 +30,17 @@ struct LoadedPlace {
   bool is_kept = false;
 };
 
+bool is_surface(const BodyMatrices& matrices, const std::string& name) {
+  return matrices.surfaces.contains(name) || matrices.facets.contains(name);
+}
+
 /// Names of the springs to ground, or of the surfaces, on which a body knows a load in y.
 std::vector<std::string> loads_in_y(const BodyMatrices& matrices, bool of_surfaces) {
   std::vector<std::string> names;
   for (const auto& [name, load] : matrices.loads) {
     if (!name.ends_with(".y")) continue;
     const std::string place = name.substr(0, name.size() - 2);
-    if (matrices.surfaces.contains(place) == of_surfaces) names.push_back(place);
+    if (is_surface(matrices, place) == of_surfaces) names.push_back(place);
   }
   return names;
 }
@@ -47,7 +51,7 @@ LoadedPlace place_to_load(const ModelBody& body, const std::string& place, const
   LoadedPlace found;
   if (const auto node = matrices.points.find(place); node != matrices.points.end()) {
     found = {matrices.displacement(node->second, 1), true};
-  } else if (matrices.surfaces.contains(place)) {
+  } else if (is_surface(matrices, place)) {
     const std::optional<DofSum> load = matrices.load(place + ".y");
     const std::vector<std::string> known = loads_in_y(matrices, true);
     if (!load && known.empty()) {
@@ -59,6 +63,7 @@ LoadedPlace place_to_load(const ModelBody& body, const std::string& place, const
   } else {
     std::vector<std::string> known = names_in_map(matrices.points);
     for (const std::string& surface : names_in_map(matrices.surfaces)) known.push_back(surface);
+    for (const std::string& surface : names_in_map(matrices.facets)) known.push_back(surface);
     throw ConfigError(key, fmt::format("'{}' has no point or surface '{}'{} (it has: {})",
                                        body.name, place, did_you_mean(place, known),
                                        listed_names(known)));

@@ -47,10 +47,39 @@ Json face_contact_json(const System& system, const Equilibrium& equilibrium, std
       {"displacement", displacement_json(system, equilibrium, point.slave_body, point.slave_rows)}};
 }
 
+/// In space, with forces, velocity and displacement as vectors.
+Json space_contact_json(const System& system, const Equilibrium& equilibrium, std::size_t i) {
+  const ContactEquilibrium& contact = equilibrium.contacts[i];
+  const ContactPoint& point = system.contacts[i];
+  const SpaceInstant instant =
+      space_instant(*point.space, system.facets_of(point), contact.segment, contact.displaced,
+                    contact.ports, contact.drawn);
+  const SpaceFrame frame = space_geometry(instant, contact.place).frame;
+  const auto vector = [](const Eigen::Vector3d& v) -> Json {
+    return {number(v.x()), number(v.y()), number(v.z())};
+  };
+  const auto tangential = [&](double along, double across) {
+    return vector(along * frame.tangents[0] + across * frame.tangents[1]);
+  };
+  return {{"closed", contact.is_closed},
+          {"force", number(contact.force)},
+          {"friction_force", number(contact.friction_force)},
+          {"friction_across", number(contact.friction_across)},
+          {"friction", number(contact.friction)},
+          {"slip_velocity", number(contact.slip_velocity)},
+          {"position", number(contact.position)},
+          {"gap", number(contact.gap)},
+          {"normal", vector(frame.normal)},
+          {"friction_on_slave", tangential(contact.friction_force, contact.friction_across)},
+          {"sliding_velocity", tangential(-contact.velocity.x(), -contact.velocity.y())},
+          {"displacement", vector(contact.ports.tail<3>())}};
+}
+
 Json contact_json(const System& system, const Equilibrium& equilibrium, std::size_t i) {
   const ContactEquilibrium& contact = equilibrium.contacts[i];
   const ContactPoint& point = system.contacts[i];
   if (point.face) return face_contact_json(system, equilibrium, i);
+  if (point.space) return space_contact_json(system, equilibrium, i);
   Json object = {
       {"closed", contact.is_closed},
       {"force", number(contact.force)},

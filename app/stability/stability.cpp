@@ -95,6 +95,7 @@ std::optional<std::string> StabilityScene::default_key() const {
     return !is_face(model, pair.second.master);
   });
   if (!moves) return std::nullopt;
+  if (has_face_contacts(model)) return drive_displacement_name;
   return start_key(model).value_or(drive_displacement_name);
 }
 

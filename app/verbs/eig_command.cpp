@@ -139,7 +139,7 @@ std::vector<std::string> write_shapes(const EigOptions& options, const LoadedSce
     // The positions of a contact are as seen from the undeformed first node of its segment.
     const ContactEquilibrium& contact = state.equilibrium.contacts[i];
     const ContactPoint& point = member.model->system.contacts[i];
-    if (point.face) continue;  // the picture shows no face
+    if (point.has_two_tangents()) continue;  // the picture shows no face
     const MasterSurface& surface = member.model->system.surface_of(point);
     const SurfacePiece& seen = state.equilibrium.state.geometry == ContactGeometry::deformed
                                    ? contact.positions.master
@@ -171,7 +171,9 @@ void print_equilibrium(const System& system, const Equilibrium& equilibrium) {
     const std::string place =
         face ? fmt::format("at radius {:.6g} m and {:.4g} rad of {}", face->radius, face->angle,
                            face->name)
-             : fmt::format("{:.6g} m along the master", contact.position);
+        : system.contacts[i].space
+            ? fmt::format("{:.6g} m along {}", contact.position, system.contacts[i].space->name)
+            : fmt::format("{:.6g} m along the master", contact.position);
     fmt::print("{:<20}{}, force {:.6g} N, friction {:.6g} N, sliding at {:.4g} m/s{}\n",
                system.contacts[i].name, place, contact.force,
                std::hypot(contact.friction_force, contact.friction_across), contact.slip_velocity,

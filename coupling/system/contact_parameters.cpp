@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -38,6 +39,8 @@ void check_laws(const ContactParameters& contact, std::vector<Problem>& problems
            "is missing: only a viscoelastic normal law, which `stridor contact` evaluates, goes "
            "without; name at least one point");
   }
+  if (contact.plane && contact.master != rigid_master)
+    refuse("plane", "is of the master `rigid`");
   if (!contact.assumption && !is_viscoelastic)
     refuse("assumption", "is missing; take subs_a, subs_b, subs_c or film");
   if (is_viscoelastic && contact.assumption_or_default() != ContactAssumption::film) {
@@ -55,6 +58,33 @@ SubstrateContact make_substrate_contact(const ContactParameters& contact, double
   made.friction_load = friction.viscoelastic;
   made.load = load;
   return made;
+}
+
+const Schema& PlaneParameters::schema() {
+  using P = PlaneParameters;
+  static const Schema keys =
+      SchemaOf<P>("plane")
+          .real_list("normal", &P::normal,
+                     {.doc = "Normal of the plane, towards the slave: three components, of any "
+                             "length; default: y.",
+                      .optional = true})
+          .real_list("point", &P::point,
+                     {.doc = "A point of the plane; default: the first slave point.",
+                      .unit = "m",
+                      .optional = true})
+          .check([](const P& plane, std::vector<Problem>& problems) {
+            const auto check = [&](const std::vector<double>& given, const char* key) {
+              if (given.empty() || given.size() == 3) return;
+              problems.push_back({key, "must be three numbers", {}, 0, 0});
+            };
+            check(plane.normal, "normal");
+            check(plane.point, "point");
+            const bool is_zero = std::all_of(plane.normal.begin(), plane.normal.end(),
+                                             [](double component) { return component == 0.0; });
+            if (!plane.normal.empty() && is_zero)
+              problems.push_back({"normal", "must not be zero", {}, 0, 0});
+          });
+  return keys;
 }
 
 const Schema& StartParameters::schema() {
@@ -76,7 +106,14 @@ const Schema& StartParameters::schema() {
                 {.doc = "Of that middle around the axis; default 0.",
                  .unit = "rad",
                  .optional = true})
+          .real_list("at", &P::at,
+                     {.doc = "Place of the first slave point of a contact in space, three "
+                             "coordinates; default: where its mesh has it.",
+                      .unit = "m",
+                      .optional = true})
           .check([](const P& start, std::vector<Problem>& problems) {
+            if (!start.at.empty() && start.at.size() != 3)
+              problems.push_back({"at", "must be three numbers", {}, 0, 0});
             if (start.along && start.radius) {
               problems.push_back({"",
                                   "is either a length along the master or, on the face of a plate, "
@@ -102,7 +139,7 @@ const Schema& ContactParameters::schema() {
           .text("master", &ContactParameters::master,
                 {.doc = "Master surface: <body>.<surface>, or a face of a plate; `rigid`: a rigid "
                         "straight line along +x "
-                        "without end, below the slave; or `half_space`: a viscoelastic one there, "
+                        "without end, below the slave, or a rigid plane (`plane`); or `half_space`: a viscoelastic one there, "
                         "of which the normal law is that of an indenter at the slave point."})
           .choice("assumption", &ContactParameters::assumption,
                   {{"subs_a", ContactAssumption::subs_a},
@@ -131,6 +168,18 @@ const Schema& ContactParameters::schema() {
                            "from its first node; on the face of a plate {radius, angle}.",
                     .optional = true,
                     .number_key = "along"})
+          .section("plane", &ContactParameters::plane,
+                   {.doc = "With the master `rigid`: a rigid plane, on which points slide in space, "
+                           "with friction along two directions. Bodies in space have one without "
+                           "this key, through the first slave point at right angles to y.",
+                    .optional = true})
+          .real("adjust", &ContactParameters::adjust,
+                {.doc = "In space: gaps and overlaps of slave points up to this are taken as closed "
+                        "at the start, without stress; default: a millionth of the size of the "
+                        "bodies.",
+                 .unit = "m",
+                 .range = Range::non_negative(),
+                 .optional = true})
           .choice("sliding", &ContactParameters::sliding,
                   {{"moving", SlidingMode::moving}, {"frozen", SlidingMode::frozen}},
                   {.doc = "moving: the drive slides the slave; frozen: position held, friction as "

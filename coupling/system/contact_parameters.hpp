@@ -25,11 +25,21 @@ inline constexpr const char* half_space_master = "half_space";
 /// Stands for all guided supports in the lists of a drive.
 inline constexpr const char* guided_supports = "guided";
 
-/// Where a slave is at the start: on a curve, or on the face of a plate.
+/// A rigid plane as master.
+struct PlaneParameters {
+  std::vector<double> normal;  ///< out of it, of any length; three components
+  std::vector<double> point;   ///< on it, m; empty: the first slave point
+  static const Schema& schema();
+};
+
+/// Where a slave is at the start: on a curve, on the face of a plate, or in space.
 struct StartParameters {
   std::optional<double> along;   ///< of the first slave point from the first node of the curve, m
   std::optional<double> radius;  ///< of the middle of the slave body, m
   std::optional<double> angle;   ///< of it, rad; default 0
+  std::vector<double> at;        ///< of the first slave point in space, m; empty: where its mesh has it
+
+  bool is_given() const { return along || radius || angle || !at.empty(); }
 
   StartParameters() = default;
   StartParameters(double length)  // NOLINT(google-explicit-constructor): a length is one
@@ -46,7 +56,10 @@ struct ContactParameters {
   std::optional<ContactAssumption> assumption;  ///< absent: film, of a viscoelastic normal law
   OnViolation on_violation = OnViolation::stop;
   std::optional<double> armed_from;  ///< s; the drive's ramp where absent
-  StartParameters start;  ///< of a curve; its first node where neither is given
+  StartParameters start;  ///< of a curve; its first node where nothing is given
+  std::optional<PlaneParameters> plane;  ///< of rigid_master: contact in space
+  /// Gaps and overlaps in space up to this are taken as closed at the start, m.
+  std::optional<double> adjust;
   SlidingMode sliding = SlidingMode::moving;
   SurfaceKind surface = SurfaceKind::polyline;
   std::optional<RoughnessParameters> roughness;

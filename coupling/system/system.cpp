@@ -20,6 +20,25 @@ const Drive& System::leading_drive() const {
   return leading == nullptr ? drives.front() : *leading;
 }
 
+std::vector<int> System::master_rows(const ContactPoint& contact, int facet) const {
+  if (contact.face) return {contact.face->rows.begin(), contact.face->rows.end()};
+  const FacetSurface* const surface = facets_of(contact);
+  std::vector<int> rows;
+  if (surface == nullptr) return rows;
+  const Facet& of = surface->facets[static_cast<std::size_t>(facet)];
+  for (std::size_t k = 0; k < static_cast<std::size_t>(of.count); ++k) {
+    const std::array<int, 3>& node = surface->rows[static_cast<std::size_t>(of.nodes[k])];
+    rows.insert(rows.end(), node.begin(), node.end());
+  }
+  return rows;
+}
+
+int System::num_master_ports(const ContactPoint& contact) const {
+  if (contact.face) return static_cast<int>(contact.face->rows.size());
+  const FacetSurface* const surface = facets_of(contact);
+  return surface == nullptr ? 0 : 3 * surface->max_nodes();
+}
+
 double System::path_share(int body) const {
   const Drive* const drive = drive_of(body);
   if (drive == nullptr) return 0.0;

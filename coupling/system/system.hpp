@@ -12,6 +12,7 @@
 #include "coupling/kinematics/contact.hpp"
 #include "coupling/kinematics/face_place.hpp"
 #include "coupling/kinematics/roughness.hpp"
+#include "coupling/kinematics/space_contact.hpp"
 #include "coupling/kinematics/surface.hpp"
 #include "coupling/laws/friction_law.hpp"
 #include "coupling/laws/substrate_contact.hpp"
@@ -121,7 +122,7 @@ enum class OnViolation {
   unilateral,  ///< it sticks, slips and lifts off
 };
 
-/// One slave point on one master surface, or on one place of the face of a spinning body.
+/// One slave point on one master surface, on one place of the face of a spinning body, or in space.
 struct ContactPoint {
   std::string name;  ///< of the pair it belongs to, with "[k]" where the pair has several points
   int slave_body = 0;
@@ -144,8 +145,16 @@ struct ContactPoint {
   /// the slave is then x along the circumference, y along the axis away from the face, z along the
   /// radius.
   std::optional<FacePlace> face;
-  /// Indentation of undeformed bodies on a face, m: preload/penalty; 0 for multipliers.
+  /// Likewise: contact on a rigid plane or on facets, with two tangents; the frame of the slave is that
+  /// of space.
+  std::optional<SpacePlace> space;
+  /// What the gap of a contact with two tangents is counted from, m: on a face the indentation of
+  /// undeformed bodies, preload/penalty, 0 for multipliers; in space the gap at the start where that is
+  /// taken as closed.
   double overlap = 0.0;
+
+  bool has_two_tangents() const { return face.has_value() || space.has_value(); }
+  int num_slave_ports() const { return has_two_tangents() && slave_rows.z >= 0 ? 3 : 2; }
 
   /// Gap per force of compression, 1/k, m/N; 0 of a contact that a multiplier closes.
   double compliance() const { return penalty ? 1.0 / *penalty : 0.0; }
@@ -160,6 +169,7 @@ struct ContactPoint {
 struct System {
   std::vector<SystemBody> bodies;
   std::vector<MasterSurface> surfaces;
+  std::vector<FacetSurface> facet_surfaces;
   std::vector<ContactPoint> contacts;
   std::vector<Drive> drives{Drive()};  ///< one at least
 
@@ -168,12 +178,26 @@ struct System {
   }
   /// "<body>.<surface>" or "<body>.<face>" that a contact touches.
   const std::string& master_name(const ContactPoint& contact) const {
-    return contact.face ? contact.face->name : surface_of(contact).name;
+    return contact.face    ? contact.face->name
+           : contact.space ? contact.space->name
+                           : surface_of(contact).name;
   }
   /// The body that a contact touches with its slave point.
   int master_of(const ContactPoint& contact) const {
-    return contact.face ? contact.face->body : surface_of(contact).body;
+    return contact.face    ? contact.face->body
+           : contact.space ? contact.space->body
+                           : surface_of(contact).body;
   }
+  /// The facets that a contact in space touches; null on a rigid plane and for other contacts.
+  const FacetSurface* facets_of(const ContactPoint& contact) const {
+    if (!contact.space || contact.space->surface < 0) return nullptr;
+    return &facet_surfaces[static_cast<std::size_t>(contact.space->surface)];
+  }
+  /// Rows of the master that a contact with two tangents watches.
+  /// @param facet of a contact on facets
+  std::vector<int> master_rows(const ContactPoint& contact, int facet) const;
+  /// Most of these.
+  int num_master_ports(const ContactPoint& contact) const;
   /// The drive that a body follows; null where there is none.
   const Drive* drive_of(int body) const {
     const int drive = bodies[static_cast<std::size_t>(body)].drive;
@@ -201,13 +225,12 @@ struct System {
   }
   bool has_faces() const {
     return std::any_of(contacts.begin(), contacts.end(),
-                       [](const ContactPoint& contact) { return contact.face.has_value(); });
+                       [](const ContactPoint& contact) { return contact.has_two_tangents(); });
   }
   /// Displacements of the bodies at a contact: x and y of the slave and of every node of the
-  /// stencil; on a face, its five and those of the slave, x, y and z.
+  /// stencil; with two tangents, those of the master and those of the slave, x, y and z.
   int num_contact_ports(const ContactPoint& contact) const {
-    if (contact.face)
-      return static_cast<int>(contact.face->rows.size()) + (contact.slave_rows.z < 0 ? 2 : 3);
+    if (contact.has_two_tangents()) return num_master_ports(contact) + contact.num_slave_ports();
     return 2 + 2 * surface_of(contact).stencil_size();
   }
 };

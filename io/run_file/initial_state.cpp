@@ -157,10 +157,11 @@ std::string key_of_start(const LoadedScene& loaded, const ContactPoint& contact)
 
 std::string gap_message(const System& system, const StartingGap& start) {
   const ContactPoint& contact = system.contacts[static_cast<std::size_t>(start.contact)];
-  const Eigen::Vector2d lift = -start.gap * start.normal + Eigen::Vector2d::Zero();  // no -0
+  const Eigen::Vector3d lift = -start.gap * start.normal + Eigen::Vector3d::Zero();  // no -0
   const std::string move = fmt::format(
-      "move '{}' by x: {:.12g} m, y: {:.12g} m (initial.displacement)",
-      system.bodies[static_cast<std::size_t>(contact.slave_body)].name, lift.x(), lift.y());
+      "move '{}' by x: {:.12g} m, y: {:.12g} m{} (initial.displacement)",
+      system.bodies[static_cast<std::size_t>(contact.slave_body)].name, lift.x(), lift.y(),
+      lift.z() == 0.0 ? "" : fmt::format(", z: {:.12g} m", lift.z()));
   if (may_start_open(contact)) {
     return fmt::format(
         "'{}' starts {:.6g} m inside its master '{}', which the first step would turn into energy "

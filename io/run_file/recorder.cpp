@@ -79,6 +79,10 @@ double Recorder::Stream::value(const Simulation& simulation) const {
       return static_cast<double>(simulation.contact_state(contact));
     case ContactQuantity::area:
       return simulation.contact_area(contact);
+    case ContactQuantity::friction_across:
+      return simulation.friction_across(contact);
+    case ContactQuantity::slip_across:
+      return simulation.sliding_velocity(contact).y();
     case ContactQuantity::position:
       break;
   }

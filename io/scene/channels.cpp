@@ -12,7 +12,8 @@ namespace {
 
 const std::vector<std::string> motions{"displacement", "velocity", "acceleration"};
 const std::vector<std::string> quantities{"force",          "gap",   "slip_velocity", "position",
-                                          "friction_force", "state", "area"};
+                                          "friction_force", "state", "area", "friction_across",
+                                          "slip_across"};
 
 constexpr EnergyEntry energy_entries[] = {
     {"kinetic", &EnergyBalance::kinetic,
@@ -81,12 +82,15 @@ Channel parse(const std::string& name, const ModelParameters& model) {
     channel.pair = parts[0];
     if (parts[1] == "area" && model.pairs().at(parts[0]).normal.law != NormalLaw::viscoelastic)
       throw fmt::format("the normal law of '{}' has no area; the law viscoelastic has", parts[0]);
+    if (parts[1].ends_with("_across") && !has_two_tangents(model, model.pairs().at(parts[0])))
+      throw fmt::format("'{}' slides along a curve and has one tangent only", parts[0]);
     channel.quantity = static_cast<ContactQuantity>(*quantity);
     return channel;
   }
   throw std::string(
       "is neither <body>.<point>.<x|y|z>.<displacement|velocity|acceleration> nor "
-      "<contact>.<force|gap|slip_velocity|position|friction_force|state|area>");
+      "<contact>.<force|gap|slip_velocity|position|friction_force|state|area|friction_across|"
+      "slip_across>");
 }
 
 }  // namespace
@@ -101,7 +105,7 @@ std::string Channel::units() const {
     return units[static_cast<std::size_t>(derivative)];
   }
   if (energy != nullptr) return "J";
-  constexpr const char* units[] = {"N", "m", "m/s", "m", "N", "1", "m^2"};
+  constexpr const char* units[] = {"N", "m", "m/s", "m", "N", "1", "m^2", "N", "m/s"};
   return units[static_cast<std::size_t>(quantity)];
 }
 

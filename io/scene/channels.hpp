@@ -11,7 +11,17 @@
 
 namespace stridor {
 
-enum class ContactQuantity { force, gap, slip_velocity, position, friction_force, state, area };
+enum class ContactQuantity {
+  force,
+  gap,
+  slip_velocity,
+  position,
+  friction_force,
+  state,
+  area,
+  friction_across,  ///< along the second tangent
+  slip_across,      ///< likewise
+};
 const std::string& name_of(ContactQuantity quantity);
 
 /// An entry of the energy ledger as it is recorded.

@@ -217,10 +217,19 @@ bool is_face(const ModelParameters& model, const std::string& master) {
   return body != model.substructures.end() && body->second->has_face(master.substr(dot + 1));
 }
 
+bool has_two_tangents(const ModelParameters& model, const ContactParameters& pair) {
+  const auto is_spatial = [&](const std::string& name) {
+    const auto body = model.substructures.find(name.substr(0, name.find('.')));
+    return body != model.substructures.end() && body->second->is_spatial();
+  };
+  if (pair.plane || is_face(model, pair.master) || is_spatial(pair.master)) return true;
+  return pair.master == rigid_master && !pair.slave.empty() && is_spatial(pair.slave.front());
+}
+
 bool has_face_contacts(const ModelParameters& model) {
   const auto pairs = model.pairs();
   return std::any_of(pairs.begin(), pairs.end(),
-                     [&](const auto& pair) { return is_face(model, pair.second.master); });
+                     [&](const auto& pair) { return has_two_tangents(model, pair.second); });
 }
 
 namespace {
@@ -234,7 +243,7 @@ std::vector<std::string> indispensable_terms(const ModelParameters& model) {
       });
   const bool is_on_faces =
       !pairs.empty() && std::all_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
-        return is_face(model, pair.second.master);
+        return has_two_tangents(model, pair.second);
       });
   std::vector<std::string> names;
   if (!spins) names.push_back("gyroscopic");

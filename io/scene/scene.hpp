@@ -51,7 +51,9 @@ KeptTerms kept_terms(const Scene& scene);
 LinearisationTerms contact_terms(const KeptTerms& kept);
 /// Whether a master, "<body>.<face>", is the face of a body.
 bool is_face(const ModelParameters& model, const std::string& master);
-/// Whether a contact of the scene is on the face of a body.
+/// Whether the contacts of a pair have two tangents: on the face of a plate, or in space.
+bool has_two_tangents(const ModelParameters& model, const ContactParameters& pair);
+/// Whether a contact of the scene has.
 bool has_face_contacts(const ModelParameters& model);
 
 /// What a run of the scene keeps account of.

@@ -255,6 +255,9 @@ std::vector<double> spaced_values(const NumericKey& key, double from, double to,
 }
 
 std::optional<std::string> start_key(const ModelParameters& model) {
+  const auto pairs = model.pairs();
+  // On faces and in space a place is no length.
+  if (pairs.size() == 1 && has_two_tangents(model, pairs.begin()->second)) return std::nullopt;
   if (model.contact) return "contact.start";
   if (model.contacts.size() != 1) return std::nullopt;
   return "contacts." + model.contacts.begin()->first + ".start";

@@ -88,7 +88,7 @@ void visit_numbers(const Schema& schema, const void* object, const std::string& 
 
 /// When the drive has carried a slave off the end of its master, s.
 std::optional<double> leaving_time(const System& system, const ContactPoint& contact, double end) {
-  if (contact.face) return std::nullopt;
+  if (contact.has_two_tangents()) return std::nullopt;
   const MasterSurface& surface = system.surface_of(contact);
   const DrivenMotion driven = system.driven_motion(contact);
   if (surface.is_endless || driven.is_frozen()) return std::nullopt;

@@ -87,12 +87,13 @@ void add_pairs(std::span<const FaceDirections> contacts, std::span<const FaceSid
 }  // namespace
 
 void FaceCompliances::add(const Propagator& slave, const Propagator& master, int slave_port,
-                          int master_port, int num_slave_ports) {
+                          int master_port, int num_slave_ports, int num_master_ports) {
   const std::size_t contact = directions_.size();
   directions_.emplace_back();
-  sense_.emplace_back(Directions::Zero());
-  constexpr std::size_t num_rows = num_face_rows;
-  add_side(master, {contact, 0, static_cast<std::size_t>(master_port), num_rows});
+  sense_.emplace_back(Directions::Zero(num_master_ports + 3, 3));
+  const auto num_rows = static_cast<std::size_t>(num_master_ports);
+  if (num_rows > 0)
+    add_side(master, {contact, 0, static_cast<std::size_t>(master_port), num_rows});
   add_side(slave, {contact, num_rows, static_cast<std::size_t>(slave_port),
                    static_cast<std::size_t>(num_slave_ports)});
 }
@@ -108,7 +109,7 @@ void FaceCompliances::direct(std::size_t contact, const Directions& sense,
                              const Directions& push) {
   sense_[contact] = sense;
   FaceDirections& of = directions_[contact];
-  for (int i = 0; i < num_face_ports; ++i) {
+  for (Eigen::Index i = 0; i < sense.rows(); ++i) {
     const auto port = static_cast<std::size_t>(i);
     of.at_once[port] = {sense(i, 0), sense(i, 1), sense(i, 2), 0.0};
     of.push[port] = {push(i, 0), push(i, 1), push(i, 2), 0.0};
@@ -120,7 +121,7 @@ void FaceCompliances::direct(std::size_t contact, const Directions& sense,
 void FaceCompliances::seek(std::size_t contact, bool gap_ahead, bool slip_ahead) {
   FaceDirections& of = directions_[contact];
   const Directions& sense = sense_[contact];
-  for (int i = 0; i < num_face_ports; ++i) {
+  for (Eigen::Index i = 0; i < sense.rows(); ++i) {
     const auto port = static_cast<std::size_t>(i);
     const Row all = {sense(i, 0), sense(i, 1), sense(i, 2), 0.0};
     for (std::size_t r = 0; r < 3; ++r) {

@@ -1,4 +1,4 @@
-// What the forces of contacts on faces do to each other's gaps and slips.
+// What the forces of contacts with two tangents do to each other's gaps and slips.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,14 +6,14 @@
 #include <cstddef>
 #include <vector>
 
-#include "coupling/kinematics/face_kinematics.hpp"
+#include "coupling/kinematics/tangent_kinematics.hpp"
 #include "solvers/integrators/propagator.hpp"
 
 namespace stridor {
 
-/// Directions of a contact on a face at each of its ports: normal, two tangents, and nothing.
+/// Directions of a contact at each of its ports: normal, two tangents, and nothing.
 struct FaceDirections {
-  using Ports = std::array<std::array<double, 4>, num_face_ports>;
+  using Ports = std::array<std::array<double, 4>, max_tangent_ports>;
   Ports at_once{};  ///< sense of what is sought at once
   Ports ahead{};    ///< sense of what is sought at t_{n+1}
   Ports push{};     ///< force per unit of λ_n and of friction
@@ -29,16 +29,16 @@ struct FaceSide {
   std::size_t count = 0;
 };
 
-/// Blocks sᵀ W p of all pairs of contacts on faces (docs/theory.md, 10.6). Contacts are gathered by the
+/// Blocks sᵀ W p of all pairs of contacts with two tangents (docs/theory.md, 10.6). Contacts are gathered by the
 /// body that they touch: pairs without a common body are not visited.
 class FaceCompliances {
  public:
-  using Directions = Eigen::Matrix<double, num_face_ports, 3>;
+  using Directions = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, max_tangent_ports, 3>;
 
   /// Puts the next contact between two bodies.
   /// @param num_slave_ports 2 or 3
   void add(const Propagator& slave, const Propagator& master, int slave_port, int master_port,
-           int num_slave_ports);
+           int num_slave_ports, int num_master_ports);
 
   /// Directions of a contact, and where its gap and its slip are sought: at once, or at t_{n+1}.
   /// @param sense gap, and slip with the opposite sign, per displacement of its ports

@@ -4,85 +4,6 @@
 
 namespace stridor {
 
-FacePoint::FacePoint(const ContactPoint& point, Propagator& slave, Propagator& master,
-                     int slave_port, int master_port)
-    : point_(point),
-      face_(make_face_kinematics(*point.face)),
-      slave_(&slave),
-      master_(&master),
-      slave_port_(slave_port),
-      master_port_(master_port),
-      num_slave_ports_(point.slave_rows.z < 0 ? 2 : 3) {
-  for (int k = 0; k < num_face_rows; ++k)
-    master_->watch(master_port + k, point.face->rows[static_cast<std::size_t>(k)]);
-  slave_->watch(slave_port, point.slave_rows.x);
-  slave_->watch(slave_port + 1, point.slave_rows.y);
-  if (num_slave_ports_ > 2) slave_->watch(slave_port + 2, point.slave_rows.z);
-  direct(FacePorts::Zero());
-}
-
-FacePorts FacePoint::ports(const double* slave, const double* master) const {
-  FacePorts y = FacePorts::Zero();
-  for (int k = 0; k < num_face_rows; ++k) y[k] = master[master_port_ + k];
-  for (int k = 0; k < num_slave_ports_; ++k) y[num_face_rows + k] = slave[slave_port_ + k];
-  return y;
-}
-
-void FacePoint::find() {
-  direct(expected());
-}
-
-void FacePoint::direct(const FacePorts& ports) {
-  directed_at_ = ports;
-  normal_ = face_.normal_at(ports);
-  along_ = face_.along_at(ports);
-}
-
-double FacePoint::predicted_gap() const {
-  const double gap = 0.5 * directed_at_.dot(face_.normal + normal_);
-  return gap + normal_.dot(predicted() - directed_at_) - point_.overlap;
-}
-
-double FacePoint::gap_ahead() const {
-  const FacePorts y = ahead();
-  return face_.gap(directed_at_) + normal_.dot(y - directed_at_) +
-         0.5 * (y - directed_at_).dot(face_.normal_bending.lazyProduct(y - directed_at_)) -
-         point_.overlap;
-}
-
-FacePoint::Directions FacePoint::directions(double step) const {
-  Directions made;
-  made.sense << normal_, face_.along, face_.across + 0.5 * step * face_.sliding * face_.turning;
-  made.push << normal_, along_, face_.across;
-  return made;
-}
-
-std::array<PortBlock, 2> FacePoint::blocks(double step) const {
-  const auto [sense, push] = directions(step);
-  std::array<PortBlock, 2> made;
-  auto& [master, slave] = made;
-  master.body = master_;
-  master.port = master_port_;
-  master.count = num_face_rows;
-  slave.body = slave_;
-  slave.port = slave_port_;
-  slave.count = num_slave_ports_;
-  master.width = slave.width = 3;
-  master.sense.topRows<num_face_rows>() = sense.topRows<num_face_rows>();
-  master.push.topRows<num_face_rows>() = push.topRows<num_face_rows>();
-  slave.sense.topRows<3>() = sense.bottomRows<3>();
-  slave.push.topRows<3>() = push.bottomRows<3>();
-  return made;
-}
-
-void FacePoint::apply(double normal, const Eigen::Vector2d& friction, double* slave_forces,
-                      double* master_forces) const {
-  const FacePorts forces = normal * normal_ + friction.x() * along_ + friction.y() * face_.across;
-  for (int k = 0; k < num_face_rows; ++k) master_forces[master_port_ + k] = forces[k];
-  for (int k = 0; k < num_slave_ports_; ++k)
-    slave_forces[slave_port_ + k] = forces[num_face_rows + k];
-}
-
 Eigen::Vector2d RunningFace::half_change() const {
   constexpr double steady = 0.5;
   const Eigen::Vector2d change = velocities[0] - velocities[1];
@@ -90,30 +11,29 @@ Eigen::Vector2d RunningFace::half_change() const {
   return 0.5 * change;
 }
 
-RunningFace::Numbers RunningFace::numbers() const {
-  Numbers numbers{force,
-                  friction_force,
-                  friction_across,
-                  static_cast<double>(state),
-                  static_cast<double>(last_state),
-                  static_cast<double>(steady_steps),
-                  velocities[0].x(),
-                  velocities[0].y(),
-                  velocities[1].x(),
-                  velocities[1].y(),
-                  crept.x(),
-                  crept.y(),
-                  static_cast<double>(violations.negative_force),
-                  static_cast<double>(violations.reversed_sliding),
-                  static_cast<double>(violations.before_armed),
-                  violations.last_time};
-  const FacePorts& directed = kinematics.directed_at();
-  std::copy(directed.begin(), directed.end(), numbers.end() - 2 * num_face_ports);
-  std::copy(reached.begin(), reached.end(), numbers.end() - num_face_ports);
+std::vector<double> RunningFace::numbers() const {
+  std::vector<double> numbers{force,
+                              friction_force,
+                              friction_across,
+                              static_cast<double>(state),
+                              static_cast<double>(last_state),
+                              static_cast<double>(steady_steps),
+                              velocities[0].x(),
+                              velocities[0].y(),
+                              velocities[1].x(),
+                              velocities[1].y(),
+                              crept.x(),
+                              crept.y(),
+                              static_cast<double>(violations.negative_force),
+                              static_cast<double>(violations.reversed_sliding),
+                              static_cast<double>(violations.before_armed),
+                              violations.last_time};
+  const std::vector<double> places = kinematics->numbers();
+  numbers.insert(numbers.end(), places.begin(), places.end());
   return numbers;
 }
 
-void RunningFace::restore(const Numbers& numbers) {
+void RunningFace::restore(std::span<const double> numbers) {
   const auto count = [&](std::size_t k) { return static_cast<std::int64_t>(numbers[k]); };
   force = numbers[0];
   friction_force = numbers[1];
@@ -125,47 +45,31 @@ void RunningFace::restore(const Numbers& numbers) {
   slip_velocity = numbers[6];
   crept = {numbers[10], numbers[11]};
   violations = {count(12), count(13), count(14), numbers[15]};
-  FacePorts directed;
-  std::copy_n(numbers.end() - 2 * num_face_ports, num_face_ports, directed.begin());
-  std::copy_n(numbers.end() - num_face_ports, num_face_ports, reached.begin());
-  kinematics.direct(directed);
+  kinematics->restore(numbers.subspan(16));
 }
 
-void RunningFaces::add(const ContactPoint& point, Propagator& slave, Propagator& master,
+void RunningFaces::add(std::unique_ptr<FacePoint> point, Propagator& slave, Propagator& master,
                        int slave_port, int master_port) {
-  RunningFace face(FacePoint(point, slave, master, slave_port, master_port));
-  face.begin(point);
+  compliances_.add(slave, master, slave_port, master_port, point->num_slave_ports(),
+                   point->num_master_ports());
+  RunningFace face(std::move(point));
+  face.begin(face.point());
   faces_.push_back(std::move(face));
   problems_.emplace_back();
-  compliances_.add(slave, master, slave_port, master_port, faces_.back().kinematics.num_slave_ports());
 }
 
-void RunningFaces::stand(const System& system, const Instant& at) {
-  const auto row_of = [&](int index, int row, Eigen::VectorXd SystemBody::*motion) {
-    const SystemBody& body = system.bodies[static_cast<std::size_t>(index)];
-    return row < 0 || (body.*motion).size() == 0 ? 0.0
-                                                 : body.reduced.rows.row(row).dot(body.*motion);
-  };
-  for (RunningFace& face : faces_) {
-    const ContactPoint& point = face.point();
-    const auto ports_of = [&](Eigen::VectorXd SystemBody::*motion) {
-      FacePorts y;
-      for (int k = 0; k < num_face_rows; ++k)
-        y[k] = row_of(point.face->body, point.face->rows[static_cast<std::size_t>(k)], motion);
-      y.tail<3>() << row_of(point.slave_body, point.slave_rows.x, motion),
-          row_of(point.slave_body, point.slave_rows.y, motion),
-          row_of(point.slave_body, point.slave_rows.z, motion);
-      return y;
-    };
+std::optional<std::size_t> RunningFaces::stand(const System& system, const Instant& at) {
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    RunningFace& face = faces_[i];
     face.forget();
     face.last_state = ContactState::open;
     face.crept.setZero();
-    face.reached = ports_of(&SystemBody::initial_displacement);
-    const FacePorts rate = ports_of(&SystemBody::initial_velocity);
-    face.velocities.fill(face.kinematics.face().velocity(face.reached, rate));
-    face.slip_velocity = face.velocities[0].x();
-    if (at.has_feedthrough) face.reached -= at.step * rate;
+    const std::optional<Eigen::Vector2d> velocity = face.kinematics->stand(system, at);
+    if (!velocity) return i;
+    face.velocities.fill(*velocity);
+    face.slip_velocity = velocity->x();
   }
+  return std::nullopt;
 }
 
 void RunningFaces::find_answers(double step) {
@@ -173,9 +77,8 @@ void RunningFaces::find_answers(double step) {
   // impact would give back more than 4/3, or less than 3/4, of its energy (docs/theory.md, 10.6).
   constexpr double resolved = 1.0;
   for (RunningFace& face : faces_) {
-    FacePoint undeformed = face.kinematics;
-    undeformed.direct(FacePorts::Zero());
-    const std::array<PortBlock, 2> blocks = undeformed.blocks(step);
+    const FacePoint& kinematics = *face.kinematics;
+    const std::array<PortBlock, 2> blocks = kinematics.blocks(kinematics.directions_at_rest(step));
     Eigen::MatrixXd at_once = Eigen::MatrixXd::Zero(3, 3);
     Eigen::MatrixXd next = Eigen::MatrixXd::Zero(3, 3);
     for (const PortBlock& a : blocks) {
@@ -210,18 +113,17 @@ void RunningFaces::set_coefficients(RunningFace& face, PlanarProblem& problem,
   }
 }
 
-void RunningFaces::pose(const Instant& at) {
+std::optional<std::size_t> RunningFaces::pose(const Instant& at) {
   step_ = at.step;
   for (std::size_t i = 0; i < faces_.size(); ++i) {
     RunningFace& face = faces_[i];
     PlanarProblem& problem = problems_[i];
-    FacePoint& kinematics = face.kinematics;
-    kinematics.find();
+    FacePoint& kinematics = *face.kinematics;
+    if (!kinematics.find(at.sought)) return i;
     face.predicts_ahead = face.seeks_gap_ahead = false;
     problem.is_unilateral = at.now >= face.unilateral_from;
     problem.penetration = -kinematics.predicted_gap();
-    const FaceKinematics& of = kinematics.face();
-    problem.slip = of.slip(face.reached, kinematics.predicted(), step_);
+    problem.slip = kinematics.predicted_slip(at);
     // The velocity at t_n from the mean one of the step that ends, or begins, there.
     const Eigen::Vector2d to_end = (at.has_feedthrough ? step_ : -step_) * face.half_change();
     if (face.state == ContactState::stick) problem.slip += face.crept;
@@ -229,7 +131,7 @@ void RunningFaces::pose(const Instant& at) {
     if (!problem.is_unilateral) {
       const Eigen::Vector2d velocity =
           at.has_feedthrough
-              ? Eigen::Vector2d(of.slip(face.reached, kinematics.expected(), step_) + to_end)
+              ? Eigen::Vector2d(kinematics.expected_slip(at) + to_end)
               : Eigen::Vector2d(face.velocities[0] + face.half_change());
       problem.direction = velocity.isZero(0.0) ? Eigen::Vector2d(1.0, 0.0) : velocity.normalized();
     }
@@ -237,6 +139,7 @@ void RunningFaces::pose(const Instant& at) {
     const FacePoint::Directions directions = kinematics.directions(step_);
     compliances_.direct(i, directions.sense, directions.push);
   }
+  return std::nullopt;
 }
 
 bool RunningFaces::is_settling(std::size_t i) const {
@@ -268,17 +171,15 @@ bool RunningFaces::has_changed(std::size_t i) const {
 void RunningFaces::pose_ahead(std::size_t i, const Instant& at) {
   RunningFace& face = faces_[i];
   PlanarProblem& problem = problems_[i];
-  const FacePoint& kinematics = face.kinematics;
-  const FaceKinematics& of = kinematics.face();
+  const FacePoint& kinematics = *face.kinematics;
   face.predicts_ahead = true;
   const bool just_sticks = face.state == ContactState::stick && !is_settling(i);
   face.seeks_gap_ahead = !face.is_soft && !just_sticks;
   compliances_.seek(i, face.seeks_gap_ahead, true);
-  if (face.seeks_gap_ahead) problem.penetration = -kinematics.gap_ahead();
-  const FacePorts& now = kinematics.directed_at();
-  problem.slip = of.slip(now, kinematics.ahead(), step_);
+  if (face.seeks_gap_ahead) problem.penetration = -kinematics.gap_ahead(at);
+  problem.slip = kinematics.slip_ahead(at);
   if (face.state == ContactState::stick)
-    problem.slip += face.crept + of.slip(face.reached, now, step_);
+    problem.slip += face.crept + kinematics.expected_slip(at);
   if (face.state == ContactState::slip) problem.slip -= step_ * face.half_change();
   set_coefficients(face, problem, face.rise_at(at.sought));
 }
@@ -312,7 +213,7 @@ void RunningFaces::fill_with_lines(std::size_t face, ContactSolver& solver,
                                    std::span<const std::array<PortBlock, 2>> lines,
                                    std::span<const char> predicts_ahead) const {
   const RunningFace& of = faces_[face];
-  const std::array<PortBlock, 2> own = of.kinematics.blocks(step_);
+  const std::array<PortBlock, 2> own = of.kinematics->blocks(of.kinematics->directions(step_));
   const Eigen::Index row = solver.first_planar(static_cast<int>(face));
   const auto put = [&](const std::array<PortBlock, 2>& to, const std::array<PortBlock, 2>& from,
                        bool ahead, auto block) {
@@ -342,16 +243,14 @@ void RunningFaces::take() {
   }
 }
 
-void RunningFaces::follow(double step) {
+void RunningFaces::follow(const Instant& at) {
   for (RunningFace& face : faces_) {
-    const FacePorts now = face.kinematics.current();
-    const Eigen::Vector2d slip = face.kinematics.face().slip(face.reached, now, step);
+    const Eigen::Vector2d slip = face.kinematics->follow(at);
     const bool has_stuck =
         face.state == ContactState::stick && face.last_state == ContactState::stick;
     face.crept = has_stuck ? Eigen::Vector2d(face.crept + slip) : Eigen::Vector2d::Zero();
-    face.velocities = {slip / step, face.velocities[0]};
+    face.velocities = {slip / at.step, face.velocities[0]};
     face.slip_velocity = face.velocities[0].x();
-    face.reached = now;
   }
 }
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "coupling/kinematics/face_kinematics.hpp"
+#include "coupling/kinematics/tangent_kinematics.hpp"
 #include "coupling/kinematics/surface.hpp"
 #include "solvers/integrators/propagator.hpp"
 
@@ -12,7 +12,7 @@ namespace stridor {
 /// What a contact sees of the displacements of a body, and how its forces act. Columns: the normal, then
 /// the tangents; rows: the ports of the body from `port` on.
 struct PortBlock {
-  static constexpr int most_ports = 2 * max_stencil;
+  static constexpr int most_ports = max_facet_ports;
   using Columns = Eigen::Matrix<double, most_ports, 3>;
 
   const Propagator* body = nullptr;

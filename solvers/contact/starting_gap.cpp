@@ -73,9 +73,42 @@ double gap_on_face(const System& system, const ContactPoint& contact) {
   return make_face_kinematics(*contact.face).gap(ports) - contact.overlap;
 }
 
+/// In space, likewise.
+StartingGap gap_in_space(const System& system, int index) {
+  const ContactPoint& contact = system.contacts[static_cast<std::size_t>(index)];
+  const SpacePlace& space = *contact.space;
+  const FacetSurface* const surface = system.facets_of(contact);
+  FacetPlace place{space.first_facet, 0.4, 0.4};
+  FacetSearch search;
+  while (true) {
+    TangentPorts ports = TangentPorts::Zero(system.num_master_ports(contact) + 3);
+    const auto put = [&](Eigen::Index port, int of, int row) {
+      const SystemBody& body = body_at(system, of);
+      if (row >= 0 && body.initial_displacement.size() > 0)
+        ports[port] = body.reduced.rows.row(row).dot(body.initial_displacement);
+    };
+    Eigen::Index port = 0;
+    for (const int row : system.master_rows(contact, place.facet)) put(port++, space.body, row);
+    for (int i = 0; i < 3; ++i)
+      put(system.num_master_ports(contact) + i, contact.slave_body, contact.slave_rows.row(i));
+    const SpaceInstant instant = space_instant(
+        space, surface, place.facet, system.driven_motion(contact).displacement(0.0), ports);
+    if (surface != nullptr) {
+      const Eigen::Vector2d found =
+          closest_on(instant.deformed, instant.slave, {place.xi, place.eta});
+      place.xi = found.x();
+      place.eta = found.y();
+      if (search.look(*surface, place) == FacetSearch::Step::moved) continue;
+    }
+    const SpaceGeometry geometry = space_geometry(instant, {place.xi, place.eta});
+    return {index, geometry.gap - contact.overlap, geometry.frame.normal};
+  }
+}
+
 StartingGap starting_gap(const System& system, int index) {
   const ContactPoint& contact = system.contacts[static_cast<std::size_t>(index)];
-  if (contact.face) return {index, gap_on_face(system, contact), Eigen::Vector2d::UnitY()};
+  if (contact.face) return {index, gap_on_face(system, contact), Eigen::Vector3d::UnitY()};
+  if (contact.space) return gap_in_space(system, index);
   const MasterSurface& surface = system.surface_of(contact);
   int segment = contact.first_segment;
   int heading = 0;
@@ -90,7 +123,7 @@ StartingGap starting_gap(const System& system, int index) {
           setting.slave_moved - setting.deformed.combine(projection.weights);
       return {index,
               projection.normal.dot(arm) - surface.roughness_at(segment, projection.weights),
-              projection.normal};
+              Eigen::Vector3d(projection.normal.x(), projection.normal.y(), 0.0)};
     }
     segment = next;
     heading = wanted;
@@ -109,7 +142,14 @@ std::vector<StartingGap> starting_gaps(const System& system) {
 
 double negligible_gap(const System& system, const ContactPoint& contact) {
   constexpr double share = 1e-9;
-  return share * (contact.face ? contact.face->radius : system.surface_of(contact).arc_length.back());
+  if (contact.face) return share * contact.face->radius;
+  if (contact.space) {
+    const FacetSurface* const surface = system.facets_of(contact);
+    const SpacePlace& space = *contact.space;
+    return share * (surface != nullptr ? surface->extent()
+                                       : std::max(1.0, (space.slave - space.origin).norm()));
+  }
+  return share * system.surface_of(contact).arc_length.back();
 }
 
 }  // namespace stridor

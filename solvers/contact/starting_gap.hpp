@@ -11,7 +11,7 @@ namespace stridor {
 struct StartingGap {
   int contact = 0;
   double gap = 0.0;  ///< along the normal, m; negative: the slave starts inside its master
-  Eigen::Vector2d normal = Eigen::Vector2d::UnitY();  ///< out of the master
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitY();  ///< out of the master
 };
 
 /// Gaps of all contacts as the assumption of each measures them (docs/theory.md, 2.2), with

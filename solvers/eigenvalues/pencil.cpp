@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "coupling/kinematics/face_kinematics.hpp"
+#include "coupling/system/undeformed_contact.hpp"
 
 namespace stridor {
 namespace {
@@ -241,7 +241,7 @@ void place_contact(Pencil& pencil, const System& system, int contact, int segmen
   set_row(pencil.equilibrium, rows.equilibrium);
 }
 
-void place_face(Pencil& pencil, const System& system, int contact,
+void place_face(Pencil& pencil, const System& system, int contact, int facet,
                 const Eigen::VectorXd& compatibility, const Eigen::VectorXd& equilibrium) {
   const ContactPoint& point = system.contacts[static_cast<std::size_t>(contact)];
   const Eigen::Index port = first_contact_port(system, contact);
@@ -251,16 +251,16 @@ void place_face(Pencil& pencil, const System& system, int contact,
   for (std::size_t b = 0; b < system.bodies.size(); ++b) {
     const ModalBody& modal = system.bodies[b].modal;
     const auto columns = Eigen::seqN(first, modal.size());
-    if (static_cast<int>(b) == point.face->body) {
-      for (Eigen::Index k = 0; k < num_face_rows; ++k)
-        pencil.ports(port + k, columns) =
-            modal.rows.row(point.face->rows[static_cast<std::size_t>(k)]);
+    if (static_cast<int>(b) == system.master_of(point)) {
+      Eigen::Index at = port;
+      for (const int row : system.master_rows(point, facet))
+        pencil.ports(at++, columns) = modal.rows.row(row);
     }
     if (static_cast<int>(b) == point.slave_body) {
-      const std::array rows{point.slave_rows.x, point.slave_rows.y, point.slave_rows.z};
-      for (Eigen::Index k = num_face_rows; k < num_ports; ++k)
+      const Eigen::Index first_of_slave = system.num_master_ports(point);
+      for (Eigen::Index k = first_of_slave; k < num_ports; ++k)
         pencil.ports(port + k, columns) +=
-            modal.rows.row(rows[static_cast<std::size_t>(k - num_face_rows)]);
+            modal.rows.row(point.slave_rows.row(static_cast<int>(k - first_of_slave)));
     }
     first += modal.size();
   }
@@ -268,15 +268,38 @@ void place_face(Pencil& pencil, const System& system, int contact,
   pencil.equilibrium.row(contact).segment(port, num_ports) = equilibrium.transpose();
 }
 
+namespace {
+
+/// A contact with two tangents on the undeformed bodies, with friction along the sliding: along the
+/// first of them on a face.
+void place_two_tangents(Pencil& pencil, const System& system, int contact, double displacement,
+                        double friction) {
+  const ContactPoint& point = system.contacts[static_cast<std::size_t>(contact)];
+  const std::optional<UndeformedContact> at = undeformed_contact(system, point, displacement);
+  if (!at) {
+    throw std::invalid_argument(
+        fmt::format("pencil: contact '{}' is beyond the edge of its master at a drive displacement of "
+                    "{:g} m",
+                    point.name, displacement));
+  }
+  const auto& [facet, kinematics] = *at;
+  const double speed = kinematics.velocity.norm();
+  const bool slides_askew = point.space && speed > 0.0;
+  const Eigen::Vector2d direction =
+      slides_askew ? Eigen::Vector2d(kinematics.velocity / speed) : Eigen::Vector2d(1.0, 0.0);
+  const Eigen::Index num_ports = system.num_contact_ports(point);
+  place_face(pencil, system, contact, facet, -kinematics.normal.head(num_ports),
+             -(kinematics.normal + friction * (kinematics.friction * direction)).head(num_ports));
+}
+
+}  // namespace
+
 void place_undeformed(Pencil& pencil, const System& system, double drive_displacement,
                       double friction, double direction) {
   for (std::size_t c = 0; c < system.contacts.size(); ++c) {
     const ContactPoint& point = system.contacts[c];
-    if (point.face) {
-      const FaceKinematics face = make_face_kinematics(*point.face);
-      const int num_ports = system.num_contact_ports(point);
-      place_face(pencil, system, static_cast<int>(c), -face.normal.head(num_ports),
-                 -(face.normal + friction * face.along).head(num_ports));
+    if (point.has_two_tangents()) {
+      place_two_tangents(pencil, system, static_cast<int>(c), drive_displacement, friction);
       continue;
     }
     const MasterSurface& surface = system.surfaces[static_cast<std::size_t>(point.surface)];

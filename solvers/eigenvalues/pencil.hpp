@@ -82,7 +82,7 @@ void place_contact(Pencil& pencil, const System& system, int contact, int segmen
                    const ContactRows& rows);
 
 /// The same of a contact on a face, with its rows on the ports of the contact.
-void place_face(Pencil& pencil, const System& system, int contact,
+void place_face(Pencil& pencil, const System& system, int contact, int facet,
                 const Eigen::VectorXd& compatibility, const Eigen::VectorXd& equilibrium);
 
 /// Fills in every contact as it slides on the undeformed master: B_C and B_E with the normal of the

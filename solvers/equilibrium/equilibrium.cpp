@@ -190,6 +190,10 @@ double drive_displacement_at(const System& system, int contact, double position)
     throw std::invalid_argument(fmt::format(
         "drive_displacement_at: {} stays where it is on its face", point.name));
   }
+  if (point.space) {
+    throw std::invalid_argument(fmt::format(
+        "drive_displacement_at: the place of {} on a surface in space is no length", point.name));
+  }
   const MasterSurface& surface = system.surfaces[at(point.surface)];
   const auto [segment, xi] = place_on(surface, position);
   const Segment undeformed = surface.undeformed_segment(segment);
@@ -208,14 +212,17 @@ namespace {
 /// A contact while its equilibrium is sought.
 struct SoughtContact {
   const ContactPoint* point = nullptr;
-  const MasterSurface* surface = nullptr;  ///< null on a face
-  std::optional<FaceKinematics> face;
+  const MasterSurface* surface = nullptr;  ///< null with two tangents
+  const FacetSurface* facets = nullptr;    ///< of a contact on facets
   double path_share = 0.0;  ///< System::path_share()
   bool is_unilateral = false;
   Eigen::Index first_port = 0;  ///< among all
   Eigen::Index num_ports = 0;
   SegmentSearch search;
+  FacetSearch facet_search;
   ContactEquilibrium result;
+
+  bool has_two_tangents() const { return surface == nullptr; }
 };
 
 /// Place on its master that a contact is to have.
@@ -283,20 +290,37 @@ class Search {
     const EquilibriumState& state = answer_.state;
     SoughtContact contact;
     contact.point = &point;
-    if (point.face) {
-      contact.face = make_face_kinematics(*point.face);
-    } else {
-      contact.surface = &system_.surfaces[at(point.surface)];
-    }
     contact.path_share = system_.path_share(point);
     contact.is_unilateral = point.unilateral_from() < std::numeric_limits<double>::infinity();
     contact.result.segment = point.first_segment;
+    if (point.has_two_tangents()) {
+      contact.facets = system_.facets_of(point);
+      if (point.space) contact.result.segment = point.space->first_facet;
+      contact.result.ports.setZero(system_.num_master_ports(point) + 3);
+      contact.result.drawn =
+          velocity_of(point.slave_body) - velocity_of(system_.master_of(point));
+      require_sliding(point, contact.result.drawn);
+    } else {
+      contact.surface = &system_.surfaces[at(point.surface)];
+    }
     contact.result.positions.assumption = state.geometry == ContactGeometry::undeformed
                                               ? ContactAssumption::subs_a
                                               : point.assumption;
     contact.result.positions.driven_velocity =
         velocity_of(point.slave_body) - velocity_of(system_.master_of(point));
     return contact;
+  }
+
+  /// Friction of a contact in space that does not slide has no direction.
+  void require_sliding(const ContactPoint& point, double drawn) const {
+    const EquilibriumState& state = answer_.state;
+    const bool has_friction = state.friction_factor > 0.0 && state.terms.friction &&
+                              point.friction.static_coefficient > 0.0;
+    if (!point.space || drawn != 0.0 || !has_friction || !state.terms.friction_damping) return;
+    throw NumericalError(fmt::format(
+        "equilibrium: '{}' does not slide, so that its friction has no direction; let a drive move its "
+        "slave or its master, or leave friction out",
+        point.name));
   }
 
   /// By the drive that a body follows, m/s.
@@ -312,7 +336,10 @@ class Search {
 
   EquilibriumStatus find() {
     for (SoughtContact& contact : contacts_) {
-      if (contact.face) continue;
+      if (contact.has_two_tangents()) {
+        if (!stand_on_facets(contact)) return lose(contact);
+        continue;
+      }
       if (is_target(contact)) {
         prescribe(contact);
         continue;
@@ -331,7 +358,13 @@ class Search {
       if (!iterate()) return EquilibriumStatus::not_converged;
       bool has_moved = false;
       for (SoughtContact& contact : contacts_) {
-        if (is_target(contact) || contact.face) continue;
+        if (is_target(contact)) continue;
+        if (contact.has_two_tangents()) {
+          const FacetSearch::Step step = look_for_facet(contact);
+          if (step == FacetSearch::Step::lost) return lose(contact);
+          has_moved = has_moved || step == FacetSearch::Step::moved;
+          continue;
+        }
         switch (contact.search.look(*contact.surface, contact.result.projection.xi,
                                     contact.result.segment)) {
           case SegmentSearch::Step::lost:
@@ -350,7 +383,47 @@ class Search {
     return EquilibriumStatus::not_converged;
   }
 
+  /// Puts a contact on the undeformed facet to which drives alone take it. @returns false where there is
+  /// none
+  bool stand_on_facets(SoughtContact& contact) const {
+    ContactEquilibrium& result = contact.result;
+    result.displaced = contact.path_share * answer_.state.drive_displacement;
+    if (contact.facets == nullptr) return true;
+    const TangentPorts rest = TangentPorts::Zero(result.ports.size());
+    FacetSearch search;
+    while (true) {
+      project_on_facet(contact, rest);
+      FacetPlace place{result.segment, result.place.x(), result.place.y()};
+      const FacetSearch::Step step = search.look(*contact.facets, place);
+      result.segment = place.facet;
+      if (step != FacetSearch::Step::moved) return step == FacetSearch::Step::stay;
+    }
+  }
+
+  void project_on_facet(SoughtContact& contact, const TangentPorts& ports) const {
+    ContactEquilibrium& result = contact.result;
+    const SpaceInstant instant = space_instant(*contact.point->space, contact.facets, result.segment,
+                                               result.displaced, ports);
+    result.place = closest_on(instant.deformed, instant.slave, result.place);
+  }
+
+  /// Moves a contact to the next facet where it stands beyond the edge of its own.
+  FacetSearch::Step look_for_facet(SoughtContact& contact) {
+    if (contact.facets == nullptr || answer_.state.geometry == ContactGeometry::undeformed)
+      return FacetSearch::Step::stay;
+    ContactEquilibrium& result = contact.result;
+    FacetPlace place{result.segment, result.place.x(), result.place.y()};
+    const FacetSearch::Step step = contact.facet_search.look(*contact.facets, place);
+    result.segment = place.facet;
+    return step;
+  }
+
   EquilibriumStatus lose(const SoughtContact& contact) {
+    if (contact.has_two_tangents()) {
+      answer_.failure = fmt::format("{}: the slave point stands beyond the edge of the surface {}",
+                                    contact.point->name, system_.master_name(*contact.point));
+      return EquilibriumStatus::master_lost;
+    }
     answer_.failure =
         fmt::format("{}: the slave point stands beyond the end of the surface {} ({:.6g} m long)",
                     contact.point->name, contact.surface->name, contact.surface->arc_length.back());
@@ -378,11 +451,14 @@ class Search {
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       const SoughtContact& contact = contacts_[i];
       auto port = static_cast<int>(contact.first_port);
-      if (const auto& face = contact.point->face) {
-        for (const int row : face->rows) watch_row(face->body, port++, row);
-        watch(contact.point->slave_body, port, contact.point->slave_rows);
-        if (contact.num_ports == num_face_ports)
-          watch_row(contact.point->slave_body, port + 2, contact.point->slave_rows.z);
+      if (contact.has_two_tangents()) {
+        const ContactPoint& point = *contact.point;
+        int on_master = port;
+        for (const int row : system_.master_rows(point, contact.result.segment))
+          watch_row(system_.master_of(point), on_master++, row);
+        port += system_.num_master_ports(point);
+        watch(point.slave_body, port, point.slave_rows);
+        if (point.num_slave_ports() > 2) watch_row(point.slave_body, port + 2, point.slave_rows.z);
         continue;
       }
       watch(contact.point->slave_body, port, contact.point->slave_rows);
@@ -438,8 +514,11 @@ class Search {
 
   /// Positions of a contact for given displacements of its ports.
   void place(SoughtContact& contact, const PortVector& ports) const {
-    if (contact.face) {
+    if (contact.has_two_tangents()) {
       contact.result.ports.head(ports.size()) = ports;
+      contact.result.displaced = contact.path_share * answer_.state.drive_displacement;
+      if (contact.facets != nullptr && answer_.state.geometry == ContactGeometry::deformed)
+        project_on_facet(contact, contact.result.ports);
       return;
     }
     prescribe(contact);
@@ -518,11 +597,12 @@ class Search {
             against * found.tangential.by_indentation / stiffness - friction};
   }
 
-  /// A contact on a face at its ports; the gap is less its overlap.
+  /// A contact with two tangents at its ports; the gap is less its overlap.
   ContactLinearisation linearised_face(const SoughtContact& contact) const {
-    ContactLinearisation local =
-        linearise_face(*contact.face, contact.result.ports, contact.num_ports,
-                       contact.point->friction, answer_.state.friction_factor, answer_.state.terms);
+    const EquilibriumState& state = answer_.state;
+    ContactLinearisation local = linearise_face(
+        tangent_kinematics(system_, *contact.point, contact.result, state.geometry, state.terms),
+        contact.num_ports, contact.point->friction, state.friction_factor, state.terms);
     local.gap -= contact.point->overlap;
     return local;
   }
@@ -544,7 +624,7 @@ class Search {
       law.indentation = law.compliance * force;
     }
     const ContactLinearisation local =
-        contact.face ? linearised_face(contact)
+        contact.has_two_tangents() ? linearised_face(contact)
         : has_law
             ? linearise_contact(positions, constant_friction(law.friction), 1.0)
             : linearise_contact(positions, contact.point->friction, answer_.state.friction_factor);
@@ -589,9 +669,9 @@ class Search {
       values(row) = force;
       derivative(row, row) = 1.0;
     }
-    if (contact.face)
+    if (contact.has_two_tangents())
       return std::max({contact.point->overlap, std::abs(law.indentation),
-                       loaded_.segment(first, width).cwiseAbs().maxCoeff()});
+                       loaded_.segment(first, width).cwiseAbs().maxCoeff(), length_of(contact)});
     const double segment_length = positions.master.chord().norm();
     if (is_target(contact)) {
       values(last) = segment_length * (local.projection.xi - target_->xi);
@@ -600,6 +680,16 @@ class Search {
     }
     const Eigen::Vector2d& T1 = positions.master.nodes[at(positions.master.stencil.before)];
     return std::max(segment_length, (positions.slave - T1).norm());
+  }
+
+  /// By which the rounding of gaps in space is measured: the distance of the slave from the place that
+  /// it is seen from. On faces gaps are those of displacements alone.
+  double length_of(const SoughtContact& contact) const {
+    if (!contact.point->space) return 0.0;
+    const SpaceInstant instant =
+        space_instant(*contact.point->space, contact.facets, contact.result.segment,
+                      contact.result.displaced, contact.result.ports);
+    return instant.slave.norm();
   }
 
   /// Newton's method for the present segments and open contacts. Goes one step further than the
@@ -699,8 +789,9 @@ class Search {
     for (const SoughtContact& contact : contacts_) {
       largest_force = std::max(largest_force, std::abs(contact.result.force));
       largest_length = std::max(
-          largest_length, contact.face ? contact.result.ports.cwiseAbs().maxCoeff()
-                                       : contact.result.positions.master.chord().norm());
+          largest_length, contact.has_two_tangents()
+                              ? std::max(contact.result.ports.cwiseAbs().maxCoeff(), length_of(contact))
+                              : contact.result.positions.master.chord().norm());
     }
     SoughtContact* worst = nullptr;
     double worst_violation = 0.0;
@@ -718,7 +809,10 @@ class Search {
     if (worst == nullptr) return false;
     if (num_switches_ >= free_switches) toggle(*worst);
     ++num_switches_;
-    for (SoughtContact& contact : contacts_) contact.search = {};
+    for (SoughtContact& contact : contacts_) {
+      contact.search = {};
+      contact.facet_search = {};
+    }
     return true;
   }
 
@@ -727,13 +821,28 @@ class Search {
     unknowns_(num_ports_ + (&contact - contacts_.data())) = 0.0;
   }
 
+  /// Along the first tangent in space, radius times angle on a face, m.
+  double position_of(const SoughtContact& contact) const {
+    const ContactPoint& point = *contact.point;
+    if (point.face) return point.face->radius * point.face->angle;
+    const SpaceInstant instant = space_instant(*point.space, contact.facets, contact.result.segment,
+                                               contact.result.displaced, contact.result.ports);
+    const Eigen::Vector3d material = space_geometry(instant, contact.result.place).material;
+    const Eigen::Vector3d from = contact.facets == nullptr
+                                     ? Eigen::Vector3d(Eigen::Vector3d::Zero())
+                                     : Eigen::Vector3d(contact.facets->origin(contact.result.segment) -
+                                                       contact.facets->positions.front());
+    return (from + material).dot(point.space->reference);
+  }
+
   /// Displacements of all modes, and the places on the masters.
   void finish() {
     Eigen::VectorXd forces = Eigen::VectorXd::Zero(num_ports_);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       ContactEquilibrium& result = contacts_[i].result;
       const SoughtContact& contact = contacts_[i];
-      if (contact.face) {
+      if (contact.has_two_tangents()) {
+        result.position = position_of(contact);
         forces.segment(contact.first_port, contact.num_ports) =
             -result.force * linearised_face(contact).force_row;
         answer_.contacts.push_back(result);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "coupling/kinematics/face_kinematics.hpp"
+#include "coupling/kinematics/tangent_kinematics.hpp"
 #include "coupling/system/system.hpp"
 
 namespace stridor {
@@ -31,7 +31,7 @@ struct ContactPositions {
   double driven_velocity = 0.0;  ///< of the slave against the master in +x, by the drive alone, m/s
 };
 
-inline constexpr int max_contact_ports = 2 + 2 * max_stencil;
+inline constexpr int max_contact_ports = max_tangent_ports;
 /// Slave x, y and the nodes of the stencil x, y each.
 using PortVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_contact_ports, 1>;
 using PortMatrix =
@@ -46,10 +46,10 @@ struct LinearisationTerms {
                       ///< to the undeformed one
   bool roughness = true;       ///< the gap changes as ξ moves along the slope of the roughness
   bool friction_slope = true;  ///< μ changes with the sliding velocity
-  // Of contacts on the faces of spinning bodies.
+  // Of contacts with two tangents.
   bool friction = true;          ///< friction varies with the normal force; without it there is none
   bool friction_damping = true;  ///< friction turns with the sliding velocity, not along φ
-  bool geometric = true;         ///< forces turn and shift with the motion, A and B of FaceKinematics
+  bool geometric = true;         ///< forces turn and shift with the motion
 };
 
 /// One sliding contact and its derivatives with respect to the displacements z of its ports
@@ -68,8 +68,8 @@ struct ContactLinearisation {
   PortVector force_row;          ///< row of B_E
   PortMatrix force_by_position;  ///< ∂(row of B_E)ᵀ/∂z, 1/m
   PortMatrix force_by_velocity;  ///< ∂(row of B_E)ᵀ/∂ż, s/m
-  // Of a contact on a face.
-  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< v of FaceKinematics for ż = 0, m/s
+  // With two tangents.
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< v of TangentKinematics for ż = 0, m/s
   Eigen::Vector2d sliding_direction{1.0, 0.0};         ///< d = v/|v|
 };
 
@@ -85,20 +85,27 @@ ContactLinearisation linearise_contact(const ContactPositions& positions, const 
                                        double friction_factor,
                                        const LinearisationTerms& terms = {});
 
-/// Gap, rows and derivatives of a sliding contact on a face, with d = v/|v| and T = (b + B y, a)
+/// Gap, rows and derivatives of a sliding contact with two tangents, with d = v/|v|
 /// (docs/theory.md, 10.8):
 ///
-///   row of B_E   −(n + A y + μ T d)
-///   by y         −A − μ d₁ B + T D (0, Ω r c)ᵀ,   by ẏ   T D (b, a)ᵀ,   D = μ (1 − d dᵀ)/|v| + μ' d dᵀ
+///   row of B_E   −(N + μ F d)
+///   by y         −∂N/∂y − μ Σ d_i ∂F_i/∂y + F D (−∂v/∂y)ᵀ,   by ẏ   F D Tᵀ,
+///   D = μ (1 − d dᵀ)/|v| + μ' d dᵀ
 ///
-/// @param ports     y
-/// @param num_ports 7 where the slave does not move along z, else 8
+/// @param num_ports those of them that the slave has: one less where it does not move along z
 /// @param terms     `friction`, `friction_damping` and `geometric` of the gap and the rows as well
-/// @throws std::invalid_argument with friction that turns where the face does not slide: it does so
-///         without bound
-ContactLinearisation linearise_face(const FaceKinematics& face, const FacePorts& ports,
-                                    Eigen::Index num_ports, const FrictionLaw& law,
-                                    double friction_factor, const LinearisationTerms& terms = {});
+/// @throws std::invalid_argument with friction that turns where nothing slides: it does so without
+///         bound
+ContactLinearisation linearise_face(const TangentKinematics& kinematics, Eigen::Index num_ports,
+                                    const FrictionLaw& law, double friction_factor,
+                                    const LinearisationTerms& terms = {});
+
+/// Kinematics of a contact with two tangents in an equilibrium.
+struct ContactEquilibrium;
+/// @param geometry in the undeformed one directions do not depend on displacements
+TangentKinematics tangent_kinematics(const System& system, const ContactPoint& point,
+                                     const ContactEquilibrium& contact, ContactGeometry geometry,
+                                     const LinearisationTerms& terms = {});
 
 /// Lets a contact feel the roughness of its master.
 /// @param segment of the master that the positions belong to
@@ -118,7 +125,7 @@ struct EquilibriumState {
   std::vector<DriveState> drives{};  ///< of System::drives; empty: all at rest without loads
   double friction_factor = 0.0;     ///< on every friction law, >= 0
   ContactGeometry geometry = ContactGeometry::deformed;
-  /// What of `friction`, `friction_damping` and `geometric` acts on the faces of spinning bodies; in
+  /// What of `friction`, `friction_damping` and `geometric` acts where contacts have two tangents; in
   /// the undeformed geometry the first alone.
   LinearisationTerms terms{};
 };
@@ -153,11 +160,14 @@ struct ContactEquilibrium {
   double friction_force = 0.0;  ///< λ_t = χ μ λ_n, N
   double friction = 0.0;        ///< μ
   double direction = 1.0;       ///< χ
-  double slip_velocity = 0.0;   ///< v_r, m/s; on a face |v|
-  // Of a contact on a face, where λ_t is friction along the circumference.
-  FacePorts ports = FacePorts::Zero();               ///< y
+  double slip_velocity = 0.0;   ///< v_r, m/s; with two tangents |v|
+  // With two tangents, where λ_t is friction along the first; `segment` is then a facet.
+  TangentPorts ports;                                  ///< y; z of a slave that has none is 0
+  Eigen::Vector2d place = Eigen::Vector2d::Constant(0.4);  ///< ξ and η on a facet
+  double displaced = 0.0;                              ///< of the slave against the master by drives, m
+  double drawn = 0.0;                                  ///< the velocity of that, m/s
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< v, m/s
-  double friction_across = 0.0;                        ///< friction along the radius, N
+  double friction_across = 0.0;                        ///< friction along the second tangent, N
 };
 
 enum class EquilibriumStatus {
@@ -193,7 +203,7 @@ struct EquilibriumParameters {
 /// the residual falls. As in `Simulation`, a contact moves from segment to segment without turning
 /// back; next to a node ξ may come out slightly beyond [0, 1].
 ///
-/// Contacts on faces of spinning bodies slide by the spin (linearise_face()); their gap is less
+/// Contacts with two tangents slide by spin and drives (linearise_face()); their gap is less
 /// ContactPoint::overlap. Loads that bodies hold (SystemBody::held_load) act as well.
 ///
 /// A body that nothing but the curvature of its master would hold counts as free.

@@ -1,28 +1,53 @@
-// Derivatives of one sliding contact on a face of a spinning body.
+// Derivatives of one sliding contact with two tangents.
 #include <stdexcept>
 
 #include "solvers/equilibrium/equilibrium.hpp"
 
 namespace stridor {
+namespace {
 
-ContactLinearisation linearise_face(const FaceKinematics& given, const FacePorts& ports,
-                                    Eigen::Index num_ports, const FrictionLaw& law,
-                                    double friction_factor, const LinearisationTerms& terms) {
-  FaceKinematics face = given;
-  if (!terms.geometric) {
-    face.normal_bending.setZero();
-    face.friction_bending.setZero();
+/// Directions and velocity of the undeformed bodies; the gap is linear in the displacements.
+TangentKinematics undeformed_in_space(const System& system, const ContactPoint& point,
+                                      const ContactEquilibrium& contact) {
+  const TangentPorts rest = TangentPorts::Zero(contact.ports.size());
+  const SpaceInstant instant = space_instant(*point.space, system.facets_of(point), contact.segment,
+                                             contact.displaced, rest, contact.drawn);
+  TangentKinematics found = tangent_kinematics(instant, contact.place, rest.size());
+  found.drop_bending();
+  found.turning.setZero();
+  found.gap += found.normal.dot(contact.ports);
+  return found;
+}
+
+}  // namespace
+
+TangentKinematics tangent_kinematics(const System& system, const ContactPoint& point,
+                                     const ContactEquilibrium& contact, ContactGeometry geometry,
+                                     const LinearisationTerms& terms) {
+  if (point.face) {
+    FaceKinematics face = make_face_kinematics(*point.face);
+    if (!terms.geometric) {
+      face.normal_bending.setZero();
+      face.friction_bending.setZero();
+    }
+    if (!terms.friction_damping) face.turning.setZero();
+    return tangent_kinematics(face, contact.ports);
   }
-  if (!terms.friction_damping) face.turning.setZero();
-  const FacePorts normal = face.normal_at(ports);
-  Eigen::Matrix<double, num_face_ports, 2> directions, velocities, turned;
-  directions << face.along_at(ports), face.across;
-  velocities << face.along, face.across;
-  turned << FacePorts::Zero(), face.sliding * face.turning;
+  if (geometry == ContactGeometry::undeformed) return undeformed_in_space(system, point, contact);
+  const SpaceInstant instant = space_instant(*point.space, system.facets_of(point), contact.segment,
+                                             contact.displaced, contact.ports, contact.drawn);
+  TangentKinematics found = tangent_kinematics(instant, contact.place, contact.ports.size());
+  if (!terms.geometric) found.drop_bending();
+  if (!terms.friction_damping) found.turning.setZero();
+  return found;
+}
 
+ContactLinearisation linearise_face(const TangentKinematics& kinematics, Eigen::Index num_ports,
+                                    const FrictionLaw& law, double friction_factor,
+                                    const LinearisationTerms& terms) {
   ContactLinearisation contact;
-  contact.gap = face.gap(ports);
-  contact.velocity = face.velocity(ports, FacePorts::Zero());
+  contact.gap = kinematics.gap;
+  contact.velocity = kinematics.velocity;
   const double speed = contact.velocity.norm();
   if (speed > 0.0) contact.sliding_direction = contact.velocity / speed;
   const Eigen::Vector2d& d = contact.sliding_direction;
@@ -31,9 +56,10 @@ ContactLinearisation linearise_face(const FaceKinematics& given, const FacePorts
     contact.friction = friction_factor * sliding_friction(law, speed);
     contact.friction_slope = friction_factor * sliding_friction_slope(law, speed);
   }
+  const TangentPorts& normal = kinematics.normal;
   contact.gap_row = -normal.head(num_ports);
-  contact.force_row = -(normal + contact.friction * (directions * d)).head(num_ports);
-  contact.tangent_row = -(velocities * d).head(num_ports);
+  contact.force_row = -(normal + contact.friction * (kinematics.friction * d)).head(num_ports);
+  contact.tangent_row = -(kinematics.sliding * d).head(num_ports);
 
   Eigen::Matrix2d resistance = Eigen::Matrix2d::Zero();
   if (terms.friction_slope) resistance += contact.friction_slope * d * d.transpose();
@@ -41,15 +67,18 @@ ContactLinearisation linearise_face(const FaceKinematics& given, const FacePorts
     if (!(speed > 0.0)) {
       throw std::invalid_argument(
           "linearise: friction on a face that does not slide turns without bound; let its body "
-          "spin, or leave out the term friction_damping");
+          "spin, or a drive move one of the two, or leave out the term friction_damping");
     }
     resistance +=
         contact.friction / speed * (Eigen::Matrix2d::Identity() - d * d.transpose());
   }
-  const FaceMatrix by_position = directions * resistance * turned.transpose() -
-                                 face.normal_bending -
-                                 contact.friction * d.x() * face.friction_bending;
-  const FaceMatrix by_velocity = directions * resistance * velocities.transpose();
+  const TangentMatrix by_position =
+      kinematics.friction * resistance * kinematics.turning.transpose() -
+      kinematics.normal_bending -
+      contact.friction * (d.x() * kinematics.friction_bending[0] +
+                          d.y() * kinematics.friction_bending[1]);
+  const TangentMatrix by_velocity =
+      kinematics.friction * resistance * kinematics.sliding.transpose();
   contact.force_by_position = by_position.topLeftCorner(num_ports, num_ports);
   contact.force_by_velocity = by_velocity.topLeftCorner(num_ports, num_ports);
   contact.shift_row.setZero(num_ports);

@@ -21,8 +21,8 @@ ContactRow row_of(const PortVector& ports) {
 ContactLinearisation linearised(const System& system, const ContactPoint& point,
                                 const ContactEquilibrium& contact, const EquilibriumState& state,
                                 const LinearisationTerms& terms) {
-  if (point.face) {
-    return linearise_face(make_face_kinematics(*point.face), contact.ports,
+  if (point.has_two_tangents()) {
+    return linearise_face(tangent_kinematics(system, point, contact, state.geometry, terms),
                           system.num_contact_ports(point), point.friction, state.friction_factor,
                           terms);
   }
@@ -85,8 +85,9 @@ Pencil linearise_constraints(const System& system, const Equilibrium& equilibriu
     const auto constraint = static_cast<Eigen::Index>(i);
     const Eigen::Index first = first_contact_port(system, static_cast<int>(i));
     const Eigen::Index size = local.gap_row.size();
-    if (point.face) {
-      place_face(pencil, system, static_cast<int>(i), local.gap_row, local.force_row);
+    if (point.has_two_tangents()) {
+      place_face(pencil, system, static_cast<int>(i), contact.segment, local.gap_row,
+                 local.force_row);
     } else {
       place_contact(pencil, system, static_cast<int>(i), contact.segment,
                     {row_of(local.gap_row), row_of(local.force_row)});

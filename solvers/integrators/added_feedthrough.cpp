@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "coupling/kinematics/face_kinematics.hpp"
+#include "coupling/system/undeformed_contact.hpp"
 #include "solvers/integrators/contact_path.hpp"
 #include "solvers/integrators/coupled_step.hpp"
 #include "solvers/integrators/modal_recurrence.hpp"
@@ -157,15 +157,17 @@ Answers<Eigen::MatrixXd> answers_along_normals(const System& system, std::size_t
   Eigen::MatrixXd shares = Eigen::MatrixXd::Zero(num_contacts, modal.rows.rows());
   for (Eigen::Index c = 0; c < num_contacts; ++c) {
     const ContactPoint& contact = system.contacts[static_cast<std::size_t>(c)];
-    const FacePorts normal = make_face_kinematics(*contact.face).normal;
+    const std::optional<UndeformedContact> at = undeformed_contact(system, contact, 0.0);
+    if (!at) continue;
+    const TangentPorts& normal = at->kinematics.normal;
     const auto add = [&](int on, int row, double share) {
       if (static_cast<std::size_t>(on) == body && row >= 0) shares(c, row) += share;
     };
-    for (int k = 0; k < num_face_rows; ++k)
-      add(contact.face->body, contact.face->rows[static_cast<std::size_t>(k)], normal[k]);
-    add(contact.slave_body, contact.slave_rows.x, normal[num_face_rows]);
-    add(contact.slave_body, contact.slave_rows.y, normal[num_face_rows + 1]);
-    add(contact.slave_body, contact.slave_rows.z, normal[num_face_rows + 2]);
+    Eigen::Index port = 0;
+    for (const int row : system.master_rows(contact, at->facet))
+      add(system.master_of(contact), row, normal[port++]);
+    for (int i = 0; i < 3; ++i)
+      add(contact.slave_body, contact.slave_rows.row(i), normal[normal.size() - 3 + i]);
   }
   const Eigen::MatrixXd entries = shares * modal.rows;
   const auto seen = [&](const Eigen::MatrixXd& of_modes) -> Eigen::MatrixXd {
@@ -227,7 +229,7 @@ bool has_springs_on_faces(const System& system, const TimeParameters& time) {
   return time.integrator == Integrator::exact && !system.contacts.empty() &&
          std::all_of(system.contacts.begin(), system.contacts.end(),
                      [](const ContactPoint& contact) {
-                       return contact.face && contact.compliance() > 0.0;
+                       return contact.has_two_tangents() && contact.compliance() > 0.0;
                      });
 }
 

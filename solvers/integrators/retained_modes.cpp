@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
+#include <optional>
 #include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
 
 #include "core/errors.hpp"
-#include "coupling/kinematics/face_kinematics.hpp"
+#include "coupling/system/undeformed_contact.hpp"
 #include "solvers/integrators/contact_path.hpp"
 
 namespace stridor {
@@ -40,11 +40,13 @@ std::vector<SeenMode> modes_seen(const System& system, const ContactPoint& conta
   return seen;
 }
 
-/// The same on a face, where the normal is that of the undeformed bodies.
+/// The same with two tangents, where the normal is that of the undeformed bodies at the start.
 std::vector<SeenMode> modes_seen_on_face(const System& system, const ContactPoint& contact) {
-  const FaceKinematics face = make_face_kinematics(*contact.face);
+  const std::optional<UndeformedContact> at = undeformed_contact(system, contact, 0.0);
+  if (!at) return {};
+  const TangentPorts& normal = at->kinematics.normal;
   std::vector<SeenMode> seen;
-  const auto add = [&](int index, std::initializer_list<std::pair<int, double>> entries) {
+  const auto add = [&](int index, const std::vector<std::pair<int, double>>& entries) {
     const ModalBody& body = system.bodies[static_cast<std::size_t>(index)].modal;
     for (Eigen::Index i = 0; i < body.size(); ++i) {
       double sum = 0.0;
@@ -52,9 +54,14 @@ std::vector<SeenMode> modes_seen_on_face(const System& system, const ContactPoin
       seen.push_back({body.omega(i), sum * sum});
     }
   };
-  add(contact.slave_body, {{contact.slave_rows.x, face.normal(num_face_rows)},
-                           {contact.slave_rows.y, face.normal(num_face_rows + 1)}});
-  add(contact.face->body, {{contact.face->rows[0], face.normal(0)}});
+  std::vector<std::pair<int, double>> of_slave, of_master;
+  for (int i = 0; i < contact.num_slave_ports(); ++i)
+    of_slave.emplace_back(contact.slave_rows.row(i), normal(normal.size() - 3 + i));
+  Eigen::Index port = 0;
+  for (const int row : system.master_rows(contact, at->facet))
+    of_master.emplace_back(row, normal(port++));
+  add(contact.slave_body, of_slave);
+  add(system.master_of(contact), of_master);
   std::sort(seen.begin(), seen.end(),
             [](const SeenMode& a, const SeenMode& b) { return a.omega < b.omega; });
   return seen;
@@ -95,7 +102,7 @@ double frequency_for_error(const System& system, const RetainParameters& retain,
     if (needed > 0) highest = std::max(highest, modes[needed - 1].omega);
   };
   for (const ContactPoint& contact : system.contacts) {
-    if (contact.face) {
+    if (contact.has_two_tangents()) {
       take(modes_seen_on_face(system, contact));
       continue;
     }

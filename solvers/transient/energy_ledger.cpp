@@ -158,12 +158,10 @@ EnergyLedger::EnergyLedger(const System& system, const TimeParameters& time)
     strain += 0.5 * forms.strain;
   }
   for (const ContactPoint& point : system.contacts) {
-    if (point.face) {
-      std::vector<PointRows> rows;
-      for (const int row : point.face->rows) rows.push_back({row, row});
-      contacts_.push_back({point.slave_body, point.face->body, point.slave_rows, std::move(rows),
+    if (point.has_two_tangents()) {
+      contacts_.push_back({point.slave_body, system.master_of(point), point.slave_rows, {},
                            SurfaceKind::polyline, {}, point.compliance(), not_yet, not_yet,
-                           not_yet, not_yet, make_face_kinematics(*point.face)});
+                           not_yet, not_yet, true});
       continue;
     }
     const MasterSurface& surface = system.surfaces[static_cast<std::size_t>(point.surface)];
@@ -269,7 +267,7 @@ void EnergyLedger::add(double time, std::span<const ContactAction> contacts,
     const double raised = roughness_increment(contacts_[i], action.roughness);
     given += stored_increment(contacts_[i], action.force);
     if (action.state == ContactState::open) continue;
-    const bool is_on_face = contacts_[i].face.has_value();
+    const bool is_on_face = contacts_[i].has_two_tangents;
     given += is_on_face ? enter_face(contacts_[i], action)
                         : enter_contact(contacts_[i], action, step_ * contacts_[i].driven.velocity(time)) -
                               action.force * raised;
@@ -320,23 +318,23 @@ void EnergyLedger::enter_gain(double given, double time) {
 
 /// @return contact work of the step, J
 double EnergyLedger::enter_face(const Contact& contact, const ContactAction& action) {
-  const FaceKinematics& face = *contact.face;
   const Body& master = bodies_[static_cast<std::size_t>(contact.master_body)];
   const Body& slave = bodies_[static_cast<std::size_t>(contact.slave_body)];
-  FacePorts moved = FacePorts::Zero();
-  for (std::size_t k = 0; k < contact.master_rows.size(); ++k)
-    moved[static_cast<Eigen::Index>(k)] = mean_increment(master, contact.master_rows[k].x);
-  moved[num_face_rows] = mean_increment(slave, contact.slave_rows.x);
-  moved[num_face_rows + 1] = mean_increment(slave, contact.slave_rows.y);
-  if (contact.slave_rows.z >= 0)
-    moved[num_face_rows + 2] = mean_increment(slave, contact.slave_rows.z);
-  const double spun = step_ * face.sliding;
-  const double turned = spun * face.turning.dot(action.ports);
-  friction_loss_.add(
-      action.friction_force * (spun - face.along_at(action.ports).dot(moved)) +
-      action.friction_across * (-face.across.dot(moved) - turned));
-  drive_work_.add(action.friction_force * spun - action.friction_across * turned);
-  const double work = action.force * face.normal_at(action.ports).dot(moved);
+  TangentPorts moved = TangentPorts::Zero(action.normal.size());
+  const int num_rows = action.num_master_rows;
+  for (int k = 0; k < num_rows; ++k) {
+    if (action.normal[k] != 0.0 || action.along[k] != 0.0 || action.across[k] != 0.0)
+      moved[k] = mean_increment(master, action.master_rows[static_cast<std::size_t>(k)]);
+  }
+  moved[num_rows] = mean_increment(slave, contact.slave_rows.x);
+  moved[num_rows + 1] = mean_increment(slave, contact.slave_rows.y);
+  if (contact.slave_rows.z >= 0) moved[num_rows + 2] = mean_increment(slave, contact.slave_rows.z);
+  const Eigen::Vector2d& drawn = action.drawn;
+  friction_loss_.add(action.friction_force * (drawn.x() - action.along.dot(moved)) +
+                     action.friction_across * (drawn.y() - action.across.dot(moved)));
+  drive_work_.add(action.friction_force * drawn.x() + action.friction_across * drawn.y() -
+                  action.force * action.lifted);
+  const double work = action.force * (action.normal.dot(moved) + action.lifted);
   contact_work_.add(work);
   return work;
 }

@@ -46,10 +46,14 @@ struct ContactAction {
   double friction_force = 0.0;  ///< λ_t, N, positive against sliding of the slave along +t
   ContactState state = ContactState::open;
   double roughness = 0.0;  ///< height of the rough surface at t_{n+1}, m
-  // On a face, where friction_force is that along the circumference.
-  double friction_across = 0.0;                       ///< along the radius, N
-  FacePorts ports = FacePorts::Zero();                ///< y in whose directions its forces act
+  // With two tangents, where friction_force is that along the first.
+  double friction_across = 0.0;                       ///< along the second, N
   Eigen::Vector2d sliding = Eigen::Vector2d::Zero();  ///< v at t_{n+1}, m/s
+  int num_master_rows = 0;
+  std::array<int, max_facet_ports> master_rows{};  ///< of the master's body, at its ports
+  TangentPorts normal, along, across;              ///< directions of its forces
+  Eigen::Vector2d drawn = Eigen::Vector2d::Zero();  ///< slip in the step by spin and drives, m
+  double lifted = 0.0;                              ///< opening of the gap in the step by drives, m
 };
 
 /// The entries of the ledger, J (docs/theory.md, 3.4). Losses and works are sums since the start.
@@ -101,13 +105,12 @@ struct ContactGain {
 /// drives add to it. With these the central difference with backward-difference damping balances
 /// exactly, whatever the contact forces: the balance error is rounding. Where sliding is frozen,
 /// the master is imagined to slide along t: contact work lacks δ, and the drive feeds friction
-/// alone. On a face that slides with Ω r the two directions of friction τ do
+/// alone. With two tangents the directions N and F of force and friction τ do
 ///
-///   contact work   λ_n (n + A y)·ȳ,    friction loss   τ·s̄
-///   drive work     h Ω r (τ₁ − τ₂ c·y)   by the spin, which is kept up
+///   contact work   λ_n (N·ȳ + ν),    friction loss   τ·(σ − Fᵀȳ),    drive work   τ·σ − λ_n ν
 ///
-/// with the mean increments ȳ of the ports and s̄ = (h Ω r − (b + B y)·ȳ, −a·ȳ − h Ω r c·y). Loads that
-/// bodies hold are part of the load work.
+/// with the mean increments ȳ of the ports, the slip σ by spin and drives, h Ω r (1, −c·y) on a face
+/// that spins, and the opening ν of the gap by drives. Loads that bodies hold are part of the load work.
 ///
 /// Everything is evaluated from the system and its motion; no coefficient of a propagator enters.
 class EnergyLedger {
@@ -189,7 +192,7 @@ class EnergyLedger {
     /// Of the last two steps, t_{n−1} and t_n, m.
     double roughness_before_last = std::numeric_limits<double>::quiet_NaN();
     double last_roughness = std::numeric_limits<double>::quiet_NaN();
-    std::optional<FaceKinematics> face{};
+    bool has_two_tangents = false;
   };
 
   static Body make_body(const SystemBody& body, const TimeParameters& time);

@@ -79,6 +79,7 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
   }
   Implementation& run = *implementation_;
   run.surfaces = system.surfaces;
+  run.facet_surfaces = system.facet_surfaces;
   run.drives = system.drives;
   for (const Drive& drive : run.drives) run.driven_by.emplace_back(&drive, nullptr);
   run.step = time.step;
@@ -86,9 +87,9 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
 
   std::vector<int> num_ports(system.bodies.size(), 0);
   for (const ContactPoint& point : system.contacts) {
-    if (point.face) {
-      num_ports[static_cast<std::size_t>(point.slave_body)] += point.slave_rows.z < 0 ? 2 : 3;
-      num_ports[static_cast<std::size_t>(point.face->body)] += num_face_rows;
+    if (point.has_two_tangents()) {
+      num_ports[static_cast<std::size_t>(point.slave_body)] += point.num_slave_ports();
+      num_ports[static_cast<std::size_t>(system.master_of(point))] += system.num_master_ports(point);
       continue;
     }
     num_ports[static_cast<std::size_t>(point.slave_body)] += slave_ports;
@@ -206,7 +207,7 @@ double Simulation::contact_area(int contact) const {
 ContactAction Simulation::contact_action(int contact) const {
   const RunningContact* const on_line = implementation_->line(contact);
   return on_line != nullptr ? Implementation::action_of(*on_line)
-                            : Implementation::action_of(*implementation_->on_face(contact));
+                            : implementation_->action_of(*implementation_->on_face(contact));
 }
 
 double Simulation::slip_velocity(int contact) const {
@@ -215,10 +216,8 @@ double Simulation::slip_velocity(int contact) const {
 
 ContactPlace Simulation::contact_place(int contact) const {
   if (const RunningFace* const face = implementation_->on_face(contact)) {
-    const FacePoint& kinematics = face->kinematics;
-    const FacePlace& place = *face->point().face;
-    return {kinematics.face().gap(kinematics.current()) - face->point().overlap,
-            place.radius * place.angle};
+    const FacePoint& kinematics = *face->kinematics;
+    return {kinematics.present_gap(time()), kinematics.position()};
   }
   const RunningContact& on_line = *implementation_->line(contact);
   return on_line.sliding.present_place(on_line.driven.displacement(time()));
@@ -354,7 +353,7 @@ void Simulation::load(const State& state) {
   }
   for (std::size_t i = 0; i < run.faces.size(); ++i) {
     const std::string name = fmt::format("faces/{}", i);
-    RunningFace::Numbers values;
+    std::vector<double> values(run.faces[i].numbers().size());
     state.get(name, values);
     run.faces[i].restore(values);
     for (const auto& [part, statistics] : saved_statistics(run.faces[i])) {

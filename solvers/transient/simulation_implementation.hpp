@@ -65,6 +65,7 @@ struct RunningContact : ContactRecord {
 
 struct Simulation::Implementation {
   std::vector<MasterSurface> surfaces;
+  std::vector<FacetSurface> facet_surfaces;
   std::vector<std::string> names;  ///< of the bodies
   std::vector<BodyLoading> loading;  ///< of the bodies
   std::vector<RayleighDamping> damping;
@@ -138,9 +139,9 @@ struct Simulation::Implementation {
     std::vector<int> next_port(bodies.size(), 0);
     std::vector<std::size_t> place;  // among those of its kind
     for (const ContactPoint& point : system.contacts) {
-      if (point.face) {
+      if (point.has_two_tangents()) {
         place.push_back(faces.size());
-        add_face(point, next_port);
+        add_face(system, point, next_port);
         continue;
       }
       place.push_back(contacts.size());
@@ -162,7 +163,7 @@ struct Simulation::Implementation {
     }
     slides_only = slides_only && faces.empty();
     for (std::size_t i = 0; i < place.size(); ++i) {
-      if (system.contacts[i].face) {
+      if (system.contacts[i].has_two_tangents()) {
         records.push_back(&faces[place[i]]);
       } else {
         records.push_back(&contacts[place[i]]);
@@ -170,15 +171,19 @@ struct Simulation::Implementation {
     }
   }
 
-  void add_face(const ContactPoint& point, std::vector<int>& next_port) {
+  void add_face(const System& system, const ContactPoint& point, std::vector<int>& next_port) {
     const auto slave = static_cast<std::size_t>(point.slave_body);
-    const auto master = static_cast<std::size_t>(point.face->body);
-    int& slave_port = next_port[slave];
-    const int first = slave_port;
-    slave_port += point.slave_rows.z < 0 ? 2 : 3;
-    int& master_port = next_port[master];
-    faces.add(point, *bodies[slave], *bodies[master], first, master_port);
-    master_port += num_face_rows;
+    const auto master = static_cast<std::size_t>(system.master_of(point));
+    const int slave_port = next_port[slave];
+    next_port[slave] += point.num_slave_ports();
+    const int master_port = next_port[master];
+    next_port[master] += system.num_master_ports(point);
+    const bool is_on_facets = point.space && point.space->surface >= 0;
+    const FacetSurface* const surface =
+        is_on_facets ? &facet_surfaces[static_cast<std::size_t>(point.space->surface)] : nullptr;
+    faces.add(make_face_point(point, surface, system.driven_motion(point), *bodies[slave],
+                              *bodies[master], slave_port, master_port),
+              *bodies[slave], *bodies[master], slave_port, master_port);
   }
 
   /// Takes projection, material point and slip velocity from the motion at the present time.
@@ -278,12 +283,15 @@ struct Simulation::Implementation {
       fill_delassus();
       return solver.solve(local);
     }
-    if (!faces.empty()) {
-      if (has_feedthrough && !is_predicting_start) find_answers_of_faces();
-      faces.pose(instant(sought_time));
-    }
     if (!has_feedthrough || is_predicting_start) return solve_posed();
     return solve_unsteady_contacts(sought_time);
+  }
+
+  /// Poses the problems of contacts with two tangents. @returns failure where a slave has left its master
+  [[gnu::noinline]] StepOutcome pose_faces(double sought_time) {
+    if (has_feedthrough && !is_predicting_start) find_answers_of_faces();
+    const auto lost = faces.pose(instant(sought_time));
+    return lost ? fail(faces[*lost], StepOutcome::master_lost) : StepOutcome::done;
   }
 
   /// The answers of the bodies to forces, where they are others than in the step before.
@@ -367,7 +375,10 @@ struct Simulation::Implementation {
         contact.forget();
         stand(contact);
       }
-      faces.stand(system, instant(time(sought_index())));
+      if (const auto lost = faces.stand(system, instant(time(sought_index())))) {
+        fail(faces[*lost], StepOutcome::master_lost);
+        throw NumericalError(failure);
+      }
       if (solve() != StepOutcome::done) throw NumericalError(failure);
     };
     const bool is_loaded = std::any_of(drives.begin(), drives.end(), [](const Drive& drive) {
@@ -425,6 +436,10 @@ struct Simulation::Implementation {
       RunningContact& contact = contacts[i];
       if (!pose(contact, local[i], sought_time, contact.rise_at(sought_time)))
         return fail(contact, StepOutcome::master_lost);
+    }
+    if (!slides_only && !faces.empty()) {
+      const StepOutcome posed = pose_faces(sought_time);
+      if (posed != StepOutcome::done) return posed;
     }
     const ContactAnswer answer = solve_contacts(sought_time);
     if (answer.status != ContactStatus::converged) {
@@ -485,7 +500,7 @@ struct Simulation::Implementation {
       }
       if (face.force < 0.0 && !is_unilateral && !tolerate(face, face.violations.negative_force))
         outcome = fail(face, StepOutcome::pulling);
-      face.kinematics.apply(face.force, face.whole_friction(),
+      face.kinematics->apply(face.force, face.whole_friction(),
                             forces_on(face.point().slave_body).data(),
                             forces_on(face.point().face->body).data());
     }
@@ -619,17 +634,18 @@ struct Simulation::Implementation {
         is_allowed = false;
       }
     }
-    if (!slides_only && !faces.empty() && !follow_faces()) is_allowed = false;
+    if (!slides_only && !faces.empty() && !follow_faces(now)) is_allowed = false;
     return is_allowed;
   }
 
   /// Takes the motion of contacts on faces. @returns as update_slip_velocities()
-  [[gnu::noinline]] bool follow_faces() {
+  [[gnu::noinline]] bool follow_faces(double now) {
     bool is_allowed = true;
-    faces.follow(step);
+    faces.follow({now, now, step, has_feedthrough && !is_predicting_start});
     for (std::size_t i = 0; i < faces.size(); ++i) {
       RunningFace& face = faces[i];
-      if (face.slip_velocity * face.point().face->spin >= 0.0 || time(index) >= face.unilateral_from ||
+      if (face.velocities[0].dot(face.kinematics->drawn_velocity(now)) >= 0.0 ||
+          time(index) >= face.unilateral_from ||
           tolerate(face, face.violations.reversed_sliding))
         continue;
       fail(face, StepOutcome::sliding_reversed);
@@ -668,14 +684,21 @@ struct Simulation::Implementation {
     action.roughness = contact.sliding.roughness();
     return action;
   }
-  static ContactAction action_of(const RunningFace& face) {
+  ContactAction action_of(const RunningFace& face) const {
     ContactAction action;
     action.force = face.force;
     action.friction_force = face.friction_force;
     action.state = face.state;
     action.friction_across = face.friction_across;
-    action.ports = face.kinematics.directed_at();
     action.sliding = face.velocities[0];
+    const FacePoint& kinematics = *face.kinematics;
+    action.num_master_rows = kinematics.num_master_ports();
+    action.master_rows = kinematics.master_rows();
+    action.normal = kinematics.normal();
+    action.along = kinematics.along();
+    action.across = kinematics.across();
+    action.drawn = kinematics.drawn(time(index - 1), step);
+    action.lifted = kinematics.lifted(time(index - 1), step);
     return action;
   }
 
@@ -767,17 +790,23 @@ struct Simulation::Implementation {
   }
 
   [[gnu::cold]] StepOutcome fail(const RunningFace& face, StepOutcome outcome) {
-    const FacePlace& place = *face.point().face;
-    const std::string where =
-        fmt::format("radius {:.6g} m, angle {:.4g} rad", place.radius, place.angle);
-    if (outcome != StepOutcome::sunk) return fail_anywhere(face, where, outcome);
-    failure = fmt::format(
-        "{} at t = {:.9g} s (step {}), {}: it has gone {:.4g} m into {}, more than half its "
-        "thickness. Remedy: take a smaller initial amplitude, a larger normal.stiffness or a "
-        "smaller time.step.",
-        face.point().name, time(index), index, where, face.force * face.point().compliance(),
-        place.name);
-    return outcome;
+    const std::string where = face.kinematics->where();
+    const auto say = [&](const std::string& what, const char* remedy) {
+      failure = fmt::format("{} at t = {:.9g} s (step {}), {}: {}. Remedy: {}.", face.point().name,
+                            time(index), index, where, what, remedy);
+      return outcome;
+    };
+    if (outcome == StepOutcome::sunk) {
+      return say(fmt::format("it has gone {:.4g} m into {}, more than half its thickness",
+                             face.force * face.point().compliance(), face.point().face->name),
+                 "take a smaller initial amplitude, a larger normal.stiffness or a smaller time.step");
+    }
+    if (outcome == StepOutcome::master_lost) {
+      return say("the slave point has left the edge of the surface",
+                 "end the run earlier (time.end), start elsewhere, name a larger surface as master, or "
+                 "slide more slowly (drive.velocity)");
+    }
+    return fail_anywhere(face, where, outcome);
   }
 
   /// What can go wrong with a contact of any kinematics.

@@ -69,6 +69,8 @@ class BodyParameters {
   virtual bool is_filled() const { return false; }
   /// Whether it has a face of this name (BodyMatrices::faces).
   virtual bool has_face(const std::string& /*name*/) const { return false; }
+  /// Whether it is a body in space: its surfaces are BodyMatrices::facets.
+  virtual bool is_spatial() const { return false; }
   /// Elements to draw; none for a body without mesh.
   virtual std::vector<DrawnElement> elements() const { return {}; }
 

@@ -134,6 +134,13 @@ const Schema& MeshBodyParameters::schema() {
   return keys;
 }
 
+bool MeshBodyParameters::is_spatial() const {
+  // Elements of fewer dimensions are groups in a mesh with volumes.
+  return mesh && std::any_of(mesh->shapes.begin(), mesh->shapes.end(), [](ElementShape shape) {
+           return facts_of(shape).dimension == 3;
+         });
+}
+
 void MeshBodyParameters::read(const BodyFiles& files) {
   mesh = std::make_shared<const Mesh>(files.mesh("file", file));
 }

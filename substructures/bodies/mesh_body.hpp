@@ -69,6 +69,7 @@ struct MeshBodyParameters : BodyParametersOf<MeshBodyParameters> {
   std::optional<int> num_modes() const override;
   std::optional<double> interface_spacing() const override { return interface.spacing; }
   bool is_filled() const override;
+  bool is_spatial() const override;
   std::vector<DrawnElement> elements() const override;
   double num_slave_nodes(const std::string& name) const override;
   ReductionSize reduction_size(double interface_nodes) const override;

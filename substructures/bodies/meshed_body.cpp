@@ -252,9 +252,12 @@ class MeshedBody {
     body.base_inertia = transposed * (all.mass * along_x);
   }
 
-  /// Surfaces of a planar body that are a chain of edges.
+  /// Surfaces of a planar body that are a chain of edges; facets of a body in space.
   void add_outlines(BodyMatrices& body) const {
-    if (dimension_ == 3) return;
+    if (dimension_ == 3) {
+      for (const auto& [name, sides] : mesh_.surfaces) body.facets[name] = facets_of(mesh_, sides);
+      return;
+    }
     for (const auto& [name, sides] : mesh_.surfaces) {
       try {
         body.surfaces[name] = outline_of(mesh_, sides);

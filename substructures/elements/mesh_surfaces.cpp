@@ -153,6 +153,35 @@ std::vector<int> outline_of(const Mesh& mesh, const std::vector<ElementSide>& si
   return outline;
 }
 
+std::vector<Facet> facets_of(const Mesh& mesh, const std::vector<ElementSide>& sides) {
+  std::vector<Facet> facets;
+  for (const ElementSide& side : sides) {
+    const std::vector<int> n = nodes_of(mesh, side);
+    switch (n.size()) {
+      case 3:
+        facets.push_back({3, {n[0], n[1], n[2], 0}});
+        break;
+      case 4:
+        facets.push_back({4, {n[0], n[1], n[2], n[3]}});
+        break;
+      case 6:
+        for (const auto& corner : {std::array{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}) {
+          const auto node = [&](std::size_t k) { return n[static_cast<std::size_t>(corner[k])]; };
+          facets.push_back({3, {node(0), node(1), node(2), 0}});
+        }
+        break;
+      case 8:
+        facets.push_back({4, {n[4], n[5], n[6], n[7]}});
+        for (std::size_t k = 0; k < 4; ++k)
+          facets.push_back({3, {n[k], n[4 + k], n[4 + (k + 3) % 4], 0}});
+        break;
+      default:
+        throw std::invalid_argument("facets_of: a side of a planar element");
+    }
+  }
+  return facets;
+}
+
 double extent_of(const Mesh& mesh) {
   if (mesh.num_nodes() == 0) return 0.0;
   return (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "substructures/elements/mesh.hpp"
+#include "substructures/matrices/facet.hpp"
 
 namespace stridor {
 
@@ -49,6 +50,10 @@ std::vector<ElementSide> sides_within(const Mesh& mesh, const std::vector<Elemen
 /// a closed outline ends with the node it begins with.
 /// @throws std::invalid_argument if the edges are not one chain, saying where it ends or branches
 std::vector<int> outline_of(const Mesh& mesh, const std::vector<ElementSide>& sides);
+
+/// Facets between the nodes of sides of volumes. A side with nodes in the middle of its edges is divided:
+/// into four triangles, or into a quadrilateral between those nodes and a triangle at each corner.
+std::vector<Facet> facets_of(const Mesh& mesh, const std::vector<ElementSide>& sides);
 
 /// Diagonal of the box around all nodes, m.
 double extent_of(const Mesh& mesh);

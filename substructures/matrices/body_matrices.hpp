@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "substructures/matrices/damping.hpp"
+#include "substructures/matrices/facet.hpp"
 
 namespace stridor {
 
@@ -62,6 +63,7 @@ struct BodyMatrices {
   /// Named outlines: nodes in the order in which the body lies on their right-hand side, so that
   /// the direction turned by +90° points out of the body.
   std::map<std::string, std::vector<int>> surfaces;
+  std::map<std::string, std::vector<Facet>> facets;  ///< named surfaces in space
   std::map<std::string, BodyFace> faces;   ///< named faces of a plate
   std::vector<std::vector<int>> outlines;  ///< nodes in order that are drawn besides the surfaces
   /// Whether modes are its DoFs already, of which a reduction would make none better.

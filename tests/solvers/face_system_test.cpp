@@ -151,7 +151,7 @@ TEST(FaceEquilibrium, SlopeOfStribecksLawIsThatOfFrictionByVelocity) {
     const Eigen::Vector2d tau = sliding_friction(law, v.norm()) * v.normalized();
     return -(face.normal_at(at) + tau.x() * face.along_at(at) + tau.y() * face.across);
   };
-  const ContactLinearisation local = linearise_face(face, y, num_face_ports, law, 1.0);
+  const ContactLinearisation local = linearise_face(tangent_kinematics(face, y), num_face_ports, law, 1.0);
   EXPECT_LT((local.force_row - force(y, FacePorts::Zero())).norm(), 1e-14);
   for (int k = 0; k < num_face_ports; ++k) {
     constexpr double h = 1e-5;
