@@ -64,7 +64,7 @@ void place_slave(const ContactPair& pair, ModelBody& slave) {
 }
 
 /// The facets of the master, with rows for all of their nodes.
-FacetSurface make_surface(const ContactPair& pair, ModelBody& master) {
+FacetSurface make_facets(const ContactPair& pair, ModelBody& master) {
   FacetSurface surface;
   surface.name = pair.master_name;
   surface.body = pair.master_body;
@@ -173,7 +173,7 @@ void add_space_contacts(const ContactPair& pair, const PairDrive& drive,
   const FacetSurface* surface = nullptr;
   if (pair.is_on_facets) {
     on.surface = static_cast<int>(system.facet_surfaces.size());
-    surface = &system.facet_surfaces.emplace_back(make_surface(pair, master));
+    surface = &system.facet_surfaces.emplace_back(make_facets(pair, master));
   } else {
     on = plane_of(pair, slave);
   }

@@ -15,7 +15,8 @@ const Schema& RecordParameters::schema() {
               "channels", &RecordParameters::channels,
               {.doc =
                    "What is recorded: <body>.<point>.<x|y|z>.<displacement|velocity|acceleration>, "
-                   "<contact>.<force|gap|slip_velocity|position|friction_force|state|area>."})
+                   "<contact>.<force|gap|slip_velocity|position|friction_force|state|area|friction_across|"
+                   "slip_across>."})
           .flag("energy", &RecordParameters::energy,
                 {.doc = "Whether the energy ledger is kept and recorded under /energy; a step then "
                         "costs about two and a half times as much.",

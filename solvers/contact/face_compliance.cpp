@@ -101,7 +101,7 @@ void FaceCompliances::add(const Propagator& slave, const Propagator& master, int
 void FaceCompliances::add_side(const Propagator& body, const FaceSide& side) {
   auto found = std::find_if(bodies_.begin(), bodies_.end(),
                             [&](const Body& one) { return one.propagator == &body; });
-  if (found == bodies_.end()) found = bodies_.insert(found, Body{&body, {}});
+  if (found == bodies_.end()) found = bodies_.insert(found, Body{&body, {}, 0});
   found->sides.push_back(side);
 }
 
@@ -109,6 +109,7 @@ void FaceCompliances::direct(std::size_t contact, const Directions& sense,
                              const Directions& push) {
   sense_[contact] = sense;
   FaceDirections& of = directions_[contact];
+  const FaceDirections before = of;
   for (Eigen::Index i = 0; i < sense.rows(); ++i) {
     const auto port = static_cast<std::size_t>(i);
     of.at_once[port] = {sense(i, 0), sense(i, 1), sense(i, 2), 0.0};
@@ -116,6 +117,8 @@ void FaceCompliances::direct(std::size_t contact, const Directions& sense,
   }
   of.seeks_at_once = true;
   of.seeks_ahead = false;
+  has_changed_ = has_changed_ || before.seeks_ahead || before.at_once != of.at_once ||
+                 before.push != of.push;
 }
 
 void FaceCompliances::seek(std::size_t contact, bool gap_ahead, bool slip_ahead) {
@@ -130,11 +133,19 @@ void FaceCompliances::seek(std::size_t contact, bool gap_ahead, bool slip_ahead)
       of.ahead[port][r] = is_ahead ? all[r] : 0.0;
     }
   }
+  has_changed_ = true;
   of.seeks_at_once = !(gap_ahead && slip_ahead);
   of.seeks_ahead = gap_ahead || slip_ahead;
 }
 
-void FaceCompliances::fill(Eigen::Ref<Eigen::MatrixXd> delassus) const {
+bool FaceCompliances::fill(Eigen::Ref<Eigen::MatrixXd> delassus) {
+  for (Body& body : bodies_) {
+    const std::uint64_t version = body.propagator->compliance_version();
+    has_changed_ = has_changed_ || version != body.version;
+    body.version = version;
+  }
+  if (!has_changed_) return false;
+  has_changed_ = false;
   delassus.setZero();
   for (const Body& body : bodies_) {
     const BodyAnswers answers{body.propagator->compliances(), body.propagator->ahead_compliances(),
@@ -142,6 +153,7 @@ void FaceCompliances::fill(Eigen::Ref<Eigen::MatrixXd> delassus) const {
     add_pairs(directions_, body.sides, answers, delassus.data(),
               static_cast<std::size_t>(delassus.outerStride()));
   }
+  return true;
 }
 
 }  // namespace stridor

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "coupling/kinematics/tangent_kinematics.hpp"
@@ -46,20 +47,23 @@ class FaceCompliances {
   void direct(std::size_t contact, const Directions& sense, const Directions& push);
   void seek(std::size_t contact, bool gap_ahead, bool slip_ahead);
 
-  /// Writes the blocks of all pairs.
-  /// @param delassus a square of three rows for every contact
-  void fill(Eigen::Ref<Eigen::MatrixXd> delassus) const;
+  /// Writes the blocks of all pairs, unless nothing has changed since they were written last.
+  /// @param delassus a square of three rows for every contact, as this has left it
+  /// @return whether they have been written
+  bool fill(Eigen::Ref<Eigen::MatrixXd> delassus);
 
  private:
   struct Body {
     const Propagator* propagator;
     std::vector<FaceSide> sides;
+    std::uint64_t version = 0;  ///< of its compliances, as of the last fill()
   };
   void add_side(const Propagator& body, const FaceSide& side);
 
   std::vector<FaceDirections> directions_;
   std::vector<Directions> sense_;
   std::vector<Body> bodies_;
+  bool has_changed_ = true;  ///< directions, since the last fill()
 };
 
 }  // namespace stridor

@@ -198,13 +198,13 @@ void RunningFaces::count_steady() {
 }
 
 void RunningFaces::fill(ContactSolver& solver, std::span<const std::array<PortBlock, 2>> lines,
-                        std::span<const char> predicts_ahead) const {
+                        std::span<const char> predicts_ahead) {
   const Eigen::Index first = solver.first_planar(0);
   const Eigen::Index size = solver.delassus().rows() - first;
-  compliances_.fill(solver.delassus().bottomRightCorner(size, size));
+  const bool is_new = compliances_.fill(solver.delassus().bottomRightCorner(size, size));
   for (std::size_t i = 0; i < faces_.size(); ++i) {
     const Eigen::Index row = solver.first_planar(static_cast<int>(i));
-    solver.delassus()(row, row) += faces_[i].compliance;
+    if (is_new) solver.delassus()(row, row) += faces_[i].compliance;
     if (!lines.empty()) fill_with_lines(i, solver, lines, predicts_ahead);
   }
 }

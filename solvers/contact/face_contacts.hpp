@@ -92,7 +92,7 @@ class RunningFaces {
   /// @param lines       blocks of the contacts with one tangent, master and slave of each
   /// @param predicts_ahead of these contacts
   void fill(ContactSolver& solver, std::span<const std::array<PortBlock, 2>> lines,
-            std::span<const char> predicts_ahead) const;
+            std::span<const char> predicts_ahead);
   /// Takes up the forces found.
   void take();
   /// Takes the motion once it is known whole at t_n.

@@ -99,6 +99,7 @@ class FacePoint {
   Propagator& slave() const { return *slave_; }
   Propagator& master() const { return *master_; }
   void watch_master(int port, int row) const { master_->watch(master_port_ + port, row); }
+  int watched_on_master(int port) const { return master_->row(master_port_ + port); }
 
   // Directions of forces.
   TangentPorts normal_, along_, across_;

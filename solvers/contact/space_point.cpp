@@ -23,8 +23,10 @@ void SpacePoint::watch_facet() {
   const Facet& facet = surface_->facets[static_cast<std::size_t>(place_.facet)];
   for (int k = 0; k < facet.count; ++k) {
     const auto node = static_cast<std::size_t>(facet.nodes[static_cast<std::size_t>(k)]);
-    for (int i = 0; i < 3; ++i)
-      watch_master(3 * k + i, surface_->rows[node][static_cast<std::size_t>(i)]);
+    for (int i = 0; i < 3; ++i) {
+      const int row = surface_->rows[node][static_cast<std::size_t>(i)];
+      if (watched_on_master(3 * k + i) != row) watch_master(3 * k + i, row);
+    }
   }
 }
 

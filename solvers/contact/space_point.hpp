@@ -36,7 +36,7 @@ class SpacePoint : public FacePoint {
   TangentPorts current() const { return gathered(slave().current(), master().current()); }
   TangentPorts ahead() const { return gathered(slave().ahead(), master().ahead()); }
 
-  /// Watches the nodes of the present facet.
+  /// Watches the nodes of the present facet, where that are others.
   void watch_facet();
   /// Projects the slave on the facet under it. @returns false where there is none
   /// @param displacements of the ports, after the nodes of the facet are watched

@@ -89,6 +89,7 @@ Propagator::Propagator(int num_ports, bool has_feedthrough, Residual residual)
   answer_ = predicted_;
   ahead_ = predicted_;
   ahead_compliance_ = compliance_;
+  lacks_ahead_compliance_.assign(at(num_ports), 1);
   if (!has_residual()) {
     find_feedthrough_ports();
     return;
@@ -247,18 +248,23 @@ bool Propagator::find_ahead_compliances() {
   const std::size_t n = rows_.size();
   for (std::size_t j = 0; j < n; ++j) {
     for (std::size_t i = 0; i < n; ++i) {
+      if (lacks_ahead_compliance_[i] == 0 && lacks_ahead_compliance_[j] == 0) continue;
       double& compliance = ahead_compliance_[j * n + i];
       compliance = ahead_compliance(rows_[i], rows_[j]);
       // A force that is constant over a step does not lag.
       if (has_residual()) compliance += residual_.modes.flexibility(rows_[i], rows_[j]);
     }
   }
+  std::fill(lacks_ahead_compliance_.begin(), lacks_ahead_compliance_.end(), char{0});
   has_ahead_compliance_ = true;
+  ++compliance_version_;
   return true;
 }
 
 void Propagator::renew_compliance(int port) {
   has_ahead_compliance_ = false;
+  if (has_feedthrough_) lacks_ahead_compliance_[at(port)] = 1;
+  ++compliance_version_;
   const int row_a = row(port);
   const std::size_t n = rows_.size();
   for (int other = 0; other < num_ports(); ++other) {

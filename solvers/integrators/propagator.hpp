@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -91,6 +92,8 @@ class Propagator {
   const double* increments() const { return increment_.data(); }
   /// W, column after column.
   const double* compliances() const { return compliance_.data(); }
+  /// Grows whenever W, or that of predict_ahead(), becomes another.
+  std::uint64_t compliance_version() const { return compliance_version_; }
 
   /// For a body with direct feedthrough: predicts its ports in the next step. Cost: a product of
   /// the length of the body for every port, and `watch` for ports that have changed their rows.
@@ -226,6 +229,8 @@ class Propagator {
   std::vector<double> ahead_;
   std::vector<double> ahead_compliance_;
   bool has_ahead_compliance_ = false;
+  std::vector<char> lacks_ahead_compliance_;  ///< of the ports
+  std::uint64_t compliance_version_ = 0;
   std::vector<double> last_increment_;
   /// Of the rows of acting_ on the rows asked for; emptied when either changes.
   mutable std::vector<Influence> influences_;

@@ -80,7 +80,8 @@ TEST(Channels, EveryWrongNameIsReportedAtItsPlaceInTheList) {
                 HasSubstr("there is no contact pair 'contac', did you mean 'contact'?"));
     EXPECT_THAT(problems[4].message,
                 HasSubstr("there is no contact quantity 'pressure' (there are: force, gap, "
-                          "slip_velocity, position, friction_force, state, area)"));
+                          "slip_velocity, position, friction_force, state, area, "
+                          "friction_across, slip_across)"));
     EXPECT_THAT(problems[5].message, HasSubstr("there is no contact pair 'oblique'"));
     EXPECT_THAT(problems[6].message, HasSubstr("is neither <body>.<point>"));
     EXPECT_EQ(problems[7].key, "record.channels.8");
