@@ -57,6 +57,8 @@ ArrowStyle style_of(PictureArrow::Kind kind) {
 class MeshFigure {
  public:
   explicit MeshFigure(const MeshPicture& picture) : picture_(picture), canvas_(picture) {
+    canvas_.fit(size_.width - 3.5, least_height, most_height);
+    merge_labels();
     choose_width();
     place_labels();
     fill_legend();
@@ -93,9 +95,50 @@ class MeshFigure {
   bool is_planar() const { return picture_.view.is_planar; }
   double in_units(double metres) const { return metres / picture_.metres_per_unit; }
 
+  static constexpr double most_height = 13.0;
+  static constexpr double least_height = 1.8;
+
+  /// A text with the place that it names.
+  struct Flag {
+    Eigen::Vector3d at;
+    std::string text;
+  };
+
+  /// Names of one spot become one text.
+  void merge_labels() {
+    constexpr double spot = 0.25;  // cm
+    constexpr std::size_t most_names = 3;
+    std::vector<PictureLabel> labels = picture_.labels;
+    std::stable_sort(labels.begin(), labels.end(), [](const PictureLabel& a, const PictureLabel& b) {
+      return a.weight > b.weight;
+    });
+    std::vector<std::vector<const PictureLabel*>> spots;
+    for (const PictureLabel& label : labels) {
+      const auto is_near = [&](const auto& others) {
+        const Eigen::Vector2d apart = canvas_.flat(label.at) - canvas_.flat(others.front()->at);
+        return apart.norm() * canvas_.cm_per_metre < spot;
+      };
+      const auto found = std::find_if(spots.begin(), spots.end(), is_near);
+      if (found == spots.end()) {
+        spots.push_back({&label});
+      } else {
+        found->push_back(&label);
+      }
+    }
+    for (const auto& names : spots) {
+      Flag& flag = flags_.emplace_back(Flag{names.front()->at, ""});
+      for (std::size_t i = 0; i < std::min(names.size(), most_names); ++i) {
+        const bool is_repeated = i > 0 && names[i]->of == names[i - 1]->of;
+        if (i > 0) flag.text += ", ";
+        if (!names[i]->of.empty() && !is_repeated) flag.text += names[i]->of + ".";
+        flag.text += names[i]->text;
+      }
+      if (names.size() > most_names)
+        flag.text += fmt::format(" and {} more", names.size() - most_names);
+    }
+  }
+
   void choose_width() {
-    constexpr double most_height = 13.0;
-    constexpr double least_height = 1.8;
     double right = size_.width - 0.6;
     for (int round = 0; round < 4; ++round) {
       x_range_ = {in_units(canvas_.x.lower), in_units(canvas_.x.upper)};
@@ -109,24 +152,24 @@ class MeshFigure {
                                  : 2.6;
       canvas_.fit(right - canvas_.left, least_height, most_height);
       double overflow = canvas_.left + canvas_.width() - (size_.width - 0.6);
-      for (const PictureLabel& label : picture_.labels)
-        overflow = std::max(overflow, flag_x(label) + flag_width(label) + 0.2 - size_.width);
+      for (const Flag& flag : flags_)
+        overflow = std::max(overflow, flag_x(flag) + flag_width(flag) + 0.2 - size_.width);
       if (overflow <= 0.0) break;
       right = std::max(canvas_.left + 6.0, canvas_.left + canvas_.width() - overflow);
     }
   }
 
-  double flag_x(const PictureLabel& label) const {
-    return canvas_.on_page(canvas_.flat(label.at)).x();
+  double flag_x(const Flag& flag) const {
+    return canvas_.on_page(canvas_.flat(flag.at)).x();
   }
-  double flag_width(const PictureLabel& label) const {
-    return 0.12 + 1.12 * text_width(label.text, caption_font);
+  double flag_width(const Flag& flag) const {
+    return 0.12 + 1.12 * text_width(flag.text, caption_font);
   }
 
   void place_labels() {
-    std::vector<FlagRequest> flags;
-    for (const PictureLabel& label : picture_.labels) flags.push_back({flag_x(label), flag_width(label)});
-    rows_ = flag_rows(flags, 0.15, most_rows_of_labels);
+    std::vector<FlagRequest> requests;
+    for (const Flag& flag : flags_) requests.push_back({flag_x(flag), flag_width(flag)});
+    rows_ = flag_rows(requests, 0.15, most_rows_of_labels);
     for (const int row : rows_) num_rows_ = std::max(num_rows_, row + 1);
     num_unwritten_ = static_cast<int>(std::count(rows_.begin(), rows_.end(), -1));
   }
@@ -211,6 +254,7 @@ class MeshFigure {
     script.set_axis('y', y_range_, y_scale_);
     const double line = line_height(size_.font_size);
     if (is_planar()) {
+      script.add("set xtics nomirror\nset ytics nomirror");
       script.add_text(offset_axis_label("x", picture_.unit, x_scale_),
                       canvas_.left + 0.5 * canvas_.width(), canvas_.bottom - 1.9 * line, "center");
       script.add_text(offset_axis_label("y", picture_.unit, y_scale_), 0.7 * line,
@@ -254,12 +298,12 @@ class MeshFigure {
   }
 
   void add_labels(FigureScript& script) const {
-    for (std::size_t i = 0; i < picture_.labels.size(); ++i) {
+    for (std::size_t i = 0; i < flags_.size(); ++i) {
       if (rows_[i] < 0) continue;
-      const Eigen::Vector2d at = canvas_.on_page(canvas_.flat(picture_.labels[i].at));
+      const Eigen::Vector2d at = canvas_.on_page(canvas_.flat(flags_[i].at));
       const double top = labels_bottom_ + (rows_[i] + 1) * row_height();
       add_arrow(script, at, {at.x(), top}, "#909090", "nohead", 0.6);
-      script.add_text(picture_.labels[i].text, at.x() + 0.1, top - 0.5 * row_height(), "left",
+      script.add_text(flags_[i].text, at.x() + 0.1, top - 0.5 * row_height(), "left",
                       caption_font);
     }
   }
@@ -274,6 +318,7 @@ class MeshFigure {
 
   void add_legend(FigureScript& script) const {
     std::size_t part = 0;
+    int tag = 1000;  // beyond those of texts
     for (const LegendEntry& entry : legend_) {
       const double y = legend_top_ - (entry.row + 0.5) * 1.25 * line_height(caption_font);
       if (entry.arrow != nullptr) {
@@ -282,9 +327,9 @@ class MeshFigure {
       } else {
         const std::string colour =
             entry.mark->colour == nullptr ? colours_[part++] : std::string(entry.mark->colour);
-        script.add("set label '' at screen {:.6f}, screen {:.6f} point pointtype {} pointsize {} "
+        script.add("set label {} '' at screen {:.6f}, screen {:.6f} point pointtype {} pointsize {} "
                    "linewidth 1.6 linecolor rgb '{}'",
-                   script.across(entry.left + 0.35), script.up(y), entry.mark->type,
+                   tag++, script.across(entry.left + 0.35), script.up(y), entry.mark->type,
                    entry.mark->size, colour);
       }
       script.add_text(entry.text, entry.left + 0.85, y, "left", caption_font);
@@ -310,7 +355,8 @@ class MeshFigure {
   FigureSize size_;
   ValueRange x_range_, y_range_;  ///< in the unit of the picture
   AxisScale x_scale_, y_scale_;
-  std::vector<int> rows_;  ///< of labels
+  std::vector<Flag> flags_;
+  std::vector<int> rows_;  ///< of them
   int num_rows_ = 0;
   int num_unwritten_ = 0;
   std::vector<LegendEntry> legend_;

@@ -61,9 +61,13 @@ struct PictureArrow {
   Kind kind = Kind::motion;
 };
 
+/// A name of a place. Those that come to stand on one spot are written together, `of` once and the
+/// weightier ones first.
 struct PictureLabel {
   Eigen::Vector3d at;  ///< m
+  std::string of;      ///< before the name, with a dot between; empty: nothing
   std::string text;
+  int weight = 0;
 };
 
 struct MeshPicture {

@@ -149,14 +149,17 @@ TEST(MeshPicture, DrawsBodiesPlacesArrowsAndLabelsInEveryFormat) {
     picture.metres_per_unit = 1e-3;
     picture.places = {{{0.0, 0.0, 0.0}, PictureMark::held}, {{0.03, 0.02, 0.0}, PictureMark::contact}};
     picture.arrows = {{{0.03, 0.02, 0.0}, {0.0, 1.0, 0.0}, PictureArrow::Kind::load}};
-    picture.labels = {{{0.03, 0.02, 0.0}, "tip's end"}};
+    picture.labels = {{{0.03, 0.02, 0.0}, "block", "corner", 0},
+                      {{0.03, 0.02, 0.0}, "block", "tip", 1},
+                      {{0.0, 0.0, 0.0}, "", "origin", 0}};
     picture.caption = "A block.";
     for (const char* name : {"a.svg", "a.png", "a.pdf"}) {
       draw_mesh_picture(picture, folder / name);
       EXPECT_GT(std::filesystem::file_size(folder / name), 2000u);
     }
     const std::string text = contents_of(folder / "a.svg");
-    for (const char* word : {"block", "held", "slave point", "load", "tip", "A block.", "mm"})
+    for (const char* word : {"block", "held", "slave point", "load", "block.tip, corner", "origin",
+                             "A block.", "mm"})
       EXPECT_THAT(text, HasSubstr(word));
   }
 }
