@@ -4,8 +4,61 @@
 
 #include <stdexcept>
 
-
 namespace stridor {
+namespace {
+
+/// Into the frame of space: y of the frame of a body on the lower face of a plate points down.
+template <class Vectors>
+void mirror(bool is_mirrored, Vectors& vectors) {
+  if (is_mirrored) vectors.col(1) *= -1.0;
+}
+
+}  // namespace
+
+ShapeRecovery::ShapeRecovery(const Model& model, BodyCache& cache) : model_(&model) {
+  for (std::size_t b = 0; b < model.system.bodies.size(); ++b) {
+    const SystemBody& body = model.system.bodies[b];
+    const auto parameters = model.substructures.find(body.name);
+    if (parameters == model.substructures.end()) continue;
+    Part& part = parts_.emplace_back();
+    part.body = b;
+    part.matrices = cache.matrices(*parameters->second);
+    const Model::Placement& placement = model.placements[b];
+    part.recovery = recovery_matrix(part.matrices, placement.interface,
+                                    body.reduced.size() - body.reduced.num_interface);
+    part.rest.name = body.name;
+    part.rest.nodes = node_places(part.matrices);
+    part.rest.nodes.leftCols(placement.place.size()).rowwise() += placement.place.transpose();
+    for (const auto& [name, nodes] : part.matrices.surfaces) part.rest.outlines.push_back(nodes);
+    for (const std::vector<int>& nodes : part.matrices.outlines)
+      part.rest.outlines.push_back(nodes);
+    part.rest.elements = parameters->second->elements();
+  }
+}
+
+std::vector<BodyShape> ShapeRecovery::shapes(const std::vector<double>& displaced,
+                                             const std::vector<Eigen::VectorXd>& still,
+                                             const std::vector<Eigen::VectorXcd>& moving) const {
+  const std::size_t num_bodies = model_->system.bodies.size();
+  if (displaced.size() != num_bodies || still.size() != num_bodies || moving.size() != num_bodies)
+    throw std::invalid_argument("ShapeRecovery: not as many motions as bodies");
+  std::vector<BodyShape> shapes;
+  for (const Part& part : parts_) {
+    BodyShape& shape = shapes.emplace_back(part.rest);
+    shape.displacement =
+        node_displacements(part.matrices, part.recovery * moving[part.body]);
+    shape.nodes.col(0).array() += displaced[part.body];
+    if (still[part.body].size() > 0) {
+      const Eigen::VectorXd dofs = part.recovery * still[part.body];
+      shape.nodes += node_displacements(part.matrices, dofs.cast<std::complex<double>>()).real();
+    }
+    const bool is_mirrored = model_->placements[part.body].is_mirrored;
+    mirror(is_mirrored, shape.nodes);
+    mirror(is_mirrored, shape.displacement);
+  }
+  return shapes;
+}
+
 std::vector<BodyShape> mode_shape(const Model& model, const Equilibrium& equilibrium,
                                   const Eigen::VectorXcd& mode, BodyCache& cache) {
   Eigen::Index num_modes = 0;
@@ -14,43 +67,23 @@ std::vector<BodyShape> mode_shape(const Model& model, const Equilibrium& equilib
     throw std::invalid_argument(fmt::format(
         "mode_shape: the mode has {} entries, the bodies have {} modes", mode.size(), num_modes));
   }
-  std::vector<BodyShape> shapes;
+  std::vector<double> displaced;
+  std::vector<Eigen::VectorXd> still;
+  std::vector<Eigen::VectorXcd> moving;
   Eigen::Index first = 0;
+  const bool is_deformed = equilibrium.state.geometry == ContactGeometry::deformed;
   for (std::size_t b = 0; b < model.system.bodies.size(); ++b) {
     const SystemBody& body = model.system.bodies[b];
     const Eigen::Index size = body.modal.size();
-    const Eigen::VectorXcd part = mode.segment(first, size);
+    moving.emplace_back(body.modal.shapes * mode.segment(first, size));
     first += size;
-    const auto parameters = model.substructures.find(body.name);
-    if (parameters == model.substructures.end()) continue;
-    const BodyMatrices matrices = cache.matrices(*parameters->second);
-    const Model::Placement& placement = model.placements[b];
-    const Eigen::MatrixXd recovery = recovery_matrix(
-        matrices, placement.interface, body.reduced.size() - body.reduced.num_interface);
-
-    BodyShape shape;
-    shape.name = body.name;
-    shape.displacement = node_displacements(matrices, recovery * (body.modal.shapes * part));
-    shape.nodes = matrices.nodes.leftCols<2>().rowwise() + placement.place.head<2>().transpose();
-    if (body.follows_drive()) {
-      shape.nodes.col(0).array() += model.system.path_share(static_cast<int>(b)) *
-                                    equilibrium.state.drive_displacement;
-    }
-    if (equilibrium.state.geometry == ContactGeometry::deformed) {
-      const Eigen::VectorXd static_part =
-          recovery * (body.modal.shapes * equilibrium.displacement[b]);
-      shape.nodes += node_displacements(matrices, static_part.cast<std::complex<double>>()).real();
-    }
-    if (placement.is_mirrored) {
-      shape.nodes.col(1) *= -1.0;
-      shape.displacement.col(1) *= -1.0;
-    }
-    for (const auto& [name, nodes] : matrices.surfaces) shape.outlines.push_back(nodes);
-    for (const std::vector<int>& nodes : matrices.outlines) shape.outlines.push_back(nodes);
-    shape.elements = parameters->second->elements();
-    shapes.push_back(std::move(shape));
+    displaced.push_back(body.follows_drive() ? model.system.path_share(static_cast<int>(b)) *
+                                                   equilibrium.state.drive_displacement
+                                             : 0.0);
+    still.emplace_back();
+    if (is_deformed && size > 0) still.back() = body.modal.shapes * equilibrium.displacement[b];
   }
-  return shapes;
+  return ShapeRecovery(model, cache).shapes(displaced, still, moving);
 }
 
 }  // namespace stridor

@@ -1,6 +1,7 @@
-// Modes of a system as motions of all nodes of its bodies.
+// Motions of a system on all nodes of its bodies.
 #pragma once
 
+#include <complex>
 #include <vector>
 
 #include "models/body_cache.hpp"
@@ -10,8 +11,36 @@
 
 namespace stridor {
 
-/// A mode about an equilibrium, on the meshes of the bodies. A rigid master has no nodes and is
-/// left out.
+/// The bodies of a model with the matrices that give every node of them from their reduced
+/// coordinates. A rigid master has no nodes and is left out.
+class ShapeRecovery {
+ public:
+  /// @param model must outlive this
+  /// Cost: a reduction of every body.
+  ShapeRecovery(const Model& model, BodyCache& cache);
+
+  /// Bodies about where they are.
+  /// @param displaced along x of every body of the system by its drive, m
+  /// @param still     reduced coordinates of every body of the system that displace the places of its
+  ///                  nodes; empty for none
+  /// @param moving    those that become BodyShape::displacement
+  /// @throws std::invalid_argument if there are not as many as bodies
+  std::vector<BodyShape> shapes(const std::vector<double>& displaced,
+                                const std::vector<Eigen::VectorXd>& still,
+                                const std::vector<Eigen::VectorXcd>& moving) const;
+
+ private:
+  struct Part {
+    std::size_t body = 0;  ///< of the system
+    BodyMatrices matrices;
+    Eigen::MatrixXd recovery;
+    BodyShape rest;  ///< without displacement
+  };
+  const Model* model_;
+  std::vector<Part> parts_;
+};
+
+/// A mode about an equilibrium, on the meshes of the bodies.
 ///
 /// @param equilibrium of its system, which gives the positions of nodes; the bodies that follow the
 ///                    drive are displaced by it. In the undeformed geometry they are not deformed

@@ -10,6 +10,7 @@
 #include "models/face_contact_pair.hpp"
 #include "models/initial_motion.hpp"
 #include "models/model_drive.hpp"
+#include "models/placed_model.hpp"
 #include "models/set_up_estimate.hpp"
 #include "models/space_contact.hpp"
 #include "substructures/bodies/whole_body.hpp"
@@ -31,6 +32,7 @@ class ModelBuilder {
 
   Model make(const Observed& observed) {
     place();
+    add_scene_points(parameters_.points, bodies_);
     for (const auto& [name, key] : observed) {
       const auto [b, point] = split_name(name.body + "." + name.point, bodies_, key);
       ModelBody& body = bodies_[static_cast<std::size_t>(b)];
@@ -40,6 +42,23 @@ class ModelBuilder {
     finish();
     hold_preloads(preloads_of(resolved_, model_.system), model_.system);
     return std::move(model_);
+  }
+
+  PlacedModel make_placed() {
+    place();
+    add_scene_points(parameters_.points, bodies_);
+    check_loads(drives_, bodies_);
+    PlacedModel placed;
+    for (ModelBody& body : bodies_) {
+      placed.loads.push_back(body.parameters == nullptr ? std::vector<BodyLoad>{}
+                                                        : loads_of(body, drives_));
+    }
+    placed.bodies = std::move(bodies_);
+    placed.pairs = std::move(resolved_);
+    placed.system = std::move(model_.system);
+    // `parameters` of the pairs would point into this builder.
+    for (ContactPair& pair : placed.pairs) pair.parameters = nullptr;
+    return placed;
   }
 
  private:
@@ -201,6 +220,10 @@ const Schema& ModelParameters::schema() {
                     .optional = true})
           .named_sections("drives", &ModelParameters::drives,
                           {.doc = "Several drives, by name.", .optional = true})
+          .named_sections("points", &ModelParameters::points,
+                          {.doc = "Points on bodies of any type, by name, besides those of the "
+                                  "bodies; they are recorded and loaded as `<of>.<name>`.",
+                           .optional = true})
           .section("initial", &ModelParameters::initial,
                    {.doc = "State at the start of a run.", .optional = true})
           .check([](const ModelParameters& model, std::vector<Problem>& problems) {
@@ -258,6 +281,10 @@ Model make_model(const ModelParameters& parameters,
                  const std::vector<std::pair<PointName, std::string>>& observed) {
   BodyCache cache;
   return make_model(parameters, observed, cache);
+}
+
+PlacedModel place_model(const ModelParameters& parameters, BodyCache& cache) {
+  return ModelBuilder(parameters, cache).make_placed();
 }
 
 Model make_model(const ModelParameters& parameters,

@@ -9,6 +9,7 @@
 #include "coupling/system/contact_parameters.hpp"
 #include "coupling/system/system.hpp"
 #include "models/initial_parameters.hpp"
+#include "models/scene_points.hpp"
 #include "substructures/bodies/body_parameters.hpp"
 #include "substructures/bodies/matrix_body.hpp"
 
@@ -21,6 +22,7 @@ struct ModelParameters {
   std::map<std::string, ContactParameters> contacts;  ///< several pairs by name
   std::optional<DriveParameters> drive;               ///< the only one
   std::map<std::string, DriveParameters> drives;      ///< several by name
+  std::map<std::string, ScenePointParameters> points;  ///< besides those of the bodies
   InitialParameters initial;
   static const Schema& schema();
 

@@ -168,21 +168,26 @@ void EventDriver::load(const State& state) {
   }
 }
 
-void EventDriver::keep_final_motion() {
-  if (!final_motion_.arrays().empty()) return;
+State EventDriver::present_motion() const {
+  State now;
   const SubstrateMotion::State& s = motion_.state();
-  final_motion_.put("time", time());
+  now.put("time", time());
   std::vector<double> driven;
   for (const Drive& drive : model_->system.drives) driven.push_back(drive.displacement(time()));
-  final_motion_.put("drive_displacement", driven);
+  now.put("drive_displacement", driven);
   const std::string& body =
       model_->system.bodies[static_cast<std::size_t>(oscillator_.mass.body)].name;
   const auto keep = [&](const char* name, const Eigen::Vector2d& in_contact) {
     const Eigen::Vector2d reduced = oscillator_.mass.to_body * in_contact;
-    final_motion_.put(body + name, {reduced.data(), 2});
+    now.put(body + name, {reduced.data(), 2});
   };
   keep("/displacement", oscillator_.to_si({s[0], s[1]}, oscillator_.length));
   keep("/velocity", oscillator_.to_si({s[2], s[3]}, oscillator_.velocity_unit()));
+  return now;
+}
+
+void EventDriver::keep_final_motion() {
+  if (final_motion_.arrays().empty()) final_motion_ = present_motion();
 }
 
 Json EventDriver::results(MarchEnd end,

@@ -26,6 +26,7 @@ class EventDriver : public RunDriver {
   const std::string& failure() const override { return failure_; }
   State save() const override;
   void load(const State& state) override;
+  State present_motion() const override;
   State final_motion() const override { return final_motion_; }
   void keep_final_motion() override;
   Effort effort() const override {

@@ -41,6 +41,9 @@ class RunDriver {
   /// @throws std::invalid_argument if the state is of another run
   virtual void load(const State& state) = 0;
 
+  /// The motion of every body now: time, drive_displacement, and of every body that moves
+  /// "<body>/displacement" and "<body>/velocity" in its reduced coordinates.
+  virtual State present_motion() const = 0;
   /// The motion of every body at the end, by path under /final; empty before it.
   virtual State final_motion() const = 0;
   /// Keeps the present motion as the final one, unless there is one.

@@ -67,23 +67,28 @@ MarchEnd StepDriver::run_until(double time) {
   return run_to_step(static_cast<std::int64_t>(std::llround(time / scene().time->step)));
 }
 
-void StepDriver::keep_final_motion() {
-  if (!final_motion_.arrays().empty()) return;
-  final_motion_.put("time", simulation_.time());
+State StepDriver::present_motion() const {
+  State now;
+  now.put("time", simulation_.time());
   std::vector<double> driven;
   for (std::size_t d = 0; d < model_->system.drives.size(); ++d)
     driven.push_back(simulation_.drive_displacement(static_cast<int>(d)));
-  final_motion_.put("drive_displacement", driven);
+  now.put("drive_displacement", driven);
   for (std::size_t b = 0; b < model_->system.bodies.size(); ++b) {
     const SystemBody& body = model_->system.bodies[b];
     if (body.modal.size() == 0) continue;
     const Propagator::Motion motion = simulation_.reduced_motion(static_cast<int>(b));
     const auto keep = [&](const char* name, const Eigen::VectorXd& vector) {
-      final_motion_.put(body.name + name, {vector.data(), static_cast<std::size_t>(vector.size())});
+      now.put(body.name + name, {vector.data(), static_cast<std::size_t>(vector.size())});
     };
     keep("/displacement", motion.displacement);
     keep("/velocity", motion.velocity);
   }
+  return now;
+}
+
+void StepDriver::keep_final_motion() {
+  if (final_motion_.arrays().empty()) final_motion_ = present_motion();
 }
 
 RunDriver::Effort StepDriver::effort() const {

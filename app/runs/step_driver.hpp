@@ -19,6 +19,7 @@ class StepDriver : public RunDriver {
   const std::string& failure() const override { return simulation_.failure(); }
   State save() const override;
   void load(const State& state) override;
+  State present_motion() const override;
   State final_motion() const override { return final_motion_; }
   void keep_final_motion() override;
   Effort effort() const override;

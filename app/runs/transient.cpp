@@ -156,7 +156,32 @@ MarchEnd Transient::run_until(double time) {
   return timed([&] { return driver_->run_until(time); });
 }
 
+void Transient::write_frames(const std::filesystem::path& folder, double interval) {
+  frames_ = std::make_unique<RunFrames>(model_, folder);
+  frame_interval_ = interval;
+}
+
+/// Shapes before the present time are those of a run that this one goes on with.
+MarchEnd Transient::run_from_frame_to_frame() {
+  const double end = loaded_->scene.time->end * (1.0 + 1e-12);
+  for (int number = 0; number * frame_interval_ <= end; ++number) {
+    const double time = number * frame_interval_;
+    if (time < driver_->time() - 1e-9 * frame_interval_) {
+      frames_->adopt(number, time);
+      continue;
+    }
+    const MarchEnd how = run_until(time);
+    if (how != MarchEnd::finished) return how;
+    frames_->write(number, driver_->present_motion());
+  }
+  return MarchEnd::finished;
+}
+
 MarchEnd Transient::run_to_end() {
+  if (frames_) {
+    const MarchEnd how = run_from_frame_to_frame();
+    if (how != MarchEnd::finished) return how;
+  }
   return timed([&] { return driver_->run_to_end(); });
 }
 

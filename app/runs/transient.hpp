@@ -2,11 +2,13 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "app/runs/run_driver.hpp"
+#include "app/runs/run_frames.hpp"
 #include "app/runs/run_keeping.hpp"
 #include "io/run_file/initial_state.hpp"
 
@@ -30,6 +32,9 @@ class Transient {
   /// @return `failed` where it failed before the end that was asked for
   MarchEnd run_until(double time);
   MarchEnd run_to_end();
+  /// Has run_to_end() write the shapes of the bodies at equal times (RunFrames).
+  /// @throws FileError as RunFrames
+  void write_frames(const std::filesystem::path& folder, double interval);
 
   /// Stores the state of the run in its file.
   /// @throws FileError if it cannot be written
@@ -53,6 +58,7 @@ class Transient {
   void begin();
   State save() const;
   void load(const State& state);
+  MarchEnd run_from_frame_to_frame();
   template <class Advance>
   MarchEnd timed(const Advance& advance);
   void write_final_motion();
@@ -62,6 +68,8 @@ class Transient {
   RunKeeper keeper_;
   Model model_;
   InitialState start_;
+  std::unique_ptr<RunFrames> frames_;
+  double frame_interval_ = 0.0;  ///< s
   std::unique_ptr<RunDriver> driver_;
   std::optional<RunFileWriter> writer_;
   MarchEnd end_ = MarchEnd::finished;

@@ -154,8 +154,9 @@ std::vector<std::string> write_shapes(const EigOptions& options, const LoadedSce
       number, eigenvalue.frequency(), eigenvalue.growth(), options.stability.about,
       std::filesystem::path(options.stability.scene).filename().string(), loaded.hash());
   plot_shape(picture, figure);
+  const double period = eigenvalue.frequency() > 0.0 ? 1.0 / eigenvalue.frequency() : 1.0;
   std::vector<std::string> files{figure.string()};
-  for (const auto& file : write_shape_frames(picture, stem, num_frames))
+  for (const auto& file : write_shape_frames(picture, stem, num_frames, period))
     files.push_back(file.string());
   return files;
 }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/results/pictures.hpp"
 #include "app/results/transient_results.hpp"
 #include "app/runs/cycle_motion.hpp"
 #include "app/runs/error_estimate.hpp"
@@ -30,6 +31,8 @@ struct RunOptions {
   double max_wall = std::numeric_limits<double>::infinity();  ///< s
   bool verify = false;
   bool error = false;
+  std::optional<std::string> vtu;           ///< folder
+  std::optional<std::string> vtu_interval;  ///< as the user wrote it
   std::string command_line;
 };
 
@@ -212,6 +215,25 @@ class StudiedRun {
   bool is_cut_short_ = false;
 };
 
+/// Time between the files of --vtu, s; nothing where none are wanted.
+std::optional<double> frame_interval(const RunOptions& options, const LoadedScene& loaded) {
+  if (!options.vtu) {
+    if (options.vtu_interval)
+      throw ConfigError("--vtu-interval", "is the time between files of --vtu FOLDER; give that too");
+    return std::nullopt;
+  }
+  constexpr double num_frames = 100.0;
+  if (!options.vtu_interval) return loaded.scene.time->end / num_frames;
+  const double interval =
+      option_value("--vtu-interval", *options.vtu_interval, "s", Range::positive());
+  constexpr double most = 1e5;
+  if (loaded.scene.time->end > most * interval) {
+    throw ConfigError("--vtu-interval",
+                      fmt::format("makes more than {:g} files; take a longer one", most));
+  }
+  return interval;
+}
+
 /// @param study of the scene, where the error is to be estimated
 ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::string& file,
                     const std::optional<StudiedScene>& study, const RunEnding& ending) {
@@ -232,7 +254,9 @@ ExitCode begin(const RunOptions& options) {
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   loaded.require_section("time", "run");
   const auto study = studied(loaded, options);
+  const std::optional<double> frames = frame_interval(options, loaded);
   Transient transient(loaded, output);
+  if (frames) transient.write_frames(*options.vtu, *frames);
   print_warnings(scene_warnings(loaded, transient.model()));
   return run_to_end(transient, loaded, options.output, study, ending);
 }
@@ -271,7 +295,9 @@ ExitCode resume(const RunOptions& options) {
   const RunEnding ending{options.max_wall, options.common.json, options.verify};
   const LoadedScene loaded = load_resolved_scene(interrupted.scene_text, source);
   const auto study = studied(loaded, options);
+  const std::optional<double> frames = frame_interval(options, loaded);
   Transient transient(loaded, interrupted);
+  if (frames) transient.write_frames(*options.vtu, *frames);
   return run_to_end(transient, loaded, options.resumed, study, ending);
 }
 
@@ -308,6 +334,10 @@ void add_run_command(CLI::App& program, Action& action, const std::string& comma
   verb->add_flag("--verify", options->verify,
                  "Compare the results with the scene's `expect` block; exit 3 where they differ");
   verb->add_flag("--error", options->error, "Estimate the error of the run by a second, finer one");
+  verb->add_option("--vtu", options->vtu,
+                   "Folder for the shapes of the bodies over time, as files for ParaView (run.pvd)");
+  verb->add_option("--vtu-interval", options->vtu_interval,
+                   "Time between these (default: a hundredth of the run)");
   add_scene_options(*verb, options->common);
   add_json_option(*verb, options->common);
   add_force_option(*verb, options->common);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/results/vtu_writer.hpp"
 #include "substructures/reduction/recovery.hpp"
 
 namespace stridor {
@@ -26,13 +27,20 @@ double shape_scale(const std::vector<BodyShape>& bodies);
 /// @throws ConfigError, FileError as draw_figure()
 void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure);
 
-/// Writes a motion on the meshes of the bodies for ParaView: `<stem>.vtk` with its real and
-/// imaginary part as vectors, and `num_frames` frames of one period, `<stem>_frame_000.vtk` and so
-/// on, enlarged by shape_scale().
+/// The bodies as one mesh for ParaView, where they are at rest, one after the other.
+VtkMesh vtk_mesh(const std::vector<BodyShape>& bodies);
+
+/// Re(displacement e^{iφ}) of all points of vtk_mesh().
+Eigen::MatrixX3d stacked_displacement(const std::vector<BodyShape>& bodies, double phase);
+
+/// Writes a motion on the meshes of the bodies for ParaView: `<stem>.vtu` with its real and
+/// imaginary part as vectors, `num_frames` frames of one period, `<stem>_frame_000.vtu` and so
+/// on, with points moved shape_scale() times as far, and `<stem>.pvd`, which shows them in time.
+/// @param period of the motion, s
 /// @return the files
-/// @throws FileError as write_vtk()
+/// @throws FileError as write_vtu()
 std::vector<std::filesystem::path> write_shape_frames(const ShapePicture& picture,
                                                       const std::filesystem::path& stem,
-                                                      int num_frames);
+                                                      int num_frames, double period);
 
 }  // namespace stridor

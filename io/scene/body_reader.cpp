@@ -7,6 +7,7 @@
 #include "core/errors.hpp"
 #include "io/imports/matrix_market.hpp"
 #include "io/imports/mesh_file.hpp"
+#include "io/imports/uff_file.hpp"
 
 namespace stridor {
 namespace {
@@ -21,6 +22,9 @@ class FilesOfScene : public BodyFiles {
   }
   Mesh mesh(const std::string& key, const std::string& name) const override {
     return read_mesh_file(path_of_file(tree_, key_ + "." + key, name)).mesh;
+  }
+  ModalTest modal_test(const std::string& key, const std::string& name) const override {
+    return read_uff_file(path_of_file(tree_, key_ + "." + key, name));
   }
   SparseMatrix matrix(const std::vector<std::string>& rows) const override {
     return parse_matrix_rows(rows);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "substructures/bodies/modal_test.hpp"
 #include "substructures/elements/mesh.hpp"
 #include "substructures/matrices/body_matrices.hpp"
 
@@ -29,6 +30,8 @@ class BodyFiles {
   /// A square matrix from rows of numbers, given in the place of a file.
   /// @throws std::invalid_argument saying which row is wrong
   virtual SparseMatrix matrix(const std::vector<std::string>& rows) const = 0;
+  /// Modes and places of a modal test. Parameters and errors as matrix().
+  virtual ModalTest modal_test(const std::string& key, const std::string& name) const = 0;
 };
 
 }  // namespace stridor

@@ -8,6 +8,7 @@
 #include "substructures/bodies/lumped_body.hpp"
 #include "substructures/bodies/matrix_body.hpp"
 #include "substructures/bodies/mesh_body.hpp"
+#include "substructures/bodies/modes_body.hpp"
 #include "substructures/bodies/plate_body.hpp"
 
 namespace stridor {
@@ -19,6 +20,7 @@ const std::vector<Substructure::Type>& Substructure::types() {
       body_type<TouchedMatrixBodyParameters>(),
       body_type<PlateBodyParameters>(),
       body_type<MeshBodyParameters>(),
+      body_type<ModesBodyParameters>(),
   };
   return all;
 }

@@ -13,10 +13,16 @@ Eigen::MatrixXd recovery_matrix(const BodyMatrices& body, std::span<const int> i
   return make_craig_bampton(body, interface, num_modes, all).rows;
 }
 
-Eigen::MatrixX2cd node_displacements(const BodyMatrices& body, const Eigen::VectorXcd& dofs) {
-  Eigen::MatrixX2cd displacements = Eigen::MatrixX2cd::Zero(body.nodes.rows(), 2);
+Eigen::MatrixX3d node_places(const BodyMatrices& body) {
+  Eigen::MatrixX3d places = Eigen::MatrixX3d::Zero(body.nodes.rows(), 3);
+  places.leftCols(body.nodes.cols()) = body.nodes;
+  return places;
+}
+
+Eigen::MatrixX3cd node_displacements(const BodyMatrices& body, const Eigen::VectorXcd& dofs) {
+  Eigen::MatrixX3cd displacements = Eigen::MatrixX3cd::Zero(body.nodes.rows(), 3);
   for (Eigen::Index node = 0; node < displacements.rows(); ++node) {
-    for (Eigen::Index direction = 0; direction < 2; ++direction) {
+    for (Eigen::Index direction = 0; direction < 3; ++direction) {
       for (const DofWeight& dof :
            body.displacement(static_cast<int>(node), static_cast<std::size_t>(direction)))
         displacements(node, direction) += dof.weight * dofs(dof.dof);

@@ -19,15 +19,18 @@ namespace stridor {
 Eigen::MatrixXd recovery_matrix(const BodyMatrices& body, std::span<const int> interface,
                                 Eigen::Index num_modes);
 
-/// Displacement of every node, x and y; 0 where a node is held.
+/// Undeformed places of all nodes in the body's frame, m.
+Eigen::MatrixX3d node_places(const BodyMatrices& body);
+
+/// Displacement of every node, x, y and z; 0 where a node is held.
 /// @param dofs of all free DoFs
-Eigen::MatrixX2cd node_displacements(const BodyMatrices& body, const Eigen::VectorXcd& dofs);
+Eigen::MatrixX3cd node_displacements(const BodyMatrices& body, const Eigen::VectorXcd& dofs);
 
 /// A body in motion: Re(displacement e^{iφ}) about where its nodes are.
 struct BodyShape {
   std::string name;
-  Eigen::MatrixX2d nodes;                  ///< global, m
-  Eigen::MatrixX2cd displacement;          ///< of each node
+  Eigen::MatrixX3d nodes;                  ///< global, m
+  Eigen::MatrixX3cd displacement;          ///< of each node
   std::vector<std::vector<int>> outlines;  ///< nodes in order
   std::vector<DrawnElement> elements;      ///< empty where it is made of none
 };

@@ -40,10 +40,11 @@ TEST(VerbOutput, EigDrawsAModeAndItsMotion) {
   // The first bending mode of the cantilever by itself has 45 Hz; contact and load change it
   // little.
   EXPECT_THAT(output_of(eig), AllOf(HasSubstr("damping ratio"), HasSubstr("stable between"),
-                                    HasSubstr("mode_01.png and 25 files for ParaView")));
+                                    HasSubstr("mode_01.png and 26 files for ParaView")));
   expect_picture(shapes / "mode_01.png");
-  for (const char* name : {"mode_01.vtk", "mode_01_frame_000.vtk", "mode_01_frame_023.vtk"})
-    EXPECT_THAT(contents_of(shapes / name), HasSubstr("DATASET UNSTRUCTURED_GRID")) << name;
+  for (const char* name : {"mode_01.vtu", "mode_01_frame_000.vtu", "mode_01_frame_023.vtu"})
+    EXPECT_THAT(contents_of(shapes / name), HasSubstr("<UnstructuredGrid>")) << name;
+  EXPECT_THAT(contents_of(shapes / "mode_01.pvd"), HasSubstr("file=\"mode_01_frame_023.vtu\""));
   // Not over what is there, and not where the position is given twice.
   const ProgramResult again = Program(eig).run();
   EXPECT_EQ(again.exit_code, 4);

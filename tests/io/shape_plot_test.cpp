@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <iterator>
 #include <map>
 #include <sstream>
 
 #include "core/errors.hpp"
-#include "io/results/vtk_writer.hpp"
+#include "io/results/vtu_writer.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/program.hpp"
 
@@ -15,6 +17,7 @@ namespace stridor {
 namespace {
 
 using namespace test;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 /// A square of side 1 m, one Q8 element, whose upper edge moves along x, its right end a quarter of
@@ -22,9 +25,9 @@ using ::testing::HasSubstr;
 BodyShape square() {
   BodyShape body;
   body.name = "square";
-  body.nodes.resize(8, 2);
-  body.nodes << 0, 0, 1, 0, 1, 1, 0, 1, 0.5, 0, 1, 0.5, 0.5, 1, 0, 0.5;
-  body.displacement = Eigen::MatrixX2cd::Zero(8, 2);
+  body.nodes = Eigen::MatrixX3d::Zero(8, 3);
+  body.nodes.leftCols(2) << 0, 0, 1, 0, 1, 1, 0, 1, 0.5, 0, 1, 0.5, 0.5, 1, 0, 0.5;
+  body.displacement = Eigen::MatrixX3cd::Zero(8, 3);
   body.displacement(2, 0) = {0.0, -0.5};
   body.displacement(3, 0) = 1.0;
   body.outlines = {{0, 1, 2, 3, 0}};
@@ -32,7 +35,7 @@ BodyShape square() {
   return body;
 }
 
-/// Unstructured grid as a reader of VTK's legacy format sees it.
+/// Unstructured grid as a reader of VTK's XML format sees it.
 struct VtkContents {
   std::vector<std::array<double, 3>> points;
   std::vector<std::vector<int>> cells;
@@ -41,56 +44,42 @@ struct VtkContents {
   std::map<std::string, std::vector<std::array<double, 3>>> vectors;
 };
 
-VtkContents read_vtk(const std::filesystem::path& path) {
-  std::istringstream file(contents_of(path));
+/// Numbers of the array of a name.
+std::vector<double> array_of(const std::string& text, const std::string& name) {
+  const std::size_t at = text.find("Name=\"" + name + "\"");
+  EXPECT_NE(at, std::string::npos) << name;
+  const std::size_t begin = text.find('>', at) + 1;
+  std::istringstream numbers(text.substr(begin, text.find("</DataArray>", begin) - begin));
+  return {std::istream_iterator<double>(numbers), {}};
+}
+
+std::vector<std::array<double, 3>> triples_of(const std::vector<double>& numbers) {
+  std::vector<std::array<double, 3>> triples;
+  for (std::size_t i = 0; i + 2 < numbers.size(); i += 3)
+    triples.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
+  return triples;
+}
+
+std::vector<int> integers_of(const std::vector<double>& numbers) {
+  return {numbers.begin(), numbers.end()};
+}
+
+VtkContents read_vtu(const std::filesystem::path& path) {
+  const std::string text = contents_of(path);
+  EXPECT_THAT(text, ::testing::StartsWith("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\""));
   VtkContents contents;
-  std::string line;
-  std::getline(file, line);
-  EXPECT_EQ(line, "# vtk DataFile Version 3.0");
-  std::getline(file, line);
-  std::string word;
-  file >> word;
-  EXPECT_EQ(word, "ASCII");
-  const auto read_triples = [&](std::vector<std::array<double, 3>>& triples) {
-    for (auto& [x, y, z] : triples) file >> x >> y >> z;
-  };
-  std::size_t count = 0;
-  while (file >> word) {
-    if (word == "DATASET") {
-      file >> word;
-      EXPECT_EQ(word, "UNSTRUCTURED_GRID");
-    } else if (word == "POINTS") {
-      file >> count >> word;
-      contents.points.resize(count);
-      read_triples(contents.points);
-    } else if (word == "CELLS") {
-      std::size_t num_indices = 0;
-      file >> count >> num_indices;
-      contents.cells.resize(count);
-      for (auto& cell : contents.cells) {
-        file >> count;
-        num_indices -= count + 1;
-        cell.resize(count);
-        for (int& index : cell) file >> index;
-      }
-      EXPECT_EQ(num_indices, 0u);
-    } else if (word == "CELL_TYPES") {
-      file >> count;
-      contents.types.resize(count);
-      for (int& type : contents.types) file >> type;
-    } else if (word == "SCALARS") {
-      file >> word >> word >> word >> word >> word;
-      contents.bodies.resize(contents.cells.size());
-      for (int& body : contents.bodies) file >> body;
-    } else if (word == "VECTORS") {
-      std::string name;
-      file >> name >> word;
-      contents.vectors[name].resize(contents.points.size());
-      read_triples(contents.vectors[name]);
-    } else {
-      EXPECT_THAT(word, ::testing::AnyOf("CELL_DATA", "POINT_DATA"));
-      file >> count;
-    }
+  contents.points = triples_of(array_of(text, "points"));
+  const std::vector<int> connectivity = integers_of(array_of(text, "connectivity"));
+  int first = 0;
+  for (const int end : integers_of(array_of(text, "offsets"))) {
+    contents.cells.emplace_back(connectivity.begin() + first, connectivity.begin() + end);
+    first = end;
+  }
+  contents.types = integers_of(array_of(text, "types"));
+  contents.bodies = integers_of(array_of(text, "body"));
+  for (const char* name : {"real", "imaginary", "displacement"}) {
+    if (text.find("Name=\"" + std::string(name) + "\"") != std::string::npos)
+      contents.vectors[name] = triples_of(array_of(text, name));
   }
   return contents;
 }
@@ -120,11 +109,14 @@ TEST(ShapePlot, BothPartsAreDrawn) {
 TEST(ShapeFrames, HoldOnePeriod) {
   const TemporaryFolder folder;
   const auto files =
-      write_shape_frames({{square(), square()}, {}, "two squares"}, folder / "mode", 4);
-  ASSERT_EQ(files.size(), 5u);
-  EXPECT_EQ(files[0].filename(), "mode.vtk");
-  EXPECT_EQ(files[4].filename(), "mode_frame_003.vtk");
-  const VtkContents parts = read_vtk(files[0]);
+      write_shape_frames({{square(), square()}, {}, "two squares"}, folder / "mode", 4, 0.02);
+  ASSERT_EQ(files.size(), 6u);
+  EXPECT_EQ(files[0].filename(), "mode.vtu");
+  EXPECT_EQ(files[4].filename(), "mode_frame_003.vtu");
+  EXPECT_THAT(contents_of(files[5]),
+              AllOf(HasSubstr("type=\"Collection\""),
+                    HasSubstr("timestep=\"0.015\" part=\"0\" file=\"mode_frame_003.vtu\"")));
+  const VtkContents parts = read_vtu(files[0]);
   using Triples = std::vector<std::array<double, 3>>;
   EXPECT_EQ(parts.points.size(), 16u);
   EXPECT_EQ(parts.cells, (std::vector<std::vector<int>>{{0, 1, 2, 3, 4, 5, 6, 7},
@@ -137,10 +129,28 @@ TEST(ShapeFrames, HoldOnePeriod) {
   EXPECT_EQ(real[3], (std::array{1.0, 0.0, 0.0}));
   EXPECT_EQ(imaginary[10], (std::array{-0.5, 0.0, 0.0}));
   // A quarter of a period: Re(-0.5j e^{jπ/2}) = 0.5. The nodes move by the enlarged displacement.
-  const VtkContents frame = read_vtk(files[2]);
+  const VtkContents frame = read_vtu(files[2]);
   const double displacement = frame.vectors.at("displacement")[2][0];
   EXPECT_NEAR(displacement, 0.5, 1e-8);
   EXPECT_NEAR(frame.points[2][0], 1.0 + shape_scale({square()}) * displacement, 1e-8);
+}
+
+TEST(ShapePlot, BodiesInSpaceAreSeenFromAbove) {
+  const TemporaryFolder folder;
+  BodyShape block;
+  block.name = "block";
+  block.nodes.resize(8, 3);
+  block.nodes << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1;
+  block.displacement = Eigen::MatrixX3cd::Zero(8, 3);
+  block.displacement(6, 2) = 1.0;
+  block.elements = {{ElementShape::hex8, {0, 1, 2, 3, 4, 5, 6, 7}}};
+  plot_shape({{block}, {}, "A block."}, folder / "shape.svg");
+  EXPECT_THAT(contents_of(folder / "shape.svg"), HasSubstr("upwards"));
+  const VtkContents frame =
+      read_vtu(write_shape_frames({{block}, {}, ""}, folder / "mode", 1, 1.0)[1]);
+  EXPECT_NEAR(frame.points[6][2], 1.0 + shape_scale({block}), 1e-8);
+  constexpr int hexahedron = 12;
+  EXPECT_EQ(frame.types, (std::vector<int>{hexahedron}));
 }
 
 TEST(ShapeFrames, OfABodyWithoutElementsHoldItsOutline) {
@@ -148,7 +158,7 @@ TEST(ShapeFrames, OfABodyWithoutElementsHoldItsOutline) {
   BodyShape outline = square();
   outline.elements.clear();
   const VtkContents parts =
-      read_vtk(write_shape_frames({{outline, square()}, {}, ""}, folder / "mode", 1)[0]);
+      read_vtu(write_shape_frames({{outline, square()}, {}, ""}, folder / "mode", 1, 1.0)[0]);
   constexpr int poly_line = 4;
   constexpr int quadratic_quad = 23;
   EXPECT_EQ(parts.types, (std::vector<int>{poly_line, quadratic_quad}));
@@ -156,22 +166,22 @@ TEST(ShapeFrames, OfABodyWithoutElementsHoldItsOutline) {
   EXPECT_EQ(parts.cells[0], (std::vector<int>{0, 1, 2, 3, 0}));
 }
 
-TEST(VtkWriter, WrongIndicesAndVectorsAreRefused) {
+TEST(VtuWriter, WrongIndicesAndVectorsAreRefused) {
   const TemporaryFolder folder;
   VtkMesh data;
-  data.points = Eigen::MatrixX2d::Zero(2, 2);
+  data.points = Eigen::MatrixX3d::Zero(2, 3);
   data.cells = {{VtkMesh::poly_line, {0, 2}}};
-  EXPECT_THAT(message_of<std::invalid_argument>([&] { write_vtk(folder / "a.vtk", data); }),
-              HasSubstr("write_vtk: the bodies of 0 cells are given, of 1"));
+  EXPECT_THAT(message_of<std::invalid_argument>([&] { write_vtu(folder / "a.vtu", data); }),
+              HasSubstr("write_vtu: the bodies of 0 cells are given, of 1"));
   data.parts = {0};
-  EXPECT_THAT(message_of<std::invalid_argument>([&] { write_vtk(folder / "a.vtk", data); }),
-              HasSubstr("write_vtk: there is no point 2"));
+  EXPECT_THAT(message_of<std::invalid_argument>([&] { write_vtu(folder / "a.vtu", data); }),
+              HasSubstr("write_vtu: there is no point 2"));
   data.cells = {{VtkMesh::poly_line, {0, 1}}};
-  data.vectors = {{"u", Eigen::MatrixX2d::Zero(3, 2)}};
-  EXPECT_THAT(message_of<std::invalid_argument>([&] { write_vtk(folder / "a.vtk", data); }),
-              HasSubstr("write_vtk: 3 vectors 'u' for 2 points"));
+  data.vectors = {{"u", Eigen::MatrixX3d::Zero(3, 3)}};
+  EXPECT_THAT(message_of<std::invalid_argument>([&] { write_vtu(folder / "a.vtu", data); }),
+              HasSubstr("write_vtu: 3 vectors 'u' for 2 points"));
   data.vectors.clear();
-  EXPECT_THAT(message_of<FileError>([&] { write_vtk(folder / "none" / "a.vtk", data); }),
+  EXPECT_THAT(message_of<FileError>([&] { write_vtu(folder / "none" / "a.vtu", data); }),
               HasSubstr("cannot be written"));
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }

@@ -34,15 +34,16 @@ TEST(Recovery, GivesBackTheMatricesOfTheReduction) {
 TEST(Recovery, TranslationMovesEveryNodeAlikeAndHeldOnesNot) {
   const BodyMatrices body = short_beam();
   const Eigen::VectorXcd up = rigid_motion(body, {0.0, 2.0}).cast<std::complex<double>>();
-  const Eigen::MatrixX2cd displacement = node_displacements(body, up);
+  const Eigen::MatrixX3cd displacement = node_displacements(body, up);
   ASSERT_EQ(displacement.rows(), body.nodes.rows());
   // The guided end follows the drive in x and is free in y.
   for (Eigen::Index node = 0; node < displacement.rows(); ++node) {
     EXPECT_EQ(displacement(node, 0), 0.0);
     EXPECT_EQ(displacement(node, 1), 2.0);
+    EXPECT_EQ(displacement(node, 2), 0.0);
   }
   const Eigen::VectorXcd along = rigid_motion(body, {3.0, 0.0}).cast<std::complex<double>>();
-  const Eigen::MatrixX2cd sideways = node_displacements(body, along);
+  const Eigen::MatrixX3cd sideways = node_displacements(body, along);
   EXPECT_EQ(sideways(body.points.at("tip"), 0), 3.0);
   EXPECT_EQ(sideways(body.points.at("end_top"), 0), 0.0);
 }

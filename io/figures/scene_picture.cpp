@@ -1,0 +1,389 @@
+#include "io/figures/scene_picture.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <set>
+
+#include "substructures/reduction/recovery.hpp"
+
+namespace stridor {
+namespace {
+
+template <class Place>
+Eigen::Vector3d in_space(const Place& place) {
+  Eigen::Vector3d result = Eigen::Vector3d::Zero();
+  result.head(place.size()) = place;
+  return result;
+}
+
+/// The face on which a body stands, of a body that spins.
+struct Seat {
+  double outer_radius = 0.0;
+  double radius = 0.0;  ///< of the middle of the body
+  double angle = 0.0;
+};
+
+/// From the frame in which faces are unrolled, x along the outer edge and y along the axis, into space
+/// with the axis along z.
+Eigen::Vector3d rolled(const Seat& seat, const Eigen::Vector3d& place) {
+  const double angle = seat.angle + (place.x() - seat.outer_radius * seat.angle) / seat.radius;
+  const double radius = seat.radius + place.z();
+  return {radius * std::cos(angle), radius * std::sin(angle), place.y()};
+}
+
+class ScenePicture {
+ public:
+  ScenePicture(const PlacedModel& model, const std::vector<std::string>& recorded,
+               const LengthUnit& unit)
+      : model_(model), recorded_(recorded.begin(), recorded.end()) {
+    picture_.unit = unit.name;
+    picture_.metres_per_unit = unit.metres;
+    find_seats();
+    bool is_spatial = has_faces_;
+    for (const ModelBody& body : model.bodies) {
+      if (body.parameters == nullptr) continue;
+      for (const DrawnElement& element : body.parameters->elements())
+        is_spatial = is_spatial || facts_of(element.shape).dimension == 3;
+    }
+    if (is_spatial) picture_.view = PictureView::isometric();
+  }
+
+  MeshPicture make() {
+    places_.resize(model_.bodies.size());
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+      if (model_.bodies[b].parameters == nullptr) continue;
+      place_nodes(b);
+      add_body(b);
+      add_supports(b);
+    }
+    add_contacts();
+    add_drives();
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b) add_points(b);
+    const bool knows_places = std::any_of(
+        picture_.parts.begin(), picture_.parts.end(),
+        [](const PicturePart& part) { return part.nodes.rows() > 0; });
+    if (!knows_places && picture_.labels.empty()) add_unknown();
+    return std::move(picture_);
+  }
+
+ private:
+  void find_seats() {
+    seats_.resize(model_.bodies.size());
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+      const auto& faces = model_.bodies[b].matrices.faces;
+      if (faces.empty()) continue;
+      has_faces_ = true;
+      const double outer = faces.begin()->second.outer_radius;
+      seats_[b] = Seat{outer, outer, 0.0};
+    }
+    for (const ContactPoint& contact : model_.system.contacts) {
+      if (!contact.face) continue;
+      const FacePlace& face = *contact.face;
+      const Seat& master = *seats_[static_cast<std::size_t>(face.body)];
+      seats_[static_cast<std::size_t>(contact.slave_body)] =
+          Seat{master.outer_radius, face.radius, face.angle - face.turned};
+    }
+  }
+
+  /// Of the frame of a body.
+  Eigen::Vector3d global(std::size_t b, const Eigen::Vector3d& in_body) const {
+    const ModelBody& body = model_.bodies[b];
+    Eigen::Vector3d place = in_body;
+    place.head(body.place.size()) += body.place;
+    if (body.is_mirrored) place.y() *= -1.0;
+    return seats_[b] ? rolled(*seats_[b], place) : place;
+  }
+
+  void place_nodes(std::size_t b) {
+    Eigen::MatrixX3d& places = places_[b];
+    places = node_places(model_.bodies[b].matrices);
+    for (Eigen::Index i = 0; i < places.rows(); ++i)
+      places.row(i) = global(b, places.row(i).transpose()).transpose();
+  }
+  Eigen::Vector3d place(std::size_t b, int node) const { return places_[b].row(node).transpose(); }
+
+  void add_body(std::size_t b) {
+    const ModelBody& body = model_.bodies[b];
+    PicturePart part;
+    part.name = body.name;
+    part.colour = part_colour(b);
+    part.nodes = places_[b];
+    const std::vector<DrawnElement> elements = body.parameters->elements();
+    part.faces = face_loops(elements);
+    part.is_closed =
+        !elements.empty() && facts_of(elements.front().shape).dimension == 3;
+    if (body.is_mirrored && part.is_closed)
+      for (std::vector<int>& face : part.faces) std::reverse(face.begin(), face.end());
+    if (!part.is_closed) {
+      part.lines = body.matrices.outlines;
+      if (body.matrices.faces.empty())
+        for (const auto& [name, nodes] : body.matrices.surfaces) part.lines.push_back(nodes);
+    }
+    if (elements.empty() && part.lines.empty()) add_joined(b, part);
+    for (const auto& [name, face] : body.matrices.faces) add_face(face, part);
+    if (part.nodes.rows() == 0) part.name += " (has no places)";
+    picture_.parts.push_back(std::move(part));
+  }
+
+  /// An annulus at the height of a face.
+  static void add_face(const BodyFace& face, PicturePart& part) {
+    constexpr int sectors = 72;
+    constexpr int rings = 3;
+    const auto first = static_cast<int>(part.nodes.rows());
+    part.nodes.conservativeResize(first + sectors * (rings + 1), Eigen::NoChange);
+    const auto node = [&](int ring, int sector) {
+      return first + ring * sectors + (sector + sectors) % sectors;
+    };
+    for (int ring = 0; ring <= rings; ++ring) {
+      for (int sector = 0; sector < sectors; ++sector) {
+        const double angle = 2.0 * std::numbers::pi * sector / sectors;
+        const double radius =
+            face.inner_radius + (face.outer_radius - face.inner_radius) * ring / rings;
+        part.nodes.row(node(ring, sector)) << radius * std::cos(angle), radius * std::sin(angle),
+            face.side * face.half_thickness;
+      }
+    }
+    for (int ring = 0; ring < rings; ++ring)
+      for (int sector = 0; sector < sectors; ++sector)
+        part.faces.push_back({node(ring, sector), node(ring + 1, sector),
+                              node(ring + 1, sector + 1), node(ring, sector + 1)});
+  }
+
+  /// Nodes, and lines between those that the stiffness joins.
+  void add_joined(std::size_t b, PicturePart& part) {
+    constexpr Eigen::Index most = 400;
+    const BodyMatrices& matrices = model_.bodies[b].matrices;
+    for (Eigen::Index i = 0; i < places_[b].rows() && i < most; ++i)
+      picture_.places.push_back({place(b, static_cast<int>(i)), PictureMark::mass});
+    if (places_[b].rows() > most || matrices.is_modal) return;
+    const std::vector<int> nodes = nodes_of_dofs(matrices);
+    std::set<std::pair<int, int>> joined;
+    for (int column = 0; column < matrices.stiffness.outerSize(); ++column) {
+      for (SparseMatrix::InnerIterator entry(matrices.stiffness, column); entry; ++entry) {
+        const int from = nodes[static_cast<std::size_t>(entry.row())];
+        const int to = nodes[static_cast<std::size_t>(column)];
+        if (from < to && from >= 0 && entry.value() != 0.0) joined.emplace(from, to);
+      }
+    }
+    for (const auto& [from, to] : joined) part.lines.push_back({from, to});
+  }
+
+  /// The first node that each DoF moves; −1 of those that move none.
+  static std::vector<int> nodes_of_dofs(const BodyMatrices& matrices) {
+    std::vector<int> nodes(static_cast<std::size_t>(matrices.num_dofs()), -1);
+    for (int node = 0; node < matrices.nodes.rows(); ++node) {
+      if (matrices.dependent.contains(node)) continue;
+      for (const std::size_t direction : {0, 1, 2}) {
+        for (const DofWeight& dof : matrices.displacement(node, direction)) {
+          int& of_dof = nodes[static_cast<std::size_t>(dof.dof)];
+          if (of_dof < 0) of_dof = node;
+        }
+      }
+    }
+    return nodes;
+  }
+
+  /// A node is held in directions in which others of its body move.
+  void add_supports(std::size_t b) {
+    const BodyMatrices& matrices = model_.bodies[b].matrices;
+    if (matrices.is_modal) return;
+    constexpr std::array<std::size_t, 3> directions{0, 1, 2};
+    std::array<bool, 3> moves_any{};
+    std::vector<PicturePlace> marked;
+    for (int node = 0; node < matrices.nodes.rows(); ++node) {
+      for (const std::size_t d : directions) moves_any[d] = moves_any[d] || matrices.moves(node, d);
+    }
+    for (int node = 0; node < matrices.nodes.rows(); ++node) {
+      if (matrices.dependent.contains(node)) continue;
+      int held = 0;
+      int free = 0;
+      bool is_guided = false;
+      for (const std::size_t d : directions) {
+        if (!moves_any[d]) continue;
+        const DofSum sum = matrices.displacement(node, d);
+        ++(sum.empty() ? held : free);
+        is_guided = is_guided || (matrices.follows_drive() && sum.size() == 1 &&
+                                  sum.front().dof == matrices.load_dof);
+      }
+      if (is_guided) {
+        guided_[b].push_back(node);
+        marked.push_back({place(b, node), PictureMark::guided});
+      } else if (held > 0) {
+        marked.push_back(
+            {place(b, node), free == 0 ? PictureMark::held : PictureMark::held_partly});
+      }
+    }
+    // Of many some.
+    constexpr std::size_t most = 300;
+    for (std::size_t i = 0; i < marked.size(); i += 1 + marked.size() / most)
+      picture_.places.push_back(marked[i]);
+  }
+
+  void add_contacts() {
+    for (const MasterSurface& surface : model_.system.surfaces) add_master(surface);
+    for (const ContactPair& pair : model_.pairs) {
+      const auto slave = static_cast<std::size_t>(pair.slave_body);
+      for (const int node : pair.slave_nodes)
+        picture_.places.push_back({place(slave, node), PictureMark::contact});
+      if (pair.slave_nodes.empty()) continue;
+      const Eigen::Vector3d at = place(slave, pair.slave_nodes.front());
+      picture_.labels.push_back({at, "", fmt::format("{} on {}", pair.name, pair.master_name), 2});
+      for (const ContactPoint& contact : model_.system.contacts) {
+        if (contact.name != pair.point_name(0)) continue;
+        if (const std::optional<Eigen::Vector3d> normal = normal_of(contact))
+          picture_.arrows.push_back({at, *normal, PictureArrow::Kind::normal});
+      }
+    }
+  }
+
+  std::optional<Eigen::Vector3d> normal_of(const ContactPoint& contact) const {
+    if (contact.face)
+      return Eigen::Vector3d(contact.face->side * Eigen::Vector3d::UnitZ());
+    if (contact.surface < 0) return std::nullopt;
+    const Eigen::Vector2d slave = contact.slave_position.head(2);
+    return in_space(
+        model_.system.surface_of(contact).project_undeformed(contact.first_segment, slave).normal);
+  }
+
+  void add_master(const MasterSurface& surface) {
+    PicturePart part;
+    part.colour = 0xe07b00;
+    std::vector<Eigen::Vector3d> line;
+    for (const auto& position : surface.positions) line.push_back(in_space(position));
+    if (surface.is_endless) {
+      // As far as the bodies reach.
+      double low = 0.0;
+      double high = 0.0;
+      for (const Eigen::MatrixX3d& places : places_) {
+        if (places.rows() == 0) continue;
+        low = std::min(low, places.col(0).minCoeff());
+        high = std::max(high, places.col(0).maxCoeff());
+      }
+      const double margin = high > low ? 0.15 * (high - low) : 0.5 * picture_.metres_per_unit;
+      line = {Eigen::Vector3d(low - margin, 0.0, 0.0), Eigen::Vector3d(high + margin, 0.0, 0.0)};
+      part.name = surface.name + " (no end)";
+    }
+    part.nodes.resize(static_cast<Eigen::Index>(line.size()), 3);
+    std::vector<int>& nodes = part.lines.emplace_back();
+    for (std::size_t k = 0; k < line.size(); ++k) {
+      part.nodes.row(static_cast<Eigen::Index>(k)) = line[k].transpose();
+      nodes.push_back(static_cast<int>(k));
+    }
+    if (part.name.empty() && !names_masters_) part.name = "master";
+    names_masters_ = names_masters_ || part.name == "master";
+    picture_.parts.push_back(std::move(part));
+  }
+
+  /// Mean place of nodes.
+  Eigen::Vector3d middle(std::size_t b, const std::vector<int>& nodes) const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const int node : nodes) sum += place(b, node);
+    return sum / static_cast<double>(nodes.size());
+  }
+
+  static double at_the_end(const TimeCurve& curve) {
+    return curve.value(curve.constant_from());
+  }
+
+  void add_drives() {
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+      const ModelBody& body = model_.bodies[b];
+      if (body.drive >= 0) {
+        const Drive& drive = model_.system.drives[static_cast<std::size_t>(body.drive)];
+        const double sign = at_the_end(drive.velocity) < 0.0 ? -1.0 : 1.0;
+        const auto guided = guided_.find(b);
+        const Eigen::Vector3d at = guided != guided_.end() ? middle(b, guided->second)
+                                                           : Eigen::Vector3d(Eigen::Vector3d::Zero());
+        if (!drive.velocity.is_zero() || guided != guided_.end())
+          picture_.arrows.push_back({at, sign * Eigen::Vector3d::UnitX(), PictureArrow::Kind::motion});
+      }
+      for (const BodyLoad& load : model_.loads[b]) add_load(b, load);
+    }
+    add_spins();
+  }
+
+  void add_spins() {
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+      for (const auto& [name, face] : model_.bodies[b].matrices.faces) {
+        if (face.side < 0) continue;
+        const Eigen::Vector3d at(0.0, -face.outer_radius, 0.0);
+        picture_.arrows.push_back({at, Eigen::Vector3d::UnitX(), PictureArrow::Kind::motion});
+      }
+    }
+  }
+
+  /// A load acts at the mean place of the nodes that it moves, along the mean of their directions.
+  void add_load(std::size_t b, const BodyLoad& load) {
+    const BodyMatrices& matrices = model_.bodies[b].matrices;
+    const DofSum& sum = model_.bodies[b].rows[static_cast<std::size_t>(load.row)];
+    std::map<int, double> weights;
+    for (const DofWeight& dof : sum) weights[dof.dof] += dof.weight;
+    Eigen::Vector3d at = Eigen::Vector3d::Zero();
+    Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+    double total = 0.0;
+    for (int node = 0; node < matrices.nodes.rows(); ++node) {
+      if (matrices.dependent.contains(node)) continue;
+      for (const std::size_t d : {0, 1, 2}) {
+        for (const DofWeight& dof : matrices.displacement(node, d)) {
+          const auto found = weights.find(dof.dof);
+          if (found == weights.end()) continue;
+          const double weight = found->second * dof.weight;
+          total += std::abs(weight);
+          at += std::abs(weight) * place(b, node);
+          direction += weight * Eigen::Vector3d::Unit(static_cast<Eigen::Index>(d));
+        }
+      }
+    }
+    if (!(total > 0.0)) return;
+    const Drive& drive = model_.system.drives[static_cast<std::size_t>(load.drive)];
+    const bool is_force = load.by == BodyLoad::By::force;
+    if (at_the_end(is_force ? drive.load : drive.shift) < 0.0) direction *= -1.0;
+    if (model_.bodies[b].is_mirrored) direction.y() *= -1.0;
+    if (seats_[b]) direction = Eigen::Vector3d(0.0, 0.0, direction.y());
+    picture_.arrows.push_back({at / total, direction,
+                               is_force ? PictureArrow::Kind::load : PictureArrow::Kind::motion});
+  }
+
+  void add_points(std::size_t b) {
+    const ModelBody& body = model_.bodies[b];
+    if (body.parameters == nullptr) return;
+    for (const auto& [name, node] : body.matrices.points) {
+      const bool is_recorded = recorded_.contains(body.name + "." + name);
+      picture_.places.push_back({place(b, node), PictureMark::point});
+      picture_.labels.push_back({place(b, node), body.name,
+                                 is_recorded ? name + " (recorded)" : name, is_recorded ? 1 : 0});
+    }
+  }
+
+  /// Bodies without places alone.
+  void add_unknown() {
+    picture_.labels.push_back({Eigen::Vector3d::Zero(), "", "no places are known", 0});
+  }
+
+  const PlacedModel& model_;
+  std::set<std::string> recorded_;
+  std::vector<std::optional<Seat>> seats_;
+  bool has_faces_ = false;
+  bool names_masters_ = false;
+  std::vector<Eigen::MatrixX3d> places_;  ///< of the nodes of all bodies
+  std::map<std::size_t, std::vector<int>> guided_;
+  MeshPicture picture_;
+};
+
+}  // namespace
+
+MeshPicture make_scene_picture(const PlacedModel& model, const std::vector<std::string>& recorded,
+                               const LengthUnit& unit, const std::string& caption) {
+  MeshPicture picture = ScenePicture(model, recorded, unit).make();
+  picture.caption = caption;
+  return picture;
+}
+
+}  // namespace stridor

@@ -1,0 +1,186 @@
+#include "io/imports/uff_lines.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+namespace stridor {
+namespace {
+
+constexpr std::string_view uff_blanks = " \t\r\v\f";
+
+std::vector<std::string_view> uff_words(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (std::size_t at = 0; (at = text.find_first_not_of(uff_blanks, at)) != std::string_view::npos;) {
+    const std::size_t end = std::min(text.find_first_of(uff_blanks, at), text.size());
+    words.push_back(text.substr(at, end - at));
+    at = end;
+  }
+  return words;
+}
+
+/// Lines of a file one after the other; ends are \n, \r\n or \r.
+class Lines {
+ public:
+  explicit Lines(const SourceText& source) : source_(source) {}
+
+  bool is_at_end() const { return at_ >= source_.text.size(); }
+  std::size_t offset() const { return at_; }
+  void go_to(std::size_t offset) { at_ = std::min(offset, source_.text.size()); }
+  UffLine next() {
+    const std::string_view text = source_.text;
+    const std::size_t end = std::min(text.find_first_of("\r\n", at_), text.size());
+    const UffLine line{text.substr(at_, end - at_), {&source_, at_}};
+    at_ = end + 1;
+    if (end + 1 < text.size() && text[end] == '\r' && text[end + 1] == '\n') ++at_;
+    return line;
+  }
+
+ private:
+  const SourceText& source_;
+  std::size_t at_ = 0;
+};
+
+bool is_delimiter(const UffLine& line) {
+  return trimmed(line.text) == "-1";
+}
+
+/// Passes over the data of a dataset 58b: its head says how many lines of text and bytes follow.
+void skip_binary(const SourceText& source, const UffLine& head, Lines& lines) {
+  const std::vector<std::string_view> words = uff_words(head.text);
+  const auto count = [&](std::size_t word) -> std::optional<std::int64_t> {
+    return word < words.size() ? integer_in(words[word]) : std::nullopt;
+  };
+  const auto num_lines = count(3);
+  const auto num_bytes = count(4);
+  const auto size = static_cast<std::int64_t>(source.text.size());
+  if (!num_lines || !num_bytes || *num_lines < 0 || *num_bytes < 0 || *num_lines > size) {
+    refuse_at(head.place, fmt::format("expected the head of binary data: 58b, byte order, format, number "
+                                      "of lines, number of bytes; got '{}'",
+                                      shown(head.text)));
+  }
+  for (std::int64_t i = 0; i < *num_lines && !lines.is_at_end(); ++i) (void)lines.next();
+  if (*num_bytes > size - static_cast<std::int64_t>(std::min(lines.offset(), source.text.size()))) {
+    refuse_at(head.place,
+              fmt::format("{} bytes of data are announced, the file ends before", *num_bytes));
+  }
+  lines.go_to(lines.offset() + static_cast<std::size_t>(*num_bytes));
+}
+
+}  // namespace
+
+std::vector<UffDataset> uff_datasets(const SourceText& source) {
+  std::vector<UffDataset> datasets;
+  Lines lines(source);
+  while (!lines.is_at_end()) {
+    UffLine line = lines.next();
+    if (trimmed(line.text).empty()) continue;
+    if (!is_delimiter(line)) {
+      refuse_at(line.place, fmt::format("expected -1, which begins a dataset of a universal file, got '{}'",
+                                        shown(line.text)));
+    }
+    if (lines.is_at_end()) break;
+    const UffLine head = lines.next();
+    const std::vector<std::string_view> words = uff_words(head.text);
+    // A delimiter that closes nothing is passed over.
+    if (words.empty() || is_delimiter(head)) continue;
+    std::string_view type = words.front();
+    const bool is_binary = type.ends_with('b') || type.ends_with('B');
+    if (is_binary) type.remove_suffix(1);
+    const std::optional<std::int64_t> number = integer_in(type);
+    if (!number || *number < 0 || *number > 1000000) {
+      refuse_at(head.place,
+                fmt::format("expected the number of a dataset, got '{}'", shown(head.text)));
+    }
+    UffDataset& dataset = datasets.emplace_back();
+    dataset.type = is_binary ? -1 : static_cast<int>(*number);
+    dataset.place = head.place;
+    if (is_binary) skip_binary(source, head, lines);
+    while (!lines.is_at_end()) {
+      const UffLine next = lines.next();
+      if (is_delimiter(next)) break;
+      if (!is_binary) dataset.lines.push_back(next);
+    }
+  }
+  return datasets;
+}
+
+const UffLine& UffReader::line(const char* expected) {
+  if (is_at_end()) {
+    const TextPlace end =
+        dataset_.lines.empty() ? dataset_.place : dataset_.lines.back().place;
+    refuse_at(end, fmt::format("the dataset {} ends here; expected {}", dataset_.type, expected));
+  }
+  return dataset_.lines[next_++];
+}
+
+void UffReader::skip(std::size_t count, const char* expected) {
+  for (std::size_t i = 0; i < count; ++i) (void)line(expected);
+}
+
+std::vector<std::int64_t> UffReader::integers(std::size_t least, const char* expected) {
+  constexpr std::size_t width = 10;
+  constexpr double largest = 9.0e15;
+  const UffLine& from = line(expected);
+  std::vector<std::int64_t> integers;
+  for (const double number : uff_numbers(from, width, expected)) {
+    const bool is_integer = number >= -largest && number <= largest &&
+                            number == static_cast<double>(static_cast<std::int64_t>(number));
+    if (!is_integer)
+      refuse_at(from.place, fmt::format("expected {}, got '{}'", expected, shown(from.text)));
+    integers.push_back(static_cast<std::int64_t>(number));
+  }
+  if (integers.size() < least) {
+    refuse_at(from.place, fmt::format("expected {}: {} integers, got {}", expected, least,
+                                      integers.size()));
+  }
+  return integers;
+}
+
+std::vector<double> UffReader::reals(std::size_t count, std::size_t width, const char* expected) {
+  std::vector<double> numbers;
+  while (numbers.size() < count) {
+    const UffLine& from = line(expected);
+    const std::vector<double> more = uff_numbers(from, width, expected);
+    if (more.empty())
+      refuse_at(from.place, fmt::format("expected {}, got an empty line", expected));
+    numbers.insert(numbers.end(), more.begin(), more.end());
+    if (numbers.size() > count) {
+      refuse_at(from.place, fmt::format("expected {}: {} numbers, got {}", expected, count,
+                                        numbers.size()));
+    }
+  }
+  return numbers;
+}
+
+std::optional<std::vector<double>> uff_numbers_in(std::string_view text, std::size_t width) {
+  std::vector<double> numbers;
+  for (const std::string_view word : uff_words(text)) {
+    const std::optional<double> number = real_in(word);
+    if (!number) {
+      numbers.clear();
+      break;
+    }
+    numbers.push_back(*number);
+  }
+  if (!numbers.empty() || trimmed(text).empty()) return numbers;
+  for (std::size_t at = 0; at < text.size(); at += width) {
+    const std::string_view column = trimmed(text.substr(at, width));
+    if (column.empty()) continue;
+    const std::optional<double> number = real_in(column);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+std::vector<double> uff_numbers(const UffLine& line, std::size_t width, const char* expected) {
+  const auto numbers = uff_numbers_in(line.text, width);
+  if (!numbers)
+    refuse_at(line.place, fmt::format("expected {}, got '{}'", expected, shown(line.text)));
+  return *numbers;
+}
+
+}  // namespace stridor

@@ -1,0 +1,153 @@
+// Bodies given by modes in sliding scenes, as a user runs them.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+
+#include "tests/support/program.hpp"
+
+namespace stridor::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+/// A plane body of six unknowns, of which 1 and 2 are x and y of its foot and 3 is y of its head.
+struct SmallBody {
+  Eigen::MatrixXd mass, stiffness;
+  double alpha = 3.0, beta = 2e-6;
+
+  SmallBody() {
+    Eigen::VectorXd masses(6);
+    masses << 0.2, 0.2, 0.3, 0.1, 0.15, 0.12;
+    mass = masses.asDiagonal();
+    Eigen::MatrixXd B(6, 6);
+    B << 3, 1, 0, 0, 1, 0, 0, 4, 2, 1, 0, 0, 1, 0, 5, 0, 1, 2, 0, 2, 0, 6, 0, 1, 1, 0, 1, 0, 7, 0, 2,
+        1, 0, 1, 0, 8;
+    stiffness = 1e5 * B.transpose() * B;
+  }
+};
+
+std::string text_of(const Eigen::MatrixXd& matrix) {
+  std::string rows = "[";
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    rows += i == 0 ? "[" : ", [";
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j)
+      rows += fmt::format("{}{:.17g}", j == 0 ? "" : ", ", matrix(i, j));
+    rows += "]";
+  }
+  return rows + "]";
+}
+
+std::string list_of(const Eigen::VectorXd& numbers) {
+  const std::string text = text_of(numbers.transpose());
+  return text.substr(1, text.size() - 2);
+}
+
+/// A body pressed on a belt that moves under it.
+std::string scene_with(const std::string& body) {
+  return "format: 2\nsubstructures:\n  pad:\n" + body +
+         "contact:\n  slave: pad.foot\n  master: rigid\n  start: 0 mm\n"
+         "  friction: {coefficient: 0.4}\n"
+         "drive: {velocity: 0.1, load: -5, ramp: 0, moves: contact.master, load_on: pad.foot}\n";
+}
+
+std::string by_matrices(const SmallBody& body) {
+  return fmt::format("    type: matrices\n    mass: {}\n    stiffness: {}\n    damping: {}\n"
+                     "    points: {{foot: {{at: [0, 0], x: 1, y: 2}}, head: {{at: [0, 0.05], y: 3}}}}\n",
+                     text_of(body.mass), text_of(body.stiffness),
+                     text_of(body.alpha * body.mass + body.beta * body.stiffness));
+}
+
+/// The lowest modes of the body, and perhaps the flexibility of the rest.
+std::string by_modes(const SmallBody& body, Eigen::Index count, bool has_residual) {
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> all(body.stiffness, body.mass);
+  const Eigen::VectorXd omega = all.eigenvalues().cwiseSqrt();
+  const Eigen::MatrixXd shapes = all.eigenvectors();
+  const Eigen::VectorXd ratio = 0.5 * (body.alpha * omega.cwiseInverse() + body.beta * omega);
+  std::string text = fmt::format(
+      "    type: modes\n    frequencies: {}\n    damping_ratios: {}\n    ports:\n"
+      "      foot: {{at: [0, 0], x: {}, y: {}}}\n      head: {{at: [0, 0.05], y: {}}}\n",
+      list_of(omega.head(count) / (2.0 * std::numbers::pi)), list_of(ratio.head(count)),
+      list_of(shapes.row(0).head(count)), list_of(shapes.row(1).head(count)),
+      list_of(shapes.row(2).head(count)));
+  if (!has_residual) return text;
+  const Eigen::MatrixXd ports = shapes.topRows(2).rightCols(6 - count);
+  const Eigen::MatrixXd F = ports * omega.tail(6 - count).array().square().inverse().matrix().asDiagonal() *
+                            ports.transpose();
+  return text + "    residual: {on: [foot.x, foot.y], flexibility: " + text_of(F) + "}\n";
+}
+
+std::vector<std::complex<double>> eigenvalues_of(const fs::path& folder, const std::string& scene) {
+  const fs::path file = folder / "scene.yaml";
+  write_file(file, scene);
+  const ProgramResult result = Program({"eig", file.string(), "--json", "--count", "3"}).run();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  std::vector<std::complex<double>> values;
+  if (result.exit_code != 0) return values;
+  const auto object = nlohmann::json::parse(result.out);
+  for (const auto& one : object["eigenvalues"]) {
+    values.emplace_back(one["growth"].get<double>(),
+                        2.0 * std::numbers::pi * one["frequency"].get<double>());
+  }
+  return values;
+}
+
+TEST(ModesProgram, AllModesAreTheBodyAndResidualFlexibilityClosesTheGapOfFewer) {
+  const TemporaryFolder folder;
+  const SmallBody body;
+  const auto full = eigenvalues_of(folder.path(), scene_with(by_matrices(body)));
+  const auto whole = eigenvalues_of(folder.path(), scene_with(by_modes(body, 6, false)));
+  ASSERT_GE(full.size(), 2u);
+  ASSERT_EQ(whole.size(), full.size());
+  const double scale = std::abs(full[0]);
+  for (std::size_t i = 0; i < full.size(); ++i)
+    EXPECT_LT(std::abs(whole[i] - full[i]), 1e-8 * std::abs(full[i])) << i;
+  const auto three = eigenvalues_of(folder.path(), scene_with(by_modes(body, 4, false)));
+  const auto residual = eigenvalues_of(folder.path(), scene_with(by_modes(body, 4, true)));
+  const double gap = std::abs(three.at(0) - full[0]);
+  const double closed = std::abs(residual.at(0) - full[0]);
+  EXPECT_GT(gap, 1e-3 * scale);
+  EXPECT_LT(closed, 0.2 * gap);
+}
+
+/// The commands of the page, one after the other.
+TEST(ModesProgram, ThePageRunsFromTheFirstLineToTheLast) {
+  const TemporaryFolder folder;
+  const fs::path root(STRIDOR_SOURCE_DIR);
+  std::istringstream page(contents_of(root / "docs/from_modal_test.md"));
+  std::string line;
+  bool is_shell = false;
+  int number = 0;
+  while (std::getline(page, line)) {
+    if (line.starts_with("```")) {
+      is_shell = line == "```sh";
+      continue;
+    }
+    if (!is_shell || !line.starts_with("build/release/stridor ")) continue;
+    std::istringstream words(line);
+    std::vector<std::string> arguments;
+    std::string word;
+    words >> word;
+    while (words >> word) {
+      if (word.starts_with("scenes/")) word = (root / word).string();
+      if (word.find('.') != std::string::npos && !word.starts_with("-") && arguments.back() == "-o")
+        word = (folder / word).string();
+      if (fs::exists(folder / word)) word = (folder / word).string();
+      arguments.push_back(word);
+    }
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 0) << line << '\n' << result.err;
+    ++number;
+  }
+  EXPECT_GE(number, 5);
+}
+
+}  // namespace
+}  // namespace stridor::test

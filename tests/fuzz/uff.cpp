@@ -1,0 +1,22 @@
+// Any text as a universal file: it is read or refused with a place.
+#include <cstdint>
+#include <string>
+
+#include "core/errors.hpp"
+#include "io/imports/uff_file.hpp"
+#include "tests/fuzz/mesh_checks.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using stridor::fuzz::expect_that;
+  const stridor::SourceText source{"fuzz.uff",
+                                   std::string(reinterpret_cast<const char*>(data), size)};
+  try {
+    const stridor::ModalTest test = stridor::read_uff(source);
+    expect_that(!test.modes.empty());
+    for (const stridor::TestMode& mode : test.modes)
+      expect_that(!mode.shape.empty() && mode.frequency >= 0.0);
+  } catch (const stridor::ConfigError& error) {
+    stridor::fuzz::expect_placed(error, "fuzz.uff");
+  }
+  return 0;
+}

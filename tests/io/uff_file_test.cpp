@@ -1,0 +1,139 @@
+#include "io/imports/uff_file.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "core/errors.hpp"
+#include "tests/support/message_of.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+std::string dataset(const std::string& body) {
+  return "    -1\n" + body + "    -1\n";
+}
+
+/// Millimetres, mN: a mass in kg.
+const std::string units = dataset(
+    "   164\n         5mm (milli-newton)         2\n"
+    "    1.0000000000000000D+03    1.0000000000000000D+03    1.0000000000000000D+00\n"
+    "    2.7314999999999998D+02\n");
+const std::string nodes = dataset(
+    "  2411\n         1         0         0        11\n"
+    "    0.0000000000000000D+00    1.0000000000000000D+01   -1.0000000000000000D+00\n"
+    "         7         0         0        11\n"
+    "    2.5000000000000000D+01    0.0000000000000000D+00    0.0000000000000000D+00\n");
+
+/// A real normal mode of 812.5 Hz, mass 2 kg, damping 0.4 %.
+std::string real_mode(const std::string& values = "  1.00000E+00 -2.50000E-01  0.00000E+00\n") {
+  return dataset("    55\nmode\nNONE\nNONE\nNONE\nNONE\n"
+                 "         1         2         2         8         2         3\n"
+                 "         2         4         0         3\n"
+                 "  8.12500E+02  2.00000E+00  4.00000E-03  0.00000E+00\n"
+                 "         7\n" +
+                 values);
+}
+
+ModalTest read(const std::string& text) { return read_uff({"a.uff", text}); }
+
+TEST(Uff, NodesUnitsAndNormalModes) {
+  const ModalTest test = read(dataset("   151\nanything\n") + units + nodes + real_mode());
+  EXPECT_THAT(test.nodes, SizeIs(2));
+  EXPECT_NEAR((test.nodes.at(7) - Eigen::Vector3d(0.025, 0.0, 0.0)).norm(), 0.0, 1e-15);
+  ASSERT_THAT(test.modes, SizeIs(1));
+  const TestMode& mode = test.modes[0];
+  EXPECT_EQ(mode.number, 3);
+  EXPECT_DOUBLE_EQ(mode.frequency, 812.5);
+  EXPECT_DOUBLE_EQ(mode.damping_ratio, 0.004);
+  EXPECT_DOUBLE_EQ(mode.modal_mass, 2.0);
+  EXPECT_EQ(mode.shape.at(7)[1], -0.25);
+  EXPECT_EQ(mode.source, "a.uff:20");
+  EXPECT_TRUE(test.remarks.empty());
+  // Without units they are SI, and said to be.
+  const ModalTest plain = read(nodes + real_mode());
+  EXPECT_DOUBLE_EQ(plain.nodes.at(7).x(), 25.0);
+  EXPECT_THAT(plain.remarks, ElementsAre(HasSubstr("has no units")));
+}
+
+TEST(Uff, ComplexModesHaveTheirScaleFromModalA) {
+  // s = ω(−ζ ± i√(1−ζ²)) with a = 2 i ω_d m for a shape that is real, turned by 30°.
+  const double omega = 2.0 * std::numbers::pi * 500.0;
+  const double damped = omega * std::sqrt(1.0 - 0.02 * 0.02);
+  const std::complex<double> turn = std::polar(1.0, std::numbers::pi / 6.0);
+  const std::complex<double> a = std::complex<double>(0.0, 2.0 * damped * 1.5) * turn * turn;
+  for (const int analysis : {3, 7}) {
+    const std::string text = dataset(fmt::format(
+        "    55\nmode\nNONE\nNONE\nNONE\nNONE\n{:10}{:10}{:10}{:10}{:10}{:10}\n{:10}{:10}{:10}{:10}\n"
+        "{:13.5E}{:13.5E}{:13.5E}{:13.5E}{:13.5E}{:13.5E}\n{:10}\n"
+        "{:13.5E}{:13.5E}{:13.5E}{:13.5E}{:13.5E}{:13.5E}\n",
+        1, analysis, 2, 8, 5, 3, 2, 6, 0, 1, -0.02 * omega, damped, a.real(), a.imag(), 0.0, 0.0, 4,
+        turn.real(), turn.imag(), 0.0, 0.0, -turn.real(), -turn.imag()));
+    const TestMode mode = read(text).modes.at(0);
+    EXPECT_TRUE(mode.is_complex);
+    // Six digits are written.
+    EXPECT_NEAR(mode.frequency, 500.0, 5e-3);
+    EXPECT_NEAR(mode.damping_ratio, 0.02, 1e-6);
+    EXPECT_NEAR(mode.modal_mass, 1.5, 1e-4);
+    EXPECT_NEAR(std::abs(mode.shape.at(4)[2] + turn), 0.0, 1e-5);
+  }
+}
+
+TEST(Uff, DefectsOfRealFilesAreTolerated) {
+  const std::string text = units + nodes + real_mode();
+  std::string crlf;
+  for (const char c : text) crlf += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  EXPECT_THAT(read(crlf).modes, SizeIs(1));
+  // The last dataset is not closed; a delimiter stands twice; texts are not ASCII.
+  EXPECT_THAT(read(text.substr(0, text.size() - 7)).modes, SizeIs(1));
+  EXPECT_THAT(read("    -1\n    -1\n" + text).modes, SizeIs(1));
+  EXPECT_THAT(read(dataset("   151\n\xb5m/s\xb2\n") + text).modes, SizeIs(1));
+  // Numbers run together in their columns.
+  const ModalTest joined = read(units + nodes + real_mode(" -1.00000E+00-2.50000E-01-1.00000E+00\n"));
+  EXPECT_EQ(joined.modes[0].shape.at(7)[2], -1.0);
+  // −1 in a coordinate or as a label is no delimiter.
+  const ModalTest minus =
+      read(dataset("    15\n        -1         0         0        11 -1.00000E+00 -1.00000E+00 -1.00000E+00\n") +
+           real_mode());
+  EXPECT_EQ(minus.nodes.at(-1).x(), -1.0);
+  // Binary data are passed over, and may hold a delimiter; -1 need not stand in a line of its own.
+  const std::string binary = "    -1\n    58b     1     2           2          12           0           0"
+                             "           0           0\none\ntwo\nab\n    -1\ncd" "    -1\n";
+  EXPECT_THAT(read(binary + text).modes, SizeIs(1));
+}
+
+TEST(Uff, WrongFilesAreAnsweredWithPlaceAndWhatWasExpected) {
+  const auto message = [](const std::string& text) {
+    return message_of<ConfigError>([&] { read(text); });
+  };
+  EXPECT_THAT(message("hello\n"), AllOf(HasSubstr("a.uff:1:1"), HasSubstr("expected -1"), HasSubstr("hello")));
+  EXPECT_THAT(message("    -1\nabc\n    -1\n"), HasSubstr("a.uff:2:1: expected the number of a dataset"));
+  EXPECT_THAT(message(nodes), HasSubstr("expected mode shapes (dataset 55"));
+  EXPECT_THAT(message(real_mode("  1.0 two 3.0\n")),
+              AllOf(HasSubstr("a.uff:11:1"), HasSubstr("expected the values at a node")));
+  EXPECT_THAT(message(real_mode("  1.0 2.0\n")), HasSubstr("ends here; expected the values at a node"));
+  EXPECT_THAT(message(real_mode("  1.0 2.0 3.0 4.0\n")), HasSubstr("3 numbers, got 4"));
+  EXPECT_THAT(message(real_mode("")), HasSubstr("expected the values at a node"));
+  EXPECT_THAT(message(dataset("   164\n 1 SI 2\n 0.0 1.0 1.0\n") + real_mode()),
+              HasSubstr("positive factors of length and force"));
+  EXPECT_THAT(message(nodes + dataset("  2411\n 7 0 0 11\n 1.0 2.0 3.0\n") + real_mode()),
+              HasSubstr("node 7 is given a second time, elsewhere"));
+  std::string scalar = real_mode();
+  scalar.replace(scalar.find("2         8"), 11, "1         8");
+  EXPECT_THAT(message(scalar), HasSubstr("expected three translations at each node"));
+  EXPECT_THAT(message("    -1\n    58b     1     2           2         999\none\ntwo\n"),
+              HasSubstr("999 bytes of data are announced"));
+  EXPECT_THAT(message_of<FileError>([] { read_uff_file("/nowhere/a.uff"); }),
+              HasSubstr("expected a universal file"));
+}
+
+}  // namespace
+}  // namespace stridor
