@@ -118,9 +118,13 @@ GrowthMap make_growth_map(const std::function<std::unique_ptr<GrowthField>()>& m
   crossings.along_x.resize(y.size());
   crossings.along_y.resize(x.size());
   const std::size_t num_lines = x.size() + y.size();
-  const auto trace = [&](std::size_t line, std::size_t) {
-    // Anew for every line, or its start would depend on the lines of this thread.
-    const std::unique_ptr<GrowthField> field = make_field();
+  std::vector<std::unique_ptr<GrowthField>> fields(
+      static_cast<std::size_t>(std::max(num_threads, 1)));
+  const auto trace = [&](std::size_t line, std::size_t thread) {
+    std::unique_ptr<GrowthField>& field = fields[thread];
+    if (!field) field = make_field();
+    // Every line begins from nothing, or its start would depend on the lines of this thread.
+    field->restart();
     if (line < y.size()) {
       const double at = y[line];
       for (const double value : x) map.growth[line].push_back(field->leading(value, at).real());

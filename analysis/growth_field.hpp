@@ -26,6 +26,8 @@ std::vector<double> sign_changes(const StabilityMargin& margin, const std::vecto
 class GrowthField {
  public:
   virtual ~GrowthField() = default;
+  /// Forgets what earlier calls have found.
+  virtual void restart() = 0;
   /// The eigenvalue with the largest real part, and of two conjugate ones that with Im s >= 0; NaN
   /// where there is no equilibrium.
   /// @param y without meaning where there is one parameter
@@ -40,7 +42,7 @@ struct GrowthMap {
   std::vector<BoundaryLine> boundary;       ///< its points solved for on the lines of the grid
 };
 
-/// @param make_field makes a field for one line of the grid; called by several threads
+/// @param make_field makes the field of a thread; called by several threads
 /// @param x, y       strictly ascending, at least two each
 /// @param report     called with the share that is done, by one thread at a time; may be empty
 /// @throws Interrupted where a stop was requested

@@ -11,7 +11,7 @@
 #include "models/initial_parameters.hpp"
 #include "models/scene_points.hpp"
 #include "substructures/bodies/body_parameters.hpp"
-#include "substructures/bodies/matrix_body.hpp"
+#include "substructures/matrices/sparse_system.hpp"
 
 namespace stridor {
 

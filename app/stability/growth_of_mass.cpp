@@ -8,6 +8,7 @@
 namespace stridor {
 namespace {
 
+constexpr double first_guess = 1e-2;  ///< of ŷ
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 class GrowthOfMass : public GrowthField {
@@ -15,6 +16,7 @@ class GrowthOfMass : public GrowthField {
   GrowthOfMass(std::unique_ptr<OscillatorFamily> family, const KeptTerms& terms)
       : family_(std::move(family)), terms_(terms) {}
 
+  void restart() override { last_ = first_guess; }
   std::complex<double> leading(double x, double y) override {
     if (!solve(x, y)) return {not_a_number, not_a_number};
     return leading_eigenvalue(motion_) / time_;
@@ -45,7 +47,7 @@ class GrowthOfMass : public GrowthField {
   KeptTerms terms_;
   SmallMotion motion_;
   double time_ = 1.0;   ///< unit, s
-  double last_ = 1e-2;  ///< ŷ
+  double last_ = first_guess;  ///< ŷ
 };
 
 }  // namespace

@@ -230,6 +230,35 @@ ValueRange shown_times(const std::vector<Panel>& panels) {
   return range.widened(0.0);
 }
 
+/// The panels below each other, from a height on that is counted from the top, cm.
+std::vector<PanelLayout> stacked(const std::vector<Panel>& panels, const FigureSize& size,
+                                 double height) {
+  const double line = line_height(size.font_size);
+  std::vector<PanelLayout> layouts;
+  for (const Panel& panel : panels) {
+    layouts.push_back(layout_of(panel, size));
+    height += panel.title.empty() && !has_names(panel) ? 0.5 * line : 1.5 * line;
+    layouts.back().top = height;
+    height += panel_height;
+  }
+  return layouts;
+}
+
+/// The lines of a caption at the foot of a picture.
+std::string caption_labels(const std::vector<std::string>& lines, double left,
+                           const FigureSize& size) {
+  std::string labels;
+  const double top = caption_height(lines) - 0.1;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    labels += fmt::format(
+        "set label {} {} at screen {:.6f}, screen {:.6f} left font ',{:g}'\n", 10000 + i,
+        gnuplot_string(lines[i]), left / size.width,
+        (top - (static_cast<double>(i) + 0.5) * line_height(caption_font)) / size.height,
+        caption_font);
+  }
+  return labels;
+}
+
 }  // namespace
 
 std::vector<TimeLabel> place_time_labels(const std::vector<TimeMark>& marks, double from, double to,
@@ -280,18 +309,13 @@ void plot_histories(const std::vector<Panel>& panels, const std::filesystem::pat
   // All lengths in cm, from the top.
   FigureSize size;
   const double line = line_height(size.font_size);
-  double height = 0.3 + (title.empty() ? 0.0 : 1.3 * line);
-  std::vector<PanelLayout> layouts;
+  const std::vector<PanelLayout> layouts =
+      stacked(panels, size, 0.3 + (title.empty() ? 0.0 : 1.3 * line));
   std::size_t widest = 1;
   std::size_t num_lines = 1;
-  for (const Panel& panel : panels) {
-    PanelLayout layout = layout_of(panel, size);
+  for (const PanelLayout& layout : layouts) {
     widest = std::max(widest, layout.tick_width);
     num_lines = std::max(num_lines, layout.labels.size());
-    height += panel.title.empty() && !has_names(panel) ? 0.5 * line : 1.5 * line;
-    layout.top = height;
-    height += panel_height;
-    layouts.push_back(std::move(layout));
   }
   // A character is 0.64 of the font size wide.
   const double left = (0.64 * static_cast<double>(widest) + 1.2) * size.font_size * 2.54 / 72.0 +
@@ -300,7 +324,7 @@ void plot_histories(const std::vector<Panel>& panels, const std::filesystem::pat
   const std::vector<std::string> lines = wrapped(caption, caption_font, size.width - left - 0.3);
   const double axis_height = 3.3 * line;
   const double room_below = caption_height(lines);
-  height += axis_height + room_below;
+  const double height = layouts.back().top + panel_height + (axis_height + room_below);
   size.height = height;
 
   std::string data_blocks;
@@ -319,14 +343,7 @@ void plot_histories(const std::vector<Panel>& panels, const std::filesystem::pat
     const Shading shaded =
         shading(panels[p], time, time_range, right - left, size, static_cast<int>(num_lines) + 2);
     // Drawn once, with the last panel.
-    for (std::size_t i = 0; is_last && i < lines.size(); ++i) {
-      plots += fmt::format(
-          "set label {} {} at screen {:.6f}, screen {:.6f} left font ',{:g}'\n", 10000 + i,
-          gnuplot_string(lines[i]), left / size.width,
-          (room_below - 0.1 - (static_cast<double>(i) + 0.5) * line_height(caption_font)) /
-              height,
-          caption_font);
-    }
+    if (is_last) plots += caption_labels(lines, left, size);
     plots += shaded.begin + "plot " + curves_of(panels[p], layout, time, p, data_blocks) + "\n" +
              shaded.end;
   }

@@ -175,6 +175,57 @@ void plot_against_parameter(FigureScript& script, int column) {
       column, stable_colour, unstable_colour);
 }
 
+/// From the right edge of a plane to the texts of its branches, cm.
+constexpr double leader_length = 0.5;
+
+/// Colours the side of the plane on which motions grow.
+void mark_unstable_side(FigureScript& script, const AxisScale& growth) {
+  script.add(
+      "set object 1 rectangle from {:.9g}, graph 0 to graph 1, graph 1 behind fillcolor '#fbeae6' "
+      "fillstyle solid noborder",
+      as_number(0.0, growth));
+  script.add(
+      "set arrow 1 from {0:.9g}, graph 0 to {0:.9g}, graph 1 nohead back linecolor '{1}' "
+      "linewidth 1.5",
+      as_number(0.0, growth), unstable_colour);
+}
+
+/// Names branches beside a plane whose right edge and foot are given, cm.
+void add_branch_labels(FigureScript& script, const std::vector<BranchLabel>& labels,
+                       const AxisScale& growth, const AxisScale& frequency, double right,
+                       double below) {
+  int arrow = 2;
+  for (const BranchLabel& label : labels) {
+    script.add(
+        "set arrow {} from {:.9g}, {:.9g} to screen {:.6f}, screen {:.6f} nohead back linecolor "
+        "'#a0a0a0' linewidth 0.7",
+        arrow++, as_number(label.growth, growth), as_number(label.frequency, frequency),
+        script.across(right + leader_length), script.up(below + label.height));
+    script.add_text(label.text, right + leader_length + 0.1, below + label.height, "left",
+                    label_font);
+  }
+}
+
+/// Names windows above a panel whose left edge is given, cm.
+void add_window_labels(FigureScript& script, const std::vector<WindowLabel>& labels, double left,
+                       double up) {
+  for (const WindowLabel& label : labels)
+    script.add_text(label.text, left + label.x, up, "left rotate", label_font);
+}
+
+/// The line of no growth across a panel.
+void draw_zero(FigureScript& script, const AxisScale& growth) {
+  script.add(
+      "set arrow 1 from graph 0, first {0:.9g} to graph 1, first {0:.9g} nohead back "
+      "linecolor '#404040' linewidth 1",
+      as_number(0.0, growth));
+}
+
+/// Width to the right of an axis, cm: the number of the last tick mark stands half beyond it.
+double room_beside(std::size_t num_characters, double character) {
+  return std::max(0.8, 0.5 * static_cast<double>(num_characters) * character + 0.1);
+}
+
 }  // namespace
 
 void plot_locus(const LocusPicture& picture, const std::filesystem::path& figure) {
@@ -198,7 +249,6 @@ void plot_locus(const LocusPicture& picture, const std::filesystem::path& figure
       place_branch_labels(picture.windows, frequency_range.upper, plane_height,
                           1.1 * line_height(label_font), unlabelled);
   // Beside the plane, so that they cover nothing of it.
-  constexpr double leader_length = 0.5;
   double label_width = 0.0;
   for (const BranchLabel& label : labels)
     label_width = std::max(label_width, text_width(label.text, label_font) + leader_length + 0.2);
@@ -218,25 +268,8 @@ void plot_locus(const LocusPicture& picture, const std::filesystem::path& figure
   script.set_axis('y', frequency_range, frequency);
   add_colour_bar(script, parameter_range, parameter, bar_left, below, bar_width, plane_height);
   script.add("{}\nunset key", axes_style);
-  script.add(
-      "set object 1 rectangle from {:.9g}, graph 0 to graph 1, graph 1 behind fillcolor '#fbeae6' "
-      "fillstyle solid noborder",
-      as_number(0.0, growth));
-  script.add(
-      "set arrow 1 from {0:.9g}, graph 0 to {0:.9g}, graph 1 nohead back linecolor '{1}' "
-      "linewidth 1.5",
-      as_number(0.0, growth), unstable_colour);
-
-  int arrow = 2;
-  for (const BranchLabel& label : labels) {
-    script.add(
-        "set arrow {} from {:.9g}, {:.9g} to screen {:.6f}, screen {:.6f} nohead back linecolor "
-        "'#a0a0a0' linewidth 0.7",
-        arrow++, as_number(label.growth, growth), as_number(label.frequency, frequency),
-        script.across(right + leader_length), script.up(below + label.height));
-    script.add_text(label.text, right + leader_length + 0.1, below + label.height, "left",
-                    label_font);
-  }
+  mark_unstable_side(script, growth);
+  add_branch_labels(script, labels, growth, frequency, right, below);
 
   const double middle = below + 0.5 * plane_height;
   script.add_text(axis_label("growth rate", "1/s", growth), 0.5 * (left + right),
@@ -265,12 +298,8 @@ void plot_locus_histories(const LocusPicture& picture, const std::filesystem::pa
   const double digits = static_cast<double>(
       std::max(tick_characters(frequency_range, frequency), tick_characters(growth_range, growth)));
   const double left = 1.4 * line + (digits + 1.3) * character;
-  // The last tick mark's number stands half beyond the axis.
   const double right =
-      size.width -
-      std::max(
-          0.8,
-          0.5 * static_cast<double>(tick_characters(parameter_range, parameter)) * character + 0.1);
+      size.width - room_beside(tick_characters(parameter_range, parameter), character);
   const double label_spacing = 0.95 * line_height(label_font);
   const std::vector<WindowLabel> labels = place_window_labels(
       picture.windows, parameter_range.lower, parameter_range.upper, right - left, label_spacing);
@@ -290,20 +319,14 @@ void plot_locus_histories(const LocusPicture& picture, const std::filesystem::pa
   script.add("set multiplot");
   script.add("{}\nunset key", axes_style);
   shade_windows(script, picture.windows, parameter_range, parameter);
-  script.add(
-      "set arrow 1 from graph 0, first {0:.9g} to graph 1, first {0:.9g} nohead back "
-      "linecolor '#404040' linewidth 1",
-      as_number(0.0, growth));
+  draw_zero(script, growth);
   script.set_margins(left, right, upper, upper + panel_height);
   script.set_axis('x', parameter_range, parameter);
   script.add("set xtics format ''");
   script.set_axis('y', growth_range, growth);
   script.add_text(axis_label("growth rate", "1/s", growth), 0.7 * line, upper + 0.5 * panel_height,
                   "center rotate");
-  for (const WindowLabel& label : labels) {
-    script.add_text(label.text, left + label.x, upper + panel_height + 0.15, "left rotate",
-                    label_font);
-  }
+  add_window_labels(script, labels, left, upper + panel_height + 0.15);
   plot_against_parameter(script, 2);
   script.add("unset label\nunset arrow 1");
   script.set_margins(left, right, below, below + panel_height);

@@ -26,10 +26,15 @@ bool is_idle(const std::string& path) {
                      [&](const char* section) { return path.starts_with(section); });
 }
 
+/// Whether a number is the load or the speed of a drive.
+bool is_of_drive(const std::string& path) {
+  const bool is_drive = path.starts_with("drive.") || path.starts_with("drives.");
+  return is_drive && (path.ends_with(".velocity") || path.ends_with(".load"));
+}
+
 /// Whether a number changes laws, load or speed alone.
 bool leaves_body(const std::string& path) {
-  const bool is_drive = path.starts_with("drive.") || path.starts_with("drives.");
-  if (is_drive && (path.ends_with(".velocity") || path.ends_with(".load"))) return true;
+  if (is_of_drive(path)) return true;
   return path.starts_with("contact") && (path.find(".normal.") != std::string::npos ||
                                          path.find(".friction.") != std::string::npos);
 }
@@ -46,6 +51,14 @@ std::pair<const Schema*, void*> entry_of(const Key& key, void* object, const std
     if (is_it) found = {&key.alternatives[alternative].schema(), const_cast<void*>(nested)};
   });
   return found;
+}
+
+/// The drives in the order of System::drives; null for one that is not there.
+std::vector<const DriveParameters*> drives_of(const ModelParameters& model) {
+  if (model.drives.empty()) return {model.drive ? &*model.drive : nullptr};
+  std::vector<const DriveParameters*> all;
+  for (const auto& [name, parameters] : model.drives) all.push_back(&parameters);
+  return all;
 }
 
 /// Calls with the path of every expression of a scene that needs one of these names.
@@ -91,6 +104,7 @@ bool OscillatorFamily::find_mass() {
   base_drive_ = body.drive;
   const int master = model.system.surfaces.front().body;
   master_drive_ = model.system.bodies[static_cast<std::size_t>(master)].drive;
+  drives_ = drives_of(loaded_.scene.model);
   oscillator_ = scaled(*std::move(mass));
   return true;
 }
@@ -170,7 +184,7 @@ bool OscillatorFamily::add_number(const std::string& path, Source source) {
     }
     if (key->kind == KeyKind::real || key->kind == KeyKind::curve) {
       if (begin <= path.size()) return false;
-      changes_.push_back({{key, object}, std::move(source)});
+      changes_.push_back({{key, object}, std::move(source), is_of_drive(path)});
       makes_body_ |= !leaves_body(path);
       return true;
     }
@@ -193,19 +207,23 @@ const ContactParameters& OscillatorFamily::pair() const {
   return model.contact ? *model.contact : model.contacts.begin()->second;
 }
 
+/// Gives the scene the numbers that have changed.
 /// @return whether all values are in the range of their keys
 bool OscillatorFamily::assign(std::span<const double> values) {
   try {
     for (const Parameter& parameter : parameters_) *parameter.number = parameter.source.of(values);
-    for (const Number& number : changes_) {
+    for (Number& number : changes_) {
       const double value = number.source.of(values);
+      if (value == number.last) continue;
       if (!number.target.key->range.contains(value)) return false;
       number.target.key->assign(number.target.object, value);
+      number.last = value;
+      are_laws_stale_ |= !number.is_of_drive;
     }
   } catch (const std::domain_error&) {
     return false;
   }
-  return are_laws_sound();
+  return !are_laws_stale_ || are_laws_sound();
 }
 
 bool OscillatorFamily::are_laws_sound() const {
@@ -231,17 +249,23 @@ void OscillatorFamily::refuse(std::span<const double> values) const {
 }
 
 void OscillatorFamily::renew_laws() {
-  const std::vector<SceneDrive> drives = loaded_.scene.model.scene_drives();
-  const auto speed_of = [&](int drive) {
-    return drive < 0 ? 0.0
-                     : drives[static_cast<std::size_t>(drive)].parameters.velocity.value(0.0);
+  const auto drive_at = [&](int drive) {
+    return drive < 0 ? nullptr : drives_[static_cast<std::size_t>(drive)];
   };
+  const auto speed_of = [&](int drive) {
+    const DriveParameters* const given = drive_at(drive);
+    return given == nullptr ? 0.0 : given->velocity.value(0.0);
+  };
+  const DriveParameters* const loading = drive_at(load_drive_);
+  const double load = loading == nullptr ? 0.0 : loading->load.value(0.0);
   SlidingMass& mass = oscillator_->mass;
-  mass.load = drives[static_cast<std::size_t>(load_drive_)].parameters.load.value(0.0);
+  if (are_laws_stale_ || load != mass.load)
+    mass.contact = make_substrate_contact(pair(), std::abs(load));
+  are_laws_stale_ = false;
+  mass.load = load;
   mass.base_speed = speed_of(base_drive_);
   mass.speed = speed_of(master_drive_) - mass.base_speed;
-  mass.contact = make_substrate_contact(pair(), std::abs(mass.load));
-  oscillator_ = scaled(mass);
+  oscillator_ = scaled(std::move(mass));
 }
 
 const SlidingOscillator* OscillatorFamily::at(std::span<const double> values) {
@@ -250,6 +274,7 @@ const SlidingOscillator* OscillatorFamily::at(std::span<const double> values) {
     renew_laws();
     return oscillator_->mass.speed == 0.0 ? nullptr : &*oscillator_;
   }
+  are_laws_stale_ = false;
   oscillator_ = as_oscillator(build_model(loaded_, cache_).system);
   return oscillator_ ? &*oscillator_ : nullptr;
 }

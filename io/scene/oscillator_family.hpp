@@ -1,6 +1,7 @@
 // A scene that is one mass on a half-space, as a family of oscillators that is cheap to compute.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -58,6 +59,8 @@ class OscillatorFamily {
   struct Number {
     Target target;
     Source source;
+    bool is_of_drive = false;  ///< else of the laws, or of the body
+    double last = std::numeric_limits<double>::quiet_NaN();  ///< that it has been given
   };
 
   OscillatorFamily(const LoadedScene& loaded, std::vector<NumericKey> keys)
@@ -80,6 +83,8 @@ class OscillatorFamily {
   std::vector<Parameter> parameters_;      ///< in an order in which they can be computed
   std::vector<Number> changes_;
   bool makes_body_ = false;
+  bool are_laws_stale_ = true;  ///< their numbers have changed since the last oscillator
+  std::vector<const DriveParameters*> drives_;  ///< of the scene, in the order of System::drives
   // Indices of drives, −1 where there is none.
   int load_drive_ = 0;     ///< that loads the body
   int base_drive_ = -1;    ///< that the body follows

@@ -116,6 +116,11 @@ INSTANTIATE_TEST_SUITE_P(
              {"parameters.v", "parameters.tau0"},
              {{{1e-4, 1e-3}, {1.0, 0.3}}},
              true},
+        Case{"StrengthAlone",
+             {"parameters.v", "parameters.tau0"},
+             {{{1e-4, 1e-3}, {1e-4, 0.3}}},
+             true},
+        Case{"SpeedAlone", {"parameters.v", "parameters.tau0"}, {{{1e-4, 1e-3}, {1.0, 1e-3}}}, true},
         Case{
             "LoadAndModulus", {"parameters.F", "parameters.E"}, {{{1e-3, 1e6}, {1e-5, 2e5}}}, true},
         Case{"RadiusAndCreepTime",
@@ -165,6 +170,18 @@ TEST(OscillatorFamily, RefusesAValueAsTheReaderDoes) {
   EXPECT_THAT(refusal("parameters.R", -1.0), HasSubstr("contact.normal.radius"));
   EXPECT_THAT(refusal("parameters.R", -1.0), HasSubstr("must be > 0, got -1 m"));
   EXPECT_THAT(refusal("parameters.omega_x", 0.0), HasSubstr("divided by 0"));
+}
+
+TEST(OscillatorFamily, ForgetsAValueThatItHasRefused) {
+  const LoadedScene scene = mass_scene();
+  const std::vector<NumericKey> keys{find_numeric_key(scene.scene, "parameters.R", "--x"),
+                                     find_numeric_key(scene.scene, "parameters.tau0", "--y")};
+  const auto family = OscillatorFamily::make(scene, keys);
+  const std::vector<double> values{0.02, 1e-3};
+  expect_same(*family->at(values), read_anew(scene, keys, values));
+  EXPECT_THROW((void)family->at(std::array{-1.0, 0.1}), ConfigError);
+  EXPECT_THROW((void)family->at(std::array{0.03, -1.0}), ConfigError);
+  expect_same(*family->at(values), read_anew(scene, keys, values));
 }
 
 TEST(OscillatorFamily, IsNoneOfOtherSystemsAndPlaces) {
