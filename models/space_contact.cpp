@@ -30,12 +30,15 @@ void check_keys(const ContactPair& pair) {
            "them");
   }
   if (given.roughness) refuse("roughness", "is of a curve; in space there is none");
-  if (given.normal.preload) {
+  if (given.normal.number("preload")) {
     refuse("normal.preload", "is of the face of a plate; in space the loads of the drive press bodies "
                              "together");
   }
-  if (given.normal.law == NormalLaw::viscoelastic)
-    refuse("normal.law", "is that of a half-space in a plane; in space take multiplier or penalty");
+  if (given.normal.law->has_area()) {
+    refuse("normal.law",
+           fmt::format("is that of a half-space in a plane; in space take {}",
+                       normal_laws_with([](const NormalLawType& law) { return !law.has_area(); })));
+  }
 }
 
 /// Diagonal of the box around the nodes of a body, m.

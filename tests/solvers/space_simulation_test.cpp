@@ -46,8 +46,8 @@ struct MassOnPlane {
     FrictionParameters& law = contact.friction.emplace();
     law.numbers["coefficient"] = friction;
     if (penalty) {
-      contact.normal.law = NormalLaw::penalty;
-      contact.normal.stiffness = penalty;
+      contact.normal.law = &normal_law_type("penalty");
+      contact.normal.numbers["stiffness"] = *penalty;
     }
     if (!is_planar) {
       contact.plane.emplace().normal = {normal.x(), normal.y(), normal.z()};
