@@ -115,6 +115,7 @@ int run_verb(int argc, char** argv) {
   const std::string command = joined_arguments(argc, argv);
   add_run_command(program, action, command);
   add_check_command(program, action);
+  add_import_command(program, action);
   add_info_command(program, action);
   add_plot_command(program, action);
   add_schema_command(program, action);

@@ -473,6 +473,10 @@ Mesh named_mesh(const MeshBodyParameters& parameters) {
   return MeshedBody(parameters).mesh();
 }
 
+Mesh named_mesh(const MeshBodyParameters& parameters, const NodalMatrices& matrices) {
+  return MeshedBody(parameters, &matrices).mesh();
+}
+
 BodyMatrices make_meshed_body(const MeshBodyParameters& parameters) {
   return MeshedBody(parameters).make();
 }

@@ -20,6 +20,8 @@ struct NodalMatrices {
 /// The mesh of a body in metres, turned, with the surfaces that its scene adds.
 /// @throws ConfigError with key paths below the body; std::invalid_argument if no mesh was read
 Mesh named_mesh(const MeshBodyParameters& parameters);
+/// The same where matrices come from elsewhere.
+Mesh named_mesh(const MeshBodyParameters& parameters, const NodalMatrices& matrices);
 
 /// Its matrices, with supports, guide, points, springs and loads.
 /// @throws as named_mesh()
