@@ -116,6 +116,7 @@ int run_verb(int argc, char** argv) {
   add_run_command(program, action, command);
   add_check_command(program, action);
   add_draw_command(program, action);
+  add_import_command(program, action);
   add_info_command(program, action);
   add_plot_command(program, action);
   add_schema_command(program, action);

@@ -74,6 +74,7 @@ void add_cycle_command(CLI::App& program, Action& action, const std::string& com
 void add_sweep_command(CLI::App& program, Action& action, const std::string& command_line);
 void add_run_command(CLI::App& program, Action& action, const std::string& command_line);
 void add_check_command(CLI::App& program, Action& action);
+void add_import_command(CLI::App& program, Action& action);
 void add_info_command(CLI::App& program, Action& action);
 void add_draw_command(CLI::App& program, Action& action);
 void add_plot_command(CLI::App& program, Action& action);

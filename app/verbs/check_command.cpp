@@ -2,10 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "analysis/step_guard.hpp"
 #include "app/results/body_report.hpp"
+#include "app/results/import_report.hpp"
 #include "app/results/step_stability_report.hpp"
 #include "app/runs/contact_study.hpp"
 #include "app/runs/cycle_motion.hpp"
@@ -33,7 +36,17 @@ struct Report {
   std::vector<Problem> warnings;
   std::optional<StepStabilityReport> stability{};
   Json bodies = Json::object();  ///< given by matrices, see matrix_bodies_json()
+  std::map<std::string, ImportFacts> imports{};  ///< by body
 };
+
+/// What the files of bodies hold.
+std::map<std::string, ImportFacts> imports_of(const Model& model) {
+  std::map<std::string, ImportFacts> imports;
+  for (const auto& [name, body] : model.substructures) {
+    if (auto facts = body->import_facts()) imports.emplace(name, std::move(*facts));
+  }
+  return imports;
+}
 
 /// Of what has no steps. @throws ConfigError
 void refuse_stability(const CheckOptions& options, const char* reason) {
@@ -63,7 +76,9 @@ Report check_scene(const CheckOptions& options) {
   if (options.stability) loaded.require_section("time", "check --stability");
   BodyCache cache;
   Model model = build_model(loaded, cache);
-  if (!loaded.scene.time) return {scene_warnings(loaded, model), {}, matrix_bodies_json(model)};
+  if (!loaded.scene.time) {
+    return {scene_warnings(loaded, model), {}, matrix_bodies_json(model), imports_of(model)};
+  }
   try {
     require_modes(model);
     const Activity preparing("preparing the first step");
@@ -81,7 +96,7 @@ Report check_scene(const CheckOptions& options) {
   } catch (const ConfigError& error) {
     throw loaded.located(error);
   }
-  Report report{scene_warnings(loaded, model), {}, matrix_bodies_json(model)};
+  Report report{scene_warnings(loaded, model), {}, matrix_bodies_json(model), imports_of(model)};
   if (options.stability)
     report.stability = check_step_stability(model, *loaded.scene.time, options.places);
   return report;
@@ -102,6 +117,7 @@ ExitCode check(const CheckOptions& options) {
     for (const Problem& problem : problems) object["errors"].push_back(problem_json(problem));
     for (const Problem& one : report.warnings) object["warnings"].push_back(problem_json(one));
     if (!report.bodies.empty()) object["matrix_bodies"] = report.bodies;
+    for (const auto& [name, facts] : report.imports) object["imports"][name] = import_json(facts);
     if (report.stability) object["stability"] = step_stability_json(*report.stability);
     print_json(object);
   } else {
@@ -111,6 +127,10 @@ ExitCode check(const CheckOptions& options) {
                : num_warnings == 1 ? ", 1 warning"
                                    : fmt::format(", {} warnings", num_warnings));
     print_matrix_bodies(report.bodies);
+    for (const auto& [name, facts] : report.imports) {
+      fmt::print("{}:\n", name);
+      print_import(facts, "  ");
+    }
     if (report.stability) print_step_stability(*report.stability);
   }
   if (!problems.empty()) return ExitCode::bad_input;

@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <set>
 #include <stdexcept>
 
 #include "core/errors.hpp"
-#include "io/hdf5/regular_file.hpp"
 
 namespace stridor {
 namespace {
@@ -213,13 +211,6 @@ class MarketReader {
 
 SparseMatrix read_matrix_market(std::istream& text, const std::string& source) {
   return MarketReader(text, source).read();
-}
-
-SparseMatrix read_matrix_file(const std::string& path) {
-  refuse_irregular_file(path);
-  std::ifstream file(path);
-  if (!file) throw FileError(path, "", "cannot be opened; expected a Matrix Market file");
-  return read_matrix_market(file, path);
 }
 
 SparseMatrix parse_matrix_rows(const std::vector<std::string>& rows) {

@@ -19,9 +19,6 @@ namespace stridor {
 /// @throws ConfigError with source, line and column
 SparseMatrix read_matrix_market(std::istream& text, const std::string& source);
 
-/// @throws FileError if the file cannot be opened; ConfigError as read_matrix_market()
-SparseMatrix read_matrix_file(const std::string& path);
-
 /// A square matrix from rows like "1 0 -2.5".
 /// @throws std::invalid_argument saying which row is wrong
 SparseMatrix parse_matrix_rows(const std::vector<std::string>& rows);

@@ -7,6 +7,7 @@
 #include "substructures/bodies/modal_test.hpp"
 #include "substructures/elements/mesh.hpp"
 #include "substructures/matrices/body_matrices.hpp"
+#include "substructures/matrices/labelled_matrix.hpp"
 
 namespace stridor {
 
@@ -24,9 +25,13 @@ class BodyFiles {
   /// @param key  that names the file, below that of the body
   /// @param name as written
   /// @throws ConfigError with the place in the file; FileError
-  virtual SparseMatrix matrix(const std::string& key, const std::string& name) const = 0;
+  virtual LabelledMatrix matrix(const std::string& key, const std::string& name,
+                                MatrixPurpose purpose) const = 0;
   /// A finite element mesh. Parameters and errors as matrix().
   virtual Mesh mesh(const std::string& key, const std::string& name) const = 0;
+  /// What the rows of matrices are, and a table of places. Parameters and errors as matrix().
+  virtual UnknownTable unknowns(const std::string& key, const std::string& name) const = 0;
+  virtual NodeTable nodes(const std::string& key, const std::string& name) const = 0;
   /// A square matrix from rows of numbers, given in the place of a file.
   /// @throws std::invalid_argument saying which row is wrong
   virtual SparseMatrix matrix(const std::vector<std::string>& rows) const = 0;

@@ -11,6 +11,7 @@
 
 #include "core/schema.hpp"
 #include "substructures/bodies/body_files.hpp"
+#include "substructures/bodies/import_facts.hpp"
 #include "substructures/elements/mesh.hpp"
 #include "substructures/matrices/body_matrices.hpp"
 #include "substructures/reduction/reduction_size.hpp"
@@ -84,6 +85,9 @@ class BodyParameters {
 
   /// What is worth a second look though it is allowed, with key paths below that of the body.
   virtual std::vector<Problem> warnings() const { return {}; }
+
+  /// What its files turned out to hold; nothing of a body without files.
+  virtual std::optional<ImportFacts> import_facts() const { return std::nullopt; }
 
  protected:
   BodyParameters() = default;

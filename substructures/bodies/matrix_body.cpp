@@ -9,6 +9,7 @@
 
 #include "core/errors.hpp"
 #include "core/suggestion.hpp"
+#include "substructures/bodies/nodal_body.hpp"
 #include "substructures/reduction/proportional_damping.hpp"
 
 namespace stridor {
@@ -19,6 +20,26 @@ std::string listed(const std::map<std::string, MatrixPointParameters>& points) {
   names.reserve(points.size());
   for (const auto& entry : points) names.push_back(entry.first);
   return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// Keys that mean something only where it is known which rows are which nodes.
+void refuse_node_keys(const TouchedMatrixBodyParameters& parameters) {
+  const auto refuse = [](const std::string& key) {
+    throw ConfigError(key,
+                      "needs to know which rows of the matrices are which nodes; give `unknowns`");
+  };
+  for (const auto& [name, point] : parameters.points) {
+    if (point.node) refuse("points." + name + ".node");
+    if (!point.mean_of.empty()) refuse("points." + name + ".mean_of");
+    if (point.at.size() != 2)
+      throw ConfigError("points." + name + ".at", "must be two lengths, x and y");
+  }
+  for (const auto& [name, surface] : parameters.surfaces)
+    if (surface.points.empty()) refuse("surfaces." + name);
+  if (!parameters.supports.empty()) refuse("supports");
+  if (!parameters.springs.empty()) refuse("springs");
+  if (parameters.angle != 0.0) refuse("angle");
+  if (parameters.guided && !parameters.guided->on.empty()) refuse("guided.on");
 }
 
 /// An unknown counted from 1, or `held`.
@@ -32,155 +53,8 @@ int dof_of(std::int64_t number, Eigen::Index num_dofs, const std::string& key) {
 
 }  // namespace
 
-bool is_of_velocity(MatrixRole role) {
-  return role == MatrixRole::damping || role == MatrixRole::gyroscopic ||
-         role == MatrixRole::velocity;
-}
-
-const Schema& MatrixTermParameters::schema() {
-  using P = MatrixTermParameters;
-  static const Schema keys =
-      SchemaOf<P>("matrix_term")
-          .choice(
-              "role", &P::role,
-              {{"damping", MatrixRole::damping},
-               {"gyroscopic", MatrixRole::gyroscopic},
-               {"stiffness", MatrixRole::stiffness},
-               {"circulatory", MatrixRole::circulatory},
-               {"velocity", MatrixRole::velocity},
-               {"position", MatrixRole::position}},
-              {.doc = "What it adds to: damping, gyroscopic (skew-symmetric) or velocity (any) to "
-                      "the matrix of velocities; stiffness, circulatory (skew-symmetric) or "
-                      "position (any) to that of displacements."})
-          .text_rows("matrix", &P::matrix,
-                     {.doc = "The matrix: a Matrix Market file, from the folder of the scene, or a "
-                             "list of rows, each a list or a text of numbers."})
-          .real("factor", &P::factor,
-                {.doc = "What it is multiplied with; to be varied, an expression of a parameter.",
-                 .optional = true});
-  return keys;
-}
-
-const Schema& MatrixBodyParameters::schema() {
-  using P = MatrixBodyParameters;
-  const auto matrix = [](const char* doc, bool is_optional) {
-    return PlainKey{
-        .doc = std::string(doc) +
-               " A Matrix Market file, from the folder of the scene, or a list of rows, "
-               "each a list or a text of numbers.",
-        .optional = is_optional};
-  };
-  static const Schema keys =
-      SchemaOf<P>("matrices")
-          .text_rows("mass", &P::mass, matrix("Mass matrix, symmetric positive definite.", false))
-          .text_rows("damping", &P::damping, matrix("Damping matrix.", true))
-          .text_rows("gyroscopic", &P::gyroscopic,
-                     matrix("Gyroscopic matrix, skew-symmetric.", true))
-          .text_rows("stiffness", &P::stiffness,
-                     matrix("Stiffness matrix; may be absent where a term says it.", true))
-          .text_rows("circulatory", &P::circulatory,
-                     matrix("Circulatory matrix, skew-symmetric.", true))
-          .section_list("terms", &P::terms,
-                        {.doc = "Matrices with factors, added to these.", .optional = true})
-          .check([](const P& body, std::vector<Problem>& problems) {
-            const bool has_position =
-                std::any_of(body.terms.begin(), body.terms.end(),
-                            [](const auto& term) { return !is_of_velocity(term.role); });
-            if (!body.stiffness.empty() || has_position) return;
-            problems.push_back({"stiffness",
-                                "is missing; give it, or a term of the role stiffness or position",
-                                {},
-                                0,
-                                0});
-          });
-  return keys;
-}
-
-const Schema& MatrixPointParameters::schema() {
-  using P = MatrixPointParameters;
-  static const Schema keys =
-      SchemaOf<P>("matrix_point")
-          .real_list("at", &P::at, {.doc = "Place in the frame of the body: x and y.", .unit = "m"})
-          .integer("x", &P::x,
-                   {.doc = "Number of the unknown that is its displacement in x, from 1; default "
-                           "0: it is held there.",
-                    .optional = true,
-                    .range = Range::non_negative()})
-          .integer("y", &P::y,
-                   {.doc = "The same in y.", .optional = true, .range = Range::non_negative()})
-          .check([](const P& point, std::vector<Problem>& problems) {
-            if (point.at.size() != 2)
-              problems.push_back({"at", "must be two lengths, x and y", {}, 0, 0});
-          });
-  return keys;
-}
-
-const Schema& MatrixSurfaceParameters::schema() {
-  using P = MatrixSurfaceParameters;
-  static const Schema keys =
-      SchemaOf<P>("matrix_surface")
-          .text_list("points", &P::points,
-                     {.doc = "Names of at least two points, in the order in which the body lies on "
-                             "the right-hand side."})
-          .check([](const P& surface, std::vector<Problem>& problems) {
-            if (surface.points.size() < 2)
-              problems.push_back({"points", "must be at least two points", {}, 0, 0});
-          });
-  return keys;
-}
-
-const Schema& MatrixGuideParameters::schema() {
-  using P = MatrixGuideParameters;
-  static const Schema keys =
-      SchemaOf<P>("matrix_guide")
-          .integer("load", &P::load,
-                   {.doc = "Number of the unknown on which the drive's load acts, from 1.",
-                    .range = {1.0, 1e9, false, false}})
-          .real_list("translation", &P::translation,
-                     {.doc = "Displacement of every unknown as the body moves by one metre in +x: "
-                             "1 for what is a displacement in x, 0 for one in y."});
-  return keys;
-}
-
-const Schema& TouchedMatrixBodyParameters::schema() {
-  using P = TouchedMatrixBodyParameters;
-  static const Schema keys =
-      SchemaOf<P>("touched_matrices")
-          .include(&P::body)
-          .named_sections("points", &P::points,
-                          {.doc = "Points that touch others, carry a surface or are recorded.",
-                           .optional = true})
-          .named_sections("surfaces", &P::surfaces,
-                          {.doc = "Outlines on which others slide.", .optional = true})
-          .section("guided", &P::guided,
-                   {.doc = "The drive moves the body: its unknowns are counted from a frame that "
-                           "moves along.",
-                    .optional = true})
-          .section("reduction", &P::reduction,
-                   {.doc = "Craig-Bampton reduction; default: every unknown is kept.",
-                    .optional = true});
-  return keys;
-}
-
-SparseSystem sum(const NamedMatrices& matrices, const MatrixBodyParameters& body) {
-  SparseSystem system;
-  system.mass = matrices.mass;
-  system.velocity = matrices.damping + matrices.gyroscopic;
-  system.position = matrices.stiffness + matrices.circulatory;
-  for (std::size_t i = 0; i < body.terms.size(); ++i) {
-    SparseMatrix& to = is_of_velocity(body.terms[i].role) ? system.velocity : system.position;
-    const SparseMatrix before = to;
-    to = before + body.terms[i].factor * matrices.terms.at(i);
-  }
-  return system;
-}
-
-BodyMatrices make_matrix_body(const TouchedMatrixBodyParameters& parameters) {
-  if (!parameters.matrices)
-    throw std::invalid_argument("make_matrix_body: the matrices have not been read");
-  const SparseSystem system = sum(*parameters.matrices, parameters.body);
+void take_system(const SparseSystem& system, BodyMatrices& body) {
   const Eigen::Index n = system.size();
-  BodyMatrices body;
   body.mass = system.mass;
   const SparseMatrix transposed = system.position.transpose();
   body.stiffness = 0.5 * (system.position + transposed);
@@ -192,16 +66,11 @@ BodyMatrices make_matrix_body(const TouchedMatrixBodyParameters& parameters) {
     body.velocity = damping ? SparseMatrix(n, n) : system.velocity;
     body.circulatory = skew;
   }
+}
 
-  body.nodes.resize(static_cast<Eigen::Index>(parameters.points.size()), 3);
-  for (const auto& [name, point] : parameters.points) {
-    const auto node = static_cast<int>(body.node_dofs.size());
-    const std::string key = "points." + name;
-    body.nodes.row(node) << point.at[0], point.at[1], 0.0;
-    body.node_dofs.push_back({dof_of(point.x, n, key + ".x"), dof_of(point.y, n, key + ".y")});
-    body.points[name] = node;
-  }
+void add_point_surfaces(const TouchedMatrixBodyParameters& parameters, BodyMatrices& body) {
   for (const auto& [name, surface] : parameters.surfaces) {
+    if (surface.points.empty()) continue;
     const std::string key = "surfaces." + name + ".points";
     if (body.points.contains(name))
       throw ConfigError("surfaces." + name, "a point has this name already; take another");
@@ -222,6 +91,26 @@ BodyMatrices make_matrix_body(const TouchedMatrixBodyParameters& parameters) {
     }
     body.surfaces[name] = nodes;
   }
+}
+
+BodyMatrices make_matrix_body(const TouchedMatrixBodyParameters& parameters) {
+  if (!parameters.matrices)
+    throw std::invalid_argument("make_matrix_body: the matrices have not been read");
+  if (parameters.has_nodes()) return make_nodal_body(parameters);
+  refuse_node_keys(parameters);
+  const SparseSystem system = sum(*parameters.matrices, parameters.body, parameters.nodes);
+  const Eigen::Index n = system.size();
+  BodyMatrices body;
+  take_system(system, body);
+  body.nodes.resize(static_cast<Eigen::Index>(parameters.points.size()), 3);
+  for (const auto& [name, point] : parameters.points) {
+    const auto node = static_cast<int>(body.node_dofs.size());
+    const std::string key = "points." + name;
+    body.nodes.row(node) << point.at[0], point.at[1], 0.0;
+    body.node_dofs.push_back({dof_of(point.x, n, key + ".x"), dof_of(point.y, n, key + ".y")});
+    body.points[name] = node;
+  }
+  add_point_surfaces(parameters, body);
   if (!parameters.guided) return body;
   const MatrixGuideParameters& guide = *parameters.guided;
   body.load_dof = dof_of(guide.load, n, "guided.load");
@@ -235,12 +124,14 @@ BodyMatrices make_matrix_body(const TouchedMatrixBodyParameters& parameters) {
 }
 
 void TouchedMatrixBodyParameters::read(const BodyFiles& files) {
-  matrices = std::make_shared<const NamedMatrices>(read_matrices(body, files));
+  matrices = std::make_shared<const NamedMatrices>(read_matrices(body, nodes, files));
 }
 
 bool TouchedMatrixBodyParameters::take_contents(const BodyParameters& other) {
   const auto* given = dynamic_cast<const TouchedMatrixBodyParameters*>(&other);
-  if (given == nullptr || !given->matrices || !have_same_matrices(given->body, body)) return false;
+  if (given == nullptr || !given->matrices || !have_same_matrices(given->body, body) ||
+      given->nodes != nodes)
+    return false;
   matrices = given->matrices;
   return true;
 }
@@ -254,7 +145,19 @@ std::optional<int> TouchedMatrixBodyParameters::num_modes() const {
   return reduction->fixed_interface_modes;
 }
 
+bool TouchedMatrixBodyParameters::is_filled() const {
+  return has_nodes() && has_elements(*matrices) && matrices->mesh.dimension() == 2;
+}
+
+std::vector<DrawnElement> TouchedMatrixBodyParameters::elements() const {
+  return has_nodes() ? drawn_elements(matrices->mesh) : std::vector<DrawnElement>();
+}
+
 double TouchedMatrixBodyParameters::num_slave_nodes(const std::string& name) const {
+  if (has_nodes()) {
+    const double num_nodes = num_nodes_named(*this, name);
+    if (num_nodes > 0.0) return num_nodes;
+  }
   const auto surface = surfaces.find(name);
   return surface == surfaces.end() ? 1.0 : static_cast<double>(surface->second.points.size());
 }
@@ -268,7 +171,8 @@ ReductionSize TouchedMatrixBodyParameters::reduction_size(double interface_nodes
     if (!is_of_velocity(body.terms[i].role))
       entries += static_cast<double>(matrices->terms[i].nonZeros());
   }
-  size.interface = size.watched = std::min(2.0 * interface_nodes, n);
+  const double d = has_nodes() ? dimension_of(*matrices) : 2.0;
+  size.interface = size.watched = std::min(d * interface_nodes, n);
   size.unknowns = n - size.interface;
   size.modes = reduction->fixed_interface_modes;
   size.matrix_entries = static_cast<double>(matrices->mass.nonZeros()) + entries;
@@ -280,6 +184,15 @@ ReductionSize TouchedMatrixBodyParameters::reduction_size(double interface_nodes
 
 SizeKey TouchedMatrixBodyParameters::size_key() const {
   return {".mass", "give smaller matrices, or fewer points"};
+}
+
+std::optional<ImportFacts> TouchedMatrixBodyParameters::import_facts() const {
+  if (!matrices || (matrices->files.empty() && !has_nodes())) return std::nullopt;
+  constexpr int num_frequencies = 10;
+  ImportFacts facts;
+  facts.matrices = matrix_facts(*matrices, body, nodes, num_frequencies);
+  if (has_nodes() && has_elements(*matrices)) facts.mesh = mesh_facts(named_mesh(*this), 1.0);
+  return facts;
 }
 
 }  // namespace stridor

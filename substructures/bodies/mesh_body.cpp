@@ -165,13 +165,18 @@ bool MeshBodyParameters::is_filled() const {
   return mesh && facts_of(mesh->shapes.front()).dimension == 2;
 }
 
-std::vector<DrawnElement> MeshBodyParameters::elements() const {
+std::vector<DrawnElement> drawn_elements(const Mesh& mesh) {
   std::vector<DrawnElement> drawn;
-  for (std::size_t e = 0; mesh && e < mesh->num_elements(); ++e) {
-    const std::span<const int> nodes = mesh->nodes_of(e);
-    drawn.push_back({mesh->shapes[e], {nodes.begin(), nodes.end()}});
+  drawn.reserve(mesh.num_elements());
+  for (std::size_t e = 0; e < mesh.num_elements(); ++e) {
+    const std::span<const int> nodes = mesh.nodes_of(e);
+    drawn.push_back({mesh.shapes[e], {nodes.begin(), nodes.end()}});
   }
   return drawn;
+}
+
+std::vector<DrawnElement> MeshBodyParameters::elements() const {
+  return mesh ? drawn_elements(*mesh) : std::vector<DrawnElement>();
 }
 
 double MeshBodyParameters::num_slave_nodes(const std::string& name) const {
@@ -201,6 +206,11 @@ ReductionSize MeshBodyParameters::reduction_size(double interface_nodes) const {
 
 SizeKey MeshBodyParameters::size_key() const {
   return {".file", "take a coarser mesh, or keep fewer nodes"};
+}
+
+std::optional<ImportFacts> MeshBodyParameters::import_facts() const {
+  if (!mesh) return std::nullopt;
+  return ImportFacts{mesh_facts(named_mesh(*this), thickness.value_or(1.0)), std::nullopt};
 }
 
 }  // namespace stridor

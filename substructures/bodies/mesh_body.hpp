@@ -38,6 +38,9 @@ struct MeshPointParameters {
   static const Schema& schema();
 };
 
+/// All elements of a mesh as they are drawn.
+std::vector<DrawnElement> drawn_elements(const Mesh& mesh);
+
 /// A linear elastic body from a mesh file (docs/theory.md, 1.7). Places, regions and surfaces are
 /// in the frame of the mesh, which `angle` turns about z into that of the body.
 struct MeshBodyParameters : BodyParametersOf<MeshBodyParameters> {
@@ -74,6 +77,7 @@ struct MeshBodyParameters : BodyParametersOf<MeshBodyParameters> {
   double num_slave_nodes(const std::string& name) const override;
   ReductionSize reduction_size(double interface_nodes) const override;
   SizeKey size_key() const override;
+  std::optional<ImportFacts> import_facts() const override;
 };
 
 }  // namespace stridor

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "core/errors.hpp"
 #include "core/suggestion.hpp"
@@ -34,36 +36,30 @@ std::string known(const std::string& written, const std::vector<std::string>& na
 /// A mesh in metres with the surfaces that a scene adds, and what its matrices are made of.
 class MeshedBody {
  public:
-  explicit MeshedBody(const MeshBodyParameters& parameters)
-      : parameters_(parameters), turn_(turn_by(parameters.angle)) {
+  /// @param given matrices from elsewhere; null: those of the elements
+  explicit MeshedBody(const MeshBodyParameters& parameters, const NodalMatrices* given = nullptr)
+      : parameters_(parameters), given_(given), turn_(turn_by(parameters.angle)) {
     if (!parameters.mesh)
       throw std::invalid_argument("MeshBodyParameters: the mesh has not been read");
     mesh_ = *parameters.mesh;
     mesh_.nodes *= scale();
-    try {
-      dimension_ = mesh_.dimension();
-    } catch (const std::invalid_argument&) {
-      throw ConfigError("file",
-                        "has planar elements beside volumes; give a mesh of one kind, of which "
-                        "edges or faces are groups");
+    if (given_ != nullptr) {
+      take_dimension();
+    } else {
+      find_dimension();
+      check_plane();
     }
-    check_plane();
     add_surfaces();
     mesh_.nodes.leftCols<2>() *= turn_.transpose();
   }
 
   BodyMatrices make() {
-    const MeshMatrices all = [&] {
-      try {
-        return assemble_mesh(mesh_, sections());
-      } catch (const std::invalid_argument& error) {
-        throw ConfigError("file", error.what());
-      }
-    }();
+    const NodalMatrices own = given_ == nullptr ? of_elements() : NodalMatrices();
+    const NodalMatrices& all = given_ == nullptr ? own : *given_;
     BodyMatrices body;
-    body.damping = parameters_.damping;
+    body.damping = all.damping;
     body.nodes = mesh_.nodes;
-    number_dofs(body);
+    number_dofs(all, body);
     constrain(all, body);
     add_outlines(body);
     add_points(body);
@@ -84,6 +80,38 @@ class MeshedBody {
     }
   }
 
+  void find_dimension() {
+    try {
+      dimension_ = mesh_.dimension();
+    } catch (const std::invalid_argument&) {
+      throw ConfigError("file",
+                        "has planar elements beside volumes; give a mesh of one kind, of which "
+                        "edges or faces are groups");
+    }
+  }
+
+  void take_dimension() {
+    dimension_ = given_->dimension;
+    if (given_->rows.size() != static_cast<std::size_t>(dimension_) * mesh_.num_nodes())
+      throw std::invalid_argument("make_meshed_body: the matrices are of another mesh");
+  }
+
+  /// Every displacement of every node.
+  NodalMatrices of_elements() const {
+    MeshMatrices assembled = [&] {
+      try {
+        return assemble_mesh(mesh_, sections());
+      } catch (const std::invalid_argument& error) {
+        throw ConfigError("file", error.what());
+      }
+    }();
+    NodalMatrices all{dimension_, std::move(assembled.mass), std::move(assembled.stiffness),
+                      parameters_.damping, {}, {}, {}, {}};
+    all.rows.resize(static_cast<std::size_t>(all.mass.rows()));
+    std::iota(all.rows.begin(), all.rows.end(), 0);
+    return all;
+  }
+
   void check_plane() const {
     if (dimension_ == 2 && !parameters_.thickness)
       throw ConfigError("thickness", "is missing: the mesh is planar");
@@ -93,6 +121,7 @@ class MeshedBody {
 
   void add_surfaces() {
     if (parameters_.surfaces.empty()) return;
+    if (mesh_.num_elements() == 0) return add_node_sets();
     const std::vector<ElementSide> outer = outer_sides(mesh_);
     const double extent = extent_of(mesh_);
     for (const auto& [name, given] : parameters_.surfaces) {
@@ -101,16 +130,33 @@ class MeshedBody {
         throw ConfigError(key, "the file has a surface of this name; take another");
       std::vector<ElementSide> sides = sides_within(
           mesh_, outer, given.region(), given.tolerance.value_or(share_of_extent * extent));
-      if (sides.empty()) {
-        const Eigen::RowVector3d low = mesh_.nodes.colwise().minCoeff();
-        const Eigen::RowVector3d high = mesh_.nodes.colwise().maxCoeff();
-        throw ConfigError(
-            key,
-            fmt::format("no outer side of an element lies there; the mesh reaches from ({:.6g}, "
-                        "{:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) m",
-                        low(0), low(1), low(2), high(0), high(1), high(2)));
-      }
+      if (sides.empty()) refuse_empty(key, "no outer side of an element");
       mesh_.surfaces[name] = std::move(sides);
+    }
+  }
+
+  [[noreturn]] void refuse_empty(const std::string& key, const char* what) const {
+    const Eigen::RowVector3d low = mesh_.nodes.colwise().minCoeff();
+    const Eigen::RowVector3d high = mesh_.nodes.colwise().maxCoeff();
+    throw ConfigError(key,
+                      fmt::format("{} lies there; the mesh reaches from ({:.6g}, {:.6g}, {:.6g}) to "
+                                  "({:.6g}, {:.6g}, {:.6g}) m",
+                                  what, low(0), low(1), low(2), high(0), high(1), high(2)));
+  }
+
+  /// Where no elements are known, a surface is the set of the nodes that lie there.
+  void add_node_sets() {
+    const double extent = extent_of(mesh_);
+    for (const auto& [name, given] : parameters_.surfaces) {
+      const MeshRegion region = given.region();
+      const double tolerance = given.tolerance.value_or(share_of_extent * extent);
+      Nodes nodes;
+      for (Eigen::Index node = 0; node < mesh_.nodes.rows(); ++node) {
+        if (region.contains(mesh_.nodes.row(node), tolerance))
+          nodes.push_back(static_cast<int>(node));
+      }
+      if (nodes.empty()) refuse_empty("surfaces." + name, "no node");
+      mesh_.node_sets[name] = std::move(nodes);
     }
   }
 
@@ -189,11 +235,26 @@ class MeshedBody {
   static constexpr int shared = -3;
 
   /// Supports mark what is held and shared; the free DoFs are numbered after that.
-  void number_dofs(BodyMatrices& body) {
+  void number_dofs(const NodalMatrices& all, BodyMatrices& body) {
+    mark_supports(all);
+    number_free(all, body);
+  }
+
+  /// Rotations of nodes that are held in all directions.
+  void hold_rotations(const NodalMatrices& all, int node) {
+    for (std::size_t axis = 0; axis < 3 && !all.rotations.empty(); ++axis) {
+      const int row = all.rotations[3 * static_cast<std::size_t>(node) + axis];
+      if (row != BodyMatrices::held) dof_of_row_[static_cast<std::size_t>(row)] = BodyMatrices::held;
+    }
+  }
+
+  void mark_supports(const NodalMatrices& all) {
     const auto d = static_cast<std::size_t>(dimension_);
-    dof_of_.assign(d * mesh_.num_nodes(), unset);
+    dof_of_row_.assign(static_cast<std::size_t>(all.mass.rows()), unset);
+    int none = BodyMatrices::held;
     const auto mark = [&](int node, std::size_t direction) -> int& {
-      return dof_of_[d * static_cast<std::size_t>(node) + direction];
+      const int row = all.rows[d * static_cast<std::size_t>(node) + direction];
+      return row == BodyMatrices::held ? none : dof_of_row_[static_cast<std::size_t>(row)];
     };
     for (const auto& [name, support] : parameters_.supports) {
       const std::string key = "supports." + name;
@@ -204,6 +265,7 @@ class MeshedBody {
               std::find(support.held.begin(), support.held.end(), axis) != support.held.end())
             mark(node, i) = BodyMatrices::held;
         }
+        if (support.held.empty()) hold_rotations(all, node);
       }
       if (d == 2 && std::find(support.held.begin(), support.held.end(), "z") != support.held.end())
         throw ConfigError(key + ".held", "a planar body does not move along z");
@@ -211,33 +273,46 @@ class MeshedBody {
     if (parameters_.guided) {
       for (const int node : nodes_on(parameters_.guided->on, "guided.on")) {
         for (std::size_t i = 0; i < d; ++i) mark(node, i) = i == 1 ? shared : BodyMatrices::held;
+        hold_rotations(all, node);
       }
     }
-    body.node_dofs.assign(mesh_.num_nodes(), {BodyMatrices::held, BodyMatrices::held});
-    if (d == 3) body.across.assign(mesh_.num_nodes(), BodyMatrices::held);
+  }
+
+  /// Numbers DoFs in the order of the nodes, then those that belong to no displacement of a node.
+  void number_free(const NodalMatrices& all, BodyMatrices& body) {
+    const auto d = static_cast<std::size_t>(dimension_);
     num_dofs_ = 0;
-    for (std::size_t k = 0; k < dof_of_.size(); ++k) {
-      int& dof = dof_of_[k];
+    const auto number = [&](int row) {
+      int& dof = dof_of_row_[static_cast<std::size_t>(row)];
       if (dof == unset) dof = num_dofs_++;
       if (dof == shared) {
         if (body.load_dof == BodyMatrices::held) body.load_dof = num_dofs_++;
         dof = body.load_dof;
       }
+      return dof;
+    };
+    body.node_dofs.assign(mesh_.num_nodes(), {BodyMatrices::held, BodyMatrices::held});
+    if (d == 3) body.across.assign(mesh_.num_nodes(), BodyMatrices::held);
+    for (std::size_t k = 0; k < all.rows.size(); ++k) {
+      const int dof = all.rows[k] == BodyMatrices::held ? BodyMatrices::held : number(all.rows[k]);
       if (k % d < 2) {
         body.node_dofs[k / d][k % d] = dof;
       } else {
         body.across[k / d] = dof;
       }
     }
+    for (Eigen::Index row = 0; row < all.mass.rows(); ++row) (void)number(static_cast<int>(row));
     if (num_dofs_ == 0) throw ConfigError("supports", "hold every node of the body");
+    if (parameters_.guided && body.load_dof == BodyMatrices::held)
+      throw ConfigError("guided.on", "no node of it moves along y, so the drive has no load on it");
   }
 
   /// M and K of the free DoFs, AᵀMA with A of ones where a DoF moves a displacement of the mesh.
-  void constrain(const MeshMatrices& all, BodyMatrices& body) const {
-    const auto num_all = static_cast<Eigen::Index>(dof_of_.size());
+  void constrain(const NodalMatrices& all, BodyMatrices& body) const {
+    const Eigen::Index num_all = all.mass.rows();
     std::vector<Eigen::Triplet<double>> entries;
     for (Eigen::Index row = 0; row < num_all; ++row) {
-      const int dof = dof_of_[static_cast<std::size_t>(row)];
+      const int dof = dof_of_row_[static_cast<std::size_t>(row)];
       if (dof != BodyMatrices::held) entries.emplace_back(row, dof, 1.0);
     }
     SparseMatrix choice(num_all, num_dofs_);
@@ -245,10 +320,23 @@ class MeshedBody {
     const SparseMatrix transposed = choice.transpose();
     body.mass = (transposed * all.mass * choice).pruned(0.0, 0.0);
     body.stiffness = (transposed * all.stiffness * choice).pruned(0.0, 0.0);
+    if (all.velocity.size() > 0) {
+      body.velocity = transposed * all.velocity * choice;
+      body.circulatory = transposed * all.circulatory * choice;
+    }
     if (!body.follows_drive()) return;
     // Held nodes move with the support.
     Eigen::VectorXd along_x = Eigen::VectorXd::Zero(num_all);
-    for (Eigen::Index row = 0; row < num_all; row += dimension_) along_x(row) = 1.0;
+    for (std::size_t k = 0; k < all.rows.size(); k += static_cast<std::size_t>(dimension_)) {
+      if (all.rows[k] == BodyMatrices::held) {
+        throw ConfigError("guided.on",
+                          fmt::format("the matrices hold node {} along x, so the inertia of a body "
+                                      "that is driven along x is not known; leave all nodes free "
+                                      "there when they are written",
+                                      mesh_.node_labels[k / static_cast<std::size_t>(dimension_)]));
+      }
+      along_x(all.rows[k]) = 1.0;
+    }
     body.base_inertia = transposed * (all.mass * along_x);
   }
 
@@ -344,7 +432,11 @@ class MeshedBody {
   NodeShares even_shares(const std::string& name) const {
     const auto surface = mesh_.surfaces.find(name);
     if (surface == mesh_.surfaces.end()) return {};
-    const Eigen::VectorXd areas = node_areas(mesh_, sections(), surface->second);
+    // Shares are ratios, for which thickness and material do not matter.
+    const ElementSection any{ElasticLaw(IsotropicElasticity{1.0, 0.0},
+                                        dimension_ == 3 ? PlaneState::none : PlaneState::stress),
+                             1.0, 1.0};
+    const Eigen::VectorXd areas = node_areas(mesh_, one_section(mesh_, any), surface->second);
     NodeShares shares;
     for (const int node : nodes_of(mesh_, surface->second))
       if (areas(node) != 0.0) shares.push_back({node, areas(node) / areas.sum()});
@@ -370,10 +462,11 @@ class MeshedBody {
   }
 
   const MeshBodyParameters& parameters_;
+  const NodalMatrices* given_;  ///< null: matrices of the elements
   Mesh mesh_;  ///< in metres, turned
   Eigen::Matrix2d turn_;
   int dimension_ = 2;
-  std::vector<int> dof_of_;  ///< of every displacement of the mesh, node by node
+  std::vector<int> dof_of_row_;  ///< of every row of the matrices
   int num_dofs_ = 0;
 };
 
@@ -383,8 +476,16 @@ Mesh named_mesh(const MeshBodyParameters& parameters) {
   return MeshedBody(parameters).mesh();
 }
 
+Mesh named_mesh(const MeshBodyParameters& parameters, const NodalMatrices& matrices) {
+  return MeshedBody(parameters, &matrices).mesh();
+}
+
 BodyMatrices make_meshed_body(const MeshBodyParameters& parameters) {
   return MeshedBody(parameters).make();
+}
+
+BodyMatrices make_meshed_body(const MeshBodyParameters& parameters, const NodalMatrices& matrices) {
+  return MeshedBody(parameters, &matrices).make();
 }
 
 }  // namespace stridor

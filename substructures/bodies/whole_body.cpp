@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "substructures/matrices/symmetric_eigenpairs.hpp"
+#include "substructures/matrices/massless_motions.hpp"
 
 namespace stridor {
 namespace {
@@ -15,8 +15,8 @@ namespace {
 void move_negative_stiffness(ReducedBody& body) {
   const Eigen::Index n = body.size();
   if (Eigen::LLT<Eigen::MatrixXd>(body.stiffness).info() == Eigen::Success) return;
-  const SymmetricEigenpairs pairs =
-      generalised_eigenpairs(body.stiffness, body.mass, "stiffness of a body");
+  const SemidefinitePairs pairs =
+      semidefinite_eigenpairs(body.stiffness, body.mass, "stiffness of a body");
   constexpr double rounding = 1e-12;
   const double least = -rounding * pairs.values.cwiseAbs().maxCoeff();
   const auto num_negative = (pairs.values.array() < least).count();  // values ascend

@@ -12,6 +12,7 @@
 #include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
+#include "substructures/matrices/massless_motions.hpp"
 #include "substructures/matrices/symmetric_eigenpairs.hpp"
 
 namespace stridor {
@@ -24,8 +25,14 @@ using SymmetricEigen = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 constexpr Eigen::Index block_width = 8;
 
 Modes dense_modes(const SparseMatrix& stiffness, const SparseMatrix& mass, Eigen::Index count) {
-  const SymmetricEigenpairs all = generalised_eigenpairs(
+  const SemidefinitePairs all = semidefinite_eigenpairs(
       Eigen::MatrixXd(stiffness), Eigen::MatrixXd(mass), "fixed-interface modes");
+  if (count > all.values.size()) {
+    throw NumericalError(fmt::format(
+        "fixed-interface modes: {} asked, but only {} of the {} motions of the interior have mass; "
+        "ask for that many at most",
+        count, all.values.size(), mass.rows()));
+  }
   return {all.values.head(count), all.vectors.leftCols(count)};
 }
 

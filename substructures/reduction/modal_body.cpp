@@ -9,13 +9,39 @@
 
 #include "core/activity.hpp"
 #include "core/errors.hpp"
+#include "substructures/matrices/massless_motions.hpp"
 #include "substructures/matrices/symmetric_eigenpairs.hpp"
 
 namespace stridor {
 
+namespace {
+
+/// Of motions without mass, the frequency over the highest of the others. Response of theirs at ω is
+/// wrong by (ω/ω_max)²/1e4, which for what is of interest is far below the rest.
+constexpr double quasi_static_ratio = 100.0;
+
+/// Of motions without mass those that rows see, as modes of a frequency far above all others: q = φ
+/// with φᵀ M φ = 1 for a mass that is put there, ω² = φᵀ K φ. Their flexibility φφᵀ/ω² is exact.
+Eigen::MatrixXd quasi_static_modes(const SemidefinitePairs& pairs, const Eigen::MatrixXd& rows,
+                                   double omega) {
+  if (pairs.massless.cols() == 0 || rows.rows() == 0) return pairs.massless.leftCols(0);
+  // Turned so that the last ones are those that no row sees, which nothing ever moves by itself.
+  const Eigen::MatrixXd seen = rows * pairs.massless;
+  const SymmetricEigenpairs flexibility =
+      symmetric_eigenpairs(seen.transpose() * seen, "motions without mass");
+  const double largest = flexibility.values(flexibility.values.size() - 1);
+  constexpr double rounding = 1e-14;
+  const auto count =
+      largest > 0.0 ? (flexibility.values.array() > rounding * largest).count() : Eigen::Index{0};
+  return omega * pairs.massless * flexibility.vectors.rightCols(count);
+}
+
+}  // namespace
+
 ModalBody make_modal(const ReducedBody& body) {
   const Activity solving(fmt::format("all modes of {} unknowns", body.size()));
-  const SymmetricEigenpairs pairs = generalised_eigenpairs(body.stiffness, body.mass, "modal form");
+  const SemidefinitePairs pairs =
+      semidefinite_eigenpairs(body.stiffness, body.mass, "modal form");
   constexpr double rigid_ratio = 1e-6;
   const Eigen::VectorXd& squares = pairs.values;
   const double largest = squares.size() > 0 ? squares(squares.size() - 1) : 0.0;
@@ -34,6 +60,18 @@ ModalBody make_modal(const ReducedBody& body) {
     modal.omega(i) = squares(i) <= rigid_below ? 0.0 : std::sqrt(squares(i));
   }
   modal.shapes = pairs.vectors;
+  if (pairs.massless.cols() > 0) {
+    if (!(largest > 0.0))
+      throw NumericalError("modal form: no motion has both mass and stiffness, though some have no "
+                           "mass");
+    const double omega = quasi_static_ratio * std::sqrt(largest);
+    const Eigen::MatrixXd quasi_static = quasi_static_modes(pairs, body.rows, omega);
+    const Eigen::Index num_modes = squares.size() + quasi_static.cols();
+    modal.omega.conservativeResize(num_modes);
+    modal.omega.tail(quasi_static.cols()).setConstant(omega);
+    modal.shapes.conservativeResize(Eigen::NoChange, num_modes);
+    modal.shapes.rightCols(quasi_static.cols()) = quasi_static;
+  }
   modal.rows = body.rows * modal.shapes;
   if (body.base_inertia.size() > 0)
     modal.base_inertia = modal.shapes.transpose() * body.base_inertia;

@@ -389,10 +389,13 @@ TEST(BodyTypes, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
       {"LumpedParameters",
        {list, "substructures/bodies/lumped_body.hpp", "substructures/bodies/lumped_body.cpp"}},
       {"TouchedMatrixBodyParameters",
-       {list, "substructures/bodies/matrix_body.hpp", "substructures/bodies/matrix_body.cpp"}},
+       {list, "substructures/bodies/matrix_body.hpp", "substructures/bodies/matrix_body.cpp",
+        "substructures/bodies/matrix_keys.cpp", "substructures/bodies/nodal_body.hpp",
+        "substructures/bodies/nodal_body.cpp"}},
       {"MeshBodyParameters",
        {list, "substructures/bodies/mesh_body.hpp", "substructures/bodies/mesh_body.cpp",
-        "substructures/bodies/meshed_body.hpp", "substructures/bodies/meshed_body.cpp"}}};
+        "substructures/bodies/meshed_body.hpp", "substructures/bodies/meshed_body.cpp",
+        "substructures/bodies/nodal_body.cpp"}}};
   EXPECT_THAT(strangers_to(STRIDOR_SOURCE_DIR, types), IsEmpty());
 }
 
