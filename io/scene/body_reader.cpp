@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
+#include "io/imports/gmsh_program.hpp"
 #include "io/imports/matrix_market.hpp"
 #include "io/imports/mesh_file.hpp"
 
@@ -21,6 +22,10 @@ class FilesOfScene : public BodyFiles {
   }
   Mesh mesh(const std::string& key, const std::string& name) const override {
     return read_mesh_file(path_of_file(tree_, key_ + "." + key, name)).mesh;
+  }
+  std::string mesh_of_geometry(const std::string& key, const std::string& name,
+                               const MeshingOptions& options) const override {
+    return mesh_with_gmsh(path_of_file(tree_, key_ + "." + key, name), options);
   }
   SparseMatrix matrix(const std::vector<std::string>& rows) const override {
     return parse_matrix_rows(rows);
