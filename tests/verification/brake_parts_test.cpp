@@ -57,10 +57,11 @@ class BrakeParts : public testing::Test {
                                int wanted) {
     const std::string job = (folder_ / "job").string();
     std::ofstream deck(job + ".inp");
+    // Fields of a card have up to 20 letters.
     deck << "*NODE, NSET=NALL\n";
     const Mesh& mesh = *body.mesh;
     for (Eigen::Index node = 0; node < mesh.nodes.rows(); ++node)
-      deck << fmt::format("{}, {:.17g}, {:.17g}, {:.17g}\n", node + 1, mesh.nodes(node, 0),
+      deck << fmt::format("{}, {:.12e}, {:.12e}, {:.12e}\n", node + 1, mesh.nodes(node, 0),
                           mesh.nodes(node, 1), mesh.nodes(node, 2));
     deck << "*ELEMENT, TYPE=C3D10, ELSET=EALL\n";
     for (std::size_t e = 0; e < mesh.num_elements(); ++e) {
