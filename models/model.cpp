@@ -151,6 +151,12 @@ class ModelBuilder {
       finished.loads = std::move(loads[b]);
       finished.lowest_omitted = body.matrices.lowest_omitted;
       if (is_sparse && body.is_whole()) {
+        if (body.matrices.loss_stiffness.size() > 0) {
+          throw ConfigError(body.key() + ".material.loss_factor",
+                            fmt::format("goes with the modes of a reduction: give '{}' "
+                                        "reduction.fixed_interface_modes",
+                                        body.name));
+        }
         blocks.push_back(make_sparse(body.matrices));
         continue;
       }

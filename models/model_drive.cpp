@@ -45,12 +45,16 @@ std::vector<std::string> loads_in_y(const BodyMatrices& matrices, bool of_surfac
   return names;
 }
 
-/// The place of a body by an entry of `load_on` without the name of the body: a point or a surface.
+/// The place of a body by an entry of `load_on` without the name of the body: a point, a load of the
+/// body's own, or a surface.
 LoadedPlace place_to_load(const ModelBody& body, const std::string& place, const std::string& key) {
   const BodyMatrices& matrices = body.matrices;
   LoadedPlace found;
   if (const auto node = matrices.points.find(place); node != matrices.points.end()) {
     found = {matrices.displacement(node->second, 1), true};
+  } else if (const auto named = matrices.loads.find(place); named != matrices.loads.end()) {
+    // A load with a direction of its own, or of a surface along a named axis.
+    found.load = named->second;
   } else if (is_surface(matrices, place)) {
     const std::optional<DofSum> load = matrices.load(place + ".y");
     const std::vector<std::string> known = loads_in_y(matrices, true);
@@ -64,7 +68,9 @@ LoadedPlace place_to_load(const ModelBody& body, const std::string& place, const
     std::vector<std::string> known = names_in_map(matrices.points);
     for (const std::string& surface : names_in_map(matrices.surfaces)) known.push_back(surface);
     for (const std::string& surface : names_in_map(matrices.facets)) known.push_back(surface);
-    throw ConfigError(key, fmt::format("'{}' has no point or surface '{}'{} (it has: {})",
+    for (const std::string& other : names_in_map(matrices.loads))
+      if (other.find('.') == std::string::npos) known.push_back(other);
+    throw ConfigError(key, fmt::format("'{}' has no point, surface or load '{}'{} (it has: {})",
                                        body.name, place, did_you_mean(place, known),
                                        listed_names(known)));
   }

@@ -1,19 +1,15 @@
 #include "io/figures/gnuplot.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <deque>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -21,10 +17,8 @@
 
 #include "core/activity.hpp"
 #include "core/errors.hpp"
-#include "core/stop_token.hpp"
+#include "core/helper_program.hpp"
 #include "io/hdf5/part_file.hpp"
-
-extern char** environ;
 
 namespace stridor {
 namespace {
@@ -32,66 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* packages = "install the packages gnuplot-nox and fonts-dejavu-core";
-
-// A folder only this user can read, removed with all that is in it.
-class PrivateFolder {
- public:
-  explicit PrivateFolder(const fs::path& figure) {
-    std::error_code error;
-    const fs::path base = fs::temp_directory_path(error);
-    if (error) {
-      throw FileError(figure.string(), "",
-                      "cannot make a temporary folder (see TMPDIR): " + error.message());
-    }
-    std::string pattern = (base / "stridor-figure-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) {
-      throw FileError(
-          figure.string(), "",
-          fmt::format("cannot make a temporary folder '{}': {}", pattern, std::strerror(errno)));
-    }
-    path_ = pattern;
-    for (const fs::path& made : {script(), messages(), path_})
-      unfinished_.emplace_back(made.string());
-  }
-  PrivateFolder(const PrivateFolder&) = delete;
-  PrivateFolder& operator=(const PrivateFolder&) = delete;
-  ~PrivateFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  fs::path script() const { return path_ / "script.gp"; }
-  fs::path messages() const { return path_ / "messages"; }
-
- private:
-  fs::path path_;
-  std::deque<UnfinishedFile> unfinished_;
-};
-
-struct Outcome {
-  int spawn_error = 0;
-  int status = 0;
-};
-
-Outcome run_gnuplot(const std::string& script, const std::string& messages) {
-  std::array<std::string, 3> words{"gnuplot", "-d", script};  // -d: no start-up files
-  std::array<char*, 4> arguments{words[0].data(), words[1].data(), words[2].data(), nullptr};
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, messages.c_str(),
-                                   O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  pid_t child = -1;
-  Outcome outcome;
-  outcome.spawn_error =
-      posix_spawnp(&child, "gnuplot", &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (outcome.spawn_error != 0) return outcome;
-  const HelperProcess helper(child);
-  while (waitpid(child, &outcome.status, 0) < 0 && errno == EINTR) {
-  }
-  return outcome;
-}
 
 // Messages of gnuplot on one line, without those known to be harmless.
 std::string read_messages(const fs::path& path) {
@@ -206,10 +140,10 @@ void draw_figure(const fs::path& figure, const std::string& script, FigureSize s
   }
 
   const Activity drawing("drawing " + figure.filename().string());
-  const PrivateFolder scratch(figure);
+  const ScratchFolder scratch("figure", {"script.gp", "messages"}, figure.string());
   PartFile part(figure.string());
   part.made();
-  const fs::path script_path = scratch.script();
+  const fs::path script_path = scratch / "script.gp";
   {
     std::ofstream file(script_path, std::ios::binary);
     file << "set encoding utf8\n"
@@ -219,8 +153,10 @@ void draw_figure(const fs::path& figure, const std::string& script, FigureSize s
     if (!file)
       throw FileError(figure.string(), "", "cannot write a temporary script; is the disk full?");
   }
-  const fs::path messages_path = scratch.messages();
-  const Outcome outcome = run_gnuplot(script_path.string(), messages_path.string());
+  const fs::path messages_path = scratch / "messages";
+  // -d: no start-up files.
+  const HelperOutcome outcome =
+      run_helper({"gnuplot", "-d", script_path.string()}, "", messages_path.string());
   if (outcome.spawn_error == ENOENT) {
     throw FileError(figure.string(), "", fmt::format("gnuplot is not installed; {}", packages));
   }

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "core/errors.hpp"
+#include "io/imports/gmsh_program.hpp"
 #include "io/imports/matrix_file.hpp"
 #include "io/imports/matrix_market.hpp"
 #include "io/imports/mesh_file.hpp"
@@ -35,6 +36,11 @@ NodeTable NamedFiles::nodes(const std::string& key, const std::string& name) con
 
 ModalTest NamedFiles::modal_test(const std::string& key, const std::string& name) const {
   return read_uff_file(path_of_(key, name));
+}
+
+std::string NamedFiles::mesh_of_geometry(const std::string& key, const std::string& name,
+                                         const MeshingOptions& options) const {
+  return mesh_with_gmsh(path_of_(key, name), options);
 }
 
 SparseMatrix NamedFiles::matrix(const std::vector<std::string>& rows) const {

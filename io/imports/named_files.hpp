@@ -24,6 +24,8 @@ class NamedFiles : public BodyFiles {
   UnknownTable unknowns(const std::string& key, const std::string& name) const override;
   NodeTable nodes(const std::string& key, const std::string& name) const override;
   ModalTest modal_test(const std::string& key, const std::string& name) const override;
+  std::string mesh_of_geometry(const std::string& key, const std::string& name,
+                               const MeshingOptions& options) const override;
   SparseMatrix matrix(const std::vector<std::string>& rows) const override;
 
  private:

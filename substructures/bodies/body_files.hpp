@@ -17,6 +17,15 @@ struct NamedFile {
   std::string* name = nullptr;  ///< as written, or from the root once that has been made so
 };
 
+/// How a geometry is divided into elements.
+struct MeshingOptions {
+  double size = 0.0;  ///< of the largest elements, in the unit of the file
+  int order = 2;      ///< 1 or 2
+};
+
+/// Whether a file is a geometry by the ending of its name: .geo, .step, .stp, .brep, .iges, .igs.
+bool is_geometry(const std::string& name);
+
 /// What the files of one body hold. Whoever knows scenes and formats reads them.
 class BodyFiles {
  public:
@@ -32,6 +41,9 @@ class BodyFiles {
   /// What the rows of matrices are, and a table of places. Parameters and errors as matrix().
   virtual UnknownTable unknowns(const std::string& key, const std::string& name) const = 0;
   virtual NodeTable nodes(const std::string& key, const std::string& name) const = 0;
+  /// File of the mesh of a geometry, which is made where it is not there. Errors as matrix().
+  virtual std::string mesh_of_geometry(const std::string& key, const std::string& name,
+                                       const MeshingOptions& options) const = 0;
   /// A square matrix from rows of numbers, given in the place of a file.
   /// @throws std::invalid_argument saying which row is wrong
   virtual SparseMatrix matrix(const std::vector<std::string>& rows) const = 0;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/errors.hpp"
+#include "core/units.hpp"
 #include "substructures/bodies/meshed_body.hpp"
 
 namespace stridor {
@@ -18,83 +20,26 @@ std::size_t count_nodes(const Mesh& mesh, const std::string& name) {
 
 }  // namespace
 
-const Schema& MeshSupportParameters::schema() {
-  using P = MeshSupportParameters;
-  static const Schema keys =
-      SchemaOf<P>("mesh_support")
-          .text_list("on", &P::on, {.doc = "Surfaces or node sets that are held."})
-          .text_list(
-              "held", &P::held,
-              {.doc = "Directions in which they are: x, y, z; default: all.", .optional = true})
-          .check([](const P& support, std::vector<Problem>& problems) {
-            for (const std::string& direction : support.held) {
-              if (direction == "x" || direction == "y" || direction == "z") continue;
-              problems.push_back(
-                  {"held", fmt::format("'{}' is no direction: x, y or z", direction), {}, 0, 0});
-            }
-            if (support.on.empty())
-              problems.push_back({"on", "must name a surface or node set", {}, 0, 0});
-          });
-  return keys;
-}
-
-const Schema& MeshGuideParameters::schema() {
-  using P = MeshGuideParameters;
-  static const Schema keys =
-      SchemaOf<P>("mesh_guide")
-          .text_list(
-              "on", &P::on,
-              {.doc = "Surfaces or node sets that follow the drive along x, are held across, "
-                      "and share one displacement along y, on which its load acts."})
-          .check([](const P& guide, std::vector<Problem>& problems) {
-            if (guide.on.empty())
-              problems.push_back({"on", "must name a surface or node set", {}, 0, 0});
-          });
-  return keys;
-}
-
-const Schema& MeshPointParameters::schema() {
-  using P = MeshPointParameters;
-  static const Schema keys =
-      SchemaOf<P>("mesh_point")
-          .real_list("at", &P::at,
-                     {.doc = "Place in the frame of the mesh; within an element the point moves as "
-                             "its shape functions have it.",
-                      .unit = "m",
-                      .optional = true})
-          .integer("node", &P::node,
-                   {.doc = "Number of a node in the file, in the place of `at`.", .optional = true})
-          .text("mean_of", &P::mean_of,
-                {.doc = "In the place of `at`: a surface, of which the point has the mean "
-                        "displacement, or a node set, of which it has that of the nodes.",
-                 .optional = true})
-          .check([](const P& point, std::vector<Problem>& problems) {
-            const auto superfluous = [&](const char* key) {
-              problems.push_back({key,
-                                  "is not used: the point is given already; leave one of them out",
-                                  {},
-                                  0,
-                                  0});
-            };
-            const bool is_placed = !point.at.empty();
-            if (point.node && is_placed) superfluous("node");
-            if (!point.mean_of.empty() && (point.node || is_placed)) superfluous("mean_of");
-            if (!is_placed && !point.node && point.mean_of.empty())
-              problems.push_back({"at", "is missing; give it, `node` or `mean_of`", {}, 0, 0});
-            expect_components(point.at, "at", true, problems);
-          });
-  return keys;
-}
-
 const Schema& MeshBodyParameters::schema() {
   using P = MeshBodyParameters;
   static const Schema keys =
       SchemaOf<P>("mesh_body")
           .text("file", &P::file,
                 {.doc = "The mesh, from the folder of the scene: Gmsh (.msh of version 4.1 or 2.2) "
-                        "or Abaqus and CalculiX (.inp)."})
+                        "or Abaqus and CalculiX (.inp); or a geometry (.geo, .step, .stp, .brep, "
+                        ".iges, .igs), which the program gmsh meshes."})
           .text("length_unit", &P::length_unit,
                 {.doc = "Unit of the coordinates in the file.", .optional = true})
+          .real("mesh_size", &P::mesh_size,
+                {.doc = "Of a geometry: the largest size of its elements.",
+                 .unit = "m",
+                 .range = Range::positive(),
+                 .optional = true})
+          .integer("mesh_order", &P::mesh_order,
+                   {.doc = "Of a geometry: 1 for linear elements, 2 for those with nodes in the "
+                           "middle of their edges.",
+                    .optional = true,
+                    .range = Range::between(1, 2)})
           .real("thickness", &P::thickness,
                 {.doc = "Of a planar mesh, across its plane.",
                  .unit = "m",
@@ -108,7 +53,7 @@ const Schema& MeshBodyParameters::schema() {
                  .unit = "rad",
                  .range = Range::between(-7.0, 7.0),
                  .optional = true})
-          .section("material", &P::material, {.doc = "Isotropic linear elastic material."})
+          .section("material", &P::material, {.doc = "Linear elastic material."})
           .named_sections(
               "materials", &P::materials,
               {.doc = "Other materials of element sets, by name of the set.", .optional = true})
@@ -122,9 +67,22 @@ const Schema& MeshBodyParameters::schema() {
           .section("guided", &P::guided, {.doc = "What follows the drive.", .optional = true})
           .named_sections("points", &P::points,
                           {.doc = "Points that touch others or are recorded.", .optional = true})
+          .named_sections("rigid_regions", &P::rigid_regions,
+                          {.doc = "Sets of nodes that move as one rigid body, by name.",
+                           .optional = true})
+          .named_sections("ties", &P::ties,
+                          {.doc = "Surfaces that are bonded though their meshes do not match, by "
+                                  "name.",
+                           .optional = true})
+          .named_sections("masses", &P::masses,
+                          {.doc = "Rigid masses at points and rigid regions, by name.",
+                           .optional = true})
+          .named_sections("loads", &P::loads,
+                          {.doc = "Pressures and tractions on surfaces, by name.",
+                           .optional = true})
           .named_sections("springs", &P::springs,
-                          {.doc = "Springs to the ground, by name; the damping of the body "
-                                  "includes them.",
+                          {.doc = "Springs and dampers to the ground, by name; the damping of the "
+                                  "body includes the springs.",
                            .optional = true})
           .section("interface", &P::interface,
                    {.doc = "Surface nodes kept for contact.", .optional = true})
@@ -139,16 +97,42 @@ bool MeshBodyParameters::is_spatial() const {
   return mesh && std::any_of(mesh->shapes.begin(), mesh->shapes.end(), [](ElementShape shape) {
            return facts_of(shape).dimension == 3;
          });
+double MeshBodyParameters::metres_per_unit() const {
+  try {
+    return parse_quantity("1 " + length_unit, "m");
+  } catch (const std::invalid_argument& error) {
+    throw ConfigError("length_unit", error.what());
+  }
+}
+
+std::vector<NamedFile> MeshBodyParameters::files() {
+  std::vector<NamedFile> named{{"file", &file}};
+  if (!kept_mesh.empty()) named.push_back({"mesh", &kept_mesh});
+  return named;
 }
 
 void MeshBodyParameters::read(const BodyFiles& files) {
-  mesh = std::make_shared<const Mesh>(files.mesh("file", file));
+  if (!is_geometry(file)) {
+    if (mesh_size)
+      throw ConfigError("mesh_size", "is not used: the file is a mesh, not a geometry");
+    mesh = std::make_shared<const Mesh>(files.mesh("file", file));
+    return;
+  }
+  if (!mesh_size)
+    throw ConfigError("mesh_size",
+                      "is missing: the file is a geometry, which is divided into elements of it");
+  kept_mesh = files.mesh_of_geometry("file", file, {*mesh_size / metres_per_unit(), mesh_order});
+  mesh = std::make_shared<const Mesh>(files.mesh("mesh", kept_mesh));
 }
 
 bool MeshBodyParameters::take_contents(const BodyParameters& other) {
   const auto* given = dynamic_cast<const MeshBodyParameters*>(&other);
-  if (given == nullptr || !given->mesh || given->file != file) return false;
+  if (given == nullptr || !given->mesh || given->file != file ||
+      given->mesh_size != mesh_size || given->mesh_order != mesh_order ||
+      (mesh_size && given->length_unit != length_unit))
+    return false;
   mesh = given->mesh;
+  kept_mesh = given->kept_mesh;
   return true;
 }
 

@@ -10,33 +10,14 @@
 #include "core/schema.hpp"
 #include "substructures/bodies/beam.hpp"
 #include "substructures/bodies/body_parameters.hpp"
+#include "substructures/bodies/mesh_attachments.hpp"
+#include "substructures/bodies/mesh_material.hpp"
 #include "substructures/bodies/mesh_surface_parameters.hpp"
 #include "substructures/bodies/surface_springs.hpp"
 #include "substructures/elements/elastic_law.hpp"
 #include "substructures/elements/mesh.hpp"
 
 namespace stridor {
-
-/// Nodes that are held.
-struct MeshSupportParameters {
-  std::vector<std::string> on;    ///< surfaces or node sets
-  std::vector<std::string> held;  ///< directions; empty: all
-  static const Schema& schema();
-};
-
-/// Nodes that follow the drive, and share one displacement along y on which its load acts.
-struct MeshGuideParameters {
-  std::vector<std::string> on;  ///< surfaces or node sets
-  static const Schema& schema();
-};
-
-/// A point of the body.
-struct MeshPointParameters {
-  std::vector<double> at;            ///< place in the mesh, m; within an element: interpolated
-  std::optional<std::int64_t> node;  ///< label in the file
-  std::string mean_of;               ///< a surface: its mean displacement; a node set: its nodes'
-  static const Schema& schema();
-};
 
 /// All elements of a mesh as they are drawn.
 std::vector<DrawnElement> drawn_elements(const Mesh& mesh);
@@ -48,23 +29,33 @@ struct MeshBodyParameters : BodyParametersOf<MeshBodyParameters> {
 
   std::string file;
   std::string length_unit = "m";    ///< of the coordinates in the file
+  std::optional<double> mesh_size;  ///< of the elements of a geometry that is meshed, m
+  int mesh_order = 2;               ///< 1: linear elements, 2: with nodes in the middle of edges
   std::optional<double> thickness;  ///< of a planar mesh, m
   PlaneState plane = PlaneState::stress;
   double angle = 0.0;  ///< rad
-  MaterialParameters material;
-  std::map<std::string, MaterialParameters> materials;  ///< by element set
+  MeshMaterialParameters material;
+  std::map<std::string, MeshMaterialParameters> materials;  ///< by element set
   RayleighDamping damping;
   std::map<std::string, MeshSurfaceParameters> surfaces;
   std::map<std::string, MeshSupportParameters> supports;
   std::optional<MeshGuideParameters> guided;
   std::map<std::string, MeshPointParameters> points;
+  std::map<std::string, MeshRigidRegionParameters> rigid_regions;
+  std::map<std::string, MeshTieParameters> ties;
+  std::map<std::string, MeshMassParameters> masses;
+  std::map<std::string, MeshLoadParameters> loads;
   std::map<std::string, SurfaceSpringParameters> springs;
   InterfaceParameters interface;
   std::optional<ReductionParameters> reduction;  ///< absent: every unknown is kept
   std::shared_ptr<const Mesh> mesh;              ///< of `file`, as it is there
+  std::string kept_mesh;                         ///< file of the mesh of a geometry; else empty
   static const Schema& schema();
 
-  std::vector<NamedFile> files() override { return {{"file", &file}}; }
+  /// @throws ConfigError
+  double metres_per_unit() const;
+
+  std::vector<NamedFile> files() override;
   void read(const BodyFiles& files) override;
   bool take_contents(const BodyParameters& other) override;
   BodyMatrices make() const override;

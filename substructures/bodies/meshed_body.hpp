@@ -2,20 +2,9 @@
 #pragma once
 
 #include "substructures/bodies/mesh_body.hpp"
+#include "substructures/bodies/nodal_matrices.hpp"
 
 namespace stridor {
-
-/// Matrices over displacements of the nodes of a mesh that do not come from its elements.
-struct NodalMatrices {
-  int dimension = 3;  ///< of the displacements of a node
-  SparseMatrix mass, stiffness;
-  RayleighDamping damping;
-  SparseMatrix velocity, circulatory;  ///< as BodyMatrices has them
-  /// Row of displacement `dimension` x node + direction; `BodyMatrices::held` where they have none.
-  std::vector<int> rows;
-  /// Row of rotation 3 x node + axis likewise; empty where no node turns.
-  std::vector<int> rotations;
-};
 
 /// The mesh of a body in metres, turned, with the surfaces that its scene adds.
 /// @throws ConfigError with key paths below the body; std::invalid_argument if no mesh was read

@@ -56,6 +56,10 @@ const Schema& SurfaceSpringParameters::schema() {
           .section("stiffness", &P::stiffness,
                    {.doc = "A number, along `direction`, or a matrix; of the whole spring.",
                     .number_key = "along"})
+          .section("damping", &P::damping,
+                   {.doc = "Of a damper beside it, likewise.",
+                    .optional = true,
+                    .number_key = "along"})
           .section(
               "direction", &P::direction,
               {.doc = "Of a stiffness that is a number: an angle in the plane against +x, or a "
@@ -64,7 +68,9 @@ const Schema& SurfaceSpringParameters::schema() {
                .number_key = "angle",
                .list_key = "vector"})
           .check([](const P& spring, std::vector<Problem>& problems) {
-            if (spring.direction.has_value() == spring.stiffness.along.has_value()) return;
+            const bool is_along =
+                spring.stiffness.along || (spring.damping && spring.damping->along);
+            if (spring.direction.has_value() == is_along) return;
             problems.push_back({"direction",
                                 spring.direction
                                     ? "is not used: this stiffness is a matrix, which has its "
@@ -83,6 +89,10 @@ DofSum sum_of(const BodyMatrices& body, const NodeShares& shares, std::size_t ax
     for (const DofWeight& dof : body.displacement(share.node, axis))
       all.push_back({dof.dof, share.share * dof.weight});
   }
+  return merged(std::move(all));
+}
+
+DofSum merged(DofSum all) {
   std::stable_sort(all.begin(), all.end(),
                    [](const DofWeight& a, const DofWeight& b) { return a.dof < b.dof; });
   DofSum sum;
@@ -99,11 +109,16 @@ DofSum sum_of(const BodyMatrices& body, const NodeShares& shares, std::size_t ax
 
 void add_dependent_point(const std::string& name, const Eigen::Vector3d& at,
                          const NodeShares& shares, BodyMatrices& body) {
+  std::array<DofSum, 3> sums;
+  for (std::size_t axis = 0; axis < 3; ++axis) sums[axis] = sum_of(body, shares, axis);
+  add_dependent_point(name, at, std::move(sums), body);
+}
+
+void add_dependent_point(const std::string& name, const Eigen::Vector2d& at,
+                         std::array<DofSum, 3> sums, BodyMatrices& body) {
   const auto node = static_cast<int>(body.node_dofs.size());
   body.nodes.conservativeResize(node + 1, Eigen::NoChange);
   body.nodes.row(node) = at.transpose();
-  std::array<DofSum, 3> sums;
-  for (std::size_t axis = 0; axis < 3; ++axis) sums[axis] = sum_of(body, shares, axis);
   body.node_dofs.push_back({BodyMatrices::held, BodyMatrices::held});
   if (!body.across.empty()) body.across.push_back(BodyMatrices::held);
   body.dependent[node] = std::move(sums);
@@ -120,7 +135,7 @@ void add_surface_loads(const std::string& name, const NodeShares& shares, BodyMa
 void add_surface_springs(const std::map<std::string, SurfaceSpringParameters>& springs,
                          const std::function<NodeShares(const std::string& on)>& shares_of,
                          const std::vector<std::string>& known_names, BodyMatrices& body) {
-  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<Eigen::Triplet<double>> entries, damping_entries;
   for (const auto& [name, spring] : springs) {
     const std::string key = "springs." + name;
     if (body.surfaces.contains(name))
@@ -136,13 +151,25 @@ void add_surface_springs(const std::map<std::string, SurfaceSpringParameters>& s
         spring.direction ? spring.direction->unit() : Eigen::Vector3d(Eigen::Vector3d::Zero());
     const Eigen::Matrix3d stiffness = spring_matrix(spring.stiffness, along);
     add_spring(stiffness, shares, body, entries);
+    if (spring.damping)
+      add_spring(spring_matrix(*spring.damping, along), shares, body, damping_entries);
     for (std::size_t axis = 0; axis < 3; ++axis)
       body.loads[name + "." + axis_names[axis]] = ground_end(stiffness, shares, body, axis);
   }
-  if (entries.empty()) return;
-  SparseMatrix stiffness(body.num_dofs(), body.num_dofs());
-  stiffness.setFromTriplets(entries.begin(), entries.end());
-  body.stiffness += stiffness;
+  const Eigen::Index n = body.num_dofs();
+  if (!entries.empty()) {
+    SparseMatrix stiffness(n, n);
+    stiffness.setFromTriplets(entries.begin(), entries.end());
+    body.stiffness += stiffness;
+  }
+  if (damping_entries.empty()) return;
+  SparseMatrix damping(n, n);
+  damping.setFromTriplets(damping_entries.begin(), damping_entries.end());
+  if (body.velocity.size() == 0) {
+    body.velocity.resize(n, n);
+    body.circulatory.resize(n, n);
+  }
+  body.velocity += damping;
 }
 
 }  // namespace stridor

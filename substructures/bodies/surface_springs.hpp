@@ -1,6 +1,7 @@
 // Loads and springs on surfaces of bodies.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <optional>
@@ -20,13 +21,17 @@ struct NodeShare {
 };
 using NodeShares = std::vector<NodeShare>;
 
-/// A spring to the ground, spread evenly over a surface or at a point.
+/// A spring to the ground, with a damper or without, spread evenly over a surface or at a point.
 struct SurfaceSpringParameters {
   std::string on;  ///< a surface or point
   SpringMatrixParameters stiffness;
+  std::optional<DamperMatrixParameters> damping{};  ///< of a damper beside it
   std::optional<SpringDirectionParameters> direction;  ///< of a stiffness along one
   static const Schema& schema();
 };
+
+/// Every DoF once, ascending, with the sum of its weights.
+DofSum merged(DofSum all);
 
 /// Σ share u of nodes along x (0), y (1) or z (2); every DoF once.
 DofSum sum_of(const BodyMatrices& body, const NodeShares& shares, std::size_t axis);
@@ -36,10 +41,15 @@ DofSum sum_of(const BodyMatrices& body, const NodeShares& shares, std::size_t ax
 void add_dependent_point(const std::string& name, const Eigen::Vector3d& at,
                          const NodeShares& shares, BodyMatrices& body);
 
+/// A point of which the displacements along x, y and z are given as sums.
+void add_dependent_point(const std::string& name, const Eigen::Vector2d& at,
+                         std::array<DofSum, 3> sums, BodyMatrices& body);
+
 /// Loads of 1 N along x, y and z that nodes share, BodyMatrices::loads: "<name>.<x|y|z>".
 void add_surface_loads(const std::string& name, const NodeShares& shares, BodyMatrices& body);
 
-/// Adds the stiffness of springs, and what they exert when their ground ends move.
+/// Adds the stiffness of springs, the damping of dampers (to BodyMatrices::velocity), and what the
+/// springs exert when their ground ends move.
 /// @param shares_of the nodes that a spring on a surface or point holds; empty where there is none
 ///                  of this name
 /// @throws ConfigError, with keys below that of the body, where there is no such surface or point

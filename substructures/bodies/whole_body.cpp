@@ -58,6 +58,7 @@ ReducedBody make_whole(const BodyMatrices& body, std::span<const int> watched) {
   whole.base_inertia = body.base_inertia;
   whole.num_interface = n;
   if (body.velocity.size() > 0) whole.coupled = {body.velocity, body.circulatory};
+  whole.loss_stiffness = body.loss_stiffness;
   whole.rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(watched.size()), n);
   for (std::size_t r = 0; r < watched.size(); ++r) {
     if (watched[r] == BodyMatrices::held) continue;

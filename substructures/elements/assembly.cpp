@@ -134,13 +134,16 @@ ElementNodes<shape> places_of(const Mesh& mesh, std::size_t element) {
 /// Adds the matrices of one element.
 template <ElementShape shape>
 void add_to_mesh(const Mesh& mesh, std::size_t element, const ElementSection& section,
-                 const ListOfLists& neighbours, MeshMatrices& matrices) {
+                 const SectionFactors& factors, const ListOfLists& neighbours,
+                 MeshMatrices& matrices) {
   constexpr int dimension = ElementSizes<shape>::dimension;
   constexpr int num_nodes = ElementSizes<shape>::num_nodes;
   const ElementNodes<shape> places = places_of<shape>(mesh, element);
   const std::int64_t label = mesh.element_labels[element];
-  const ElementStiffness<shape> stiffness = element_stiffness<shape>(places, section, label);
-  const NodalMass<shape> mass = element_mass<shape>(places, section, label);
+  ElementStiffness<shape> stiffness = element_stiffness<shape>(places, section, label);
+  NodalMass<shape> mass = element_mass<shape>(places, section, label);
+  if (factors.stiffness != 1.0) stiffness *= factors.stiffness;
+  if (factors.mass != 1.0) mass *= factors.mass;
   const std::span<const int> nodes = mesh.nodes_of(element);
   double* const stiffness_values = matrices.stiffness.valuePtr();
   double* const mass_values = matrices.mass.valuePtr();
@@ -211,14 +214,24 @@ MeshSections one_section(const Mesh& mesh, const ElementSection& section) {
 }
 
 MeshMatrices assemble_mesh(const Mesh& mesh, const MeshSections& sections) {
+  const std::vector<SectionFactors> ones(sections.sections.size(), {1.0, 1.0});
+  return assemble_mesh(mesh, sections, ones);
+}
+
+MeshMatrices assemble_mesh(const Mesh& mesh, const MeshSections& sections,
+                           std::span<const SectionFactors> factors) {
   check_sections(mesh, sections);
+  if (factors.size() != sections.sections.size())
+    throw std::invalid_argument("assemble_mesh: not one factor per section");
   const int dimension = mesh.dimension();
   const ListOfLists neighbours = neighbours_of_nodes(mesh);
   MeshMatrices matrices{zeros_between(neighbours, dimension, dimension),
                         zeros_between(neighbours, dimension, 1)};
   for (std::size_t element = 0; element < mesh.num_elements(); ++element) {
+    const SectionFactors& factor = factors[static_cast<std::size_t>(sections.of_element[element])];
+    if (factor.stiffness == 0.0 && factor.mass == 0.0) continue;
     with_shape(mesh.shapes[element], [&]<ElementShape shape>() {
-      add_to_mesh<shape>(mesh, element, sections.of(element), neighbours, matrices);
+      add_to_mesh<shape>(mesh, element, sections.of(element), factor, neighbours, matrices);
     });
   }
   return matrices;

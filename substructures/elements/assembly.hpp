@@ -40,6 +40,17 @@ struct MeshMatrices {
 ///   section per element; if the stiffness had 2³¹ entries or more
 MeshMatrices assemble_mesh(const Mesh& mesh, const MeshSections& sections);
 
+/// What the matrices of the elements of a section are multiplied by.
+struct SectionFactors {
+  double stiffness = 0.0;
+  double mass = 0.0;
+};
+/// Σ of factor x element matrix, over the elements of which the section has one that is not 0.
+/// @param factors one per section
+/// @throws std::invalid_argument as assemble_mesh(), or for another number of factors
+MeshMatrices assemble_mesh(const Mesh& mesh, const MeshSections& sections,
+                           std::span<const SectionFactors> factors);
+
 /// Nodes that no element has, ascending.
 std::vector<int> nodes_without_elements(const Mesh& mesh);
 

@@ -157,7 +157,7 @@ ElementStiffness<shape> element_stiffness(const ElementNodes<shape>& nodes,
   using Parts = StiffnessParts<dimension, num_functions>;
   if (section.law.dimension() != dimension)
     throw std::invalid_argument("element_stiffness: the law is for another dimension");
-  const typename Parts::Law law = section.law.matrix();
+  typename Parts::Law law = section.law.matrix();
   const double thickness = dimension == 2 ? section.thickness : 1.0;
 
   // Of the centre, for the modes: Σ w det(J) ∂(mode) = 0, as the patch test requires.
@@ -184,6 +184,11 @@ ElementStiffness<shape> element_stiffness(const ElementNodes<shape>& nodes,
         gradients.col(Sizes::num_nodes + mode) =
             -2.0 * point.place(mode) * centre_determinant / determinant * centre_inverse.col(mode);
       }
+    }
+    if (section.law_at) {
+      Eigen::Vector3d place = Eigen::Vector3d::Zero();
+      place.head<dimension>() = nodes.transpose().lazyProduct(point.values);
+      law = section.law_at(place);
     }
     parts.add(gradients, law, point.weight * determinant * thickness);
   }

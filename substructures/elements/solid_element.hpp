@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "substructures/elements/elastic_law.hpp"
@@ -17,6 +18,8 @@ struct ElementSection {
   double density = 0.0;    ///< ρ, kg/m³, > 0
   double thickness = 1.0;  ///< w of planar elements across the plane, m, > 0; of no use in volumes
   Integration integration = Integration::full;
+  /// D at a place, m, where the axes of the material turn within the body; empty: that of `law`.
+  std::function<ElasticLaw::Matrix(const Eigen::Vector3d& place)> law_at{};
 };
 
 /// Sizes of a shape that the compiler knows.

@@ -52,6 +52,8 @@ struct BodyMatrices {
   RayleighDamping damping;
   /// Terms beside these (CoupledTerms), N x N; both empty where there are none.
   SparseMatrix velocity, circulatory;
+  /// Structural damping: the imaginary part Σ η K of the complex stiffness, N x N, N/m; or empty.
+  SparseMatrix loss_stiffness;
 
   Eigen::MatrixX3d nodes;  ///< undeformed positions in the body's frame, m
   std::vector<std::array<int, 2>> node_dofs;       ///< (x, y) DoF of every node, or `held`

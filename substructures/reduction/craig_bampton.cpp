@@ -203,11 +203,15 @@ ReducedBody make_craig_bampton(const BodyMatrices& body, std::span<const int> in
     return rows;
   };
   reduced.rows = rows_of(watched);
-  if (body.velocity.size() > 0) {
+  if (body.velocity.size() > 0 || body.loss_stiffness.size() > 0) {
     std::vector<int> all(static_cast<std::size_t>(body.num_dofs()));
     std::iota(all.begin(), all.end(), 0);
     const Eigen::MatrixXd T = rows_of(all);
-    reduced.coupled = {T.transpose() * (body.velocity * T), T.transpose() * (body.circulatory * T)};
+    if (body.velocity.size() > 0)
+      reduced.coupled = {T.transpose() * (body.velocity * T),
+                         T.transpose() * (body.circulatory * T)};
+    if (body.loss_stiffness.size() > 0)
+      reduced.loss_stiffness = T.transpose() * (body.loss_stiffness * T);
   }
 
   if (body.base_inertia.size() > 0) {

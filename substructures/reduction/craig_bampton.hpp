@@ -23,6 +23,7 @@ struct ReducedBody {
   /// the full stiffness that cancel in the motion of a soft or free body. 0 where nothing cancels.
   double interface_rounding = 0.0;
   CoupledTerms coupled;            ///< empty where there are none
+  Eigen::MatrixXd loss_stiffness;  ///< Tᵀ (Σ η K) T, n x n, N/m; empty where there is none
 
   Eigen::Index size() const { return mass.rows(); }
 };

@@ -13,6 +13,24 @@
 #include "substructures/matrices/symmetric_eigenpairs.hpp"
 
 namespace stridor {
+namespace {
+
+/// V += diag(ω)^(-1/2) Φᵀ (Σ η K) Φ diag(ω)^(-1/2): the viscous damping by which every mode loses at
+/// its own frequency what the complex stiffness takes from it (docs/theory.md, 1.7).
+void add_structural_damping(const Eigen::MatrixXd& loss_stiffness, ModalBody& modal) {
+  const Eigen::Index n = modal.size();
+  // A rigid motion strains nothing.
+  const Eigen::VectorXd weights =
+      (modal.omega.array() > 0.0)
+          .select(modal.omega.cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse(),
+                  0.0);
+  const Eigen::MatrixXd shapes = modal.shapes * weights.asDiagonal();
+  if (modal.coupled.is_empty())
+    modal.coupled = {Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n)};
+  modal.coupled.velocity += shapes.transpose() * loss_stiffness * shapes;
+}
+
+}  // namespace
 
 namespace {
 
@@ -76,6 +94,7 @@ ModalBody make_modal(const ReducedBody& body) {
   if (body.base_inertia.size() > 0)
     modal.base_inertia = modal.shapes.transpose() * body.base_inertia;
   modal.coupled = body.coupled.in(modal.shapes);
+  if (body.loss_stiffness.size() > 0) add_structural_damping(body.loss_stiffness, modal);
   return modal;
 }
 

@@ -252,7 +252,7 @@ TEST(SceneDrives, RefuseWhatIsNotThere) {
   drive.moves = {};
   drive.load_on = {"cantilever.tpo"};
   EXPECT_THAT(refusal({{"feed", drive}}),
-              HasSubstr("drives.feed.load_on.0: 'cantilever' has no point or surface 'tpo', did "
+              HasSubstr("drives.feed.load_on.0: 'cantilever' has no point, surface or load 'tpo', did "
                         "you mean 'top'?"));
   drive.load_on = {"cantilever.top", "cantilever.top"};
   EXPECT_THAT(refusal({{"feed", drive}}),

@@ -89,7 +89,7 @@ inline std::vector<ElementSide> outer_sides(const Mesh& mesh) {
 /// Moves the nodes of a mesh without middles that are not on its boundary.
 inline void distort_inside(Mesh& mesh, double most) {
   std::vector<bool> is_outer(mesh.num_nodes(), false);
-  for (const ElementSide& side : outer_sides(mesh)) {
+  for (const ElementSide& side : test::outer_sides(mesh)) {
     const auto element = static_cast<std::size_t>(side.element);
     const SideNodes& nodes =
         facts_of(mesh.shapes[element]).sides[static_cast<std::size_t>(side.side)];

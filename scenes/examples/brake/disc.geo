@@ -1,0 +1,3 @@
+// The disc of brake.geo alone.
+part = 1;
+Include "brake.geo";

@@ -1,0 +1,3 @@
+// One pad of brake.geo alone.
+part = 2;
+Include "brake.geo";
