@@ -10,18 +10,22 @@
 namespace stridor {
 namespace {
 
-/// Frequencies and damping ratios of a reduced body; the damping is the one after its schedule.
-void write_modes(RunFileWriter& writer, const SystemBody& body) {
-  const ModalBody& modal = body.modal;
-  std::vector<double> frequency;
-  std::vector<double> damping_ratio;
-  for (const double omega : modal.omega) {
-    frequency.push_back(omega / (2.0 * std::numbers::pi));
-    damping_ratio.push_back(
-        omega > 0.0 ? 0.5 * (modal.damping.alpha / omega + modal.damping.beta * omega) : 0.0);
+/// Frequencies and damping ratios of the reduced bodies; the damping is the one after its schedule.
+std::vector<StaticArray> modes_of(const System& system) {
+  std::vector<StaticArray> arrays;
+  for (const SystemBody& body : system.bodies) {
+    const ModalBody& modal = body.modal;
+    std::vector<double> frequency;
+    std::vector<double> damping_ratio;
+    for (const double omega : modal.omega) {
+      frequency.push_back(omega / (2.0 * std::numbers::pi));
+      damping_ratio.push_back(
+          omega > 0.0 ? 0.5 * (modal.damping.alpha / omega + modal.damping.beta * omega) : 0.0);
+    }
+    arrays.push_back({"/modal/" + body.name + "/frequency", std::move(frequency), "Hz"});
+    arrays.push_back({"/modal/" + body.name + "/damping_ratio", std::move(damping_ratio), "1"});
   }
-  writer.write_static("/modal/" + body.name + "/frequency", frequency, "Hz");
-  writer.write_static("/modal/" + body.name + "/damping_ratio", damping_ratio, "1");
+  return arrays;
 }
 
 /// One array per property of the bursts, so that any reader of HDF5 can take them.
@@ -86,8 +90,7 @@ Transient::Transient(const LoadedScene& loaded, const RunOutput& output)
   writer_.emplace(
       file_, output.overwrite,
       run_header(output.command_line, loaded.text, loaded.resolved(), scene_files(loaded)),
-      driver_->series());
-  for (const SystemBody& body : model_.system.bodies) write_modes(*writer_, body);
+      driver_->series(), RunFileOptions{}, modes_of(model_.system));
   begin();
   write_checkpoint();
   file_seconds_ = seconds_since(file_start);

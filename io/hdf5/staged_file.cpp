@@ -320,26 +320,31 @@ int StagedFile::copy_to(int descriptor) const {
   return 0;
 }
 
-int StagedFile::commit_by_copy() {
-  if (is_frozen_ || blocks_.empty()) return 0;
-  // A file that was moved or replaced meanwhile keeps its name to itself.
-  if (!is_named(descriptor_, path_)) return commit();
+/// @return 0, or the error number of the system; nothing has changed then
+int StagedFile::replace_by_copy() {
   PartFile part(path_);
   const int copy = ::open(part.path().c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (copy < 0) return commit();
+  if (copy < 0) return errno;
   part.made();
   lock_for_writing(copy);
-  bool is_whole = copy_to(copy) == 0;
-  if (is_whole) {
+  int error = copy_to(copy);
+  if (error == 0) {
     try {
       part.replace();
     } catch (const FileError&) {
-      is_whole = false;
+      error = EIO;
     }
   }
-  if (is_whole) is_whole = dup3(copy, descriptor_, O_CLOEXEC) >= 0;
+  if (error == 0 && dup3(copy, descriptor_, O_CLOEXEC) < 0) error = errno;
   ::close(copy);
-  if (!is_whole) return commit();
+  return error;
+}
+
+int StagedFile::commit_by_copy(WithoutRoom otherwise) {
+  if (is_frozen_ || blocks_.empty()) return 0;
+  // A file that was moved or replaced meanwhile keeps its name to itself.
+  const int error = is_named(descriptor_, path_) ? replace_by_copy() : ESTALE;
+  if (error != 0) return otherwise == WithoutRoom::fail ? settle(error) : commit();
   written_end_ = allocated_end_;
   if (observer_) observer_();
   return settle(0);

@@ -26,9 +26,13 @@ namespace stridor {
 ///
 /// The file then is readable after every single write. It takes for granted that rows are only
 /// appended: raw data in front of len(/time) do not change, and no block is freed and used anew.
-/// Changes of another kind (new datasets, results) go by `commit_by_copy`.
+/// Changes of another kind (new datasets, results) go by `commit_by_copy`. What removes links has no
+/// safe order at all: HDF5 moves those that stay from one piece of an object header to another.
 class StagedFile {
  public:
+  /// What a commit by a copy does where there is no room for one.
+  enum class WithoutRoom { change_in_place, fail };
+
   /// Called after every write to the disk, for tests.
   using Observer = std::function<void()>;
 
@@ -54,9 +58,10 @@ class StagedFile {
   /// @return 0, or the error number of the system; the file is readable then, later changes are
   ///         dropped
   int commit();
-  /// Writes all changes into a copy of the file, which then takes its name. Where there is no room
-  /// for a copy, as `commit`. @return as `commit`
-  int commit_by_copy();
+  /// Writes all changes into a copy of the file, which then takes its name.
+  /// @param otherwise where the copy cannot be made: as `commit`, or the file stays as it is
+  /// @return as `commit`
+  int commit_by_copy(WithoutRoom otherwise = WithoutRoom::change_in_place);
   /// From now on no change reaches the file.
   void freeze() { is_frozen_ = true; }
   /// Asks the system for room beyond the end of the file. @return an error number, or 0
@@ -80,6 +85,7 @@ class StagedFile {
   std::vector<Blocks::const_iterator> safe_order() const;
   int write_block(int descriptor, haddr_t address, const Block& block) const;
   int copy_to(int descriptor) const;
+  int replace_by_copy();
   int settle(int error);
 
   std::string path_;

@@ -61,6 +61,13 @@ struct SeriesSpec {
   Attributes attributes = {};  ///< e.g. {"filter", "…"}, {"acts_at", "…"}; not "units"
 };
 
+/// An array that does not depend on time.
+struct StaticArray {
+  std::string path;  ///< e.g. "/modal/plate/frequency"
+  std::vector<double> values;
+  std::string units;
+};
+
 /// Options of a RunFileWriter.
 struct RunFileOptions {
   /// Rows kept in memory before they are written and flushed, at least 1.
@@ -103,6 +110,7 @@ class RunFileWriter : public RowSink {
   /// @param overwrite whether an existing file may be replaced
   /// @param header    text for root attributes and /scene
   /// @param series    series of append(), in this order; may be empty
+  /// @param statics   arrays that the file holds from the moment when it takes its name
   /// @throws FileError if the file exists ("exists; use --force to overwrite it"), is no regular
   ///         file, its folder is missing, no folder or not writable, or anything cannot be written;
   ///         what was there before is untouched then
@@ -110,7 +118,8 @@ class RunFileWriter : public RowSink {
   /// a
   ///         state series has no "meaning", or block_rows is 0
   RunFileWriter(const std::string& path, Overwrite overwrite, const RunFileHeader& header,
-                std::vector<SeriesSpec> series, RunFileOptions options = {});
+                std::vector<SeriesSpec> series, RunFileOptions options = {},
+                const std::vector<StaticArray>& statics = {});
   /// Goes on with the file of a run from one of its checkpoints. The next row to append is row
   /// `checkpoint.rows`; rows that the file holds from there on are written over and must come again
   /// as they were. Results of the stopped run (/final, /results, /bursts) are removed.

@@ -66,14 +66,24 @@ void remove_results(const Checker& at) {
   Handle file = at.own(H5Fopen(at.path().c_str(), H5F_ACC_RDWR, access.id()), H5Fclose, "",
                        "is damaged or truncated");
   staged.opened();
+  bool has_results = false;
   for (const char* path : {"/final", "/results", "/bursts"}) {
-    if (H5Lexists(file.id(), path, H5P_DEFAULT) > 0)
-      at.check(H5Ldelete(file.id(), path, H5P_DEFAULT), path, "cannot be removed");
+    if (H5Lexists(file.id(), path, H5P_DEFAULT) <= 0) continue;
+    has_results = true;
+    at.check(H5Ldelete(file.id(), path, H5P_DEFAULT), path, "cannot be removed");
+  }
+  if (!has_results) {
+    staged.freeze();
+    return;
   }
   at.check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "", "cannot be flushed");
-  const int error = staged.commit_by_copy();
+  const int error = staged.commit_by_copy(StagedFile::WithoutRoom::fail);
   staged.freeze();
-  if (error != 0) throw FileError(at.path(), "", "cannot be written: " + errno_text(error));
+  if (error == 0) return;
+  throw FileError(at.path(), "",
+                  fmt::format("results of the stopped run cannot be taken out of it: {}; this takes "
+                              "room for a copy of the file beside it, {} bytes. Nothing has changed",
+                              errno_text(error), std::filesystem::file_size(at.path())));
 }
 
 }  // namespace
@@ -161,7 +171,8 @@ Handle RunFileWriter::Impl::create_series(const std::string& path, SeriesKind ki
   return dataset;
 }
 
-void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& header) {
+void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& header,
+                                 const std::vector<StaticArray>& statics) {
   check_target(at.path(), overwrite);
   PartFile part(at.path());
 
@@ -199,6 +210,7 @@ void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& heade
                "cannot be tied to /time");
     }
     create_checkpoints();
+    for (const StaticArray& array : statics) write_array(array.path, array.values, array.units);
     commit("");
     part.move_to_final(overwrite);
     staged.renamed(at.path());

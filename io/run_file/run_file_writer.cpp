@@ -149,11 +149,12 @@ std::string RunFileWriter::Impl::close_file() {
 
 RunFileWriter::RunFileWriter(const std::string& path, Overwrite overwrite,
                              const RunFileHeader& header, std::vector<SeriesSpec> series,
-                             RunFileOptions options) {
+                             RunFileOptions options, const std::vector<StaticArray>& statics) {
   const QuietErrors quiet;
+  for (const StaticArray& array : statics) check_object_path(array.path);
   impl_ = std::make_unique<Impl>(path, std::move(series), options);
   impl_->check_specs();
-  impl_->create(overwrite, header);
+  impl_->create(overwrite, header, statics);
 }
 
 RunFileWriter RunFileWriter::resume(const std::string& path, std::vector<SeriesSpec> series,
@@ -236,6 +237,20 @@ void RunFileWriter::write_checkpoint(const State& state) {
   impl_->write_checkpoint(state);
 }
 
+void RunFileWriter::Impl::write_array(const std::string& path, std::span<const double> values,
+                                      const std::string& units) {
+  const hsize_t count = values.size();
+  const Handle space =
+      at.own(H5Screate_simple(1, &count, nullptr), H5Sclose, path, "cannot make the dataset");
+  const Handle dataset =
+      at.own(H5Dcreate2(file.id(), path.c_str(), H5T_IEEE_F64LE, space.id(), links.id(),
+                        H5P_DEFAULT, H5P_DEFAULT),
+             H5Dclose, path, "cannot make the dataset");
+  at.check(H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+           path, "cannot be written");
+  write_attribute(at, dataset.id(), path, "units", units);
+}
+
 void RunFileWriter::write_static(const std::string& path, std::span<const double> values,
                                  const std::string& units) {
   Impl& impl = *impl_;
@@ -246,17 +261,7 @@ void RunFileWriter::write_static(const std::string& path, std::span<const double
     throw std::invalid_argument(fmt::format("run file: there is a dataset '{}' already", path));
   }
   impl.modify([&] {
-    const Checker& at = impl.at;
-    const hsize_t count = values.size();
-    const Handle space =
-        at.own(H5Screate_simple(1, &count, nullptr), H5Sclose, path, "cannot make the dataset");
-    const Handle dataset = at.own(H5Dcreate2(impl.file.id(), path.c_str(), H5T_IEEE_F64LE,
-                                             space.id(), impl.links.id(), H5P_DEFAULT, H5P_DEFAULT),
-                                  H5Dclose, path, "cannot make the dataset");
-    at.check(
-        H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
-        path, "cannot be written");
-    write_attribute(at, dataset.id(), path, "units", units);
+    impl.write_array(path, values, units);
     impl.restructured = true;
   });
 }

@@ -43,11 +43,14 @@ struct RunFileWriter::Impl {
   Impl& operator=(const Impl&) = delete;
 
   void check_specs() const;
-  void create(Overwrite overwrite, const RunFileHeader& header);
+  void create(Overwrite overwrite, const RunFileHeader& header,
+              const std::vector<StaticArray>& statics);
   void reopen(const Checkpoint& checkpoint);
   void create_checkpoints();
   void write_checkpoint(const State& state);
   Handle create_series(const std::string& path, SeriesKind kind, const std::string& units);
+  void write_array(const std::string& path, std::span<const double> values,
+                   const std::string& units);
   void reserve(std::uint64_t rows) const;
   void write_block(const Handle& dataset, const std::string& path, hsize_t offset, hid_t type,
                    const void* entries, hsize_t count);

@@ -166,6 +166,18 @@ class FaultTrial {
       ASSERT_NE(end.exit_code, 0);
       return;
     }
+    try {
+      check_file(end, is_resumed);
+    } catch (const FileError& error) {
+      FAIL() << error.what();
+    }
+  }
+
+  int num_given() const { return num_given_; }
+
+ private:
+  /// What is left of a run: readable, done where it says so, else to be resumed.
+  void check_file(const FaultyEnd& end, bool is_resumed) {
     ASSERT_NO_FATAL_FAILURE(check_rows());
     if (is_done(RunFileReader(broken_))) {
       ASSERT_EQ(difference(whole_, broken_), "") << "says it is done";
@@ -184,10 +196,6 @@ class FaultTrial {
     for (const std::string& name : folder_.files())
       ASSERT_EQ(name.find(".part-"), std::string::npos) << "left: " << name;
   }
-
-  int num_given() const { return num_given_; }
-
- private:
   void prepare(bool is_resumed) {
     for (const std::string& name : folder_.files()) {
       if (name.starts_with("broken.h5")) std::filesystem::remove(folder_ / name);
