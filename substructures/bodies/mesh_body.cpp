@@ -97,6 +97,8 @@ bool MeshBodyParameters::is_spatial() const {
   return mesh && std::any_of(mesh->shapes.begin(), mesh->shapes.end(), [](ElementShape shape) {
            return facts_of(shape).dimension == 3;
          });
+}
+
 double MeshBodyParameters::metres_per_unit() const {
   try {
     return parse_quantity("1 " + length_unit, "m");

@@ -167,7 +167,10 @@ void ModesBodyParameters::read(const BodyFiles& read_by) {
   try {
     const bool is_file = files().size() > (file.empty() ? 0u : 1u);
     residual_flexibility = std::make_shared<const SparseMatrix>(
-        is_file ? read_by.matrix("residual.flexibility", residual->flexibility.front())
+        is_file ? read_by
+                      .matrix("residual.flexibility", residual->flexibility.front(),
+                              MatrixPurpose::any)
+                      .matrix
                 : read_by.matrix(residual->flexibility));
   } catch (const std::invalid_argument& error) {
     throw ConfigError("residual.flexibility", error.what());
