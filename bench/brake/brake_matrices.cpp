@@ -2,9 +2,9 @@
 // Matrix Market files and a scene that names them: a large eigenvalue problem for stridor and for
 // large_eigenvalues.py.
 //
-//   gmsh -3 -setnumber lc 0.03 -setnumber order 1 -o brake.msh bench/brake/brake.geo
+//   gmsh -3 -setnumber lc 0.027 -setnumber order 1 -o brake.msh bench/brake/brake.geo
 //   build/release/bench/brake_matrices brake.msh DIRECTORY
-//   build/release/stridor eig DIRECTORY/brake.yaml --below 9kHz
+//   build/release/stridor eig DIRECTORY/brake.yaml --below 16kHz
 //
 // K has the springs of the pads on the rings across the faces, F the friction that they cause, which the
 // scene multiplies by its parameter mu.
@@ -159,16 +159,17 @@ void write(const std::string& path, const SparseMatrix& matrix, const std::strin
 }
 
 constexpr const char* scene = R"(# Written by bench/brake_matrices.
+format: 2
 parameters: {mu: 0.3}
 substructures:
   brake:
     type: matrices
-    mass: [M.mtx]
-    damping: [D.mtx]
-    gyroscopic: [G.mtx]
-    stiffness: [K.mtx]
+    mass: M.mtx
+    damping: D.mtx
+    gyroscopic: G.mtx
+    stiffness: K.mtx
     terms:
-      - {role: position, matrix: [F.mtx], factor: =mu}
+      - {role: position, matrix: F.mtx, factor: =mu}
 )";
 
 }  // namespace

@@ -2,9 +2,8 @@
 
     /usr/bin/python3 bench/brake/large_eigenvalues.py DIRECTORY HERTZ [SHIFTS [PAIRS [MU]]]
 
-Seven shifts along the imaginary axis, 20 eigenvalues at each, are the fewest that find all below
-10 kHz. Nothing says that they are all: the same with more shifts, or stridor's count, does.
-Prints frequency and growth of each, and the seconds of processor time that it took without reading.
+Seven shifts along the imaginary axis and 24 eigenvalues at each find all 46 pairs of a mesh of 4,429
+unknowns below 16 kHz. Nothing says that they are all: stridor's count does. Prints frequency and growth of each, and the seconds of processor time that it took without reading.
 """
 import os
 os.environ.setdefault("OMP_NUM_THREADS", "1")

@@ -86,8 +86,8 @@ class SparseSearch {
   void project();
   void refine();
   void search(std::size_t most_at_once);
-  void search_group(std::vector<Complex> group, double low, double high);
-  void start_basis_above(double omega_squared);
+  void search_group(const std::vector<Complex>& group, double low, double high);
+  void add_modes_below(double omega);
   double height_for_count() const;
   bool is_near(Complex s) const;
   SparseSpectrum found_up_to(double height) const;
@@ -102,8 +102,9 @@ class SparseSearch {
   Eigen::MatrixXd basis_;    ///< V with Vᵀ M V = 1
   Eigen::MatrixXd momenta_;  ///< M V
   Eigen::Index dim_ = 0;
+  double represented_ = std::numeric_limits<double>::infinity();  ///< ω up to which V has modes
   std::vector<Pair> pairs_;   ///< near the window
-  std::vector<Complex> far_;  ///< Ritz values above
+  std::vector<Complex> far_;  ///< approximations above
   std::mt19937 generator_{1};
   int factorisations_ = 0;
 };
@@ -122,15 +123,27 @@ void SparseSearch::start() {
     modes_ = symmetric_modes(pencil_.system(), count);
     const double highest = std::sqrt(std::max(0.0, modes_.omega_squared(count - 1)));
     if (count == size() || window_.count || highest >= 1.5 * wanted) break;
-    count *= 2;
+    // Modes are about evenly spaced, or come closer.
+    const double ratio = std::clamp(1.5 * wanted / std::max(highest, 0.1 * wanted), 1.1, 4.0);
+    count = static_cast<Eigen::Index>(std::pow(ratio, 1.3) * static_cast<double>(count)) + 10;
   }
   basis_.resize(size(), 2 * count);
   momenta_.resize(size(), 2 * count);
-  for (Eigen::Index i = 0; i < count; ++i) add(modes_.shapes.col(i));
   height_ = wanted;
+  add_modes_below(window_.count ? std::numeric_limits<double>::infinity() : 1.2 * wanted);
   project();
-  if (window_.count) height_ = 1.05 * height_for_count();
-  project();
+  if (window_.count) {
+    height_ = 1.05 * height_for_count();
+    project();
+  }
+}
+
+/// Begins the basis with the modes of the symmetric part up to a frequency, rad/s.
+void SparseSearch::add_modes_below(double omega) {
+  dim_ = 0;
+  represented_ = omega;
+  for (Eigen::Index i = 0; i < modes_.omega_squared.size(); ++i)
+    if (modes_.omega_squared(i) <= omega * omega) add(modes_.shapes.col(i));
 }
 
 /// A height with as many pairs below as are wanted, in the middle of a gap; that of the highest
@@ -201,6 +214,12 @@ double SparseSearch::add_complex(const Eigen::VectorXcd& vector) {
 
 /// Galerkin's projection on the basis.
 void SparseSearch::project() {
+  pairs_.clear();
+  far_.clear();
+  // About where those are for which the basis has nothing.
+  for (const double square : modes_.omega_squared)
+    if (square > represented_ * represented_) far_.emplace_back(0.0, std::sqrt(square));
+  if (dim_ == 0) return;
   const auto basis = basis_.leftCols(dim_);
   const SparseSystem& system = pencil_.system();
   LinearSystem reduced;
@@ -210,8 +229,6 @@ void SparseSearch::project() {
   reduced.gaps = reduced.forces = Eigen::MatrixXd(0, dim_);
   const Pencil pencil = make_pencil(reduced);
   const DenseSpectrum spectrum = dense_spectrum(pencil);
-  pairs_.clear();
-  far_.clear();
   for (std::size_t i = 0; i < spectrum.eigenvalues.size(); ++i) {
     const Complex s = spectrum.eigenvalues[i].s;
     if (!is_near(s)) {
@@ -267,13 +284,6 @@ void SparseSearch::refine() {
   }
 }
 
-/// A space of modes of the symmetric part with ω² above a value alone.
-void SparseSearch::start_basis_above(double omega_squared) {
-  dim_ = 0;
-  for (Eigen::Index i = 0; i < modes_.omega_squared.size(); ++i)
-    if (modes_.omega_squared(i) > omega_squared) add(modes_.shapes.col(i));
-}
-
 /// All pairs around those of the projection, by shift and invert for groups of neighbours.
 /// @param most_at_once pairs of a group
 void SparseSearch::search(std::size_t most_at_once) {
@@ -292,16 +302,16 @@ void SparseSearch::search(std::size_t most_at_once) {
                             ? 0.5 * (expected[last - 1].imag() + expected[last].imag())
                             : std::max(1.1 * height_, low);
     const auto begin = expected.begin();
-    search_group({begin + static_cast<std::ptrdiff_t>(first),
-                  begin + static_cast<std::ptrdiff_t>(last)},
-                 low, high);
+    const std::vector<Complex> group(begin + static_cast<std::ptrdiff_t>(first),
+                                     begin + static_cast<std::ptrdiff_t>(last));
+    search_group(group, low, high);
     low = high;
   }
   project();
 }
 
 /// @param group expected eigenvalues, ascending Im s, with low <= Im s <= high
-void SparseSearch::search_group(std::vector<Complex> group, double low, double high) {
+void SparseSearch::search_group(const std::vector<Complex>& group, double low, double high) {
   constexpr Eigen::Index start_width = 2;
   if (!group.empty()) low = std::max(low, 0.9 * group.front().imag());
   NearestPairsWanted wanted;
@@ -317,7 +327,8 @@ void SparseSearch::search_group(std::vector<Complex> group, double low, double h
   Eigen::MatrixXcd start(size(), start_width);
   for (Complex& entry : start.reshaped()) entry = {normal(generator_), normal(generator_)};
   start = factor.solve(pencil_.system().mass * start);
-  for (const auto& pair : nearest_pairs(pencil_, factor, wanted, start).pairs) {
+  const NearestPairs found = nearest_pairs(pencil_, factor, wanted, start);
+  for (const Pair& pair : found.pairs) {
     if (pair.s.imag() < -1e-3 * height_ || !is_near(pair.s)) continue;
     // Turned so that most of it is real.
     const Complex square = (pair.x.transpose() * pair.x)(0);
@@ -334,8 +345,12 @@ SparseSpectrum SparseSearch::found_up_to(double height) const {
   Eigen::Index num = 0;
   for (const Pair& pair : pairs_) {
     const double residual = pencil_.scaled_residual(pair.s, pair.x);
-    // A projection may have eigenvalues near which the problem has none.
-    if (!spectrum.rectangle.contains(pair.s) || residual > largest_residual) continue;
+    // A projection may have eigenvalues near which the problem has none. In a rigid motion all terms of
+    // the residual are rounding.
+    const bool is_rigid = std::abs(pair.s) < 1e-6 * height &&
+                          pencil_.backward_error(pair.s, pair.x) < 1e-13;
+    if (!spectrum.rectangle.contains(pair.s) || (residual > largest_residual && !is_rigid))
+      continue;
     const double length = std::sqrt(pair.x.dot(mass * pair.x).real());
     spectrum.right.col(num++) = pair.x / length;
     spectrum.eigenvalues.push_back({pair.s, residual});
@@ -370,11 +385,11 @@ SparseSpectrum SparseSearch::run() {
   start();
   for (int attempt = 1;; ++attempt) {
     if (attempt == 1) {
-      // They stand for what lies above the window.
-      start_basis_above(1.21 * height_ * height_);
+      dim_ = 0;
+      represented_ = 1.1 * height_;
     } else {
       // Approximations of what has not been found, beside what has.
-      start_basis_above(-std::numeric_limits<double>::infinity());
+      add_modes_below(std::numeric_limits<double>::infinity());
       for (const Pair& pair : pairs_) add_complex(pair.x);
       project();
     }
