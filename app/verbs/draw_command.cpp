@@ -32,7 +32,7 @@ std::vector<std::string> recorded_points(const Scene& scene) {
 
 MeshPicture picture_of(const LoadedScene& loaded, BodyCache& cache) {
   if (loaded.scene.model.substructures.empty())
-    throw ConfigError("substructures", "is missing: there are no bodies to draw");
+    throw ConfigError("substructures", "is missing: without bodies there is nothing to draw");
   try {
     const PlacedModel model = place_model(loaded.scene.model, cache);
     return make_scene_picture(

@@ -84,8 +84,11 @@ std::vector<UffDataset> uff_datasets(const SourceText& source) {
     if (lines.is_at_end()) break;
     const UffLine head = lines.next();
     const std::vector<std::string_view> words = uff_words(head.text);
-    // A delimiter that closes nothing is passed over.
-    if (words.empty() || is_delimiter(head)) continue;
+    if (words.empty()) continue;
+    if (is_delimiter(head)) {  // the one before it closed nothing
+      lines.go_to(head.place.offset);
+      continue;
+    }
     std::string_view type = words.front();
     const bool is_binary = type.ends_with('b') || type.ends_with('B');
     if (is_binary) type.remove_suffix(1);

@@ -27,7 +27,7 @@ TEST(Draw, EveryScene) {
           Program({"draw", entry.path().string(), "-o", figure.string()}).run();
       if (entry.path().filename() == "viscoelastic_contact.yaml") {
         EXPECT_EQ(result.exit_code, 2);
-        EXPECT_THAT(result.err, HasSubstr("there are no bodies to draw"));
+        EXPECT_THAT(result.err, HasSubstr("without bodies there is nothing to draw"));
         continue;
       }
       ASSERT_EQ(result.exit_code, 0) << entry.path() << result.err;

@@ -167,6 +167,10 @@ const std::vector<Verb>& verbs() {
        [](S, T scene, T) {
          return Words{"check", "--stability", scene};
        }},
+      {"draw", "a picture before anything is run",
+       [](S, T scene, T folder) {
+         return Words{"draw", scene, "-o", folder + "/scene.svg"};
+       }},
       {"run", "the motion in time",
        [](S, T scene, T folder) {
          return Words{"run", scene, "-o", folder + "/run.h5"};
