@@ -5,7 +5,7 @@
 
 #include "solvers/eigenvalues/eigenvector.hpp"
 #include "solvers/eigenvalues/pencil.hpp"
-#include "substructures/bodies/matrix_body.hpp"
+#include "substructures/matrices/sparse_system.hpp"
 
 namespace stridor {
 

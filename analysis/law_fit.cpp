@@ -37,7 +37,6 @@ double determination_of(const ViscoelasticContactLaw& law, const std::vector<Law
 template <std::size_t Size>
 bool fit_quantity(FitCoefficients& all, std::array<double, Size> FitCoefficients::*member,
                   const Quantity& quantity, const std::vector<LawSample>& samples) {
-  using Coefficients = Eigen::Matrix<double, Size, 1>;
   const auto rows = static_cast<Eigen::Index>(samples.size());
   const auto misses = [&](const std::array<double, Size>& coefficients) {
     FitCoefficients changed = all;
@@ -65,13 +64,13 @@ bool fit_quantity(FitCoefficients& all, std::array<double, Size> FitCoefficients
       below[k] -= h;
       jacobian.col(static_cast<Eigen::Index>(k)) = (misses(above) - misses(below)) / (2.0 * h);
     }
-    const Eigen::Matrix<double, Size, Size> normal = jacobian.transpose() * jacobian;
-    const Coefficients gradient = jacobian.transpose() * miss;
+    const Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
+    const Eigen::VectorXd gradient = jacobian.transpose() * miss;
     bool is_better = false;
     while (!is_better && damping < 1e12) {
-      Eigen::Matrix<double, Size, Size> damped = normal;
+      Eigen::MatrixXd damped = normal;
       damped.diagonal() *= 1.0 + damping;
-      const Coefficients change = damped.ldlt().solve(-gradient);
+      const Eigen::VectorXd change = -damped.ldlt().solve(gradient);
       std::array<double, Size> next = at;
       for (std::size_t k = 0; k < Size; ++k) next[k] += change[static_cast<Eigen::Index>(k)];
       const Eigen::VectorXd next_miss = misses(next);

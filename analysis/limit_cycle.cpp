@@ -10,7 +10,7 @@ namespace {
 
 /// The motion has died down, or does so, where it moves less than this part of the equilibrium and
 /// that is stable: this close to it the motion is linear.
-constexpr double at_rest = 1e-6;
+constexpr double died_down = 1e-6;
 /// Longest time to wait for a turn: several times the time in which the substrate winds up the
 /// spring to the static strength, within bounds.
 double longest_loop(const SubstrateOscillator& oscillator) {
@@ -98,7 +98,8 @@ bool is_settling(const std::vector<CyclePoint>& turns, double x) {
 /// Newton's method for P(z) = z. @return whether it came to a fixed point
 bool solve(SubstrateMotion& motion, const CyclePoint& scale, double longest, LimitCycle& cycle,
            CyclePoint z) {
-  Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
+  // Of any size, of which the decompositions are compiled once.
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(3, 3);
   constexpr int most_steps = 12;
   double last_residual = 1e300;
   for (int step = 0; step < most_steps; ++step) {
@@ -125,16 +126,18 @@ bool solve(SubstrateMotion& motion, const CyclePoint& scale, double longest, Lim
     if (is_done) {
       cycle.point = {z[0], z[1], z[2]};
       cycle.period = found->period;
-      const Eigen::Vector3cd all = jacobian.eigenvalues();
+      const Eigen::EigenSolver<Eigen::MatrixXd> solver(jacobian, false);
+      const Eigen::VectorXcd& all = solver.eigenvalues();
       cycle.multipliers.assign(all.data(), all.data() + 3);
       std::sort(cycle.multipliers.begin(), cycle.multipliers.end(),
                 [](auto a, auto b) { return std::abs(a) > std::abs(b); });
       return true;
     }
     last_residual = residual;
-    const CyclePoint correction =
-        (jacobian - Eigen::Matrix3d::Identity()).fullPivLu().solve(miss).cwiseProduct(scale);
-    z -= correction;
+    const Eigen::FullPivLU<Eigen::MatrixXd> factor(
+        Eigen::MatrixXd(jacobian - Eigen::MatrixXd::Identity(3, 3)));
+    const Eigen::VectorXd correction = factor.solve(Eigen::VectorXd(miss));
+    z -= correction.cwiseProduct(scale);
   }
   return false;
 }
@@ -184,7 +187,7 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
   const double indentation = 1e-2 * oscillator.contact.indentation_unit;
   const SubstrateEquilibrium rest = find_equilibrium(oscillator, indentation);
   const double size = std::abs(rest.displacement.x()) + rest.displacement.y();
-  const bool is_still = turns.size() < num_turns || width < at_rest * size;
+  const bool is_still = turns.size() < num_turns || width < died_down * size;
   if (is_still && motion.mode() == SubstrateMode::stick) {
     cycle.status = CycleStatus::sticking;
     return cycle;

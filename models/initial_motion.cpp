@@ -2,13 +2,27 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <limits>
 
 #include "core/errors.hpp"
 
 namespace stridor {
 namespace {
+
+/// The shortest of the vectors that come closest to A x = b.
+/// @param A symmetric
+Eigen::VectorXd smallest_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  if (A.rows() == 0) return b;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(A);
+  const Eigen::ArrayXd values = pairs.eigenvalues().array();
+  const double least = static_cast<double>(A.rows()) * std::numeric_limits<double>::epsilon() *
+                       values.abs().maxCoeff();
+  const Eigen::VectorXd inverse = (values.abs() > least).select(values.inverse(), 0.0);
+  const Eigen::VectorXd parts = pairs.eigenvectors().transpose() * b;
+  return pairs.eigenvectors() * inverse.cwiseProduct(parts);
+}
 
 /// Whether a DoF is the displacement of nodes in a direction.
 bool is_dof_of(const BodyMatrices& body, int dof, std::size_t direction) {
@@ -117,7 +131,7 @@ Eigen::VectorXd static_shape(const ModalBody& body, std::span<const PrescribedRo
   system.bottomLeftCorner(num_rigid, num_rows) = rigid.transpose();
   Eigen::VectorXd right_side = Eigen::VectorXd::Zero(num_rows + num_rigid);
   right_side.head(num_rows) = values;
-  const Eigen::VectorXd solution = system.completeOrthogonalDecomposition().solve(right_side);
+  const Eigen::VectorXd solution = smallest_solution(system, right_side);
 
   Eigen::VectorXd modal(body.size());
   modal.head(num_rigid) = solution.tail(num_rigid);

@@ -10,7 +10,7 @@
 #include "coupling/system/system.hpp"
 #include "models/initial_parameters.hpp"
 #include "substructures/bodies/body_parameters.hpp"
-#include "substructures/bodies/matrix_body.hpp"
+#include "substructures/matrices/sparse_system.hpp"
 
 namespace stridor {
 

@@ -54,6 +54,9 @@ Indices group_of(const Eigen::MatrixXd& D, Eigen::Index first, std::vector<bool>
 
 }  // namespace
 
+JammingTest::JammingTest(Eigen::Index num_contacts)
+    : factor_(Eigen::MatrixXd(Eigen::MatrixXd::Identity(num_contacts, num_contacts))) {}
+
 std::optional<int> JammingTest::operator()(const Eigen::MatrixXd& D) {
   for (Eigen::Index i = 0; i < D.rows(); ++i)
     if (!(D(i, i) > 0.0)) return static_cast<int>(i);

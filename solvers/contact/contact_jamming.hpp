@@ -17,8 +17,7 @@ class JammingTest {
   static constexpr Eigen::Index largest_group = 12;
 
   /// With a factor of something, as one of nothing must not be moved.
-  explicit JammingTest(Eigen::Index num_contacts)
-      : factor_(Eigen::MatrixXd::Identity(num_contacts, num_contacts)) {}
+  explicit JammingTest(Eigen::Index num_contacts);
 
   /// @param D num_contacts x num_contacts
   /// @return the first contact of those that jam

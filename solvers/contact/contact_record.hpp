@@ -11,6 +11,12 @@
 
 namespace stridor {
 
+/// Position of a slave point on its master.
+struct ContactPlace {
+  double gap;       ///< distance from the deformed surface along its own normal, m
+  double position;  ///< along the undeformed master from its first node, m
+};
+
 /// Violations of persistent sliding by one contact, counted in steps; none with FiLM, which does
 /// not assume it.
 struct ViolationCount {

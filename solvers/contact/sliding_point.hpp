@@ -4,6 +4,7 @@
 #include <array>
 
 #include "coupling/system/system.hpp"
+#include "solvers/contact/contact_record.hpp"
 #include "solvers/contact/port_block.hpp"
 #include "solvers/integrators/propagator.hpp"
 
@@ -24,12 +25,6 @@ struct ContactCompliance {
   double nt = 0.0;  ///< n_i W t_j
   double tn = 0.0;
   double tt = 0.0;
-};
-
-/// Position of a slave point on its master.
-struct ContactPlace {
-  double gap;       ///< distance from the deformed surface along its own normal, m
-  double position;  ///< along the undeformed master from its first node, m
 };
 
 /// Kinematics of a contact (docs/theory.md, 2.2): position of the slave point over its master,

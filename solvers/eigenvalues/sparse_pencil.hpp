@@ -5,7 +5,7 @@
 #include <complex>
 #include <memory>
 
-#include "substructures/bodies/matrix_body.hpp"
+#include "substructures/matrices/sparse_system.hpp"
 
 namespace stridor {
 

@@ -14,7 +14,6 @@
 #include "coupling/system/system.hpp"
 #include "solvers/contact/contact_record.hpp"
 #include "solvers/contact/contact_solver.hpp"
-#include "solvers/contact/sliding_point.hpp"
 #include "solvers/integrators/propagator.hpp"
 #include "solvers/integrators/time_parameters.hpp"
 #include "solvers/transient/energy_ledger.hpp"

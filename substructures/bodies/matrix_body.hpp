@@ -11,7 +11,7 @@
 #include "core/schema.hpp"
 #include "substructures/bodies/beam.hpp"
 #include "substructures/bodies/body_files.hpp"
-#include "substructures/matrices/body_matrices.hpp"
+#include "substructures/matrices/sparse_system.hpp"
 
 namespace stridor {
 
@@ -49,12 +49,6 @@ struct MatrixBodyParameters {
   MatrixText circulatory;                   ///< N, skew-symmetric
   std::vector<MatrixTermParameters> terms;  ///< f_i D_i and f_j K_j
   static const Schema& schema();
-};
-
-/// M q̈ + P q̇ + Q q = 0 with sparse matrices, all n x n.
-struct SparseSystem {
-  SparseMatrix mass, velocity, position;
-  Eigen::Index size() const { return mass.rows(); }
 };
 
 /// The matrices of a body as its scene names them, all n x n.

@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "substructures/bodies/matrix_body.hpp"
 #include "substructures/matrices/body_matrices.hpp"
+#include "substructures/matrices/sparse_system.hpp"
 #include "substructures/reduction/craig_bampton.hpp"
 #include "substructures/reduction/modal_body.hpp"
 

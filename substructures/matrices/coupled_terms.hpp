@@ -16,10 +16,7 @@ struct CoupledTerms {
 
   bool is_empty() const { return velocity.size() == 0; }
   /// The same of coordinates z with q = T z: Tᵀ V T, Tᵀ N T.
-  CoupledTerms in(const Eigen::MatrixXd& T) const {
-    if (is_empty()) return {};
-    return {T.transpose() * velocity * T, T.transpose() * position * T};
-  }
+  CoupledTerms in(const Eigen::MatrixXd& T) const;
 };
 
 }  // namespace stridor
