@@ -57,7 +57,8 @@ SemidefinitePairs semidefinite_eigenpairs(const Eigen::MatrixXd& stiffness,
           .all();
   if (!is_held) {
     throw NumericalError(what + ": some motion has neither mass nor stiffness; hold it, or leave "
-                                "the unknowns out that nothing holds");
+                                "the unknowns out that nothing holds (elements of reduced integration have "
+                                "such motions where they are one layer thick)");
   }
   SemidefinitePairs pairs;
   // N L⁻ᵀ with NᵀKN = L Lᵀ.

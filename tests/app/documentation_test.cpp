@@ -123,6 +123,22 @@ TEST(Readme, CommandsWorkAsPrintedOneAfterTheOther) {
   EXPECT_GE(num_run, 15);
 }
 
+TEST(Pages, OfOtherProgramsWorkFromTheirFirstLineToTheLast) {
+  for (const std::string program : {"calculix", "abaqus", "ansys", "nastran"}) {
+    const UserFolder folder;
+    int num_run = 0;
+    for (const std::string& block :
+         blocks_of(source / "docs" / ("from_" + program + ".md"), "sh")) {
+      for (const std::string& line : lines_of(block)) {
+        const auto outcome = folder.run(line);
+        EXPECT_EQ(outcome.exit_code, 0) << line << "\n" << outcome.output;
+        ++num_run;
+      }
+    }
+    EXPECT_EQ(num_run, 4) << program;
+  }
+}
+
 TEST(Snippets, OfPythonRun) {
   const UserFolder folder;
   const std::string python = python_with_h5py(folder);
