@@ -191,7 +191,9 @@ class MatrixReader {
     for (const std::string& key : keys_) {
       LabelledMatrix& read = read_.at(key);
       const Eigen::Index n = read.matrix.rows();
-      if (read.is_open && n < size_) read.matrix.conservativeResize(size_, size_);
+      // Every unknown has a stiffness; the last ones may have no mass.
+      const bool may_be_less = read.is_open && !(has_table && key == "stiffness");
+      if (may_be_less && n < size_) read.matrix.conservativeResize(size_, size_);
       if (read.matrix.rows() == size_) continue;
       throw ConfigError(
           key, fmt::format("is {} x {}, expected {} x {} as {}", n, n, size_, size_,

@@ -115,7 +115,7 @@ TEST(Import, RefusesWhatItCannotTell) {
   EXPECT_THAT(refused({data + "c3d4.sti", data + "c3d4.mas", data + "c3d4.dof"}),
               HasSubstr("where the nodes are is not known"));
   EXPECT_THAT(refused({data + "c3d4.sti", data + "c3d4.mas", data + "c3d10.dof", data + "c3d10.inp"}),
-              HasSubstr("mass: is 24 x 24, expected 54 x 54 as `unknowns` says"));
+              HasSubstr("stiffness: is 24 x 24, expected 54 x 54 as `unknowns` says"));
   EXPECT_THAT(refused({data + "c3d4.inp", "--length-unit", "kg"}), HasSubstr("--length-unit"));
 }
 

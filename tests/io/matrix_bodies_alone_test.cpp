@@ -177,7 +177,7 @@ TEST(MatrixBodiesAlone, SaysWhichMatrixIsWrong) {
   const MatrixFolder folder;
   const std::string body = "substructures.body.";
   EXPECT_THAT(folder.failure({body + "mass=[1 0, 0 -1]"}),
-              HasSubstr("mass: must be positive definite"));
+              HasSubstr("mass: must be positive semidefinite"));
   EXPECT_THAT(folder.failure({body + "mass=[1 2, 0 1]"}), HasSubstr("mass: must be symmetric"));
   EXPECT_THAT(folder.failure({body + "mass=[]"}), HasSubstr("mass: is empty, expected a matrix"));
   EXPECT_THAT(folder.failure({body + "gyroscopic=[0 1, 1 0]"}),

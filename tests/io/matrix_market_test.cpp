@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/errors.hpp"
+#include "io/imports/matrix_file.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -83,7 +84,7 @@ TEST(MatrixMarket, SaysWhereItIsWrong) {
 TEST(MatrixMarket, FilesThatAreNotThere) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "none.mtx";
-  EXPECT_NE(message_of<FileError>([&] { read_matrix_file(path); }).find("cannot be opened"),
+  EXPECT_NE(message_of<FileError>([&] { read_matrix_file(path, MatrixPurpose::any); }).find("cannot be opened"),
             std::string::npos);
 }
 
