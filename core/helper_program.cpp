@@ -27,8 +27,9 @@ ScratchFolder::ScratchFolder(const std::string& purpose, const std::vector<std::
     throw FileError(owner, "", "cannot make a temporary folder (see TMPDIR): " + error.message());
   std::string pattern = (base / ("stridor-" + purpose + "-XXXXXX")).string();
   if (mkdtemp(pattern.data()) == nullptr) {
-    throw FileError(owner, "", fmt::format("cannot make a temporary folder '{}': {}", pattern,
-                                           std::strerror(errno)));
+    throw FileError(
+        owner, "",
+        fmt::format("cannot make a temporary folder '{}': {}", pattern, std::strerror(errno)));
   }
   path_ = pattern;
   for (const std::string& file : files) unfinished_.emplace_back((path_ / file).string());
@@ -49,8 +50,8 @@ HelperOutcome run_helper(std::vector<std::string> words, const std::string& outp
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   const auto open_for = [&](int number, const std::string& path) {
-    posix_spawn_file_actions_addopen(&actions, number, path.c_str(),
-                                     O_WRONLY | O_CREAT | O_APPEND, 0600);
+    posix_spawn_file_actions_addopen(&actions, number, path.c_str(), O_WRONLY | O_CREAT | O_APPEND,
+                                     0600);
   };
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   open_for(STDOUT_FILENO, output.empty() ? "/dev/null" : output);

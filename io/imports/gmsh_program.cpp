@@ -23,8 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* geometry_formats =
-    "a geometry: a script of Gmsh (.geo), STEP, BREP or IGES";
+constexpr const char* geometry_formats = "a geometry: a script of Gmsh (.geo), STEP, BREP or IGES";
 
 /// The checksum of a geometry and of the files that it names, if it is a script.
 std::uint64_t sum_of_geometry(const fs::path& path, std::uint64_t sum, std::set<fs::path>& seen) {
@@ -78,8 +77,9 @@ std::string complaint_of(const fs::path& path, bool errors_alone) {
 
 [[noreturn]] void refuse_start(const std::string& geometry, int reason) {
   if (reason == ENOENT)
-    throw FileError(geometry, "", "is a geometry, and gmsh, which divides it into elements, is not "
-                                  "installed; install the package gmsh, or name a mesh");
+    throw FileError(geometry, "",
+                    "is a geometry, and gmsh, which divides it into elements, is not "
+                    "installed; install the package gmsh, or name a mesh");
   throw FileError(geometry, "", fmt::format("cannot start gmsh: {}", std::strerror(reason)));
 }
 
@@ -99,8 +99,8 @@ std::string mesh_with_gmsh(const std::string& geometry, const MeshingOptions& op
   if (path.string().find_first_of("\"\n\\") != std::string::npos)
     throw FileError(geometry, "", "has a name that gmsh cannot be told; rename it");
   std::set<fs::path> seen;
-  const std::uint64_t sum = sum_of_geometry(
-      path, fnv1a(fmt::format("{:.17g} {}", options.size, options.order)), seen);
+  const std::uint64_t sum =
+      sum_of_geometry(path, fnv1a(fmt::format("{:.17g} {}", options.size, options.order)), seen);
   const fs::path mesh =
       path.parent_path() / fmt::format("{}-{:016x}.msh", path.stem().string(), sum);
   std::error_code ignored;
@@ -113,16 +113,14 @@ std::string mesh_with_gmsh(const std::string& geometry, const MeshingOptions& op
     std::ofstream file(scratch / "mesh.geo", std::ios::binary);
     file << script_of(path.string(), options);
     file.close();
-    if (!file)
-      throw FileError(geometry, "", "cannot write a temporary script; is the disk full?");
+    if (!file) throw FileError(geometry, "", "cannot write a temporary script; is the disk full?");
   }
   PartFile part(mesh.string());
   part.made();
   const std::string messages = (scratch / "messages").string();
-  const HelperOutcome outcome =
-      run_helper({"gmsh", "-3", "-v", "2", "-format", "msh41", "-o", part.path(),
-                  (scratch / "mesh.geo").string()},
-                 messages, messages);
+  const HelperOutcome outcome = run_helper({"gmsh", "-3", "-v", "2", "-format", "msh41", "-o",
+                                            part.path(), (scratch / "mesh.geo").string()},
+                                           messages, messages);
   if (outcome.spawn_error != 0) refuse_start(geometry, outcome.spawn_error);
   if (WIFSIGNALED(outcome.status))
     throw FileError(geometry, "",
@@ -130,7 +128,9 @@ std::string mesh_with_gmsh(const std::string& geometry, const MeshingOptions& op
   const bool has_failed = WEXITSTATUS(outcome.status) != 0;
   const std::string complaint = complaint_of(messages, !has_failed);
   if (has_failed || !complaint.empty())
-    throw FileError(geometry, "", fmt::format("gmsh failed: {}", complaint.empty() ? "no reason given" : complaint));
+    throw FileError(
+        geometry, "",
+        fmt::format("gmsh failed: {}", complaint.empty() ? "no reason given" : complaint));
   if (!fs::is_regular_file(part.path(), ignored))
     throw FileError(mesh.string(), "", "gmsh has written no mesh; is the folder writable?");
   std::ofstream file(part.path(), std::ios::binary | std::ios::app);

@@ -17,7 +17,10 @@ class MeshAdditions {
  public:
   MeshAdditions(const MeshBodyParameters& parameters, const NamedMesh& named,
                 const MeshConstraints& constraints, BodyMatrices& body)
-      : parameters_(parameters), named_(named), mesh_(named.mesh), constraints_(constraints),
+      : parameters_(parameters),
+        named_(named),
+        mesh_(named.mesh),
+        constraints_(constraints),
         body_(body) {}
 
   void add_all() {
@@ -92,8 +95,8 @@ class MeshAdditions {
     };
     for (const NodeShare& share : shares) {
       const Eigen::Vector3d arm = arm_of(share.node);
-      inertia += share.share *
-                 (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
+      inertia +=
+          share.share * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> pairs(inertia);
     constexpr double least = 1e-12;
@@ -110,8 +113,8 @@ class MeshAdditions {
       for (const NodeShare& share : shares) {
         // Row `axis` of J⁻¹ [r x].
         const Eigen::Vector3d weights =
-            share.share * inverse.row(static_cast<Eigen::Index>(axis)).transpose().cross(
-                              arm_of(share.node));
+            share.share *
+            inverse.row(static_cast<Eigen::Index>(axis)).transpose().cross(arm_of(share.node));
         for (std::size_t i = 0; i < 3; ++i) {
           const double weight = weights(static_cast<Eigen::Index>(i));
           if (weight == 0.0) continue;
@@ -156,10 +159,10 @@ class MeshAdditions {
     const auto add = [&](const DofSum& sum, double inertia) {
       constexpr std::size_t most = 600;
       if (sum.size() > most)
-        throw ConfigError(key + ".on",
-                          fmt::format("'{}' is a mean over {} unknowns, all of which the mass would "
-                                      "couple; make it a rigid region",
-                                      mass.on, sum.size()));
+        throw ConfigError(
+            key + ".on", fmt::format("'{}' is a mean over {} unknowns, all of which the mass would "
+                                     "couple; make it a rigid region",
+                                     mass.on, sum.size()));
       for (const DofWeight& row : sum)
         for (const DofWeight& column : sum)
           entries.emplace_back(row.dof, column.dof, inertia * row.weight * column.weight);
@@ -190,8 +193,8 @@ class MeshAdditions {
     const std::string key = "loads." + name;
     if (mesh_.surfaces.contains(name) || body_.points.contains(name) ||
         parameters_.springs.contains(name))
-      throw ConfigError(key, fmt::format("'{}' is a surface, point or spring; take another name",
-                                         name));
+      throw ConfigError(key,
+                        fmt::format("'{}' is a surface, point or spring; take another name", name));
     const MeshSections sections = named_.sections();
     std::vector<ElementSide> sides;
     for (const std::string& on : load.on) {
@@ -202,10 +205,9 @@ class MeshAdditions {
     sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
     const double area = node_areas(mesh_, sections, sides).sum();
     const Eigen::VectorXd forces =
-        load.direction.empty()
-            ? pressure_load(mesh_, sections, sides, 1.0 / area)
-            : traction_load(mesh_, sections, sides,
-                            named_.turned(load.direction).normalized() / area);
+        load.direction.empty() ? pressure_load(mesh_, sections, sides, 1.0 / area)
+                               : traction_load(mesh_, sections, sides,
+                                               named_.turned(load.direction).normalized() / area);
     DofSum all;
     for (std::size_t row = 0; row < constraints_.rows.size(); ++row) {
       const double force = forces(static_cast<Eigen::Index>(row));
@@ -214,8 +216,7 @@ class MeshAdditions {
         all.push_back({dof.dof, force * dof.weight});
     }
     body_.loads[name] = merged(std::move(all));
-    if (body_.loads[name].empty())
-      throw ConfigError(key, "acts on held nodes alone");
+    if (body_.loads[name].empty()) throw ConfigError(key, "acts on held nodes alone");
   }
 
   void add_springs() {

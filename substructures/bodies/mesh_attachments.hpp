@@ -13,8 +13,8 @@ namespace stridor {
 
 /// Nodes that are held, or a rigid region that is.
 struct MeshSupportParameters {
-  std::vector<std::string> on;    ///< surfaces, node sets or rigid regions
-  std::vector<std::string> held;  ///< directions; empty: all
+  std::vector<std::string> on;            ///< surfaces, node sets or rigid regions
+  std::vector<std::string> held;          ///< directions; empty: all
   std::optional<AxisParameters> about{};  ///< of the directions radial, tangential and axial
   static const Schema& schema();
 };

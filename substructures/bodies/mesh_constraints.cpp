@@ -15,9 +15,9 @@ namespace {
 
 /// What a support holds, read from its words.
 struct HeldDirections {
-  std::array<bool, 3> along{};   ///< x, y, z
-  std::array<bool, 3> about{};   ///< rotations
-  std::array<bool, 3> round{};   ///< radial, tangential, axial
+  std::array<bool, 3> along{};  ///< x, y, z
+  std::array<bool, 3> about{};  ///< rotations
+  std::array<bool, 3> round{};  ///< radial, tangential, axial
   bool is_round() const { return round[0] || round[1] || round[2]; }
 };
 
@@ -78,10 +78,17 @@ struct NodeState {
 class ConstraintBuilder {
  public:
   ConstraintBuilder(const MeshBodyParameters& parameters, NamedMesh& mesh)
+<<<<<<< HEAD
       : parameters_(parameters), mesh_(mesh), d_(static_cast<std::size_t>(mesh.dimension)),
         nodes_(mesh.mesh.num_nodes()) {
     if (mesh.given() != nullptr) take_rows(*mesh.given());
   }
+=======
+      : parameters_(parameters),
+        mesh_(mesh),
+        d_(static_cast<std::size_t>(mesh.dimension)),
+        nodes_(mesh.mesh.num_nodes()) {}
+>>>>>>> 0602b7b003215fb68e6a95d84b760b90cc4caf30
 
   MeshConstraints build() {
     mark_regions();
@@ -130,8 +137,7 @@ class ConstraintBuilder {
 
   [[noreturn]] void refuse_node(const std::string& key, int node, const std::string& why) const {
     throw ConfigError(
-        key, fmt::format("node {} at {} {}",
-                         mesh_.mesh.node_labels[static_cast<std::size_t>(node)],
+        key, fmt::format("node {} at {} {}", mesh_.mesh.node_labels[static_cast<std::size_t>(node)],
                          mesh_.place_text(node), why));
   }
 
@@ -168,16 +174,18 @@ class ConstraintBuilder {
       throw ConfigError(key + ".held", "a planar body does not move along z");
     if (d_ == 2 && is_named && (held.about[0] || held.about[1]))
       throw ConfigError(key + ".held", "a planar body turns about z alone");
-    const AxisOfRevolution axis = support.about ? support.about->axis(mesh_.turn) : AxisOfRevolution{};
+    const AxisOfRevolution axis =
+        support.about ? support.about->axis(mesh_.turn) : AxisOfRevolution{};
     if (d_ == 2 && held.is_round() && !(axis.direction - Eigen::Vector3d::UnitZ()).isZero(1e-9))
       throw ConfigError(key + ".about.direction", "is z for a planar mesh");
     for (const std::string& on : support.on) {
       const auto region = std::find(region_names_.begin(), region_names_.end(), on);
       if (region != region_names_.end()) {
         if (held.is_round())
-          throw ConfigError(key + ".held", fmt::format("'{}' is a rigid region, which is held along "
-                                                       "x, y, z and about rx, ry, rz",
-                                                       on));
+          throw ConfigError(key + ".held",
+                            fmt::format("'{}' is a rigid region, which is held along "
+                                        "x, y, z and about rx, ry, rz",
+                                        on));
         HeldDirections& of_region =
             region_held_[static_cast<std::size_t>(region - region_names_.begin())];
         for (std::size_t i = 0; i < 3; ++i) {

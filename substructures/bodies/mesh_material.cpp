@@ -50,10 +50,9 @@ const Schema& OrthotropicParameters::schema() {
           .real_list("poissons_ratios", &P::poissons_ratios,
                      {.doc = "Poisson's ratios 12, 13 and 23: contraction along the second axis "
                              "over extension along the first, under a stress along the first."})
-          .real_list("shear_moduli", &P::shear_moduli,
-                     {.doc = "Shear moduli 12, 13 and 23.",
-                      .unit = "Pa",
-                      .range = Range::positive()})
+          .real_list(
+              "shear_moduli", &P::shear_moduli,
+              {.doc = "Shear moduli 12, 13 and 23.", .unit = "Pa", .range = Range::positive()})
           .check([](const P& given, std::vector<Problem>& problems) {
             for (const auto& [key, list] : {std::pair("youngs_moduli", &given.youngs_moduli),
                                             std::pair("poissons_ratios", &given.poissons_ratios),
@@ -159,9 +158,9 @@ const Schema& MeshMaterialParameters::schema() {
                    {.doc = "Moduli of a material with three planes of symmetry, in the place of "
                            "youngs_modulus and poissons_ratio.",
                     .optional = true})
-          .section("axes", &P::axes,
-                   {.doc = "Of an orthotropic material; default: those of the mesh.",
-                    .optional = true})
+          .section(
+              "axes", &P::axes,
+              {.doc = "Of an orthotropic material; default: those of the mesh.", .optional = true})
           .section("damping", &P::damping,
                    {.doc = "Rayleigh damping of this material, besides that of the body.",
                     .optional = true})
@@ -203,8 +202,10 @@ ElementSection MeshMaterialParameters::section(PlaneState state, const Eigen::Ma
   Eigen::Matrix3d fixed = Eigen::Matrix3d::Identity();
   fixed.topLeftCorner<2, 2>() = turn;
   if (axes && is_fixed) fixed = fixed_axes(*axes, turn);
-  if (is_fixed && state != PlaneState::none && !(fixed.col(2) - Eigen::Vector3d::UnitZ()).isZero(1e-9))
-    throw ConfigError("axes", "axis 3 of a planar mesh is z; `first` and `second` lie in its plane");
+  if (is_fixed && state != PlaneState::none &&
+      !(fixed.col(2) - Eigen::Vector3d::UnitZ()).isZero(1e-9))
+    throw ConfigError("axes",
+                      "axis 3 of a planar mesh is z; `first` and `second` lie in its plane");
   try {
     ElementSection section{ElasticLaw(elasticity, state, fixed), density, thickness};
     if (is_fixed) return section;

@@ -32,8 +32,8 @@ struct AxisParameters {
 
 /// Where the axes 1, 2 and 3 of a material point, in the frame of the mesh.
 struct MaterialAxesParameters {
-  std::optional<double> angle;        ///< of axis 1 about z, rad
-  std::vector<double> first, second;  ///< axis 1, and a vector in the plane of axes 1 and 2
+  std::optional<double> angle;           ///< of axis 1 about z, rad
+  std::vector<double> first, second;     ///< axis 1, and a vector in the plane of axes 1 and 2
   std::optional<AxisParameters> around;  ///< 1 radial, 2 tangential, 3 along it
   static const Schema& schema();
 };
@@ -58,7 +58,8 @@ struct MeshMaterialParameters {
   MeshMaterialParameters() = default;
   MeshMaterialParameters(double modulus, double ratio, double mass_density)
       : youngs_modulus(modulus), poissons_ratio(ratio), density(mass_density) {}
-  MeshMaterialParameters(const MaterialParameters& isotropic)  // NOLINT(google-explicit-constructor)
+  MeshMaterialParameters(
+      const MaterialParameters& isotropic)  // NOLINT(google-explicit-constructor)
       : MeshMaterialParameters(isotropic.youngs_modulus, isotropic.poissons_ratio,
                                isotropic.density) {}
   static const Schema& schema();

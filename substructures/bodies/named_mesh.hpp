@@ -1,9 +1,9 @@
 // The mesh of a body as its scene names the parts of it.
 #pragma once
 
-#include <Eigen/Core>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 

@@ -8,7 +8,7 @@ namespace stridor {
 
 /// A line that a cylindrical frame is about.
 struct AxisOfRevolution {
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();      ///< of the line, m
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< of the line, m
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< of length 1
 
   /// Radial, tangential and axial unit vectors at a place, as columns: a rotation.

@@ -83,16 +83,20 @@ std::optional<SidePoint> SideSearch::nearest(const Eigen::Vector3d& place,
   for (std::size_t s = 0; s < sides_.size(); ++s) {
     const Box& box = boxes_[s];
     const double room = reach.value_or(share * box.size);
-    if ((place.array() < box.low - room).any() || (place.array() > box.high + room).any())
-      continue;
+    if ((place.array() < box.low - room).any() || (place.array() > box.high + room).any()) continue;
     const SideShape shape = shape_of_side(mesh_, sides_[s]);
     const std::vector<int> nodes = nodes_of(mesh_, sides_[s]);
     const SidePlaces places = places_of(mesh_, nodes);
     const auto at = nearest_on(shape, places, place);
     if (!at) continue;
     const ShapeFunctions functions = shape_functions(shape, *at);
-    SidePoint point{sides_[s], nodes, {functions.values.begin(), functions.values.end()},
-                    places.transpose() * functions.values, 0.0, 0.0, box.size};
+    SidePoint point{sides_[s],
+                    nodes,
+                    {functions.values.begin(), functions.values.end()},
+                    places.transpose() * functions.values,
+                    0.0,
+                    0.0,
+                    box.size};
     point.distance = (point.place - place).norm();
     point.beyond = box.size * part_beyond(shape, *at);
     if (point.distance > room || point.beyond > room) continue;

@@ -29,9 +29,9 @@ using testing::HasSubstr;
 
 Mesh grid(const std::array<int, 3>& cells, const Eigen::Vector3d& size, ElementShape shape) {
   const ElementShape linear = test::linear_shape(shape);
-  Mesh mesh = test::linear_grid(cells, size, facts_of(shape).dimension == 2,
-                                [&](int, int, int) { return linear; },
-                                [](int, int, int) { return true; });
+  Mesh mesh = test::linear_grid(
+      cells, size, facts_of(shape).dimension == 2, [&](int, int, int) { return linear; },
+      [](int, int, int) { return true; });
   if (test::is_quadratic(shape)) mesh = test::with_middles(mesh);
   mesh.node_labels.resize(mesh.num_nodes());
   std::iota(mesh.node_labels.begin(), mesh.node_labels.end(), 1);
@@ -56,13 +56,12 @@ Mesh joined(const Mesh& lower, const Mesh& upper) {
 }
 
 /// Sides of a set of elements in a plane n·x = offset.
-std::vector<ElementSide> sides_at(const Mesh& mesh, const std::string& set, const Eigen::Vector3d& n,
-                                  double offset) {
+std::vector<ElementSide> sides_at(const Mesh& mesh, const std::string& set,
+                                  const Eigen::Vector3d& n, double offset) {
   MeshRegion region;
   region.plane = MeshRegion::Plane{n, offset};
   std::vector<ElementSide> sides;
-  for (const ElementSide& side :
-       sides_within(mesh, stridor::outer_sides(mesh), region, 0.02)) {
+  for (const ElementSide& side : sides_within(mesh, stridor::outer_sides(mesh), region, 0.02)) {
     const auto& elements = mesh.element_sets.at(set);
     if (std::binary_search(elements.begin(), elements.end(), side.element)) sides.push_back(side);
   }
@@ -90,13 +89,15 @@ MeshBodyParameters tied_blocks(ElementShape shape) {
 }
 
 /// DoFs of a field of displacements that the constraints can have.
-Eigen::VectorXd dofs_of(const BodyMatrices& body, const Mesh& mesh, const Eigen::Matrix3d& gradient) {
+Eigen::VectorXd dofs_of(const BodyMatrices& body, const Mesh& mesh,
+                        const Eigen::Matrix3d& gradient) {
   Eigen::VectorXd q = Eigen::VectorXd::Zero(body.num_dofs());
   for (int node = 0; node < static_cast<int>(mesh.num_nodes()); ++node) {
     const Eigen::Vector3d u = gradient * mesh.nodes.row(node).transpose();
     for (std::size_t i = 0; i < 3; ++i) {
       const DofSum sum = body.displacement(node, i);
-      if (sum.size() == 1 && sum.front().weight == 1.0) q(sum.front().dof) = u(static_cast<Eigen::Index>(i));
+      if (sum.size() == 1 && sum.front().weight == 1.0)
+        q(sum.front().dof) = u(static_cast<Eigen::Index>(i));
     }
   }
   return q;
@@ -105,8 +106,8 @@ Eigen::VectorXd dofs_of(const BodyMatrices& body, const Mesh& mesh, const Eigen:
 // A linear field is in equilibrium at every node that is not on the outside, those of the seam
 // included: the finer faces divide the coarser ones, so that forces pass exactly.
 TEST(MeshTie, PassesThePatchTestWhereTheSlaveDividesTheMaster) {
-  for (const ElementShape shape : {ElementShape::quad4, ElementShape::quad8, ElementShape::hex8,
-                                   ElementShape::hex20}) {
+  for (const ElementShape shape :
+       {ElementShape::quad4, ElementShape::quad8, ElementShape::hex8, ElementShape::hex20}) {
     const MeshBodyParameters parameters = tied_blocks(shape);
     const BodyMatrices body = parameters.make();
     const Mesh& mesh = *parameters.mesh;
@@ -170,8 +171,7 @@ TEST(MeshTie, RefusesWhatDoesNotMeet) {
   Mesh apart = *body.mesh;
   for (const int node : nodes_of(apart, apart.surfaces.at("slave"))) apart.nodes(node, 1) += 0.3;
   body.mesh = std::make_shared<const Mesh>(apart);
-  EXPECT_THAT(message_of<ConfigError>([&] { body.make(); }),
-              HasSubstr("ties.seam: node"));
+  EXPECT_THAT(message_of<ConfigError>([&] { body.make(); }), HasSubstr("ties.seam: node"));
   body.ties["seam"].partial = true;
   EXPECT_THAT(message_of<ConfigError>([&] { body.make(); }), HasSubstr("ties.seam: ties nothing"));
   body = tied_blocks(ElementShape::quad4);
@@ -206,8 +206,7 @@ TEST(RigidRegion, OfAWholeBodyHasItsInertia) {
   ASSERT_EQ(body.num_dofs(), 6);
   const double mass = 7800.0 * 0.3 * 0.1 * 0.05;
   Eigen::VectorXd expected(6);
-  expected << mass + 0.5, mass + 0.5, mass + 0.5,
-      mass / 12.0 * (0.1 * 0.1 + 0.05 * 0.05) + 1e-3,
+  expected << mass + 0.5, mass + 0.5, mass + 0.5, mass / 12.0 * (0.1 * 0.1 + 0.05 * 0.05) + 1e-3,
       mass / 12.0 * (0.3 * 0.3 + 0.05 * 0.05) + 2e-3, mass / 12.0 * (0.3 * 0.3 + 0.1 * 0.1) + 3e-3;
   EXPECT_LE((Eigen::MatrixXd(body.mass) - Eigen::MatrixXd(expected.asDiagonal())).norm(),
             1e-12 * expected.norm());
@@ -244,8 +243,8 @@ TEST(MeanRotation, OfARigidMotionIsItsAngle) {
   const Eigen::Vector3d angle{0.3, -0.2, 0.5};
   Eigen::VectorXd q = Eigen::VectorXd::Zero(body.num_dofs());
   for (int node = 0; node < static_cast<int>(parameters.mesh->num_nodes()); ++node) {
-    const Eigen::Vector3d u = angle.cross(
-        parameters.mesh->nodes.row(node).transpose() - Eigen::Vector3d(0.1, 0.7, -0.2));
+    const Eigen::Vector3d u =
+        angle.cross(parameters.mesh->nodes.row(node).transpose() - Eigen::Vector3d(0.1, 0.7, -0.2));
     for (std::size_t i = 0; i < 3; ++i)
       q(body.displacement(node, i).front().dof) = u(static_cast<Eigen::Index>(i));
   }
@@ -322,8 +321,8 @@ TEST(CylindricalAxes, OfAnOrthotropicRingAreThoseOfLekhnitskii) {
   constexpr double nu = 0.1;  // ν_rθ
   ring.material = {};
   ring.material.density = 1600.0;
-  ring.material.orthotropic = OrthotropicParameters{
-      {radial, hoop, 12e9}, {nu, 0.2, 0.15}, {4e9, 3e9, 5e9}};
+  ring.material.orthotropic =
+      OrthotropicParameters{{radial, hoop, 12e9}, {nu, 0.2, 0.15}, {4e9, 3e9, 5e9}};
   ring.material.axes.emplace().around.emplace();
   const double k = std::sqrt(hoop / radial);
   const double outer = std::pow(2.0, 2.0 * k);
@@ -397,9 +396,13 @@ TEST(LossFactor, OfAPartGivesTheDampingOfTheComplexStiffness) {
   Eigen::MatrixXcd complex = Eigen::MatrixXd(body.stiffness).cast<std::complex<double>>();
   complex.imag() = Eigen::MatrixXd(body.loss_stiffness);
   const Eigen::MatrixXcd pencil =
-      Eigen::MatrixXd(body.mass).llt().solve(Eigen::MatrixXd::Identity(body.num_dofs(), body.num_dofs()))
-          .cast<std::complex<double>>() * complex;
-  Eigen::VectorXcd squares = Eigen::ComplexEigenSolver<Eigen::MatrixXcd>(pencil, false).eigenvalues();
+      Eigen::MatrixXd(body.mass)
+          .llt()
+          .solve(Eigen::MatrixXd::Identity(body.num_dofs(), body.num_dofs()))
+          .cast<std::complex<double>>() *
+      complex;
+  Eigen::VectorXcd squares =
+      Eigen::ComplexEigenSolver<Eigen::MatrixXcd>(pencil, false).eigenvalues();
   std::sort(squares.begin(), squares.end(),
             [](const auto& a, const auto& b) { return a.real() < b.real(); });
   for (Eigen::Index mode = 0; mode < 6; ++mode) {
@@ -455,7 +458,9 @@ TEST(MeshBody, AttachmentsThatDoNotFitAreRefusedWithTheirKeys) {
                 b.supports["s"] = {{"root"}, {"radial"}};
               }),
               HasSubstr("is on the line, where nothing is radial"));
-  EXPECT_THAT(refusal([](auto& b) { b.masses["m"] = {"tip", 1.0, {}}; }),
+  EXPECT_THAT(refusal([](auto& b) {
+                b.masses["m"] = {"tip", 1.0, {}};
+              }),
               HasSubstr("masses.m.on: there is no point or rigid region 'tip'"));
   EXPECT_THAT(refusal([](auto& b) {
                 b.points["tip"].at = {0.3, 0.1, 0.05};
@@ -485,8 +490,8 @@ TEST(MeshBody, ThatIsFreeCanBeReduced) {
 }
 
 // A sixth of a disc whose cuts are planes of symmetry has the modes of 0, 3, 6 ... diameters of the
-// whole one. A thin plate leaves out shear and rotary inertia, some (h/(b − a))² = 4e-4 of them; the
-// elements, ten to a half wave, add less than 1 %.
+// whole one. A thin plate leaves out shear and rotary inertia, some (h/(b − a))² = 4e-4 of them;
+// the elements, ten to a half wave, add less than 1 %.
 TEST(MeshBody, SectorOfADiscHasTheFrequenciesOfAnAnnularPlate) {
   constexpr double thickness = 0.02;
   Mesh mesh = grid({16, 10, 1}, {1.0, 1.0, thickness}, ElementShape::hex20);
@@ -500,8 +505,7 @@ TEST(MeshBody, SectorOfADiscHasTheFrequenciesOfAnAnnularPlate) {
   body.mesh = std::make_shared<const Mesh>(mesh);
   body.surfaces["hub"].cylinder = MeshCylinderParameters{{}, {}, 1.0};
   body.surfaces["first"].plane = MeshPlaneParameters{{0, 1, 0}, 0.0};
-  body.surfaces["last"].plane =
-      MeshPlaneParameters{{-std::sqrt(0.75), 0.5, 0.0}, 0.0};
+  body.surfaces["last"].plane = MeshPlaneParameters{{-std::sqrt(0.75), 0.5, 0.0}, 0.0};
   body.supports["clamp"] = {{"hub"}, {}};
   body.supports["symmetry"] = {{"first", "last"}, {"tangential"}};
   const ModalBody modal = make_modal(make_craig_bampton(body.make(), {}, 3, {}));

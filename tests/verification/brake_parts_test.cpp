@@ -44,8 +44,7 @@ class BrakeParts : public testing::Test {
 
   static std::vector<double> frequencies(const MeshBodyParameters& body, int modes, int wanted) {
     const BodyMatrices matrices = body.make();
-    const ModalBody modal =
-        make_modal(make_craig_bampton(matrices, matrices.kept, modes, {}));
+    const ModalBody modal = make_modal(make_craig_bampton(matrices, matrices.kept, modes, {}));
     std::vector<double> found;
     for (Eigen::Index i = 0; i < wanted; ++i)
       found.push_back(modal.omega(i) / (2.0 * std::numbers::pi));
@@ -84,7 +83,8 @@ class BrakeParts : public testing::Test {
     // "mode, eigenvalue, rad/time, cycles/time, imaginary part", after a heading.
     std::vector<double> found;
     std::ifstream results(job + ".dat");
-    for (std::string line; std::getline(results, line) && static_cast<int>(found.size()) < wanted;) {
+    for (std::string line;
+         std::getline(results, line) && static_cast<int>(found.size()) < wanted;) {
       int mode = 0;
       double eigenvalue = 0.0;
       double omega = 0.0;

@@ -25,9 +25,9 @@ constexpr double density = 7850.0;
 /// Two cells in a row, every node moved by chance: curved sides where the shape has middle nodes.
 Mesh distorted_cells(ElementShape shape) {
   const ElementShape linear = test::linear_shape(shape);
-  Mesh mesh = test::linear_grid({2, 1, 1}, {2.0, 1.0, 1.2}, false,
-                                [&](int, int, int) { return linear; },
-                                [](int, int, int) { return true; });
+  Mesh mesh = test::linear_grid(
+      {2, 1, 1}, {2.0, 1.0, 1.2}, false, [&](int, int, int) { return linear; },
+      [](int, int, int) { return true; });
   if (test::is_quadratic(shape)) mesh = test::with_middles(mesh);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-0.06, 0.06);
@@ -100,8 +100,7 @@ TEST_P(CalculixTest, HasTheSameMatrices) {
   const test::TemporaryFolder folder;
   const std::string job = (folder / "job").string();
   std::ofstream(job + ".inp") << deck_of(mesh, type);
-  const HelperOutcome outcome =
-      run_helper({"ccx", "-i", job}, job + ".log", job + ".log");
+  const HelperOutcome outcome = run_helper({"ccx", "-i", job}, job + ".log", job + ".log");
   ASSERT_EQ(outcome.spawn_error, 0) << "ccx is missing: install calculix-ccx";
   const std::vector<int> order = read_order(job + ".dof");
   ASSERT_EQ(order.size(), 3 * mesh.num_nodes());
