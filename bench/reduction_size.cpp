@@ -1,10 +1,14 @@
-// Craig-Bampton reduction of the cantilever of the main scene on fine meshes, beside one
-// factorisation of the same interior stiffness by CHOLMOD as it comes.
+// Craig-Bampton reduction of fine meshes, beside one factorisation of the same interior stiffness by
+// CHOLMOD as it comes.
 //
 //   build/release/bench/reduction_size [ALONG THROUGH [SPACING [ROUNDS]]]
-//       elements along the axis and through the thickness, distance of the interface nodes on the
-//       top in m; by default 1250 26 0.001 3: 200,000 DoFs, 200 of them kept, three rounds of
-//       factorisation and reduction, alternating
+//       the cantilever of the main scene: elements along the axis and through the thickness,
+//       distance of the interface nodes on the top in m; by default 1250 26 0.001 3: 200,000 DoFs,
+//       200 of them kept, three rounds of factorisation and reduction, alternating
+//   build/release/bench/reduction_size solid NX NY NZ [KEPT [ROUNDS]]
+//       a steel cantilever of hex20 elements with sides of 1 mm, held at x = 0, of which KEPT DoFs
+//       (200) on the top are kept. 26 26 25 is a block and 91 91 2 a plate of 200,000 DoFs,
+//       168 168 3 a plate of 1,000,000
 //
 // Seconds are processor time, which other work on the machine disturbs less than the clock on the
 // wall (in brackets). Memory is the largest resident set of the process during each part, with what
@@ -13,6 +17,7 @@
 
 #include <Eigen/CholmodSupport>
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -23,6 +28,7 @@
 #include <vector>
 
 #include "substructures/bodies/beam.hpp"
+#include "substructures/elements/assembly.hpp"
 #include "substructures/reduction/modal_body.hpp"
 
 using namespace stridor;
@@ -92,25 +98,105 @@ std::vector<int> interface_dofs(const BodyMatrices& body, double spacing) {
   return dofs;
 }
 
+/// A body, and its DoFs on the top.
+struct Solid {
+  BodyMatrices body;
+  std::vector<int> top;
+};
+
+/// Rows and columns that have a place.
+SparseMatrix selected(const SparseMatrix& matrix, const std::vector<int>& place, int size) {
+  SparseMatrix part(size, size);
+  part.reserve(matrix.nonZeros());
+  for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
+    if (place[static_cast<std::size_t>(column)] < 0) continue;
+    part.startVec(place[static_cast<std::size_t>(column)]);
+    for (SparseMatrix::InnerIterator entry(matrix, column); entry; ++entry) {
+      const int row = place[static_cast<std::size_t>(entry.row())];
+      if (row >= 0) part.insertBack(row, place[static_cast<std::size_t>(column)]) = entry.value();
+    }
+  }
+  part.finalize();
+  return part;
+}
+
+/// Nodes of hex20 elements lie on a grid of half elements, at most one index of which is odd.
+Mesh block_mesh(const std::array<int, 3>& count) {
+  constexpr double side = 0.001;
+  Mesh mesh;
+  const auto index = [&](int i, int j, int k) {
+    return static_cast<std::size_t>((k * (2 * count[1] + 1) + j) * (2 * count[0] + 1) + i);
+  };
+  std::vector<int> number(index(2 * count[0], 2 * count[1], 2 * count[2]) + 1, -1);
+  std::vector<Eigen::Vector3d> places;
+  for (int k = 0; k <= 2 * count[2]; ++k) {
+    for (int j = 0; j <= 2 * count[1]; ++j) {
+      for (int i = 0; i <= 2 * count[0]; ++i) {
+        if (i % 2 + j % 2 + k % 2 > 1) continue;
+        number[index(i, j, k)] = static_cast<int>(places.size());
+        places.emplace_back(0.5 * side * i, 0.5 * side * j, 0.5 * side * k);
+      }
+    }
+  }
+  mesh.nodes.resize(static_cast<Eigen::Index>(places.size()), 3);
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    mesh.nodes.row(static_cast<Eigen::Index>(n)) = places[n].transpose();
+    mesh.node_labels.push_back(static_cast<std::int64_t>(n + 1));
+  }
+  constexpr int at[20][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2},
+                             {2, 2, 2}, {0, 2, 2}, {1, 0, 0}, {2, 1, 0}, {1, 2, 0}, {0, 1, 0},
+                             {1, 0, 2}, {2, 1, 2}, {1, 2, 2}, {0, 1, 2}, {0, 0, 1}, {2, 0, 1},
+                             {2, 2, 1}, {0, 2, 1}};
+  std::int64_t label = 0;
+  for (int k = 0; k < count[2]; ++k) {
+    for (int j = 0; j < count[1]; ++j) {
+      for (int i = 0; i < count[0]; ++i) {
+        std::array<int, 20> nodes{};
+        for (std::size_t n = 0; n < nodes.size(); ++n)
+          nodes[n] = number[index(2 * i + at[n][0], 2 * j + at[n][1], 2 * k + at[n][2])];
+        mesh.add_element(ElementShape::hex20, nodes, ++label);
+      }
+    }
+  }
+  return mesh;
+}
+
+Solid solid_cantilever(const std::array<int, 3>& count) {
+  const Mesh mesh = block_mesh(count);
+  const ElasticLaw steel(IsotropicElasticity{210e9, 0.3}, PlaneState::none);
+  MeshMatrices matrices = assemble_mesh(mesh, one_section(mesh, {steel, 7850.0}));
+  Solid solid;
+  std::vector<int> place;
+  int size = 0;
+  const double top = mesh.nodes.col(2).maxCoeff();
+  for (Eigen::Index node = 0; node < mesh.nodes.rows(); ++node) {
+    for (int d = 0; d < 3; ++d) {
+      const bool is_held = mesh.nodes(node, 0) == 0.0;
+      if (!is_held && mesh.nodes(node, 2) == top) solid.top.push_back(size);
+      place.push_back(is_held ? -1 : size++);
+    }
+  }
+  solid.body.stiffness = selected(matrices.stiffness, place, size);
+  matrices.stiffness = {};
+  solid.body.mass = selected(matrices.mass, place, size);
+  return solid;
+}
+
+/// So many of some DoFs, as far apart as they can be.
+std::vector<int> spread(const std::vector<int>& dofs, std::size_t count) {
+  std::vector<int> chosen;
+  for (std::size_t k = 0; k < std::min(count, dofs.size()); ++k)
+    chosen.push_back(dofs[k * dofs.size() / std::min(count, dofs.size())]);
+  return chosen;
+}
+
 SparseMatrix interior_stiffness(const BodyMatrices& body, const std::vector<int>& interface) {
   std::vector<int> position(static_cast<std::size_t>(body.num_dofs()), 0);
   for (const int dof : interface) position[static_cast<std::size_t>(dof)] = BodyMatrices::held;
   int num_interior = 0;
   for (int& p : position)
     if (p != BodyMatrices::held) p = num_interior++;
-  SparseMatrix interior(num_interior, num_interior);
-  interior.reserve(body.stiffness.nonZeros());
-  for (Eigen::Index dof = 0; dof < body.num_dofs(); ++dof) {
-    const int column = position[static_cast<std::size_t>(dof)];
-    if (column == BodyMatrices::held) continue;
-    interior.startVec(column);
-    for (SparseMatrix::InnerIterator entry(body.stiffness, dof); entry; ++entry) {
-      const int row = position[static_cast<std::size_t>(entry.row())];
-      if (row != BodyMatrices::held) interior.insertBack(row, column) = entry.value();
-    }
-  }
-  interior.finalize();
-  return interior;
+  return selected(body.stiffness, position, num_interior);
 }
 
 void print(const char* what, const Cost& cost) {
@@ -118,28 +204,9 @@ void print(const char* what, const Cost& cost) {
              cost.peak);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  const int along = argc > 1 ? std::atoi(argv[1]) : 1250;
-  const int through = argc > 2 ? std::atoi(argv[2]) : 26;
-  const double spacing = argc > 3 ? std::atof(argv[3]) : 0.001;
-  const int rounds = argc > 4 ? std::atoi(argv[4]) : 3;
-
-  BodyMatrices body;
-  const Cost assembly = cost_of([&] { body = make_beam(cantilever(along, through)); });
-  const std::vector<int> interface = interface_dofs(body, spacing);
-  if (interface.empty()) {
-    fmt::print(stderr, "{:g} m is no multiple of the node distance\n", spacing);
-    return 2;
-  }
-  fmt::print(
-      "{} x {} elements: {} DoFs, {} kept, {} modes; {:.1f} million "
-      "entries in K\n",
-      along, through, body.num_dofs(), interface.size(), num_modes,
-      1e-6 * static_cast<double>(body.stiffness.nonZeros()));
-  print("assembly", assembly);
-
+void compare(const BodyMatrices& body, const std::vector<int>& interface, int rounds) {
+  fmt::print("{} DoFs, {} kept, {} modes; {:.1f} million entries in K\n", body.num_dofs(),
+             interface.size(), num_modes, 1e-6 * static_cast<double>(body.stiffness.nonZeros()));
   ReducedBody reduced;
   std::vector<double> ratios;
   for (int round = 0; round < rounds; ++round) {
@@ -156,12 +223,37 @@ int main(int argc, char** argv) {
     ratios.push_back(reduction.processor / factorisation.processor);
   }
   std::sort(ratios.begin(), ratios.end());
-  fmt::print("ratio of processor times {:.1f} (median; {:.1f} to {:.1f})\n",
+  fmt::print("ratio of processor times {:.2f} (median; {:.2f} to {:.2f})\n",
              ratios[ratios.size() / 2], ratios.front(), ratios.back());
 
   const Eigen::VectorXd omega = make_modal(reduced).omega;
   fmt::print("lowest frequencies, Hz:");
   for (Eigen::Index i = 0; i < 12; ++i) fmt::print(" {:.5f}", omega(i) / (2.0 * std::numbers::pi));
   fmt::print("\n");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto number = [&](int k, int otherwise) {
+    return argc > k ? std::atoi(argv[k]) : otherwise;
+  };
+  if (argc > 4 && std::string(argv[1]) == "solid") {
+    Solid solid;
+    print("assembly", cost_of([&] {
+            solid = solid_cantilever({number(2, 1), number(3, 1), number(4, 1)});
+          }));
+    compare(solid.body, spread(solid.top, static_cast<std::size_t>(number(5, 200))), number(6, 3));
+    return 0;
+  }
+  const double spacing = argc > 3 ? std::atof(argv[3]) : 0.001;
+  BodyMatrices body;
+  print("assembly", cost_of([&] { body = make_beam(cantilever(number(1, 1250), number(2, 26))); }));
+  const std::vector<int> interface = interface_dofs(body, spacing);
+  if (interface.empty()) {
+    fmt::print(stderr, "{:g} m is no multiple of the node distance\n", spacing);
+    return 2;
+  }
+  compare(body, interface, number(4, 3));
   return 0;
 }
