@@ -8,9 +8,12 @@
 #include <limits>
 #include <new>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "core/activity.hpp"
 #include "core/errors.hpp"
+#include "substructures/matrices/supernode_kernels.hpp"
 
 namespace stridor {
 namespace {
@@ -22,15 +25,12 @@ struct Supernode {
   Eigen::Index num_columns;
   const double* entries;  ///< rows.size() x num_columns, by columns
 
-  using Part = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
   Eigen::Index num_rows() const { return static_cast<Eigen::Index>(rows.size()); }
   Eigen::Index num_below() const { return num_rows() - num_columns; }
-  std::span<const int> own_rows() const {
-    return rows.first(static_cast<std::size_t>(num_columns));
+  std::span<const int> rows_below() const {
+    return rows.subspan(static_cast<std::size_t>(num_columns));
   }
-  std::span<const int> rows_below() const { return rows.subspan(own_rows().size()); }
-  Part triangle() const { return {entries, num_columns, num_columns, num_rows()}; }
-  Part below() const { return {entries + num_columns, num_below(), num_columns, num_rows()}; }
+  SupernodeView view() const { return {entries, num_rows(), num_columns}; }
 };
 
 class Decomposition : public Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> {
@@ -59,20 +59,52 @@ class Decomposition : public Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lo
   const int* dofs() const { return static_cast<const int*>(m_cholmodFactor->Perm); }
 };
 
-/// The right-hand sides at some rows of L: a column for each row, so that the parts of a supernode
-/// act on it from the right, transposed.
-using Panel = Eigen::MatrixXd::ColsBlockXpr;
+/// Vectors in the order of L, in strips of eight; those that fill the last strip up are zero.
+class Strips {
+ public:
+  Strips(const VectorBlockRef& block, const int* dofs)
+      : size_(block.rows()),
+        num_strips_((block.cols() + strip_width - 1) / strip_width),
+        numbers_(static_cast<std::size_t>(size_ * num_strips_ * strip_width)) {
+    for (Eigen::Index strip = 0; strip < num_strips_; ++strip) {
+      const Eigen::Index first = strip * strip_width;
+      const Eigen::Index count = std::min(strip_width, block.cols() - first);
+      double* to = at(strip, 0);
+      for (Eigen::Index row = 0; row < size_; ++row, to += strip_width)
+        std::copy_n(&block(dofs[row], first), count, to);
+    }
+  }
 
-void gather(const VectorBlockRef& block, const int* dofs, std::span<const int> rows, Panel panel) {
-  Eigen::Index k = 0;
-  for (const int row : rows) panel.col(k++) = block.row(dofs[row]);
-}
+  void write_to(VectorBlockRef& block, const int* dofs) {
+    for (Eigen::Index strip = 0; strip < num_strips_; ++strip) {
+      const Eigen::Index first = strip * strip_width;
+      const Eigen::Index count = std::min(strip_width, block.cols() - first);
+      const double* from = at(strip, 0);
+      for (Eigen::Index row = 0; row < size_; ++row, from += strip_width)
+        std::copy_n(from, count, &block(dofs[row], first));
+    }
+  }
 
-void scatter(const Panel& panel, const int* dofs, std::span<const int> rows,
-             VectorBlockRef& block) {
-  Eigen::Index k = 0;
-  for (const int row : rows) block.row(dofs[row]) = panel.col(k++);
-}
+  Eigen::Index count() const { return num_strips_; }
+  double* at(Eigen::Index strip, Eigen::Index row) {
+    return numbers_.data() + (strip * size_ + row) * strip_width;
+  }
+  bool is_zero(Eigen::Index row, Eigen::Index count) {
+    for (Eigen::Index strip = 0; strip < num_strips_; ++strip) {
+      const double* begin = at(strip, row);
+      if (!std::all_of(begin, begin + count * strip_width, [](double x) { return x == 0.0; }))
+        return false;
+    }
+    return true;
+  }
+
+ private:
+  Eigen::Index size_, num_strips_;
+  std::vector<double> numbers_;
+};
+
+/// Numbers of L that stay in the cache while all strips pass over them.
+constexpr Eigen::Index kept_in_cache = 16384;
 
 /// Right-hand sides that `solve` takes through the factor together.
 constexpr Eigen::Index solved_together = 32;
@@ -111,8 +143,45 @@ constexpr double least_over_rounding = 100.0;
 struct SparseCholesky::Factor {
   Decomposition decomposition;
   Eigen::Index size = 0;
-  Eigen::Index widest = 0;   ///< columns of a supernode, at most
-  Eigen::Index deepest = 0;  ///< rows below its triangle, at most
+
+  void solve_lower(Strips& strips) const {
+    Eigen::Index own = 0;  // the first row of the supernode
+    for (std::size_t k = 0; k < decomposition.num_supernodes(); ++k) {
+      const Supernode node = decomposition.supernode(k);
+      const Eigen::Index first = std::exchange(own, own + node.num_columns);
+      if (strips.is_zero(first, node.num_columns)) continue;
+      const SupernodeView view = node.view();
+      for (Eigen::Index strip = 0; strip < strips.count(); ++strip)
+        solve_lower_triangle(view, strips.at(strip, first));
+      const Eigen::Index at_once = std::max<Eigen::Index>(8, kept_in_cache / node.num_columns);
+      for (Eigen::Index row = 0; row < node.num_below(); row += at_once) {
+        const Eigen::Index count = std::min(at_once, node.num_below() - row);
+        for (Eigen::Index strip = 0; strip < strips.count(); ++strip)
+          subtract_rows(view, node.num_columns + row, count, node.rows_below().data() + row,
+                        strips.at(strip, first), strips.at(strip, 0));
+      }
+    }
+  }
+
+  void solve_upper(Strips& strips) const {
+    Eigen::Index own = size;
+    for (std::size_t k = decomposition.num_supernodes(); k-- > 0;) {
+      const Supernode node = decomposition.supernode(k);
+      own -= node.num_columns;
+      const SupernodeView view = node.view();
+      const Eigen::Index at_once = std::max<Eigen::Index>(
+          8, kept_in_cache / std::max<Eigen::Index>(node.num_below(), 1) / 8 * 8);
+      for (Eigen::Index column = 0; node.num_below() > 0 && column < node.num_columns;
+           column += at_once) {
+        const Eigen::Index count = std::min(at_once, node.num_columns - column);
+        for (Eigen::Index strip = 0; strip < strips.count(); ++strip)
+          subtract_columns(view, node.num_columns, node.num_below(), node.rows_below().data(),
+                           column, count, strips.at(strip, 0), strips.at(strip, own));
+      }
+      for (Eigen::Index strip = 0; strip < strips.count(); ++strip)
+        solve_upper_triangle(view, strips.at(strip, own));
+    }
+  }
 };
 
 SparseCholesky::SparseCholesky(const SparseMatrix& matrix, const std::string& what)
@@ -131,11 +200,6 @@ SparseCholesky::SparseCholesky(const SparseMatrix& matrix, const std::string& wh
   };
   decomposition.factorise(matrix);
   if (decomposition.info() != Eigen::Success) refuse();
-  for (std::size_t k = 0; k < decomposition.num_supernodes(); ++k) {
-    const Supernode node = decomposition.supernode(k);
-    factor_->widest = std::max(factor_->widest, node.num_columns);
-    factor_->deepest = std::max(factor_->deepest, node.num_below());
-  }
   if (!(softest_over_rounding(*this, matrix) > least_over_rounding)) refuse();
 }
 
@@ -148,52 +212,31 @@ Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& right_hand_sides) c
   for (Eigen::Index first = 0; first < solutions.cols(); first += solved_together) {
     const Eigen::Index count = std::min(solved_together, solutions.cols() - first);
     VectorBlock block = right_hand_sides.middleCols(first, count);
-    solve_lower_in_place(block);
-    solve_upper_in_place(block);
+    solve_in_place(block);
     solutions.middleCols(first, count) = block;
   }
   return solutions;
 }
 
-void SparseCholesky::solve_lower_in_place(VectorBlockRef block) const {
+void SparseCholesky::solve(VectorBlockRef& block, Part part) const {
   if (block.size() == 0) return;
-  const Decomposition& decomposition = factor_->decomposition;
-  const int* dofs = decomposition.dofs();
-  Eigen::MatrixXd own_columns(block.cols(), factor_->widest);
-  Eigen::MatrixXd columns_below(block.cols(), factor_->deepest);
-  for (std::size_t k = 0; k < decomposition.num_supernodes(); ++k) {
-    const Supernode node = decomposition.supernode(k);
-    Panel own = own_columns.leftCols(node.num_columns);
-    gather(block, dofs, node.own_rows(), own);
-    if ((own.array() == 0.0).all()) continue;
-    node.triangle().transpose().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(own);
-    scatter(own, dofs, node.own_rows(), block);
-    if (node.num_below() == 0) continue;
-    Panel below = columns_below.leftCols(node.num_below());
-    below.noalias() = own * node.below().transpose();
-    Eigen::Index i = 0;
-    for (const int row : node.rows_below()) block.row(dofs[row]) -= below.col(i++);
-  }
+  const int* dofs = factor_->decomposition.dofs();
+  Strips strips(block, dofs);
+  if (part != Part::upper) factor_->solve_lower(strips);
+  if (part != Part::lower) factor_->solve_upper(strips);
+  strips.write_to(block, dofs);
+}
+
+void SparseCholesky::solve_in_place(VectorBlockRef block) const {
+  solve(block, Part::both);
+}
+
+void SparseCholesky::solve_lower_in_place(VectorBlockRef block) const {
+  solve(block, Part::lower);
 }
 
 void SparseCholesky::solve_upper_in_place(VectorBlockRef block) const {
-  if (block.size() == 0) return;
-  const Decomposition& decomposition = factor_->decomposition;
-  const int* dofs = decomposition.dofs();
-  Eigen::MatrixXd own_columns(block.cols(), factor_->widest);
-  Eigen::MatrixXd columns_below(block.cols(), factor_->deepest);
-  for (std::size_t k = decomposition.num_supernodes(); k-- > 0;) {
-    const Supernode node = decomposition.supernode(k);
-    Panel own = own_columns.leftCols(node.num_columns);
-    gather(block, dofs, node.own_rows(), own);
-    if (node.num_below() > 0) {
-      Panel below = columns_below.leftCols(node.num_below());
-      gather(block, dofs, node.rows_below(), below);
-      own.noalias() -= below * node.below();
-    }
-    node.triangle().triangularView<Eigen::Lower>().solveInPlace<Eigen::OnTheRight>(own);
-    scatter(own, dofs, node.own_rows(), block);
-  }
+  solve(block, Part::upper);
 }
 
 Eigen::Index SparseCholesky::size() const {

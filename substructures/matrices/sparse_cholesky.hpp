@@ -32,16 +32,22 @@ class SparseCholesky {
   /// A⁻¹ b, for one or several right-hand sides.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right_hand_sides) const;
 
-  /// X <- L⁻¹ X. Parts of L that the zeros of X keep out of the result are passed over.
+  /// X <- A⁻¹ X. Parts of L that the zeros of X keep out of L⁻¹ X are passed over.
   ///
-  /// L is read once for all columns; 16 to 64 of them make the most of it.
+  /// L is read once for all columns in either direction; multiples of 8 of them, up to 64, make the
+  /// most of it.
+  void solve_in_place(VectorBlockRef block) const;
+  /// X <- L⁻¹ X, likewise.
   void solve_lower_in_place(VectorBlockRef block) const;
-  /// X <- L⁻ᵀ X; after solve_lower_in_place it completes A⁻¹ X.
+  /// X <- L⁻ᵀ X.
   void solve_upper_in_place(VectorBlockRef block) const;
 
   Eigen::Index size() const;
 
  private:
+  enum class Part { lower, upper, both };
+  void solve(VectorBlockRef& block, Part part) const;
+
   struct Factor;
   std::unique_ptr<Factor> factor_;
 };

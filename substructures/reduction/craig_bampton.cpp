@@ -157,8 +157,7 @@ ReducedBody make_craig_bampton(const BodyMatrices& body, std::span<const int> in
   for_column_groups(nb, [&](Eigen::Index first, Eigen::Index count) {
     throw_if_stopped();
     solving.report(static_cast<double>(first) / static_cast<double>(nb));
-    factor.solve_lower_in_place(psi.middleCols(first, count));
-    factor.solve_upper_in_place(psi.middleCols(first, count));
+    factor.solve_in_place(psi.middleCols(first, count));
   });
 
   reduced.stiffness.topLeftCorner(nb, nb) += stiffness.ib.transpose() * psi;

@@ -12,6 +12,7 @@
 #include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
+#include "substructures/matrices/supernode_kernels.hpp"
 #include "substructures/matrices/symmetric_eigenpairs.hpp"
 
 namespace stridor {
@@ -21,7 +22,7 @@ using SymmetricEigen = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 
 /// Vectors by which the Krylov space grows at a time. A pass over the factor or the mass serves all
 /// of them; with more of them the space would have to be larger.
-constexpr Eigen::Index block_width = 8;
+constexpr Eigen::Index block_width = strip_width;
 
 Modes dense_modes(const SparseMatrix& stiffness, const SparseMatrix& mass, Eigen::Index count) {
   const SymmetricEigenpairs all = generalised_eigenpairs(
@@ -201,7 +202,14 @@ void Lanczos::append(const VectorBlock& block) {
 /// W <- A W.
 void Lanczos::apply(VectorBlock& block) {
   stiffness_.solve_upper_in_place(block);
-  scratch_.noalias() = mass_ * block;
+  if (block.cols() == strip_width && mass_.isCompressed()) {
+    // M is symmetric.
+    scratch_.resize(block.rows(), block.cols());
+    multiply_columns(mass_.cols(), mass_.outerIndexPtr(), mass_.innerIndexPtr(), mass_.valuePtr(),
+                     strip_width, block.data(), scratch_.data());
+  } else {
+    scratch_.noalias() = mass_ * block;
+  }
   block.swap(scratch_);
   stiffness_.solve_lower_in_place(block);
 }
