@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <umfpack.h>
 
+#include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -47,6 +50,18 @@ SparseMatrix places_of(SparseMatrix matrix) {
 
 const double* numbers_of(const std::vector<Complex>& values) {
   return reinterpret_cast<const double*>(values.data());
+}
+
+/// A fill-reducing order by nested dissection, of the pattern of A + Aᵀ, and pivots on the diagonal
+/// where they are not small: patterns here are symmetric but for friction. No refinement in solves:
+/// what they serve are iterations that correct themselves.
+std::array<double, UMFPACK_CONTROL> controls() {
+  std::array<double, UMFPACK_CONTROL> chosen{};
+  umfpack_zi_defaults(chosen.data());
+  chosen[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
+  chosen[UMFPACK_ORDERING] = UMFPACK_ORDERING_METIS;
+  chosen[UMFPACK_IRSTEP] = 0;
+  return chosen;
 }
 
 [[noreturn]] void fail(int status) {
@@ -93,27 +108,28 @@ SparseFactor& SparseFactor::operator=(SparseFactor&&) noexcept = default;
 
 Eigen::MatrixXcd SparseFactor::solve(const Eigen::MatrixXcd& right_hand_sides) const {
   const SparseMatrix& places = *numbers_->places;
+  const auto control = controls();
   Eigen::MatrixXcd solved(right_hand_sides.rows(), right_hand_sides.cols());
   for (Eigen::Index j = 0; j < solved.cols(); ++j) {
     const int status = umfpack_zi_solve(
         UMFPACK_A, places.outerIndexPtr(), places.innerIndexPtr(), numbers_of(numbers_->values),
         nullptr, reinterpret_cast<double*>(solved.col(j).data()), nullptr,
         reinterpret_cast<const double*>(right_hand_sides.col(j).data()), nullptr, numbers_->numeric,
-        nullptr, nullptr);
+        control.data(), nullptr);
     if (status < 0) fail(status);
   }
   return solved;
 }
 
-std::complex<double> SparseFactor::determinant_phase() const {
+std::complex<double> SparseFactor::log_determinant() const {
   double mantissa[2] = {0.0, 0.0};
   double exponent = 0.0;
   const int status =
       umfpack_zi_get_determinant(mantissa, nullptr, &exponent, numbers_->numeric, nullptr);
   if (status < 0) fail(status);
   const Complex value(mantissa[0], mantissa[1]);
-  const double size = std::abs(value);
-  return size > 0.0 ? value / size : 0.0;
+  if (value == 0.0) return -std::numeric_limits<double>::infinity();
+  return std::log(value) + exponent * std::numbers::ln10;
 }
 
 SparsePencil::SparsePencil(const SparseSystem& system) : pattern_(std::make_unique<Pattern>()) {
@@ -137,9 +153,10 @@ SparsePencil::SparsePencil(const SparseSystem& system) : pattern_(std::make_uniq
   pattern.velocity_norm = one_norm(system.velocity);
   pattern.position_norm = one_norm(system.position);
   // Pivots are chosen within the order found here, which depends on the pattern alone.
+  const auto control = controls();
   const int status = umfpack_zi_symbolic(
       pattern.size(), pattern.size(), pattern.places.outerIndexPtr(),
-      pattern.places.innerIndexPtr(), nullptr, nullptr, &pattern.symbolic, nullptr, nullptr);
+      pattern.places.innerIndexPtr(), nullptr, nullptr, &pattern.symbolic, control.data(), nullptr);
   if (status < 0) fail(status);
 }
 
@@ -166,12 +183,13 @@ Eigen::VectorXcd SparsePencil::slope(Complex s, Complex t, const Eigen::VectorXc
 
 SparseFactor SparsePencil::factorise(Complex s) const {
   auto numbers = std::make_unique<SparseFactor::Numbers>();
+  const auto control = controls();
   numbers->places = &pattern_->places;
   numbers->values = pattern_->values(s);
   const int status =
       umfpack_zi_numeric(pattern_->places.outerIndexPtr(), pattern_->places.innerIndexPtr(),
                          numbers_of(numbers->values), nullptr, pattern_->symbolic,
-                         &numbers->numeric, nullptr, nullptr);
+                         &numbers->numeric, control.data(), nullptr);
   if (status < 0) fail(status);
   return SparseFactor(std::move(numbers));
 }

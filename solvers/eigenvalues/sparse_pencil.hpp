@@ -18,8 +18,8 @@ class SparseFactor {
 
   /// P(s)⁻¹ B.
   Eigen::MatrixXcd solve(const Eigen::MatrixXcd& right_hand_sides) const;
-  /// det P(s)/|det P(s)|; 0 where P(s) is singular to working precision.
-  std::complex<double> determinant_phase() const;
+  /// log det P(s); real part −∞ where P(s) is singular to working precision.
+  std::complex<double> log_determinant() const;
 
  private:
   friend class SparsePencil;

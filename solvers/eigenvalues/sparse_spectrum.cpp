@@ -15,6 +15,7 @@
 #include "solvers/eigenvalues/dense_eigenvalues.hpp"
 #include "solvers/eigenvalues/eigenvalue_count.hpp"
 #include "solvers/eigenvalues/linear_pencil.hpp"
+#include "solvers/eigenvalues/shift_invert.hpp"
 #include "substructures/reduction/lowest_modes.hpp"
 
 namespace stridor {
@@ -47,11 +48,19 @@ Modes symmetric_modes(const SparseSystem& system, Eigen::Index count) {
   }
 }
 
-/// One pair of a projection.
-struct Pair {
-  Complex s;
-  Eigen::VectorXcd x;
-};
+using Pair = SparsePair;
+
+/// M with a trace of mass everywhere: positive definite unless M is indefinite. A body without mass
+/// at some DoFs is none the worse.
+SparseMatrix with_little_mass(const SparseMatrix& mass) {
+  constexpr double little = 1e-9;
+  const double mean = mass.diagonal().cwiseAbs().mean();
+  SparseMatrix more = mass;
+  for (Eigen::Index i = 0; i < mass.rows(); ++i)
+    more.coeffRef(i, i) += little * std::max(std::abs(mass.coeff(i, i)), 1e-6 * mean);
+  more.makeCompressed();
+  return more;
+}
 
 /// Priority of an eigenvalue.
 using Rank = std::function<double(Complex)>;
@@ -60,7 +69,7 @@ class SparseSearch {
  public:
   SparseSearch(const SparseSystem& system, const SpectrumWindow& window)
       : pencil_(system), window_(window) {
-    SparseCholesky(system.mass, "the mass matrix");
+    SparseCholesky(with_little_mass(system.mass), "the mass matrix");
   }
 
   SparseSpectrum run();
@@ -76,8 +85,9 @@ class SparseSearch {
   void improve(Pair& pair, const Eigen::VectorXcd& vector) const;
   void project();
   void refine();
-  void enlarge();
-  void add_random(const SparseFactor& factor, Complex shift, int count);
+  void search(std::size_t most_at_once);
+  void search_group(const std::vector<Complex>& group, double low, double high);
+  void add_modes_below(double omega);
   double height_for_count() const;
   bool is_near(Complex s) const;
   SparseSpectrum found_up_to(double height) const;
@@ -86,14 +96,15 @@ class SparseSearch {
   SparsePencil pencil_;
   SpectrumWindow window_;
   double height_ = 0.0;  ///< up to where pairs are refined
-  Rank rank_;            ///< without one all pairs are refined
+  Rank rank_;            ///< of pairs that are refined one by one
   double least_rank_ = -std::numeric_limits<double>::infinity();  ///< of pairs that are refined
   Modes modes_;
   Eigen::MatrixXd basis_;    ///< V with Vᵀ M V = 1
   Eigen::MatrixXd momenta_;  ///< M V
   Eigen::Index dim_ = 0;
+  double represented_ = std::numeric_limits<double>::infinity();  ///< ω up to which V has modes
   std::vector<Pair> pairs_;   ///< near the window
-  std::vector<Complex> far_;  ///< Ritz values above
+  std::vector<Complex> far_;  ///< approximations above
   std::mt19937 generator_{1};
   int factorisations_ = 0;
 };
@@ -112,15 +123,27 @@ void SparseSearch::start() {
     modes_ = symmetric_modes(pencil_.system(), count);
     const double highest = std::sqrt(std::max(0.0, modes_.omega_squared(count - 1)));
     if (count == size() || window_.count || highest >= 1.5 * wanted) break;
-    count *= 2;
+    // Modes are about evenly spaced, or come closer.
+    const double ratio = std::clamp(1.5 * wanted / std::max(highest, 0.1 * wanted), 1.1, 4.0);
+    count = static_cast<Eigen::Index>(std::pow(ratio, 1.3) * static_cast<double>(count)) + 10;
   }
   basis_.resize(size(), 2 * count);
   momenta_.resize(size(), 2 * count);
-  for (Eigen::Index i = 0; i < count; ++i) add(modes_.shapes.col(i));
   height_ = wanted;
+  add_modes_below(window_.count ? std::numeric_limits<double>::infinity() : 1.2 * wanted);
   project();
-  if (window_.count) height_ = 1.05 * height_for_count();
-  project();
+  if (window_.count) {
+    height_ = 1.05 * height_for_count();
+    project();
+  }
+}
+
+/// Begins the basis with the modes of the symmetric part up to a frequency, rad/s.
+void SparseSearch::add_modes_below(double omega) {
+  dim_ = 0;
+  represented_ = omega;
+  for (Eigen::Index i = 0; i < modes_.omega_squared.size(); ++i)
+    if (modes_.omega_squared(i) <= omega * omega) add(modes_.shapes.col(i));
 }
 
 /// A height with as many pairs below as are wanted, in the middle of a gap; that of the highest
@@ -191,6 +214,12 @@ double SparseSearch::add_complex(const Eigen::VectorXcd& vector) {
 
 /// Galerkin's projection on the basis.
 void SparseSearch::project() {
+  pairs_.clear();
+  far_.clear();
+  // About where those are for which the basis has nothing.
+  for (const double square : modes_.omega_squared)
+    if (square > represented_ * represented_) far_.emplace_back(0.0, std::sqrt(square));
+  if (dim_ == 0) return;
   const auto basis = basis_.leftCols(dim_);
   const SparseSystem& system = pencil_.system();
   LinearSystem reduced;
@@ -200,8 +229,6 @@ void SparseSearch::project() {
   reduced.gaps = reduced.forces = Eigen::MatrixXd(0, dim_);
   const Pencil pencil = make_pencil(reduced);
   const DenseSpectrum spectrum = dense_spectrum(pencil);
-  pairs_.clear();
-  far_.clear();
   for (std::size_t i = 0; i < spectrum.eigenvalues.size(); ++i) {
     const Complex s = spectrum.eigenvalues[i].s;
     if (!is_near(s)) {
@@ -232,7 +259,7 @@ void SparseSearch::refine() {
     bool have_converged = true;
     std::vector<Pair> improved = pairs_;
     for (std::size_t first = 0; first < pairs_.size();) {
-      if (rank_ && rank_(pairs_[first].s) < least_rank_) {
+      if (rank_(pairs_[first].s) < least_rank_) {
         ++first;
         continue;
       }
@@ -248,8 +275,6 @@ void SparseSearch::refine() {
         have_converged &= add_complex(vector) <= tolerance;
         improve(improved[first], vector);
       }
-      // A direction absent from the first space would never enter by itself.
-      if (round == 0 && !rank_) add_random(factor, shift, 2);
     }
     if (have_converged) {
       pairs_ = std::move(improved);
@@ -259,26 +284,56 @@ void SparseSearch::refine() {
   }
 }
 
-/// Random directions, seen through the resolvent at a shift.
-void SparseSearch::add_random(const SparseFactor& factor, Complex shift, int count) {
-  std::normal_distribution<double> normal;
-  for (int k = 0; k < count; ++k) {
-    Eigen::VectorXcd vector(size());
-    for (Complex& entry : vector) entry = {normal(generator_), normal(generator_)};
-    add_complex(factor.solve(pencil_.slope(shift, shift, vector)));
-  }
-}
-
-/// Random directions at several places of the window.
-void SparseSearch::enlarge() {
-  constexpr int places = 8;
-  for (int i = 0; i < places; ++i) {
-    const Complex shift(0.02 * height_, (i + 0.5) / places * height_);
-    const SparseFactor factor = pencil_.factorise(shift);
-    ++factorisations_;
-    add_random(factor, shift, 4);
+/// All pairs around those of the projection, by shift and invert for groups of neighbours.
+/// @param most_at_once pairs of a group
+void SparseSearch::search(std::size_t most_at_once) {
+  std::vector<Complex> expected;
+  for (const Pair& pair : pairs_) expected.push_back(pair.s);
+  std::sort(expected.begin(), expected.end(),
+            [](Complex a, Complex b) { return a.imag() < b.imag(); });
+  const std::size_t num_groups = std::max<std::size_t>(
+      1, (expected.size() + most_at_once - 1) / most_at_once);
+  double low = 0.0;
+  for (std::size_t k = 0; k < num_groups; ++k) {
+    const std::size_t first = k * expected.size() / num_groups;
+    const std::size_t last = (k + 1) * expected.size() / num_groups;
+    // Groups meet halfway between neighbours.
+    const double high = last < expected.size()
+                            ? 0.5 * (expected[last - 1].imag() + expected[last].imag())
+                            : std::max(1.1 * height_, low);
+    const auto begin = expected.begin();
+    const std::vector<Complex> group(begin + static_cast<std::ptrdiff_t>(first),
+                                     begin + static_cast<std::ptrdiff_t>(last));
+    search_group(group, low, high);
+    low = high;
   }
   project();
+}
+
+/// @param group expected eigenvalues, ascending Im s, with low <= Im s <= high
+void SparseSearch::search_group(const std::vector<Complex>& group, double low, double high) {
+  constexpr Eigen::Index start_width = 2;
+  if (!group.empty()) low = std::max(low, 0.9 * group.front().imag());
+  NearestPairsWanted wanted;
+  wanted.shift = Complex(0.003 * height_, 0.5 * (low + high));
+  wanted.radius = 0.5 * (high - low);
+  for (const Complex& s : group)
+    wanted.radius = std::max(wanted.radius, 1.01 * std::abs(s - wanted.shift));
+  wanted.expected = static_cast<Eigen::Index>(group.size());
+  wanted.most_steps = 5 * wanted.expected + 60;
+  const SparseFactor factor = pencil_.factorise(wanted.shift);
+  ++factorisations_;
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXcd start(size(), start_width);
+  for (Complex& entry : start.reshaped()) entry = {normal(generator_), normal(generator_)};
+  start = factor.solve(pencil_.system().mass * start);
+  const NearestPairs found = nearest_pairs(pencil_, factor, wanted, start);
+  for (const Pair& pair : found.pairs) {
+    if (pair.s.imag() < -1e-3 * height_ || !is_near(pair.s)) continue;
+    // Turned so that most of it is real.
+    const Complex square = (pair.x.transpose() * pair.x)(0);
+    add_complex(pair.x * std::polar(1.0, -0.5 * std::arg(square)));
+  }
 }
 
 /// The pairs in a rectangle.
@@ -290,8 +345,12 @@ SparseSpectrum SparseSearch::found_up_to(double height) const {
   Eigen::Index num = 0;
   for (const Pair& pair : pairs_) {
     const double residual = pencil_.scaled_residual(pair.s, pair.x);
-    // A projection may have eigenvalues near which the problem has none.
-    if (!spectrum.rectangle.contains(pair.s) || residual > largest_residual) continue;
+    // A projection may have eigenvalues near which the problem has none. In a rigid motion all terms of
+    // the residual are rounding.
+    const bool is_rigid = std::abs(pair.s) < 1e-6 * height &&
+                          pencil_.backward_error(pair.s, pair.x) < 1e-13;
+    if (!spectrum.rectangle.contains(pair.s) || (residual > largest_residual && !is_rigid))
+      continue;
     const double length = std::sqrt(pair.x.dot(mass * pair.x).real());
     spectrum.right.col(num++) = pair.x / length;
     spectrum.eigenvalues.push_back({pair.s, residual});
@@ -308,12 +367,12 @@ SparseSpectrum SparseSearch::found_up_to(double height) const {
 void SparseSearch::count(SparseSpectrum& spectrum) {
   std::vector<Complex> known = far_;
   for (const Pair& pair : pairs_) known.push_back(pair.s);
-  const auto phase = [&](Complex s) {
+  const auto logarithm = [&](Complex s) {
     ++factorisations_;
-    return pencil_.factorise(s).determinant_phase();
+    return pencil_.factorise(s).log_determinant();
   };
   const auto counted =
-      count_in_rectangle(phase, spectrum.rectangle.left(), spectrum.rectangle.right(),
+      count_in_rectangle(logarithm, spectrum.rectangle.left(), spectrum.rectangle.right(),
                          spectrum.rectangle.height, known);
   spectrum.num_counted = counted.value_or(0);
   spectrum.is_complete = counted && *counted == spectrum.num_found;
@@ -322,9 +381,19 @@ void SparseSearch::count(SparseSpectrum& spectrum) {
 
 SparseSpectrum SparseSearch::run() {
   constexpr int max_attempts = 4;
+  std::size_t most_at_once = 24;
   start();
   for (int attempt = 1;; ++attempt) {
-    refine();
+    if (attempt == 1) {
+      dim_ = 0;
+      represented_ = 1.1 * height_;
+    } else {
+      // Approximations of what has not been found, beside what has.
+      add_modes_below(std::numeric_limits<double>::infinity());
+      for (const Pair& pair : pairs_) add_complex(pair.x);
+      project();
+    }
+    search(most_at_once);
     const double height = window_.count ? height_for_count() : height_;
     if (height > height_ && attempt < max_attempts) {
       // Some have come out higher than the first projection had them.
@@ -335,7 +404,7 @@ SparseSpectrum SparseSearch::run() {
     SparseSpectrum spectrum = found_up_to(height);
     count(spectrum);
     if (spectrum.is_complete || attempt == max_attempts) return spectrum;
-    enlarge();
+    most_at_once = std::max<std::size_t>(most_at_once / 2, 2);
   }
 }
 

@@ -40,17 +40,19 @@ struct SparseSpectrum {
 
 /// All eigenvalues of M q̈ + P q̇ + Q q = 0 in a window (docs/theory.md, 10.5).
 ///
-/// Real modes of the symmetric part of Q with M, up to 1.5 times the window, span the first space
-/// for Galerkin's projection. Its pairs (s, x) are refined by inverse iteration,
+/// Real modes of the symmetric part of Q with M, up to 1.5 times the window, say where to look. Groups
+/// of neighbours are found by nearest_pairs() with a shift beside the middle of each; a projection on
+/// all of their vectors then tells apart what lies close together. Their number is compared with
+/// count_in_rectangle() of det P(s). Where one is missing, the search is repeated with smaller
+/// groups.
+///
+/// fastest_near() and closest_near() refine pairs (s, x) by inverse iteration,
 ///
 ///   P(σ) y = (P(σ) − P(s))/(σ − s) x,   y = (x − P(σ)⁻¹ P(s) x)/(σ − s)
 ///
 /// (Neumaier 1985; a pair that is exact stays as it is) with shifts σ near groups of them: y joins
-/// the space, and all pairs are projected anew, so that pairs that lie close together are told
-/// apart. A pair has converged when y adds less than 1e-9 to the space. Their number is then
-/// compared with the argument principle: the phase of det P(s) around the window, less that of the
-/// pairs found, shows each that is missing as a turn of 2π. Where one is, the space is enlarged and
-/// the search repeated.
+/// the space, and all pairs are projected anew. A pair has converged when y adds less than 1e-9 to
+/// the space.
 ///
 /// @param window a count, or a frequency; with a count there may be more
 /// @return status in is_complete; where it is false, the eigenvalues found

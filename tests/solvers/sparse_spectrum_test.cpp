@@ -44,11 +44,17 @@ TEST(SparsePencil, FactorSolvesAndKnowsItsDeterminant) {
   const Eigen::MatrixXcd x = Eigen::MatrixXcd::Random(system.size(), 3);
   EXPECT_LT((factor.solve(P * x) - x).norm(), 1e-8 * x.norm());
   EXPECT_LT((pencil.multiply(s, x.col(0)) - P * x.col(0)).norm(), 1e-13 * P.norm() * x.norm());
-  // The phase of the determinant from another factorisation, pivot by pivot.
+  // The determinant from another factorisation, pivot by pivot.
   const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(P);
   Complex phase = static_cast<double>(lu.permutationP().determinant());
-  for (const Complex& pivot : lu.matrixLU().diagonal()) phase *= pivot / std::abs(pivot);
-  EXPECT_LT(std::abs(factor.determinant_phase() - phase), 1e-9);
+  double size = 0.0;
+  for (const Complex& pivot : lu.matrixLU().diagonal()) {
+    phase *= pivot / std::abs(pivot);
+    size += std::log(std::abs(pivot));
+  }
+  const Complex logarithm = factor.log_determinant();
+  EXPECT_LT(std::abs(std::polar(1.0, logarithm.imag()) - phase), 1e-9);
+  EXPECT_NEAR(logarithm.real(), size, 1e-9 * std::abs(size));
   // The slope is the difference quotient.
   const Complex t(-100.0, 1e4);
   EXPECT_LT(((pencil.multiply(t, x.col(0)) - pencil.multiply(s, x.col(0))) / (t - s) -
@@ -119,6 +125,75 @@ TEST(SparseSpectrum, TellsCoincidingEigenvaluesApart) {
     const Complex s = found.eigenvalues[static_cast<std::size_t>(k)].s;
     EXPECT_LT(std::abs(s - Complex(0.0, omega(k / 2 + 1))), 1e-10) << k;
   }
+}
+
+/// A chain of n masses and springs with free ends.
+SparseSystem free_chain(int n) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i + 1 < n; ++i) {
+    for (const int k : {i, i + 1}) entries.emplace_back(k, k, 1.0);
+    entries.emplace_back(i, i + 1, -1.0);
+    entries.emplace_back(i + 1, i, -1.0);
+  }
+  SparseSystem system;
+  system.mass.resize(n, n);
+  system.mass.setIdentity();
+  system.velocity.resize(n, n);
+  system.position.resize(n, n);
+  system.position.setFromTriplets(entries.begin(), entries.end());
+  return system;
+}
+
+TEST(SparseSpectrum, FreeChainHasItsRigidMotionTwice) {
+  constexpr int n = 300;
+  const auto omega = [](int k) { return 2.0 * std::sin(0.5 * k * std::numbers::pi / n); };
+  const double between = 0.5 * (omega(12) + omega(13)) / (2.0 * std::numbers::pi);
+  const SparseSpectrum found = sparse_spectrum(free_chain(n), SpectrumWindow::below(between));
+  EXPECT_TRUE(found.is_complete);
+  EXPECT_EQ(found.num_counted, 26);  // s = 0 is double, the rest are pairs
+  // The root of a rounding of eps |K|: 3e-8.
+  std::size_t first = 0;
+  while (std::abs(found.eigenvalues[first].s) < 1e-6) ++first;
+  ASSERT_EQ(found.eigenvalues.size() - first, 12U);
+  for (std::size_t k = first; k < found.eigenvalues.size(); ++k) {
+    const Complex expected(0.0, omega(static_cast<int>(k - first) + 1));
+    EXPECT_LT(std::abs(found.eigenvalues[k].s - expected), 1e-9) << k;
+  }
+}
+
+/// Between two masses of a chain lies a node without mass: two springs in series, half as stiff.
+TEST(SparseSpectrum, NodesWithoutMassCondense) {
+  constexpr int n = 299;  // DoFs, every other one without mass, between held ends
+  SparseSystem system;
+  std::vector<Eigen::Triplet<double>> stiffness, mass;
+  for (int i = 0; i < n; ++i) {
+    stiffness.emplace_back(i, i, 4.0);
+    if (i + 1 < n) stiffness.emplace_back(i, i + 1, -2.0);
+    if (i + 1 < n) stiffness.emplace_back(i + 1, i, -2.0);
+    if (i % 2 == 1) mass.emplace_back(i, i, 1.0);
+  }
+  for (SparseMatrix* matrix : {&system.mass, &system.velocity, &system.position})
+    matrix->resize(n, n);
+  system.mass.setFromTriplets(mass.begin(), mass.end());
+  system.position.setFromTriplets(stiffness.begin(), stiffness.end());
+  const auto omega = [](int k) { return 2.0 * std::sin(0.5 * k * std::numbers::pi / 150.0); };
+  const double between = 0.5 * (omega(9) + omega(10)) / (2.0 * std::numbers::pi);
+  const SparseSpectrum found = sparse_spectrum(system, SpectrumWindow::below(between));
+  EXPECT_TRUE(found.is_complete);
+  ASSERT_EQ(found.eigenvalues.size(), 9U);
+  for (int k = 0; k < 9; ++k) {
+    EXPECT_LT(std::abs(found.eigenvalues[static_cast<std::size_t>(k)].s - Complex(0.0, omega(k + 1))),
+              1e-10)
+        << k;
+  }
+}
+
+/// What a count costs is mostly factorisations.
+TEST(SparseSpectrum, FewFactorisationsFindAndCountAll) {
+  const SparseSystem system = small_pads().system();
+  const SparseSpectrum found = sparse_spectrum(system, SpectrumWindow::below(8000.0));
+  EXPECT_TRUE(found.is_complete);
+  EXPECT_LE(found.factorisations, 40);
 }
 
 TEST(SparseSpectrum, OfASystemBetweenTwoFollowsFromTheirs) {
