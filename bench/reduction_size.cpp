@@ -1,5 +1,5 @@
-// Craig-Bampton reduction of fine meshes, beside one factorisation of the same interior stiffness by
-// CHOLMOD as it comes.
+// Craig-Bampton reduction of fine meshes, beside one factorisation of the same interior stiffness
+// by CHOLMOD as it comes.
 //
 //   build/release/bench/reduction_size [ALONG THROUGH [SPACING [ROUNDS]]]
 //       the cantilever of the main scene: elements along the axis and through the thickness,
@@ -143,10 +143,10 @@ Mesh block_mesh(const std::array<int, 3>& count) {
     mesh.nodes.row(static_cast<Eigen::Index>(n)) = places[n].transpose();
     mesh.node_labels.push_back(static_cast<std::int64_t>(n + 1));
   }
-  constexpr int at[20][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2},
-                             {2, 2, 2}, {0, 2, 2}, {1, 0, 0}, {2, 1, 0}, {1, 2, 0}, {0, 1, 0},
-                             {1, 0, 2}, {2, 1, 2}, {1, 2, 2}, {0, 1, 2}, {0, 0, 1}, {2, 0, 1},
-                             {2, 2, 1}, {0, 2, 1}};
+  constexpr int at[20][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2},
+                             {2, 0, 2}, {2, 2, 2}, {0, 2, 2}, {1, 0, 0}, {2, 1, 0},
+                             {1, 2, 0}, {0, 1, 0}, {1, 0, 2}, {2, 1, 2}, {1, 2, 2},
+                             {0, 1, 2}, {0, 0, 1}, {2, 0, 1}, {2, 2, 1}, {0, 2, 1}};
   std::int64_t label = 0;
   for (int k = 0; k < count[2]; ++k) {
     for (int j = 0; j < count[1]; ++j) {

@@ -1,13 +1,13 @@
-// Matrices of a disc brake with penalty contact, unsymmetric friction, Coriolis and damping terms, as
-// Matrix Market files and a scene that names them: a large eigenvalue problem for stridor and for
-// large_eigenvalues.py.
+// Matrices of a disc brake with penalty contact, unsymmetric friction, Coriolis and damping terms,
+// as Matrix Market files and a scene that names them: a large eigenvalue problem for stridor and
+// for large_eigenvalues.py.
 //
 //   gmsh -3 -setnumber lc 0.027 -setnumber order 1 -o brake.msh bench/brake/brake.geo
 //   build/release/bench/brake_matrices brake.msh DIRECTORY
 //   build/release/stridor eig DIRECTORY/brake.yaml --below 16kHz
 //
-// K has the springs of the pads on the rings across the faces, F the friction that they cause, which the
-// scene multiplies by its parameter mu.
+// K has the springs of the pads on the rings across the faces, F the friction that they cause,
+// which the scene multiplies by its parameter mu.
 #include <fmt/format.h>
 #include <fmt/os.h>
 
@@ -107,8 +107,7 @@ Weights weights_on(const Mesh& mesh, const std::vector<ElementSide>& sides, int 
     for (int k = 0; k < 3; ++k)
       system.col(k) << mesh.nodes.row(corners[static_cast<std::size_t>(k)]).head<2>().transpose(),
           1.0;
-    const Eigen::Vector3d weights =
-        system.inverse() * Eigen::Vector3d(place.x(), place.y(), 1.0);
+    const Eigen::Vector3d weights = system.inverse() * Eigen::Vector3d(place.x(), place.y(), 1.0);
     if (weights.minCoeff() <= least) continue;
     least = weights.minCoeff();
     best.clear();

@@ -88,8 +88,8 @@ class PhaseCounter {
     return {s, value};
   }
 
-  /// A zero at the middle of a step leaves no more than a turn at its ends, but makes the steps beside
-  /// it short.
+  /// A zero at the middle of a step leaves no more than a turn at its ends, but makes the steps
+  /// beside it short.
   bool is_longer_than_neighbours(std::size_t i) const {
     const auto length = [&](std::size_t k) { return std::abs(samples_[k + 1].s - samples_[k].s); };
     constexpr double largest_ratio = 2.01;
@@ -121,8 +121,7 @@ class PhaseCounter {
       for (Eigen::Index k = 1; k <= degree; ++k) powers(i, k) = powers(i, k - 1) * t;
       sizes(i) = sample.value.real();
     }
-    coefficients_ =
-        powers.leftCols(first_degree + 1).real().colPivHouseholderQr().solve(sizes);
+    coefficients_ = powers.leftCols(first_degree + 1).real().colPivHouseholderQr().solve(sizes);
 
     Eigen::VectorXd phases(num);
     for (Eigen::Index i = 0; i < num; ++i) {

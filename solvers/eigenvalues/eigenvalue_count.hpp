@@ -19,10 +19,10 @@ namespace stridor {
 ///
 /// neither exp g, which has no zeros, nor a known zero s_k, which is added afterwards, changes the
 /// count, however wrong they are. g is fitted to what log h has at the places looked at, so that h
-/// turns slowly even where zeros outside make f turn fast, and a step may be long. It is halved, and
-/// g fitted anew, until log h changes by less than 1/2 in every step, in size and in phase, and no
-/// step is twice as long as one beside it: zeros close to a step that together turn the phase by a
-/// whole turn show in the size beside them.
+/// turns slowly even where zeros outside make f turn fast, and a step may be long. It is halved,
+/// and g fitted anew, until log h changes by less than 1/2 in every step, in size and in phase, and
+/// no step is twice as long as one beside it: zeros close to a step that together turn the phase by
+/// a whole turn show in the size beside them.
 ///
 /// @param logarithm log f(s), any of its branches; real part −∞ where f(s) is zero
 /// @param known with Im s >= 0, those with Im s > 0 together with their conjugates

@@ -12,7 +12,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double ritz_tolerance = 1e-11;   ///< of a residual, relative to |μ|
+constexpr double ritz_tolerance = 1e-11;     ///< of a residual, relative to |μ|
 constexpr double shortest_addition = 1e-13;  ///< length of what a vector adds to the space
 
 class Arnoldi {
@@ -85,8 +85,7 @@ class Arnoldi {
     const auto square = projection_.topLeftCorner(num_applied_, num_applied_);
     if (!square.allFinite()) return found;
     const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver(square);
-    const auto below =
-        projection_.block(num_applied_, 0, dim_ - num_applied_, num_applied_).eval();
+    const auto below = projection_.block(num_applied_, 0, dim_ - num_applied_, num_applied_).eval();
     std::vector<std::pair<double, Eigen::Index>> order;
     found.are_all = true;
     for (Eigen::Index i = 0; i < num_applied_; ++i) {

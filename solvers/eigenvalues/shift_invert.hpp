@@ -17,9 +17,9 @@ struct SparsePair {
 
 /// Which pairs are wanted, and how much they may cost.
 struct NearestPairsWanted {
-  std::complex<double> shift;  ///< σ
-  double radius = 0.0;         ///< all with |s − σ| <= radius, 1/s
-  Eigen::Index expected = 0;   ///< about so many
+  std::complex<double> shift;   ///< σ
+  double radius = 0.0;          ///< all with |s − σ| <= radius, 1/s
+  Eigen::Index expected = 0;    ///< about so many
   Eigen::Index most_steps = 0;  ///< vectors of the Krylov space, at most
 };
 

@@ -103,8 +103,8 @@ class SparseSearch {
   Eigen::MatrixXd momenta_;  ///< M V
   Eigen::Index dim_ = 0;
   double represented_ = std::numeric_limits<double>::infinity();  ///< ω up to which V has modes
-  std::vector<Pair> pairs_;   ///< near the window
-  std::vector<Complex> far_;  ///< approximations above
+  std::vector<Pair> pairs_;                                       ///< near the window
+  std::vector<Complex> far_;                                      ///< approximations above
   std::mt19937 generator_{1};
   int factorisations_ = 0;
 };
@@ -291,8 +291,8 @@ void SparseSearch::search(std::size_t most_at_once) {
   for (const Pair& pair : pairs_) expected.push_back(pair.s);
   std::sort(expected.begin(), expected.end(),
             [](Complex a, Complex b) { return a.imag() < b.imag(); });
-  const std::size_t num_groups = std::max<std::size_t>(
-      1, (expected.size() + most_at_once - 1) / most_at_once);
+  const std::size_t num_groups =
+      std::max<std::size_t>(1, (expected.size() + most_at_once - 1) / most_at_once);
   double low = 0.0;
   for (std::size_t k = 0; k < num_groups; ++k) {
     const std::size_t first = k * expected.size() / num_groups;
@@ -345,10 +345,10 @@ SparseSpectrum SparseSearch::found_up_to(double height) const {
   Eigen::Index num = 0;
   for (const Pair& pair : pairs_) {
     const double residual = pencil_.scaled_residual(pair.s, pair.x);
-    // A projection may have eigenvalues near which the problem has none. In a rigid motion all terms of
-    // the residual are rounding.
-    const bool is_rigid = std::abs(pair.s) < 1e-6 * height &&
-                          pencil_.backward_error(pair.s, pair.x) < 1e-13;
+    // A projection may have eigenvalues near which the problem has none. In a rigid motion all
+    // terms of the residual are rounding.
+    const bool is_rigid =
+        std::abs(pair.s) < 1e-6 * height && pencil_.backward_error(pair.s, pair.x) < 1e-13;
     if (!spectrum.rectangle.contains(pair.s) || (residual > largest_residual && !is_rigid))
       continue;
     const double length = std::sqrt(pair.x.dot(mass * pair.x).real());

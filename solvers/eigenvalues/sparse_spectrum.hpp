@@ -40,11 +40,11 @@ struct SparseSpectrum {
 
 /// All eigenvalues of M q̈ + P q̇ + Q q = 0 in a window (docs/theory.md, 10.5).
 ///
-/// Real modes of the symmetric part of Q with M, up to 1.5 times the window, say where to look. Groups
-/// of neighbours are found by nearest_pairs() with a shift beside the middle of each; a projection on
-/// all of their vectors then tells apart what lies close together. Their number is compared with
-/// count_in_rectangle() of det P(s). Where one is missing, the search is repeated with smaller
-/// groups.
+/// Real modes of the symmetric part of Q with M, up to 1.5 times the window, say where to look.
+/// Groups of neighbours are found by nearest_pairs() with a shift beside the middle of each; a
+/// projection on all of their vectors then tells apart what lies close together. Their number is
+/// compared with count_in_rectangle() of det P(s). Where one is missing, the search is repeated
+/// with smaller groups.
 ///
 /// fastest_near() and closest_near() refine pairs (s, x) by inverse iteration,
 ///

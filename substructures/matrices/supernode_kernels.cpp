@@ -100,14 +100,22 @@ STRIDOR_INLINE void columns_part(const SupernodeView& node, ptrdiff_t offset, pt
 template <class Act>
 STRIDOR_INLINE void with_count(ptrdiff_t count, Act&& act) {
   switch (count) {
-    case 1: return act.template operator()<1>();
-    case 2: return act.template operator()<2>();
-    case 3: return act.template operator()<3>();
-    case 4: return act.template operator()<4>();
-    case 5: return act.template operator()<5>();
-    case 6: return act.template operator()<6>();
-    case 7: return act.template operator()<7>();
-    default: return act.template operator()<together>();
+    case 1:
+      return act.template operator()<1>();
+    case 2:
+      return act.template operator()<2>();
+    case 3:
+      return act.template operator()<3>();
+    case 4:
+      return act.template operator()<4>();
+    case 5:
+      return act.template operator()<5>();
+    case 6:
+      return act.template operator()<6>();
+    case 7:
+      return act.template operator()<7>();
+    default:
+      return act.template operator()<together>();
   }
 }
 
@@ -117,13 +125,15 @@ STRIDOR_INLINE void with_count(ptrdiff_t count, Act&& act) {
 
 STRIDOR_CLONES void solve_lower_triangle(const SupernodeView& node, double* own) {
   for (ptrdiff_t first = 0; first < node.num_columns; first += together)
-    with_count(node.num_columns - first, STRIDOR_PART { lower_part<n>(node, first, own); });
+    with_count(
+        node.num_columns - first, STRIDOR_PART { lower_part<n>(node, first, own); });
 }
 
 STRIDOR_CLONES void solve_upper_triangle(const SupernodeView& node, double* own) {
   for (ptrdiff_t end = node.num_columns; end > 0;) {
     const ptrdiff_t first = (end - 1) / together * together;
-    with_count(end - first, STRIDOR_PART { upper_part<n>(node, first, own); });
+    with_count(
+        end - first, STRIDOR_PART { upper_part<n>(node, first, own); });
     end = first;
   }
 }
@@ -131,17 +141,17 @@ STRIDOR_CLONES void solve_upper_triangle(const SupernodeView& node, double* own)
 STRIDOR_CLONES void subtract_rows(const SupernodeView& node, ptrdiff_t first, ptrdiff_t count,
                                   const int* rows, const double* own, double* strip) {
   for (ptrdiff_t k = 0; k < count; k += together)
-    with_count(count - k,
-               STRIDOR_PART { rows_part<n>(node, first + k, rows + k, own, strip); });
+    with_count(
+        count - k, STRIDOR_PART { rows_part<n>(node, first + k, rows + k, own, strip); });
 }
 
 STRIDOR_CLONES void subtract_columns(const SupernodeView& node, ptrdiff_t offset,
                                      ptrdiff_t num_rows, const int* rows, ptrdiff_t first,
                                      ptrdiff_t count, const double* strip, double* own) {
   for (ptrdiff_t k = 0; k < count; k += together)
-    with_count(count - k, STRIDOR_PART {
-      columns_part<n>(node, offset, num_rows, rows, first + k, strip, own);
-    });
+    with_count(
+        count - k,
+        STRIDOR_PART { columns_part<n>(node, offset, num_rows, rows, first + k, strip, own); });
 }
 
 STRIDOR_CLONES void multiply_columns(ptrdiff_t num_columns, const int* starts, const int* rows,

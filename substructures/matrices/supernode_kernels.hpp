@@ -11,8 +11,8 @@ inline constexpr std::ptrdiff_t strip_width = 8;
 
 /// Columns of L that have their rows in common, stored dense by columns.
 struct SupernodeView {
-  const double* entries;      ///< of row 0 and column 0
-  std::ptrdiff_t stride;      ///< from column to column
+  const double* entries;  ///< of row 0 and column 0
+  std::ptrdiff_t stride;  ///< from column to column
   std::ptrdiff_t num_columns;
 };
 

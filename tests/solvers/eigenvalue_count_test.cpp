@@ -12,8 +12,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// The logarithm of a polynomial with given zeros and their conjugates, on its principal branch; and
-/// how often it was asked for.
+/// The logarithm of a polynomial with given zeros and their conjugates, on its principal branch;
+/// and how often it was asked for.
 std::function<Complex(Complex)> polynomial(std::vector<Complex> zeros, int* asked = nullptr) {
   return [zeros = std::move(zeros), asked](Complex s) {
     if (asked != nullptr) ++*asked;

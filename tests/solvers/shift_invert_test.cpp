@@ -55,9 +55,9 @@ TEST(ShiftInvert, FindsAllWithinTheRadiusAndEachAsOftenAsItIs) {
     wanted.most_steps = 200;
     Eigen::MatrixXcd start(count * n, 2);
     for (Eigen::Index i = 0; i < start.size(); ++i)
-      start.data()[i] = {std::sin(1.0 + 3.0 * static_cast<double>(i * i)), std::cos(5.0 * static_cast<double>(i))};
-    const NearestPairs found =
-        nearest_pairs(pencil, pencil.factorise(wanted.shift), wanted, start);
+      start.data()[i] = {std::sin(1.0 + 3.0 * static_cast<double>(i * i)),
+                         std::cos(5.0 * static_cast<double>(i))};
+    const NearestPairs found = nearest_pairs(pencil, pencil.factorise(wanted.shift), wanted, start);
     EXPECT_TRUE(found.are_all);
     std::vector<Complex> expected;
     for (int k = 1; k <= n; ++k) {
@@ -105,9 +105,8 @@ TEST(ShiftInvert, SaysWhatItLacks) {
   const SparseFactor factor = pencil.factorise(wanted.shift);
   EXPECT_FALSE(
       nearest_pairs(pencil, factor, wanted, Eigen::VectorXcd::LinSpaced(30, 1.0, 2.0)).are_all);
-  EXPECT_EQ(message_of<std::invalid_argument>([&] {
-              nearest_pairs(pencil, factor, wanted, Eigen::MatrixXcd(30, 0));
-            }),
+  EXPECT_EQ(message_of<std::invalid_argument>(
+                [&] { nearest_pairs(pencil, factor, wanted, Eigen::MatrixXcd(30, 0)); }),
             "nearest pairs: there is nothing to start from");
 }
 

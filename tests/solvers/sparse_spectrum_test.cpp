@@ -182,8 +182,9 @@ TEST(SparseSpectrum, NodesWithoutMassCondense) {
   EXPECT_TRUE(found.is_complete);
   ASSERT_EQ(found.eigenvalues.size(), 9U);
   for (int k = 0; k < 9; ++k) {
-    EXPECT_LT(std::abs(found.eigenvalues[static_cast<std::size_t>(k)].s - Complex(0.0, omega(k + 1))),
-              1e-10)
+    EXPECT_LT(
+        std::abs(found.eigenvalues[static_cast<std::size_t>(k)].s - Complex(0.0, omega(k + 1))),
+        1e-10)
         << k;
   }
 }
