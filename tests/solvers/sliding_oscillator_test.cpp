@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "coupling/laws/shear_friction.hpp"
+#include "coupling/laws/normal_parameters.hpp"
 #include "tests/support/paper_sphere.hpp"
 #include "tests/support/small_systems.hpp"
 
