@@ -152,8 +152,8 @@ ContactPoint make_contact_point(const ContactPair& pair, std::size_t k, const Pa
   point.slave_body = pair.slave_body;
   point.assumption = parameters.assumption_or_default();
   if (parameters.friction) point.friction = make_friction_law(*parameters.friction);
-  point.penalty = parameters.normal.stiffness;
-  if (parameters.normal.law == NormalLaw::viscoelastic)
+  point.penalty = parameters.normal.stiffness();
+  if (parameters.normal.law->has_area())
     point.substrate = make_substrate_contact(parameters, drive.load);
   point.friction_rise = TimeCurve::ramp(1.0, drive.ramp);
   point.on_violation = parameters.on_violation;

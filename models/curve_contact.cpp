@@ -185,7 +185,7 @@ ContactPoint make_curve_contact(const ContactPair& pair, std::size_t k,
 
 void add_curve_contacts(const ContactPair& pair, const PairDrive& drive,
                         std::vector<ModelBody>& bodies, System& system) {
-  if (pair.parameters->normal.preload) {
+  if (pair.parameters->normal.number("preload")) {
     throw ConfigError(pair.key_of("normal.preload"),
                       "is of a contact on the face of a plate; on a curve the loads of the drive "
                       "press bodies together");

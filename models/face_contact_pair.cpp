@@ -146,7 +146,7 @@ void add_face_contacts(const ContactPair& pair, const PairDrive& drive,
     for (std::size_t i = 0; i < rows.size(); ++i) place.rows[i] = master.row_of(rows[i]);
     point.face = std::move(place);
     if (point.penalty)
-      point.overlap = pair.parameters->normal.preload.value_or(0.0) / *point.penalty;
+      point.overlap = pair.parameters->normal.number("preload").value_or(0.0) / *point.penalty;
     system.contacts.push_back(std::move(point));
   }
 }
@@ -157,7 +157,7 @@ std::vector<double> preloads_of(const std::vector<ContactPair>& pairs, const Sys
     for (std::size_t k = 0; k < pair.slave_nodes.size(); ++k) {
       for (std::size_t i = 0; i < preloads.size(); ++i) {
         if (system.contacts[i].name == pair.point_name(k))
-          preloads[i] = pair.parameters->normal.preload.value_or(0.0);
+          preloads[i] = pair.parameters->normal.number("preload").value_or(0.0);
       }
     }
   }

@@ -48,7 +48,7 @@ LawRow solved_row(SlidingContact& contact, const NormalParameters& normal, doubl
 /// A row of a law in closed form or of a table.
 LawRow law_row(const NormalParameters& normal, double speed, double depth, bool is_loaded) {
   SubstrateContact contact;
-  contact.law = law_of(normal);
+  contact.law = make_substrate_contact(normal).law;
   LawRow row;
   row.speed = speed;
   row.indentation =
@@ -76,7 +76,7 @@ std::vector<StudiedContact> viscoelastic_contacts(const LoadedScene& loaded) {
   const ModelParameters& model = loaded.scene.model;
   std::vector<StudiedContact> contacts;
   for (const auto& [name, pair] : model.pairs()) {
-    if (pair.normal.law != NormalLaw::viscoelastic) continue;
+    if (!pair.normal.law->has_area()) continue;
     const std::string key = (model.contact ? name : "contacts." + name) + ".normal";
     contacts.push_back({name, key, pair.normal});
     if (!pair.normal.is_solved()) continue;
@@ -91,8 +91,9 @@ std::vector<StudiedContact> viscoelastic_contacts(const LoadedScene& loaded) {
   if (contacts.empty()) {
     throw loaded.located(ConfigError(
         model.contact ? "contact" : "contacts",
-        "the scene has no contact with the normal law viscoelastic, the one that `contact` "
-        "evaluates"));
+        fmt::format("the scene has no contact with the normal law {}, the one that `contact` "
+                    "evaluates",
+                    normal_laws_with([](const NormalLawType& law) { return law.has_area(); }))));
   }
   return contacts;
 }

@@ -1,17 +1,17 @@
 // What scenes must know of a friction law.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
 #include "core/schema.hpp"
 #include "coupling/laws/friction_law.hpp"
+#include "coupling/laws/law_keys.hpp"
 
 namespace stridor {
 
 /// The numbers that a scene gives to a friction law, SI, by their keys.
-using FrictionNumbers = std::map<std::string, double>;
+using FrictionNumbers = LawNumbers;
 
 /// A number that a law needs. Laws may share a key, which is then declared in the same way.
 struct FrictionKey {

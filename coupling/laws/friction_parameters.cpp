@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "coupling/laws/law_keys.hpp"
+
 namespace stridor {
 
 void check_coefficient(const char* key, const std::optional<double>& coefficient,
@@ -22,22 +24,6 @@ void check_coefficient(const char* key, const std::optional<double>& coefficient
 
 namespace {
 
-/// The keys of all laws, each once.
-const std::vector<FrictionKey>& keys_of_all_laws() {
-  static const std::vector<FrictionKey> all = [] {
-    std::vector<FrictionKey> keys;
-    for (const FrictionLawType& type : friction_law_types()) {
-      for (const FrictionKey& key : type.keys) {
-        if (std::none_of(keys.begin(), keys.end(),
-                         [&](const FrictionKey& other) { return other.name == key.name; }))
-          keys.push_back(key);
-      }
-    }
-    return keys;
-  }();
-  return all;
-}
-
 void check_keys_of_friction(const FrictionParameters& friction, std::vector<Problem>& problems) {
   const FrictionLawType& law = *friction.law;
   const auto demand = [&](const std::string& key, bool is_wanted) {
@@ -49,11 +35,12 @@ void check_keys_of_friction(const FrictionParameters& friction, std::vector<Prob
                         0,
                         0});
   };
-  for (const FrictionKey& key : keys_of_all_laws()) {
+  static const std::vector<FrictionKey> all = keys_of_all(friction_law_types());
+  for (const FrictionKey& key : all) {
     demand(key.name, std::any_of(law.keys.begin(), law.keys.end(),
                                  [&](const FrictionKey& own) { return own.name == key.name; }));
   }
-  for (const FrictionKey& key : keys_of_all_laws()) {
+  for (const FrictionKey& key : all) {
     const auto given = friction.numbers.find(key.name);
     if (key.is_coefficient && given != friction.numbers.end())
       check_coefficient(key.name.c_str(), given->second, problems);
@@ -72,46 +59,6 @@ void check_keys_of_friction(const FrictionParameters& friction, std::vector<Prob
                         0,
                         0});
   }
-}
-
-/// `law`, by the name of its type.
-Key law_key() {
-  Key key;
-  key.kind = KeyKind::choice;
-  key.name = "law";
-  key.is_optional = true;
-  for (const FrictionLawType& type : friction_law_types()) {
-    key.choices.push_back(type.name);
-    key.doc += (key.doc.empty() ? "" : "; ") + type.name + ": " + type.doc;
-  }
-  key.doc += ".";
-  key.assign = [](void* object, const Value& value) {
-    static_cast<FrictionParameters*>(object)->law =
-        &friction_law_type(std::get<std::string>(value));
-  };
-  key.read = [](const void* object) -> Value {
-    return static_cast<const FrictionParameters*>(object)->law->name;
-  };
-  return key;
-}
-
-Key number_key(const FrictionKey& of) {
-  Key key;
-  key.kind = KeyKind::real;
-  key.name = of.name;
-  key.doc = of.says.doc;
-  key.unit = of.says.unit;
-  key.range = of.says.range;
-  key.is_optional = true;
-  key.assign = [name = of.name](void* object, const Value& value) {
-    static_cast<FrictionParameters*>(object)->numbers[name] = std::get<double>(value);
-  };
-  key.read = [name = of.name](const void* object) -> Value {
-    const FrictionNumbers& numbers = static_cast<const FrictionParameters*>(object)->numbers;
-    const auto given = numbers.find(name);
-    return given == numbers.end() ? Value{} : Value{given->second};
-  };
-  return key;
 }
 
 }  // namespace
@@ -150,9 +97,7 @@ const Schema& FrictionParameters::schema() {
                              "contact creeps where it would stick.",
                       .optional = true})
             .check(check_keys_of_friction);
-    std::vector<Key> of_laws{law_key()};
-    for (const FrictionKey& key : keys_of_all_laws()) of_laws.push_back(number_key(key));
-    made.keys.insert(made.keys.begin(), of_laws.begin(), of_laws.end());
+    add_law_keys<FrictionParameters>(made, friction_law_types());
     return made;
   }();
   return keys;

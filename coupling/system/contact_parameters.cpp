@@ -14,35 +14,47 @@ void check_laws(const ContactParameters& contact, std::vector<Problem>& problems
   const auto refuse = [&](const char* key, std::string text) {
     problems.push_back({key, std::move(text), {}, 0, 0});
   };
-  const bool is_viscoelastic = contact.normal.law == NormalLaw::viscoelastic;
-  if (!contact.friction && !is_viscoelastic)
+  const NormalLawType& law = *contact.normal.law;
+  const auto with_area = [] {
+    return normal_laws_with([](const NormalLawType& one) { return one.has_area(); });
+  };
+  if (!contact.friction && !law.has_area())
     refuse("friction", "is missing: this normal law brings none of its own");
-  if (contact.friction && contact.friction->law->needs_area && !is_viscoelastic) {
+  if (contact.friction && contact.friction->law->needs_area && !law.has_area()) {
     refuse("normal.law",
            fmt::format("has no area of contact, with which the friction law {} is in proportion; "
-                       "take {{law: viscoelastic, ...}}, or a friction coefficient",
-                       contact.friction->law->name));
+                       "take {{law: {}, ...}}, or a friction coefficient",
+                       contact.friction->law->name, with_area()));
   }
   if (contact.friction && contact.friction->viscoelastic == FrictionLoad::applied &&
-      !is_viscoelastic) {
+      !law.has_friction) {
     refuse("normal.law",
-           "has no friction of its own, to which friction.viscoelastic belongs; take {law: "
-           "viscoelastic, ...}, or leave that out");
+           fmt::format(
+               "has no friction of its own, to which friction.viscoelastic belongs; take {{law: "
+               "{}, ...}}, or leave that out",
+               normal_laws_with([](const NormalLawType& one) { return one.has_friction; })));
   }
-  if (is_viscoelastic && contact.master != half_space_master)
-    refuse("master", "must be `half_space` with the viscoelastic normal law, which is that of one");
-  if (!is_viscoelastic && contact.master == half_space_master)
-    refuse("master", "`half_space` takes the normal law viscoelastic, which `normal` must be");
-  if (contact.slave.empty() && !is_viscoelastic) {
+  if (law.has_area() && contact.master != half_space_master) {
+    refuse(
+        "master",
+        fmt::format("must be `half_space` with the {} normal law, which is that of one", law.name));
+  }
+  if (!law.has_area() && contact.master == half_space_master) {
+    refuse("master", fmt::format("`half_space` takes the normal law {}, which `normal` must be",
+                                 with_area()));
+  }
+  if (contact.slave.empty() && !law.has_area()) {
     refuse("slave",
-           "is missing: only a viscoelastic normal law, which `stridor contact` evaluates, goes "
-           "without; name at least one point");
+           fmt::format("is missing: only a {} normal law, which `stridor contact` evaluates, goes "
+                       "without; name at least one point",
+                       with_area()));
   }
-  if (!contact.assumption && !is_viscoelastic)
+  if (!contact.assumption && !law.has_area())
     refuse("assumption", "is missing; take subs_a, subs_b, subs_c or film");
-  if (is_viscoelastic && contact.assumption_or_default() != ContactAssumption::film) {
+  if (law.has_area() && contact.assumption_or_default() != ContactAssumption::film) {
     refuse("assumption",
-           "must be `film` with the viscoelastic normal law: it sticks, slips and lifts off");
+           fmt::format("must be `film` with the {} normal law: it sticks, slips and lifts off",
+                       law.name));
   }
 }
 
@@ -199,8 +211,11 @@ const Schema& DriveParameters::schema() {
                       .optional = true})
           .check([](const DriveParameters& drive, std::vector<Problem>& problems) {
             if (!drive.displacement.is_zero() && drive.displaces.empty())
-              problems.push_back(
-                  {"displaces", "is missing: name the springs that `displacement` moves", {}, 0, 0});
+              problems.push_back({"displaces",
+                                  "is missing: name the springs that `displacement` moves",
+                                  {},
+                                  0,
+                                  0});
           });
   return keys;
 }
@@ -221,12 +236,9 @@ Drive make_drive(const DriveParameters& parameters, SlidingMode sliding, const s
   const auto ramped = [&](const TimeCurve& curve) {
     return curve.is_constant() ? TimeCurve::ramp(curve.value(0.0), parameters.ramp) : curve;
   };
-  return {ramped(parameters.velocity),
-          ramped(parameters.load),
-          sliding == SlidingMode::frozen,
-          0.0,
-          ramped(parameters.displacement),
-          key};
+  return {ramped(parameters.velocity),     ramped(parameters.load),
+          sliding == SlidingMode::frozen,  0.0,
+          ramped(parameters.displacement), key};
 }
 
 }  // namespace stridor

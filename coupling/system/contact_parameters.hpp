@@ -43,7 +43,7 @@ struct ContactParameters {
   std::vector<std::string> slave;
   /// "<body>.<surface>", "<body>.<face>", rigid_master or half_space_master.
   std::string master;
-  std::optional<ContactAssumption> assumption;  ///< absent: film, of a viscoelastic normal law
+  std::optional<ContactAssumption> assumption;  ///< absent: film, of a normal law with an area
   OnViolation on_violation = OnViolation::stop;
   std::optional<double> armed_from;  ///< s; the drive's ramp where absent
   StartParameters start;  ///< of a curve; its first node where neither is given
@@ -51,13 +51,13 @@ struct ContactParameters {
   SurfaceKind surface = SurfaceKind::polyline;
   std::optional<RoughnessParameters> roughness;
   NormalParameters normal;
-  std::optional<FrictionParameters> friction;  ///< may be absent with a viscoelastic normal law
+  std::optional<FrictionParameters> friction;  ///< may be absent with such a normal law
   static const Schema& schema();
 
   /// The assumption, or the one that goes with the normal law.
   ContactAssumption assumption_or_default() const {
-    return assumption.value_or(normal.law == NormalLaw::viscoelastic ? ContactAssumption::film
-                                                                      : ContactAssumption::subs_b);
+    return assumption.value_or(normal.law->has_area() ? ContactAssumption::film
+                                                      : ContactAssumption::subs_b);
   }
 };
 
@@ -93,7 +93,7 @@ struct SceneDrive {
   bool loads_guided() const;
 };
 
-/// The force law of a contact with a viscoelastic normal law, in SI units.
+/// The force law of a contact whose normal law has an area, in SI units.
 /// @param load that presses the bodies together, for FrictionLoad::applied, N
 /// @throws std::invalid_argument if its table has not been read
 SubstrateContact make_substrate_contact(const ContactParameters& contact, double load);

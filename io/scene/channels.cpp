@@ -79,8 +79,11 @@ Channel parse(const std::string& name, const ModelParameters& model) {
     const auto quantity = index_in(quantities, parts[1]);
     if (!quantity) throw one_of("contact quantity", parts[1], quantities);
     channel.pair = parts[0];
-    if (parts[1] == "area" && model.pairs().at(parts[0]).normal.law != NormalLaw::viscoelastic)
-      throw fmt::format("the normal law of '{}' has no area; the law viscoelastic has", parts[0]);
+    if (parts[1] == "area" && !model.pairs().at(parts[0]).normal.law->has_area()) {
+      throw fmt::format(
+          "the normal law of '{}' has no area; the law {} has", parts[0],
+          normal_laws_with([](const NormalLawType& law) { return law.has_area(); }));
+    }
     channel.quantity = static_cast<ContactQuantity>(*quantity);
     return channel;
   }

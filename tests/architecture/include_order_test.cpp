@@ -414,6 +414,22 @@ TEST(FrictionLaws, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
   EXPECT_THAT(strangers_to(STRIDOR_SOURCE_DIR, {{"stribeck", {}}}), ::testing::SizeIs(1));
 }
 
+TEST(NormalLaws, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
+  const std::string laws = "coupling/laws/";
+  const std::string list = laws + "normal_laws.cpp";
+  const Strings viscoelastic{laws + "viscoelastic_normal_law.hpp", laws + "viscoelastic_normal_law.cpp"};
+  const std::vector<OwnedName> names{
+      {"multiplier_law_type", {list, laws + "multiplier_law.hpp"}},
+      {"penalty_law_type", {list, laws + "penalty_law.hpp"}},
+      {"viscoelastic_law_type", {list, viscoelastic[0], viscoelastic[1]}},
+      {"multiplier_law", {list, laws + "multiplier_law.hpp"}},
+      {"penalty_law", {list, laws + "penalty_law.hpp"}},
+      {"viscoelastic_normal_law", {list, viscoelastic[0], viscoelastic[1]}}};
+  EXPECT_THAT(strangers_to(STRIDOR_SOURCE_DIR, names), IsEmpty());
+  // They are where they should be, so that the search finds what there is.
+  EXPECT_THAT(strangers_to(STRIDOR_SOURCE_DIR, {{"penalty_law_type", {}}}), ::testing::SizeIs(2));
+}
+
 TEST_F(SourceText, StrangersThatNameABodyAreFound) {
   write("substructures/rod.hpp", "#pragma once\nstruct RodParameters {};\n");
   write("models/model.cpp", "// RodParameters\nint RodParametersOfOld;\nRodParameters rod;\n");

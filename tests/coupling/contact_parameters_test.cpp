@@ -169,8 +169,7 @@ TEST(ContactParameters, PhysicalQuantitiesHaveNoDefault) {
   // A drive may leave out what it does not do.
   EXPECT_FALSE(DriveParameters::schema().find("ramp")->is_optional);
   // Which numbers are needed depends on the laws, see NormalParameters and FrictionParameters.
-  EXPECT_EQ(NormalParameters{}.stiffness, std::nullopt);
-  EXPECT_EQ(NormalParameters{}.radius, std::nullopt);
+  EXPECT_THAT(NormalParameters{}.numbers, IsEmpty());
   EXPECT_TRUE(FrictionParameters{}.numbers.empty());
 }
 
@@ -194,16 +193,16 @@ std::vector<std::string> complaints(const Parameters& parameters) {
 TEST(NormalParameters, EveryLawNeedsItsOwnKeys) {
   NormalParameters normal;
   EXPECT_THAT(complaints(normal), IsEmpty());
-  normal.law = NormalLaw::penalty;
+  normal.law = &normal_law_type("penalty");
   EXPECT_THAT(complaints(normal),
               ElementsAre("stiffness: missing: needed by the normal law penalty"));
-  normal.stiffness = 1e6;
+  normal.numbers["stiffness"] = 1e6;
   EXPECT_THAT(complaints(normal), IsEmpty());
-  normal.law = NormalLaw::multiplier;
+  normal.law = &normal_law_type("multiplier");
   normal.form = NormalParameters::boundary_element;
   EXPECT_THAT(complaints(normal), ElementsAre("stiffness: not used by the normal law multiplier",
                                               "form: not used by the normal law multiplier"));
-  normal.law = NormalLaw::viscoelastic;
+  normal.law = &normal_law_type("viscoelastic");
   normal.form = "law.txt";
   EXPECT_THAT(complaints(normal),
               ElementsAre("stiffness: not used by the normal law viscoelastic",
@@ -217,7 +216,7 @@ TEST(NormalParameters, EveryLawNeedsItsOwnKeys) {
 
 NormalParameters rubber_sphere() {
   NormalParameters normal;
-  normal.law = NormalLaw::viscoelastic;
+  normal.law = &normal_law_type("viscoelastic");
   normal.profile.emplace().shape = ProfileShape::sphere;
   normal.profile->radius = 2e-3;
   normal.material = ViscoelasticMaterial{0.75e6, 3e6, 0.5, {0.01, 0.1}, {0.5, 0.5}};
@@ -232,16 +231,16 @@ TEST(NormalParameters, ProfileAndMaterialSayMoreThanRadiusModulusAndTime) {
   EXPECT_EQ(normal.tip_radius(), 2e-3);
   EXPECT_DOUBLE_EQ(normal.composite_modulus(), 1e6);
   EXPECT_EQ(normal.first_creep_time(), 0.01);
-  normal.radius = 1e-3;
-  normal.modulus = 1e6;
+  normal.numbers["radius"] = 1e-3;
+  normal.numbers["modulus"] = 1e6;
   EXPECT_THAT(
       complaints(normal),
       ElementsAre("radius: cannot stand beside `profile`, which has a radius",
                   "material: cannot stand beside `modulus` and `creep_time`, which it says"));
   normal = rubber_sphere();
   normal.material.reset();
-  normal.modulus = 1e6;
-  normal.creep_time = 0.01;
+  normal.numbers["modulus"] = 1e6;
+  normal.numbers["creep_time"] = 0.01;
   EXPECT_THAT(complaints(normal),
               ElementsAre(HasSubstr("material: missing: the form solve needs")));
 }
@@ -263,10 +262,10 @@ TEST(NormalParameters, LawsBuiltInAreOfOneIndenterAndMaterial) {
   EXPECT_THAT(complaints(normal), IsEmpty());
   // The same numbers as those of a radius, a modulus and a time.
   NormalParameters other;
-  other.law = NormalLaw::viscoelastic;
-  other.radius = 2e-3;
-  other.modulus = 1e6;
-  other.creep_time = 0.01;
+  other.law = &normal_law_type("viscoelastic");
+  other.numbers["radius"] = 2e-3;
+  other.numbers["modulus"] = 1e6;
+  other.numbers["creep_time"] = 0.01;
   other.form = NormalParameters::boundary_element;
   const SubstrateForces one = make_substrate_contact(normal).at(2e-5, 0.02, 1.0);
   const SubstrateForces same = make_substrate_contact(other).at(2e-5, 0.02, 1.0);
@@ -278,10 +277,10 @@ TEST(NormalParameters, LawsBuiltInAreOfOneIndenterAndMaterial) {
 
 NormalParameters sphere_of_2_mm() {
   NormalParameters normal;
-  normal.law = NormalLaw::viscoelastic;
-  normal.radius = 2e-3;
-  normal.modulus = 1e6;
-  normal.creep_time = 0.01;
+  normal.law = &normal_law_type("viscoelastic");
+  normal.numbers["radius"] = 2e-3;
+  normal.numbers["modulus"] = 1e6;
+  normal.numbers["creep_time"] = 0.01;
   normal.form = NormalParameters::boundary_element;
   return normal;
 }

@@ -1,4 +1,4 @@
-// The worked examples of docs/extending.md: a type of body and a friction law of one's own.
+// The worked examples of docs/extending.md: a type of body, a friction law and a normal law of one's own.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,6 +19,14 @@
 #include <memory>
 
 #include "coupling/laws/friction_law_type.hpp"
+// end of example
+// example: includes of a normal law
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "coupling/laws/normal_parameters.hpp"
+#include "coupling/laws/viscoelastic_law.hpp"
 // end of example
 #include "solvers/eigenvalues/secular_eigenvalues.hpp"
 #include "solvers/equilibrium/linearise.hpp"
@@ -173,8 +181,84 @@ TEST(Extending, LawOfOnesOwnHoldsAMassOnABelt) {
   EXPECT_NEAR(simulation.displacement(0, row), friction / 100.0, 1e-9);
 }
 
+// example: a normal law
+/// Hertz: an elastic sphere on an elastic half-space, F̃ = 4/3 ŷ^{3/2}, Ã = π ŷ, at any speed.
+class HertzLaw : public ViscoelasticContactLaw {
+ public:
+  ViscoelasticContact at(double indentation, double /*speed*/) const override {
+    ViscoelasticContact contact;
+    contact.range = indentation > 0.0 ? LawRange::inside : LawRange::no_contact;
+    if (contact.range == LawRange::no_contact) return contact;
+    const double root = std::sqrt(indentation);
+    contact.force = {4.0 / 3.0 * indentation * root, 2.0 * root, 0.0};
+    contact.area = {std::numbers::pi * indentation, std::numbers::pi, 0.0};
+    return contact;
+  }
+};
+
+inline NormalLawType hertz_law_type() {
+  return {.name = "hertz",
+          .doc = "each slave point carries an elastic sphere of `radius` on an elastic half-space "
+                 "(master: half_space) of `modulus`",
+          .keys = {indenter_radius_key(true), half_space_modulus_key(true)},
+          .make_contact = [](const NormalParameters& normal) {
+            const double radius = normal.numbers.at("radius");
+            SubstrateContact contact;
+            contact.law = std::make_shared<HertzLaw>();
+            contact.indentation_unit = radius;
+            contact.force_unit = normal.numbers.at("modulus") * radius * radius;
+            return contact;
+          }};
+}
+// end of example
+
+TEST(Extending, NormalLawOfOnesOwnCarriesAMass) {
+  static const NormalLawType law = hertz_law_type();
+  constexpr double radius = 0.01;
+  constexpr double modulus = 1e6;
+  constexpr double load = 0.2;
+  constexpr double mass = 0.05;
+  constexpr double spring = 50.0;
+  LumpedParameters slider;
+  slider.masses["mass"] = {mass, {}};
+  slider.springs["along"] = {{"mass"}, spring, 0.0, {}};
+  ModelParameters parameters;
+  parameters.substructures["slider"] = slider;
+  ContactParameters contact;
+  contact.slave = {"slider.mass"};
+  contact.master = half_space_master;
+  contact.normal.law = &law;
+  contact.normal.numbers = {{"radius", radius}, {"modulus", modulus}};
+  contact.friction.emplace().numbers["coefficient"] = 0.3;
+  std::vector<Problem> problems;
+  for (const auto& check : ContactParameters::schema().checks) check(&contact, problems);
+  EXPECT_TRUE(problems.empty());
+  parameters.contact = contact;
+  parameters.drive.emplace().velocity = TimeCurve(0.1);
+  parameters.drive->load = TimeCurve(-load);
+  parameters.drive->moves = {"contact.master"};
+  parameters.drive->load_on = {"slider.mass"};
+  const Model model = make_model(parameters, {{{"slider", "mass"}, "record.channels.0"}});
+  const SystemBody& body = model.system.bodies[0];
+  const PointRows rows = model.points.at({"slider", "mass"}).rows;
+
+  // F = 4/3 E* R^½ y^{3/2}, and friction μ F against the spring.
+  const double indentation = std::cbrt(std::pow(0.75 * load / (modulus * std::sqrt(radius)), 2.0));
+  const Equilibrium rest = find_equilibrium(model.system, sliding_state(model.system, 0.0));
+  ASSERT_EQ(rest.status, EquilibriumStatus::converged) << rest.failure;
+  EXPECT_NEAR(body.modal.rows.row(rows.y) * rest.displacement[0], -indentation, 1e-9 * indentation);
+  EXPECT_NEAR(body.modal.rows.row(rows.x) * rest.displacement[0], 0.3 * load / spring,
+              1e-9 * load / spring);
+  // About it k_yy = 2 E* (R y)^½ and k_xy = μ k_yy alone couple the two, in one direction: ω² = k/m.
+  const double stiffness = 2.0 * modulus * std::sqrt(radius * indentation);
+  const auto list = secular_eigenvalues(linearise(model.system, rest), SpectrumWindow::lowest(2));
+  ASSERT_EQ(list.size(), 2u);
+  const double highest = std::max(list[0].s.imag(), list[1].s.imag());
+  EXPECT_NEAR(highest, std::sqrt(stiffness / mass), 1e-8 * highest);
+}
+
 TEST(Extending, RegisteredLawsAreInTheSchema) {
-  // What a line in friction_laws.cpp does for the law: its name and keys are those of scenes.
+  // What a line in friction_laws.cpp or normal_laws.cpp does for the law: its name and keys are those of scenes.
   const Schema& schema = FrictionParameters::schema();
   for (const FrictionLawType& type : friction_law_types()) {
     EXPECT_THAT(schema.find("law")->choices, ::testing::Contains(type.name));
@@ -182,6 +266,15 @@ TEST(Extending, RegisteredLawsAreInTheSchema) {
     for (const FrictionKey& key : type.keys) {
       ASSERT_NE(schema.find(key.name), nullptr) << key.name;
       EXPECT_EQ(schema.find(key.name)->doc, key.says.doc);
+    }
+  }
+  const Schema& normal = NormalParameters::schema();
+  for (const NormalLawType& type : normal_law_types()) {
+    EXPECT_THAT(normal.find("law")->choices, ::testing::Contains(type.name));
+    EXPECT_THAT(normal.find("law")->doc, ::testing::HasSubstr(type.name + ": " + type.doc));
+    for (const NormalKey& key : type.keys) {
+      ASSERT_NE(normal.find(key.name), nullptr) << key.name;
+      EXPECT_EQ(normal.find(key.name)->doc, key.says.doc);
     }
   }
 }
@@ -206,7 +299,7 @@ TEST(Extending, PageShowsWhatIsCompiledHere) {
     EXPECT_NE(page.find(example), std::string::npos) << example;
     ++shown;
   }
-  EXPECT_EQ(shown, 4);
+  EXPECT_EQ(shown, 6);
 }
 
 }  // namespace

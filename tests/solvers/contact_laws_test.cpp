@@ -134,8 +134,8 @@ Model sprung_model(std::optional<double> penalty) {
   ModelParameters parameters = paper_model();
   parameters.drive->ramp = 0.0;
   if (penalty) {
-    parameters.contact->normal.law = NormalLaw::penalty;
-    parameters.contact->normal.stiffness = penalty;
+    parameters.contact->normal.law = &normal_law_type("penalty");
+    parameters.contact->normal.numbers["stiffness"] = penalty;
   }
   return make_paper_model(parameters);
 }

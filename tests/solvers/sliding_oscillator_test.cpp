@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "coupling/laws/shear_friction.hpp"
+#include "coupling/laws/normal_parameters.hpp"
 #include "tests/support/paper_sphere.hpp"
 #include "tests/support/small_systems.hpp"
 
@@ -36,10 +37,10 @@ System paper_system() {
   system.bodies[1].drive = 0;
   system.surfaces.push_back(test::rigid_line(1));
   NormalParameters normal;
-  normal.law = NormalLaw::viscoelastic;
-  normal.radius = radius;
-  normal.modulus = modulus;
-  normal.creep_time = creep;
+  normal.law = &normal_law_type("viscoelastic");
+  normal.numbers["radius"] = radius;
+  normal.numbers["modulus"] = modulus;
+  normal.numbers["creep_time"] = creep;
   ContactPoint contact;
   contact.name = "contact";
   contact.slave_rows = {0, 1};

@@ -161,10 +161,10 @@ ModelParameters reed(double youngs_modulus) {
   contact.slave = {"reed.tip"};
   contact.master = half_space_master;
   contact.assumption = ContactAssumption::film;
-  contact.normal.law = NormalLaw::viscoelastic;
-  contact.normal.radius = 2e-3;
-  contact.normal.modulus = 4e6 / 3.0;
-  contact.normal.creep_time = 1e-2;
+  contact.normal.law = &normal_law_type("viscoelastic");
+  contact.normal.numbers["radius"] = 2e-3;
+  contact.normal.numbers["modulus"] = 4e6 / 3.0;
+  contact.normal.numbers["creep_time"] = 1e-2;
   contact.friction.emplace().law = &friction_law_type("shear");
   contact.friction->numbers["strength"] = 0.02 * 4e6 / 3.0;
   model.contact = contact;

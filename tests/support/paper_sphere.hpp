@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "coupling/laws/normal_parameters.hpp"
+#include "coupling/laws/viscoelastic_normal_law.hpp"
 #include "solvers/transient/substrate_oscillator.hpp"
 
 namespace stridor::test {
