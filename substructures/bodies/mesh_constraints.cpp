@@ -78,17 +78,10 @@ struct NodeState {
 class ConstraintBuilder {
  public:
   ConstraintBuilder(const MeshBodyParameters& parameters, NamedMesh& mesh)
-<<<<<<< HEAD
       : parameters_(parameters), mesh_(mesh), d_(static_cast<std::size_t>(mesh.dimension)),
         nodes_(mesh.mesh.num_nodes()) {
     if (mesh.given() != nullptr) take_rows(*mesh.given());
   }
-=======
-      : parameters_(parameters),
-        mesh_(mesh),
-        d_(static_cast<std::size_t>(mesh.dimension)),
-        nodes_(mesh.mesh.num_nodes()) {}
->>>>>>> 0602b7b003215fb68e6a95d84b760b90cc4caf30
 
   MeshConstraints build() {
     mark_regions();

@@ -100,18 +100,7 @@ void NamedMesh::add_surfaces() {
       throw ConfigError(key, "the file has a surface of this name; take another");
     std::vector<ElementSide> sides = sides_within(
         mesh, outer, given.region(), given.tolerance.value_or(share_of_extent * extent));
-<<<<<<< HEAD
     if (sides.empty()) refuse_empty(key, "no outer side of an element");
-=======
-    if (sides.empty()) {
-      const Eigen::RowVector3d low = mesh.nodes.colwise().minCoeff();
-      const Eigen::RowVector3d high = mesh.nodes.colwise().maxCoeff();
-      throw ConfigError(
-          key, fmt::format("no outer side of an element lies there; the mesh reaches from ({:.6g}, "
-                           "{:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) m",
-                           low(0), low(1), low(2), high(0), high(1), high(2)));
-    }
->>>>>>> 0602b7b003215fb68e6a95d84b760b90cc4caf30
     mesh.surfaces[name] = std::move(sides);
   }
 }
