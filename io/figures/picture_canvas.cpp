@@ -110,9 +110,8 @@ PictureCanvas::PictureCanvas(const MeshPicture& picture) : view_(picture.view) {
 std::string polygon_data(const MeshPicture& picture, const PictureCanvas& canvas) {
   const std::vector<Painted> all = painted_parts(picture, canvas);
   std::string data = "$faces << END_OF_DATA\n";
-  auto out = std::back_inserter(data);
   const auto corner = [&](const Eigen::Vector2d& at, PictureColour colour) {
-    fmt::format_to(out, "{:.5f} {:.5f} {}\n", at.x(), at.y(), colour);
+    fmt::format_to(std::back_inserter(data), "{:.5f} {:.5f} {}\n", at.x(), at.y(), colour);
   };
   const auto line = [&](const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                         const Painted& painted) {
