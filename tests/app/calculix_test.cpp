@@ -80,9 +80,9 @@ TEST_P(CalculixTest, WritesTheMatricesThatAreKeptAndHasOurFrequencies) {
                                    .run();
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto ours = nlohmann::json::parse(result.out)["matrices"]["frequencies"];
-  // Seven digits are printed.
+  // Half a unit of the seventh digit behind the point, of numbers from 0.1.
   for (std::size_t i = 0; i < theirs.size(); ++i)
-    EXPECT_NEAR(ours[i].get<double>() / theirs[i], 1.0, 2e-7) << i;
+    EXPECT_NEAR(ours[i].get<double>() / theirs[i], 1.0, 5e-7) << i;
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, CalculixTest, ::testing::Values("c3d4", "c3d10", "c3d20r"));
