@@ -114,7 +114,7 @@ void add_dependent_point(const std::string& name, const Eigen::Vector3d& at,
   add_dependent_point(name, at, std::move(sums), body);
 }
 
-void add_dependent_point(const std::string& name, const Eigen::Vector2d& at,
+void add_dependent_point(const std::string& name, const Eigen::Vector3d& at,
                          std::array<DofSum, 3> sums, BodyMatrices& body) {
   const auto node = static_cast<int>(body.node_dofs.size());
   body.nodes.conservativeResize(node + 1, Eigen::NoChange);

@@ -42,7 +42,7 @@ void add_dependent_point(const std::string& name, const Eigen::Vector3d& at,
                          const NodeShares& shares, BodyMatrices& body);
 
 /// A point of which the displacements along x, y and z are given as sums.
-void add_dependent_point(const std::string& name, const Eigen::Vector2d& at,
+void add_dependent_point(const std::string& name, const Eigen::Vector3d& at,
                          std::array<DofSum, 3> sums, BodyMatrices& body);
 
 /// Loads of 1 N along x, y and z that nodes share, BodyMatrices::loads: "<name>.<x|y|z>".
