@@ -164,16 +164,21 @@ void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure
       script.add_caption(caption, left, below - 2.7 * line);
     }
     std::string plot = "plot NaN";
-    for (std::size_t b = 0; b < picture.bodies.size(); ++b)
-      plot += fmt::format(", $rest_{} using 1:2 with lines linewidth 0.8 linecolor '#909090'", b);
+    // gnuplot refuses data without a line; bodies in space have no outlines.
+    for (std::size_t b = 0; b < picture.bodies.size(); ++b) {
+      if (!picture.bodies[b].outlines.empty())
+        plot += fmt::format(", $rest_{} using 1:2 with lines linewidth 0.8 linecolor '#909090'", b);
+    }
     for (std::size_t b = 0; b < picture.bodies.size(); ++b) {
       const char* colour = shape_colours[b % shape_colours.size()];
       if (!element_sides(picture.bodies[b]).empty()) {
         plot += fmt::format(", $mesh_{}_{} using 1:2 with lines linewidth 0.5 linecolor '{}'", b, p,
                             colour);
       }
-      plot += fmt::format(", $moved_{}_{} using 1:2 with lines linewidth 1.6 linecolor '{}'", b, p,
-                          colour);
+      if (!picture.bodies[b].outlines.empty()) {
+        plot += fmt::format(", $moved_{}_{} using 1:2 with lines linewidth 1.6 linecolor '{}'", b, p,
+                            colour);
+      }
     }
     if (!picture.contacts.empty() && view.is_planar)
       plot +=
