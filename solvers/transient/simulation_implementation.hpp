@@ -17,6 +17,7 @@
 #include "core/errors.hpp"
 #include "solvers/contact/contact_record.hpp"
 #include "solvers/contact/face_contacts.hpp"
+#include "solvers/contact/sliding_point.hpp"
 #include "solvers/contact/substrate_step.hpp"
 #include "solvers/integrators/make_propagator.hpp"
 #include "solvers/transient/simulation.hpp"
