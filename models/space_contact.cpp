@@ -16,7 +16,7 @@ Eigen::Vector3d vector_of(const std::vector<double>& components) {
 /// Refuses what means nothing in space.
 void check_keys(const ContactPair& pair) {
   const ContactParameters& given = *pair.parameters;
-  const auto refuse = [&](const char* key, const char* text) {
+  const auto refuse = [&](const char* key, const std::string& text) {
     throw ConfigError(pair.key_of(key), text);
   };
   const ContactAssumption assumption = given.assumption_or_default();

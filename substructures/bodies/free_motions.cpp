@@ -32,10 +32,24 @@ Eigen::MatrixXd free_motions(const Mesh& mesh, const SparseMatrix& choice) {
 std::vector<int> determinate_dofs(const Mesh& mesh, const MeshConstraints& constraints) {
   Eigen::MatrixXd free = free_motions(mesh, constraints.matrix());
   std::vector<int> dofs;
+  constexpr double least = 1e-6;  // below it nothing is free but rounding
+  const auto hold = [&](Eigen::Index row) {
+    const Eigen::RowVectorXd direction = free.row(row).normalized();
+    free -= (free * direction.transpose()).eval() * direction;
+  };
+  // A reduction keeps the displacement on which the load of a drive acts in any case.
+  if (constraints.load_dof != BodyMatrices::held) {
+    const auto guided = std::find_if(
+        constraints.rows.begin(), constraints.rows.end(), [&](const DofSum& row) {
+          return row.size() == 1 && row.front().dof == constraints.load_dof;
+        });
+    const Eigen::Index row = guided - constraints.rows.begin();
+    if (guided != constraints.rows.end() && free.row(row).norm() > least) hold(row);
+  }
   for (Eigen::Index motion = 0; motion < free.cols(); ++motion) {
     // Pivoting: the displacement with the largest part that the ones before leave free.
     Eigen::Index best = -1;
-    double largest = 1e-6;
+    double largest = least;
     for (Eigen::Index row = 0; row < free.rows(); ++row) {
       const DofSum& dof = constraints.rows[static_cast<std::size_t>(row)];
       if (dof.size() != 1 || dof.front().weight != 1.0) continue;
@@ -47,8 +61,7 @@ std::vector<int> determinate_dofs(const Mesh& mesh, const MeshConstraints& const
     }
     if (best < 0) break;
     dofs.push_back(constraints.rows[static_cast<std::size_t>(best)].front().dof);
-    const Eigen::RowVectorXd direction = free.row(best).normalized();
-    free -= (free * direction.transpose()).eval() * direction;
+    hold(best);
   }
   std::sort(dofs.begin(), dofs.end());
   dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
