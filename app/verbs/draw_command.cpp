@@ -34,7 +34,8 @@ MeshPicture picture_of(const LoadedScene& loaded, BodyCache& cache) {
   if (loaded.scene.model.substructures.empty())
     throw ConfigError("substructures", "is missing: without bodies there is nothing to draw");
   try {
-    const PlacedModel model = place_model(loaded.scene.model, cache);
+    const ModelParameters parameters = parameters_with_files(loaded, cache);
+    const PlacedModel model = place_model(parameters, cache);
     return make_scene_picture(
         model, recorded_points(loaded.scene), length_unit_of(loaded.tree),
         fmt::format("{}, scene {}: at rest, where the scene puts the bodies.",

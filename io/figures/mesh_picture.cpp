@@ -97,6 +97,7 @@ class MeshFigure {
 
   static constexpr double most_height = 13.0;
   static constexpr double least_height = 1.8;
+  static constexpr double least_drawing = 6.0;
 
   /// A text with the place that it names.
   struct Flag {
@@ -125,17 +126,27 @@ class MeshFigure {
         found->push_back(&label);
       }
     }
+    // A text at the right end of the narrowest drawing still ends on the page.
+    const double most_width = size_.width - (least_drawing + 3.0);
     for (const auto& names : spots) {
       Flag& flag = flags_.emplace_back(Flag{names.front()->at, ""});
-      for (std::size_t i = 0; i < std::min(names.size(), most_names); ++i) {
-        const bool is_repeated = i > 0 && names[i]->of == names[i - 1]->of;
-        if (i > 0) flag.text += ", ";
-        if (!names[i]->of.empty() && !is_repeated) flag.text += names[i]->of + ".";
-        flag.text += names[i]->text;
+      for (std::size_t count = std::min(names.size(), most_names); count > 0; --count) {
+        flag.text = flag_text(names, count);
+        if (flag_width(flag) <= most_width) break;
       }
-      if (names.size() > most_names)
-        flag.text += fmt::format(" and {} more", names.size() - most_names);
     }
+  }
+
+  static std::string flag_text(const std::vector<const PictureLabel*>& names, std::size_t count) {
+    std::string text;
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool is_repeated = i > 0 && names[i]->of == names[i - 1]->of;
+      if (i > 0) text += ", ";
+      if (!names[i]->of.empty() && !is_repeated) text += names[i]->of + ".";
+      text += names[i]->text;
+    }
+    if (names.size() > count) text += fmt::format(" and {} more", names.size() - count);
+    return text;
   }
 
   void choose_width() {
@@ -155,7 +166,7 @@ class MeshFigure {
       for (const Flag& flag : flags_)
         overflow = std::max(overflow, flag_x(flag) + flag_width(flag) + 0.2 - size_.width);
       if (overflow <= 0.0) break;
-      right = std::max(canvas_.left + 6.0, canvas_.left + canvas_.width() - overflow);
+      right = std::max(canvas_.left + least_drawing, canvas_.left + canvas_.width() - overflow);
     }
   }
 

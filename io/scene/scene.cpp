@@ -374,6 +374,16 @@ Model build_runnable_model(const LoadedScene& loaded, BodyCache& cache) {
   return model;
 }
 
+ModelParameters parameters_with_files(const LoadedScene& loaded, BodyCache& cache) {
+  ModelParameters parameters = loaded.scene.model;
+  const KeptTerms kept = kept_terms(loaded.scene);
+  for (auto& [name, substructure] : parameters.substructures) {
+    read_files("substructures." + name, loaded.tree, *substructure, cache);
+    substructure->keep_terms({kept.gyroscopic, kept.structural_damping});
+  }
+  return parameters;
+}
+
 Model build_model(const LoadedScene& loaded, BodyCache& cache) {
   try {
     const Scene& scene = loaded.scene;
@@ -384,12 +394,7 @@ Model build_model(const LoadedScene& loaded, BodyCache& cache) {
     for (const Channel& channel : channels) {
       if (channel.point) observed.emplace_back(*channel.point, channel.key);
     }
-    ModelParameters parameters = scene.model;
-    const KeptTerms kept = kept_terms(scene);
-    for (auto& [name, substructure] : parameters.substructures) {
-      read_files("substructures." + name, loaded.tree, *substructure, cache);
-      substructure->keep_terms({kept.gyroscopic, kept.structural_damping});
-    }
+    const ModelParameters parameters = parameters_with_files(loaded, cache);
     Model model = make_model(parameters, observed, cache);
     require_rows(model, channels);
     return model;

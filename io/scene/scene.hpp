@@ -92,6 +92,10 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
 /// @throws ConfigError as load_scene
 LoadedScene load_resolved_scene(const std::string& text, const std::string& source);
 
+/// Bodies, contacts and drives of a scene, the bodies with what their files hold.
+/// @throws ConfigError with key paths, or the place in a file; FileError
+ModelParameters parameters_with_files(const LoadedScene& loaded, BodyCache& cache);
+
 /// The model of a scene with the points that its channels ask for, for a run.
 /// @throws ConfigError with the place of the key in the scene; also as require_modes()
 Model build_model(const LoadedScene& loaded);
