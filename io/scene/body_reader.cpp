@@ -8,6 +8,7 @@
 #include "io/imports/named_files.hpp"
 
 namespace stridor {
+
 void make_files_absolute(const std::string& key, const SceneNode& tree, BodyParameters& body) {
   for (const NamedFile& file : body.files()) {
     const std::string path = path_of_file(tree, key + "." + file.key, *file.name);
@@ -17,6 +18,7 @@ void make_files_absolute(const std::string& key, const SceneNode& tree, BodyPara
 
 void read_files(const std::string& key, const SceneNode& tree, BodyParameters& body,
                 BodyCache& cache) {
+  if (body.take_contents(body)) return;  // it holds them already
   std::shared_ptr<const BodyParameters>& last = cache.read[key];
   if (last && body.take_contents(*last)) return;
   try {

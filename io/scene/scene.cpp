@@ -273,6 +273,20 @@ void require_rows(const Model& model, const std::vector<Channel>& channels) {
   }
 }
 
+/// Takes up what the files of bodies in contact hold, which tells whether contacts have one tangent
+/// or two. build_model() says what is wrong with files that cannot be read.
+void take_up_contents(LoadedScene& loaded) {
+  if (loaded.scene.model.pairs().empty()) return;
+  BodyCache cache;
+  for (auto& [name, substructure] : loaded.scene.model.substructures) {
+    try {
+      read_files("substructures." + name, loaded.tree, *substructure, cache);
+    } catch (const ConfigError&) {
+    } catch (const FileError&) {
+    }
+  }
+}
+
 /// Names files from the root, as the resolved scene may be read again from anywhere, and reads the
 /// tables of contact laws.
 void read_named_files(LoadedScene& loaded) {
@@ -341,6 +355,7 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
   loaded.scene = read_as<Scene>(loaded.tree);
   require_terms(loaded);
   read_named_files(loaded);
+  take_up_contents(loaded);
   return loaded;
 }
 
@@ -351,6 +366,7 @@ LoadedScene load_resolved_scene(const std::string& text, const std::string& sour
   loaded.tree = read_scene_text(text, source);
   loaded.scene = read_as<Scene>(loaded.tree);
   read_named_files(loaded);
+  take_up_contents(loaded);
   return loaded;
 }
 

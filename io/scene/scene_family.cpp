@@ -10,6 +10,7 @@
 #include "core/suggestion.hpp"
 #include "core/units.hpp"
 #include "io/scene/assignment.hpp"
+#include "io/scene/body_reader.hpp"
 #include "io/scene/channels.hpp"
 #include "io/scene/scene_reader.hpp"
 #include "io/scene/scene_words.hpp"
@@ -102,8 +103,13 @@ ConfigError in_settings(const ConfigError& error, const Settings& settings) {
   return ConfigError(std::move(problems));
 }
 
-/// Takes over the tables of contact laws, which no number changes.
-void keep_tables(const ModelParameters& from, ModelParameters& to) {
+/// Takes over the tables of contact laws and what the files of bodies hold, which no number changes.
+void keep_contents(const LoadedScene& changed, const ModelParameters& from, ModelParameters& to) {
+  for (auto& [name, body] : to.substructures) {
+    make_files_absolute("substructures." + name, changed.tree, *body);
+    const auto before = from.substructures.find(name);
+    if (before != from.substructures.end()) (void)body->take_contents(*before->second);
+  }
   const auto keep = [](const NormalParameters& read, NormalParameters& kept) {
     if (!read.has_table()) return;
     kept.form = read.form;
@@ -274,7 +280,7 @@ void apply_settings(LoadedScene& changed, const Settings& settings) {
       changed.sets.push_back(assignment);
     }
     const Scene before = std::exchange(changed.scene, read_as<Scene>(changed.tree));
-    keep_tables(before.model, changed.scene.model);
+    keep_contents(changed, before.model, changed.scene.model);
   } catch (const ConfigError& error) {
     throw in_settings(changed.located(error), settings);
   }

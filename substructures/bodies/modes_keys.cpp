@@ -182,6 +182,8 @@ bool ModesBodyParameters::take_contents(const BodyParameters& other) {
   if (given == nullptr || given->file != file || given->residual.has_value() != residual.has_value())
     return false;
   if (residual && given->residual->flexibility != residual->flexibility) return false;
+  const bool has_read = (file.empty() || given->test) && (!residual || given->residual_flexibility);
+  if (!has_read) return false;
   test = given->test;
   residual_flexibility = given->residual_flexibility;
   return true;

@@ -233,7 +233,7 @@ TEST(SpaceModel, RefusesWhatMeansNothingInSpace) {
               HasSubstr("contacts.sole.assumption: must be subs_b or film in space"));
   EXPECT_THAT(changed([](ContactParameters& c) { c.start = 0.01; }),
               HasSubstr("contacts.sole.start: must be {at: [x, y, z]}"));
-  EXPECT_THAT(changed([](ContactParameters& c) { c.normal.preload = 3.0; }),
+  EXPECT_THAT(changed([](ContactParameters& c) { c.normal.numbers["preload"] = 3.0; }),
               HasSubstr("contacts.sole.normal.preload"));
   EXPECT_THAT(changed([](ContactParameters& c) { c.start.at = {0.5, 0.0, 0.005}; }),
               HasSubstr("is beside the surface 'block.top'"));

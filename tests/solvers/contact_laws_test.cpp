@@ -135,7 +135,7 @@ Model sprung_model(std::optional<double> penalty) {
   parameters.drive->ramp = 0.0;
   if (penalty) {
     parameters.contact->normal.law = &normal_law_type("penalty");
-    parameters.contact->normal.numbers["stiffness"] = penalty;
+    parameters.contact->normal.numbers["stiffness"] = *penalty;
   }
   return make_paper_model(parameters);
 }

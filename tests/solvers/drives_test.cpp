@@ -11,6 +11,7 @@
 #include "solvers/equilibrium/equilibrium.hpp"
 #include "solvers/transient/batch.hpp"
 #include "solvers/transient/simulation.hpp"
+#include "tests/support/constants.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_model.hpp"
 #include "tests/support/small_systems.hpp"
@@ -18,7 +19,7 @@
 namespace stridor {
 namespace {
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
+using test::eps;
 
 TimeParameters time_with(double step, Integrator integrator = Integrator::central_difference) {
   TimeParameters time;

@@ -179,7 +179,7 @@ TEST(BeamAdditions, PointsStandWhereTheyAreSaidTo) {
 TEST(BeamAdditions, ASpringAtAPointActsAlongItsDirection) {
   BeamParameters beam = pad_beam();
   beam.across = AcrossMotion::held;
-  beam.springs = {{"prop", {"tip", 5e6, SpringDirectionParameters(0.3)}}};
+  beam.springs = {{"prop", {"tip", 5e6, {}, SpringDirectionParameters(0.3)}}};
   const BodyMatrices body = beam.make();
   beam.springs.clear();
   const Eigen::MatrixXd added = Eigen::MatrixXd(body.stiffness) - beam.make().stiffness;

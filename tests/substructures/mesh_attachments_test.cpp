@@ -291,7 +291,7 @@ double bore_opening(const MeshBodyParameters& parameters, double pressure) {
   double sum = 0.0;
   int count = 0;
   for (int node = 0; node < static_cast<int>(parameters.mesh->num_nodes()); ++node) {
-    const Eigen::Vector2d place = body.nodes.row(node).transpose();
+    const Eigen::Vector2d place = body.nodes.row(node).head<2>().transpose();
     if (std::abs(place.norm() - 1.0) > 1e-9) continue;
     for (std::size_t i = 0; i < 2; ++i)
       for (const DofWeight& dof : body.displacement(node, i))

@@ -19,7 +19,7 @@ namespace {
 using test::message_of;
 using ::testing::HasSubstr;
 
-constexpr double thickness = 0.01;
+constexpr double sheet_thickness = 0.01;
 
 /// Six squares of 5 mm in a row of three and two layers, in mm, with labels of their own.
 Mesh squares() {
@@ -37,7 +37,7 @@ Mesh squares() {
   return mesh;
 }
 
-MeshSurfaceParameters in_plane(double x, double y, double offset) {
+MeshSurfaceParameters side_in_plane(double x, double y, double offset) {
   MeshSurfaceParameters surface;
   surface.plane = MeshPlaneParameters{{x, y}, offset};
   return surface;
@@ -47,9 +47,9 @@ MeshBodyParameters meshed() {
   MeshBodyParameters body;
   body.mesh = std::make_shared<const Mesh>(squares());
   body.length_unit = "mm";
-  body.thickness = thickness;
+  body.thickness = sheet_thickness;
   body.material = {7e10, 0.3, 2700.0};
-  body.surfaces = {{"left", in_plane(-1, 0, 0.0)}, {"top", in_plane(0, 1, 0.01)}};
+  body.surfaces = {{"left", side_in_plane(-1, 0, 0.0)}, {"top", side_in_plane(0, 1, 0.01)}};
   body.supports = {{"foot", {{"corner"}, {"y"}}}};
   body.guided = MeshGuideParameters{{"left"}};
   body.points = {{"node", {{}, 79, ""}}, {"place", {{0.012, 0.006}, {}, ""}}, {"mean", {{}, {}, "top"}}};
@@ -61,7 +61,7 @@ TouchedMatrixBodyParameters by_matrices(const MeshBodyParameters& mesh) {
   Mesh in_metres = *mesh.mesh;
   in_metres.nodes *= 1e-3;
   const ElementSection section{ElasticLaw(IsotropicElasticity{7e10, 0.3}, PlaneState::stress), 2700.0,
-                               thickness};
+                               sheet_thickness};
   const MeshMatrices all = assemble_mesh(in_metres, one_section(in_metres, section));
   const Eigen::Index n = all.mass.rows();
   Eigen::PermutationMatrix<Eigen::Dynamic> backwards(n);
@@ -117,7 +117,7 @@ TEST(NodalBody, OfAMeshIsTheBodyFromTheMesh) {
 TEST(NodalBody, ReportsWhatItIs) {
   TouchedMatrixBodyParameters body = by_matrices(meshed());
   const MatrixFacts facts = matrix_facts(*body.matrices, body.body, body.nodes, 6);
-  const double mass = 0.015 * 0.01 * thickness * 2700.0;
+  const double mass = 0.015 * 0.01 * sheet_thickness * 2700.0;
   ASSERT_EQ(facts.masses.size(), 2U);
   for (const DirectionMass& direction : facts.masses) {
     EXPECT_NEAR(direction.mass, mass, 1e-13 * mass);
