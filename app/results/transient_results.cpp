@@ -70,14 +70,14 @@ Json left_out_json(const System& system, double highest, bool has_ledger) {
   bool slides_only = true;
   bool has_fixed_normal = true;
   for (const ContactPoint& contact : system.contacts) {
-    if (contact.face) {
-      const auto num_slave = static_cast<Eigen::Index>(system.num_contact_ports(contact)) -
-                             static_cast<Eigen::Index>(contact.face->rows.size());
-      const auto on_face = static_cast<Eigen::Index>(contact.face->rows.size());
+    if (contact.face || contact.space) {
+      const auto num_slave = static_cast<Eigen::Index>(contact.num_slave_ports());
+      const auto on_face = static_cast<Eigen::Index>(system.num_master_ports(contact));
+      const auto master = static_cast<std::size_t>(system.master_of(contact));
       followed[static_cast<std::size_t>(contact.slave_body)] += num_slave;
       touchable[static_cast<std::size_t>(contact.slave_body)] += num_slave;
-      followed[static_cast<std::size_t>(contact.face->body)] += on_face;
-      touchable[static_cast<std::size_t>(contact.face->body)] += on_face;
+      followed[master] += on_face;
+      touchable[master] += on_face;
       has_friction |= !contact.friction.is_frictionless();
       slides_only = has_fixed_normal = false;
       continue;

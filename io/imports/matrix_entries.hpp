@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/imports/source_text.hpp"
-#include "substructures/matrices/labelled_matrix.hpp"
+#include "substructures/elements/labelled_matrix.hpp"
 
 namespace stridor {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "io/imports/source_text.hpp"
-#include "substructures/matrices/labelled_matrix.hpp"
+#include "substructures/elements/labelled_matrix.hpp"
 
 namespace stridor {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "io/imports/source_text.hpp"
-#include "substructures/matrices/labelled_matrix.hpp"
+#include "substructures/elements/labelled_matrix.hpp"
 
 namespace stridor {
 

@@ -20,6 +20,7 @@ struct RunningFace : ContactRecord {
   explicit RunningFace(std::unique_ptr<FacePoint> on_face) : kinematics(std::move(on_face)) {}
 
   std::unique_ptr<FacePoint> kinematics;
+  int master = 0;  ///< body that it touches
 
   // State.
   double friction_across = 0.0;  ///< friction along the second tangent

@@ -185,6 +185,7 @@ struct Simulation::Implementation {
     faces.add(make_face_point(point, surface, system.driven_motion(point), *bodies[slave],
                               *bodies[master], slave_port, master_port),
               *bodies[slave], *bodies[master], slave_port, master_port);
+    faces[faces.size() - 1].master = static_cast<int>(master);
   }
 
   /// Takes projection, material point and slip velocity from the motion at the present time.
@@ -503,7 +504,7 @@ struct Simulation::Implementation {
         outcome = fail(face, StepOutcome::pulling);
       face.kinematics->apply(face.force, face.whole_friction(),
                             forces_on(face.point().slave_body).data(),
-                            forces_on(face.point().face->body).data());
+                            forces_on(face.master).data());
     }
     return outcome;
   }

@@ -7,7 +7,7 @@
 #include "substructures/bodies/modal_test.hpp"
 #include "substructures/elements/mesh.hpp"
 #include "substructures/matrices/body_matrices.hpp"
-#include "substructures/matrices/labelled_matrix.hpp"
+#include "substructures/elements/labelled_matrix.hpp"
 
 namespace stridor {
 

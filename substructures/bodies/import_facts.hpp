@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "substructures/elements/mesh.hpp"
-#include "substructures/matrices/labelled_matrix.hpp"
+#include "substructures/elements/labelled_matrix.hpp"
 
 namespace stridor {
 

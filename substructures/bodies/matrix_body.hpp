@@ -12,7 +12,7 @@
 #include "substructures/bodies/beam.hpp"
 #include "substructures/bodies/body_files.hpp"
 #include "substructures/bodies/mesh_body.hpp"
-#include "substructures/matrices/labelled_matrix.hpp"
+#include "substructures/elements/labelled_matrix.hpp"
 #include "substructures/matrices/sparse_system.hpp"
 
 namespace stridor {

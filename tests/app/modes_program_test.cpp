@@ -53,7 +53,7 @@ std::string list_of(const Eigen::VectorXd& numbers) {
 /// A body pressed on a belt that moves under it.
 std::string scene_with(const std::string& body) {
   return "format: 2\nsubstructures:\n  pad:\n" + body +
-         "contact:\n  slave: pad.foot\n  master: rigid\n  start: 0 mm\n"
+         "contact:\n  slave: pad.foot\n  master: rigid\n  assumption: subs_b\n  start: 0 mm\n"
          "  friction: {coefficient: 0.4}\n"
          "drive: {velocity: 0.1, load: -5, ramp: 0, moves: contact.master, load_on: pad.foot}\n";
 }

@@ -121,7 +121,9 @@ TEST(BodyStabilityFamily, KinksAreTheMasterNodes) {
   EXPECT_TRUE(friction.along(0, {0.3}, 0.1, 0.4).kinks.empty());
 }
 
-constexpr double jammed_rounding = 1e-3;
+/// Rows whose product all but vanishes, and what the rounding of 1 against that does to eigenvalues.
+constexpr double jammed_product = 6e-14;
+constexpr double jammed_rounding = std::numeric_limits<double>::epsilon() / jammed_product;
 
 /// Two modes that a circulatory term v couples, and two more whose contact almost jams:
 /// b_C b_Eᵀ = 6e-14, so that the secular function has zeros too far away to be found, and rounding
@@ -135,7 +137,7 @@ class NearlyJammed : public StabilityFamily {
   static Pencil of(double v) {
     Pencil pencil = constrained_modes(
         Eigen::Vector4d(0.3, 0.45, 1.0, 2.0), Eigen::Vector4d(0.02, 0.03, 0.0, 0.0),
-        Eigen::RowVector4d(0.0, 0.0, 1.0, 1.0), Eigen::RowVector4d(0.0, 0.0, 1.0, 6e-14 - 1.0));
+        Eigen::RowVector4d(0.0, 0.0, 1.0, 1.0), Eigen::RowVector4d(0.0, 0.0, 1.0, jammed_product - 1.0));
     pencil.port_stiffness = Eigen::Matrix4d::Zero();
     pencil.port_stiffness.topLeftCorner<2, 2>() = circulatory(v);
     return pencil;

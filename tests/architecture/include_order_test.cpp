@@ -395,6 +395,9 @@ TEST(BodyTypes, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
       {"MeshBodyParameters",
        {list, "substructures/bodies/mesh_body.hpp", "substructures/bodies/mesh_body.cpp",
         "substructures/bodies/meshed_body.hpp", "substructures/bodies/meshed_body.cpp",
+        "substructures/bodies/mesh_additions.hpp", "substructures/bodies/mesh_additions.cpp",
+        "substructures/bodies/mesh_constraints.hpp", "substructures/bodies/mesh_constraints.cpp",
+        "substructures/bodies/named_mesh.hpp", "substructures/bodies/named_mesh.cpp",
         "substructures/bodies/nodal_body.cpp"}}};
   EXPECT_THAT(strangers_to(STRIDOR_SOURCE_DIR, types), IsEmpty());
 }

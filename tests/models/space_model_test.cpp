@@ -24,8 +24,8 @@ using ::testing::HasSubstr;
 
 constexpr double load = 200.0, speed = 0.2, coefficient = 0.3;
 
-const Box block_box{{0.1, 0.02, 0.02}, {10, 1, 1}, {0.0, -0.02, 0.0}};
-const Box pad_box{{0.02, 0.01, 0.01}, {2, 1, 1}, {0.02, 0.0, 0.005}};
+const Box block_box{{0.1, 0.02, 0.02}, {10, 2, 1}, {0.0, -0.02, 0.0}};
+const Box pad_box{{0.02, 0.01, 0.01}, {2, 2, 1}, {0.02, 0.0, 0.005}};
 
 /// A pad, guided at its top and pressed down, on a block that is held at its bottom.
 ModelParameters pad_on_block(ElementShape shape = ElementShape::hex8) {
@@ -141,52 +141,34 @@ TEST(SpaceModel, SlidesOverManyFacetsAndResumesBitIdentically) {
   EXPECT_THAT(lost.failure(), HasSubstr("has left the edge of the surface"));
 }
 
-/// A slice, held along z, against the same as a planar body under plane strain.
+/// A slice, held along z, on a rigid plane, against the same as a planar body under plane strain. Its
+/// edge has three nodes, so that forces which are even along it are among those of its contacts.
 TEST(SpaceModel, ASliceHeldAcrossHasTheEigenvaluesOfThePlanarScene) {
-  const Box block{{0.06, 0.02, 0.01}, {3, 1, 1}, {0.0, -0.02, 0.0}};
   const Box pad{{0.02, 0.01, 0.01}, {1, 1, 1}, {0.013, 0.0, 0.0}};
   const auto scene_of = [&](bool is_spatial) {
     ModelParameters scene;
-    const auto body = [&](const Box& box) {
-      return test::box_body(box, is_spatial ? test::brick_mesh(box, ElementShape::hex20)
-                                            : test::slice_mesh(box));
-    };
-    MeshBodyParameters base = body(block), top = body(pad);
-    base.supports["ground"].on = {"bottom"};
-    top.guided.emplace().on = {"top"};
-    for (MeshBodyParameters* one : {&base, &top}) {
-      one->damping.beta = 1e-8;
-      // All modes: nothing is lost.
-      one->reduction.reset();
-      if (!is_spatial) continue;
-      MeshPlaneParameters front;
-      front.normal = {0.0, 0.0, 1.0};
-      one->surfaces["front"].plane = front;
-      MeshPlaneParameters back = front;
-      back.offset = 0.01;
-      one->surfaces["back"].plane = back;
-      MeshPlaneParameters middle = front;
-    }
+    MeshBodyParameters body = test::box_body(
+        pad, is_spatial ? test::brick_mesh(pad, ElementShape::hex20) : test::slice_mesh(pad));
+    body.guided.emplace().on = {"top"};
+    body.damping.beta = 1e-8;
+    body.reduction.reset();  // all modes: nothing is lost
+    body.points["near"].at = {0.013, 0.0};
     if (is_spatial) {
-      for (MeshBodyParameters* one : {&base, &top}) {
-        Mesh mesh = *one->mesh;
-        for (int n = 0; n < static_cast<int>(mesh.num_nodes()); ++n)
-          mesh.node_sets["all"].push_back(n);
-        one->mesh = std::make_shared<const Mesh>(mesh);
-        one->supports["slice"].on = {"all"};
-        one->supports["slice"].held = {"z"};
-      }
-      top.points["front"].at = {0.013, 0.0, 0.0};
-      top.points["back"].at = {0.013, 0.0, 0.01};
-    } else {
-      top.points["front"].at = {0.013, 0.0};
+      Mesh mesh = *body.mesh;
+      for (int n = 0; n < static_cast<int>(mesh.num_nodes()); ++n)
+        mesh.node_sets["all"].push_back(n);
+      body.mesh = std::make_shared<const Mesh>(mesh);
+      body.supports["slice"].on = {"all"};
+      body.supports["slice"].held = {"z"};
+      body.points["near"].at = {0.013, 0.0, 0.0};
+      body.points["middle"].at = {0.013, 0.0, 0.005};
+      body.points["far"].at = {0.013, 0.0, 0.01};
     }
-    scene.substructures["block"] = base;
-    scene.substructures["pad"] = top;
+    scene.substructures["pad"] = body;
     ContactParameters& contact = scene.contacts["toe"];
-    contact.slave = {"pad.front"};
-    if (is_spatial) contact.slave.emplace_back("pad.back");
-    contact.master = "block.top";
+    contact.slave = {"pad.near"};
+    if (is_spatial) contact.slave = {"pad.near", "pad.middle", "pad.far"};
+    contact.master = rigid_master;
     contact.assumption = ContactAssumption::subs_b;
     if (!is_spatial) contact.start = 0.013;
     contact.friction.emplace().numbers["coefficient"] = coefficient;
@@ -211,7 +193,7 @@ TEST(SpaceModel, ASliceHeldAcrossHasTheEigenvaluesOfThePlanarScene) {
   const auto planar = eigenvalues_of(false, planar_force);
   const auto spatial = eigenvalues_of(true, force);
   EXPECT_NEAR(force, planar_force, 1e-8 * planar_force);
-  ASSERT_GT(planar.size(), 10u);
+  ASSERT_GE(planar.size(), 10u);
   for (std::size_t i = 0; i < 10; ++i) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const std::complex<double>& s : spatial) nearest = std::min(nearest, std::abs(s - planar[i]));

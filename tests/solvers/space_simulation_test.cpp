@@ -3,12 +3,14 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "models/model.hpp"
 #include "solvers/equilibrium/linearise.hpp"
 #include "solvers/transient/simulation.hpp"
 #include "substructures/bodies/lumped_body.hpp"
+#include "tests/support/constants.hpp"
 
 namespace stridor {
 namespace {
@@ -104,7 +106,9 @@ TEST(SpaceSimulation, FrictionStopsAMassOnAStraightPathOfAnyPlaneAndHoldsIt) {
       const double allowed = integrator == Integrator::exact ? 1e-6 * way : 0.6 * step * speed;
       EXPECT_LT((place_of(simulation, system) - way * direction).norm(), allowed);
       EXPECT_EQ(simulation.contact_state(0), ContactState::stick);
-      EXPECT_NEAR(simulation.contact_force(0), scene.load, 1e-9 * scene.load);
+      // Places of the size of the way, rounded, become forces by m/h².
+      const double rounding = 16.0 * test::eps * way * scene.mass / (step * step);
+      EXPECT_NEAR(simulation.contact_force(0), scene.load, 1e-9 * scene.load + rounding);
       const Eigen::Vector3d rest = place_of(simulation, system);
       ASSERT_EQ(simulation.step_until(2 * num_steps), StepOutcome::done);
       EXPECT_LT((place_of(simulation, system) - rest).norm(), 1e-12);
@@ -123,7 +127,9 @@ TEST(SpaceSimulation, ADroppedMassLandsWhenItFallsAndStaysOrRebounds) {
     if (is_sprung) scene.penalty = 1e6;
     const double landing = std::sqrt(2.0 * height * scene.mass / scene.load);
     const System system = scene.system();
-    Simulation simulation(system, steps_of(step));
+    // The published form of the central difference damps springs: its forces lag by a step.
+    Simulation simulation(system, steps_of(step, is_sprung ? Integrator::exact
+                                                           : Integrator::central_difference));
     while (simulation.contact_state(0) == ContactState::open && simulation.time() < 2.0 * landing)
       ASSERT_EQ(simulation.step(), StepOutcome::done) << simulation.failure();
     EXPECT_NEAR(simulation.time(), landing, 2.0 * step);
@@ -131,10 +137,14 @@ TEST(SpaceSimulation, ADroppedMassLandsWhenItFallsAndStaysOrRebounds) {
     const double gap = scene.normal.dot(place_of(simulation, system));
     EXPECT_NEAR(simulation.contact_place(0).gap, gap, 1e-12);
     if (is_sprung) {
-      // Back at its height after as long again, but for the time on the spring, π √(m/k): there the
-      // height changes by ½ (F/m) t².
-      const double late = 0.5 * M_PI * std::sqrt(scene.mass / *scene.penalty);
-      EXPECT_NEAR(gap, height, 2.0 * scene.load / scene.mass * late * late);
+      // Back at its height after as long again, but for the time T on the spring: there it is still
+      // ½ (F/m) T² below.
+      const double speed = scene.load / scene.mass * landing;
+      const double angle =
+          std::numbers::pi - std::atan(speed * std::sqrt(scene.mass * *scene.penalty) / scene.load);
+      const double on_spring = 2.0 * angle * std::sqrt(scene.mass / *scene.penalty);
+      const double below = 0.5 * scene.load / scene.mass * on_spring * on_spring;
+      EXPECT_NEAR(gap, height - below, 0.02 * below);
     } else {
       EXPECT_NEAR(gap, 0.0, 1e-12);
       EXPECT_NEAR(simulation.contact_force(0), scene.load, 1e-9 * scene.load);
