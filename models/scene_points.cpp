@@ -109,8 +109,9 @@ const Schema& ScenePointParameters::schema() {
 void add_scene_points(const std::map<std::string, ScenePointParameters>& points,
                       std::vector<ModelBody>& bodies) {
   for (const auto& [name, point] : points) {
-    const auto body = std::find_if(bodies.begin(), bodies.end(), [&](const ModelBody& one) {
-      return one.parameters != nullptr && one.name == point.of;
+    const std::string& of = point.of;
+    const auto body = std::find_if(bodies.begin(), bodies.end(), [&of](const ModelBody& one) {
+      return one.parameters != nullptr && one.name == of;
     });
     if (body != bodies.end()) {
       add_point(name, point, *body);

@@ -247,17 +247,17 @@ TEST(SphereProgram, ChannelsOfEventsAreThoseOfSteps) {
 TEST(SphereProgram, SweepUpAndDownFindsBothMotions) {
   const Json sweep = run_verb("sweep", {"parameters.v=0.0316227766", "cycle.settle=30"},
                               {"--parameter", "parameters.tau0", "--from", "0.01", "--to", "0.13",
-                               "--points", "3", "--up-down"});
+                               "--points", "2", "--up-down"});
   const Json& up = sweep["up"];
   const Json& down = sweep["down"];
-  ASSERT_EQ(up.size(), 3u);
-  ASSERT_EQ(down.size(), 3u);
+  ASSERT_EQ(up.size(), 2u);
+  ASSERT_EQ(down.size(), 2u);
   EXPECT_EQ(up[0]["status"], "at_rest");
   EXPECT_EQ(up[0]["equilibrium_stable"], true);
-  EXPECT_EQ(up[2]["equilibrium_stable"], false);
-  EXPECT_EQ(down[2]["value"], 0.01);
-  EXPECT_EQ(down[2]["status"], "periodic");
-  EXPECT_NEAR(down[2]["x"]["rms"].get<double>() / x0, 0.2457, 1e-4);
+  EXPECT_EQ(up[1]["equilibrium_stable"], false);
+  EXPECT_EQ(down[1]["value"], 0.01);
+  EXPECT_EQ(down[1]["status"], "periodic");
+  EXPECT_NEAR(down[1]["x"]["rms"].get<double>() / x0, 0.2457, 1e-4);
 }
 
 TEST(SphereProgram, RunFilesCanBeDrawn) {

@@ -139,6 +139,7 @@ inline std::vector<Draft> candidates(const Key& key, WordPairs pairs = WordPairs
       }
       const std::string number = number_text(allowed_numbers(key).at(0));
       drafts.push_back(list_draft({number}));
+      drafts.push_back(list_draft({number, number, number}));  // one for each direction
       if (key.range.contains(0.5)) drafts.push_back(list_draft({"0.5", "0.5"}));  // shares
       return drafts;
     }
