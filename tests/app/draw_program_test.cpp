@@ -87,7 +87,7 @@ TEST(ScenePoints, WithinAnElementOnANodeOrRefusedWithTheDistance) {
     write_file(scene, with_points(points));
     return Program({"draw", scene.string(), "-o", (folder / "a.svg").string(), "--force"}).run();
   };
-  ProgramResult result = draw("  probe: {at: [31.4 mm, -0.3 mm], of: cantilever}\n");
+  ProgramResult result = draw("  probe: {at: [60.4 mm, -0.3 mm], of: cantilever}\n");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(contents_of(folder / "a.svg"), HasSubstr("probe"));
   result = draw("  probe: {at: [31.4 mm, 40 mm], of: cantilever}\n");
