@@ -89,7 +89,7 @@ class Repair {
   /// @return the remaining errors where nothing helped; empty where the draft is right
   std::vector<Problem> operator()(Draft& root) {
     std::vector<Problem> problems = problems_of_(root);
-    for (int i = 0; i < 100 && !problems.empty(); ++i) {
+    for (int i = 0; i < 500 && !problems.empty(); ++i) {
       if (!improve(root, problems)) break;
       problems = problems_of_(root);
     }
