@@ -13,8 +13,10 @@ using std::ptrdiff_t;
 
 /// A row of a strip in registers, and in memory.
 typedef double Lanes __attribute__((vector_size(64)));
-typedef double StoredLanes __attribute__((vector_size(64), aligned(8), may_alias));
-static_assert(sizeof(Lanes) == strip_width * sizeof(double));
+struct __attribute__((packed, may_alias)) StoredLanes {  // at any address; clang forgets `aligned`
+  Lanes lanes;
+};
+static_assert(sizeof(StoredLanes) == strip_width * sizeof(double));
 
 /// Rows or columns whose sums are kept in registers.
 constexpr int together = 8;
@@ -40,34 +42,34 @@ STRIDOR_INLINE void unrolled(Act&& act) {
 template <int count>
 STRIDOR_INLINE void lower_part(const SupernodeView& node, ptrdiff_t first, double* own) {
   Lanes sums[count];
-  unrolled<count>(STRIDOR_EACH { sums[index] = row(own, first + index); });
+  unrolled<count>(STRIDOR_EACH { sums[index] = row(own, first + index).lanes; });
   for (ptrdiff_t c = 0; c < first; ++c) {
     const double* entry = node.entries + c * node.stride + first;
-    const Lanes x = row(own, c);
+    const Lanes x = row(own, c).lanes;
     unrolled<count>(STRIDOR_EACH { sums[index] -= entry[index] * x; });
   }
   for (int i = 0; i < count; ++i) {
     const double* entry = node.entries + (first + i) * node.stride + first;
     const Lanes solved = sums[i] / entry[i];
     for (int k = i + 1; k < count; ++k) sums[k] -= entry[k] * solved;
-    row(own, first + i) = solved;
+    row(own, first + i).lanes = solved;
   }
 }
 
 template <int count>
 STRIDOR_INLINE void upper_part(const SupernodeView& node, ptrdiff_t first, double* own) {
   Lanes sums[count];
-  unrolled<count>(STRIDOR_EACH { sums[index] = row(own, first + index); });
+  unrolled<count>(STRIDOR_EACH { sums[index] = row(own, first + index).lanes; });
   const double* entries = node.entries + first * node.stride;
   for (ptrdiff_t r = first + count; r < node.num_columns; ++r) {
-    const Lanes x = row(own, r);
+    const Lanes x = row(own, r).lanes;
     unrolled<count>(STRIDOR_EACH { sums[index] -= entries[index * node.stride + r] * x; });
   }
   for (int i = count - 1; i >= 0; --i) {
     const double* entry = entries + i * node.stride + first;
     for (int k = i + 1; k < count; ++k) sums[i] -= entry[k] * sums[k];
     sums[i] /= entry[i];
-    row(own, first + i) = sums[i];
+    row(own, first + i).lanes = sums[i];
   }
 }
 
@@ -77,10 +79,10 @@ STRIDOR_INLINE void rows_part(const SupernodeView& node, ptrdiff_t first, const 
   Lanes sums[count] = {};
   for (ptrdiff_t c = 0; c < node.num_columns; ++c) {
     const double* entry = node.entries + c * node.stride + first;
-    const Lanes x = row(own, c);
+    const Lanes x = row(own, c).lanes;
     unrolled<count>(STRIDOR_EACH { sums[index] += entry[index] * x; });
   }
-  unrolled<count>(STRIDOR_EACH { row(strip, rows[index]) -= sums[index]; });
+  unrolled<count>(STRIDOR_EACH { row(strip, rows[index]).lanes -= sums[index]; });
 }
 
 template <int count>
@@ -90,10 +92,10 @@ STRIDOR_INLINE void columns_part(const SupernodeView& node, ptrdiff_t offset, pt
   Lanes sums[count] = {};
   const double* entries = node.entries + first * node.stride + offset;
   for (ptrdiff_t r = 0; r < num_rows; ++r) {
-    const Lanes y = row(strip, rows[r]);
+    const Lanes y = row(strip, rows[r]).lanes;
     unrolled<count>(STRIDOR_EACH { sums[index] += entries[index * node.stride + r] * y; });
   }
-  unrolled<count>(STRIDOR_EACH { row(own, first + index) -= sums[index]; });
+  unrolled<count>(STRIDOR_EACH { row(own, first + index).lanes -= sums[index]; });
 }
 
 /// Calls act.operator()<n>() for an n that the compiler knows, 1 to `together`.
@@ -160,8 +162,8 @@ STRIDOR_CLONES void multiply_columns(ptrdiff_t num_columns, const int* starts, c
   for (ptrdiff_t column = 0; column < num_columns; ++column) {
     Lanes sum{};
     for (int k = starts[column]; k < starts[column + 1]; ++k)
-      sum += entries[k] * *reinterpret_cast<const StoredLanes*>(x + stride * rows[k]);
-    *reinterpret_cast<StoredLanes*>(y + stride * column) = sum;
+      sum += entries[k] * reinterpret_cast<const StoredLanes*>(x + stride * rows[k])->lanes;
+    reinterpret_cast<StoredLanes*>(y + stride * column)->lanes = sum;
   }
 }
 
