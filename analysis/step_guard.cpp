@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -91,9 +92,9 @@ std::optional<SlidingContacts> in_equilibrium(const System& system, double displ
     const ContactPoint& contact = system.contacts[c];
     sliding.tangents.emplace_back();
     if (contact.has_two_tangents()) {
-      sliding.tangents.back() = tangent_kinematics(system, contact, equilibrium.contacts[c],
-                                                   ContactGeometry::deformed)
-                                    .sliding;
+      sliding.tangents.back() =
+          tangent_kinematics(system, contact, equilibrium.contacts[c], ContactGeometry::deformed)
+              .sliding;
     }
   }
   if (sliding.contacts.empty()) return std::nullopt;
@@ -148,7 +149,29 @@ std::optional<SlidingContacts> sliding_at(const System& system, double displacem
   }
 }
 
-/// The tangents of contacts held as well: t = (n_y, −n_x) in every pair of ports, or both of a face.
+/// Holds no motion twice: more tangents than the modes can follow leave the rest at rest with them.
+/// With B_C = B_E the rows that are left out change no motion; kept, they would make B_C S Sᵀ B_Eᵀ
+/// singular.
+void drop_dependent_rows(Pencil& held) {
+  std::vector<Eigen::Index> rigid;  // rows of springs are never dependent
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index row = 0; row < held.compatibility.rows(); ++row) {
+    const bool is_spring = held.compliance.size() > 0 && held.compliance(row) > 0.0;
+    (is_spring ? kept : rigid).push_back(row);
+  }
+  const Eigen::MatrixXd modal = held.compatibility(rigid, Eigen::all) * held.ports;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> columns(modal.transpose());
+  columns.setThreshold(1e-10);
+  if (columns.rank() == modal.rows()) return;
+  for (Eigen::Index i = 0; i < columns.rank(); ++i)
+    kept.push_back(rigid[static_cast<std::size_t>(columns.colsPermutation().indices()(i))]);
+  std::sort(kept.begin(), kept.end());
+  held.compatibility = held.compatibility(kept, Eigen::all).eval();
+  if (held.compliance.size() > 0) held.compliance = held.compliance(kept).eval();
+}
+
+/// The tangents of contacts held as well: t = (n_y, −n_x) in every pair of ports, or both of a
+/// face.
 Pencil sticking(const System& system, const SlidingContacts& at) {
   const Pencil& sliding = at.rows;
   Pencil held = sliding;
@@ -164,9 +187,9 @@ Pencil sticking(const System& system, const SlidingContacts& at) {
     const Eigen::Index num_ports = system.num_contact_ports(contact);
     const auto normal = sliding.compatibility.row(static_cast<Eigen::Index>(i));
     if (contact.has_two_tangents()) {
-      for (Eigen::Index k = 0; k < 2; ++k) {
+      for (Eigen::Index direction = 0; direction < 2; ++direction) {
         held.compatibility.row(row++).segment(port, num_ports) =
-            at.tangents[i].col(k).head(num_ports).transpose();
+            at.tangents[i].col(direction).head(num_ports).transpose();
       }
     } else {
       for (Eigen::Index s = port; s < port + num_ports; s += 2) {
@@ -177,11 +200,12 @@ Pencil sticking(const System& system, const SlidingContacts& at) {
     }
     port += num_ports;
   }
-  held.equilibrium = held.compatibility;
   if (sliding.compliance.size() > 0) {
     held.compliance.setZero(num_rows);
     held.compliance.head(k) = sliding.compliance;
   }
+  drop_dependent_rows(held);
+  held.equilibrium = held.compatibility;
   return held;
 }
 
@@ -201,8 +225,9 @@ void add_states(const System& system, const SlidingContacts& at, double displace
     alone.compatibility = at.rows.compatibility.row(row).eval();
     alone.equilibrium = at.rows.equilibrium.row(row).eval();
     if (at.rows.compliance.size() > 0) alone.compliance = at.rows.compliance.segment(row, 1).eval();
-    states.push_back({fmt::format("{} sliding alone {}", name_of(c), at.place(system, c, displacement)),
-                      std::move(alone)});
+    states.push_back(
+        {fmt::format("{} sliding alone {}", name_of(c), at.place(system, c, displacement)),
+         std::move(alone)});
   }
   const bool can_stick =
       can_open && std::any_of(at.contacts.begin(), at.contacts.end(), [&](std::size_t c) {
@@ -210,8 +235,8 @@ void add_states(const System& system, const SlidingContacts& at, double displace
         return friction.static_coefficient > 0.0 && !friction.is_regularised();
       });
   if (can_stick && has_coupled_modes(system))
-    states.push_back(
-        {fmt::format("{} sticking {}", all, at.place(system, 0, displacement)), sticking(system, at)});
+    states.push_back({fmt::format("{} sticking {}", all, at.place(system, 0, displacement)),
+                      sticking(system, at)});
 }
 
 /// Does work(0) … work(count − 1) on all processors: every state of a scene by itself.
