@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "core/errors.hpp"
 #include "substructures/bodies/mesh_surface_parameters.hpp"
@@ -107,12 +108,20 @@ const Schema& MaterialAxesParameters::schema() {
                            "line.",
                     .optional = true})
           .check([](const P& axes, std::vector<Problem>& problems) {
-            const int ways = (axes.angle ? 1 : 0) + (axes.around ? 1 : 0) +
-                             (!axes.first.empty() || !axes.second.empty() ? 1 : 0);
-            if (ways != 1)
+            const bool has_vectors = !axes.first.empty() || !axes.second.empty();
+            if (!axes.angle && !axes.around && !has_vectors)
               add_problem(problems, "",
                           "is an angle, the vectors `first` and `second`, or `around` a line: one "
                           "of the three");
+            if (axes.around && axes.angle)
+              add_problem(problems, "angle", "cannot stand beside `around`, which says the axes");
+            for (const auto& [key, vector] :
+                 {std::pair("first", &axes.first), std::pair("second", &axes.second)}) {
+              if (vector->empty() || (!axes.angle && !axes.around)) continue;
+              add_problem(problems, key,
+                          axes.around ? "cannot stand beside `around`, which says the axes"
+                                      : "cannot stand beside `angle`, which says the axes");
+            }
             if (axes.first.empty() && axes.second.empty()) return;
             expect_components(axes.first, "first", false, problems);
             expect_components(axes.second, "second", false, problems);

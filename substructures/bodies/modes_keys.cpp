@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "core/errors.hpp"
 #include "substructures/bodies/modes_body.hpp"
@@ -39,9 +40,12 @@ const Schema& ModesPortParameters::schema() {
           .real_list("z", &P::z, shape("The same along z."))
           .check([](const P& port, std::vector<Problem>& problems) {
             expect_place(port.at, "at", problems);
-            const bool has_shapes = !port.x.empty() || !port.y.empty() || !port.z.empty();
-            if (port.node && has_shapes)
-              problems.push_back({"node", "is not used: the shapes are given; leave one of them out", {}, 0, 0});
+            for (const auto& [key, shape] :
+                 {std::pair("x", &port.x), std::pair("y", &port.y), std::pair("z", &port.z)}) {
+              if (!port.node || shape->empty()) continue;
+              problems.push_back(
+                  {key, "cannot stand beside `node`, whose shapes are in the file", {}, 0, 0});
+            }
             if (!port.node && port.at.empty())
               problems.push_back({"at", "is missing; give it, or a `node` of the file", {}, 0, 0});
           });

@@ -287,6 +287,16 @@ inline void take_over(Draft& from, Draft& to, const std::string& path) {
   find_draft(to, parent_path(missing))->children.push_back(*find_draft(from, missing));
 }
 
+/// Takes every optional key out that does not hold the wanted one or lie within it.
+inline void strip_to(Draft& draft, const std::string& wanted) {
+  std::erase_if(draft.children, [&](const Draft& child) {
+    return child.key != nullptr && child.key->is_optional &&
+           !(wanted + ".").starts_with(child.pattern + ".") &&
+           !(child.pattern + ".").starts_with(wanted + ".");
+  });
+  for (Draft& child : draft.children) strip_to(child, wanted);
+}
+
 /// Valid scenes that together hold every key of T: several, because there are keys that exclude
 /// each other.
 template <class T>
@@ -299,11 +309,18 @@ std::vector<CompleteScene> make_complete_scenes() {
   std::vector<CompleteScene> scenes;
   while (!missing.empty()) {
     const auto [wanted, wanted_path] = *missing.begin();
-    // From the last scene there may be no way that changes one key after the other.
+    // Where few keys stand, few stand in the way; but there may be no way that changes one key after
+    // the other, and one from another scene.
+    std::vector<Draft> starts;
+    if (!scenes.empty()) starts.push_back(all);
+    for (Draft& bare : starts) strip_to(bare, wanted);
+    for (auto scene = scenes.rbegin(); scene != scenes.rend(); ++scene)
+      starts.push_back(scene->draft);
+    starts.push_back(all);
     CompleteScene scene;
     std::vector<Problem> problems;
-    for (std::size_t start = 0; start <= scenes.size(); ++start) {
-      scene.draft = start < scenes.size() ? scenes[scenes.size() - 1 - start].draft : all;
+    for (Draft& start : starts) {
+      scene.draft = std::move(start);
       take_over(all, scene.draft, wanted_path);
       problems = Repair(objections_of_checks<T>, wanted)(scene.draft);
       if (problems.empty()) break;
