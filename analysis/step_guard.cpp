@@ -149,11 +149,16 @@ std::optional<SlidingContacts> sliding_at(const System& system, double displacem
   }
 }
 
-/// Holds no motion twice: more tangents than the modes can follow leave the rest at rest with them.
-/// With B_C = B_E the rows that are left out change no motion; kept, they would make B_C S Sᵀ B_Eᵀ
-/// singular.
+/// Leaves of the rigid rows of B_C as many as hold motions of their own: those of a basis of the
+/// rows of B_C S, by QR with pivoting. Few modes at many contacts leave some dependent. With
+/// B_E = B_C these change no motion, but make B_C S Sᵀ B_Eᵀ singular and its determinant rounding.
+///
+/// @param held B_C, constraints x ports; B_E is not looked at. Compliant rows stay: their
+/// compliance
+///             keeps them independent.
 void drop_dependent_rows(Pencil& held) {
-  std::vector<Eigen::Index> rigid;  // rows of springs are never dependent
+  constexpr double rounding = 1e-10;  // of the largest pivot
+  std::vector<Eigen::Index> rigid;
   std::vector<Eigen::Index> kept;
   for (Eigen::Index row = 0; row < held.compatibility.rows(); ++row) {
     const bool is_spring = held.compliance.size() > 0 && held.compliance(row) > 0.0;
@@ -161,7 +166,7 @@ void drop_dependent_rows(Pencil& held) {
   }
   const Eigen::MatrixXd modal = held.compatibility(rigid, Eigen::all) * held.ports;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> columns(modal.transpose());
-  columns.setThreshold(1e-10);
+  columns.setThreshold(rounding);
   if (columns.rank() == modal.rows()) return;
   for (Eigen::Index i = 0; i < columns.rank(); ++i)
     kept.push_back(rigid[static_cast<std::size_t>(columns.colsPermutation().indices()(i))]);
@@ -170,8 +175,7 @@ void drop_dependent_rows(Pencil& held) {
   if (held.compliance.size() > 0) held.compliance = held.compliance(kept).eval();
 }
 
-/// The tangents of contacts held as well: t = (n_y, −n_x) in every pair of ports, or both of a
-/// face.
+/// The tangents of contacts held as well: t = (n_y, −n_x) in every pair of ports, or both of two.
 Pencil sticking(const System& system, const SlidingContacts& at) {
   const Pencil& sliding = at.rows;
   Pencil held = sliding;

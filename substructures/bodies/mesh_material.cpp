@@ -122,7 +122,7 @@ const Schema& MaterialAxesParameters::schema() {
                           axes.around ? "cannot stand beside `around`, which says the axes"
                                       : "cannot stand beside `angle`, which says the axes");
             }
-            if (axes.first.empty() && axes.second.empty()) return;
+            if (!has_vectors) return;
             expect_components(axes.first, "first", false, problems);
             expect_components(axes.second, "second", false, problems);
             const Eigen::Vector3d one = in_space(axes.first);

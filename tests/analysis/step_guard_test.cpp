@@ -185,5 +185,29 @@ TEST(StepGuard, HoldsContactsOnFacesInBothTangents) {
               HasSubstr("take a step of 5.59e-05 s or less"));
 }
 
+// Twice as many contacts that stick at the same places are as many constraints again, of the same
+// rank.
+TEST(StepGuard, ContactsThatStickHoldNoMotionTwice) {
+  DiscModelParameters brake = test::squealing_brake();
+  brake.contact.formulation = ContactFormulation::lagrange;
+  System system = test::disc_system(brake);
+  TimeParameters time;
+  time.integrator = Integrator::exact;
+  time.step = 2e-6;
+  time.end = 0.1;
+  const HeldContacts once = held_contacts(system, time).back();
+  const std::vector<ContactPoint> contacts = system.contacts;
+  system.contacts.insert(system.contacts.end(), contacts.begin(), contacts.end());
+  const HeldContacts twice = held_contacts(system, time).back();
+  ASSERT_THAT(twice.name, HasSubstr("sticking"));
+  EXPECT_EQ(twice.rows.num_constraints(), once.rows.num_constraints());
+  EXPECT_EQ(twice.rows.equilibrium, twice.rows.compatibility);
+  const auto radius_of = [&](const HeldContacts& held) {
+    return spectral_radius(FrozenStep(system, time).factors(held.rows));
+  };
+  EXPECT_NEAR(radius_of(twice),
+              spectral_radius(FrozenStep(test::disc_system(brake), time).factors(once.rows)), 1e-9);
+}
+
 }  // namespace
 }  // namespace stridor
