@@ -60,7 +60,11 @@ FastMotion fastest_growing(const System& system, const Equilibrium& equilibrium)
       std::max_element(spectrum.eigenvalues.begin(), spectrum.eigenvalues.end(),
                        [](const auto& a, const auto& b) { return a.growth() < b.growth(); });
   const Eigen::VectorXcd q = spectrum.right.col(fastest - spectrum.eigenvalues.begin());
-  return {fastest->s, q / q.norm()};
+  // A factor is free, and so is its sign: the largest velocity is real and positive at the start.
+  Eigen::Index largest = 0;
+  q.cwiseAbs().maxCoeff(&largest);
+  const std::complex<double> velocity = fastest->s * q(largest);
+  return {fastest->s, q / q.norm() * (std::abs(velocity) / velocity)};
 }
 
 /// The system in its equilibrium with a little of a motion.
@@ -384,27 +388,33 @@ TEST(FaceSimulation, OrderIsTwoWhereSpringsLiftOffAndStick) {
   }
 }
 
-/// Largest force, share of time without contact and r.m.s. displacement of the upper pad in a limit cycle.
+/// A limit cycle over stretches of 60 ms.
 struct LimitCycle {
-  double open = 0.0;   ///< part of the time
-  double moved = 0.0;  ///< largest |y| of a pad, m
+  double open = 0.0;   ///< part of the time without contact
+  double moved = 0.0;  ///< largest |y| of a pad, mean of the stretches, m
 };
 
-/// The squealing brake after 60 ms, for as long again.
-LimitCycle squeal(bool is_rigid, double step) {
+/// The squealing brake after 60 ms.
+LimitCycle squeal(bool is_rigid, double step, int num_stretches) {
   DiscModelParameters brake = test::squealing_brake();
   if (is_rigid) brake.contact.formulation = ContactFormulation::lagrange;
   const System system = test::disc_system(brake);
   const Equilibrium equilibrium = test::face_equilibrium(system);
   const FastMotion mode = fastest_growing(system, equilibrium);
   Simulation simulation(perturbed(system, equilibrium, mode, 1e-6), face_time(step));
-  const auto num_first = static_cast<int>(std::lround(0.06 / step));
+  const auto num_steps = std::lround(0.06 / step);
+  EXPECT_EQ(simulation.step_until(num_steps), StepOutcome::done) << simulation.failure();
   LimitCycle found;
-  for (int n = 0; n < 2 * num_first; ++n) {
-    if (simulation.step() != StepOutcome::done) ADD_FAILURE() << simulation.failure();
-    if (n < num_first) continue;
-    found.open += simulation.contact_force(0) == 0.0 ? 1.0 / num_first : 0.0;
-    found.moved = std::max(found.moved, std::abs(simulation.displacement(1, 1)));
+  for (int stretch = 0; stretch < num_stretches; ++stretch) {
+    long num_open = 0;
+    double largest = 0.0;
+    for (long n = 0; n < num_steps; ++n) {
+      if (simulation.step() != StepOutcome::done) ADD_FAILURE() << simulation.failure();
+      if (simulation.contact_force(0) == 0.0) ++num_open;
+      largest = std::max(largest, std::abs(simulation.displacement(1, 1)));
+    }
+    found.open += static_cast<double>(num_open) / static_cast<double>(num_steps * num_stretches);
+    found.moved += largest / num_stretches;
   }
   return found;
 }
@@ -412,13 +422,14 @@ LimitCycle squeal(bool is_rigid, double step) {
 TEST(FaceSimulation, SquealEndsInABoundedCycle) {
   // A program for discs alone, since removed, had 0.1334 mm at 2 and 0.25 µs.
   for (const double step : {2e-6, 1e-6}) {
-    const LimitCycle rigid = squeal(true, step);
+    const LimitCycle rigid = squeal(true, step, 1);
     EXPECT_NEAR(rigid.moved, 1.334e-4, 0.01e-4);
     EXPECT_NEAR(rigid.open, 0.45, 0.1);
   }
   // And between 0.33 and 0.42 mm from cycle to cycle, lifted off 81 % of the time: contacts that
-  // bounce, and a motion that depends on every impact before.
-  const LimitCycle bouncing = squeal(false, 2e-6);
+  // bounce, and a motion that depends on every impact before. The largest of a stretch scatters by
+  // 0.045 mm with the least difference at the start, so that the mean of eight is asked.
+  const LimitCycle bouncing = squeal(false, 2e-6, 8);
   EXPECT_NEAR(bouncing.moved, 3.9e-4, 0.6e-4);
   EXPECT_NEAR(bouncing.open, 0.85, 0.07);
 }
