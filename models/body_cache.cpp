@@ -70,6 +70,7 @@ namespace {
 std::string key_of(const BodyParameters& parameters) {
   const std::unique_ptr<BodyParameters> undamped = parameters.clone();
   if (RayleighDamping* damping = undamped->own_damping()) *damping = {};
+  if (double* spin = undamped->own_spin()) *spin = 0.0;
   std::string text = fmt::format("{}{}{}:", undamped->type(), parameters.terms().rotation ? "" : "!",
                                  parameters.terms().damping ? "" : "~");
   append_keys(text, undamped->keys(), undamped->object());
@@ -125,6 +126,8 @@ BodyMatrices BodyCache::matrices(const BodyParameters& parameters) {
   if (found == nullptr) found = &keep(bodies_, key, parameters.make());
   BodyMatrices body = *found;
   if (const RayleighDamping* damping = parameters.own_damping()) body.damping = *damping;
+  if (const double* spin = parameters.own_spin(); spin != nullptr && body.spin)
+    body.spin->speed = *spin;
   return body;
 }
 
@@ -138,6 +141,13 @@ BodyCache::Reduction BodyCache::reduce(const Wanted& wanted) {
   Reduction copied = *found;
   copied.reduced.damping = wanted.body->damping;
   copied.modal.damping = wanted.body->damping;
+  if (copied.reduced.spin) {
+    const CoupledTerms terms =
+        spin_terms(*copied.reduced.spin, wanted.body->spin->speed, wanted.body->damping);
+    add_terms(terms.in(copied.modal.shapes), copied.modal.coupled);
+    add_terms(terms, copied.reduced.coupled);
+    copied.reduced.spin.reset();
+  }
   return copied;
 }
 

@@ -16,7 +16,8 @@ namespace stridor {
 /// Makes bodies from their parameters and reduces them, each once.
 ///
 /// Equal bodies are found by the resolved keys of a body, all of them but the damping,
-/// which is proportional and leaves meshes, shapes and frequencies alone; for a reduction also by
+/// which is proportional and leaves meshes, shapes and frequencies alone, and the speed at which a mesh
+/// spins, in whose powers its terms are kept; for a reduction also by
 /// the DoFs kept and watched. The least recently used entry is forgotten first.
 class BodyCache {
  public:

@@ -73,6 +73,12 @@ void resolve_slaves(ContactPair& pair, const std::vector<ModelBody>& bodies) {
           key + ".slave",
           "the points of one pair must belong to one body; use `contacts` for several pairs");
     }
+    if (body.matrices.spin) {
+      throw ConfigError(key + ".slave",
+                        fmt::format("'{}' spins, so that its material passes its points in space; make "
+                                    "its surface the master, and points of the other body the slave",
+                                    body.name));
+    }
     const auto node = body.matrices.points.find(point);
     const auto edge = body.matrices.surfaces.find(point);
     const auto facets = body.matrices.facets.find(point);

@@ -72,6 +72,10 @@ FacetSurface make_facets(const ContactPair& pair, ModelBody& master) {
   surface.name = pair.master_name;
   surface.body = pair.master_body;
   surface.facets = master.matrices.facets.at(pair.surface_name());
+  if (const auto& spin = master.matrices.spin) {
+    surface.spin = spin->speed * spin->direction;
+    surface.axis_point = spin->point + master.place;
+  }
   std::vector<int> nodes;
   for (const Facet& facet : surface.facets)
     nodes.insert(nodes.end(), facet.nodes.begin(), facet.nodes.begin() + facet.count);

@@ -12,11 +12,27 @@
 
 namespace stridor {
 
+namespace {
+
+/// Whether all eigenvalues by the dense method cost less than a search. The secular function is a
+/// determinant of as many rows as contacts and the ports that they and coupled bodies join, taken some tens
+/// of times for every eigenvalue.
+bool is_dense_cheaper(const Pencil& pencil) {
+  constexpr Eigen::Index least = 100;  // below, a search takes no time
+  constexpr double share = 8.0;
+  if (pencil.num_modes() < least || pencil.num_eigenvalues() > most_dense) return false;
+  const ModalRows rows = modal_rows(pencil);
+  const auto size = static_cast<double>(rows.num_constraints + rows.rank);
+  return size * size > share * static_cast<double>(pencil.num_modes());
+}
+
+}  // namespace
+
 LowestEigenvalues find_lowest(const Pencil& pencil, EigenvalueMethod method,
                               const SpectrumWindow& window) {
   const BlasGuard guard;
   LowestEigenvalues found;
-  if (method == EigenvalueMethod::secular) {
+  if (method == EigenvalueMethod::secular && !is_dense_cheaper(pencil)) {
     try {
       found.eigenvalues = secular_eigenvalues(pencil, window);
       // Pairs that lie close together leave more of the equations than others: of a small system

@@ -61,6 +61,10 @@ struct FacetSurface {
   /// Facet beyond each edge, from node k to the next; −1 where the surface ends.
   std::vector<std::array<int, 4>> neighbours;
   std::vector<std::array<Eigen::Vector3d, 4>> bulges;  ///< of the edges; empty: flat facets
+  /// Angular velocity with which material passes through a body of revolution that stays in its place,
+  /// rad/s, about a point of its axis, m.
+  Eigen::Vector3d spin = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis_point = Eigen::Vector3d::Zero();
 
   int num_nodes() const { return static_cast<int>(positions.size()); }
   /// Most nodes of a facet, 3 or 4.

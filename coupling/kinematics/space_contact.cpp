@@ -31,6 +31,31 @@ Eigen::Matrix<double, 3, 2> slopes_of(const PatchPoint& point) {
   return slopes;
 }
 
+/// ∂(carried)/∂y. With the slopes A of the deformed and B of the undeformed surface and the velocity
+/// r = Ω e x (x − p), carried = A c and c = (BᵀB)⁻¹ Bᵀ r, which change with y at constant ξ and η, and
+/// with these.
+Rows3 carried_change(const SpaceInstant& instant, const Eigen::Vector2d& place, const PatchPoint& on,
+                     const std::array<Rows3, 2>& slopes, const Rows2& shift) {
+  const PatchPoint before = instant.undeformed.at(place.x(), place.y());
+  const Eigen::Matrix<double, 3, 2> A = slopes_of(on);
+  const Eigen::Matrix<double, 3, 2> B = slopes_of(before);
+  const Eigen::Matrix2d inverse = (B.transpose() * B).inverse();
+  const Eigen::Vector3d r = instant.spin.cross(before.place - instant.centre);
+  const Eigen::Vector2d c = inverse * (B.transpose() * r);
+  Rows3 change = c.x() * slopes[0] + c.y() * slopes[1];
+  for (std::size_t k = 0; k < 2; ++k) {
+    Eigen::Matrix<double, 3, 2> A_k, B_k;
+    A_k << on.curvatures[k], on.curvatures[k + 1];
+    B_k << before.curvatures[k], before.curvatures[k + 1];
+    const Eigen::Matrix2d metric_k = B_k.transpose() * B + B.transpose() * B_k;
+    const Eigen::Vector2d c_k =
+        inverse * (B_k.transpose() * r + B.transpose() * instant.spin.cross(before.slopes[k]) -
+                   metric_k * c);
+    change += (A_k * c + A * c_k) * shift.row(static_cast<Eigen::Index>(k));
+  }
+  return change;
+}
+
 }  // namespace
 
 Eigen::Vector3d reference_for(const Eigen::Vector3d& normal) {
@@ -56,6 +81,8 @@ SpaceInstant space_instant(const SpacePlace& at, const FacetSurface* surface, in
   instant.is_plane = surface == nullptr;
   instant.plane_normal = at.normal;
   if (instant.is_plane) return instant;
+  instant.spin = surface->spin;
+  instant.centre = surface->axis_point - origin;
   instant.undeformed = surface->patch(facet);
   instant.deformed = instant.undeformed;
   for (int k = 0; k < instant.deformed.count; ++k)
@@ -82,6 +109,7 @@ SpaceGeometry space_geometry(const SpaceInstant& instant, const Eigen::Vector2d&
   const Eigen::Matrix<double, 3, 2> after = slopes_of(deformed);
   found.stretch = after * (before.transpose() * before).inverse() * before.transpose();
   found.unstretch = before * (after.transpose() * after).inverse() * after.transpose();
+  found.carried = found.stretch * instant.spin.cross(undeformed.place - instant.centre);
   return found;
 }
 
@@ -107,7 +135,7 @@ TangentKinematics tangent_kinematics(const SpaceInstant& instant, const Eigen::V
   for (Eigen::Index i = 0; i < 2; ++i) {
     const Eigen::Vector3d& t = tangents[static_cast<std::size_t>(i)];
     found.friction.col(i) = space_row(t, at.weights, num_nodes, num_ports);
-    found.velocity(i) = -instant.drawn * t.x();
+    found.velocity(i) = t.dot(at.carried) - instant.drawn * t.x();
   }
   found.sliding = found.friction;
   found.normal_bending.setZero(num_ports, num_ports);
@@ -148,6 +176,10 @@ TangentKinematics tangent_kinematics(const SpaceInstant& instant, const Eigen::V
   found.friction_bending = {bending(tangents[0], turn1), bending(tangents[1], turn2)};
   found.turning.col(0) = instant.drawn * turn1.row(0).transpose();
   found.turning.col(1) = instant.drawn * turn2.row(0).transpose();
+  if (instant.spin.isZero(0.0)) return found;
+  const Rows3 carried = carried_change(instant, place, on, slopes, shift);
+  found.turning.col(0) -= turn1.transpose() * at.carried + carried.transpose() * tangents[0];
+  found.turning.col(1) -= turn2.transpose() * at.carried + carried.transpose() * tangents[1];
   return found;
 }
 

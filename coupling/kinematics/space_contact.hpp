@@ -42,6 +42,8 @@ struct SpaceInstant {
   Eigen::Vector3d plane_normal = Eigen::Vector3d::UnitY();
   Eigen::Vector3d reference = Eigen::Vector3d::UnitX();
   double drawn = 0.0;  ///< velocity of the slave against the master in +x by drives, m/s
+  Eigen::Vector3d spin = Eigen::Vector3d::Zero();    ///< FacetSurface::spin
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of its axis, as seen from the first node, m
 
   int num_nodes() const { return is_plane ? 0 : deformed.count; }
 };
@@ -64,6 +66,9 @@ struct SpaceGeometry {
   /// What the deformation of the master makes of a small vector along its undeformed surface.
   Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d unstretch = Eigen::Matrix3d::Identity();  ///< and back
+  /// Velocity of the material of a spinning master here while its displacement stays, along its
+  /// deformed surface: what that makes of Ω e x (x − p), m/s.
+  Eigen::Vector3d carried = Eigen::Vector3d::Zero();
 };
 
 SpaceGeometry space_geometry(const SpaceInstant& instant, const Eigen::Vector2d& place);

@@ -102,11 +102,13 @@ std::optional<Eigen::Vector2d> SpacePoint::stand(const System& system, const Fac
   const TangentPorts rate = motion_of(&SystemBody::initial_velocity);
   const Eigen::Vector2d moving(along_.dot(rate), across_.dot(rate));
   const Eigen::Vector3d by_drives = driven_.velocity(at.now) * Eigen::Vector3d::UnitX();
-  const Eigen::Vector2d velocity = -moving - tangential(by_drives);
+  const Eigen::Vector2d by_motion = -moving - tangential(by_drives);
+  const Eigen::Vector2d velocity = by_motion + tangential(geometry_.carried);
   reached_ = from_origin(geometry_.material);
+  carried_ = geometry_.carried;
   if (at.has_feedthrough) {
     const Eigen::Vector2d moved =
-        at.step * (driven_.is_frozen() ? moving : Eigen::Vector2d(-velocity));
+        at.step * (driven_.is_frozen() ? moving : Eigen::Vector2d(-by_motion));
     reached_ -= moved.x() * geometry_.frame.tangents[0] + moved.y() * geometry_.frame.tangents[1];
   }
   return velocity;
@@ -155,15 +157,16 @@ Eigen::Vector2d SpacePoint::frozen_slip(double from, double step) const {
 
 Eigen::Vector2d SpacePoint::predicted_slip(const FaceInstant& at) const {
   return slip_since_reached() + slip_to(predicted(), displaced_) +
-         frozen_slip(at.sought - at.step, at.step);
+         frozen_slip(at.sought - at.step, at.step) + carried_slip(at.step);
 }
 
 Eigen::Vector2d SpacePoint::expected_slip(const FaceInstant& at) const {
-  return slip_since_reached() + frozen_slip(at.sought - at.step, at.step);
+  return slip_since_reached() + frozen_slip(at.sought - at.step, at.step) + carried_slip(at.step);
 }
 
 Eigen::Vector2d SpacePoint::slip_ahead(const FaceInstant& at) const {
-  return slip_to(ahead(), driven_.displacement(at.now + at.step)) + frozen_slip(at.now, at.step);
+  return slip_to(ahead(), driven_.displacement(at.now + at.step)) + frozen_slip(at.now, at.step) +
+         at.step * tangential(geometry_.carried);
 }
 
 Eigen::Vector2d SpacePoint::follow(const FaceInstant& at) {
@@ -172,15 +175,17 @@ Eigen::Vector2d SpacePoint::follow(const FaceInstant& at) {
   const auto& tangents = geometry_.frame.tangents;
   const Eigen::Vector3d passed = on.x() * tangents[0] + on.y() * tangents[1];
   reached_ = from_origin(geometry_.material) - geometry_.unstretch * passed;
-  return since + on + frozen_slip(at.now - at.step, at.step);
+  const Eigen::Vector2d carried = carried_slip(at.step);
+  carried_ = geometry_.carried;
+  return since + on + frozen_slip(at.now - at.step, at.step) + carried;
 }
 
 Eigen::Vector2d SpacePoint::drawn_velocity(double time) const {
-  return -tangential(driven_.velocity(time) * Eigen::Vector3d::UnitX());
+  return tangential(geometry_.carried - driven_.velocity(time) * Eigen::Vector3d::UnitX());
 }
 
 Eigen::Vector2d SpacePoint::drawn(double from, double step) const {
-  return -tangential(step * driven_.velocity(from) * Eigen::Vector3d::UnitX());
+  return carried_slip(step) - tangential(step * driven_.velocity(from) * Eigen::Vector3d::UnitX());
 }
 
 double SpacePoint::lifted(double from, double step) const {
@@ -199,6 +204,7 @@ std::vector<double> SpacePoint::numbers() const {
   std::vector<double> numbers{static_cast<double>(place_.facet), place_.xi, place_.eta, displaced_};
   numbers.insert(numbers.end(), reached_.begin(), reached_.end());
   numbers.insert(numbers.end(), directed_at_.begin(), directed_at_.end());
+  if (is_carried()) numbers.insert(numbers.end(), carried_.begin(), carried_.end());
   return numbers;
 }
 
@@ -207,6 +213,7 @@ void SpacePoint::restore(std::span<const double> numbers) {
   std::copy_n(numbers.begin() + 4, 3, reached_.begin());
   TangentPorts directed(num_master_ports() + 3);
   std::copy_n(numbers.begin() + 7, directed.size(), directed.begin());
+  if (is_carried()) std::copy_n(numbers.begin() + 7 + directed.size(), 3, carried_.begin());
   watch_facet();
   direct(numbers[3], directed);
 }

@@ -50,6 +50,11 @@ class SpacePoint : public FacePoint {
   Eigen::Vector2d slip_to(const TangentPorts& ports, double displaced) const;
   /// Slip in a step by drives that hold the slave in place.
   Eigen::Vector2d frozen_slip(double from, double step) const;
+  /// Slip in a step by the spin of the master, from the last instant known whole on.
+  Eigen::Vector2d carried_slip(double step) const {
+    return 0.5 * step * tangential(carried_ + geometry_.carried);
+  }
+  bool is_carried() const { return surface_ != nullptr && !surface_->spin.isZero(0.0); }
 
   const FacetSurface* surface_;
   DrivenMotion driven_;
@@ -60,6 +65,7 @@ class SpacePoint : public FacePoint {
   SpaceGeometry geometry_;
   /// Material place of the undeformed master under the slave at the last instant known whole, m.
   Eigen::Vector3d reached_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d carried_ = Eigen::Vector3d::Zero();  ///< SpaceGeometry::carried then, m/s
 };
 
 }  // namespace stridor

@@ -299,7 +299,7 @@ class Search {
       contact.result.ports.setZero(system_.num_master_ports(point) + 3);
       contact.result.drawn =
           velocity_of(point.slave_body) - velocity_of(system_.master_of(point));
-      require_sliding(point, contact.result.drawn);
+      require_sliding(contact);
     } else {
       contact.surface = &system_.surfaces[at(point.surface)];
     }
@@ -312,14 +312,18 @@ class Search {
   }
 
   /// Friction of a contact in space that does not slide has no direction.
-  void require_sliding(const ContactPoint& point, double drawn) const {
+  void require_sliding(const SoughtContact& contact) const {
+    const ContactPoint& point = *contact.point;
     const EquilibriumState& state = answer_.state;
+    const bool spins = contact.facets != nullptr && !contact.facets->spin.isZero(0.0);
     const bool has_friction = state.friction_factor > 0.0 && state.terms.friction &&
                               point.friction.static_coefficient > 0.0;
-    if (!point.space || drawn != 0.0 || !has_friction || !state.terms.friction_damping) return;
+    if (!point.space || contact.result.drawn != 0.0 || spins || !has_friction ||
+        !state.terms.friction_damping)
+      return;
     throw NumericalError(fmt::format(
         "equilibrium: '{}' does not slide, so that its friction has no direction; let a drive move its "
-        "slave or its master, or leave friction out",
+        "slave or its master, or its master spin, or leave friction out",
         point.name));
   }
 

@@ -62,6 +62,9 @@ class BodyParameters {
   const RayleighDamping* own_damping() const {
     return const_cast<BodyParameters*>(this)->own_damping();
   }
+  /// Speed of a body whose spin is BodyMatrices::spin, rad/s; null for others.
+  virtual double* own_spin() { return nullptr; }
+  const double* own_spin() const { return const_cast<BodyParameters*>(this)->own_spin(); }
   /// Fixed-interface modes that its reduction keeps; nothing where every unknown is kept.
   virtual std::optional<int> num_modes() const { return std::nullopt; }
   /// Distance of the nodes kept of a master surface, m; nothing: every node.

@@ -65,6 +65,9 @@ const Schema& MeshBodyParameters::schema() {
           .named_sections("supports", &P::supports,
                           {.doc = "What is held, by name.", .optional = true})
           .section("guided", &P::guided, {.doc = "What follows the drive.", .optional = true})
+          .section("spin", &P::spin,
+                   {.doc = "Of a body of revolution that spins about its axis, seen from space.",
+                    .optional = true})
           .named_sections("points", &P::points,
                           {.doc = "Points that touch others or are recorded.", .optional = true})
           .named_sections("rigid_regions", &P::rigid_regions,
@@ -145,6 +148,12 @@ BodyMatrices MeshBodyParameters::make() const {
 std::optional<int> MeshBodyParameters::num_modes() const {
   if (!reduction) return std::nullopt;
   return reduction->fixed_interface_modes;
+}
+
+std::vector<Problem> MeshBodyParameters::warnings() const {
+  std::vector<Problem> warnings;
+  warn_of_sectors(*this, warnings);
+  return warnings;
 }
 
 bool MeshBodyParameters::is_filled() const {

@@ -12,6 +12,7 @@
 #include "substructures/bodies/body_parameters.hpp"
 #include "substructures/bodies/mesh_attachments.hpp"
 #include "substructures/bodies/mesh_material.hpp"
+#include "substructures/bodies/mesh_spin.hpp"
 #include "substructures/bodies/mesh_surface_parameters.hpp"
 #include "substructures/bodies/surface_springs.hpp"
 #include "substructures/elements/elastic_law.hpp"
@@ -40,6 +41,7 @@ struct MeshBodyParameters : BodyParametersOf<MeshBodyParameters> {
   std::map<std::string, MeshSurfaceParameters> surfaces;
   std::map<std::string, MeshSupportParameters> supports;
   std::optional<MeshGuideParameters> guided;
+  std::optional<MeshSpinParameters> spin;
   std::map<std::string, MeshPointParameters> points;
   std::map<std::string, MeshRigidRegionParameters> rigid_regions;
   std::map<std::string, MeshTieParameters> ties;
@@ -60,6 +62,8 @@ struct MeshBodyParameters : BodyParametersOf<MeshBodyParameters> {
   bool take_contents(const BodyParameters& other) override;
   BodyMatrices make() const override;
   RayleighDamping* own_damping() override { return &damping; }
+  double* own_spin() override { return spin ? &spin->speed : nullptr; }
+  std::vector<Problem> warnings() const override;
   std::optional<int> num_modes() const override;
   std::optional<double> interface_spacing() const override { return interface.spacing; }
   bool is_filled() const override;

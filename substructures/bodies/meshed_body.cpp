@@ -159,7 +159,9 @@ BodyMatrices make_meshed_body(const MeshBodyParameters& parameters, const NodalM
     add_given_matrices(*given, named.mesh, constraints, body);
   }
   add_outlines(parameters, named.mesh, named.dimension, body);
+  const SparseMatrix viscous = body.velocity;  // without that of springs, which do not turn
   add_to_mesh_body(parameters, named, constraints, body);
+  if (parameters.spin) add_mesh_spin(parameters, named, constraints, viscous, body);
   return body;
 }
 

@@ -47,6 +47,21 @@ SparseMatrix sparse(const Eigen::MatrixXd& matrix) {
   return matrix.sparseView();
 }
 
+/// spin_terms() of a body of which every unknown is kept.
+void add_spin(const BodyMatrices& body, SparseSystem& system) {
+  const SpinTerms& spin = *body.spin;
+  const double speed = spin.speed;
+  system.velocity += 2.0 * speed * spin.gyroscopic;
+  system.position += speed * speed * spin.position;
+  if (!spin.turns_damping) return;
+  system.position += speed * body.damping.alpha * spin.gyroscopic;
+  SparseMatrix loss = body.damping.beta * body.stiffness;
+  if (spin.viscous.size() > 0) loss += spin.viscous;
+  const SparseMatrix turned = loss * spin.around;
+  const SparseMatrix mirrored = turned.transpose();
+  system.position += 0.5 * speed * (turned - mirrored);
+}
+
 }  // namespace
 
 ReducedBody make_whole(const BodyMatrices& body, std::span<const int> watched) {
@@ -59,6 +74,8 @@ ReducedBody make_whole(const BodyMatrices& body, std::span<const int> watched) {
   whole.num_interface = n;
   if (body.velocity.size() > 0) whole.coupled = {body.velocity, body.circulatory};
   whole.loss_stiffness = body.loss_stiffness;
+  if (body.spin && body.spin->gyroscopic.size() > 0)
+    whole.spin = reduce_spin(body, Eigen::MatrixXd::Identity(n, n));
   whole.rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(watched.size()), n);
   for (std::size_t r = 0; r < watched.size(); ++r) {
     if (watched[r] == BodyMatrices::held) continue;
@@ -79,6 +96,7 @@ SparseSystem make_sparse(const BodyMatrices& body) {
     system.velocity += body.velocity;
     system.position += body.circulatory;
   }
+  if (body.spin && body.spin->gyroscopic.size() > 0) add_spin(body, system);
   return system;
 }
 

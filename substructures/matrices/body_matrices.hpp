@@ -39,6 +39,18 @@ struct BodyFace {
   std::function<std::array<DofSum, 5>(double radius, double angle)> rows;
 };
 
+/// What the spin of a body of revolution about its axis brings, seen from space (docs/theory.md, 10.9).
+struct SpinTerms {
+  double speed = 0.0;  ///< Ω about the direction of the axis, rad/s
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< e, of length 1, in the body's frame
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< p, of the axis, m
+  /// G, the derivative ∂_φ of displacements along circles, and K_σ − S for Ω = 1 rad/s, each N x N.
+  /// Empty: the body does without them, and all that spins is what slides past its contacts.
+  SparseMatrix gyroscopic, around, position;
+  SparseMatrix viscous;       ///< damping of its materials beside RayleighDamping, N x N; or empty
+  bool turns_damping = true;  ///< whether what it loses follows the material
+};
+
 /// Full model of one component: M ü + C u̇ + K u = f over its free DoFs.
 ///
 /// Displacements are measured from the undeformed place, which follows the drive where the body has
@@ -54,6 +66,7 @@ struct BodyMatrices {
   SparseMatrix velocity, circulatory;
   /// Structural damping: the imaginary part Σ η K of the complex stiffness, N x N, N/m; or empty.
   SparseMatrix loss_stiffness;
+  std::optional<SpinTerms> spin;  ///< of a body of revolution that spins
 
   Eigen::MatrixX3d nodes;  ///< undeformed positions in the body's frame, m
   std::vector<std::array<int, 2>> node_dofs;       ///< (x, y) DoF of every node, or `held`

@@ -202,7 +202,8 @@ ReducedBody make_craig_bampton(const BodyMatrices& body, std::span<const int> in
     return rows;
   };
   reduced.rows = rows_of(watched);
-  if (body.velocity.size() > 0 || body.loss_stiffness.size() > 0) {
+  const bool spins = body.spin && body.spin->gyroscopic.size() > 0;
+  if (body.velocity.size() > 0 || body.loss_stiffness.size() > 0 || spins) {
     std::vector<int> all(static_cast<std::size_t>(body.num_dofs()));
     std::iota(all.begin(), all.end(), 0);
     const Eigen::MatrixXd T = rows_of(all);
@@ -211,6 +212,7 @@ ReducedBody make_craig_bampton(const BodyMatrices& body, std::span<const int> in
                          T.transpose() * (body.circulatory * T)};
     if (body.loss_stiffness.size() > 0)
       reduced.loss_stiffness = T.transpose() * (body.loss_stiffness * T);
+    if (spins) reduced.spin = reduce_spin(body, T);
   }
 
   if (body.base_inertia.size() > 0) {

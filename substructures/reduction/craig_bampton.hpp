@@ -1,10 +1,12 @@
 // Craig-Bampton reduction.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "substructures/matrices/body_matrices.hpp"
 #include "substructures/matrices/coupled_terms.hpp"
+#include "substructures/reduction/reduced_spin.hpp"
 
 namespace stridor {
 
@@ -24,6 +26,7 @@ struct ReducedBody {
   double interface_rounding = 0.0;
   CoupledTerms coupled;            ///< empty where there are none
   Eigen::MatrixXd loss_stiffness;  ///< Tᵀ (Σ η K) T, n x n, N/m; empty where there is none
+  std::optional<ReducedSpin> spin;  ///< of a body that spins; not in `coupled` yet
 
   Eigen::Index size() const { return mass.rows(); }
 };

@@ -27,6 +27,8 @@ struct Over {
       for (Eigen::Vector3d& bulge : bulges)
         bulge = 0.1 * Eigen::Vector3d(unit(random), unit(random), unit(random));
     }
+    surface.spin = {0.4, -0.3, 0.5};
+    surface.axis_point = {-0.2, 0.3, 0.1};
     place.surface = 0;
     place.slave = {0.45, 0.2, 0.65};
     ports.resize(3 * surface.max_nodes() + 3);
@@ -81,6 +83,45 @@ TEST(SpaceContact, ARigidMotionOfBothBodiesOpensNothing) {
   for (Eigen::Index k = 0; k < moved.size(); k += 3) moved.segment<3>(k) << 0.3, -0.2, 0.5;
   EXPECT_NEAR(at.normal.dot(moved), 0.0, 1e-15);
   EXPECT_NEAR((at.friction.transpose() * moved).norm(), 0.0, 1e-15);
+}
+
+TEST(SpaceContact, AFlatFaceThatSpinsSlidesAsTheFaceOfAPlate) {
+  // The tilted face of a disc of thickness h whose normals stay straight: w = a x + b y.
+  constexpr double radius = 0.13, half = 0.006, speed = 25.0, a = 2e-5, b = -3e-5;
+  const Eigen::Vector3d slave(3e-6, -4e-6, 5e-6);
+  FacetSurface surface;
+  surface.positions = {{0.12, -0.01, half}, {0.14, -0.01, half}, {0.14, 0.01, half},
+                       {0.12, 0.01, half}};
+  surface.facets = {{4, {0, 1, 2, 3}}};
+  connect_facets(surface, SurfaceKind::polyline);
+  surface.spin = {0.0, 0.0, speed};
+  SpacePlace place;
+  place.surface = 0;
+  place.slave = {radius, 0.0, half};
+  TangentPorts ports(15);
+  for (Eigen::Index k = 0; k < 4; ++k) {
+    const Eigen::Vector3d& at = surface.positions[static_cast<std::size_t>(k)];
+    ports.segment<3>(3 * k) << -half * a, -half * b, a * at.x() + b * at.y();
+  }
+  ports.tail<3>() = slave;
+  const SpaceInstant instant = space_instant(place, &surface, 0, 0.0, ports);
+  const Eigen::Vector2d on = closest_on(instant.deformed, instant.slave, {0.5, 0.5});
+  const TangentKinematics found = tangent_kinematics(instant, on, ports.size());
+
+  FacePlace on_face;
+  on_face.radius = radius;
+  on_face.half_thickness = half;
+  on_face.spin = speed;
+  const FaceKinematics face = make_face_kinematics(on_face);
+  FacePorts of_face;
+  of_face << a * radius, a, b * radius, b, -a * radius, slave.y(), slave.z(), slave.x();
+  const Eigen::Vector2d expected = face.velocity(of_face, FacePorts::Zero());
+  // The first tangent is x, the radius; the second one y, along the circumference. What is of second order
+  // in displacements is not in the face's.
+  EXPECT_NEAR(found.velocity(0), expected(1), 1e-7 * speed * radius);
+  EXPECT_NEAR(found.velocity(1), expected(0), 1e-4 * speed * radius);
+  EXPECT_NEAR(found.gap, face.gap(of_face), 1e-8 * half);
+  EXPECT_GT(std::abs(expected(1)), 1e-6 * speed * radius);
 }
 
 TEST(SpaceContact, FramesAreOrthonormalAndReferredToX) {
