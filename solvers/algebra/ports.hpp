@@ -53,6 +53,7 @@ STRIDOR_INLINE void for_lanes(std::size_t n, const Work& work) {
       return work(PortLanes<Ports8>{8, 0});
     default:
       std::size_t first = 0;
+      for (; first + 8 <= n; first += 8) work(PortLanes<Ports8>{n, first});
       for (; first + 2 <= n; first += 2) work(PortLanes<Ports2>{n, first});
       if (first < n) work(PortLanes<Ports1>{n, first});
   }

@@ -135,7 +135,10 @@ ContactSolver::ContactSolver(int num_contacts, ContactSolverParameters parameter
       factor_(num_contacts + num_planar),
       jamming_(num_contacts + num_planar),
       num_lines_(2 * num_contacts),
-      left_(Eigen::VectorXd::Zero(num_planar > 0 ? delassus_.rows() : 0)) {}
+      left_(Eigen::VectorXd::Zero(num_planar > 0 ? delassus_.rows() : 0)),
+      before_(left_),
+      after_(left_),
+      acceleration_(left_.size()) {}
 
 ContactAnswer ContactSolver::solve(std::span<LocalProblem> contacts) {
   if (contacts.size() == 1) {

@@ -3,12 +3,14 @@
 
 #include <Eigen/Core>
 #include <Eigen/LU>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "coupling/laws/friction_law.hpp"
 #include "coupling/laws/substrate_contact.hpp"
 #include "solvers/contact/contact_jamming.hpp"
+#include "solvers/contact/sweep_acceleration.hpp"
 
 namespace stridor {
 
@@ -122,7 +124,8 @@ struct ContactSolverParameters {
 /// the step. Contacts that all slide bilaterally without it are one linear system. Otherwise the
 /// contacts are visited in turn, each solved exactly under the forces of the others (Gauss-Seidel
 /// over 2 x 2 blocks), until no force changes any more; for a single contact the first visit is the
-/// solution. Sticking is tried first, with the sign of its friction force the direction of sliding
+/// solution. Sweeps over contacts with two tangents are extrapolated while states stay (SweepAcceleration).
+/// Sticking is tried first, with the sign of its friction force the direction of sliding
 /// where that exceeds the limit (FiLM: Carpenter, Taylor, Katona 1991). A contact with a force law
 /// is solved by solve_substrate_step().
 class ContactSolver {
@@ -148,6 +151,15 @@ class ContactSolver {
   ContactAnswer iterate(std::span<LocalProblem> contacts);
   ContactAnswer solve_bilateral(std::span<LocalProblem> contacts, std::span<PlanarProblem> planar);
   ContactAnswer iterate(std::span<LocalProblem> contacts, std::span<PlanarProblem> planar);
+  /// Visits all contacts once. @returns the one that jams, if any
+  std::optional<int> sweep(std::span<LocalProblem> contacts, std::span<PlanarProblem> planar,
+                           SlipStart start);
+  /// Takes away what forces on the columns from one on do to gaps and slips.
+  template <class Forces>
+  void act(Eigen::Index column, const Forces& forces);
+  /// Takes other forces in the place of after_, unless a closed contact would pull.
+  bool take_forces(std::span<LocalProblem> contacts, std::span<PlanarProblem> planar,
+                   const Eigen::VectorXd& forces);
 
   ContactSolverParameters parameters_;
   Eigen::MatrixXd delassus_;
@@ -157,7 +169,10 @@ class ContactSolver {
   Eigen::PartialPivLU<Eigen::MatrixXd> factor_;
   JammingTest jamming_;
   Eigen::Index num_lines_;  ///< rows of contacts with one tangent
-  Eigen::VectorXd left_;    ///< of gaps and slips, scratch; empty without contacts of two tangents
+  // Scratch; empty without contacts of two tangents.
+  Eigen::VectorXd left_;            ///< of gaps and slips
+  Eigen::VectorXd before_, after_;  ///< all forces, of a sweep
+  SweepAcceleration acceleration_;
 };
 
 }  // namespace stridor

@@ -1,7 +1,6 @@
 #include "solvers/contact/face_compliance.hpp"
 
 #include <algorithm>
-#include <span>
 
 #include "core/clones.hpp"
 #include "solvers/algebra/ports.hpp"
@@ -9,14 +8,7 @@
 namespace stridor {
 namespace {
 
-using Row = std::array<double, 4>;
-
-/// Compliances of a body, column after column.
-struct BodyAnswers {
-  const double* at_once;
-  const double* ahead;
-  std::size_t stride;
-};
+using Row = FaceDirections::Row;
 
 STRIDOR_INLINE Ports4 four(const Row& row) {
   Ports4 all;
@@ -24,118 +16,122 @@ STRIDOR_INLINE Ports4 four(const Row& row) {
   return all;
 }
 
-/// Adds sᵀ W p of two contacts to three columns, of which each has the rows of the one.
-/// @param W    at their first ports
-/// @param size number of ports of each, or the same known to the compiler
-template <class SizeTo, class SizeFrom>
-STRIDOR_INLINE void add_seen(SizeTo num_to, SizeFrom num_from, const double* W, std::size_t stride,
-                             const Row* sense, const Row* push, Ports4 (&columns)[3]) {
-  for (std::size_t i = 0; i < num_to; ++i) {
-    Ports4 moved = W[i] * four(push[0]);
-    for (std::size_t j = 1; j < num_from; ++j) moved += W[j * stride + i] * four(push[j]);
-    const Ports4 seen = four(sense[i]);
-    columns[0] += seen * moved[0];
-    columns[1] += seen * moved[1];
-    columns[2] += seen * moved[2];
+/// W p of one contact at some ports of its body.
+/// @param W     column after column, from the first of these ports on
+/// @param moved three columns, likewise
+template <class Ports>
+STRIDOR_INLINE void move_some(std::size_t num_ports, const double* W, const FaceSide& by,
+                              const FaceDirections& from, double* moved) {
+  Ports sum[3]{};
+  for (std::size_t j = 0; j < by.count; ++j) {
+    Ports column;
+    __builtin_memcpy(&column, W + by.ports[j] * num_ports, sizeof column);
+    const Row& push = from.push[by.first + j];
+    for (std::size_t c = 0; c < 3; ++c) sum[c] += push[c] * column;
   }
+  for (std::size_t c = 0; c < 3; ++c)
+    __builtin_memcpy(moved + c * num_ports, &sum[c], sizeof sum[c]);
 }
 
-template <class SizeTo, class SizeFrom>
-STRIDOR_INLINE void add_pair(SizeTo num_to, SizeFrom num_from, const FaceDirections& to,
-                             const FaceSide& on, const FaceDirections& from, const FaceSide& by,
-                             const BodyAnswers& body, double* block, std::size_t outer) {
-  const std::size_t place = by.port * body.stride + on.port;
-  const Row* const push = from.push.data() + by.first;
-  Ports4 columns[3]{};
-  if (to.seeks_at_once)
-    add_seen(num_to, num_from, body.at_once + place, body.stride, to.at_once.data() + on.first,
-             push, columns);
-  if (to.seeks_ahead)
-    add_seen(num_to, num_from, body.ahead + place, body.stride, to.ahead.data() + on.first, push,
-             columns);
-  for (std::size_t c = 0; c < 3; ++c) {
-    double* const rows = block + c * outer;
-    rows[0] += columns[c][0];
-    rows[1] += columns[c][1];
-    rows[2] += columns[c][2];
-  }
-}
-
-/// All pairs of contacts on a body.
-/// @param delassus three rows and columns of every contact, `outer` from column to column
+/// W p of one contact at all ports of its body: three columns, one after the other.
 STRIDOR_CLONES
-void add_pairs(std::span<const FaceDirections> contacts, std::span<const FaceSide> sides,
-               const BodyAnswers& body, double* delassus, std::size_t outer) {
-  constexpr std::size_t master = num_face_rows;
-  constexpr std::size_t slave = num_face_ports - num_face_rows;
-  for (const FaceSide& by : sides) {
-    for (const FaceSide& on : sides) {
-      const FaceDirections& to = contacts[on.contact];
-      const FaceDirections& from = contacts[by.contact];
-      double* const block = delassus + 3 * by.contact * outer + 3 * on.contact;
-      if (on.count == master && by.count == master) {
-        add_pair(FixedSize<master>{}, FixedSize<master>{}, to, on, from, by, body, block, outer);
-      } else if (on.count == slave && by.count == slave) {
-        add_pair(FixedSize<slave>{}, FixedSize<slave>{}, to, on, from, by, body, block, outer);
-      } else {
-        add_pair(on.count, by.count, to, on, from, by, body, block, outer);
-      }
+void move_ports(std::size_t num_ports, const double* W, const FaceSide& by,
+                const FaceDirections& from, double* moved) {
+  constexpr std::size_t lanes = sizeof(Ports8) / sizeof(double);
+  std::size_t i = 0;
+  for (; i + lanes <= num_ports; i += lanes) move_some<Ports8>(num_ports, W + i, by, from, moved + i);
+  for (; i < num_ports; ++i) move_some<Ports1>(num_ports, W + i, by, from, moved + i);
+}
+
+/// sᵀ of a contact at its ports times three columns of these.
+STRIDOR_INLINE void see(std::size_t num_ports, const double* moved, const FaceSide& on,
+                        const FaceDirections& to, Ports4 (&columns)[3]) {
+  for (std::size_t i = 0; i < on.count; ++i) {
+    const Ports4 sense = four(to.sense[on.first + i]);
+    const double* const at = moved + on.ports[i];
+    columns[0] += sense * at[0];
+    columns[1] += sense * at[num_ports];
+    columns[2] += sense * at[2 * num_ports];
+  }
+}
+
+/// Adds three columns of the contacts on a body.
+/// @param moved    of move_ports()
+/// @param is_ahead with W of t_{n+1}: of the gaps and slips that are sought there, else of the others
+/// @param delassus three rows of every contact, `outer` from column to column
+STRIDOR_CLONES
+void add_columns(std::span<const FaceCompliances::Contact> contacts,
+                 std::span<const FaceSide> sides, std::size_t num_ports, const double* moved,
+                 bool is_ahead, double* delassus, std::size_t outer) {
+  for (const FaceSide& on : sides) {
+    const FaceCompliances::Contact& to = contacts[on.contact];
+    const bool takes_gap = to.seeks_gap_ahead == is_ahead;
+    const bool takes_slip = to.seeks_slip_ahead == is_ahead;
+    if (!takes_gap && !takes_slip) continue;
+    Ports4 columns[3]{};
+    see(num_ports, moved, on, to.directions, columns);
+    for (std::size_t c = 0; c < 3; ++c) {
+      double* const rows = delassus + 3 * on.contact + c * outer;
+      if (takes_gap) rows[0] += columns[c][0];
+      if (!takes_slip) continue;
+      rows[1] += columns[c][1];
+      rows[2] += columns[c][2];
     }
   }
 }
 
 }  // namespace
 
-void FaceCompliances::add(const Propagator& slave, const Propagator& master, int slave_port,
-                          int master_port, int num_slave_ports, int num_master_ports) {
-  const std::size_t contact = directions_.size();
-  directions_.emplace_back();
-  sense_.emplace_back(Directions::Zero(num_master_ports + 3, 3));
-  const auto num_rows = static_cast<std::size_t>(num_master_ports);
-  if (num_rows > 0)
-    add_side(master, {contact, 0, static_cast<std::size_t>(master_port), num_rows});
-  add_side(slave, {contact, num_rows, static_cast<std::size_t>(slave_port),
-                   static_cast<std::size_t>(num_slave_ports)});
+void FaceCompliances::add(const Propagator& slave, const Propagator& master,
+                          std::span<const int> slave_ports, std::span<const int> master_ports) {
+  const std::size_t contact = contacts_.size();
+  contacts_.emplace_back();
+  const auto side_of = [&](std::size_t first, std::span<const int> ports) {
+    FaceSide side{contact, first, ports.size(), {}};
+    std::copy(ports.begin(), ports.end(), side.ports.begin());
+    return side;
+  };
+  masters_.emplace_back();
+  if (!master_ports.empty()) masters_.back() = add_side(master, side_of(0, master_ports));
+  add_side(slave, side_of(master_ports.size(), slave_ports));
 }
 
-void FaceCompliances::add_side(const Propagator& body, const FaceSide& side) {
+FaceCompliances::Place FaceCompliances::add_side(const Propagator& body, const FaceSide& side) {
   auto found = std::find_if(bodies_.begin(), bodies_.end(),
                             [&](const Body& one) { return one.propagator == &body; });
   if (found == bodies_.end()) found = bodies_.insert(found, Body{&body, {}, 0});
   found->sides.push_back(side);
+  return {static_cast<std::size_t>(found - bodies_.begin()), found->sides.size() - 1};
 }
 
-void FaceCompliances::direct(std::size_t contact, const Directions& sense,
-                             const Directions& push) {
-  sense_[contact] = sense;
-  FaceDirections& of = directions_[contact];
-  const FaceDirections before = of;
-  for (Eigen::Index i = 0; i < sense.rows(); ++i) {
-    const auto port = static_cast<std::size_t>(i);
-    of.at_once[port] = {sense(i, 0), sense(i, 1), sense(i, 2), 0.0};
-    of.push[port] = {push(i, 0), push(i, 1), push(i, 2), 0.0};
+void FaceCompliances::direct(std::size_t contact, const FaceDirections& directions,
+                             std::span<const int> master_ports) {
+  Contact& of = contacts_[contact];
+  bool is_new = of.seeks_gap_ahead || of.seeks_slip_ahead;
+  of.seeks_gap_ahead = of.seeks_slip_ahead = false;
+  of.directions.count = directions.count;
+  for (std::size_t i = 0; i < directions.count; ++i) {
+    is_new |= of.directions.sense[i] != directions.sense[i] ||
+              of.directions.push[i] != directions.push[i];
+    of.directions.sense[i] = directions.sense[i];
+    of.directions.push[i] = directions.push[i];
   }
-  of.seeks_at_once = true;
-  of.seeks_ahead = false;
-  has_changed_ = has_changed_ || before.seeks_ahead || before.at_once != of.at_once ||
-                 before.push != of.push;
+  if (!master_ports.empty()) {
+    FaceSide& side = bodies_[masters_[contact].body].sides[masters_[contact].side];
+    for (std::size_t i = 0; i < master_ports.size(); ++i) {
+      const auto port = static_cast<std::size_t>(master_ports[i]);
+      is_new |= side.ports[i] != port;
+      side.ports[i] = port;
+    }
+  }
+  has_changed_ |= is_new;
 }
 
 void FaceCompliances::seek(std::size_t contact, bool gap_ahead, bool slip_ahead) {
-  FaceDirections& of = directions_[contact];
-  const Directions& sense = sense_[contact];
-  for (Eigen::Index i = 0; i < sense.rows(); ++i) {
-    const auto port = static_cast<std::size_t>(i);
-    const Row all = {sense(i, 0), sense(i, 1), sense(i, 2), 0.0};
-    for (std::size_t r = 0; r < 3; ++r) {
-      const bool is_ahead = r == 0 ? gap_ahead : slip_ahead;
-      of.at_once[port][r] = is_ahead ? 0.0 : all[r];
-      of.ahead[port][r] = is_ahead ? all[r] : 0.0;
-    }
-  }
+  Contact& of = contacts_[contact];
+  of.seeks_gap_ahead = gap_ahead;
+  of.seeks_slip_ahead = slip_ahead;
   has_changed_ = true;
-  of.seeks_at_once = !(gap_ahead && slip_ahead);
-  of.seeks_ahead = gap_ahead || slip_ahead;
 }
 
 bool FaceCompliances::fill(Eigen::Ref<Eigen::MatrixXd> delassus) {
@@ -147,11 +143,26 @@ bool FaceCompliances::fill(Eigen::Ref<Eigen::MatrixXd> delassus) {
   if (!has_changed_) return false;
   has_changed_ = false;
   delassus.setZero();
+  const auto outer = static_cast<std::size_t>(delassus.outerStride());
   for (const Body& body : bodies_) {
-    const BodyAnswers answers{body.propagator->compliances(), body.propagator->ahead_compliances(),
-                              static_cast<std::size_t>(body.propagator->num_ports())};
-    add_pairs(directions_, body.sides, answers, delassus.data(),
-              static_cast<std::size_t>(delassus.outerStride()));
+    const auto num_ports = static_cast<std::size_t>(body.propagator->num_ports());
+    moved_.resize(3 * num_ports);
+    const auto seeks = [&](bool ahead) {
+      return std::any_of(body.sides.begin(), body.sides.end(), [&](const FaceSide& side) {
+        const Contact& contact = contacts_[side.contact];
+        return contact.seeks_gap_ahead == ahead || contact.seeks_slip_ahead == ahead;
+      });
+    };
+    for (const bool is_ahead : {false, true}) {
+      if (!seeks(is_ahead)) continue;
+      const double* const W =
+          is_ahead ? body.propagator->ahead_compliances() : body.propagator->compliances();
+      for (const FaceSide& by : body.sides) {
+        move_ports(num_ports, W, by, contacts_[by.contact].directions, moved_.data());
+        add_columns(contacts_, body.sides, num_ports, moved_.data(), is_ahead,
+                    delassus.data() + 3 * by.contact * outer, outer);
+      }
+    }
   }
   return true;
 }

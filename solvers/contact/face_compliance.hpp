@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "coupling/kinematics/tangent_kinematics.hpp"
@@ -14,43 +15,49 @@ namespace stridor {
 
 /// Directions of a contact at each of its ports: normal, two tangents, and nothing.
 struct FaceDirections {
-  using Ports = std::array<std::array<double, 4>, max_tangent_ports>;
-  Ports at_once{};  ///< sense of what is sought at once
-  Ports ahead{};    ///< sense of what is sought at t_{n+1}
-  Ports push{};     ///< force per unit of λ_n and of friction
-  bool seeks_at_once = true;
-  bool seeks_ahead = false;
+  using Row = std::array<double, 4>;
+  using Ports = std::array<Row, max_tangent_ports>;
+  std::size_t count = 0;  ///< of ports, those of the master first
+  Ports sense{};          ///< gap, and slip with the opposite sign, per displacement
+  Ports push{};           ///< force per unit of λ_n and of friction
 };
 
 /// Ports of a contact on one of its bodies.
 struct FaceSide {
   std::size_t contact = 0;
   std::size_t first = 0;  ///< among the ports of the contact
-  std::size_t port = 0;   ///< of the body
   std::size_t count = 0;
+  std::array<std::size_t, max_facet_ports> ports{};  ///< of the body
 };
 
 /// Blocks sᵀ W p of all pairs of contacts with two tangents (docs/theory.md, 10.6). Contacts are gathered by the
 /// body that they touch: pairs without a common body are not visited.
 class FaceCompliances {
  public:
-  using Directions = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, max_tangent_ports, 3>;
-
   /// Puts the next contact between two bodies.
-  /// @param num_slave_ports 2 or 3
-  void add(const Propagator& slave, const Propagator& master, int slave_port, int master_port,
-           int num_slave_ports, int num_master_ports);
+  /// @param slave_ports, master_ports of these; those of the master may change from step to step
+  void add(const Propagator& slave, const Propagator& master, std::span<const int> slave_ports,
+           std::span<const int> master_ports);
 
-  /// Directions of a contact, and where its gap and its slip are sought: at once, or at t_{n+1}.
-  /// @param sense gap, and slip with the opposite sign, per displacement of its ports
-  /// @param push  force per unit of λ_n and of friction
-  void direct(std::size_t contact, const Directions& sense, const Directions& push);
+  /// Directions of a contact, whose gap and slip are sought at once until seek() tells otherwise.
+  /// @param master_ports as many as in add()
+  void direct(std::size_t contact, const FaceDirections& directions,
+              std::span<const int> master_ports);
+  /// Where gap and slip are sought: at once, or at t_{n+1}.
   void seek(std::size_t contact, bool gap_ahead, bool slip_ahead);
 
   /// Writes the blocks of all pairs, unless nothing has changed since they were written last.
   /// @param delassus a square of three rows for every contact, as this has left it
   /// @return whether they have been written
+  /// Cost: per body with p ports and c contacts of k ports there, 3 k (p + c) c.
   bool fill(Eigen::Ref<Eigen::MatrixXd> delassus);
+
+  /// A contact with its directions.
+  struct Contact {
+    FaceDirections directions;
+    bool seeks_gap_ahead = false;
+    bool seeks_slip_ahead = false;
+  };
 
  private:
   struct Body {
@@ -58,12 +65,16 @@ class FaceCompliances {
     std::vector<FaceSide> sides;
     std::uint64_t version = 0;  ///< of its compliances, as of the last fill()
   };
-  void add_side(const Propagator& body, const FaceSide& side);
+  struct Place {
+    std::size_t body, side;
+  };
+  Place add_side(const Propagator& body, const FaceSide& side);
 
-  std::vector<FaceDirections> directions_;
-  std::vector<Directions> sense_;
+  std::vector<Contact> contacts_;
+  std::vector<Place> masters_;  ///< of the contacts, where they have ports of a master
   std::vector<Body> bodies_;
-  bool has_changed_ = true;  ///< directions, since the last fill()
+  std::vector<double> moved_;  ///< scratch
+  bool has_changed_ = true;    ///< directions, since the last fill()
 };
 
 }  // namespace stridor

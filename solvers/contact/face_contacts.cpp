@@ -48,10 +48,8 @@ void RunningFace::restore(std::span<const double> numbers) {
   kinematics->restore(numbers.subspan(16));
 }
 
-void RunningFaces::add(std::unique_ptr<FacePoint> point, Propagator& slave, Propagator& master,
-                       int slave_port, int master_port) {
-  compliances_.add(slave, master, slave_port, master_port, point->num_slave_ports(),
-                   point->num_master_ports());
+void RunningFaces::add(std::unique_ptr<FacePoint> point, Propagator& slave, Propagator& master) {
+  compliances_.add(slave, master, point->slave_ports(), point->master_ports());
   RunningFace face(std::move(point));
   face.begin(face.point());
   faces_.push_back(std::move(face));
@@ -73,25 +71,34 @@ std::optional<std::size_t> RunningFaces::stand(const System& system, const Insta
 }
 
 void RunningFaces::find_answers(double step) {
+  for (RunningFace& face : faces_) find_answers(face, step);
+}
+
+void RunningFaces::find_answers_on_new_facets(double step) {
+  for (RunningFace& face : faces_) {
+    if (face.kinematics->facet() != face.answers_on) find_answers(face, step);
+  }
+}
+
+void RunningFaces::find_answers(RunningFace& face, double step) const {
   // Where a spring and what answers at once give way to a force by less than the next step moves, an
   // impact would give back more than 4/3, or less than 3/4, of its energy (docs/theory.md, 10.6).
   constexpr double resolved = 1.0;
-  for (RunningFace& face : faces_) {
-    const FacePoint& kinematics = *face.kinematics;
-    const std::array<PortBlock, 2> blocks = kinematics.blocks(kinematics.directions_at_rest(step));
-    Eigen::MatrixXd at_once = Eigen::MatrixXd::Zero(3, 3);
-    Eigen::MatrixXd next = Eigen::MatrixXd::Zero(3, 3);
-    for (const PortBlock& a : blocks) {
-      for (const PortBlock& b : blocks) {
-        add_compliance(a, b, false, at_once);
-        add_compliance(a, b, true, next);
-      }
+  const FacePoint& kinematics = *face.kinematics;
+  const std::array<PortBlock, 2> blocks = kinematics.blocks(kinematics.directions_at_rest(step));
+  Eigen::Matrix3d at_once = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d next = Eigen::Matrix3d::Zero();
+  for (const PortBlock& a : blocks) {
+    for (const PortBlock& b : blocks) {
+      add_compliance(a, b, false, at_once);
+      add_compliance(a, b, true, next);
     }
-    next -= at_once;
-    face.mobility = std::max(next(1, 1), next(2, 2));
-    face.is_soft = face.compliance > 0.0 &&
-                   next(0, 0) <= resolved * (at_once(0, 0) + face.compliance);
   }
+  next -= at_once;
+  face.answers_on = kinematics.facet();
+  face.mobility = std::max(next(1, 1), next(2, 2));
+  face.is_soft = face.compliance > 0.0 &&
+                 next(0, 0) <= resolved * (at_once(0, 0) + face.compliance);
 }
 
 void RunningFaces::set_coefficients(RunningFace& face, PlanarProblem& problem,
@@ -136,8 +143,7 @@ std::optional<std::size_t> RunningFaces::pose(const Instant& at) {
       problem.direction = velocity.isZero(0.0) ? Eigen::Vector2d(1.0, 0.0) : velocity.normalized();
     }
     set_coefficients(face, problem, face.rise_at(at.sought));
-    const FacePoint::Directions directions = kinematics.directions(step_);
-    compliances_.direct(i, directions.sense, directions.push);
+    compliances_.direct(i, kinematics.directions(step_), kinematics.master_ports());
   }
   return std::nullopt;
 }

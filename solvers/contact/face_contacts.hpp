@@ -36,6 +36,7 @@ struct RunningFace : ContactRecord {
   // Of bodies at rest and the step.
   bool is_soft = false;    ///< on a spring that a step resolves
   double mobility = 0.0;   ///< displacement along a tangent in the next step per force, m/N
+  int answers_on = 0;      ///< facet to which these belong
 
   const ContactPoint& point() const { return kinematics->point(); }
   /// Friction as a vector, along both tangents.
@@ -69,10 +70,11 @@ class RunningFaces {
   std::vector<PlanarProblem>& problems() { return problems_; }
 
   /// Puts the next contact.
-  void add(std::unique_ptr<FacePoint> point, Propagator& slave, Propagator& master, int slave_port,
-           int master_port);
+  void add(std::unique_ptr<FacePoint> point, Propagator& slave, Propagator& master);
   /// Takes the answers of the bodies to forces, once they are known.
   void find_answers(double step);
+  /// The same of contacts that have come to another facet.
+  void find_answers_on_new_facets(double step);
   /// At the start, from the initial motion of the bodies.
   /// @param at as of pose()
   /// @returns the contact whose slave is beside its master, if any
@@ -100,6 +102,7 @@ class RunningFaces {
   void follow(const Instant& at);
 
  private:
+  void find_answers(RunningFace& face, double step) const;
   bool is_settling(std::size_t i) const;
   /// Rows and columns of a contact against those with one tangent.
   void fill_with_lines(std::size_t face, ContactSolver& solver,

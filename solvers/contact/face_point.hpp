@@ -10,6 +10,7 @@
 #include "coupling/kinematics/tangent_kinematics.hpp"
 #include "coupling/system/system.hpp"
 #include "solvers/contact/face_compliance.hpp"
+#include "solvers/contact/node_ports.hpp"
 #include "solvers/contact/port_block.hpp"
 
 namespace stridor {
@@ -46,6 +47,8 @@ class FacePoint {
   virtual double gap_ahead(const FaceInstant& at) const = 0;
   /// Of the present motion.
   virtual double present_gap(double now) const = 0;
+  /// Facet that it is on; 0 where there are none.
+  virtual int facet() const { return 0; }
   /// Along the master, m: radius times angle on a face, along the first tangent in space.
   virtual double position() const = 0;
 
@@ -63,20 +66,18 @@ class FacePoint {
   virtual Eigen::Vector2d drawn(double from, double step) const = 0;
   virtual double lifted(double from, double step) const = 0;
 
-  /// Gap, and slip with the opposite sign, per displacement of the ports; force per unit of λ_n and of
-  /// friction.
-  struct Directions {
-    FaceCompliances::Directions sense, push;
-  };
   /// @param step h, s: on a face slip in a step turns with the displacement, ½ h Ω r c
-  virtual Directions directions(double step) const = 0;
+  virtual FaceDirections directions(double step) const = 0;
   /// Of undeformed bodies, or where that is not known of the present ones.
-  virtual Directions directions_at_rest(double step) const { return directions(step); }
+  virtual FaceDirections directions_at_rest(double step) const { return directions(step); }
   /// Directions at the master and at the slave.
-  std::array<PortBlock, 2> blocks(const Directions& directions) const;
-  /// Writes its forces on the ports of either body.
+  std::array<PortBlock, 2> blocks(const FaceDirections& directions) const;
+  /// Adds its forces to those on the ports of either body.
   void apply(double normal, const Eigen::Vector2d& friction, double* slave_forces,
              double* master_forces) const;
+  /// Ports of either body; those of the master may be shared with other contacts.
+  std::span<const int> slave_ports() const { return ports_of(slave_ports_, num_slave_ports_); }
+  std::span<const int> master_ports() const { return ports_of(master_ports_, num_master_ports_); }
   /// Rows of the master at its ports, the first num_master_ports() of them.
   std::array<int, max_facet_ports> master_rows() const;
   const TangentPorts& normal() const { return normal_; }
@@ -91,34 +92,42 @@ class FacePoint {
   virtual std::string where() const = 0;
 
  protected:
+  /// Watches the slave; the ports of the master follow.
   FacePoint(const ContactPoint& point, Propagator& slave, Propagator& master, int slave_port,
-            int master_port, int num_master_ports);
+            int num_master_ports);
 
   /// Ports of the master and of the slave in one vector.
   TangentPorts gathered(const double* slave, const double* master) const;
   Propagator& slave() const { return *slave_; }
   Propagator& master() const { return *master_; }
-  void watch_master(int port, int row) const { master_->watch(master_port_ + port, row); }
-  int watched_on_master(int port) const { return master_->row(master_port_ + port); }
 
   // Directions of forces.
   TangentPorts normal_, along_, across_;
+  std::array<int, max_facet_ports> master_ports_{};
 
  private:
+  template <std::size_t most>
+  static std::span<const int> ports_of(const std::array<int, most>& ports, int count) {
+    return {ports.data(), static_cast<std::size_t>(count)};
+  }
+
   ContactPoint point_;
   Propagator* slave_;
   Propagator* master_;
-  int slave_port_;
-  int master_port_;
   int num_slave_ports_;
   int num_master_ports_;
+  std::array<int, 3> slave_ports_{};
 };
 
-/// Of a contact with two tangents.
-/// @param surface of a contact on facets, else null; referenced like the bodies
+/// Of a contact on the face of a spinning body.
+/// @param slave_port, master_port first ones of the contact, which others do not use
+std::unique_ptr<FacePoint> make_spinning_point(const ContactPoint& point, Propagator& slave,
+                                               Propagator& master, int slave_port, int master_port);
+/// Of a contact on a rigid plane or on facets.
+/// @param surface with the ports of its nodes, both referenced like the bodies; null on a plane
 /// @param driven  of the slave against its master
-std::unique_ptr<FacePoint> make_face_point(const ContactPoint& point, const FacetSurface* surface,
-                                           const DrivenMotion& driven, Propagator& slave,
-                                           Propagator& master, int slave_port, int master_port);
+std::unique_ptr<FacePoint> make_space_point(const ContactPoint& point, const FacetSurface* surface,
+                                            NodePorts* nodes, const DrivenMotion& driven,
+                                            Propagator& slave, Propagator& master, int slave_port);
 
 }  // namespace stridor

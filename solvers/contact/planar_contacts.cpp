@@ -2,6 +2,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 
@@ -246,78 +247,121 @@ ContactAnswer ContactSolver::solve_bilateral(std::span<LocalProblem> contacts,
   return {};
 }
 
+template <class Forces>
+void ContactSolver::act(Eigen::Index column, const Forces& forces) {
+  if (forces.isZero(0.0)) return;
+  take_away(static_cast<std::size_t>(left_.size()), delassus_.data() + column * left_.size(),
+            forces.data(), static_cast<std::size_t>(forces.size()), left_.data());
+}
+
+std::optional<int> ContactSolver::sweep(std::span<LocalProblem> contacts,
+                                        std::span<PlanarProblem> planar, SlipStart start) {
+  const auto num_lines = static_cast<int>(contacts.size());
+  for (int i = 0; i < num_lines; ++i) {
+    LocalProblem& contact = contacts[static_cast<std::size_t>(i)];
+    const Eigen::Index row = 2 * i;
+    const Eigen::Matrix2d own = delassus_.block<2, 2>(row, row);
+    const Eigen::Vector2d before = before_.segment<2>(row);
+    const Eigen::Vector2d known = left_.segment<2>(row) + own.lazyProduct(before);
+    if (!solve_line(contact, own, known(0), known(1))) return i;
+    after_.segment<2>(row) << contact.normal, contact.tangential;
+    act(row, (after_.segment<2>(row) - before).eval());
+  }
+  for (int i = 0; i < static_cast<int>(planar.size()); ++i) {
+    PlanarProblem& contact = planar[static_cast<std::size_t>(i)];
+    const Eigen::Index row = first_planar(i);
+    const Eigen::Matrix3d own = delassus_.block<3, 3>(row, row);
+    const Eigen::Vector3d before = before_.segment<3>(row);
+    const Eigen::Vector3d known = left_.segment<3>(row) + own.lazyProduct(before);
+    if (!solve_planar(contact, own, known, start)) return num_lines + i;
+    after_.segment<3>(row) << contact.normal, contact.tangential;
+    act(row, (after_.segment<3>(row) - before).eval());
+  }
+  return std::nullopt;
+}
+
+bool ContactSolver::take_forces(std::span<LocalProblem> contacts, std::span<PlanarProblem> planar,
+                                const Eigen::VectorXd& forces) {
+  for (std::size_t i = 0; i < planar.size(); ++i) {
+    const PlanarProblem& contact = planar[i];
+    if (contact.is_unilateral && contact.state != ContactState::open &&
+        !(forces(first_planar(static_cast<int>(i))) > 0.0))
+      return false;
+  }
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(2 * i);
+    act(row, (forces.segment<2>(row) - after_.segment<2>(row)).eval());
+    contacts[i].normal = forces(row);
+    contacts[i].tangential = forces(row + 1);
+  }
+  for (std::size_t i = 0; i < planar.size(); ++i) {
+    const Eigen::Index row = first_planar(static_cast<int>(i));
+    act(row, (forces.segment<3>(row) - after_.segment<3>(row)).eval());
+    planar[i].normal = forces(row);
+    planar[i].tangential = forces.segment<2>(row + 1);
+  }
+  after_ = forces;
+  return true;
+}
+
 ContactAnswer ContactSolver::iterate(std::span<LocalProblem> contacts,
                                      std::span<PlanarProblem> planar) {
-  const auto num_lines = static_cast<int>(contacts.size());
-  const auto num_planar = static_cast<int>(planar.size());
-  for (int i = 0; i < num_lines; ++i) {
-    const LocalProblem& contact = contacts[static_cast<std::size_t>(i)];
-    left_.segment<2>(2 * i) << contact.penetration, contact.slip;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(2 * i);
+    left_.segment<2>(row) << contacts[i].penetration, contacts[i].slip;
+    before_.segment<2>(row) << contacts[i].normal, contacts[i].tangential;
   }
-  for (int i = 0; i < num_planar; ++i) {
-    const PlanarProblem& contact = planar[static_cast<std::size_t>(i)];
-    left_.segment<3>(first_planar(i)) << contact.penetration, contact.slip;
+  for (std::size_t i = 0; i < planar.size(); ++i) {
+    const Eigen::Index row = first_planar(static_cast<int>(i));
+    left_.segment<3>(row) << planar[i].penetration, planar[i].slip;
+    before_.segment<3>(row) << planar[i].normal, planar[i].tangential;
   }
-  // What is left of gaps and slips under all forces; a visit takes away what it changes.
-  const auto act = [&](Eigen::Index column, const auto& forces) {
-    if (forces.isZero(0.0)) return;
-    take_away(static_cast<std::size_t>(left_.size()), delassus_.data() + column * left_.size(),
-              forces.data(), static_cast<std::size_t>(forces.size()), left_.data());
+  // What is left under all forces; a visit takes away what it changes.
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(2 * i);
+    act(row, before_.segment<2>(row).eval());
+  }
+  for (std::size_t i = 0; i < planar.size(); ++i) {
+    const Eigen::Index row = first_planar(static_cast<int>(i));
+    act(row, before_.segment<3>(row).eval());
+  }
+  // States as a number, which tells whether any has changed.
+  const auto states = [&] {
+    std::uint64_t all = 0;
+    for (const LocalProblem& contact : contacts) all = all * 31 + static_cast<unsigned>(contact.state);
+    for (const PlanarProblem& contact : planar) all = all * 31 + static_cast<unsigned>(contact.state);
+    return all;
   };
-  for (int i = 0; i < num_lines; ++i) {
-    const LocalProblem& contact = contacts[static_cast<std::size_t>(i)];
-    act(2 * i, Eigen::Vector2d(contact.normal, contact.tangential));
-  }
-  for (int i = 0; i < num_planar; ++i) {
-    const PlanarProblem& contact = planar[static_cast<std::size_t>(i)];
-    act(first_planar(i),
-        Eigen::Vector3d(contact.normal, contact.tangential.x(), contact.tangential.y()));
-  }
+  // Sweeps that settle do so long before these.
+  constexpr int most_from_last = 100, last_extrapolated = 60;
+  acceleration_.forget();
+  std::uint64_t last_states = states();
+  double last_change = std::numeric_limits<double>::infinity();
   ContactAnswer answer{ContactStatus::not_converged, 0, 0};
-  double largest_change = 0.0;
-  double largest_force = 0.0;
-  const auto take = [&](int contact, Eigen::Index row, const auto& forces, const auto& before) {
-    const auto moved = (forces - before).eval();
-    const double change = moved.cwiseAbs().maxCoeff();
-    if (!(change <= largest_change)) {
-      largest_change = change;
-      answer.contact = contact;
-    }
-    act(row, moved);
-    largest_force = std::max(largest_force, forces.cwiseAbs().maxCoeff());
-  };
   while (answer.sweeps < parameters_.max_sweeps) {
-    // Visits that settle from the last forces have done so long before.
-    constexpr int most_from_last = 100;
     const SlipStart start =
         answer.sweeps < most_from_last ? SlipStart::last_forces : SlipStart::known;
     ++answer.sweeps;
-    largest_change = largest_force = 0.0;
-    for (int i = 0; i < num_lines; ++i) {
-      LocalProblem& contact = contacts[static_cast<std::size_t>(i)];
-      const Eigen::Index row = 2 * i;
-      const Eigen::Matrix2d own = delassus_.block<2, 2>(row, row);
-      const Eigen::Vector2d before(contact.normal, contact.tangential);
-      const Eigen::Vector2d known = left_.segment<2>(row) + own.lazyProduct(before);
-      if (!solve_line(contact, own, known(0), known(1)))
-        return {ContactStatus::jammed, i, answer.sweeps};
-      take(i, row, Eigen::Vector2d(contact.normal, contact.tangential), before);
-    }
-    for (int i = 0; i < num_planar; ++i) {
-      PlanarProblem& contact = planar[static_cast<std::size_t>(i)];
-      const Eigen::Index row = first_planar(i);
-      const Eigen::Matrix3d own = delassus_.block<3, 3>(row, row);
-      const Eigen::Vector3d before(contact.normal, contact.tangential.x(), contact.tangential.y());
-      const Eigen::Vector3d known = left_.segment<3>(row) + own.lazyProduct(before);
-      if (!solve_planar(contact, own, known, start))
-        return {ContactStatus::jammed, num_lines + i, answer.sweeps};
-      take(num_lines + i, row,
-           Eigen::Vector3d(contact.normal, contact.tangential.x(), contact.tangential.y()), before);
-    }
-    if (largest_change <= parameters_.tolerance * largest_force) {
+    if (const std::optional<int> jammed = sweep(contacts, planar, start))
+      return {ContactStatus::jammed, *jammed, answer.sweeps};
+    Eigen::Index largest = 0;
+    const double change = (after_ - before_).cwiseAbs().maxCoeff(&largest);
+    answer.contact = static_cast<int>(largest < num_lines_ ? largest / 2
+                                                           : num_lines_ / 2 + (largest - num_lines_) / 3);
+    if (change <= parameters_.tolerance * after_.cwiseAbs().maxCoeff()) {
       answer.status = ContactStatus::converged;
       break;
     }
+    const std::uint64_t now = states();
+    // An extrapolation has gone astray where the next sweep changes more.
+    if (now != last_states || change > last_change) acceleration_.forget();
+    last_states = now;
+    last_change = change;
+    if (answer.sweeps > 1 && answer.sweeps < last_extrapolated &&
+        acceleration_.add(before_, after_) && acceleration_.next().allFinite() &&
+        !take_forces(contacts, planar, acceleration_.next()))
+      acceleration_.forget();
+    before_ = after_;
   }
   return answer;
 }

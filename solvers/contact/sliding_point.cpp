@@ -313,9 +313,9 @@ std::array<PortBlock, 2> SlidingPoint::blocks() const {
   const auto set = [](PortBlock& block, const Propagator& body, int port, int count,
                       const double* normal, const double* tangent) {
     block.body = &body;
-    block.port = port;
     block.count = count;
     for (int k = 0; k < count; ++k) {
+      block.ports[static_cast<std::size_t>(k)] = port + k;
       block.sense(k, 0) = normal[k];
       block.sense(k, 1) = -tangent[k];
     }

@@ -6,27 +6,30 @@
 
 namespace stridor {
 
-SpacePoint::SpacePoint(const ContactPoint& point, const FacetSurface* surface,
+SpacePoint::SpacePoint(const ContactPoint& point, const FacetSurface* surface, NodePorts* nodes,
                        const DrivenMotion& driven, Propagator& slave, Propagator& master,
-                       int slave_port, int master_port, int num_master_ports)
-    : FacePoint(point, slave, master, slave_port, master_port, num_master_ports),
+                       int slave_port)
+    : FacePoint(point, slave, master, slave_port,
+                surface == nullptr ? 0 : NodePorts::ports_per_node * surface->max_nodes()),
       surface_(surface),
+      nodes_(nodes),
       driven_(driven),
       place_{point.space->first_facet, 0.4, 0.4} {
+  if (surface_ != nullptr) number_ = nodes_->join(*surface_);
   watch_facet();
-  const TangentPorts rest = TangentPorts::Zero(num_master_ports + 3);
+  const TangentPorts rest = TangentPorts::Zero(num_master_ports() + 3);
   search(driven_.displacement(0.0), [&] { return rest; });
 }
 
 void SpacePoint::watch_facet() {
   if (surface_ == nullptr) return;
-  const Facet& facet = surface_->facets[static_cast<std::size_t>(place_.facet)];
-  for (int k = 0; k < facet.count; ++k) {
-    const auto node = static_cast<std::size_t>(facet.nodes[static_cast<std::size_t>(k)]);
-    for (int i = 0; i < 3; ++i) {
-      const int row = surface_->rows[node][static_cast<std::size_t>(i)];
-      if (watched_on_master(3 * k + i) != row) watch_master(3 * k + i, row);
-    }
+  const std::array<int, 4> ports = nodes_->put(number_, place_.facet);
+  const int count = surface_->facets[static_cast<std::size_t>(place_.facet)].count;
+  for (int k = 0; k < num_master_ports(); ++k) {
+    // Those of a node that the facet lacks have no weight.
+    const int node = k / NodePorts::ports_per_node;
+    master_ports_[static_cast<std::size_t>(k)] =
+        ports[node < count ? static_cast<std::size_t>(node) : 0] + k % NodePorts::ports_per_node;
   }
 }
 
@@ -192,11 +195,13 @@ double SpacePoint::lifted(double from, double step) const {
   return driven_.is_frozen() ? 0.0 : step * driven_.velocity(from) * geometry_.frame.normal.x();
 }
 
-FacePoint::Directions SpacePoint::directions(double /*step*/) const {
-  Directions made;
-  made.sense.resize(normal_.size(), 3);
-  made.sense << normal_, along_, across_;
-  made.push = made.sense;
+FaceDirections SpacePoint::directions(double /*step*/) const {
+  FaceDirections made;
+  made.count = static_cast<std::size_t>(normal_.size());
+  for (std::size_t i = 0; i < made.count; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    made.sense[i] = made.push[i] = {normal_[k], along_[k], across_[k], 0.0};
+  }
   return made;
 }
 

@@ -8,15 +8,16 @@ namespace stridor {
 /// On a rigid plane or on facets, from one to the next as the slave slides (docs/theory.md, 2.7).
 class SpacePoint : public FacePoint {
  public:
-  SpacePoint(const ContactPoint& point, const FacetSurface* surface, const DrivenMotion& driven,
-             Propagator& slave, Propagator& master, int slave_port, int master_port,
-             int num_master_ports);
+  /// Parameters as make_space_point().
+  SpacePoint(const ContactPoint& point, const FacetSurface* surface, NodePorts* nodes,
+             const DrivenMotion& driven, Propagator& slave, Propagator& master, int slave_port);
 
   bool find(double sought) override;
   std::optional<Eigen::Vector2d> stand(const System& system, const FaceInstant& at) override;
   double predicted_gap() const override;
   double gap_ahead(const FaceInstant& at) const override;
   double present_gap(double now) const override;
+  int facet() const override { return place_.facet; }
   double position() const override;
   Eigen::Vector2d predicted_slip(const FaceInstant& at) const override;
   Eigen::Vector2d expected_slip(const FaceInstant& at) const override;
@@ -25,7 +26,7 @@ class SpacePoint : public FacePoint {
   Eigen::Vector2d drawn_velocity(double time) const override;
   Eigen::Vector2d drawn(double from, double step) const override;
   double lifted(double from, double step) const override;
-  Directions directions(double step) const override;
+  FaceDirections directions(double step) const override;
   std::vector<double> numbers() const override;
   void restore(std::span<const double> numbers) override;
   std::string where() const override;
@@ -36,7 +37,7 @@ class SpacePoint : public FacePoint {
   TangentPorts current() const { return gathered(slave().current(), master().current()); }
   TangentPorts ahead() const { return gathered(slave().ahead(), master().ahead()); }
 
-  /// Watches the nodes of the present facet, where that are others.
+  /// Watches the nodes of the present facet.
   void watch_facet();
   /// Projects the slave on the facet under it. @returns false where there is none
   /// @param displacements of the ports, after the nodes of the facet are watched
@@ -57,6 +58,8 @@ class SpacePoint : public FacePoint {
   bool is_carried() const { return surface_ != nullptr && !surface_->spin.isZero(0.0); }
 
   const FacetSurface* surface_;
+  NodePorts* nodes_;
+  int number_ = 0;  ///< among the contacts on these
   DrivenMotion driven_;
   FacetPlace place_;
   // At the displacements to which directions belong.

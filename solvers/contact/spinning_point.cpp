@@ -8,10 +8,12 @@ namespace stridor {
 
 SpinningPoint::SpinningPoint(const ContactPoint& point, Propagator& slave, Propagator& master,
                              int slave_port, int master_port)
-    : FacePoint(point, slave, master, slave_port, master_port, num_face_rows),
+    : FacePoint(point, slave, master, slave_port, num_face_rows),
       face_(make_face_kinematics(*point.face)) {
-  for (int k = 0; k < num_face_rows; ++k)
-    watch_master(k, point.face->rows[static_cast<std::size_t>(k)]);
+  for (std::size_t k = 0; k < num_face_rows; ++k) {
+    master_ports_[k] = master_port + static_cast<int>(k);
+    master.watch(master_ports_[k], point.face->rows[k]);
+  }
   across_ = face_.across;
   direct(FacePorts::Zero());
 }
@@ -99,21 +101,25 @@ Eigen::Vector2d SpinningPoint::drawn(double /*from*/, double step) const {
   return {spun, -spun * face_.turning.dot(directed_at_)};
 }
 
-FacePoint::Directions SpinningPoint::directions_along(const FacePorts& normal,
-                                                      const FacePorts& along, double step) const {
-  Directions made;
-  made.sense.resize(num_face_ports, 3);
-  made.push.resize(num_face_ports, 3);
-  made.sense << normal, face_.along, face_.across + 0.5 * step * face_.sliding * face_.turning;
-  made.push << normal, along, face_.across;
+FaceDirections SpinningPoint::directions_along(const FacePorts& normal, const FacePorts& along,
+                                               double step) const {
+  const double turning = 0.5 * step * face_.sliding;
+  FaceDirections made;
+  made.count = num_face_ports;
+  for (std::size_t i = 0; i < num_face_ports; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const double across = face_.across[k];
+    made.sense[i] = {normal[k], face_.along[k], across + turning * face_.turning[k], 0.0};
+    made.push[i] = {normal[k], along[k], across, 0.0};
+  }
   return made;
 }
 
-FacePoint::Directions SpinningPoint::directions(double step) const {
+FaceDirections SpinningPoint::directions(double step) const {
   return directions_along(bent_normal_, bent_along_, step);
 }
 
-FacePoint::Directions SpinningPoint::directions_at_rest(double step) const {
+FaceDirections SpinningPoint::directions_at_rest(double step) const {
   return directions_along(face_.normal, face_.along, step);
 }
 

@@ -24,8 +24,8 @@ class SpinningPoint : public FacePoint {
   Eigen::Vector2d drawn_velocity(double /*time*/) const override { return {face_.sliding, 0.0}; }
   Eigen::Vector2d drawn(double from, double step) const override;
   double lifted(double /*from*/, double /*step*/) const override { return 0.0; }
-  Directions directions(double step) const override;
-  Directions directions_at_rest(double step) const override;
+  FaceDirections directions(double step) const override;
+  FaceDirections directions_at_rest(double step) const override;
   std::vector<double> numbers() const override;
   void restore(std::span<const double> numbers) override;
   std::string where() const override;
@@ -37,7 +37,8 @@ class SpinningPoint : public FacePoint {
   FacePorts current() const { return ports(slave().current(), master().current()); }
   FacePorts ahead() const { return ports(slave().ahead(), master().ahead()); }
   void direct(const FacePorts& ports);
-  Directions directions_along(const FacePorts& normal, const FacePorts& along, double step) const;
+  FaceDirections directions_along(const FacePorts& normal, const FacePorts& along,
+                                  double step) const;
 
   FaceKinematics face_;
   FacePorts directed_at_ = FacePorts::Zero();

@@ -108,14 +108,14 @@ STRIDOR_INLINE void advance(double* blocks, std::size_t num_blocks, const double
                             const double* forces, int num_ports, double lookahead, double* seen) {
   // Ports beyond the fused ones stream the rows once more; a body rarely has any.
   const int fused = num_ports >= 8 ? 8 : num_ports >= 4 ? 4 : num_ports >= 2 ? 2 : 0;
-  for (int j = fused; j < num_ports; ++j) {
-    for (std::size_t b = 0; b < num_blocks; ++b) {
-      double* const block = blocks + b * num_modal_fields * modal_block;
-      for (std::size_t part = 0; part < modal_block; part += lanes<Vector>) {
-        field<Vector>(block, ModalField::increment, part) +=
-            field<Vector>(block, ModalField::gain, part) *
-            (at<Vector>(rows[j], b * modal_block + part) * forces[j]);
-      }
+  for (std::size_t b = 0; b < num_blocks && fused < num_ports; ++b) {
+    double* const block = blocks + b * num_modal_fields * modal_block;
+    for (std::size_t part = 0; part < modal_block; part += lanes<Vector>) {
+      Vector modal_force = at<Vector>(rows[fused], b * modal_block + part) * forces[fused];
+      for (int j = fused + 1; j < num_ports; ++j)
+        modal_force += at<Vector>(rows[j], b * modal_block + part) * forces[j];
+      field<Vector>(block, ModalField::increment, part) +=
+          field<Vector>(block, ModalField::gain, part) * modal_force;
     }
   }
   if (fused == 8) {
@@ -128,8 +128,9 @@ STRIDOR_INLINE void advance(double* blocks, std::size_t num_blocks, const double
     fused_pass<Vector, 0>(blocks, num_blocks, rows, forces, lookahead, seen);
   }
   for (int j = fused; j < num_ports; ++j) {
-    seen[j] = gather<Vector>(blocks, num_blocks, ModalField::position, rows[j]) +
-              lookahead * gather<Vector>(blocks, num_blocks, ModalField::increment, rows[j]);
+    seen[j] = gather<Vector>(blocks, num_blocks, ModalField::position, rows[j]);
+    if (lookahead != 0.0)
+      seen[j] += lookahead * gather<Vector>(blocks, num_blocks, ModalField::increment, rows[j]);
   }
 }
 

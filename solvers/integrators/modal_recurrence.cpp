@@ -202,6 +202,10 @@ void ModalRecurrence::port_changed(int port) {
   port_rows_[static_cast<std::size_t>(port)] = row_data(row(port));
 }
 
+void ModalRecurrence::num_ports_changed() {
+  port_rows_.resize(static_cast<std::size_t>(num_ports()), row_data(0));
+}
+
 void ModalRecurrence::set_body_motion(const Eigen::VectorXd& displacement,
                                       const Eigen::VectorXd& velocity, const double* forces) {
   if (are_gains_due_) renew_gains();

@@ -56,6 +56,7 @@ class ModalRecurrence : public Propagator {
   double ahead_displacement(int row) const override;
   double ahead_compliance(int row_a, int row_b) const override;
   void port_changed(int port) override;
+  void num_ports_changed() override;
   void set_body_loads(std::span<const double> amplitudes) override;
   void set_body_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,
                        const double* forces) override;

@@ -113,6 +113,33 @@ void Propagator::find_feedthrough_ports() {
                    answer_.data(),     lagging_.forces.data()};
 }
 
+void Propagator::set_num_ports(int count) {
+  const std::size_t before = rows_.size();
+  const std::size_t n = at(count);
+  const auto resize_table = [&](std::vector<double>& table) {
+    std::vector<double> resized(n * n, 0.0);
+    for (std::size_t j = 0; j < std::min(n, before); ++j)
+      std::copy_n(table.begin() + static_cast<std::ptrdiff_t>(j * before), std::min(n, before),
+                  resized.begin() + static_cast<std::ptrdiff_t>(j * n));
+    table = std::move(resized);
+  };
+  rows_.resize(n, 0);
+  for (std::vector<double>* const one : {&predicted_, &current_, &increment_}) one->resize(n, 0.0);
+  resize_table(compliance_);
+  if (has_feedthrough_) {
+    for (std::vector<double>* const one : {&expected_, &answer_, &ahead_}) one->resize(n, 0.0);
+    resize_table(ahead_compliance_);
+    lacks_ahead_compliance_.resize(n, 1);
+  }
+  if (has_residual()) {
+    port_load_.resize(n, 0.0);
+    resize_table(port_lag_);
+  }
+  // Forces that act are on the former ports until the next `settle`.
+  has_new_rows_ = true;
+  num_ports_changed();
+}
+
 void Propagator::start() {
   for (int port = 0; port < num_ports(); ++port) port_changed(port);
   const std::vector<double> no_forces(rows_.size(), 0.0);
@@ -296,6 +323,7 @@ void Propagator::take_new_rows(const double* forces) {
   last_increment_ = increment_;
   influences_.clear();
   acting_.rows = rows_;
+  acting_.forces.resize(rows_.size());
   if (has_residual()) lagging_ = {rows_, {forces, forces + rows_.size()}};
   find_feedthrough_ports();
 }
@@ -339,12 +367,14 @@ void Propagator::load(const State& state, const std::string& prefix) {
   if (!has_feedthrough_) return;
   state.get(prefix + "expected", expected_);
   influences_.clear();
-  acting_.rows = rows_;
+  acting_ = {rows_, std::vector<double>(rows_.size(), 0.0)};
   state.get(prefix + "acting", acting_.forces);
   state.get(prefix + "answer", answer_);
-  if (!has_residual()) return;
-  lagging_.rows = rows_;
-  state.get(prefix + "lagging", lagging_.forces);
+  if (has_residual()) {
+    lagging_ = acting_;
+    state.get(prefix + "lagging", lagging_.forces);
+  }
+  find_feedthrough_ports();
 }
 
 }  // namespace stridor

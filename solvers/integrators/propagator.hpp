@@ -63,6 +63,9 @@ class Propagator {
   Propagator& operator=(const Propagator&) = delete;
 
   int num_ports() const { return static_cast<int>(rows_.size()); }
+  /// Adds ports behind the others, which watch row 0 until they are told otherwise, or takes some away that
+  /// nothing acts on. Cost: that of all arrays between ports; `watch` of the new ones comes on top.
+  void set_num_ports(int count);
   int row(int port) const { return rows_[at(port)]; }
 
   /// Lets a port watch another row. Its increment is not known until the next `advance`.
@@ -203,6 +206,8 @@ class Propagator {
   virtual double ahead_displacement(int /*row*/) const { return 0.0; }
   virtual double ahead_compliance(int /*row_a*/, int /*row_b*/) const { return 0.0; }
   virtual void port_changed(int port) = 0;
+  /// There are more or fewer of them.
+  virtual void num_ports_changed() {}
   virtual void set_body_loads(std::span<const double> amplitudes) = 0;
   virtual void set_body_motion(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity,
                                const double* forces) = 0;

@@ -89,7 +89,9 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
   for (const ContactPoint& point : system.contacts) {
     if (point.has_two_tangents()) {
       num_ports[static_cast<std::size_t>(point.slave_body)] += point.num_slave_ports();
-      num_ports[static_cast<std::size_t>(system.master_of(point))] += system.num_master_ports(point);
+      // Nodes of facets get theirs as contacts come to them (NodePorts).
+      if (point.face)
+        num_ports[static_cast<std::size_t>(point.face->body)] += system.num_master_ports(point);
       continue;
     }
     num_ports[static_cast<std::size_t>(point.slave_body)] += slave_ports;
@@ -323,8 +325,10 @@ void Simulation::load(const State& state) {
   run.set_loads(run.time(run.index));
   for (std::size_t b = 0; b < run.bodies.size(); ++b) {
     const std::string prefix = fmt::format("bodies/{}/", b);
+    if (run.nodes[b]) run.nodes[b]->restore(state.array(prefix + "rows"));
     run.bodies[b]->set_mass_damping(run.damping[b].alpha_at(run.time(run.index)));
     run.bodies[b]->load(state, prefix);
+    run.fit_forces();
     state.get(prefix + "forces", run.forces[b]);
   }
   for (std::size_t i = 0; i < run.contacts.size(); ++i) {

@@ -79,6 +79,7 @@ struct Simulation::Implementation {
   bool slides_only = true;  ///< no contact tracks its slip, none is on a face
   std::int64_t index = 0;
   std::vector<std::unique_ptr<Propagator>> bodies;
+  std::vector<std::unique_ptr<NodePorts>> nodes;  ///< of the bodies with contacts on facets, or null
   std::vector<Eigen::MatrixXd> shapes;  ///< of the modes; empty in reduced coordinates
   std::vector<RunningContact> contacts;  ///< with one tangent
   RunningFaces faces;
@@ -138,6 +139,7 @@ struct Simulation::Implementation {
   /// Adds the contacts of a system. Their ports follow each other on every body.
   void add_contacts(const System& system) {
     std::vector<int> next_port(bodies.size(), 0);
+    nodes.resize(bodies.size());
     std::vector<std::size_t> place;  // among those of its kind
     for (const ContactPoint& point : system.contacts) {
       if (point.has_two_tangents()) {
@@ -163,6 +165,7 @@ struct Simulation::Implementation {
       contacts.push_back(std::move(contact));
     }
     slides_only = slides_only && faces.empty();
+    fit_forces();
     for (std::size_t i = 0; i < place.size(); ++i) {
       if (system.contacts[i].has_two_tangents()) {
         records.push_back(&faces[place[i]]);
@@ -177,15 +180,28 @@ struct Simulation::Implementation {
     const auto master = static_cast<std::size_t>(system.master_of(point));
     const int slave_port = next_port[slave];
     next_port[slave] += point.num_slave_ports();
-    const int master_port = next_port[master];
-    next_port[master] += system.num_master_ports(point);
-    const bool is_on_facets = point.space && point.space->surface >= 0;
-    const FacetSurface* const surface =
-        is_on_facets ? &facet_surfaces[static_cast<std::size_t>(point.space->surface)] : nullptr;
-    faces.add(make_face_point(point, surface, system.driven_motion(point), *bodies[slave],
-                              *bodies[master], slave_port, master_port),
-              *bodies[slave], *bodies[master], slave_port, master_port);
+    if (point.face) {
+      const int master_port = next_port[master];
+      next_port[master] += system.num_master_ports(point);
+      faces.add(make_spinning_point(point, *bodies[slave], *bodies[master], slave_port, master_port),
+                *bodies[slave], *bodies[master]);
+    } else {
+      const bool is_on_facets = point.space->surface >= 0;
+      const FacetSurface* const surface =
+          is_on_facets ? &facet_surfaces[static_cast<std::size_t>(point.space->surface)] : nullptr;
+      if (is_on_facets && nodes[master] == nullptr)
+        nodes[master] = std::make_unique<NodePorts>(*bodies[master]);
+      faces.add(make_space_point(point, surface, nodes[master].get(), system.driven_motion(point),
+                                 *bodies[slave], *bodies[master], slave_port),
+                *bodies[slave], *bodies[master]);
+    }
     faces[faces.size() - 1].master = static_cast<int>(master);
+  }
+
+  /// Forces on the ports that there are now.
+  void fit_forces() {
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      forces[b].resize(static_cast<std::size_t>(bodies[b]->num_ports()), 0.0);
   }
 
   /// Takes projection, material point and slip velocity from the motion at the present time.
@@ -293,6 +309,7 @@ struct Simulation::Implementation {
   [[gnu::noinline]] StepOutcome pose_faces(double sought_time) {
     if (has_feedthrough && !is_predicting_start) find_answers_of_faces();
     const auto lost = faces.pose(instant(sought_time));
+    fit_forces();
     return lost ? fail(faces[*lost], StepOutcome::master_lost) : StepOutcome::done;
   }
 
@@ -300,7 +317,11 @@ struct Simulation::Implementation {
   void find_answers_of_faces() {
     bool has_any_changed = false;
     for (const auto& body : bodies) has_any_changed |= body->find_ahead_compliances();
-    if (has_any_changed) faces.find_answers(step);
+    if (has_any_changed) {
+      faces.find_answers(step);
+    } else {
+      faces.find_answers_on_new_facets(step);
+    }
   }
 
   RunningFaces::Instant instant(double sought) const {
@@ -377,7 +398,9 @@ struct Simulation::Implementation {
         contact.forget();
         stand(contact);
       }
-      if (const auto lost = faces.stand(system, instant(time(sought_index())))) {
+      const auto lost = faces.stand(system, instant(time(sought_index())));
+      fit_forces();
+      if (lost) {
         fail(faces[*lost], StepOutcome::master_lost);
         throw NumericalError(failure);
       }
@@ -459,6 +482,7 @@ struct Simulation::Implementation {
     }
 
     StepOutcome outcome = StepOutcome::done;
+    if (!slides_only && !faces.empty()) clear_forces();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       RunningContact& contact = contacts[i];
       contact.force = local[i].normal;
@@ -485,6 +509,11 @@ struct Simulation::Implementation {
       if (!update_slip_velocities(sought_time)) outcome = StepOutcome::sliding_reversed;
     }
     return outcome;
+  }
+
+  /// Contacts with two tangents add theirs.
+  [[gnu::noinline]] void clear_forces() {
+    for (std::vector<double>& of_body : forces) std::fill(of_body.begin(), of_body.end(), 0.0);
   }
 
   /// Takes up the forces of contacts on faces and applies them.
