@@ -129,9 +129,9 @@ StepStability stability_of(const FrozenStep& step, const Pencil& contacts, Bodie
   match(growing, {of_bodies.begin(), decaying});
   match(growing, {decaying, of_bodies.end()});
   const auto by_step = [&](const GrowingMotion& motion) {
-    const double of_bodies = motion.growth_of_bodies.value_or(0.0);
+    const double of_nearest = motion.growth_of_bodies.value_or(0.0);
     const bool is_near = motion.shift < shift_of_excuse;
-    if (is_near && of_bodies > tolerance.share_of_bodies * motion.growth) return false;
+    if (is_near && of_nearest > tolerance.share_of_bodies * motion.growth) return false;
     return motion.own_growth() > std::max(tolerance.share * motion.growth, tolerance.least);
   };
   const auto worst = std::max_element(

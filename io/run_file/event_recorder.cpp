@@ -79,6 +79,9 @@ double EventRecorder::value_of_contact(ContactQuantity quantity, double time,
       return o.force * forces.normal.value;
     case ContactQuantity::friction_force:
       return -o.direction * o.force * forces.tangential.value;
+    case ContactQuantity::friction_across:
+    case ContactQuantity::slip_across:
+      return 0.0;  // one mass in a plane
     case ContactQuantity::gap:
       return place.y();
     case ContactQuantity::slip_velocity:

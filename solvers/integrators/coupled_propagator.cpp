@@ -37,6 +37,8 @@ CoupledPropagator::CoupledPropagator(const ModalBody& body, const Eigen::MatrixX
 void CoupledPropagator::renew() {
   by_step_ = make_coupled_step(body_, step_, added_, alpha_, name_);
   row_gains_ = by_step_.by_force * row_table_;
+  constant_gains_ = by_step_.by_constant * row_table_;
+  if (has_feedthrough()) feedthrough_gains_ = by_step_.feedthrough * row_table_;
   by_velocity_.compute(by_step_.free.topRightCorner(body_.size(), body_.size()));
   load_impulse_ = by_step_.by_impulse * load_;
   is_renewal_due_ = false;
@@ -86,15 +88,15 @@ double CoupledPropagator::predicted_displacement(int row) const {
 
 double CoupledPropagator::row_compliance(int row_a, int row_b) const {
   const auto a = row_table_.col(row_a);
-  if (is_starting()) return a.dot(by_step_.by_constant * row_table_.col(row_b));
-  if (has_feedthrough()) return a.dot(by_step_.feedthrough * row_table_.col(row_b));
+  if (is_starting()) return a.dot(constant_gains_.col(row_b));
+  if (has_feedthrough()) return a.dot(feedthrough_gains_.col(row_b));
   return a.dot(row_gains_.col(row_b).head(body_.size()));
 }
 
 double CoupledPropagator::ahead_compliance(int row_a, int row_b) const {
   const auto a = row_table_.col(row_a);
   return a.dot(row_gains_.col(row_b).head(body_.size())) +
-         a.dot(by_step_.feedthrough * row_table_.col(row_b));
+         a.dot(feedthrough_gains_.col(row_b));
 }
 
 Eigen::VectorXd CoupledPropagator::modal_force(const double* forces) const {

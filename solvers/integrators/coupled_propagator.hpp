@@ -78,6 +78,8 @@ class CoupledPropagator : public Propagator {
 
   CoupledStep by_step_;
   Eigen::MatrixXd row_gains_;                         ///< column r: x_{n+1} per force on row r
+  /// Likewise of CoupledStep::by_constant, and of CoupledStep::feedthrough where there is any.
+  Eigen::MatrixXd constant_gains_, feedthrough_gains_;
   Eigen::PartialPivLU<Eigen::MatrixXd> by_velocity_;  ///< r_{n+1} per v_n
 
   Eigen::VectorXd load_;          ///< p

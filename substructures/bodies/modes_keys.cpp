@@ -40,9 +40,9 @@ const Schema& ModesPortParameters::schema() {
           .real_list("z", &P::z, shape("The same along z."))
           .check([](const P& port, std::vector<Problem>& problems) {
             expect_place(port.at, "at", problems);
-            for (const auto& [key, shape] :
+            for (const auto& [key, given] :
                  {std::pair("x", &port.x), std::pair("y", &port.y), std::pair("z", &port.z)}) {
-              if (!port.node || shape->empty()) continue;
+              if (!port.node || given->empty()) continue;
               problems.push_back(
                   {key, "cannot stand beside `node`, whose shapes are in the file", {}, 0, 0});
             }
