@@ -40,6 +40,12 @@ void move_ports(std::size_t num_ports, const double* W, const FaceSide& by,
   constexpr std::size_t lanes = sizeof(Ports8) / sizeof(double);
   std::size_t i = 0;
   for (; i + lanes <= num_ports; i += lanes) move_some<Ports8>(num_ports, W + i, by, from, moved + i);
+  if (i == num_ports) return;
+  if (num_ports >= lanes) {
+    // Some of the ports once more.
+    i = num_ports - lanes;
+    return move_some<Ports8>(num_ports, W + i, by, from, moved + i);
+  }
   for (; i < num_ports; ++i) move_some<Ports1>(num_ports, W + i, by, from, moved + i);
 }
 

@@ -333,7 +333,9 @@ ContactAnswer ContactSolver::iterate(std::span<LocalProblem> contacts,
     return all;
   };
   // Sweeps that settle do so long before these.
-  constexpr int most_from_last = 100, last_extrapolated = 60;
+  constexpr int most_from_last = 100;
+  // Few sweeps are cheaper than what they would be extrapolated with.
+  constexpr int first_taken_up = 5, last_taken_up = 60;
   acceleration_.forget();
   std::uint64_t last_states = states();
   double last_change = std::numeric_limits<double>::infinity();
@@ -357,7 +359,7 @@ ContactAnswer ContactSolver::iterate(std::span<LocalProblem> contacts,
     if (now != last_states || change > last_change) acceleration_.forget();
     last_states = now;
     last_change = change;
-    if (answer.sweeps > 1 && answer.sweeps < last_extrapolated &&
+    if (answer.sweeps >= first_taken_up && answer.sweeps <= last_taken_up &&
         acceleration_.add(before_, after_) && acceleration_.next().allFinite() &&
         !take_forces(contacts, planar, acceleration_.next()))
       acceleration_.forget();
