@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <initializer_list>
 #include <memory>
 #include <numbers>
 
+#include "core/activity.hpp"
 #include "core/errors.hpp"
 
 namespace stridor {
@@ -15,25 +16,26 @@ namespace {
 
 constexpr double relative_rounding = 1e-9;  ///< of |s|, as pairs have converged
 
-bool grows(const Eigenvalue& one) {
-  constexpr double rounding = 1e-10;
-  return one.growth() > rounding * std::abs(one.s);
+SampledSpectrum sampled(const std::vector<std::complex<double>>& eigenvalues) {
+  SampledSpectrum found;
+  found.eigenvalues = eigenvalues;
+  for (const std::complex<double>& s : eigenvalues)
+    found.rounding.push_back(relative_rounding * std::abs(s));
+  return found;
 }
 
-SampledSpectrum sampled(const std::vector<Eigenvalue>& eigenvalues) {
-  SampledSpectrum found;
-  for (const Eigenvalue& one : eigenvalues) {
-    found.eigenvalues.push_back(one.s);
-    found.rounding.push_back(relative_rounding * std::abs(one.s));
-  }
-  return found;
+std::vector<std::complex<double>> eigenvalues_of(const SparseSpectrum& spectrum) {
+  std::vector<std::complex<double>> eigenvalues;
+  for (const Eigenvalue& one : spectrum.eigenvalues) eigenvalues.push_back(one.s);
+  return eigenvalues;
 }
 
 }  // namespace
 
-SparseSpectrum whole_spectrum(const SparseSystem& system, SpectrumWindow window) {
+SparseSpectrum whole_spectrum(const SparseSystem& system, SpectrumWindow window,
+                              const SpectrumWork& work) {
   if (std::isfinite(window.frequency)) window.count.reset();
-  SparseSpectrum spectrum = sparse_spectrum(system, window);
+  SparseSpectrum spectrum = sparse_spectrum(system, window, work);
   if (!spectrum.is_complete) {
     throw NumericalError(
         fmt::format("below {:.6g} Hz the argument principle counts {} eigenvalues, and {} were "
@@ -44,74 +46,182 @@ SparseSpectrum whole_spectrum(const SparseSystem& system, SpectrumWindow window)
   return spectrum;
 }
 
-CountedSpectra::CountedSpectra(System system, const SpectrumWindow& window)
-    : system_(std::move(system)), window_(window) {}
+CountedSpectra::CountedSpectra(System system, const SpectrumWindow& window,
+                               std::optional<std::pair<double, double>> range)
+    : system_(std::move(system)), window_(window), range_(std::move(range)) {
+  if (std::isfinite(window_.frequency)) window_.count.reset();
+  if (range_ && !(range_->first < range_->second)) range_.reset();
+}
+
+SampledSpectrum CountedSpectra::search(double value, const SparseSystem& system) {
+  const auto known = searched_.find(value);
+  if (known != searched_.end()) return known->second;
+  ++effort_.num_searched;
+  return searched_[value] = sampled(eigenvalues_of(whole_spectrum(system, window_)));
+}
+
+/// The whole search at the first value, and what follows from it.
+void CountedSpectra::begin() {
+  has_begun_ = true;
+  if (!range_) return;
+  SparseSystem first = system_(range_->first);
+  SystemSpan span(first);
+  const SparseSystem last = system_(range_->second);
+  if (last.size() != first.size() || !span.factors(last)) return;
+  SpectrumWork work;
+  work.sides = SpectrumWork::Sides::both;
+  if (span.num_parts() == 2) {
+    count_.emplace(first, span.part(1), 1.0);
+    work.on_count = [this](std::complex<double> s, const SparseFactor& factor) {
+      count_->add(s, factor);
+    };
+  }
+  ++effort_.num_searched;
+  SparseSpectrum spectrum = whole_spectrum(first, window_, work);
+  searched_[range_->first] = sampled(eigenvalues_of(spectrum));
+  num_first_ = spectrum.num_counted;
+  const double height = spectrum.rectangle.height;
+  for (const std::complex<double>& s : spectrum.pairs.s)
+    if (s.imag() > height) above_.push_back(s);
+  for (const double omega : spectrum.omega)
+    if (omega > 1.1 * height) above_.emplace_back(0.0, omega);
+  span_.emplace(std::move(span));
+  basis_.emplace(height);
+  basis_->add(std::move(spectrum.pairs));
+  if (span_->num_parts() > 1) extend();
+}
+
+/// Adds values to the basis until its projections are good between them: the extrema of Chebyshev's
+/// polynomials of degree 3, then 5, then halves of intervals.
+void CountedSpectra::extend() {
+  constexpr int most_levels = 4;  // of halves
+  const auto [from, to] = *range_;
+  const auto at_share = [low = from, width = to - from](double share) {
+    return low + share * width;
+  };
+  const auto join_at = [&](std::initializer_list<double> shares) {
+    for (const double share : shares) join(member(at_share(share)));
+  };
+  const auto is_good_at = [&](std::initializer_list<double> shares) {
+    return std::all_of(shares.begin(), shares.end(), [&](double share) {
+      const Member one = member(at_share(share));
+      return !one.factors || project(one).is_certified;
+    });
+  };
+  join_at({1.0, 0.345, 0.655});
+  if (is_good_at({0.5, 0.12, 0.88})) return;
+  join_at({0.095, 0.905});
+  std::vector<std::pair<double, double>> open{
+      {0.0, 0.095}, {0.095, 0.345}, {0.345, 0.655}, {0.655, 0.905}, {0.905, 1.0}};
+  for (int level = 0; level < most_levels && !open.empty(); ++level) {
+    std::vector<std::pair<double, double>> next;
+    std::vector<double> poor;
+    for (const auto& [low, high] : open) {
+      const double between = 0.5 * (low + high);
+      if (is_good_at({between})) continue;
+      poor.push_back(between);
+      next.emplace_back(low, between);
+      next.emplace_back(between, high);
+    }
+    for (const double share : poor) join_at({share});
+    open = std::move(next);
+  }
+}
+
+CountedSpectra::Member CountedSpectra::member(double value) {
+  Member one{system_(value), std::nullopt};
+  const bool is_like = span_ && one.system.size() == span_->part(0).size();
+  if (is_like) one.factors = span_->factors(one.system);
+  return one;
+}
+
+/// Adds a system to the basis.
+void CountedSpectra::join(const Member& member) {
+  if (!member.factors) return;
+  const Activity finding("eigenvectors of a value");
+  ++effort_.num_refined;
+  int factorisations = 0;
+  basis_->add(pairs_near(member.system, basis_->latest(), basis_->rectangle().height,
+                         factorisations));
+}
+
+ProjectedSpectrum CountedSpectra::project(const Member& member,
+                                          std::optional<std::complex<double>> place) {
+  ++effort_.num_projected;
+  return basis_->project(*span_, *member.factors, member.system, place);
+}
+
+/// Eigenvalues in the rectangle, conjugates counted; nothing where they are not counted.
+std::optional<int> CountedSpectra::count(const Member& member,
+                                         const std::vector<std::complex<double>>& found) {
+  const Eigen::VectorXd& factors = *member.factors;
+  if (factors.size() == 1) return num_first_;
+  if (factors.size() != 2 || !count_) return std::nullopt;
+  std::vector<std::complex<double>> known = found;
+  known.insert(known.end(), above_.begin(), above_.end());
+  return count_->count(factors(1), basis_->rectangle(), known);
+}
+
+/// By projection; nothing where an eigenvalue has a large residual, or may be missing.
+std::optional<SampledSpectrum> CountedSpectra::counted(const Member& member) {
+  const ProjectedSpectrum spectrum = project(member);
+  if (!spectrum.is_certified) return std::nullopt;
+  int num_found = 0;
+  int num_vibrating = 0;
+  for (const std::complex<double>& s : spectrum.eigenvalues) {
+    num_found += s.imag() > 0.0 ? 2 : 1;
+    num_vibrating += s.imag() > 0.0 ? 1 : 0;
+  }
+  if (window_.count && num_vibrating < *window_.count) return std::nullopt;
+  const std::optional<int> number = count(member, spectrum.eigenvalues);
+  if (number && *number != num_found) return std::nullopt;
+  SampledSpectrum found = sampled(spectrum.eigenvalues);
+  found.is_counted = number.has_value();
+  return found;
+}
 
 SampledSpectrum CountedSpectra::at(double value) {
-  SparseSpectrum spectrum = whole_spectrum(system_(value), window_);
-  spectrum.modes.resize(0, 0);
-  SampledSpectrum found = sampled(spectrum.eigenvalues);
-  constexpr Eigen::Index most_kept = Eigen::Index{1} << 26;  // complex numbers: 1 GB
-  kept_ += spectrum.right.size();
-  known_.insert_or_assign(value, std::move(spectrum));
-  while (kept_ > most_kept && known_.size() > 2) {
-    const auto first = known_.begin()->first == value ? std::next(known_.begin()) : known_.begin();
-    kept_ -= first->second.right.size();
-    known_.erase(first);
-  }
-  return found;
+  if (!has_begun_) begin();
+  const auto known = searched_.find(value);
+  if (known != searched_.end()) return known->second;
+  const Member one = member(value);
+  if (!one.factors || value < range_->first || value > range_->second)
+    return search(value, one.system);
+  if (const auto found = counted(one)) return *found;
+  join(one);
+  if (const auto found = counted(one)) return *found;
+  return search(value, one.system);
 }
 
 SampledSpectrum CountedSpectra::near(double value) {
-  constexpr int first_refined = 3;
-  const SpectrumBasis* basis = basis_at(value);
-  if (basis == nullptr) return at(value);
-  const SparseSystem system = system_(value);
-  for (int num_refined = first_refined;; num_refined *= 2) {
-    const std::vector<Eigenvalue> found = fastest_near(system, *basis, num_refined).eigenvalues;
-    // Where all that were refined grow, others may.
-    const auto num_growing = std::count_if(found.begin(), found.end(), grows);
-    if (num_growing < num_refined || static_cast<int>(found.size()) < num_refined)
-      return sampled(found);
+  if (!has_begun_) begin();
+  const Member one = member(value);
+  if (one.factors) {
+    const ProjectedSpectrum spectrum = project(one);
+    if (spectrum.is_certified) return sampled(spectrum.eigenvalues);
   }
+  return at(value);
 }
 
 SampledSpectrum CountedSpectra::around(double value, std::complex<double> place) {
-  constexpr int num_refined = 4;
-  const SpectrumBasis* basis = basis_at(value);
-  if (basis == nullptr) return at(value);
-  return sampled(closest_near(system_(value), *basis, place, num_refined).eigenvalues);
-}
-
-SampledSpectrum CountedSpectra::glimpse(double value) {
-  const SpectrumBasis* basis = basis_at(value);
-  if (basis == nullptr) return at(value);
-  SampledSpectrum found;
-  found.eigenvalues = projected_eigenvalues(system_(value), *basis);
-  for (const std::complex<double>& s : found.eigenvalues)
-    found.rounding.push_back(relative_rounding * std::abs(s));
-  return found;
-}
-
-/// Of the values next to it; null where there are not two, or where it is one of them.
-const SpectrumBasis* CountedSpectra::basis_at(double value) {
-  const auto above = known_.lower_bound(value);
-  if (above == known_.end() || above == known_.begin() || above->first == value) return nullptr;
-  const auto below = std::prev(above);
-  if (std::pair(below->first, above->first) != basis_of_) {
-    basis_ = spectrum_basis({&below->second, &above->second});
-    basis_of_ = {below->first, above->first};
+  if (!has_begun_) begin();
+  const Member one = member(value);
+  if (one.factors) {
+    const ProjectedSpectrum spectrum = project(one, place);
+    if (spectrum.is_certified && !spectrum.eigenvalues.empty())
+      return sampled(spectrum.eigenvalues);
   }
-  return &basis_;
+  return at(value);
 }
 
-SpectrumFamily counted_spectra(CountedSpectra::System system, const SpectrumWindow& window) {
-  const auto spectra = std::make_shared<CountedSpectra>(std::move(system), window);
+SpectrumFamily counted_spectra(CountedSpectra::System system, const SpectrumWindow& window,
+                               std::optional<std::pair<double, double>> range) {
+  const auto spectra =
+      std::make_shared<CountedSpectra>(std::move(system), window, std::move(range));
   return {
       [spectra](double value) { return spectra->at(value); },
       [spectra](double value) { return spectra->near(value); },
-      [spectra](double value, std::complex<double> place) { return spectra->around(value, place); },
-      [spectra](double value) { return spectra->glimpse(value); }};
+      [spectra](double value, std::complex<double> place) { return spectra->around(value, place); }};
 }
 
 }  // namespace stridor

@@ -4,9 +4,13 @@
 #include <complex>
 #include <functional>
 #include <map>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "analysis/spectrum_sampler.hpp"
+#include "solvers/eigenvalues/count_along.hpp"
+#include "solvers/eigenvalues/pair_basis.hpp"
 #include "solvers/eigenvalues/sparse_spectrum.hpp"
 
 namespace stridor {
@@ -14,35 +18,70 @@ namespace stridor {
 /// All eigenvalues of sparse_spectrum() in a window. A count within a frequency is taken from all
 /// below it.
 /// @throws NumericalError unless every one was found; as sparse_spectrum()
-SparseSpectrum whole_spectrum(const SparseSystem& system, SpectrumWindow window);
+SparseSpectrum whole_spectrum(const SparseSystem& system, SpectrumWindow window,
+                              const SpectrumWork& work = {});
 
-/// Spectra of large matrices along a parameter, for sample_locus(). All eigenvalues take a search;
-/// between two values where they are known their eigenvectors say where to look. Those of the
-/// values looked at are kept, up to 1 GB of them.
+/// What spectra along a parameter took.
+struct CountedEffort {
+  int num_searched = 0;   ///< values with a whole search
+  int num_refined = 0;    ///< values whose pairs were found from those of others
+  int num_projected = 0;  ///< spectra by projection
+};
+
+/// Spectra of large matrices along a parameter, for sample_locus().
+///
+/// The first value of the range takes a whole search. From its vectors those of the last one follow,
+/// of the middle, and of the middles between them until the projection on all of them (PairBasis) is
+/// good at the next middles. Every eigenvalue of a projection has its residual at full size; where
+/// one fails, the value joins the basis, and where that does not help or a count differs, the value
+/// takes a whole search. Where the parameter enters as one factor, CountAlong counts at every value;
+/// else a spectrum says that it was not counted.
 class CountedSpectra {
  public:
   using System = std::function<SparseSystem(double value)>;
   /// @param window of the eigenvalues wanted
-  CountedSpectra(System system, const SpectrumWindow& window);
+  /// @param range  of the parameter; where there is none, every value takes a whole search
+  CountedSpectra(System system, const SpectrumWindow& window,
+                 std::optional<std::pair<double, double>> range = std::nullopt);
 
   // As the members of SpectrumFamily. They throw as whole_spectrum().
   SampledSpectrum at(double value);
   SampledSpectrum near(double value);
   SampledSpectrum around(double value, std::complex<double> place);
-  SampledSpectrum glimpse(double value);
+
+  const CountedEffort& effort() const { return effort_; }
 
  private:
-  const SpectrumBasis* basis_at(double value);
+  struct Member {
+    SparseSystem system;
+    std::optional<Eigen::VectorXd> factors;  ///< in the span, where there is a basis
+  };
+
+  void begin();
+  void extend();
+  Member member(double value);
+  void join(const Member& member);
+  ProjectedSpectrum project(const Member& member,
+                            std::optional<std::complex<double>> place = std::nullopt);
+  std::optional<SampledSpectrum> counted(const Member& member);
+  std::optional<int> count(const Member& member, const std::vector<std::complex<double>>& found);
+  SampledSpectrum search(double value, const SparseSystem& system);
 
   System system_;
   SpectrumWindow window_;
-  std::map<double, SparseSpectrum> known_;
-  Eigen::Index kept_ = 0;  ///< complex numbers in known_
-  SpectrumBasis basis_;
-  std::pair<double, double> basis_of_{0.0, 0.0};
+  std::optional<std::pair<double, double>> range_;
+  bool has_begun_ = false;
+  std::map<double, SampledSpectrum> searched_;
+  std::optional<SystemSpan> span_;
+  std::optional<PairBasis> basis_;
+  std::optional<CountAlong> count_;
+  int num_first_ = 0;  ///< eigenvalues in the rectangle at the first value, conjugates counted
+  std::vector<std::complex<double>> above_;  ///< about those above the rectangle
+  CountedEffort effort_;
 };
 
 /// The members of CountedSpectra as a family, which keeps it.
-SpectrumFamily counted_spectra(CountedSpectra::System system, const SpectrumWindow& window);
+SpectrumFamily counted_spectra(CountedSpectra::System system, const SpectrumWindow& window,
+                               std::optional<std::pair<double, double>> range = std::nullopt);
 
 }  // namespace stridor

@@ -196,7 +196,7 @@ std::vector<PairLook> Pass::looks_around(std::size_t i, std::size_t b, std::size
 
 /// A sample between; where only a few eigenvalues were computed, all that grow, or all.
 void Pass::keep(Sample sample, bool is_growing) {
-  if (sampler_.has_glimpses())
+  if (sampler_.has_parts())
     sample = is_growing ? sampler_.near(sample.value) : sampler_.at(sample.value);
   between_.push_back(std::move(sample));
 }
@@ -229,7 +229,7 @@ Outcome Pass::approach(std::size_t i, std::size_t b, std::size_t c) {
       keep(std::move(sample), grows);
       return Outcome::resolved;
     }
-    if (!sampler_.has_glimpses()) between_.push_back(std::move(sample));
+    if (!sampler_.has_parts()) between_.push_back(std::move(sample));
   }
   return Outcome::halve;
 }

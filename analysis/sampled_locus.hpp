@@ -14,16 +14,15 @@ struct SamplingEffort {
   int least_values = 64;  ///< looked at in all, where fewer are asked for
   int most_added = 256;   ///< values put between where eigenvalues cannot be told apart
   WindowEffort windows;
-  int least_glimpses = 64;  ///< in all, where a family has them
   SearchFor wanted = SearchFor::every_window;
 };
-/// For spectra that take seconds: all eigenvalues where they are asked for, and few besides.
-inline constexpr SamplingEffort sparing_effort{1, 16, {1e-9, 8, WindowEffort::Ends::secants}};
+/// For spectra of large matrices.
+inline constexpr SamplingEffort sparing_effort{32, 64, {1e-9, 8, WindowEffort::Ends::secants}};
 
 /// For the places alone where the system as a whole becomes stable or unstable, as a map draws
 /// them.
 inline constexpr SamplingEffort stability_effort{
-    16, 256, {1e-11, 0, WindowEffort::Ends::parabolas}, 64, SearchFor::stability};
+    16, 256, {1e-11, 0, WindowEffort::Ends::parabolas}, SearchFor::stability};
 
 /// Eigenvalues and unstable windows along a parameter, for systems whose eigenvalues coincide or
 /// lie on the imaginary axis over whole intervals: without damping, with bodies that are alike.
@@ -44,9 +43,8 @@ Locus sample_locus(const PencilFamily& family, const std::vector<double>& values
                    const LocusOptions& options = {});
 Locus sample_locus(const PencilFamily& family, const std::vector<double>& values,
                    const LocusOptions& options, const SamplingEffort& effort);
-/// The same from spectra that come from elsewhere. Where the family has glimpses, several of them
-/// are taken between any two values besides, and the largest of them climbed: what grows there by
-/// their account, or does not where it grows on both sides, is looked at closely.
+/// The same from spectra that come from elsewhere. Those that were not counted are among the values
+/// not verified.
 Locus sample_locus(const SpectrumFamily& family, const std::vector<double>& values,
                    const LocusOptions& options, const SamplingEffort& effort);
 

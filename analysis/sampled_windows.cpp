@@ -206,9 +206,9 @@ void WindowBuilder::build(const std::vector<Sample>& samples) {
 
 /// The eigenvalue of a window between two of its points; not growing where there is none.
 Point WindowBuilder::at(const Point& a, const Point& b, double value) const {
-  const std::vector<Complex> growing = sampler_.near(value).growing();
   const double share = (value - a.value) / (b.value - a.value);
   const Complex expected = (1.0 - share) * a.s + share * b.s;
+  const std::vector<Complex> growing = sampler_.around(value, expected).growing();
   const int found = continuations({expected}, growing)[0];
   if (found < 0) return {value, {0.0, expected.imag()}};
   return {value, growing[static_cast<std::size_t>(found)]};

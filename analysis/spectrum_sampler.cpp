@@ -58,7 +58,7 @@ class DenseSpectra {
 }  // namespace
 
 SpectrumFamily dense_spectra(const PencilFamily& family) {
-  return {DenseSpectra(family), nullptr, nullptr, nullptr};
+  return {DenseSpectra(family), nullptr, nullptr};
 }
 
 std::size_t Sample::num_growing() const {
@@ -89,6 +89,7 @@ Complex Sample::fastest() const {
 Sample SpectrumSampler::sample_of(double value, SampledSpectrum all) const {
   Sample sample;
   sample.value = value;
+  sample.is_counted = all.is_counted;
   const double top = 2.0 * std::numbers::pi * options_.frequency;
   const double trusted = 2.0 * std::numbers::pi * options_.trusted;
   int num_pairs = 0;

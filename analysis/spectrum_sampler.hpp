@@ -13,18 +13,17 @@ namespace stridor {
 struct SampledSpectrum {
   std::vector<std::complex<double>> eigenvalues;  ///< Im s >= 0, ascending Im s
   std::vector<double> rounding;  ///< possible rounding error of each real part, 1/s
+  bool is_counted = true;        ///< whether it is verified that these are all
 };
 
 /// Those of a system that depends on one parameter; called in any order.
 struct SpectrumFamily {
   /// All that are wanted.
   std::function<SampledSpectrum(double value)> at;
-  /// Where `at` takes long, between values at which all are known: those that grow, others perhaps
-  /// missing; those closest to a place in the complex plane; and a first look, right in none. All
-  /// or none.
+  /// Where `at` takes longer: with all that grow, not verified; and with those closest to a place in
+  /// the complex plane. Both or none.
   std::function<SampledSpectrum(double value)> near;
   std::function<SampledSpectrum(double value, std::complex<double> place)> around;
-  std::function<SampledSpectrum(double value)> glimpse;
 };
 
 /// The spectra of pencils by the dense method.
@@ -37,6 +36,7 @@ struct Sample {
   std::vector<std::complex<double>> eigenvalues;  ///< Im s >= 0, ascending Im s
   /// Of each: its real part less the possible rounding error, 1/s; −∞ above the trusted frequency.
   std::vector<double> excess;
+  bool is_counted = true;  ///< as that of the spectrum
 
   bool is_growing(std::size_t i) const { return excess[i] > 0.0; }
   std::size_t num_growing() const;
@@ -55,7 +55,8 @@ class SpectrumSampler {
   SpectrumSampler(const SpectrumFamily& family, const LocusOptions& options)
       : family_(family), options_(options) {}
 
-  bool has_glimpses() const { return family_.glimpse != nullptr; }
+  /// Whether around() gives but a part of the eigenvalues.
+  bool has_parts() const { return family_.around != nullptr; }
   Sample at(double value) const { return sample_of(value, family_.at(value)); }
   /// With all that grow.
   Sample near(double value) const {
@@ -65,7 +66,6 @@ class SpectrumSampler {
   Sample around(double value, std::complex<double> place) const {
     return family_.around ? sample_of(value, family_.around(value, place)) : at(value);
   }
-  Sample glimpse(double value) const { return sample_of(value, family_.glimpse(value)); }
 
  private:
   Sample sample_of(double value, SampledSpectrum all) const;

@@ -106,7 +106,9 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
   LocusOptions within = options;
   within.trusted = trusted;
   if (method == SpectrumMethod::counted)
-    return sample_locus(family.spectra(key, values, within), range, within, sparing_effort);
+    return sample_locus(
+        family.spectra(key, values, within, std::pair(range.front(), range.back())), range, within,
+        sparing_effort);
   const PencilFamily pencils = family.along(key, values, range.front(), range.back());
   if (varied.is_integer) {
     LocusOptions wholes = options;

@@ -33,14 +33,15 @@ PencilFamily StabilityFamily::along(std::size_t key, std::vector<double> values,
 }
 
 SpectrumFamily StabilityFamily::spectra(std::size_t key, const std::vector<double>& values,
-                                        const LocusOptions& options) {
+                                        const LocusOptions& options,
+                                        std::optional<std::pair<double, double>> range) {
   SpectrumFamily family = counted_spectra(
       [this, key, at = values](double value) mutable {
         at[key] = value;
         return sparse_system(at);
       },
-      {options.count, options.frequency});
-  for (auto* spectrum : {&family.at, &family.near, &family.glimpse}) {
+      {options.count, options.frequency}, std::move(range));
+  for (auto* spectrum : {&family.at, &family.near}) {
     *spectrum = [this, found_at = std::move(*spectrum)](double value) {
       if (stop_requested()) throw Interrupted("nothing has been written");
       SampledSpectrum found = found_at(value);

@@ -38,8 +38,10 @@ class StabilityFamily {
   virtual SpectrumMethod method(std::span<const double>) { return SpectrumMethod::followed; }
   /// The eigenvalues wanted along one of the keys; arguments as of along(). They throw
   /// NumericalError naming the values if one may be missing.
+  /// @param range of the key, where many values of it will be asked for
   SpectrumFamily spectra(std::size_t key, const std::vector<double>& values,
-                         const LocusOptions& options);
+                         const LocusOptions& options,
+                         std::optional<std::pair<double, double>> range = std::nullopt);
 
   /// The pencils along one of the keys.
   /// @param key      its index

@@ -12,7 +12,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double ritz_tolerance = 1e-11;     ///< of a residual, relative to |μ|
 constexpr double shortest_addition = 1e-13;  ///< length of what a vector adds to the space
 
 class Arnoldi {
@@ -53,9 +52,11 @@ class Arnoldi {
 
   /// The component of a state outside the space joins it. @param inside those within; may be null
   void append(Eigen::VectorXcd state, Complex* inside) {
+    constexpr double long_enough = 0.01;  // to be orthogonal to 1e-14 after one round
     const double length = state.norm();
     const auto basis = basis_.leftCols(dim_);
     for (int round = 0; round < 2; ++round) {
+      if (round > 0 && state.norm() > long_enough * length) break;
       const Eigen::VectorXcd products = basis.adjoint() * state;
       state.noalias() -= basis * products;
       if (inside != nullptr) Eigen::Map<Eigen::VectorXcd>(inside, dim_) += products;
@@ -92,7 +93,7 @@ class Arnoldi {
       const Complex mu = solver.eigenvalues()(i);
       const bool is_near = std::abs(mu) * wanted_.radius >= 1.0;
       const bool has_converged =
-          (below * solver.eigenvectors().col(i)).norm() <= ritz_tolerance * std::abs(mu);
+          (below * solver.eigenvectors().col(i)).norm() <= wanted_.tolerance * std::abs(mu);
       if (has_converged) order.emplace_back(-std::abs(mu), i);
       if (is_near && !has_converged) found.are_all = false;
     }

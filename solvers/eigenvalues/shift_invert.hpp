@@ -21,6 +21,7 @@ struct NearestPairsWanted {
   double radius = 0.0;          ///< all with |s − σ| <= radius, 1/s
   Eigen::Index expected = 0;    ///< about so many
   Eigen::Index most_steps = 0;  ///< vectors of the Krylov space, at most
+  double tolerance = 1e-11;     ///< of a pair of the projection, relative to |μ|
 };
 
 struct NearestPairs {
@@ -35,7 +36,7 @@ struct NearestPairs {
 ///
 /// of which (A − σ)⁻¹ w = w/(s − σ). The space grows from several vectors, so that it finds
 /// eigenvalues that coincide. A pair (μ, y) of the projection has converged when
-/// |(A − σ)⁻¹ W y − μ W y| <= 1e-11 |μ|.
+/// |(A − σ)⁻¹ W y − μ W y| <= tolerance |μ|.
 ///
 /// @param factor of P(σ)
 /// @param start  vectors x to begin with, n x k, k >= 1

@@ -107,12 +107,20 @@ SparseFactor::SparseFactor(SparseFactor&&) noexcept = default;
 SparseFactor& SparseFactor::operator=(SparseFactor&&) noexcept = default;
 
 Eigen::MatrixXcd SparseFactor::solve(const Eigen::MatrixXcd& right_hand_sides) const {
+  return solve(UMFPACK_A, right_hand_sides);
+}
+
+Eigen::MatrixXcd SparseFactor::solve_adjoint(const Eigen::MatrixXcd& right_hand_sides) const {
+  return solve(UMFPACK_At, right_hand_sides);
+}
+
+Eigen::MatrixXcd SparseFactor::solve(int which, const Eigen::MatrixXcd& right_hand_sides) const {
   const SparseMatrix& places = *numbers_->places;
   const auto control = controls();
   Eigen::MatrixXcd solved(right_hand_sides.rows(), right_hand_sides.cols());
   for (Eigen::Index j = 0; j < solved.cols(); ++j) {
     const int status = umfpack_zi_solve(
-        UMFPACK_A, places.outerIndexPtr(), places.innerIndexPtr(), numbers_of(numbers_->values),
+        which, places.outerIndexPtr(), places.innerIndexPtr(), numbers_of(numbers_->values),
         nullptr, reinterpret_cast<double*>(solved.col(j).data()), nullptr,
         reinterpret_cast<const double*>(right_hand_sides.col(j).data()), nullptr, numbers_->numeric,
         control.data(), nullptr);
@@ -179,6 +187,12 @@ Eigen::VectorXcd SparsePencil::multiply(Complex s, const Eigen::VectorXcd& x) co
 
 Eigen::VectorXcd SparsePencil::slope(Complex s, Complex t, const Eigen::VectorXcd& x) const {
   return (s + t) * (pattern_->system.mass * x) + pattern_->system.velocity * x;
+}
+
+Eigen::VectorXcd SparsePencil::slope_adjoint(Complex s, Complex t,
+                                             const Eigen::VectorXcd& y) const {
+  return std::conj(s + t) * (pattern_->system.mass.transpose() * y) +
+         pattern_->system.velocity.transpose() * y;
 }
 
 SparseFactor SparsePencil::factorise(Complex s) const {

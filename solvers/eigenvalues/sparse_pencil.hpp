@@ -18,12 +18,15 @@ class SparseFactor {
 
   /// P(s)⁻¹ B.
   Eigen::MatrixXcd solve(const Eigen::MatrixXcd& right_hand_sides) const;
+  /// P(s)⁻ᴴ B.
+  Eigen::MatrixXcd solve_adjoint(const Eigen::MatrixXcd& right_hand_sides) const;
   /// log det P(s); real part −∞ where P(s) is singular to working precision.
   std::complex<double> log_determinant() const;
 
  private:
   friend class SparsePencil;
   struct Numbers;
+  Eigen::MatrixXcd solve(int which, const Eigen::MatrixXcd& right_hand_sides) const;
   explicit SparseFactor(std::unique_ptr<Numbers> numbers);
   std::unique_ptr<Numbers> numbers_;
 };
@@ -45,6 +48,9 @@ class SparsePencil {
   /// (P(t) − P(s))/(t − s) x = ((s + t) M + P) x; the derivative where s and t are the same.
   Eigen::VectorXcd slope(std::complex<double> s, std::complex<double> t,
                          const Eigen::VectorXcd& x) const;
+  /// ((s + t) M + P)ᴴ y.
+  Eigen::VectorXcd slope_adjoint(std::complex<double> s, std::complex<double> t,
+                                 const Eigen::VectorXcd& y) const;
 
   /// @throws NumericalError if memory runs out. A singular P(s) is factorised as it is.
   SparseFactor factorise(std::complex<double> s) const;

@@ -5,9 +5,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <stdexcept>
 
@@ -26,6 +26,7 @@ using Complex = std::complex<double>;
 constexpr Eigen::Index most_modes = 1000;  ///< of the symmetric part in the first space
 constexpr double tolerance = 1e-9;         ///< of directions
 constexpr double largest_residual = 1e-6;  ///< of a pair
+constexpr double refined_tolerance = 1e-9;  ///< of a pair that serves as a basis
 
 /// The lowest modes of the symmetric part of Q with M. It need not be definite: it is shifted until
 /// it is.
@@ -62,31 +63,27 @@ SparseMatrix with_little_mass(const SparseMatrix& mass) {
   return more;
 }
 
-/// Priority of an eigenvalue.
-using Rank = std::function<double(Complex)>;
-
 class SparseSearch {
  public:
-  SparseSearch(const SparseSystem& system, const SpectrumWindow& window)
-      : pencil_(system), window_(window) {
-    SparseCholesky(with_little_mass(system.mass), "the mass matrix");
-  }
+  SparseSearch(const SparseSystem& system, const SpectrumWindow& window, const SpectrumWork& work)
+      : pencil_(system), window_(window), work_(work) {}
 
   SparseSpectrum run();
-  /// @param rank  of an eigenvalue: its priority
-  /// @param count of the pairs that are wanted most
-  SparseSpectrum run(const SpectrumBasis& basis, const Rank& rank, int count);
+  TwoSidedPairs run(const TwoSidedPairs& guesses, double height);
+  int factorisations() const { return factorisations_; }
 
  private:
   Eigen::Index size() const { return pencil_.size(); }
   void start();
   void add(const Eigen::VectorXd& vector);
   double add_complex(const Eigen::VectorXcd& vector);
-  void improve(Pair& pair, const Eigen::VectorXcd& vector) const;
   void project();
-  void refine();
   void search(std::size_t most_at_once);
-  void search_group(const std::vector<Complex>& group, double low, double high);
+  void search_group(std::size_t first, std::size_t last, double low, double high);
+  Eigen::MatrixXcd start_of(std::size_t first, std::size_t last, const SparseFactor& factor);
+  void keep_sides(const NearestPairs& found, Complex shift, const SparseFactor& factor, double low,
+                  double high);
+  TwoSidedPairs sorted_sides() const;
   void add_modes_below(double omega);
   double height_for_count() const;
   bool is_near(Complex s) const;
@@ -95,9 +92,9 @@ class SparseSearch {
 
   SparsePencil pencil_;
   SpectrumWindow window_;
-  double height_ = 0.0;  ///< up to where pairs are refined
-  Rank rank_;            ///< of pairs that are refined one by one
-  double least_rank_ = -std::numeric_limits<double>::infinity();  ///< of pairs that are refined
+  const SpectrumWork& work_;
+  double height_ = 0.0;          ///< up to where pairs are searched
+  bool starts_at_pairs_ = false;  ///< whether pairs_ are good enough to begin with
   Modes modes_;
   Eigen::MatrixXd basis_;    ///< V with Vᵀ M V = 1
   Eigen::MatrixXd momenta_;  ///< M V
@@ -105,6 +102,7 @@ class SparseSearch {
   double represented_ = std::numeric_limits<double>::infinity();  ///< ω up to which V has modes
   std::vector<Pair> pairs_;                                       ///< near the window
   std::vector<Complex> far_;                                      ///< approximations above
+  std::vector<Pair> rights_, lefts_;                              ///< of both sides, as found
   std::mt19937 generator_{1};
   int factorisations_ = 0;
 };
@@ -240,100 +238,99 @@ void SparseSearch::project() {
   }
 }
 
-/// The last step of inverse iteration, which no projection follows: s by Newton's method on
-/// xᴴ P(s) x = 0.
-void SparseSearch::improve(Pair& pair, const Eigen::VectorXcd& vector) const {
-  pair.x = vector.normalized();
-  for (int step = 0; step < 3; ++step) {
-    const Complex slope = pair.x.dot(pencil_.slope(pair.s, pair.s, pair.x));
-    if (slope == 0.0) return;
-    pair.s -= pair.x.dot(pencil_.multiply(pair.s, pair.x)) / slope;
-  }
-}
-
-/// Rounds of inverse iteration until no pair adds anything to the basis.
-void SparseSearch::refine() {
-  constexpr int max_rounds = 12;
-  for (int round = 0; round < max_rounds; ++round) {
-    const double width = std::max(0.04 * std::pow(0.5, round), 1e-3) * height_;
-    bool have_converged = true;
-    std::vector<Pair> improved = pairs_;
-    for (std::size_t first = 0; first < pairs_.size();) {
-      if (rank_(pairs_[first].s) < least_rank_) {
-        ++first;
-        continue;
-      }
-      std::size_t last = first;
-      while (last < pairs_.size() && std::abs(pairs_[last].s - pairs_[first].s) <= width) ++last;
-      // Beside the group, so that no member of it drowns the others.
-      const Complex shift = 0.5 * (pairs_[first].s + pairs_[last - 1].s) + 0.5 * width;
-      const SparseFactor factor = pencil_.factorise(shift);
-      ++factorisations_;
-      for (; first < last; ++first) {
-        const Pair& pair = pairs_[first];
-        const Eigen::VectorXcd vector = factor.solve(pencil_.slope(pair.s, shift, pair.x));
-        have_converged &= add_complex(vector) <= tolerance;
-        improve(improved[first], vector);
-      }
-    }
-    if (have_converged) {
-      pairs_ = std::move(improved);
-      return;
-    }
-    project();
-  }
-}
-
 /// All pairs around those of the projection, by shift and invert for groups of neighbours.
 /// @param most_at_once pairs of a group
 void SparseSearch::search(std::size_t most_at_once) {
-  std::vector<Complex> expected;
-  for (const Pair& pair : pairs_) expected.push_back(pair.s);
-  std::sort(expected.begin(), expected.end(),
-            [](Complex a, Complex b) { return a.imag() < b.imag(); });
+  rights_.clear();
+  lefts_.clear();
+  std::sort(pairs_.begin(), pairs_.end(),
+            [](const Pair& a, const Pair& b) { return a.s.imag() < b.s.imag(); });
+  const std::size_t num = pairs_.size();
   const std::size_t num_groups =
-      std::max<std::size_t>(1, (expected.size() + most_at_once - 1) / most_at_once);
+      std::max<std::size_t>(1, (num + most_at_once - 1) / most_at_once);
   double low = 0.0;
   for (std::size_t k = 0; k < num_groups; ++k) {
-    const std::size_t first = k * expected.size() / num_groups;
-    const std::size_t last = (k + 1) * expected.size() / num_groups;
+    const std::size_t first = k * num / num_groups;
+    const std::size_t last = (k + 1) * num / num_groups;
     // Groups meet halfway between neighbours.
-    const double high = last < expected.size()
-                            ? 0.5 * (expected[last - 1].imag() + expected[last].imag())
-                            : std::max(1.1 * height_, low);
-    const auto begin = expected.begin();
-    const std::vector<Complex> group(begin + static_cast<std::ptrdiff_t>(first),
-                                     begin + static_cast<std::ptrdiff_t>(last));
-    search_group(group, low, high);
+    const double high = last < num ? 0.5 * (pairs_[last - 1].s.imag() + pairs_[last].s.imag())
+                                   : std::max(1.1 * height_, low);
+    search_group(first, last, low, high);
     low = high;
   }
-  project();
 }
 
-/// @param group expected eigenvalues, ascending Im s, with low <= Im s <= high
-void SparseSearch::search_group(const std::vector<Complex>& group, double low, double high) {
-  constexpr Eigen::Index start_width = 2;
-  if (!group.empty()) low = std::max(low, 0.9 * group.front().imag());
+/// What a Krylov space grows from: a mixture of the vectors at hand, or two random ones, so that it
+/// finds eigenvalues that coincide. More would be of no use: its degree counts, not its width.
+Eigen::MatrixXcd SparseSearch::start_of(std::size_t first, std::size_t last,
+                                        const SparseFactor& factor) {
+  const Eigen::Index width = starts_at_pairs_ ? 1 : 2;
+  std::normal_distribution<double> normal;
+  const auto random = [&] { return Complex(normal(generator_), normal(generator_)); };
+  Eigen::MatrixXcd start = Eigen::MatrixXcd::Zero(size(), width);
+  if (starts_at_pairs_ && first < last) {
+    for (Eigen::Index j = 0; j < width; ++j)
+      for (std::size_t i = first; i < last; ++i) start.col(j) += random() * pairs_[i].x;
+    return start;
+  }
+  for (Complex& entry : start.reshaped()) entry = random();
+  return factor.solve(pencil_.system().mass * start);
+}
+
+/// @param first, last of pairs_: expected, with low <= Im s <= high
+void SparseSearch::search_group(std::size_t first, std::size_t last, double low, double high) {
+  const double begin = first == 0 ? -1e-3 * height_ : low;
+  if (first < last) low = std::max(low, 0.9 * pairs_[first].s.imag());
   NearestPairsWanted wanted;
   wanted.shift = Complex(0.003 * height_, 0.5 * (low + high));
   wanted.radius = 0.5 * (high - low);
-  for (const Complex& s : group)
-    wanted.radius = std::max(wanted.radius, 1.01 * std::abs(s - wanted.shift));
-  wanted.expected = static_cast<Eigen::Index>(group.size());
+  for (std::size_t i = first; i < last; ++i)
+    wanted.radius = std::max(wanted.radius, 1.01 * std::abs(pairs_[i].s - wanted.shift));
+  wanted.expected = static_cast<Eigen::Index>(last - first);
   wanted.most_steps = 5 * wanted.expected + 60;
+  if (starts_at_pairs_) wanted.tolerance = refined_tolerance;
   const SparseFactor factor = pencil_.factorise(wanted.shift);
   ++factorisations_;
-  std::normal_distribution<double> normal;
-  Eigen::MatrixXcd start(size(), start_width);
-  for (Complex& entry : start.reshaped()) entry = {normal(generator_), normal(generator_)};
-  start = factor.solve(pencil_.system().mass * start);
-  const NearestPairs found = nearest_pairs(pencil_, factor, wanted, start);
+  const NearestPairs found = nearest_pairs(pencil_, factor, wanted, start_of(first, last, factor));
   for (const Pair& pair : found.pairs) {
-    if (pair.s.imag() < -1e-3 * height_ || !is_near(pair.s)) continue;
+    if (pair.s.imag() < -1e-3 * height_ || !is_near(pair.s) || starts_at_pairs_) continue;
     // Turned so that most of it is real.
     const Complex square = (pair.x.transpose() * pair.x)(0);
     add_complex(pair.x * std::polar(1.0, -0.5 * std::arg(square)));
   }
+  if (work_.sides == SpectrumWork::Sides::both)
+    keep_sides(found, wanted.shift, factor, begin, high);
+}
+
+/// Left vectors of the pairs of a group, begin <= Im s < end, by a step of inverse iteration.
+void SparseSearch::keep_sides(const NearestPairs& found, Complex shift, const SparseFactor& factor,
+                              double begin, double end) {
+  for (const Pair& pair : found.pairs) {
+    if (pair.s.imag() < begin || pair.s.imag() >= end || !is_near(pair.s)) continue;
+    Eigen::VectorXcd y =
+        factor.solve_adjoint(pencil_.slope_adjoint(pair.s, shift, pair.x)).normalized();
+    rights_.push_back(pair);
+    lefts_.push_back({pair.s, std::move(y)});
+  }
+}
+
+TwoSidedPairs SparseSearch::sorted_sides() const {
+  std::vector<std::size_t> order(rights_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+    return rights_[i].s.imag() < rights_[j].s.imag();
+  });
+  TwoSidedPairs pairs;
+  const auto num = static_cast<Eigen::Index>(order.size());
+  pairs.right.resize(size(), num);
+  pairs.left.resize(size(), num);
+  for (Eigen::Index j = 0; j < num; ++j) {
+    const std::size_t i = order[static_cast<std::size_t>(j)];
+    pairs.s.push_back(rights_[i].s);
+    pairs.right.col(j) = rights_[i].x;
+    pairs.left.col(j) = lefts_[i].x;
+  }
+  return pairs;
 }
 
 /// The pairs in a rectangle.
@@ -369,7 +366,9 @@ void SparseSearch::count(SparseSpectrum& spectrum) {
   for (const Pair& pair : pairs_) known.push_back(pair.s);
   const auto logarithm = [&](Complex s) {
     ++factorisations_;
-    return pencil_.factorise(s).log_determinant();
+    const SparseFactor factor = pencil_.factorise(s);
+    if (work_.on_count) work_.on_count(s, factor);
+    return factor.log_determinant();
   };
   const auto counted =
       count_in_rectangle(logarithm, spectrum.rectangle.left(), spectrum.rectangle.right(),
@@ -381,6 +380,7 @@ void SparseSearch::count(SparseSpectrum& spectrum) {
 
 SparseSpectrum SparseSearch::run() {
   constexpr int max_attempts = 4;
+  SparseCholesky(with_little_mass(pencil_.system().mass), "the mass matrix");
   std::size_t most_at_once = 24;
   start();
   for (int attempt = 1;; ++attempt) {
@@ -394,6 +394,7 @@ SparseSpectrum SparseSearch::run() {
       project();
     }
     search(most_at_once);
+    project();
     const double height = window_.count ? height_for_count() : height_;
     if (height > height_ && attempt < max_attempts) {
       // Some have come out higher than the first projection had them.
@@ -403,98 +404,43 @@ SparseSpectrum SparseSearch::run() {
     }
     SparseSpectrum spectrum = found_up_to(height);
     count(spectrum);
-    if (spectrum.is_complete || attempt == max_attempts) return spectrum;
+    if (spectrum.is_complete || attempt == max_attempts) {
+      spectrum.pairs = sorted_sides();
+      return spectrum;
+    }
     most_at_once = std::max<std::size_t>(most_at_once / 2, 2);
   }
 }
 
-SparseSpectrum SparseSearch::run(const SpectrumBasis& basis, const Rank& rank, int count) {
-  constexpr int max_attempts = 4;
-  rank_ = rank;
-  height_ = basis.height;
-  const SparseMatrix& mass = pencil_.system().mass;
-  dim_ = basis.vectors.cols();
-  const Eigen::MatrixXd momenta = mass * basis.vectors;
-  const Eigen::LLT<Eigen::MatrixXd> product(basis.vectors.transpose() * momenta);
-  basis_ = product.matrixL().solve(basis.vectors.transpose()).transpose();
-  momenta_ = mass * basis_;
-  project();
-  for (int attempt = 1; attempt <= max_attempts; ++attempt) {
-    std::vector<double> ranks;
-    for (const Pair& pair : pairs_) ranks.push_back(rank_(pair.s));
-    if (ranks.empty()) break;
-    std::sort(ranks.begin(), ranks.end(), std::greater<>());
-    const auto last = std::min(ranks.size(), static_cast<std::size_t>(count)) - 1;
-    // Refined they may be others.
-    if (least_rank_ <= ranks[last] && attempt > 1) break;
-    least_rank_ = ranks[last] - 1e-3 * std::abs(ranks[last]);
-    refine();
-  }
-  SparseSpectrum spectrum = found_up_to(height_);
-  spectrum.factorisations = factorisations_;
-  return spectrum;
+TwoSidedPairs SparseSearch::run(const TwoSidedPairs& guesses, double height) {
+  constexpr std::size_t most_at_once = 24;
+  height_ = height;
+  starts_at_pairs_ = true;
+  for (Eigen::Index j = 0; j < guesses.size(); ++j)
+    pairs_.push_back({guesses.s[static_cast<std::size_t>(j)], guesses.right.col(j)});
+  search(most_at_once);
+  return sorted_sides();
 }
 
 }  // namespace
 
-SpectrumBasis spectrum_basis(const std::vector<const SparseSpectrum*>& spectra) {
-  constexpr double new_share = 1e-7;  // of a direction
-  Eigen::Index columns = 0;
-  for (const SparseSpectrum* one : spectra) columns += 2 * one->right.cols();
-  SpectrumBasis basis;
-  basis.height = std::numeric_limits<double>::infinity();
-  Eigen::MatrixXd vectors(spectra.front()->right.rows(), columns);
-  columns = 0;
-  for (const SparseSpectrum* one : spectra) {
-    basis.height = std::min(basis.height, one->rectangle.height);
-    for (const auto& x : one->right.colwise()) {
-      vectors.col(columns++) = x.real() / x.norm();
-      vectors.col(columns++) = x.imag() / x.norm();
-    }
-  }
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(vectors);
-  qr.setThreshold(new_share);
-  basis.vectors = qr.householderQ() * Eigen::MatrixXd::Identity(vectors.rows(), qr.rank());
-  return basis;
-}
-
-std::vector<std::complex<double>> projected_eigenvalues(const SparseSystem& system,
-                                                        const SpectrumBasis& basis) {
-  const Eigen::MatrixXd& V = basis.vectors;
-  LinearSystem reduced;
-  reduced.mass = V.transpose() * (system.mass * V).eval();
-  reduced.velocity = V.transpose() * (system.velocity * V).eval();
-  reduced.position = V.transpose() * (system.position * V).eval();
-  reduced.gaps = reduced.forces = Eigen::MatrixXd(0, V.cols());
-  const SpectrumRectangle rectangle{basis.height};
-  std::vector<Complex> found;
-  for (const Eigenvalue& one : dense_eigenvalues(make_pencil(reduced)))
-    if (rectangle.contains(one.s)) found.push_back(one.s);
-  return found;
-}
-
-SparseSpectrum fastest_near(const SparseSystem& system, const SpectrumBasis& basis, int count) {
-  if (count < 1) throw std::invalid_argument(fmt::format("sparse eigenvalues: {} are none", count));
-  return SparseSearch(system, {})
-      .run(
-          basis, [](Complex s) { return s.real(); }, count);
-}
-
-SparseSpectrum closest_near(const SparseSystem& system, const SpectrumBasis& basis, Complex place,
-                            int count) {
-  if (count < 1) throw std::invalid_argument(fmt::format("sparse eigenvalues: {} are none", count));
-  return SparseSearch(system, {})
-      .run(
-          basis, [place](Complex s) { return -std::abs(s - place); }, count);
-}
-
-SparseSpectrum sparse_spectrum(const SparseSystem& system, const SpectrumWindow& window) {
+SparseSpectrum sparse_spectrum(const SparseSystem& system, const SpectrumWindow& window,
+                               const SpectrumWork& work) {
   const bool has_count = window.count && *window.count > 0;
   const bool has_frequency = window.frequency > 0.0 && std::isfinite(window.frequency);
   if (has_count == has_frequency)
     throw std::invalid_argument(
         "sparse eigenvalues: the window is neither a count nor a frequency");
-  return SparseSearch(system, window).run();
+  return SparseSearch(system, window, work).run();
+}
+
+TwoSidedPairs pairs_near(const SparseSystem& system, const TwoSidedPairs& guesses, double height,
+                         int& factorisations) {
+  const SpectrumWork work{SpectrumWork::Sides::both, nullptr};
+  SparseSearch search(system, {}, work);
+  TwoSidedPairs pairs = search.run(guesses, height);
+  factorisations += search.factorisations();
+  return pairs;
 }
 
 }  // namespace stridor

@@ -1,6 +1,8 @@
 // Eigenvalues of a large sparse quadratic problem in a window, with a count that none is missed.
 #pragma once
 
+#include <complex>
+#include <functional>
 #include <vector>
 
 #include "solvers/eigenvalues/secular_eigenvalues.hpp"
@@ -23,6 +25,17 @@ struct SpectrumRectangle {
   }
 };
 
+/// Eigenpairs of a system from the real axis to a tenth above a window: what spans the motions of a
+/// system like it.
+struct TwoSidedPairs {
+  std::vector<std::complex<double>> s;  ///< ascending Im s, not below the axis but for rounding
+  Eigen::MatrixXcd right;               ///< P(s) x = 0, one per column, of length 1
+  /// About yᴴ P(s) = 0, of length 1: a step of inverse iteration that begins with x.
+  Eigen::MatrixXcd left;
+
+  Eigen::Index size() const { return right.cols(); }
+};
+
 /// Eigenvalues in a rectangle, and whether their number is verified.
 struct SparseSpectrum {
   /// Im s >= 0, ascending Im s, then ascending Re s; the residuals are scaled_residual().
@@ -36,6 +49,14 @@ struct SparseSpectrum {
   int factorisations = 0;    ///< of P(s)
   Eigen::VectorXd omega;     ///< of the lowest modes of the symmetric part, rad/s; 0 below zero
   Eigen::MatrixXd modes;     ///< their shapes, mass-normalised
+  TwoSidedPairs pairs;       ///< where they are asked for
+};
+
+/// What a search does besides.
+struct SpectrumWork {
+  enum class Sides { right, both } sides = Sides::right;  ///< `both`: with SparseSpectrum::pairs
+  /// Called with every s and factor of P(s) that the count takes.
+  std::function<void(std::complex<double>, const SparseFactor&)> on_count;
 };
 
 /// All eigenvalues of M q̈ + P q̇ + Q q = 0 in a window (docs/theory.md, 10.5).
@@ -46,14 +67,6 @@ struct SparseSpectrum {
 /// compared with count_in_rectangle() of det P(s). Where one is missing, the search is repeated
 /// with smaller groups.
 ///
-/// fastest_near() and closest_near() refine pairs (s, x) by inverse iteration,
-///
-///   P(σ) y = (P(σ) − P(s))/(σ − s) x,   y = (x − P(σ)⁻¹ P(s) x)/(σ − s)
-///
-/// (Neumaier 1985; a pair that is exact stays as it is) with shifts σ near groups of them: y joins
-/// the space, and all pairs are projected anew. A pair has converged when y adds less than 1e-9 to
-/// the space.
-///
 /// @param window a count, or a frequency; with a count there may be more
 /// @return status in is_complete; where it is false, the eigenvalues found
 /// @throws std::invalid_argument as SparsePencil, or if the window is neither
@@ -61,32 +74,16 @@ struct SparseSpectrum {
 /// the
 ///         symmetric part, or as SparsePencil
 /// Cost: about 2 factorisations for every pair, and 70 for the count.
-SparseSpectrum sparse_spectrum(const SparseSystem& system, const SpectrumWindow& window);
+SparseSpectrum sparse_spectrum(const SparseSystem& system, const SpectrumWindow& window,
+                               const SpectrumWork& work = {});
 
-/// Eigenvectors of systems like one another, as a basis for one between them.
-struct SpectrumBasis {
-  Eigen::MatrixXd vectors;  ///< orthonormal
-  double height = 0.0;      ///< up to where they are all there, rad/s
-};
-
-/// @param spectra of systems of one size, at least one
-SpectrumBasis spectrum_basis(const std::vector<const SparseSpectrum*>& spectra);
-
-/// Eigenvalues up to the height of a basis by Galerkin's projection: approximations, among which
-/// may be some near which the system has none. Im s >= 0.
-/// Cost: that of a dense problem with the columns of the basis, without factorisations.
-std::vector<std::complex<double>> projected_eigenvalues(const SparseSystem& system,
-                                                        const SpectrumBasis& basis);
-
-/// Those of the projected eigenvalues that grow fastest, refined as in sparse_spectrum(). Growth in
-/// a direction that the basis lacks is missed, and nothing is counted.
-/// @param count how many of them to refine, >= 1
-/// @throws as sparse_spectrum()
-/// Cost: a few factorisations.
-SparseSpectrum fastest_near(const SparseSystem& system, const SpectrumBasis& basis, int count);
-
-/// Likewise those closest to a place in the complex plane.
-SparseSpectrum closest_near(const SparseSystem& system, const SpectrumBasis& basis,
-                            std::complex<double> place, int count);
+/// The pairs of a system that is like another one, by the same method from the vectors of that one;
+/// nothing is counted.
+/// @param guesses of the other system
+/// @param height  of the window, rad/s
+/// @param factorisations to which those of P(s) are added
+/// Cost: a factorisation for 24 pairs, and about six solves for each.
+TwoSidedPairs pairs_near(const SparseSystem& system, const TwoSidedPairs& guesses, double height,
+                         int& factorisations);
 
 }  // namespace stridor
