@@ -187,6 +187,7 @@ SampledSpectrum CountedSpectra::at(double value) {
   const Member one = member(value);
   if (!one.factors || value < range_->first || value > range_->second)
     return search(value, one.system);
+  if (one.factors->size() == 1) return searched_.at(range_->first);  // the same system
   if (const auto found = counted(one)) return *found;
   join(one);
   if (const auto found = counted(one)) return *found;
