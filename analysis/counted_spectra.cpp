@@ -60,10 +60,22 @@ SampledSpectrum CountedSpectra::search(double value, const SparseSystem& system)
   return searched_[value] = sampled(eigenvalues_of(whole_spectrum(system, window_)));
 }
 
-/// The whole search at the first value, and what follows from it.
 void CountedSpectra::begin() {
   has_begun_ = true;
   if (!range_) return;
+  try {
+    make_basis();
+    return;
+  } catch (const NumericalError&) {  // of another value than the one asked for
+  } catch (const ConfigError&) {
+  }
+  span_.reset();
+  basis_.reset();
+  count_.reset();
+}
+
+/// The whole search at the first value, and what follows from it.
+void CountedSpectra::make_basis() {
   SparseSystem first = system_(range_->first);
   SystemSpan span(first);
   const SparseSystem last = system_(range_->second);
@@ -81,6 +93,11 @@ void CountedSpectra::begin() {
   searched_[range_->first] = sampled(eigenvalues_of(spectrum));
   num_first_ = spectrum.num_counted;
   const double height = spectrum.rectangle.height;
+  // Those with left vectors must be those that were counted.
+  int num_sided = 0;
+  for (const std::complex<double>& s : spectrum.pairs.s)
+    if (spectrum.rectangle.contains(s)) num_sided += s.imag() > 0.0 ? 2 : 1;
+  if (num_sided != num_first_) return;
   for (const std::complex<double>& s : spectrum.pairs.s)
     if (s.imag() > height) above_.push_back(s);
   for (const double omega : spectrum.omega)
@@ -135,14 +152,16 @@ CountedSpectra::Member CountedSpectra::member(double value) {
   return one;
 }
 
-/// Adds a system to the basis.
-void CountedSpectra::join(const Member& member) {
-  if (!member.factors) return;
+/// Adds a system to the basis. @returns whether it did
+bool CountedSpectra::join(const Member& member) {
+  constexpr std::size_t most_systems = 24;
+  if (!member.factors || basis_->num_systems() >= most_systems) return false;
   const Activity finding("eigenvectors of a value");
   ++effort_.num_refined;
   int factorisations = 0;
   basis_->add(pairs_near(member.system, basis_->latest(), basis_->rectangle().height,
                          factorisations));
+  return true;
 }
 
 ProjectedSpectrum CountedSpectra::project(const Member& member,
@@ -189,8 +208,15 @@ SampledSpectrum CountedSpectra::at(double value) {
     return search(value, one.system);
   if (one.factors->size() == 1) return searched_.at(range_->first);  // the same system
   if (const auto found = counted(one)) return *found;
-  join(one);
-  if (const auto found = counted(one)) return *found;
+  bool has_joined = false;
+  try {
+    has_joined = join(one);
+  } catch (const NumericalError&) {  // the whole search says what is wrong
+  }
+  if (has_joined) {
+    if (const auto found = counted(one)) return *found;
+    basis_->drop_latest();
+  }
   return search(value, one.system);
 }
 

@@ -35,7 +35,7 @@ struct CountedEffort {
 /// good at the next middles. Every eigenvalue of a projection has its residual at full size; where
 /// one fails, the value joins the basis, and where that does not help or a count differs, the value
 /// takes a whole search. Where the parameter enters as one factor, CountAlong counts at every value;
-/// else a spectrum says that it was not counted.
+/// else a spectrum says that it was not counted. What near() and around() find is certified, not counted.
 class CountedSpectra {
  public:
   using System = std::function<SparseSystem(double value)>;
@@ -58,9 +58,10 @@ class CountedSpectra {
   };
 
   void begin();
+  void make_basis();
   void extend();
   Member member(double value);
-  void join(const Member& member);
+  bool join(const Member& member);
   ProjectedSpectrum project(const Member& member,
                             std::optional<std::complex<double>> place = std::nullopt);
   std::optional<SampledSpectrum> counted(const Member& member);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "app/stability/key_range.hpp"
 #include "app/stability/lowest_eigenvalues.hpp"
@@ -105,10 +107,13 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
       memory_limit());
   LocusOptions within = options;
   within.trusted = trusted;
-  if (method == SpectrumMethod::counted)
-    return sample_locus(
-        family.spectra(key, values, within, std::pair(range.front(), range.back())), range, within,
-        sparing_effort);
+  if (method == SpectrumMethod::counted) {
+    // Between the values of a whole number there are none to project on.
+    std::optional<std::pair<double, double>> between;
+    if (!varied.is_integer) between.emplace(range.front(), range.back());
+    return sample_locus(family.spectra(key, values, within, between), range, within,
+                        sparing_effort);
+  }
   const PencilFamily pencils = family.along(key, values, range.front(), range.back());
   if (varied.is_integer) {
     LocusOptions wholes = options;

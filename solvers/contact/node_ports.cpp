@@ -89,7 +89,8 @@ void NodePorts::restore(std::span<const double> rows) {
   for (std::size_t port = others; port < rows.size(); port += ports_per_node) {
     Rows node;
     for (std::size_t i = 0; i < node.size(); ++i) node[i] = static_cast<int>(rows[port + i]);
-    slot_at_.emplace(node, slots_.size());
+    if (!slot_at_.emplace(node, slots_.size()).second)
+      throw std::invalid_argument("NodePorts::restore: the state has a node twice");
     slots_.push_back(node);
   }
   body_->set_num_ports(port_of(slots_.size()));

@@ -23,14 +23,19 @@ class LargestEigenvalues {
         basis_(size, most_ + num_starts),
         projection_(Eigen::MatrixXcd::Zero(most_ + num_starts, most_)) {}
 
-  /// @param least size from which on eigenvalues must have converged
+  /// @param least   size from which on eigenvalues must have converged
+  /// @param is_real whether the operator is: eigenvalues then come with their conjugates, so that their
+  ///                logarithms add up to a real number whether they have converged or not
   template <typename Operator>
-  bool find(const Operator& apply, double least) {
+  bool find(const Operator& apply, double least, bool is_real) {
     std::mt19937 generator(1);
     std::normal_distribution<double> normal;
     for (int i = 0; i < num_starts; ++i) {
       Eigen::VectorXcd start(basis_.rows());
-      for (Complex& entry : start) entry = {normal(generator), normal(generator)};
+      for (Complex& entry : start) {
+        const double real = normal(generator);
+        entry = {real, is_real ? 0.0 : normal(generator)};
+      }
       append(apply(start), nullptr);
     }
     while (true) {
@@ -111,7 +116,7 @@ void CountAlong::add(Complex s, const SparseFactor& factor) {
         if (direction_.mass.nonZeros() > 0) force += s * s * (direction_.mass * x);
         return factor.solve(force);
       },
-      least_counting / reach_);
+      least_counting / reach_, s.imag() == 0.0);
   place.gamma = largest.values();
 }
 

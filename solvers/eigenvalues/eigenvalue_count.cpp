@@ -155,7 +155,11 @@ std::optional<int> count_in_rectangle(const std::function<Complex(Complex)>& log
                                        Complex(left, height), Complex(left, 0.0)};
   const auto turned = PhaseCounter(logarithm, known, corners).change();
   if (!turned) return std::nullopt;
-  int count = static_cast<int>(std::lround(*turned / std::numbers::pi));
+  // A phase that does not come back to where it began is that of no determinant.
+  constexpr double rounding = 0.2;
+  const double half_turns = *turned / std::numbers::pi;
+  if (!(std::abs(half_turns - std::round(half_turns)) <= rounding)) return std::nullopt;
+  int count = static_cast<int>(std::lround(half_turns));
   for (const Complex& zero : known) {
     const bool is_inside = zero.imag() <= height && zero.real() >= left && zero.real() <= right;
     if (is_inside) count += zero.imag() > 0.0 ? 2 : 1;

@@ -12,7 +12,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double largest_residual = 1e-6;  ///< of a pair, as in sparse_spectrum()
+constexpr double certified_residual = 1e-6;  ///< of a pair, as in sparse_spectrum()
 
 /// Columns that span those of a matrix, and how they come from them.
 struct Orthonormal {
@@ -22,7 +22,7 @@ struct Orthonormal {
 
 Orthonormal orthonormal(const Eigen::MatrixXcd& matrix) {
   constexpr double new_share = 1e-10;  // of a direction
-  const Eigen::Index m = matrix.cols();
+  const Eigen::Index m = std::min(matrix.rows(), matrix.cols());
   const Eigen::HouseholderQR<Eigen::MatrixXcd> tall(matrix);
   const Eigen::MatrixXcd square =
       tall.matrixQR().topRows(m).triangularView<Eigen::Upper>().toDenseMatrix();
@@ -37,7 +37,7 @@ Orthonormal orthonormal(const Eigen::MatrixXcd& matrix) {
   const Eigen::MatrixXcd leading = small.matrixQR().topLeftCorner(rank, rank);
   const Eigen::MatrixXcd inverse = leading.triangularView<Eigen::Upper>().solve(
       Eigen::MatrixXcd::Identity(rank, rank).eval());
-  result.mixture = Eigen::MatrixXcd::Zero(m, rank);
+  result.mixture = Eigen::MatrixXcd::Zero(matrix.cols(), rank);
   result.mixture.topRows(rank) = inverse;
   result.mixture = (small.colsPermutation() * result.mixture).eval();
   return result;
@@ -60,6 +60,11 @@ double scaled_residual(const SparseSystem& system, Complex s, const Eigen::Vecto
 
 void PairBasis::add(TwoSidedPairs pairs) {
   known_.push_back(std::move(pairs));
+  groups_.clear();
+}
+
+void PairBasis::drop_latest() {
+  known_.pop_back();
   groups_.clear();
 }
 
@@ -246,9 +251,9 @@ bool PairBasis::is_pair(const Group& group, const Eigen::VectorXd& factors,
                         double& residual_of) const {
   residual_of = residual(group, factors, s, a);
   // The rounding of the Gram matrix may hide a smaller one.
-  if (residual_of > largest_residual && residual_of < 1e-3)
+  if (residual_of > certified_residual && residual_of < 1e-3)
     residual_of = scaled_residual(system, s, vector_of(group, a));
-  if (residual_of <= largest_residual) return true;
+  if (residual_of <= certified_residual) return true;
   // In a rigid motion all terms of the residual are rounding.
   if (std::abs(s) >= 1e-6 * rectangle_.height) return false;
   const SparsePencil pencil(system);

@@ -38,6 +38,8 @@ class PairBasis {
   std::size_t num_systems() const { return known_.size(); }
   /// @param pairs of one more system
   void add(TwoSidedPairs pairs);
+  /// Leaves out the pairs that joined last; others must be there.
+  void drop_latest();
 
   /// @param factors of the system in the span
   /// @param place where there is one, only the groups around it are looked at

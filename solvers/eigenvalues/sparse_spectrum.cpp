@@ -307,6 +307,9 @@ void SparseSearch::keep_sides(const NearestPairs& found, Complex shift, const Sp
                               double begin, double end) {
   for (const Pair& pair : found.pairs) {
     if (pair.s.imag() < begin || pair.s.imag() >= end || !is_near(pair.s)) continue;
+    // Conjugates are counted with what is above the real axis.
+    constexpr double real_enough = 1e-9;
+    if (pair.s.imag() < -real_enough * std::abs(pair.s)) continue;
     Eigen::VectorXcd y =
         factor.solve_adjoint(pencil_.slope_adjoint(pair.s, shift, pair.x)).normalized();
     rights_.push_back(pair);

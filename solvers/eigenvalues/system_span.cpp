@@ -73,7 +73,7 @@ double SystemSpan::product(const SparseSystem& a, const SparseSystem& b) const {
 std::optional<Eigen::VectorXd> SystemSpan::factors(const SparseSystem& system) {
   if (system.size() != parts_[0].size())
     throw std::invalid_argument("system span: the systems differ in size");
-  constexpr double rounding = 1e-14;  // of the entries of a sum
+  constexpr double rounding = 2e-15;  // of the entries of a sum
   Eigen::VectorXd factors = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(parts_.size()));
   SparseSystem rest{difference(system.mass, parts_[0].mass),
                     difference(system.velocity, parts_[0].velocity),

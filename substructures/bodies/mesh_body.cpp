@@ -91,7 +91,17 @@ const Schema& MeshBodyParameters::schema() {
                    {.doc = "Surface nodes kept for contact.", .optional = true})
           .section("reduction", &P::reduction,
                    {.doc = "Craig-Bampton reduction; default: every unknown is kept.",
-                    .optional = true});
+                    .optional = true})
+          .check([](const P& body, std::vector<Problem>& problems) {
+            if (!body.spin || body.springs.empty() || body.damping.beta == 0.0) return;
+            problems.push_back(
+                {"damping.beta",
+                 "damps the springs too, which rest while the body spins; damp its materials "
+                 "(material.damping.beta) and leave it at 0",
+                 {},
+                 0,
+                 0});
+          });
   return keys;
 }
 

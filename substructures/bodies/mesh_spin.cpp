@@ -8,6 +8,7 @@
 #include <cmath>
 #include <complex>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -85,12 +86,11 @@ class MeshSpin {
   void check_shape() const {
     const Roundness shape = roundness(named_.mesh, sections_, axis_);
     if (shape.num_sectors == 0 || shape.num_sectors > 2) return;
-    const auto worst =
-        std::max_element(shape.harmonics.begin(), shape.harmonics.begin() + shape.num_sectors);
+    const auto worst = std::max_element(shape.harmonics.begin(), shape.harmonics.end());
     throw ConfigError(
         "spin",
         fmt::format("is of a body of revolution, or of one that repeats itself three times or more "
-                    "around its axis; of the mass of this one {:.2g} % goes with {} times the angle, "
+                    "around its axis; of mass or stiffness of this one {:.2g} % goes with {} times the angle, "
                     "and its centre is {:.3g} m off the axis. Seen from space its matrices would "
                     "change all the time. Give the axis by `about`, or let it be the master of sliding "
                     "contacts that a drive moves",
@@ -103,8 +103,10 @@ class MeshSpin {
       const auto section = static_cast<std::size_t>(sections_.of_element[element]);
       if (is_seen[section]) continue;
       is_seen[section] = true;
-      const int node = named_.mesh.nodes_of(element)[0];
-      const Eigen::Vector3d place = named_.mesh.nodes.row(node).transpose();
+      Eigen::Vector3d place = Eigen::Vector3d::Zero();
+      const std::span<const int> nodes = named_.mesh.nodes_of(element);
+      for (const int node : nodes)
+        place += named_.mesh.nodes.row(node).transpose() / static_cast<double>(nodes.size());
       for (const double angle : {0.5, 1.3}) {
         const Eigen::Matrix3d R = Eigen::AngleAxisd(angle, axis_.direction).toRotationMatrix();
         const Eigen::Vector3d beyond = axis_.point + R * (place - axis_.point);
@@ -248,6 +250,9 @@ class MeshSpin {
             entries.emplace_back(dof, static_cast<int>(3 * node + i), of_node[i]);
       }
     }
+    if (std::find(is_found.begin(), is_found.end(), false) != is_found.end())
+      throw ConfigError("ties", "leave a displacement that belongs to no node, of which a body that spins "
+                                "must have none");
     SparseMatrix home(constraints_.num_dofs, static_cast<Eigen::Index>(constraints_.rows.size()));
     home.setFromTriplets(entries.begin(), entries.end());
     return home;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
@@ -112,8 +113,17 @@ std::vector<IntegrationPoint> even_points(ElementShape shape) {
           points.push_back({{base.place.x(), base.place.y(), at(k)}, base.weight * 2.0 / count});
       return points;
     default:
-      return mass_points(shape);
+      break;
   }
+  // Tetrahedra: the middles of small ones.
+  constexpr int order = 5;
+  for (int i = 0; i <= order; ++i)
+    for (int j = 0; i + j <= order; ++j)
+      for (int k = 0; i + j + k <= order; ++k)
+        points.push_back({(Eigen::Vector3d(i, j, k).array() + 0.25) / (order + 1.0), 0.0});
+  for (IntegrationPoint& point : points)
+    point.weight = natural_size(shape) / static_cast<double>(points.size());
+  return points;
 }
 
 SparseMatrix between_nodes(const Mesh& mesh, const Entries& entries) {
@@ -246,29 +256,38 @@ Roundness roundness(const Mesh& mesh, const MeshSections& sections, const AxisOf
   // Directions across the axis.
   const Eigen::Vector3d first = axis.direction.unitOrthogonal();
   const Eigen::Vector3d second = axis.direction.cross(first);
-  std::array<std::complex<double>, num_harmonics> sums{};
+  std::array<std::complex<double>, num_harmonics> masses{}, stiffnesses{};
   double mass = 0.0;
+  double stiffness = 0.0;
   std::complex<double> arm = 0.0;
   PointTable table(even_points);
   for (std::size_t element = 0; element < mesh.num_elements(); ++element) {
-    const double density = sections.of(element).density;
+    const ElementSection& section = sections.of(element);
+    const double modulus = section.law.matrix().trace();
     table.for_points(mesh, element, [&](std::size_t, const ElementPoint& point) {
       const Eigen::Vector3d from = point.place - axis.point;
       const std::complex<double> across(from.dot(first), from.dot(second));
-      const double share = density * point.volume;
+      const double share = section.density * point.volume;
       mass += share;
+      stiffness += modulus * point.volume;
       arm += share * across;
       const double radius = std::abs(across);
       if (radius == 0.0) return;
       const std::complex<double> turn = across / radius;
       std::complex<double> power = 1.0;
-      for (std::complex<double>& sum : sums) sum += share * (power *= turn);
+      for (std::size_t m = 0; m < masses.size(); ++m) {
+        power *= turn;
+        masses[m] += share * power;
+        stiffnesses[m] += modulus * point.volume * power;
+      }
     });
   }
   Roundness found;
   found.eccentricity = std::abs(arm) / mass;
   for (int m = 1; m <= num_harmonics; ++m) {
-    found.harmonics.push_back(std::abs(sums[static_cast<std::size_t>(m - 1)]) / mass);
+    const auto k = static_cast<std::size_t>(m - 1);
+    found.harmonics.push_back(
+        std::max(std::abs(masses[k]) / mass, std::abs(stiffnesses[k]) / stiffness));
     if (found.harmonics.back() > negligible) found.num_sectors = std::gcd(found.num_sectors, m);
   }
   return found;

@@ -47,7 +47,7 @@ SparseMatrix in_every_direction(const SparseMatrix& between_nodes, int dimension
 /// How much a body differs from a body of revolution.
 struct Roundness {
   double eccentricity = 0.0;  ///< distance of the centre of mass from the axis, m
-  /// |∫ ρ e^{imφ} dV| over the mass for m = 1, 2, …
+  /// |∫ ρ e^{imφ} dV| over the mass for m = 1, 2, …, or the same of tr D in the place of ρ, whichever is more
   std::vector<double> harmonics;
   /// Greatest number of equal sectors that those harmonics allow which are not negligible: 0 for a
   /// body of revolution, 1 for one without any symmetry.

@@ -397,6 +397,7 @@ TEST(BodyTypes, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
         "substructures/bodies/meshed_body.hpp", "substructures/bodies/meshed_body.cpp",
         "substructures/bodies/mesh_additions.hpp", "substructures/bodies/mesh_additions.cpp",
         "substructures/bodies/mesh_constraints.hpp", "substructures/bodies/mesh_constraints.cpp",
+        "substructures/bodies/mesh_spin.hpp", "substructures/bodies/mesh_spin.cpp",
         "substructures/bodies/named_mesh.hpp", "substructures/bodies/named_mesh.cpp",
         "substructures/bodies/nodal_body.cpp"}}};
   EXPECT_THAT(strangers_to(STRIDOR_SOURCE_DIR, types), IsEmpty());

@@ -263,6 +263,32 @@ TEST(MeshSpin, RefusesWhatIsNotAlikeAroundItsAxis) {
               HasSubstr("is not alike around the axis"));
 }
 
+TEST(MeshSpin, DampingOfTheBodyDoesNotTurnItsSprings) {
+  MeshBodyParameters body = clamped_annulus(10.0);
+  body.springs["bearing"] = {"rim", {}};
+  body.springs["bearing"].stiffness.xx = body.springs["bearing"].stiffness.yy = 1e6;
+  body.damping.beta = 1e-6;
+  std::vector<Problem> problems;
+  for (const auto& check : MeshBodyParameters::schema().checks) check(&body, problems);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].key, "damping.beta");
+}
+
+TEST(Roundness, WeighsStiffnessBesidesMass) {
+  const Mesh mesh = test::annulus_mesh({}, ElementShape::hex20);
+  MeshSections sections = one_section(mesh, steel());
+  ElementSection soft = steel();
+  soft.law = ElasticLaw(IsotropicElasticity{1e11, 0.3}, PlaneState::none);
+  sections.sections.push_back(soft);
+  for (std::size_t e = 0; e < mesh.num_elements() / 2; ++e) sections.of_element[e] = 1;
+  EXPECT_EQ(roundness(mesh, sections, {}).num_sectors, 1);
+}
+
+TEST(Roundness, TakesTetrahedraOfADiscForOne) {
+  const Mesh mesh = test::annulus_mesh({0.03, 0.16, 0.02, {4, 48, 1}}, ElementShape::tet10);
+  EXPECT_EQ(roundness(mesh, one_section(mesh, steel()), {}).num_sectors, 0);
+}
+
 TEST(MeshSpin, MaterialAxesAroundTheAxisAreAlike) {
   MeshBodyParameters body = clamped_annulus(10.0);
   body.material = {};
