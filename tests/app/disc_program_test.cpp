@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "io/run_file/run_file.hpp"
+#include "tests/support/annulus_mesh.hpp"
 #include "tests/support/eigenvalue_program.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -52,6 +54,111 @@ TEST(DiscProgram, EveryModellingStepIsARunOfOneScene) {
                                  "substructures.lower.damping.beta=1e-6"}))
                   .largest,
               -46.177, 5e-4);
+}
+
+/// A disc with rounded pads, one on each face, as a plate and as a body of bricks about y. The pads are masses on
+/// springs that join circumference and axis.
+std::string plate_and_pads() {
+  return R"(format: 2
+substructures:
+  disc: {type: annular_plate, inner_radius: 80 mm, outer_radius: 160 mm, thickness: 6 mm,
+         material: {youngs_modulus: 210 GPa, poissons_ratio: 0.3, density: 7850}, nodal_diameters: 8, radial_modes: 3,
+         radial_terms: 10, spin: 30, damping: {beta: 1.0e-7}}
+  upper: &pad
+    type: lumped
+    directions: [x, y, z]
+    masses: {block: {mass: 0.25}}
+    springs: {backing: {at: block, stiffness: {xx: 4.0e+7, yy: 1.0e+8, zz: 6.0e+7, xy: 2.0e+7}}}
+    damping: {beta: 1.0e-7}
+  lower: *pad
+contacts:
+  upper: {slave: upper.block, master: disc.top, assumption: film, start: {radius: 120 mm},
+                   normal: {law: penalty, stiffness: 2.0e+8}, friction: {coefficient: 0.4}}
+  lower: {slave: lower.block, master: disc.bottom, assumption: film, start: {radius: 120 mm},
+          normal: {law: penalty, stiffness: 2.0e+8}, friction: {coefficient: 0.4}}
+drive: {load: -3000, load_on: [upper.block, lower.block], ramp: 0}
+)";
+}
+
+std::string bricks_and_pads() {
+  return R"(format: 2
+substructures:
+  disc:
+    type: mesh
+    file: disc.inp
+    material: {youngs_modulus: 210 GPa, poissons_ratio: 0.3, density: 7850}
+    surfaces:
+      bore: {cylinder: {axis: [0, 1, 0], radius: 80 mm}}
+      top: {box: {lowest: [0.105, 0.0029, -0.02], highest: [0.145, 0.0031, 0.02]}}
+      bottom: {box: {lowest: [0.105, -0.0031, -0.02], highest: [0.145, -0.0029, 0.02]}}
+    supports: {hub: {on: bore}}
+    spin: {speed: 30, about: {direction: [0, 1, 0]}, centrifugal: false}
+    damping: {alpha: 0, beta: 1.0e-7}
+    reduction: {fixed_interface_modes: 40}
+  upper:
+    type: lumped
+    directions: [x, y, z]
+    masses: {block: {mass: 0.25}}
+    springs: {backing: {at: block, stiffness: {xx: 6.0e+7, yy: 1.0e+8, zz: 4.0e+7, yz: -2.0e+7}}}
+    damping: {beta: 1.0e-7}
+  lower:
+    type: lumped
+    directions: [x, y, z]
+    masses: {block: {mass: 0.25}}
+    springs: {backing: {at: block, stiffness: {xx: 6.0e+7, yy: 1.0e+8, zz: 4.0e+7, yz: 2.0e+7}}}
+    damping: {beta: 1.0e-7}
+contacts:
+  upper: {slave: upper.block, master: disc.top, assumption: film, start: {at: [0.12, 0.003, 0]},
+          normal: {law: penalty, stiffness: 2.0e+8}, friction: {coefficient: 0.4}}
+  lower: {slave: lower.block, master: disc.bottom, assumption: film, start: {at: [0.12, -0.003, 0]},
+          normal: {law: penalty, stiffness: 2.0e+8}, friction: {coefficient: 0.4}}
+drives:
+  above: {load: -3000, load_on: [upper.block], ramp: 0}
+  below: {load: 3000, load_on: [lower.block], ramp: 0}
+)";
+}
+
+/// A mesh about y, as a file of Abaqus.
+void write_bricks(const std::filesystem::path& path) {
+  const Mesh mesh = annulus_mesh({0.08, 0.16, 0.006, {4, 48, 2}}, ElementShape::hex20);
+  std::ofstream file(path);
+  file.precision(12);
+  file << "*NODE\n";
+  for (Eigen::Index node = 0; node < mesh.nodes.rows(); ++node)
+    file << node + 1 << ", " << mesh.nodes(node, 0) << ", " << mesh.nodes(node, 2) << ", "
+         << -mesh.nodes(node, 1) << '\n';
+  file << "*ELEMENT, TYPE=C3D20\n";
+  for (std::size_t element = 0; element < mesh.num_elements(); ++element) {
+    file << element + 1;
+    int count = 0;
+    for (const int node : mesh.nodes_of(element)) file << (++count == 16 ? ",\n" : ", ") << node + 1;
+    file << '\n';
+  }
+}
+
+TEST(DiscProgram, ADiscOfBricksBetweenPadsHasTheEigenvaluesOfAPlate) {
+  const TemporaryFolder folder;
+  write_bricks(folder.path() / "disc.inp");
+  std::ofstream(folder.path() / "plate.yaml") << plate_and_pads();
+  std::ofstream(folder.path() / "bricks.yaml") << bricks_and_pads();
+  const auto vibrations = [&](const char* scene) {
+    std::vector<std::pair<double, double>> found;  // rad/s, 1/s
+    const Json eig = json_of({"eig", (folder.path() / scene).string(), "--count", "8"});
+    for (const Json& one : eig["eigenvalues"])
+      if (one[1].get<double>() > 0.0)
+        found.emplace_back(one[1].get<double>(), one[0].get<double>());
+    return found;
+  };
+  const auto plate = vibrations("plate.yaml");
+  const auto bricks = vibrations("bricks.yaml");
+  ASSERT_EQ(plate.size(), 8U);
+  ASSERT_EQ(bricks.size(), 8U);
+  // Shear, and bricks that give way below a point, are not in the plate. The waves of a pair decay differently
+  // by a factor of up to 15, with and against the rotation.
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_NEAR(bricks[i].first, plate[i].first, 0.025 * plate[i].first) << i;
+    EXPECT_NEAR(bricks[i].second, plate[i].second, 0.25 * std::abs(plate[i].second)) << i;
+  }
 }
 
 TEST(DiscProgram, ThresholdsOfMultipliersAndPenalty) {
