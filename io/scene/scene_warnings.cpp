@@ -55,7 +55,8 @@ void look_at_number(const Key& key, double value, const std::string& path, const
 void look_at_parameters(const Schema& schema, const void* object, std::vector<Problem>& warnings) {
   for (const Key& key : schema.keys) {
     if (key.kind != KeyKind::parameters) continue;
-    for (const NamedNumber& number : std::get<NamedNumbers>(key.read(object))) {
+    const Value given = key.read(object);
+    for (const NamedNumber& number : std::get<NamedNumbers>(given)) {
       if (number.is_used) continue;
       warnings.push_back({join_path(key.name, number.name),
                           "no expression of the scene uses this parameter",
