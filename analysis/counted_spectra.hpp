@@ -21,7 +21,7 @@ namespace stridor {
 SparseSpectrum whole_spectrum(const SparseSystem& system, SpectrumWindow window,
                               const SpectrumWork& work = {});
 
-/// What spectra along a parameter took.
+/// Work done for spectra along a parameter.
 struct CountedEffort {
   int num_searched = 0;   ///< values with a whole search
   int num_refined = 0;    ///< values whose pairs were found from those of others

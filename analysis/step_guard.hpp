@@ -21,7 +21,8 @@ struct HeldContacts {
 ///
 /// At each, all contacts slide in the direction of the drive, in their sliding equilibrium or,
 /// where there is none with a closed contact, on the undeformed masters; where some may lift off,
-/// every one of several, of more than eight up to eight of them, slides alone as well. Where bodies have coupled terms, contacts that may
+/// every one of several, of more than eight up to eight of them, slides alone as well. Where bodies
+/// have coupled terms, contacts that may
 /// stick do so as well: of other bodies that is stable. Empty without contacts and where one has a
 /// substrate.
 std::vector<HeldContacts> held_contacts(const System& system, const TimeParameters& time);

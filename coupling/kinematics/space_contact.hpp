@@ -63,11 +63,11 @@ struct SpaceGeometry {
   std::array<double, 4> weights{};           ///< of the nodes
   Eigen::Vector3d material = Eigen::Vector3d::Zero();  ///< place of the undeformed master, as seen from
                                                        ///< the first node or the origin, m
-  /// What the deformation of the master makes of a small vector along its undeformed surface.
+  /// F: takes small vectors along the undeformed surface of the master to the deformed one.
   Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d unstretch = Eigen::Matrix3d::Identity();  ///< and back
-  /// Velocity of the material of a spinning master here while its displacement stays, along its
-  /// deformed surface: what that makes of Ω e x (x − p), m/s.
+  /// F Ω e x (x − p): velocity of the material of a spinning master here while its displacement stays,
+  /// along its deformed surface, m/s (docs/theory.md, 10.9).
   Eigen::Vector3d carried = Eigen::Vector3d::Zero();
 };
 

@@ -28,7 +28,7 @@ void add_mesh_spin(const MeshBodyParameters& parameters, const NamedMesh& mesh,
                    const MeshConstraints& constraints, const SparseMatrix& viscous,
                    BodyMatrices& body);
 
-/// What of a body that repeats itself around the axis is left out.
+/// Warns of a body that repeats itself around the axis: its matrices change with the turn, which is left out.
 void warn_of_sectors(const MeshBodyParameters& parameters, std::vector<Problem>& warnings);
 
 }  // namespace stridor

@@ -39,7 +39,7 @@ struct BodyFace {
   std::function<std::array<DofSum, 5>(double radius, double angle)> rows;
 };
 
-/// What the spin of a body of revolution about its axis brings, seen from space (docs/theory.md, 10.9).
+/// Terms of the spin of a body of revolution about its axis, seen from space (docs/theory.md, 10.9).
 struct SpinTerms {
   double speed = 0.0;  ///< Ω about the direction of the axis, rad/s
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< e, of length 1, in the body's frame

@@ -1,4 +1,4 @@
-// What the spin of a body brings, in reduced coordinates.
+// Terms of the spin of a body in reduced coordinates.
 #pragma once
 
 #include <Eigen/Core>
