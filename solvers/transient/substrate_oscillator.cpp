@@ -9,7 +9,7 @@
 namespace stridor {
 namespace {
 
-constexpr double rounding = std::numeric_limits<double>::epsilon();
+constexpr double machine_epsilon = std::numeric_limits<double>::epsilon();
 
 /// g(y) with its derivative and its terms.
 struct Imbalance {
@@ -128,11 +128,11 @@ SubstrateEquilibrium find_equilibrium(const SubstrateOscillator& oscillator, dou
     (found.value < 0.0 ? low : high) = y;
     const double step = -found.value / found.slope;
     double next = y + step;
-    const bool is_at_rounding = std::abs(found.value) <= 2.0 * rounding * found.size;
+    const bool is_at_rounding = std::abs(found.value) <= 2.0 * machine_epsilon * found.size;
     // A last step of Newton's method in any case: it costs no further evaluation.
     if (is_at_rounding || std::abs(step) <= 1e-9 * y) {
       const bool improves = !is_at_rounding && next > low && next < high;
-      if (improves && std::abs(step) > 4.0 * rounding * y) {
+      if (improves && std::abs(step) > 4.0 * machine_epsilon * y) {
         y = next;
         const Imbalance last = imbalance_at(oscillator, y);
         ++result.evaluations;

@@ -1,0 +1,220 @@
+#include "solvers/equilibrium/equilibrium_equations.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/errors.hpp"
+
+namespace stridor {
+
+EquilibriumEquations::EquilibriumEquations(const System& system, EquilibriumState& state,
+                                           std::optional<Target> target)
+    : system_(system), state_(state), target_(target), ports_(system, state) {
+  Eigen::Index first_port = 0;
+  for (const ContactPoint& point : system.contacts) {
+    contacts.push_back(sought_contact(system, state, point));
+    contacts.back().first_port = first_port;
+    contacts.back().num_ports = system.num_contact_ports(point);
+    first_port += contacts.back().num_ports;
+  }
+  if (target_)
+    contacts[static_cast<std::size_t>(target_->contact)].result.segment = target_->segment;
+}
+
+Eigen::VectorXd EquilibriumEquations::first_unknowns() const {
+  Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(ports_.num_ports + num_contacts() +
+                                                   ports_.num_rigid + (target_ ? 1 : 0));
+  if (target_) unknowns(unknowns.size() - 1) = state_.drive_displacement;
+  return unknowns;
+}
+
+EquilibriumEquations::Values EquilibriumEquations::evaluate(const Eigen::VectorXd& unknowns) {
+  const Eigen::Index size = unknowns.size();
+  const Eigen::Index first_rigid = ports_.num_ports + num_contacts();
+  if (target_) state_.drive_displacement = unknowns(size - 1);
+  Values equations{Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size),
+                   Eigen::MatrixXd::Zero(size, size), 0.0};
+  equations.values.segment(first_rigid, ports_.num_rigid) = -ports_.rigid_load;
+  equations.scale.segment(first_rigid, ports_.num_rigid) = ports_.rigid_load.cwiseAbs();
+  double length = 0.0;
+  if (num_contacts() > 0) {
+    equations.values.head(ports_.num_ports) =
+        unknowns.head(ports_.num_ports) - ports_.loaded -
+        ports_.rigid_rows * unknowns.segment(first_rigid, ports_.num_rigid);
+    equations.derivative.topLeftCorner(ports_.num_ports, ports_.num_ports).setIdentity();
+    equations.derivative.block(0, first_rigid, ports_.num_ports, ports_.num_rigid) =
+        -ports_.rigid_rows;
+    length = unknowns.head(ports_.num_ports).cwiseAbs().maxCoeff();
+  }
+  for (Eigen::Index i = 0; i < num_contacts(); ++i)
+    length = std::max(length, add_contact(equations, i, unknowns));
+  equations.scale.head(first_rigid).setConstant(length);
+  if (target_) equations.scale(size - 1) = length;
+  for (Eigen::Index k = 0; k < size; ++k) {
+    const double value = std::abs(equations.values(k));
+    // Zero by zero where nothing loads the equation: it is satisfied.
+    if (value > 0.0) equations.residual = std::max(equations.residual, value / equations.scale(k));
+  }
+  if (!equations.values.allFinite()) equations.residual = std::numeric_limits<double>::infinity();
+  return equations;
+}
+
+double EquilibriumEquations::add_contact(Values& equations, Eigen::Index index,
+                                         const Eigen::VectorXd& unknowns) {
+  const Eigen::Index row = ports_.num_ports + index;
+  const Eigen::Index last = unknowns.size() - 1;
+  SoughtContact& contact = contacts[static_cast<std::size_t>(index)];
+  const Eigen::Index first = contact.first_port;
+  const Eigen::Index width = contact.num_ports;
+  place(contact, state_, unknowns.segment(first, width));
+  const ContactPositions& positions = contact.result.positions;
+  const double force = unknowns(row);
+  const bool has_law = contact.point->substrate.has_value();
+  LawState law = has_law ? law_state(contact, force, state_.friction_factor) : LawState();
+  if (!has_law) {
+    law.compliance = contact.point->compliance();
+    law.indentation = law.compliance * force;
+  }
+  const ContactLinearisation local =
+      contact.has_two_tangents() ? linearised_face(system_, state_, contact)
+      : has_law ? linearise_contact(positions, constant_friction(law.friction), 1.0)
+                : linearise_contact(positions, contact.point->friction, state_.friction_factor);
+  ContactEquilibrium& result = contact.result;
+  result.projection = local.projection;
+  result.gap = local.gap;
+  result.force = force;
+  result.friction = local.friction;
+  result.direction = local.direction;
+  result.friction_force = local.direction * local.friction * force * local.sliding_direction.x();
+  result.friction_across = local.friction * force * local.sliding_direction.y();
+  result.slip_velocity = local.slip_velocity;
+  result.velocity = local.velocity;
+
+  auto& [values, scale, derivative, residual] = equations;
+  const PortMatrix by_position = force * local.force_by_position;
+  const PortVector by_drive = contact.path_share * by_position.col(0);
+  const auto flexibility = ports_.flexibility.middleCols(first, width);
+  values.head(ports_.num_ports) += flexibility * (force * local.force_row);
+  derivative.block(0, first, ports_.num_ports, width) += flexibility * by_position;
+  // ∂(λ b_E)/∂λ: the friction of a force law is not proportional to λ.
+  const PortVector by_force =
+      local.force_row + local.direction * law.friction_slope * local.tangent_row;
+  derivative.col(row).head(ports_.num_ports) = flexibility * by_force;
+  if (target_) derivative.col(last).head(ports_.num_ports) += flexibility * by_drive;
+
+  const Eigen::Index first_rigid = ports_.num_ports + num_contacts();
+  const auto rigid = ports_.rigid_rows.middleRows(first, width).transpose();
+  values.segment(first_rigid, ports_.num_rigid) += rigid * (force * local.force_row);
+  scale.segment(first_rigid, ports_.num_rigid) +=
+      rigid.cwiseAbs() * (force * local.force_row).cwiseAbs();
+  derivative.block(first_rigid, first, ports_.num_rigid, width) = rigid * by_position;
+  derivative.col(row).segment(first_rigid, ports_.num_rigid) = rigid * by_force;
+  if (target_) derivative.col(last).segment(first_rigid, ports_.num_rigid) += rigid * by_drive;
+
+  if (result.is_closed) {
+    values(row) = local.gap + law.indentation;
+    derivative.block(row, first, 1, width) = -local.gap_row.transpose();
+    derivative(row, row) = law.compliance;
+    if (target_) derivative(row, last) = -local.gap_row[0] * contact.path_share;
+  } else {
+    values(row) = force;
+    derivative(row, row) = 1.0;
+  }
+  if (contact.has_two_tangents())
+    return std::max({contact.point->overlap, std::abs(law.indentation),
+                     ports_.loaded.segment(first, width).cwiseAbs().maxCoeff(),
+                     length_of(contact)});
+  const double segment_length = positions.master.chord().norm();
+  if (is_target(contact)) {
+    values(last) = segment_length * (local.projection.xi - target_->xi);
+    derivative.block(last, first, 1, width) = segment_length * local.shift_row.transpose();
+    derivative(last, last) = segment_length * local.shift_row[0] * contact.path_share;
+  }
+  const Eigen::Vector2d& T1 =
+      positions.master.nodes[static_cast<std::size_t>(positions.master.stencil.before)];
+  return std::max(segment_length, (positions.slave - T1).norm());
+}
+
+Eigen::VectorXd EquilibriumEquations::newton_step(const Values& equations) const {
+  const Eigen::Index size = equations.values.size();
+  if (size == 0) return {};
+  Eigen::MatrixXd matrix = equations.derivative;
+  Eigen::VectorXd row_scale = Eigen::VectorXd::Ones(size);
+  Eigen::VectorXd column_scale = Eigen::VectorXd::Ones(size);
+  const auto inverse_root = [](double largest) {
+    return largest > 0.0 ? 1.0 / std::sqrt(largest) : 1.0;
+  };
+  constexpr int num_balancings = 4;
+  for (int k = 0; k < num_balancings; ++k) {
+    const Eigen::VectorXd rows = matrix.cwiseAbs().rowwise().maxCoeff().unaryExpr(inverse_root);
+    const Eigen::VectorXd columns =
+        matrix.cwiseAbs().colwise().maxCoeff().transpose().unaryExpr(inverse_root);
+    matrix = rows.asDiagonal() * matrix * columns.asDiagonal();
+    row_scale.array() *= rows.array();
+    column_scale.array() *= columns.array();
+  }
+  const Eigen::PartialPivLU<Eigen::MatrixXd> factor(matrix);
+  constexpr double singular_below = 1e-14;
+  // The estimate of the condition is not made for pivots that vanish.
+  const double smallest_pivot = factor.matrixLU().diagonal().cwiseAbs().minCoeff();
+  if (!(smallest_pivot > singular_below) || !(factor.rcond() > singular_below))
+    refuse_singular(matrix);
+  return column_scale.cwiseProduct(factor.solve(row_scale.cwiseProduct(equations.values)).eval());
+}
+
+void EquilibriumEquations::refuse_singular(const Eigen::MatrixXd& matrix) const {
+  if (!matrix.allFinite()) throw NumericalError("equilibrium: the equations are not finite");
+  // The direction of the smallest pivot, however small that is.
+  Eigen::FullPivLU<Eigen::MatrixXd> factor(matrix);
+  const double smallest = std::abs(factor.matrixLU().diagonal().tail<1>().value());
+  factor.setThreshold(smallest > 0.0 ? 2.0 * smallest / factor.maxPivot() : 0.0);
+  const Eigen::VectorXd free = factor.kernel().col(0).cwiseAbs();
+  const Eigen::VectorXd rigid = free.segment(ports_.num_ports + num_contacts(), ports_.num_rigid);
+  constexpr double negligible = 1e-3;
+  if (ports_.num_rigid > 0 && rigid.maxCoeff() > negligible * free.maxCoeff()) {
+    Eigen::Index mode = 0;
+    rigid.maxCoeff(&mode);
+    throw NumericalError(
+        fmt::format("equilibrium: the body '{}' is free to move: neither its supports nor closed "
+                    "contacts hold it, or friction jams them",
+                    ports_.body_of(mode)));
+  }
+  Eigen::Index contact = 0;
+  free.segment(ports_.num_ports, num_contacts()).maxCoeff(&contact);
+  throw NumericalError(
+      fmt::format("equilibrium: the force of {} is undetermined: friction jams it, or other "
+                  "contacts hold the same motion",
+                  contacts[static_cast<std::size_t>(contact)].point->name));
+}
+
+std::vector<Eigen::VectorXd> EquilibriumEquations::displacements(
+    const Eigen::VectorXd& unknowns) const {
+  Eigen::VectorXd forces = Eigen::VectorXd::Zero(ports_.num_ports);
+  for (const SoughtContact& contact : contacts) {
+    const ContactEquilibrium& result = contact.result;
+    auto ports = forces.segment(contact.first_port, contact.num_ports);
+    if (contact.has_two_tangents()) {
+      ports = -result.force * linearised_face(system_, state_, contact).force_row;
+      continue;
+    }
+    const ContactRows rows = make_rows(result.projection, result.friction, result.direction);
+    const ContactRow& pushed = rows.equilibrium;
+    ports.head<2>() << pushed.slave[0], pushed.slave[1];
+    for (Eigen::Index k = 2; k < contact.num_ports; ++k)
+      ports(k) = pushed.master[static_cast<std::size_t>(k) - 2];
+    ports *= -result.force;
+  }
+  const Eigen::VectorXd rigid =
+      unknowns.segment(ports_.num_ports + num_contacts(), ports_.num_rigid);
+  std::vector<Eigen::VectorXd> found;
+  found.reserve(system_.bodies.size());
+  for (std::size_t b = 0; b < system_.bodies.size(); ++b)
+    found.push_back(ports_.modes(b, forces, rigid));
+  return found;
+}
+
+}  // namespace stridor

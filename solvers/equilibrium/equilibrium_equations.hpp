@@ -1,0 +1,83 @@
+// Equations of a static equilibrium in the ports of its contacts.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "coupling/system/system.hpp"
+#include "solvers/equilibrium/equilibrium.hpp"
+#include "solvers/equilibrium/sought_contact.hpp"
+#include "solvers/equilibrium/static_ports.hpp"
+
+namespace stridor {
+
+/// Place on its master that a contact is to have.
+struct Target {
+  int contact = 0;
+  int segment = 0;
+  double xi = 0.0;
+};
+
+/// The equations
+///
+///   z − z_load − S_r a + R B_Eᵀλ = 0,   gap = 0 (or λ = 0),   S_rᵀ B_Eᵀλ − load_r = 0
+///
+/// for the displacements z of the ports, λ and the rigid amplitudes a, in this order; with a
+/// target, ξ of its contact for the displacement of the drive at the end.
+class EquilibriumEquations {
+ public:
+  struct Values {
+    Eigen::VectorXd values;
+    Eigen::VectorXd scale;       ///< what each of them is made of
+    Eigen::MatrixXd derivative;  ///< with respect to the unknowns
+    double residual = 0.0;       ///< largest value by scale
+  };
+
+  /// @param system must outlive it
+  /// @param state  must outlive it; with a target its drive displacement is written
+  /// @throws NumericalError as sought_contact()
+  EquilibriumEquations(const System& system, EquilibriumState& state, std::optional<Target> target);
+  EquilibriumEquations(const EquilibriumEquations&) = delete;
+  EquilibriumEquations& operator=(const EquilibriumEquations&) = delete;
+  ~EquilibriumEquations() = default;
+
+  /// All zero, but for the displacement of the drive with a target.
+  Eigen::VectorXd first_unknowns() const;
+
+  /// To be called whenever a contact is on another segment.
+  void gather() { ports_.gather(contacts); }
+
+  /// Also notes in `contacts` what they are like there.
+  Values evaluate(const Eigen::VectorXd& unknowns);
+
+  /// Newton step. Rows and columns are brought to the same size first: they mix m, N and m kg^½.
+  /// @throws NumericalError if the equations are singular, naming what is free
+  Eigen::VectorXd newton_step(const Values& equations) const;
+
+  /// Displacements of the modes of all bodies.
+  std::vector<Eigen::VectorXd> displacements(const Eigen::VectorXd& unknowns) const;
+
+  bool is_target(const SoughtContact& contact) const {
+    return target_ && &contact == &contacts[static_cast<std::size_t>(target_->contact)];
+  }
+  /// Place of a contact force among the unknowns.
+  Eigen::Index force_index(const SoughtContact& contact) const {
+    return ports_.num_ports + (&contact - contacts.data());
+  }
+
+  std::vector<SoughtContact> contacts;
+
+ private:
+  Eigen::Index num_contacts() const { return static_cast<Eigen::Index>(contacts.size()); }
+  /// Adds what a contact contributes and notes its state. @returns the largest length in it, m
+  double add_contact(Values& equations, Eigen::Index index, const Eigen::VectorXd& unknowns);
+  [[noreturn]] void refuse_singular(const Eigen::MatrixXd& matrix) const;
+
+  const System& system_;
+  EquilibriumState& state_;
+  std::optional<Target> target_;
+  StaticPorts ports_;
+};
+
+}  // namespace stridor
