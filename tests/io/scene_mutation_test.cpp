@@ -526,29 +526,33 @@ class SceneMutation : public ::testing::Test {};
 using Roots = ::testing::Types<Example, Scene>;
 TYPED_TEST_SUITE(SceneMutation, Roots);
 
-TYPED_TEST(SceneMutation, ScenesMadeFromTheSchemaAreRead) {
-  for (const CompleteScene& scene : complete_scenes<TypeParam>()) {
+using CompleteScenes = std::vector<CompleteScene>;
+
+template <class T>
+void expect_read(const CompleteScenes& scenes) {
+  for (const CompleteScene& scene : scenes) {
     for (const YamlStyle style : {YamlStyle::block, YamlStyle::flow}) {
       const std::string text = WrittenScene(scene.draft, style).text();
-      EXPECT_EQ(joined(problems_with<TypeParam>(text)), "nothing") << text;
+      EXPECT_EQ(joined(problems_with<T>(text)), "nothing") << text;
     }
   }
 }
 
-TYPED_TEST(SceneMutation, EveryKeySpoiltInEveryWayIsAnsweredAtItsPlaceAndNothingElseIs) {
+template <class T>
+void expect_every_spoilt_key_answered(const CompleteScenes& scenes) {
   int num_keys = 0;
   int num_mutants = 0;
-  for (const CompleteScene& scene : complete_scenes<TypeParam>()) {
+  for (const CompleteScene& scene : scenes) {
     MutantMaker maker(scene.draft);
     for (const std::string& path : scene.new_paths) {
       ++num_keys;
       for (const Mutant& mutant : maker.mutants_at(path)) {
         // Now the one and now the other, to keep the test short.
         const YamlStyle style = ++num_mutants % 2 == 0 ? YamlStyle::block : YamlStyle::flow;
-        std::string said = objection<TypeParam>(mutant, style);
+        std::string said = objection<T>(mutant, style);
         if (!mutant.path.empty()) {
           const std::optional<std::string> known = without_trial(mutant);
-          said += known ? *known : loneliness<TypeParam>(mutant, scene.draft);
+          said += known ? *known : loneliness<T>(mutant, scene.draft);
         }
         EXPECT_TRUE(said.empty()) << path << " " << mutant.what << ": " << said;
       }
@@ -557,14 +561,15 @@ TYPED_TEST(SceneMutation, EveryKeySpoiltInEveryWayIsAnsweredAtItsPlaceAndNothing
   // Each is at least misspelt, doubled, emptied in three ways and of a wrong kind.
   EXPECT_GE(num_mutants, 6 * num_keys);
   std::set<std::string> declared;
-  visit(complete_draft(TypeParam::schema(), ""), "",
+  visit(complete_draft(T::schema(), ""), "",
         [&](const Draft& draft, const std::string&) { declared.insert(draft.pattern); });
   EXPECT_GE(num_keys, static_cast<int>(declared.size()) - 1);  // without that of the whole
   EXPECT_GE(num_keys, 10);
 }
 
-TYPED_TEST(SceneMutation, EveryValueSpoiltAtOnceIsAnsweredOnce) {
-  for (const CompleteScene& scene : complete_scenes<TypeParam>()) {
+template <class T>
+void expect_all_spoilt_values_answered_once(const CompleteScenes& scenes) {
+  for (const CompleteScene& scene : scenes) {
     Draft spoilt = scene.draft;
     std::set<std::string> values;
     visit(scene.draft, "", [&](const Draft& draft, const std::string& path) {
@@ -575,8 +580,7 @@ TYPED_TEST(SceneMutation, EveryValueSpoiltAtOnceIsAnsweredOnce) {
       value.text = "[[[1]]]";
     });
     std::set<std::string> answered;
-    for (Problem& problem :
-         problems_with<TypeParam>(WrittenScene(spoilt, YamlStyle::block).text())) {
+    for (Problem& problem : problems_with<T>(WrittenScene(spoilt, YamlStyle::block).text())) {
       // A list in a list is wrong by its entry where the key takes a list, or a list of rows.
       while (!problem.key.empty() && !values.contains(problem.key))
         problem.key = parent_path(problem.key);
@@ -584,6 +588,14 @@ TYPED_TEST(SceneMutation, EveryValueSpoiltAtOnceIsAnsweredOnce) {
     }
     EXPECT_EQ(answered, values);
   }
+}
+
+// One test, because it takes a while to find scenes that hold every key.
+TYPED_TEST(SceneMutation, CompleteScenesAreReadAndSpoiltKeysAnsweredAtTheirPlaces) {
+  const CompleteScenes scenes = complete_scenes<TypeParam>();
+  expect_read<TypeParam>(scenes);
+  expect_every_spoilt_key_answered<TypeParam>(scenes);
+  expect_all_spoilt_values_answered_once<TypeParam>(scenes);
 }
 
 TEST(SceneMutationOfExample, HoldsEveryKindOfKey) {
