@@ -123,8 +123,10 @@ int run_verb(int argc, char** argv) {
   add_compare_command(program, action, command);
   add_precision_command(program, action, command);
   add_spectrogram_command(program, action);
+  add_sound_command(program, action);
   add_eig_command(program, action);
   add_locus_command(program, action, command);
+  add_frf_command(program, action, command);
   add_threshold_command(program, action);
   add_map_command(program, action, command);
   add_contact_command(program, action, command);

@@ -86,5 +86,7 @@ void add_locus_command(CLI::App& program, Action& action, const std::string& com
 void add_map_command(CLI::App& program, Action& action, const std::string& command_line);
 void add_threshold_command(CLI::App& program, Action& action);
 void add_spectrogram_command(CLI::App& program, Action& action);
+void add_sound_command(CLI::App& program, Action& action);
+void add_frf_command(CLI::App& program, Action& action, const std::string& command_line);
 
 }  // namespace stridor

@@ -7,39 +7,10 @@
 
 #include "core/errors.hpp"
 #include "io/imports/uff_lines.hpp"
+#include "io/imports/uff_units.hpp"
 
 namespace stridor {
 namespace {
-
-/// Number of the line of a place.
-std::size_t line_of(const TextPlace& place) {
-  std::size_t line = 1;
-  const std::string& text = place.source->text;
-  for (std::size_t i = 0; i < place.offset && i < text.size(); ++i) {
-    if (text[i] == '\n' || (text[i] == '\r' && (i + 1 >= text.size() || text[i + 1] != '\n'))) ++line;
-  }
-  return line;
-}
-
-/// What values of the file are divided by to be in SI units.
-struct UffUnits {
-  double length = 1.0;
-  double force = 1.0;
-  bool is_given = false;
-  /// Of mass: force per length at the same time.
-  double mass() const { return force / length; }
-};
-
-UffUnits read_units(const UffDataset& dataset) {
-  UffReader reader(dataset);
-  (void)reader.line("the code of the units");
-  const UffLine& line = reader.line("factors of length, force and temperature");
-  const std::vector<double> factors =
-      uff_numbers(line, 25, "factors of length, force and temperature");
-  if (factors.size() < 2 || !(factors[0] > 0.0) || !(factors[1] > 0.0))
-    refuse_at(line.place, "expected positive factors of length and force (dataset 164)");
-  return {factors[0], factors[1], true};
-}
 
 void add_node(ModalTest& test, std::int64_t label, const Eigen::Vector3d& at, const TextPlace& place) {
   const auto [node, is_new] = test.nodes.emplace(label, at);
@@ -165,7 +136,7 @@ void read_mode(const UffDataset& dataset, const UffUnits& units, ModalTest& test
   }
   read_shape(reader, static_cast<std::size_t>(kind[5]), mode.is_complex, mode);
   if (mode.shape.empty()) refuse_at(place, "expected values at nodes, got none");
-  mode.source = fmt::format("{}:{}", place.source->name, line_of(place));
+  mode.source = place_text(place);
   test.modes.push_back(std::move(mode));
 }
 
@@ -175,9 +146,10 @@ ModalTest read_uff(const SourceText& source) {
   const std::vector<UffDataset> datasets = uff_datasets(source);
   UffUnits units;
   for (const UffDataset& dataset : datasets)
-    if (dataset.type == 164) units = read_units(dataset);
+    if (dataset.type == 164) units = read_uff_units(dataset);
   ModalTest test;
   for (const UffDataset& dataset : datasets) {
+    if (dataset.data) continue;  // functions
     if (dataset.type == 15 || dataset.type == 2411) read_nodes(dataset, units, test);
     if (dataset.type == 55) read_mode(dataset, units, test);
   }

@@ -47,8 +47,9 @@ bool is_delimiter(const UffLine& line) {
   return trimmed(line.text) == "-1";
 }
 
-/// Passes over the data of a dataset 58b: its head says how many lines of text and bytes follow.
-void skip_binary(const SourceText& source, const UffLine& head, Lines& lines) {
+/// Takes the lines and the data of a dataset 58b: its head says how many of either follow.
+void take_binary(const SourceText& source, const UffLine& head, Lines& lines,
+                 UffDataset& dataset) {
   const std::vector<std::string_view> words = uff_words(head.text);
   const auto count = [&](std::size_t word) -> std::optional<std::int64_t> {
     return word < words.size() ? integer_in(words[word]) : std::nullopt;
@@ -61,12 +62,17 @@ void skip_binary(const SourceText& source, const UffLine& head, Lines& lines) {
                                       "of lines, number of bytes; got '{}'",
                                       shown(head.text)));
   }
-  for (std::int64_t i = 0; i < *num_lines && !lines.is_at_end(); ++i) (void)lines.next();
+  for (std::int64_t i = 0; i < *num_lines && !lines.is_at_end(); ++i)
+    dataset.lines.push_back(lines.next());
   if (*num_bytes > size - static_cast<std::int64_t>(std::min(lines.offset(), source.text.size()))) {
     refuse_at(head.place,
               fmt::format("{} bytes of data are announced, the file ends before", *num_bytes));
   }
-  lines.go_to(lines.offset() + static_cast<std::size_t>(*num_bytes));
+  const auto size_of_data = static_cast<std::size_t>(*num_bytes);
+  constexpr std::int64_t big_endian = 2;
+  dataset.data = UffBytes{count(1) == big_endian, count(2).value_or(2),
+                          std::string_view(source.text).substr(lines.offset(), size_of_data)};
+  lines.go_to(lines.offset() + size_of_data);
 }
 
 }  // namespace
@@ -98,9 +104,9 @@ std::vector<UffDataset> uff_datasets(const SourceText& source) {
                 fmt::format("expected the number of a dataset, got '{}'", shown(head.text)));
     }
     UffDataset& dataset = datasets.emplace_back();
-    dataset.type = is_binary ? -1 : static_cast<int>(*number);
+    dataset.type = static_cast<int>(*number);
     dataset.place = head.place;
-    if (is_binary) skip_binary(source, head, lines);
+    if (is_binary) take_binary(source, head, lines, dataset);
     while (!lines.is_at_end()) {
       const UffLine next = lines.next();
       if (is_delimiter(next)) break;
@@ -174,6 +180,24 @@ std::optional<std::vector<double>> uff_numbers_in(std::string_view text, std::si
     if (column.empty()) continue;
     const std::optional<double> number = real_in(column);
     if (!number) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+std::vector<double> uff_columns(const UffLine& line, std::span<const std::size_t> widths,
+                                const char* expected) {
+  const std::size_t widest = *std::max_element(widths.begin(), widths.end());
+  // Where blanks part the numbers, the widths say nothing.
+  if (const auto parted = uff_numbers_in(line.text, std::max(widest, line.text.size())))
+    return *parted;
+  std::vector<double> numbers;
+  for (std::size_t at = 0, i = 0; at < line.text.size(); at += widths[i++ % widths.size()]) {
+    const std::string_view column = trimmed(line.text.substr(at, widths[i % widths.size()]));
+    if (column.empty()) continue;
+    const std::optional<double> number = real_in(column);
+    if (!number)
+      refuse_at(line.place, fmt::format("expected {}, got '{}'", expected, shown(line.text)));
     numbers.push_back(*number);
   }
   return numbers;

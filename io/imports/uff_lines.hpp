@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -16,10 +17,18 @@ struct UffLine {
   TextPlace place;
 };
 
+/// Numbers behind the lines of a binary dataset, 58b.
+struct UffBytes {
+  bool is_big_endian = false;
+  std::int64_t format = 2;  ///< of the numbers: IEEE 754 is 2
+  std::string_view bytes;
+};
+
 struct UffDataset {
   int type = 0;  ///< 15, 55, ...
   TextPlace place;
-  std::vector<UffLine> lines;  ///< behind that of the type; none of binary data
+  std::vector<UffLine> lines;    ///< behind that of the type
+  std::optional<UffBytes> data;  ///< of a binary dataset
 };
 
 /// Divides a file into datasets.
@@ -46,6 +55,11 @@ class UffReader {
   const UffDataset& dataset_;
   std::size_t next_ = 0;
 };
+
+/// Numbers of a line in columns of these widths, repeated, where blanks do not part them.
+/// @throws ConfigError naming what was expected
+std::vector<double> uff_columns(const UffLine& line, std::span<const std::size_t> widths,
+                                const char* expected);
 
 /// Numbers of a text, in columns where blanks do not part them; nothing where there is something else.
 std::optional<std::vector<double>> uff_numbers_in(std::string_view text, std::size_t width);

@@ -118,6 +118,17 @@ bool Channel::is_filtered() const {
                    quantity != ContactQuantity::friction_force);
 }
 
+Channel parse_channel(const std::string& name, const std::string& key,
+                      const ModelParameters& model) {
+  try {
+    Channel channel = parse(name, model);
+    channel.key = key;
+    return channel;
+  } catch (const std::string& wrong) {
+    throw ConfigError(key, fmt::format("channel '{}': {}", name, wrong));
+  }
+}
+
 std::vector<Channel> parse_channels(const RecordParameters& record, const ModelParameters& model) {
   std::vector<Channel> channels;
   std::vector<Problem> problems;

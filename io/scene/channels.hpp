@@ -53,6 +53,12 @@ struct Channel {
   bool is_filtered() const;
 };
 
+/// One channel by its name. Bodies and pairs are looked up; points are left to make_model().
+/// @param key where the name was written
+/// @throws ConfigError at `key`
+Channel parse_channel(const std::string& name, const std::string& key,
+                      const ModelParameters& model);
+
 /// Reads the channel names of a scene, and adds the entries of the energy ledger where it is to be
 /// recorded. Bodies and pairs are looked up; points are left to make_model.
 /// @throws ConfigError with all wrong names, and with names given twice

@@ -302,7 +302,8 @@ void read_named_files(LoadedScene& loaded) {
   });
 }
 
-/// @throws ConfigError if the scene, or a contact of it, is only one for `contact` to evaluate
+}  // namespace
+
 void require_bodies(const LoadedScene& loaded) {
   const ModelParameters& model = loaded.scene.model;
   if (model.substructures.empty()) {
@@ -325,8 +326,6 @@ void require_bodies(const LoadedScene& loaded) {
                     loaded.path, pairs.size() > 1 ? fmt::format("--contact {} ", name) : ""));
   }
 }
-
-}  // namespace
 
 ConfigError LoadedScene::located(const ConfigError& error) const {
   std::vector<Problem> problems = error.problems();
@@ -404,7 +403,7 @@ Model build_model(const LoadedScene& loaded, BodyCache& cache) {
   try {
     const Scene& scene = loaded.scene;
     require_bodies(loaded);
-    std::vector<std::pair<PointName, std::string>> observed;
+    std::vector<std::pair<PointName, std::string>> observed = loaded.observed;
     std::vector<Channel> channels;
     if (scene.record) channels = parse_channels(*scene.record, scene.model);
     for (const Channel& channel : channels) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/scene/scene_sections.hpp"
@@ -66,6 +67,8 @@ struct LoadedScene {
   SceneNode tree;    ///< with --set applied
   Scene scene;
   std::vector<std::string> sets;
+  /// Points whose motion a verb asks for besides those of `record`, and the option that names each.
+  std::vector<std::pair<PointName, std::string>> observed;
 
   /// The scene with every key and default written out.
   std::string resolved() const;
@@ -78,6 +81,9 @@ struct LoadedScene {
   /// @throws ConfigError naming section and verb
   void require_section(const std::string& section, const std::string& verb) const;
 };
+
+/// @throws ConfigError if a scene, or a contact of it, is only one for `contact` to evaluate
+void require_bodies(const LoadedScene& loaded);
 
 /// 16 hexadecimal digits that change with any character of a resolved scene (FNV-1a).
 std::string scene_hash(const std::string& resolved);

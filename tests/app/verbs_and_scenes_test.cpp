@@ -25,6 +25,7 @@ struct System {
   std::string scene;
   std::string what;
   std::string channel;
+  std::string force;  ///< where and along what a force acts for frequency responses
   Words sets;
   Axis x, y;
 };
@@ -38,7 +39,7 @@ const std::vector<System>& systems() {
     return words;
   };
   static const std::vector<System> all{
-      {"beam_on_beam", "two beams, sliding persistently", "contact.force",
+      {"beam_on_beam", "two beams, sliding persistently", "contact.force", "cantilever.free_end.y",
        with(short_ramp,
             {"contact.armed_from=1", "substructures.cantilever.reduction.fixed_interface_modes=5",
              "substructures.oblique.reduction.fixed_interface_modes=5"}),
@@ -46,42 +47,49 @@ const std::vector<System>& systems() {
       {"examples/two_pairs",
        "two pairs on one beam",
        "front.force",
+       "cantilever.free_end.y",
        with(short_ramp, {"contacts.front.armed_from=1", "contacts.rear.armed_from=1"}),
        {"contacts.rear.friction.coefficient", "0.1", "0.4"},
        {"drive.load", "-0.2", "-0.1"}},
       {"examples/frozen_growth",
        "a beam held at its place",
        "contact.force",
+       "cantilever.free_end.y",
        {"time.end=4e-3", "measure={from: 2e-3}"},
        friction,
        place},
       {"examples/rotating_support",
        "a beam on a turning support",
        "contact.force",
+       "support.middle.y",
        {"time.end=0.05", "measure={from: 0.03}"},
        {"parameters.spin", "500", "600"},
        {"drive.load", "-2", "-1"}},
       {"examples/beam_on_substrate",
        "a beam on rubber",
        "contact.force",
+       "reed.tip.x",
        {"time.end=0.04", "measure={from: 0.02}"},
        {"drive.load", "-0.03", "-0.01"},
        {"drive.velocity", "0.1", "0.2"}},
       {"examples/mass_on_belt",
        "a mass on a belt",
        "contact.friction_force",
+       "slider.mass.x",
        {"time.end=1", "measure={from: 0.5}"},
        {"parameters.mu_d", "0.1", "0.3"},
        {"drive.velocity", "0.1", "0.2"}},
       {"viscoelastic_sphere",
        "a sphere on rubber, from event to event",
        "contact.force",
+       "sphere.center.x",
        {"time.end=2"},
        {"parameters.F", "1e-3", "2e-3"},
        {"parameters.v", "0.1", "0.2"}},
       {"examples/flutter",
        "matrices that nothing touches",
        "oscillator.point.x.displacement",
+       "oscillator.point.x",
        {"time={integrator: exact, step: 1e-2, end: 20}", "parameters={load: 0.3, k: 1.4}",
         "substructures.oscillator.stiffness=[[1, 0], [0, =k]]",
         "substructures.oscillator.points={point: {at: [0, 0], x: 1, y: 2}}",
@@ -92,18 +100,21 @@ const std::vector<System>& systems() {
       {"viscoelastic_contact",
        "a normal law by itself",
        "contact.force",
+       "none.none.x",
        {"time={step: 1e-3, end: 0.1}"},
        {"contacts.tip.normal.profile.radius", "0.01", "0.02"},
        {"contacts.tip.normal.material.poissons_ratio", "0.4", "0.5"}},
       {"disc_and_pads",
        "a disc and pads",
        "upper.force",
+       "upper.block.y",
        {"time.end=1e-3"},
        {"parameters.mu", "0.2", "0.5"},
        {"substructures.disc.spin", "5", "10"}},
       {"examples/elastic_pads",
        "a disc and elastic pads",
        "upper[0].force",
+       "upper.p0.y",
        {"time.end=1e-3"},
        {"parameters.mu", "0.2", "0.5"},
        {"substructures.disc.spin", "5", "10"}},
@@ -189,6 +200,11 @@ const std::vector<Verb>& verbs() {
          return Words{"spectrogram", folder + "/run.h5",         "--channel", system.channel,
                       "-o",          folder + "/spectrogram.png"};
        }},
+      {"sound", "a run heard",
+       [](S system, T, T folder) {
+         return Words{"sound", folder + "/run.h5",  "--channel", system.channel,
+                      "-o",    folder + "/run.wav"};
+       }},
       {"eig", "eigenvalues and what explains them",
        [](S, T scene, T) {
          return Words{"eig", scene, "--explain"};
@@ -196,6 +212,11 @@ const std::vector<Verb>& verbs() {
       {"locus", "eigenvalues along a key",
        [](S system, T scene, T) {
          return along("locus", system, scene, {"--points", "2"});
+       }},
+      {"frf", "frequency responses",
+       [](S system, T scene, T folder) {
+         return Words{"frf",  scene,  "--input",  system.force, "--from", "10",
+                      "--to", "1000", "--points", "20",         "-o",     folder + "/frf.h5"};
        }},
       {"threshold", "where one becomes unstable",
        [](S system, T scene, T) { return along("threshold", system, scene, {}); }},
@@ -251,7 +272,8 @@ std::vector<const Reason*> outcomes_of(const System& system) {
   std::vector<const Reason*> outcomes;
   const Reason* of_run = nullptr;
   for (const Verb& verb : verbs()) {
-    const bool reads_run = verb.name == "plot" || verb.name == "spectrogram";
+    const bool reads_run =
+        verb.name == "plot" || verb.name == "spectrogram" || verb.name == "sound";
     if (reads_run && of_run != nullptr) {
       outcomes.push_back(of_run);
       continue;

@@ -4,6 +4,7 @@
 
 #include "core/errors.hpp"
 #include "io/imports/uff_file.hpp"
+#include "io/imports/uff_functions.hpp"
 #include "tests/fuzz/mesh_checks.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -15,6 +16,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     expect_that(!test.modes.empty());
     for (const stridor::TestMode& mode : test.modes)
       expect_that(!mode.shape.empty() && mode.frequency >= 0.0);
+  } catch (const stridor::ConfigError& error) {
+    stridor::fuzz::expect_placed(error, "fuzz.uff");
+  }
+  try {
+    for (const stridor::UffFunction& one : stridor::read_uff_functions(source).functions)
+      expect_that(one.abscissa.size() == one.values.size());
   } catch (const stridor::ConfigError& error) {
     stridor::fuzz::expect_placed(error, "fuzz.uff");
   }

@@ -1,0 +1,276 @@
+#include "app/stability/measured_responses.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <numbers>
+#include <string_view>
+
+#include "analysis/response_assurance.hpp"
+#include "core/errors.hpp"
+#include "core/version.hpp"
+#include "models/placed_model.hpp"
+
+namespace stridor {
+namespace {
+
+/// "pad.tip.-y" of a node and a direction of a file; nothing for other directions than x, y, z.
+std::optional<std::pair<std::string, double>> direction_of(int direction) {
+  const int along = std::abs(direction);
+  if (along < 1 || along > 3) return std::nullopt;
+  return std::pair(std::string(1, "xyz"[along - 1]), direction < 0 ? -1.0 : 1.0);
+}
+
+std::optional<int> derivative_of(int quantity) {
+  switch (static_cast<UffQuantity>(quantity)) {
+    case UffQuantity::displacement:
+      return 0;
+    case UffQuantity::velocity:
+      return 1;
+    case UffQuantity::acceleration:
+      return 2;
+    default:
+      return std::nullopt;
+  }
+}
+
+UffQuantity quantity_of(Derivative derivative) {
+  return derivative == Derivative::none    ? UffQuantity::displacement
+         : derivative == Derivative::first ? UffQuantity::velocity
+                                           : UffQuantity::acceleration;
+}
+
+/// "pad.tip.y" of "pad.tip.y.acceleration".
+std::string without_motion(const std::string& name) {
+  return name.substr(0, name.rfind('.'));
+}
+
+/// A measured function as one of the curves of the study.
+struct NamedFunction {
+  const UffFunction* function = nullptr;
+  std::string output, input;  ///< "<body>.<point>.<x|y|z>"
+  int derivative = 0;         ///< of the displacement of the output
+  double sign = 1.0;
+};
+
+class Naming {
+ public:
+  Naming(const ResponseStudy& study, const std::vector<NodeName>& names) : study_(study) {
+    for (const NodeName& name : names) {
+      if (!points_.emplace(name.node, name.point.body + "." + name.point.point).second)
+        throw ConfigError("--node", fmt::format("node {} has two names", name.node));
+    }
+  }
+
+  /// @return why it is passed over; empty where it is named
+  std::string name(const UffFunction& function, bool is_only_one, NamedFunction& named) const {
+    named.function = &function;
+    if (function.type != static_cast<int>(UffFunctionType::frequency_response))
+      return fmt::format("is of type {}, not a frequency response (4)", function.type);
+    const std::optional<int> derivative = derivative_of(function.ordinate_quantity);
+    if (!derivative)
+      return fmt::format("is of a quantity {}, neither displacement (8), velocity (11) nor acceleration (12)",
+                         function.ordinate_quantity);
+    if (function.denominator_quantity != static_cast<int>(UffQuantity::excitation_force))
+      return fmt::format("is per a quantity {}, not a force (13)", function.denominator_quantity);
+    named.derivative = *derivative;
+    if (points_.empty() && is_only_one) {
+      named.output = without_motion(study_.places().outputs.front().name);
+      named.input = without_motion(study_.places().inputs.front().name);
+      named.sign = sign_of(function.response) * sign_of(function.reference);
+      return "";
+    }
+    const auto output = dof_name(function.response, named.sign);
+    const auto input = dof_name(function.reference, named.sign);
+    if (!output) return unnamed(function.response);
+    if (!input) return unnamed(function.reference);
+    named.output = *output;
+    named.input = *input;
+    return "";
+  }
+
+ private:
+  static double sign_of(const UffDof& dof) { return dof.direction < 0 ? -1.0 : 1.0; }
+  std::optional<std::string> dof_name(const UffDof& dof, double& sign) const {
+    const auto point = points_.find(dof.node);
+    const auto direction = direction_of(dof.direction);
+    if (point == points_.end() || !direction) return std::nullopt;
+    sign *= direction->second;
+    return point->second + "." + direction->first;
+  }
+  static std::string unnamed(const UffDof& dof) {
+    if (!direction_of(dof.direction))
+      return fmt::format("is along direction {} of node {}, neither x, y nor z (1 to 3)",
+                         dof.direction, dof.node);
+    return fmt::format("is of node {}, which no --node names", dof.node);
+  }
+
+  const ResponseStudy& study_;
+  std::map<std::int64_t, std::string> points_;
+};
+
+/// The stretch of a function within a range.
+ComparedResponse stretch_of(const NamedFunction& named, double from, double to) {
+  ComparedResponse compared;
+  const UffFunction& function = *named.function;
+  compared.source = function.source;
+  compared.measured = {named.output, named.input, "", {}};
+  for (std::size_t i = 0; i < function.abscissa.size(); ++i) {
+    const double frequency = function.abscissa[i];
+    if (!(frequency > 0.0 && frequency >= from && frequency <= to)) continue;
+    compared.frequencies.push_back(function.abscissa[i]);
+    compared.measured.values.push_back(named.sign * function.values[i]);
+  }
+  return compared;
+}
+
+double root_mean_square(const std::vector<std::complex<double>>& values) {
+  double sum = 0.0;
+  for (const std::complex<double>& value : values) sum += std::norm(value);
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+constexpr const char* motions_of_responses[] = {"displacement", "velocity", "acceleration"};
+constexpr const char* units_of_responses[] = {"m/N", "m/s/N", "m/s^2/N"};
+
+/// Computes what belongs to a measured response: the curve between the same points as the same motion.
+void compute(const ResponseStudy& study, const NamedFunction& named, ComparedResponse& compared) {
+  const auto motion = static_cast<std::size_t>(named.derivative);
+  for (ResponseCurve& curve : study.curves(compared.frequencies)) {
+    if (without_motion(curve.output) != named.output || curve.input != named.input) continue;
+    const auto of_curve = std::find(std::begin(units_of_responses), std::end(units_of_responses),
+                                    std::string_view(curve.units));
+    const auto order = static_cast<int>(of_curve - std::begin(units_of_responses));
+    for (std::size_t i = 0; i < curve.values.size(); ++i) {
+      const std::complex<double> s(0.0, 2.0 * std::numbers::pi * compared.frequencies[i]);
+      curve.values[i] *= std::pow(s, named.derivative - order);
+    }
+    curve.output = named.output + "." + motions_of_responses[motion];
+    curve.units = units_of_responses[motion];
+    compared.computed = std::move(curve);
+    break;
+  }
+  compared.measured.output = compared.computed.output;
+  compared.measured.units = compared.computed.units;
+  compared.assurance = response_assurance(compared.computed.values, compared.measured.values);
+  compared.ratio = root_mean_square(compared.computed.values) /
+                   root_mean_square(compared.measured.values);
+}
+
+/// "17-MAY-24" of "2024-05-17T08:30:00Z", as the format wants it.
+std::string date_of(const std::string& time) {
+  constexpr std::array months{"JAN", "FEB", "MAR", "APR", "MAY", "JUN",
+                              "JUL", "AUG", "SEP", "OCT", "NOV", "DEC"};
+  const auto month = static_cast<std::size_t>(std::stoi(time.substr(5, 2))) - 1;
+  return fmt::format("{}-{}-{}", time.substr(8, 2), months.at(month), time.substr(2, 2));
+}
+
+bool is_of_study(const ResponseStudy& study, const NamedFunction& named) {
+  const auto has = [](const std::vector<Channel>& channels, const std::string& name) {
+    return std::any_of(channels.begin(), channels.end(),
+                       [&](const Channel& one) { return without_motion(one.name) == name; });
+  };
+  return has(study.places().inputs, named.input) && has(study.places().outputs, named.output);
+}
+
+}  // namespace
+
+std::vector<NodeName> parse_node_names(const std::vector<std::string>& words) {
+  std::vector<NodeName> names;
+  for (const std::string& word : words) {
+    const std::size_t equals = word.find('=');
+    const std::size_t dot = word.find('.', equals == std::string::npos ? 0 : equals);
+    NodeName name;
+    const char* end = word.data() + std::min(equals, word.size());
+    const auto [at, error] = std::from_chars(word.data(), end, name.node);
+    if (equals == std::string::npos || dot == std::string::npos || error != std::errc{} || at != end)
+      throw ConfigError("--node", fmt::format("expected NUMBER=BODY.POINT, got '{}'", word));
+    name.point = {word.substr(equals + 1, dot - equals - 1), word.substr(dot + 1)};
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+std::vector<ComparedResponse> compared_responses(const ResponseStudy& study,
+                                                 const UffFunctions& measured,
+                                                 const std::vector<NodeName>& names, double from,
+                                                 double to, std::vector<std::string>& remarks) {
+  const Naming naming(study, names);
+  const bool is_only_one = measured.functions.size() == 1 && study.places().inputs.size() == 1 &&
+                           study.places().outputs.size() == 1;
+  std::vector<ComparedResponse> all;
+  for (const UffFunction& function : measured.functions) {
+    NamedFunction named;
+    std::string reason = naming.name(function, is_only_one, named);
+    if (reason.empty() && !is_of_study(study, named)) {
+      reason = fmt::format("is {} per {}, which neither --input nor --output asks for", named.output,
+                           named.input);
+    }
+    if (!reason.empty()) {
+      remarks.push_back(fmt::format("{}: {}", function.source, reason));
+      continue;
+    }
+    ComparedResponse compared = stretch_of(named, from, to);
+    if (compared.frequencies.empty()) {
+      remarks.push_back(fmt::format("{}: has no values from {:g} to {:g} Hz", function.source, from, to));
+      continue;
+    }
+    compute(study, named, compared);
+    all.push_back(std::move(compared));
+  }
+  if (!all.empty()) return all;
+  std::string text = "nothing of the file can be compared with the responses of the scene";
+  for (const std::string& remark : remarks) text += "\n  " + remark;
+  throw ConfigError("--compare", text);
+}
+
+UffContents uff_contents(const ResponseStudy& study, const std::vector<double>& frequencies,
+                         const std::vector<ResponseCurve>& curves) {
+  UffContents contents;
+  contents.title = "frequency responses of " + study.loaded().path;
+  contents.program = std::string("stridor ") + std::string(version);
+  const std::string now = utc_now();  // "2024-05-17T08:30:00Z"
+  contents.date = date_of(now);
+  contents.time = now.substr(11, 8);
+  BodyCache cache;
+  const ModelParameters parameters = parameters_with_files(study.loaded(), cache);
+  const PlacedModel placed = place_model(parameters, cache);
+  std::map<PointName, std::int64_t> numbers;
+  const auto dof_of = [&](const Channel& channel) {
+    const auto [entry, is_new] =
+        numbers.emplace(*channel.point, static_cast<std::int64_t>(numbers.size() + 1));
+    if (is_new) {
+      const auto body =
+          std::find_if(placed.bodies.begin(), placed.bodies.end(),
+                       [&](const ModelBody& one) { return one.name == channel.point->body; });
+      contents.nodes.push_back({entry->second, channel.point->body + "." + channel.point->point,
+                                body->place_of(node_at(*body, channel.point->point, channel.key))});
+    }
+    return UffDof{entry->second, channel.direction + 1};
+  };
+  std::size_t i = 0;
+  for (const Channel& output : study.places().outputs) {
+    for (const Channel& input : study.places().inputs) {
+      UffFunction function;
+      function.type = static_cast<int>(UffFunctionType::frequency_response);
+      function.id = curves[i].output + " per " + curves[i].input;
+      function.response = dof_of(output);
+      function.reference = dof_of(input);
+      function.abscissa_quantity = static_cast<int>(UffQuantity::frequency);
+      function.ordinate_quantity = static_cast<int>(quantity_of(output.derivative));
+      function.denominator_quantity = static_cast<int>(UffQuantity::excitation_force);
+      function.is_complex = true;
+      function.abscissa = frequencies;
+      function.values = curves[i++].values;
+      contents.functions.push_back(std::move(function));
+    }
+  }
+  return contents;
+}
+
+}  // namespace stridor

@@ -1,0 +1,49 @@
+// Measured frequency responses beside those of a scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/stability/response_study.hpp"
+#include "app/terminal/command.hpp"
+#include "io/imports/uff_functions.hpp"
+#include "io/results/uff_writer.hpp"
+
+namespace stridor {
+
+/// Which point of the scene a node of a universal file is: "12=pad.tip".
+struct NodeName {
+  std::int64_t node = 0;
+  PointName point;
+};
+
+/// @throws ConfigError at --node
+std::vector<NodeName> parse_node_names(const std::vector<std::string>& words);
+
+/// A measured response and the same one of the scene.
+struct ComparedResponse {
+  ResponseCurve measured;
+  ResponseCurve computed;           ///< at the frequencies of the measured one
+  std::vector<double> frequencies;  ///< Hz
+  double assurance = 0.0;           ///< FRAC, see response_assurance()
+  double ratio = 0.0;               ///< of the r.m.s., computed over measured
+  std::string source;
+};
+
+/// The frequency responses of a universal file between nodes that have names, in a range.
+///
+/// Of a file with one response and a study of one, they are taken to be the same where no node has a
+/// name. Directions may be negative: the sign of the response follows.
+/// @param from, to Hz
+/// @param remarks gets what was passed over
+/// @throws ConfigError if nothing can be compared, or a name or a direction does not fit the scene
+std::vector<ComparedResponse> compared_responses(const ResponseStudy& study,
+                                                 const UffFunctions& measured,
+                                                 const std::vector<NodeName>& names, double from,
+                                                 double to, std::vector<std::string>& remarks);
+
+/// Curves as functions of a universal file, their points as nodes from 1.
+UffContents uff_contents(const ResponseStudy& study, const std::vector<double>& frequencies,
+                         const std::vector<ResponseCurve>& curves);
+
+}  // namespace stridor

@@ -1,0 +1,331 @@
+// stridor frf: frequency responses of a scene between points of its bodies.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "app/results/pictures.hpp"
+#include "app/stability/measured_responses.hpp"
+#include "app/stability/response_study.hpp"
+#include "app/stability/stability.hpp"
+#include "core/errors.hpp"
+#include "core/version.hpp"
+#include "io/figures/axes.hpp"
+#include "io/figures/panel_plot.hpp"
+
+namespace stridor {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FrfOptions {
+  StabilityOptions stability;  ///< scene, about and what is common
+  std::vector<std::string> inputs;
+  std::vector<std::string> outputs;
+  std::string from;
+  std::string to;
+  int points = 1001;
+  std::string scale = "linear";
+  std::vector<std::string> files;
+  std::optional<std::string> figure;
+  std::optional<std::string> measured;
+  std::vector<std::string> nodes;
+  std::string command_line;
+};
+
+bool is_universal(const std::string& file) {
+  const fs::path ending = fs::path(file).extension();
+  return ending == ".uff" || ending == ".unv";
+}
+
+void check_files(const FrfOptions& options) {
+  for (const std::string& file : options.files) {
+    if (!is_universal(file) && fs::path(file).extension() != ".h5")
+      throw ConfigError("-o", fmt::format("'{}' ends neither in .h5 (HDF5) nor in .uff or .unv "
+                                          "(universal file, dataset 58)",
+                                          file));
+    check_output(file, options.stability.common.overwrite());
+  }
+  if (options.figure) check_figure(*options.figure, options.stability.common);
+  if (!options.nodes.empty() && !options.measured)
+    throw ConfigError("--node", "names nodes of a measurement; give it with --compare");
+}
+
+std::vector<double> frequencies_of(const FrfOptions& options) {
+  const NumericKey key{"frequency", "Hz", Range::non_negative()};
+  const bool is_log = options.scale == "log";
+  const double from = parse_value(key, options.from, "--from");
+  const double to = parse_value(key, options.to, "--to");
+  if (to < from) throw ConfigError("--to", fmt::format("{:g} Hz lies below --from, {:g} Hz", to, from));
+  return spaced_values(key, from, to, from == to ? 1 : options.points,
+                       is_log ? Spacing::logarithmic : Spacing::linear);
+}
+
+void write_files(const FrfOptions& options, const ResponseStudy& study,
+                 const std::vector<double>& frequencies, const std::vector<ResponseCurve>& curves) {
+  const StabilityOptions& stability = options.stability;
+  for (const std::string& file : options.files) {
+    if (is_universal(file)) {
+      write_text_file(file, uff_text(uff_contents(study, frequencies, curves), "-o"));
+      continue;
+    }
+    write_response_file(file, stability.common.overwrite(), frequencies, curves,
+                        {{"about", stability.about},
+                         {"trusted_frequency", study.trusted_frequency()},
+                         {"scene", stability.scene},
+                         {"scene_hash", study.loaded().hash()},
+                         {"scene_resolved", study.loaded().resolved()},
+                         {"command", options.command_line},
+                         {"version", std::string(version)},
+                         {"commit", std::string(commit)},
+                         {"date", utc_now()}});
+  }
+}
+
+/// Diagrams of Bode and Nyquist.
+class ResponsePicture {
+ public:
+  explicit ResponsePicture(bool is_log) {
+    panels_[0] = {"frequency (Hz)", "magnitude", AxisKind::linear, AxisKind::logarithmic, false, {}};
+    panels_[1] = {"frequency (Hz)", "phase (deg)", AxisKind::linear, AxisKind::linear, false, {}};
+    panels_[2] = {"real part", "imaginary part", AxisKind::linear, AxisKind::linear, true, {}};
+    if (is_log) panels_[0].x_kind = panels_[1].x_kind = AxisKind::logarithmic;
+  }
+
+  void add(const std::vector<double>& frequencies, const ResponseCurve& curve,
+           const std::string& label, Mark mark, int colour) {
+    PanelCurve magnitude{label, frequencies, {}, mark, colour};
+    PanelCurve phase{"", frequencies, {}, mark, colour};
+    PanelCurve nyquist{"", {}, {}, mark, colour};
+    for (const std::complex<double>& value : curve.values) {
+      magnitude.y.push_back(std::abs(value));
+      phase.y.push_back(std::arg(value) * 180.0 / std::numbers::pi);
+      nyquist.x.push_back(value.real());
+      nyquist.y.push_back(value.imag());
+    }
+    if (units_.empty()) units_ = curve.units;
+    if (units_ != curve.units) units_ = "SI";
+    panels_[0].curves.push_back(std::move(magnitude));
+    panels_[1].curves.push_back(std::move(phase));
+    panels_[2].curves.push_back(std::move(nyquist));
+  }
+
+  void draw(const std::string& caption, const fs::path& figure) {
+    const std::string units = typeset_units(units_);
+    panels_[0].y_label = fmt::format("magnitude ({})", units);
+    panels_[2].x_label = fmt::format("real part ({})", units);
+    panels_[2].y_label = fmt::format("imaginary part ({})", units);
+    plot_panels({panels_[0], panels_[1], panels_[2]}, caption, figure);
+  }
+
+ private:
+  std::array<DiagramPanel, 3> panels_;
+  std::string units_;
+};
+
+/// What was found.
+struct FoundResponses {
+  const FrfOptions& options;
+  const ResponseStudy& study;
+  std::vector<double> frequencies;
+  std::vector<ResponseCurve> curves;
+  std::vector<double> truncation;  ///< of a run, one per curve; or empty
+  std::vector<ComparedResponse> compared;
+  std::vector<std::string> remarks;
+};
+
+void draw_responses(const FoundResponses& found) {
+  const FrfOptions& options = found.options;
+  ResponsePicture picture(options.scale == "log");
+  // Names are too long for a legend: it has numbers, the caption what they stand for.
+  std::string names;
+  int colour = 0;
+  const auto next_label = [&](const ResponseCurve& curve) {
+    names += fmt::format(" {}: {} per {}.", colour + 1, curve.output, curve.input);
+    return std::to_string(colour + 1);
+  };
+  if (found.compared.empty()) {
+    for (const ResponseCurve& curve : found.curves) {
+      const std::string label = next_label(curve);
+      picture.add(found.frequencies, curve, label, Mark::line, colour++);
+    }
+  }
+  for (const ComparedResponse& one : found.compared) {
+    const std::string label = next_label(one.computed);
+    picture.add(one.frequencies, one.measured, label + " measured", Mark::points, 2 * colour + 1);
+    picture.add(one.frequencies, one.computed, label, Mark::line, 2 * colour);
+    ++colour;
+  }
+  picture.draw(fmt::format("Frequency responses about the {} geometry.{} {}, scene {}.",
+                           options.stability.about, names,
+                           fs::path(options.stability.scene).filename().string(),
+                           found.study.loaded().hash()),
+               *options.figure);
+}
+
+/// Where a curve is largest.
+std::size_t peak_of(const ResponseCurve& curve) {
+  const auto less = [](const std::complex<double>& a, const std::complex<double>& b) {
+    return std::abs(a) < std::abs(b);
+  };
+  return static_cast<std::size_t>(
+      std::max_element(curve.values.begin(), curve.values.end(), less) - curve.values.begin());
+}
+
+Json numbers_json(const std::vector<std::complex<double>>& values, bool is_real) {
+  Json list = Json::array();
+  for (const std::complex<double>& value : values)
+    list.push_back(number(is_real ? value.real() : value.imag()));
+  return list;
+}
+
+Json responses_json(const FoundResponses& found) {
+  Json object = {{"about", found.options.stability.about},
+                 {"window", {0.0, number(found.study.trusted_frequency())}},
+                 {"frequencies", found.frequencies},
+                 {"responses", Json::array()},
+                 {"files", found.options.files},
+                 {"remarks", found.remarks}};
+  for (std::size_t i = 0; i < found.curves.size(); ++i) {
+    const ResponseCurve& curve = found.curves[i];
+    const std::size_t peak = peak_of(curve);
+    object["responses"].push_back(
+        {{"output", curve.output},
+         {"input", curve.input},
+         {"units", curve.units},
+         {"peak", {{"frequency", found.frequencies[peak]}, {"magnitude", number(std::abs(curve.values[peak]))}}},
+         {"truncation", found.truncation.empty() ? Json(nullptr) : number(found.truncation[i])},
+         {"real", numbers_json(curve.values, true)},
+         {"imaginary", numbers_json(curve.values, false)}});
+  }
+  if (found.options.measured) {
+    object["compared"] = Json::array();
+    for (const ComparedResponse& one : found.compared) {
+      object["compared"].push_back({{"output", one.computed.output},
+                                    {"input", one.computed.input},
+                                    {"source", one.source},
+                                    {"frac", number(one.assurance)},
+                                    {"ratio", number(one.ratio)},
+                                    {"from", one.frequencies.front()},
+                                    {"to", one.frequencies.back()},
+                                    {"points", one.frequencies.size()}});
+    }
+  }
+  return object;
+}
+
+void print_responses(const FoundResponses& found) {
+  const double trusted = found.study.trusted_frequency();
+  for (std::size_t i = 0; i < found.curves.size(); ++i) {
+    const ResponseCurve& curve = found.curves[i];
+    const std::size_t peak = peak_of(curve);
+    fmt::print("{} per {}: largest {:.4g} {} at {:.6g} Hz\n", curve.output, curve.input,
+               std::abs(curve.values[peak]), curve.units, found.frequencies[peak]);
+    if (!found.truncation.empty())
+      fmt::print("  with the modes that a run keeps (time.retain): off by {:.2g}\n",
+                 found.truncation[i]);
+  }
+  fmt::print("{} frequencies from {:g} to {:g} Hz about the {} geometry\n", found.frequencies.size(),
+             found.frequencies.front(), found.frequencies.back(), found.options.stability.about);
+  if (found.frequencies.back() > trusted)
+    fmt::print("above {:.6g} Hz the reduced bodies do not answer as the full ones; keep more modes\n",
+               trusted);
+  if (!found.compared.empty()) {
+    fmt::print("\n{:<44} {:>6} {:>8}  {}\n", "measured", "FRAC", "ratio", "frequencies, Hz");
+    for (const ComparedResponse& one : found.compared) {
+      fmt::print("{:<44} {:>6.3f} {:>8.3f}  {:g} to {:g}\n",
+                 one.computed.output + " per " + one.computed.input, one.assurance, one.ratio,
+                 one.frequencies.front(), one.frequencies.back());
+    }
+  }
+  for (const std::string& remark : found.remarks) fmt::print("{}\n", remark);
+  for (const std::string& file : found.options.files) fmt::print("{}\n", file);
+  if (found.options.figure) fmt::print("{}\n", *found.options.figure);
+}
+
+ExitCode frf(FrfOptions options) {
+  check_files(options);
+  const std::vector<NodeName> names = parse_node_names(options.nodes);
+  UffFunctions measured;
+  if (options.measured) measured = read_uff_functions_file(*options.measured);
+  StabilityOptions& stability = options.stability;
+  LoadedScene loaded = load_scene(stability.scene, stability.common.sets);
+  make_choices(stability, loaded.scene);
+  try {
+    require_bodies(loaded);
+  } catch (const ConfigError& error) {
+    throw loaded.located(error);
+  }
+  const std::vector<double> frequencies = frequencies_of(options);
+  ResponsePlaces places = response_places(options.inputs, options.outputs, loaded.scene.model);
+  const ResponseStudy study(std::move(loaded), stability.geometry(), std::move(places));
+  FoundResponses found{options, study, frequencies, study.curves(frequencies), {}, {}, {}};
+  found.truncation = study.truncation_errors(frequencies, found.curves);
+  if (options.measured) {
+    found.remarks = measured.remarks;
+    found.compared = compared_responses(study, measured, names, frequencies.front(),
+                                        frequencies.back(), found.remarks);
+  }
+  write_files(options, study, frequencies, found.curves);
+  if (options.figure) draw_responses(found);
+  if (stability.common.json) {
+    print_json(responses_json(found));
+  } else {
+    print_responses(found);
+  }
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_frf_command(CLI::App& program, Action& action, const std::string& command_line) {
+  auto options = std::make_shared<FrfOptions>();
+  options->command_line = command_line;
+  CLI::App* verb = program.add_subcommand(
+      "frf", "Frequency responses between points, about the equilibrium, friction included");
+  verb->add_option("scene", options->stability.scene, "Scene file (YAML)")->required();
+  verb->add_option("--input", options->inputs,
+                   "Where and along what a force acts, <body>.<point>.<x|y|z>; may be repeated")
+      ->required()
+      ->take_all()
+      ->allow_extra_args(false);
+  verb->add_option("--output", options->outputs,
+                   "Motion that is wanted, <body>.<point>.<x|y|z>.<displacement|velocity|"
+                   "acceleration>: receptance, mobility or accelerance; may be repeated; default: "
+                   "the acceleration at each input")
+      ->take_all()
+      ->allow_extra_args(false);
+  verb->add_option("--from", options->from, "Lowest frequency, Hz or with a unit")->required();
+  verb->add_option("--to", options->to, "Highest frequency")->required();
+  verb->add_option("--points", options->points, "Number of frequencies")
+      ->check(CLI::Range(1, 10000000))
+      ->capture_default_str();
+  verb->add_option("--scale", options->scale, "Frequencies at equal distances or at equal ratios")
+      ->check(CLI::IsMember({"linear", "log"}))
+      ->capture_default_str();
+  verb->add_option("--about", options->stability.about,
+                   "Geometry about which the system is linearised: undeformed, or that of the "
+                   "deformed sliding equilibrium; default: undeformed, with contacts on the faces of "
+                   "plates deformed")
+      ->check(CLI::IsMember({"undeformed", "deformed"}));
+  verb->add_option("-o", options->files,
+                   "File to write: .h5 (HDF5), or .uff, .unv (universal file); may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  verb->add_option("--figure", options->figure,
+                   "Picture of magnitude, phase and locus of the responses: .png, .svg or .pdf");
+  verb->add_option("--compare", options->measured,
+                   "Measured responses (universal file, dataset 58) to set beside: FRAC and ratio");
+  verb->add_option("--node", options->nodes,
+                   "Which point a node of the measurement is, NUMBER=BODY.POINT; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  add_scene_options(*verb, options->stability.common);
+  add_json_option(*verb, options->stability.common);
+  add_force_option(*verb, options->stability.common);
+  verb->callback([options, &action] { action = [options] { return frf(*options); }; });
+}
+
+}  // namespace stridor

@@ -1,0 +1,126 @@
+#include "io/results/uff_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+
+#include "core/errors.hpp"
+
+namespace stridor {
+namespace {
+
+/// The text cut to a line of the format, which holds 80 characters.
+std::string record_text(const std::string& text) {
+  return text.substr(0, 80);
+}
+
+void add_head(const UffContents& contents, std::string& text) {
+  text += fmt::format("    -1\n   151\n{}\nNONE\n{}\n{:<10}{:<10}\n{}\n{:<10}{:<10}\n{}\n    -1\n",
+                      record_text(contents.title), record_text(contents.program), contents.date,
+                      contents.time, "NONE", contents.date, contents.time,
+                      record_text(contents.program));
+  // Code 1: metre, newton; factors of length, force and temperature, and of its zero.
+  text += fmt::format("    -1\n   164\n{:10}{:<20}{:10}\n{:25.16E}{:25.16E}{:25.16E}\n{:25.16E}\n    -1\n",
+                      1, "SI: m, N, kg", 2, 1.0, 1.0, 1.0, 273.15);
+}
+
+void add_nodes(const std::vector<UffNode>& nodes, std::string& text) {
+  text += "    -1\n  2411\n";
+  for (const UffNode& node : nodes) {
+    text += fmt::format("{:10}{:10}{:10}{:10}\n{:25.16E}{:25.16E}{:25.16E}\n", node.number, 1, 1, 11,
+                        node.place.x(), node.place.y(), node.place.z());
+  }
+  text += "    -1\n";
+}
+
+/// First abscissa and increment as the format holds them.
+struct EvenAbscissas {
+  double first = 0.0;
+  double increment = 0.0;
+};
+
+double of_six_digits(double value) {
+  return std::stod(fmt::format("{:.5E}", value));
+}
+
+EvenAbscissas even_abscissas(const std::vector<double>& abscissa, const std::string& key) {
+  EvenAbscissas even{of_six_digits(abscissa.front()), 0.0};
+  if (abscissa.size() > 1) even.increment = of_six_digits(abscissa[1] - abscissa[0]);
+  for (std::size_t i = 0; i < abscissa.size(); ++i) {
+    const double there = even.first + even.increment * static_cast<double>(i);
+    if (std::abs(there - abscissa[i]) <= 1e-9 * std::abs(abscissa.back())) continue;
+    throw ConfigError(key, fmt::format("universal files hold the first frequency and the increment in "
+                                       "six digits, and {:.9g} with {:.9g} have more; choose the number "
+                                       "of points so that the increment is round",
+                                       abscissa.front(), abscissa[1] - abscissa[0]));
+  }
+  return even;
+}
+
+std::string quantity_record(int quantity, const char* label, const char* unit) {
+  return fmt::format("{:10}{:5}{:5}{:5} {:<20} {:<20}\n", quantity, 0, 0, 0, label, unit);
+}
+
+std::string record_of(int quantity) {
+  switch (static_cast<UffQuantity>(quantity)) {
+    case UffQuantity::displacement:
+      return quantity_record(quantity, "displacement", "m");
+    case UffQuantity::velocity:
+      return quantity_record(quantity, "velocity", "m/s");
+    case UffQuantity::acceleration:
+      return quantity_record(quantity, "acceleration", "m/s^2");
+    case UffQuantity::excitation_force:
+      return quantity_record(quantity, "force", "N");
+    case UffQuantity::frequency:
+      return quantity_record(quantity, "frequency", "Hz");
+    case UffQuantity::time:
+      return quantity_record(quantity, "time", "s");
+    case UffQuantity::general:
+      break;
+  }
+  return quantity_record(quantity, "NONE", "NONE");
+}
+
+void add_function(const UffFunction& function, std::size_t number, const UffContents& contents,
+                  const std::string& key, std::string& text) {
+  if (function.abscissa.empty() || function.abscissa.size() != function.values.size())
+    throw std::invalid_argument("uff_text: abscissas and values are not as many");
+  const EvenAbscissas even = even_abscissas(function.abscissa, key);
+  text += fmt::format("    -1\n    58\n{}\n{}\n{:<10}{:<10}\nNONE\nNONE\n", record_text(function.id),
+                      record_text(contents.program), contents.date, contents.time);
+  text += fmt::format("{:5}{:10}{:5}{:10} {:<10}{:10}{:4} {:<10}{:10}{:4}\n", function.type, number, 0,
+                      0, "NONE", function.response.node, function.response.direction, "NONE",
+                      function.reference.node, function.reference.direction);
+  constexpr int real_double = 4, complex_double = 6, even_spacing = 1;
+  text += fmt::format("{:10}{:10}{:10}{:13.5E}{:13.5E}{:13.5E}\n",
+                      function.is_complex ? complex_double : real_double, function.values.size(),
+                      even_spacing, even.first, even.increment, 0.0);
+  text += record_of(function.abscissa_quantity) + record_of(function.ordinate_quantity) +
+          record_of(function.denominator_quantity) + record_of(0);
+  std::size_t in_line = 0;
+  const auto add_number = [&](double value) {
+    fmt::format_to(std::back_inserter(text), "{:20.12E}", value);
+    if (++in_line % 4 == 0) text += '\n';
+  };
+  for (const std::complex<double>& value : function.values) {
+    add_number(value.real());
+    if (function.is_complex) add_number(value.imag());
+  }
+  if (in_line % 4 != 0) text += '\n';
+  text += "    -1\n";
+}
+
+}  // namespace
+
+std::string uff_text(const UffContents& contents, const std::string& key) {
+  std::string text;
+  add_head(contents, text);
+  add_nodes(contents.nodes, text);
+  for (std::size_t i = 0; i < contents.functions.size(); ++i)
+    add_function(contents.functions[i], i + 1, contents, key, text);
+  return text;
+}
+
+}  // namespace stridor

@@ -1,0 +1,37 @@
+// Universal files, as programs for tests read them.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "io/imports/uff_functions.hpp"
+
+namespace stridor {
+
+/// A node that functions name.
+struct UffNode {
+  std::int64_t number = 0;
+  std::string name;  ///< "<body>.<point>"
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< m
+};
+
+/// What a universal file holds.
+struct UffContents {
+  std::string title;
+  std::string program;  ///< that wrote it, with its version
+  std::string date;     ///< "26-NOV-26" and "17:24:09", as record 3 of 151 has them
+  std::string time;
+  std::vector<UffNode> nodes;
+  std::vector<UffFunction> functions;  ///< at even abscissas, in SI units
+};
+
+/// The text of a file: dataset 151 (head), 164 (SI), 2411 (nodes), and a 58 for each function, in
+/// double precision at even abscissas.
+///
+/// First abscissa and increment have six digits there (E13.5).
+/// @throws std::invalid_argument if abscissas and values of a function are not as many
+/// @throws ConfigError at `key` if the abscissas are not those that six digits give, to 1e-9
+std::string uff_text(const UffContents& contents, const std::string& key);
+
+}  // namespace stridor

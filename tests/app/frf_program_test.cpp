@@ -1,0 +1,258 @@
+// Frequency responses that the program computes, and its messages where it cannot.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <hdf5.h>
+#include <hdf5_hl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "io/imports/uff_functions.hpp"
+#include "tests/support/constants.hpp"
+#include "tests/support/program.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+using Json = nlohmann::json;
+using Complex = std::complex<double>;
+
+// 2 kg on 8000 N/m with 6 N s/m: 10.066 Hz.
+constexpr const char* one_mass = R"(format: 2
+substructures:
+  slider:
+    type: lumped
+    masses: {mass: {mass: 2}}
+    springs:
+      along: {at: mass, stiffness: 8000, damping: 6}
+      up: {at: mass, stiffness: 32000, direction: [0, 1]}
+)";
+
+class FrfProgram : public ::testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return path(name);
+  }
+  static ProgramResult frf(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "frf");
+    return Program(arguments).run();
+  }
+  static Json json_of(std::vector<std::string> arguments) {
+    arguments.emplace_back("--json");
+    const ProgramResult result = frf(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return Json::parse(result.out, nullptr, false);
+  }
+  static Complex value(const Json& response, std::size_t i) {
+    return {response["real"][i].get<double>(), response["imaginary"][i].get<double>()};
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(FrfProgram, OneMassAnswersAsItsClosedForm) {
+  const std::string scene = write("mass.yaml", one_mass);
+  const Json object =
+      json_of({scene, "--input", "slider.mass.x", "--output", "slider.mass.x.displacement",
+               "--output", "slider.mass.x.velocity", "--output", "slider.mass.x.acceleration",
+               "--from", "1", "--to", "30", "--points", "59"});
+  ASSERT_EQ(object["frequencies"].size(), 59u);
+  ASSERT_EQ(object["responses"].size(), 3u);
+  const char* units[] = {"m/N", "m/s/N", "m/s^2/N"};
+  for (std::size_t order = 0; order < 3; ++order) {
+    const Json& response = object["responses"][order];
+    EXPECT_EQ(response["units"], units[order]);
+    EXPECT_EQ(response["input"], "slider.mass.x");
+    EXPECT_EQ(response["truncation"], nullptr);
+    for (std::size_t i = 0; i < 59; ++i) {
+      const Complex s(0.0, two_pi * object["frequencies"][i].get<double>());
+      const Complex expected =
+          std::pow(s, static_cast<int>(order)) / (2.0 * s * s + 6.0 * s + 8000.0);
+      EXPECT_LT(std::abs(value(response, i) - expected), 1e-12 * std::abs(expected));
+    }
+  }
+  EXPECT_NEAR(object["responses"][0]["peak"]["frequency"].get<double>(), 10.0, 0.26);
+}
+
+TEST_F(FrfProgram, BeamsInSlidingContactAreAskedAboutTheirEquilibrium) {
+  const std::string scene = scene_path("beam_on_beam.yaml");
+  const auto responses = [&](const std::string& friction, const std::string& from) {
+    return json_of({scene, "--input", "cantilever.free_end.y", "--input", "oblique.tip.y",
+                    "--output", "cantilever.free_end.y.displacement", "--output",
+                    "oblique.tip.y.displacement", "--from", from, "--to", "9kHz", "--points", "40",
+                    "--about", "deformed", "--set", "contact.start=0.075", "--set",
+                    "contact.friction.coefficient=" + friction});
+  };
+  // Without friction Betti holds; with it the response across is another one.
+  const auto asymmetry = [&](const Json& object) {
+    double difference = 0.0, size = 0.0;
+    for (std::size_t i = 0; i < 40; ++i) {
+      difference += std::norm(value(object["responses"][1], i) - value(object["responses"][2], i));
+      size += std::norm(value(object["responses"][1], i));
+    }
+    return std::sqrt(difference / size);
+  };
+  EXPECT_LT(asymmetry(responses("0", "20")), 1e-7);
+  EXPECT_GT(asymmetry(responses("0.3", "20")), 1e-2);
+  // Near an eigenvalue that no other one is close to, the response is a pole and a constant:
+  // three values of it tell the eigenvalue that `eig` finds.
+  const ProgramResult eig = Program({"eig", scene, "--json", "--about", "deformed", "--set",
+                                     "contact.start=0.075", "--set",
+                                     "contact.friction.coefficient=0.3"})
+                                .run();
+  const Json found = Json::parse(eig.out);
+  std::vector<Complex> spectrum;
+  for (const Json& pair : found["eigenvalues"])
+    spectrum.emplace_back(pair[0].get<double>(), pair[1].get<double>());
+  int checked = 0;
+  for (const Complex& s : spectrum) {
+    const auto is_close = [&](const Complex& other) {
+      return other != s && std::abs(other - s) < 600.0;
+    };
+    // Above 9.5 kHz there are modes of the oblique beam alone, which the point hardly sees.
+    if (s.imag() < 2000.0 || s.imag() > 6e4) continue;
+    if (std::any_of(spectrum.begin(), spectrum.end(), is_close)) continue;
+    const double f = s.imag() / two_pi;
+    const Json near = json_of({scene, "--input", "cantilever.free_end.y", "--output",
+                               "cantilever.free_end.y.displacement", "--from",
+                               std::to_string(f - 0.5), "--to", std::to_string(f + 0.5),
+                               "--points", "3", "--about", "deformed", "--set",
+                               "contact.start=0.075", "--set",
+                               "contact.friction.coefficient=0.3"});
+    std::array<Complex, 3> at, h;
+    for (std::size_t i = 0; i < 3; ++i) {
+      at[i] = Complex(0.0, two_pi * near["frequencies"][i].get<double>());
+      h[i] = value(near["responses"][0], i);
+    }
+    const Complex ratio = (h[0] - h[1]) / (h[1] - h[2]) * (at[2] - at[1]) / (at[1] - at[0]);
+    const Complex pole = (ratio * at[0] - at[2]) / (ratio - 1.0);
+    EXPECT_LT(std::abs(pole - s), 1e-2 * std::abs(s.real())) << f << " Hz";
+    ++checked;
+  }
+  EXPECT_GE(checked, 8);
+}
+
+TEST_F(FrfProgram, TellsWhatTheModesOfARunLeaveOut) {
+  const std::string scene = scene_path("beam_on_beam.yaml");
+  const auto truncation = [&](const std::string& kept) {
+    const Json object = json_of({scene, "--input", "cantilever.free_end.y", "--from", "20", "--to",
+                                 "5kHz", "--points", "50", "--set", "time.integrator=exact", "--set",
+                                 "time.step=5e-6", "--set", "time.retain.frequency=" + kept});
+    return object["responses"][0]["truncation"].get<double>();
+  };
+  const double few = truncation("12kHz");
+  const double many = truncation("40kHz");
+  EXPECT_LT(few, 0.1);
+  EXPECT_LT(many, 0.2 * few);
+  EXPECT_GT(many, 0.0);
+}
+
+TEST_F(FrfProgram, WritesFilesThatItComparesWithItselfAndAPicture) {
+  const std::string scene = write("mass.yaml", one_mass);
+  const std::vector<std::string> range{"--from", "1", "--to", "30", "--points", "59"};
+  const auto with_range = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), scene);
+    arguments.insert(arguments.end(), range.begin(), range.end());
+    return arguments;
+  };
+  json_of(with_range({"--input", "slider.mass.x", "--output", "slider.mass.x.velocity", "-o",
+                      path("frf.h5"), "-o", path("frf.uff"), "--figure", path("frf.svg")}));
+  EXPECT_THAT(contents_of(path("frf.svg")),
+              AllOf(HasSubstr("magnitude (m/s/N)"), HasSubstr("phase (deg)"),
+                    HasSubstr("slider.mass.x.velocity per slider.mass.x")));
+  const UffFunctions written = read_uff_functions_file(path("frf.uff"));
+  ASSERT_EQ(written.functions.size(), 1u);
+  EXPECT_EQ(written.functions[0].response, (UffDof{1, 1}));
+
+  const hid_t file = H5Fopen(path("frf.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  ASSERT_GE(file, 0);
+  std::vector<double> real(59);
+  EXPECT_GE(H5LTread_dataset_double(
+                file, "/responses/slider.mass.x.velocity/slider.mass.x/real", real.data()),
+            0);
+  H5Fclose(file);
+  EXPECT_NEAR(real[10], written.functions[0].values[10].real(), 1e-12 * std::abs(real[10]));
+
+  // As accelerance of the same point; the only response of the file needs no name.
+  const Json same = json_of(with_range({"--input", "slider.mass.x", "--compare", path("frf.uff")}));
+  EXPECT_NEAR(same["compared"][0]["frac"].get<double>(), 1.0, 1e-12);
+  EXPECT_NEAR(same["compared"][0]["ratio"].get<double>(), 1.0, 1e-11);
+  EXPECT_EQ(same["compared"][0]["output"], "slider.mass.x.velocity");
+  // Half the mass: another response.
+  const Json other = json_of(with_range({"--input", "slider.mass.x", "--compare", path("frf.uff"),
+                                         "--node", "1=slider.mass", "--set",
+                                         "substructures.slider.masses.mass.mass=1"}));
+  EXPECT_LT(other["compared"][0]["frac"].get<double>(), 0.9);
+}
+
+TEST_F(FrfProgram, MeasuredDirectionsMayBeNegativeAndTheRestIsNamed) {
+  const std::string scene = write("mass.yaml", one_mass);
+  const std::vector<std::string> asked{scene,    "--input", "slider.mass.x", "--input",
+                                       "slider.mass.y", "--from",  "1",     "--to",
+                                       "30",     "--points", "59"};
+  std::vector<std::string> writing = asked;
+  writing.insert(writing.end(), {"-o", path("frf.uff")});
+  json_of(writing);
+  std::string text = contents_of(path("frf.uff"));
+  // The first function, x per x, as if measured along −x and hit along +x.
+  const std::string dofs = "NONE               1   1 NONE               1   1";
+  ASSERT_NE(text.find(dofs), std::string::npos);
+  text.replace(text.find(dofs), dofs.size(), "NONE               1  -1 NONE               1   1");
+  std::vector<std::string> comparing = asked;
+  comparing.insert(comparing.end(),
+                   {"--compare", write("turned.uff", text), "--node", "1=slider.mass"});
+  const Json object = json_of(comparing);
+  ASSERT_EQ(object["compared"].size(), 4u);
+  EXPECT_NEAR(object["compared"][0]["frac"].get<double>(), 1.0, 1e-12);  // blind to the sign
+  EXPECT_NEAR(object["compared"][3]["ratio"].get<double>(), 1.0, 1e-11);
+  comparing.back() = "2=slider.mass";
+  const ProgramResult unnamed = frf(comparing);
+  EXPECT_EQ(unnamed.exit_code, 2);
+  EXPECT_THAT(unnamed.err, AllOf(HasSubstr("nothing of the file can be compared"),
+                                 HasSubstr("is of node 1, which no --node names")));
+}
+
+TEST_F(FrfProgram, RefusalsSayWhatToDo) {
+  const std::string scene = write("mass.yaml", one_mass);
+  const auto refused = [&](std::vector<std::string> arguments, const char* text) {
+    arguments.insert(arguments.begin(), scene);
+    arguments.insert(arguments.end(), {"--from", "1", "--to", "30"});
+    const ProgramResult result = frf(arguments);
+    EXPECT_EQ(result.exit_code, 2) << result.out;
+    EXPECT_THAT(result.err, HasSubstr(text));
+  };
+  refused({"--input", "slider.mas.x"}, "has no point 'mas'");
+  refused({"--input", "slide.mass.x"}, "did you mean 'slider'");
+  refused({"--input", "slider.mass.z"}, "does not move");
+  refused({"--input", "slider.mass.x", "--input", "slider.mass.x"}, "is given twice");
+  refused({"--input", "slider.mass.x", "--output", "slider.mass.x"}, "--output");
+  refused({"--input", "slider.mass.x", "-o", path("a.txt")}, "ends neither in .h5");
+  refused({"--input", "slider.mass.x", "--node", "1=slider.mass"}, "give it with --compare");
+  refused({"--input", "slider.mass.x", "--scale", "log", "--points", "1"}, "--points");
+  const ProgramResult backwards =
+      frf({scene, "--input", "slider.mass.x", "--from", "30", "--to", "1"});
+  EXPECT_EQ(backwards.exit_code, 2);
+  EXPECT_THAT(backwards.err, HasSubstr("lies below --from"));
+  const ProgramResult uneven = frf({scene, "--input", "slider.mass.x", "--from", "1", "--to", "30",
+                                    "--scale", "log", "-o", path("a.uff")});
+  EXPECT_EQ(uneven.exit_code, 2);
+  EXPECT_THAT(uneven.err, HasSubstr("six digits"));
+  EXPECT_FALSE(std::filesystem::exists(path("a.uff")));
+}
+
+}  // namespace
+}  // namespace stridor
