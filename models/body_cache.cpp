@@ -13,6 +13,7 @@
 #include "core/tasks.hpp"
 #include "models/keys_text.hpp"
 #include "substructures/bodies/whole_body.hpp"
+#include "substructures/reduction/interface_modes.hpp"
 
 namespace stridor {
 namespace {
@@ -89,6 +90,8 @@ BodyCache::Reduction make_reduction(const BodyCache::Wanted& wanted) {
   made.reduced = wanted.is_whole ? make_whole(*wanted.body, wanted.watched)
                                  : make_craig_bampton(*wanted.body, wanted.interface,
                                                       wanted.num_modes, wanted.watched);
+  if (wanted.interface_modes && !wanted.is_whole)
+    made.reduced = with_interface_modes(made.reduced, *wanted.interface_modes);
   made.modal = make_modal(made.reduced);
   return made;
 }

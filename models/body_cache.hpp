@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -43,6 +44,7 @@ class BodyCache {
     std::span<const int> interface{};
     Eigen::Index num_modes = 0;
     std::span<const int> watched{};
+    std::optional<int> interface_modes{};  ///< of with_interface_modes(); nothing: all DoFs
   };
   /// Craig-Bampton reduction of a body, or all of it (make_whole()), and its modes.
   /// @throws as make_craig_bampton(), make_whole() and make_modal()

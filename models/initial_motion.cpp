@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/errors.hpp"
+#include "substructures/reduction/interface_modes.hpp"
 
 namespace stridor {
 namespace {
@@ -40,11 +41,14 @@ Eigen::VectorXd translation(const std::string& key, const Eigen::Vector3d& value
   const Eigen::MatrixXd& stiffness = finished.reduced.stiffness;
   for (Eigen::Index direction = 0; direction < 3; ++direction) {
     if (value(direction) == 0.0) continue;
-    Eigen::VectorXd unit = Eigen::VectorXd::Zero(finished.reduced.size());
+    Eigen::VectorXd interface =
+        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(built.interface.size()));
     for (std::size_t k = 0; k < built.interface.size(); ++k) {
       if (is_dof_of(built.matrices, built.interface[k], static_cast<std::size_t>(direction)))
-        unit(static_cast<Eigen::Index>(k)) = 1.0;
+        interface(static_cast<Eigen::Index>(k)) = 1.0;
     }
+    Eigen::VectorXd unit = Eigen::VectorXd::Zero(finished.reduced.size());
+    unit.head(finished.reduced.num_interface) = interface_coordinates(finished.reduced, interface);
     const double energy = unit.dot(stiffness * unit);
     const double scale = unit.dot(stiffness.cwiseAbs() * unit);
     // A body without interface DoFs in this direction is held by its supports alone.

@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "substructures/reduction/interface_modes.hpp"
+
 namespace stridor {
 namespace {
 
@@ -24,8 +26,9 @@ ShapeRecovery::ShapeRecovery(const Model& model, BodyCache& cache) : model_(&mod
     part.body = b;
     part.matrices = cache.matrices(*parameters->second);
     const Model::Placement& placement = model.placements[b];
-    part.recovery = recovery_matrix(part.matrices, placement.interface,
-                                    body.reduced.size() - body.reduced.num_interface);
+    part.recovery = in_interface_modes(
+        body.reduced, recovery_matrix(part.matrices, placement.interface,
+                                      body.reduced.size() - body.reduced.num_interface));
     part.rest.name = body.name;
     part.rest.nodes = node_places(part.matrices);
     part.rest.nodes.leftCols(placement.place.size()).rowwise() += placement.place.transpose();

@@ -152,9 +152,9 @@ class ModelBuilder {
       finished.lowest_omitted = body.matrices.lowest_omitted;
       if (is_sparse && body.is_whole()) {
         if (body.matrices.loss_stiffness.size() > 0) {
-          throw ConfigError(body.key() + ".material.loss_factor",
-                            fmt::format("goes with the modes of a reduction: give '{}' "
-                                        "reduction.fixed_interface_modes",
+          throw ConfigError(body.key() + ".reduction",
+                            fmt::format("missing: structural damping (loss factors) goes with the "
+                                        "modes of a reduction; give '{}' fixed_interface_modes",
                                         body.name));
         }
         blocks.push_back(make_sparse(body.matrices));

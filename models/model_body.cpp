@@ -127,7 +127,9 @@ Eigen::Index num_interior_of(const ModelBody& body) {
 }
 
 BodyCache::Wanted wanted_of(const ModelBody& body, int num_modes, const WatchedDofs& watched) {
-  return {body.parameters, &body.matrices, body.is_whole(), body.interface, num_modes, watched.dofs};
+  return {body.parameters, &body.matrices,  body.is_whole(),
+          body.interface,  num_modes,       watched.dofs,
+          body.parameters->interface_modes()};
 }
 
 }  // namespace
@@ -139,6 +141,8 @@ void prepare_bodies(std::span<ModelBody* const> bodies, BodyCache& cache) {
   for (ModelBody* const body : bodies) {
     const int num_modes = modes_of(*body);
     if (num_modes > num_interior_of(*body)) continue;  // reduce_body() says so
+    if (body->parameters->interface_modes().value_or(0) > static_cast<int>(body->interface.size()))
+      continue;
     watched.push_back(watched_dofs(*body));
     wanted.push_back(wanted_of(*body, num_modes, watched.back()));
   }
@@ -146,8 +150,7 @@ void prepare_bodies(std::span<ModelBody* const> bodies, BodyCache& cache) {
   cache.prepare(wanted);
 }
 
-BodyCache::Reduction reduce_body(ModelBody& body, BodyCache& cache) {
-  const int num_modes = modes_of(body);
+void check_reduction(const ModelBody& body, int num_modes) {
   const Eigen::Index num_interior = num_interior_of(body);
   if (num_modes > num_interior) {
     throw ConfigError(body.key() + ".reduction.fixed_interface_modes",
@@ -155,6 +158,23 @@ BodyCache::Reduction reduce_body(ModelBody& body, BodyCache& cache) {
                                   "interface; take at most that",
                                   num_modes, body.name, num_interior));
   }
+  const std::optional<int> asked = body.parameters->interface_modes();
+  if (asked && body.is_whole()) {
+    throw ConfigError(body.key() + ".interface.modes",
+                      fmt::format("goes with a reduction: give '{}' reduction.fixed_interface_modes",
+                                  body.name));
+  }
+  if (asked && *asked > static_cast<int>(body.interface.size())) {
+    throw ConfigError(body.key() + ".interface.modes",
+                      fmt::format("{} modes asked of the interface of '{}', which has {} DoFs; take "
+                                  "at most that, or leave the key out for all",
+                                  *asked, body.name, body.interface.size()));
+  }
+}
+
+BodyCache::Reduction reduce_body(ModelBody& body, BodyCache& cache) {
+  const int num_modes = modes_of(body);
+  check_reduction(body, num_modes);
   const Activity reducing(fmt::format("reducing '{}'", body.name));
   const WatchedDofs watched = watched_dofs(body);
   try {

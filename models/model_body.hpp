@@ -51,6 +51,9 @@ std::vector<ModelBody> make_bodies(const Substructures& substructures, BodyCache
 /// Computes what reduce_body() will want of several bodies and the cache has not, at the same time.
 /// @throws ConfigError as reduce_body() for a body that is too large to be kept whole
 void prepare_bodies(std::span<ModelBody* const> bodies, BodyCache& cache);
+/// Refuses a reduction to more modes than there are unknowns inside, or of the interface.
+/// @throws ConfigError with the key
+void check_reduction(const ModelBody& body, int num_modes);
 /// Reduces a body, or keeps it whole, with a row for each of ModelBody::rows.
 /// @throws ConfigError where it cannot be reduced
 BodyCache::Reduction reduce_body(ModelBody& body, BodyCache& cache);

@@ -66,20 +66,19 @@ ExitCode make_master_curve(const ContactOptions& options, const LoadedScene& loa
   return ExitCode::done;
 }
 
-ExitCode make_table(const ContactOptions& options, const LoadedScene& loaded,
-                    const StudiedContact& contact) {
-  require_boundary_elements(loaded, contact, "--table");
-  const NormalParameters& normal = contact.normal;
-  const std::string& path = *options.table;
-  const Overwrite overwrite = options.common.overwrite();
-  check_output(path, overwrite);
-  SlidingPoints points;
-  points.speeds = spaced_values("--speeds", options.table_speeds);
-  points.indentations = spaced_values("--indentations", options.table_indentations);
-  check_reach(loaded, contact, points);
+namespace {
+
+/// How many contacts of a table are so.
+template <class Condition>
+std::ptrdiff_t count_contacts(const ComputedContactTable& computed, Condition&& is_so) {
+  return std::count_if(computed.results.begin(), computed.results.end(), is_so);
+}
+
+/// @throws NumericalError if a contact did not converge or has no friction; Interrupted
+ComputedContactTable compute_table(const NormalParameters& normal, const SlidingPoints& points) {
   const auto num_contacts = static_cast<double>(points.speeds.size() * points.indentations.size());
   Progress progress("contact table");
-  const ComputedContactTable computed = compute_contact_table(
+  ComputedContactTable computed = compute_contact_table(
       IndenterProfile(normal.indenter()), creep_lengths(*normal.material, normal.tip_radius(), 1.0),
       points.speeds, points.indentations, normal.solver.value_or(SlidingContactParameters{}),
       [&](std::size_t done) {
@@ -88,13 +87,12 @@ ExitCode make_table(const ContactOptions& options, const LoadedScene& loaded,
                         fmt::format("contact {} of {:g}", done, num_contacts));
       });
   progress.finish();
-  const auto count = [&](auto&& is_so) {
-    return std::count_if(computed.results.begin(), computed.results.end(), is_so);
-  };
   if (!computed.converged()) {
     throw NumericalError(fmt::format(
         "{} of {:g} contacts of the table did not converge; nothing has been written",
-        count([](const SlidingContactResult& result) { return !result.converged; }), num_contacts));
+        count_contacts(computed,
+                       [](const SlidingContactResult& result) { return !result.converged; }),
+        num_contacts));
   }
   const auto is_positive = [](double value) { return value > 0.0; };
   if (!std::all_of(computed.table.friction.begin(), computed.table.friction.end(), is_positive)) {
@@ -102,15 +100,46 @@ ExitCode make_table(const ContactOptions& options, const LoadedScene& loaded,
         "the friction of a contact of the table is not > 0, since its speed is too low for the "
         "grid: begin at a higher one, or lower solver.tolerance; nothing has been written");
   }
+  return computed;
+}
+
+void print_table(const SlidingPoints& points, std::ptrdiff_t num_unresolved,
+                 std::ptrdiff_t num_touching, const std::string& path) {
+  fmt::print("{} speeds, {} indentations\n", points.speeds.size(), points.indentations.size());
+  if (num_unresolved > 0) {
+    fmt::print(
+        "{} contacts: the layer of length v tau at the edge is less than two cells wide "
+        "and not resolved: the friction is too low\n",
+        num_unresolved);
+  }
+  if (num_touching > 0)
+    fmt::print("{} contacts reach the border of the window: enlarge it\n", num_touching);
+  fmt::print("{}\n", path);
+}
+
+}  // namespace
+
+ExitCode make_table(const ContactOptions& options, const LoadedScene& loaded,
+                    const StudiedContact& contact) {
+  require_boundary_elements(loaded, contact, "--table");
+  const std::string& path = *options.table;
+  const Overwrite overwrite = options.common.overwrite();
+  check_output(path, overwrite);
+  SlidingPoints points;
+  points.speeds = spaced_values("--speeds", options.table_speeds);
+  points.indentations = spaced_values("--indentations", options.table_indentations);
+  check_reach(loaded, contact, points);
+  const ComputedContactTable computed = compute_table(contact.normal, points);
   std::vector<double> memory_in_cells;
   for (const SlidingContactResult& result : computed.results)
     memory_in_cells.push_back(result.memory_in_cells);
   write_law_table(path, overwrite, computed.table, memory_in_cells,
                   contact_attributes(options, loaded));
-  const auto num_unresolved =
-      count([](const SlidingContactResult& result) { return !result.has_resolved_memory(); });
-  const auto num_touching =
-      count([](const SlidingContactResult& result) { return result.touches_window; });
+  const auto num_unresolved = count_contacts(computed, [](const SlidingContactResult& result) {
+    return !result.has_resolved_memory();
+  });
+  const auto num_touching = count_contacts(
+      computed, [](const SlidingContactResult& result) { return result.touches_window; });
   if (options.common.json) {
     print_json(Json{{"speeds", points.speeds},
                     {"indentations", points.indentations},
@@ -120,17 +149,7 @@ ExitCode make_table(const ContactOptions& options, const LoadedScene& loaded,
                     {"num_unresolved", num_unresolved},
                     {"num_touching_window", num_touching}});
   } else {
-    fmt::print("{} speeds, {} indentations\n", points.speeds.size(), points.indentations.size());
-    if (num_unresolved > 0) {
-      fmt::print(
-          "{} contacts: the layer of length v tau at the edge is less than two cells wide "
-          "and not resolved: the friction is too low\n",
-          num_unresolved);
-    }
-    if (num_touching > 0) {
-      fmt::print("{} contacts reach the border of the window: enlarge it\n", num_touching);
-    }
-    fmt::print("{}\n", path);
+    print_table(points, num_unresolved, num_touching, path);
   }
   return ExitCode::done;
 }

@@ -221,6 +221,53 @@ void refuse_options_of_steps(const PrecisionOptions& options) {
   if (options.points > 20) throw ConfigError("--points", "is at most 20 with event_driven");
 }
 
+/// The settings measured, and what came of them.
+struct EventPrecision {
+  std::vector<Setting> settings;
+  double own_error = 0.0;          ///< of the reference
+  const Setting* tuned = nullptr;  ///< the cheapest within what was asked
+};
+
+EventPrecision measure_all(const Study& study, int points, std::optional<double> wanted) {
+  std::string failure;
+  const Samples reference = run_events(study, reference_tolerance, &failure);
+  if (stop_requested()) throw Interrupted("nothing has been written");
+  if (reference.size() != study.num_samples)
+    throw NumericalError("the reference motion, event-driven: " + failure);
+  EventPrecision found;
+  found.own_error = relative_error(run_events(study, check_tolerance), reference);
+  found.settings = settings_of(points);
+  Progress progress("precision");
+  for (std::size_t i = 0; i < found.settings.size(); ++i) {
+    Setting& setting = found.settings[i];
+    measure(study, setting);
+    setting.error = relative_error(setting.x, reference);
+    progress.report(static_cast<double>(i + 1) / static_cast<double>(found.settings.size()),
+                    name_of(setting.integrator));
+  }
+  progress.finish();
+  for (const Setting& setting : found.settings) {
+    const bool is_within = wanted && setting.error + found.own_error <= *wanted;
+    if (is_within && (found.tuned == nullptr || setting.seconds < found.tuned->seconds))
+      found.tuned = &setting;
+  }
+  return found;
+}
+
+void print_settings(const Study& study, const EventPrecision& found) {
+  fmt::print("{:<20}{:>12}{:>12}{:>14}{:>12}\n", "integrator", "step", "tolerance", "run time (s)",
+             "error");
+  for (const Setting& setting : found.settings) {
+    const bool is_event_driven = setting.is_event_driven();
+    fmt::print("{:<20}{:>12}{:>12}{:>14.4g}{:>12.3g}{}\n", name_of(setting.integrator),
+               is_event_driven ? "-" : fmt::format("{:.4g}", study.step(setting)),
+               is_event_driven ? fmt::format("{:.1e}", setting.tolerance) : "-", setting.seconds,
+               setting.error, &setting == found.tuned ? "  cheapest" : "");
+  }
+  fmt::print("the reference, event-driven at {:g}, differs from the same at {:g} by {:.2g}\n",
+             reference_tolerance, check_tolerance, found.own_error);
+}
+
 }  // namespace
 
 ExitCode precision_of_events(const PrecisionOptions& options, const LoadedScene& loaded) {
@@ -233,59 +280,30 @@ ExitCode precision_of_events(const PrecisionOptions& options, const LoadedScene&
     prepare_folder(options.folder, {precision_figure_name, precision_json_name},
                    options.common.overwrite());
   }
-
-  std::string failure;
-  const Samples reference = run_events(study, reference_tolerance, &failure);
-  if (stop_requested()) throw Interrupted("nothing has been written");
-  if (reference.size() != study.num_samples)
-    throw NumericalError("the reference motion, event-driven: " + failure);
-  const double own_error = relative_error(run_events(study, check_tolerance), reference);
-  std::vector<Setting> settings = settings_of(options.points);
-  Progress progress("precision");
-  for (std::size_t i = 0; i < settings.size(); ++i) {
-    measure(study, settings[i]);
-    settings[i].error = relative_error(settings[i].x, reference);
-    progress.report(static_cast<double>(i + 1) / static_cast<double>(settings.size()),
-                    name_of(settings[i].integrator));
-  }
-  progress.finish();
-  const Setting* tuned = nullptr;
-  for (const Setting& setting : settings) {
-    const bool is_within = wanted && setting.error + own_error <= *wanted;
-    if (is_within && (tuned == nullptr || setting.seconds < tuned->seconds)) tuned = &setting;
-  }
+  const EventPrecision found = measure_all(study, options.points, wanted);
 
   Json object{{"scene", options.scene},
               {"reference",
                {{"integrator", "event_driven"},
                 {"tolerance", reference_tolerance},
-                {"error", number(own_error)},
+                {"error", number(found.own_error)},
                 {"error_is", fmt::format("difference from the same at {:g}", check_tolerance)}}},
               {"rows", Json::array()}};
-  for (const Setting& setting : settings) object["rows"].push_back(row_json(study, setting));
-  if (wanted) object["tuned"] = tuned != nullptr ? row_json(study, *tuned) : Json(nullptr);
+  for (const Setting& setting : found.settings) object["rows"].push_back(row_json(study, setting));
+  if (wanted)
+    object["tuned"] = found.tuned != nullptr ? row_json(study, *found.tuned) : Json(nullptr);
   if (is_kept) {
-    draw(study, settings, std::filesystem::path(options.folder) / precision_figure_name);
+    draw(study, found.settings, std::filesystem::path(options.folder) / precision_figure_name);
     write_json(std::filesystem::path(options.folder) / precision_json_name, object);
   }
   if (options.common.json) {
     print_json(object);
   } else {
-    fmt::print("{:<20}{:>12}{:>12}{:>14}{:>12}\n", "integrator", "step", "tolerance",
-               "run time (s)", "error");
-    for (const Setting& setting : settings) {
-      const bool is_event_driven = setting.is_event_driven();
-      fmt::print("{:<20}{:>12}{:>12}{:>14.4g}{:>12.3g}{}\n", name_of(setting.integrator),
-                 is_event_driven ? "-" : fmt::format("{:.4g}", study.step(setting)),
-                 is_event_driven ? fmt::format("{:.1e}", setting.tolerance) : "-", setting.seconds,
-                 setting.error, &setting == tuned ? "  cheapest" : "");
-    }
-    fmt::print("the reference, event-driven at {:g}, differs from the same at {:g} by {:.2g}\n",
-               reference_tolerance, check_tolerance, own_error);
+    print_settings(study, found);
     if (is_kept)
       fmt::print("{} and {} in {}\n", precision_figure_name, precision_json_name, options.folder);
   }
-  if (wanted && tuned == nullptr) {
+  if (wanted && found.tuned == nullptr) {
     print_remark("stridor: no setting measured is within {:g}\n", *wanted);
     return ExitCode::numbers_failed;
   }

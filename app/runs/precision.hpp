@@ -29,6 +29,8 @@ struct PrecisionOptions {
   std::optional<std::string> until;
   std::vector<std::string> retain;
   std::vector<std::string> assumptions;
+  std::vector<std::string> frequencies;  ///< at which reduced bodies are compared with full ones
+  bool only_reduction = false;
   int points = 7;
   double published_window = 0.005;
   std::string command_line;

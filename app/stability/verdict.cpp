@@ -67,6 +67,13 @@ double trusted_frequency(const System& system) {
   for (const SystemBody& body : system.bodies) {
     omitted = std::min(omitted, body.lowest_omitted / (2.0 * std::numbers::pi));
     const Eigen::Index n = body.reduced.size();
+    if (const Eigen::Index nb = body.reduced.num_interface;
+        body.reduced.interface_modes.size() > 0 && nb > 0 &&
+        nb < body.reduced.interface_modes.rows()) {
+      // Likewise that of interface modes.
+      const double highest = std::sqrt(std::max(0.0, body.reduced.stiffness(nb - 1, nb - 1)));
+      lowest = std::min(lowest, highest / (2.0 * std::numbers::pi));
+    }
     if (n == body.reduced.num_interface) continue;
     // The stiffness of fixed-interface modes is diagonal and ascends.
     const double omega = std::sqrt(body.reduced.stiffness(n - 1, n - 1));

@@ -257,17 +257,17 @@ void draw(const MapOptions& options, const std::array<Axis, 2>& axes, const Stab
   plot_stability_map(picture, *options.figure);
 }
 
-ExitCode map(MapOptions options) {
-  StabilityOptions& stability = options.stability;
-  const Overwrite overwrite = stability.common.overwrite();
-  if (options.output) check_output(*options.output, overwrite);
-  if (options.figure) check_figure(*options.figure, stability.common);
-  const StabilityScene loaded = load_stability_scene(stability);
-  const std::array<Axis, 2> axes{
-      make_axis(loaded, options.x, "--x", options.x_scale.value_or(options.scale)),
-      make_axis(loaded, options.y, "--y", options.y_scale.value_or(options.scale))};
-  if (axes[0].key.path == axes[1].key.path)
-    throw ConfigError("--y", fmt::format("'{}' is the key of --x already", axes[1].key.path));
+/// The map found, and what its outputs share.
+struct FoundMap {
+  const MapOptions& options;
+  const StabilityScene& scene;
+  const std::array<Axis, 2>& axes;
+  StabilityMap map;
+  std::array<Locus, 2> resolution;
+};
+
+/// @throws ConfigError if the numbers of so many points do not fit into memory
+void check_size(const std::array<Axis, 2>& axes) {
   constexpr double bytes_per_point = 125.0;  // measured, with JSON
   require_memory_for(
       {"--x",
@@ -276,55 +276,79 @@ ExitCode map(MapOptions options) {
        bytes_per_point * static_cast<double>(axes[0].values.size()) *
            static_cast<double>(axes[1].values.size())},
       memory_limit());
-  std::array<Locus, 2> resolution;
-  const StabilityMap found = make_map(loaded, axes, stability, resolution);
-  if (options.output) {
-    write_map_file(*options.output, overwrite, found, printed_units(axes[0].key),
-                   printed_units(axes[1].key),
-                   {{"x", axes[0].key.path},
-                    {"y", axes[1].key.path},
-                    {"about", stability.about},
-                    {"method", stability.method},
-                    {"scene", stability.scene},
-                    {"scene_hash", loaded.loaded().hash()},
-                    {"scene_resolved", loaded.loaded().resolved()},
-                    {"command", options.command_line},
-                    {"version", std::string(version)},
-                    {"commit", std::string(commit)},
-                    {"date", utc_now()}});
-  }
-  if (options.figure) draw(options, axes, found, loaded);
+}
 
-  if (stability.common.json) {
-    Json object = {{"x_parameter", axes[0].key.path},
-                   {"y_parameter", axes[1].key.path},
-                   {"about", stability.about},
-                   {"method", stability.method},
-                   {"x", found.x},
-                   {"y", found.y},
-                   {"window", {0.0, number(found.highest_frequency)}},
-                   {"growth", Json::array()},
-                   {"boundary", found.boundary},
-                   {"unresolved", {resolution[0].unresolved, resolution[1].unresolved}},
-                   {"unverified", {resolution[0].unverified, resolution[1].unverified}}};
-    for (const auto& row : found.growth) {
-      Json numbers = Json::array();
-      for (const double value : row) numbers.push_back(number(value));
-      object["growth"].push_back(std::move(numbers));
-    }
-    print_json(object);
-    return ExitCode::done;
+void write_map(const FoundMap& found) {
+  const StabilityOptions& stability = found.options.stability;
+  write_map_file(*found.options.output, stability.common.overwrite(), found.map,
+                 printed_units(found.axes[0].key), printed_units(found.axes[1].key),
+                 {{"x", found.axes[0].key.path},
+                  {"y", found.axes[1].key.path},
+                  {"about", stability.about},
+                  {"method", stability.method},
+                  {"scene", stability.scene},
+                  {"scene_hash", found.scene.loaded().hash()},
+                  {"scene_resolved", found.scene.loaded().resolved()},
+                  {"command", found.options.command_line},
+                  {"version", std::string(version)},
+                  {"commit", std::string(commit)},
+                  {"date", utc_now()}});
+}
+
+Json map_json(const FoundMap& found) {
+  const StabilityOptions& stability = found.options.stability;
+  Json object = {{"x_parameter", found.axes[0].key.path},
+                 {"y_parameter", found.axes[1].key.path},
+                 {"about", stability.about},
+                 {"method", stability.method},
+                 {"x", found.map.x},
+                 {"y", found.map.y},
+                 {"window", {0.0, number(found.map.highest_frequency)}},
+                 {"growth", Json::array()},
+                 {"boundary", found.map.boundary},
+                 {"unresolved", {found.resolution[0].unresolved, found.resolution[1].unresolved}},
+                 {"unverified", {found.resolution[0].unverified, found.resolution[1].unverified}}};
+  for (const auto& row : found.map.growth) {
+    Json numbers = Json::array();
+    for (const double value : row) numbers.push_back(number(value));
+    object["growth"].push_back(std::move(numbers));
   }
+  return object;
+}
+
+void print_map(const FoundMap& found) {
   std::size_t num_unstable = 0;
-  for (const auto& row : found.growth)
+  for (const auto& row : found.map.growth)
     num_unstable += static_cast<std::size_t>(
         std::count_if(row.begin(), row.end(), [](double growth) { return growth > 0.0; }));
   fmt::print("{} of {} points are unstable; the boundary has {} line(s)\n", num_unstable,
-             found.x.size() * found.y.size(), found.boundary.size());
-  fmt::print("{}\n", window_text(found.highest_frequency));
-  for (std::size_t i = 0; i < 2; ++i) print_resolution(resolution[i], axes[i].key);
-  for (const auto& file : {options.output, options.figure})
+             found.map.x.size() * found.map.y.size(), found.map.boundary.size());
+  fmt::print("{}\n", window_text(found.map.highest_frequency));
+  for (std::size_t i = 0; i < 2; ++i) print_resolution(found.resolution[i], found.axes[i].key);
+  for (const auto& file : {found.options.output, found.options.figure})
     if (file) fmt::print("{}\n", *file);
+}
+
+ExitCode map(MapOptions options) {
+  StabilityOptions& stability = options.stability;
+  if (options.output) check_output(*options.output, stability.common.overwrite());
+  if (options.figure) check_figure(*options.figure, stability.common);
+  const StabilityScene loaded = load_stability_scene(stability);
+  const std::array<Axis, 2> axes{
+      make_axis(loaded, options.x, "--x", options.x_scale.value_or(options.scale)),
+      make_axis(loaded, options.y, "--y", options.y_scale.value_or(options.scale))};
+  if (axes[0].key.path == axes[1].key.path)
+    throw ConfigError("--y", fmt::format("'{}' is the key of --x already", axes[1].key.path));
+  check_size(axes);
+  FoundMap found{options, loaded, axes, {}, {}};
+  found.map = make_map(loaded, axes, stability, found.resolution);
+  if (options.output) write_map(found);
+  if (options.figure) draw(options, axes, found.map, loaded);
+  if (stability.common.json) {
+    print_json(map_json(found));
+  } else {
+    print_map(found);
+  }
   return ExitCode::done;
 }
 

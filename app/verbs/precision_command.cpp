@@ -9,6 +9,7 @@
 #include "app/results/pictures.hpp"
 #include "app/runs/event_precision.hpp"
 #include "app/runs/precision.hpp"
+#include "app/runs/reduction_report.hpp"
 #include "app/terminal/remark.hpp"
 
 namespace stridor {
@@ -16,8 +17,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The error of the reductions alone.
+ExitCode precision_of_reductions(const PrecisionOptions& options, const LoadedScene& loaded) {
+  const Json reductions = reductions_json(loaded, options.frequencies);
+  if (!options.folder.empty()) {
+    prepare_folder(options.folder, {precision_json_name}, options.common.overwrite());
+    write_json(fs::path(options.folder) / precision_json_name, {{"reduction", reductions}});
+  }
+  if (options.common.json) {
+    print_json({{"reduction", reductions}});
+  } else {
+    print_reductions(reductions);
+  }
+  return ExitCode::done;
+}
+
 ExitCode precision(const PrecisionOptions& options) {
   LoadedScene loaded = load_scene(options.scene, options.common.sets);
+  if (options.only_reduction) return precision_of_reductions(options, loaded);
   loaded.require_section("time", "precision");
   if (loaded.scene.time->is_event_driven()) return precision_of_events(options, loaded);
   std::optional<double> wanted;
@@ -29,10 +46,12 @@ ExitCode precision(const PrecisionOptions& options) {
                    options.common.overwrite());
   }
 
+  const Json reductions = reductions_json(study.loaded, options.frequencies);
   PrecisionResult result = measure_precision(study, options);
   if (wanted) result.tuned = cheapest_within(result, *wanted);
 
-  const Json object = precision_json(study, options, result, wanted);
+  Json object = precision_json(study, options, result, wanted);
+  object["reduction"] = reductions;
   if (is_kept) {
     draw_precision(study, options, result, wanted,
                    fs::path(options.folder) / precision_figure_name);
@@ -42,6 +61,7 @@ ExitCode precision(const PrecisionOptions& options) {
     print_json(object);
   } else {
     print_precision(study, options, result, wanted);
+    print_reductions(reductions);
     if (is_kept)
       fmt::print("\n{} and {} in {}\n", precision_figure_name, precision_json_name, options.folder);
   }
@@ -81,6 +101,12 @@ void add_precision_command(CLI::App& program, Action& action, const std::string&
                    "Contact assumptions beside the scene's own: subs_a,film; default: all")
       ->delimiter(',')
       ->check(CLI::IsMember(names));
+  verb->add_flag("--reduction", options->only_reduction,
+                 "Only how far the reduced bodies answer from the full ones; nothing is run");
+  verb->add_option("--frequencies", options->frequencies,
+                   "Where reduced bodies are compared with full ones: 500Hz,2kHz; default: 1/16 to "
+                   "1 of what a reduction is trusted to")
+      ->delimiter(',');
   verb->add_option("--points", options->points, "Steps measured per method")
       ->check(CLI::Range(2, 100))
       ->capture_default_str();

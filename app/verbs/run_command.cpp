@@ -91,8 +91,20 @@ void print_cycles(const Json& results, const std::string& output) {
   fmt::print("{:<24}{}\n", "run file", output);
 }
 
-void print_summary(const Json& results, const std::string& output) {
-  fmt::print("{:<24}{}\n", "status", result_text(results["status"]));
+/// What of the work the run left out.
+void print_left_out(const Json& left_out) {
+  const auto part = [](const Json& one) {
+    return fmt::format("{} of {}", one["left_out"].get<std::int64_t>(),
+                       one["of"].get<std::int64_t>());
+  };
+  fmt::print("{:<24}{} modes, {} rows under contacts: {} instead of {} multiplications a step\n",
+             "left out", part(left_out["modes"]), part(left_out["contact_rows"]),
+             left_out["multiplications"]["done"].get<std::int64_t>(),
+             left_out["multiplications"]["of"].get<std::int64_t>());
+  for (const Json& what : left_out["rest"]) fmt::print("{:<24}{}\n", "", what.get<std::string>());
+}
+
+void print_work(const Json& results) {
   const std::string limit =
       results["step_limit"].is_null()
           ? "no limit by the modes"
@@ -103,16 +115,7 @@ void print_summary(const Json& results, const std::string& output) {
     fmt::print("{:<23} {} moving, {} left to their static residual\n", "modes of " + name,
                modes["moving"].get<int>(), modes["residual"].get<int>());
   }
-  const Json& left_out = results["left_out"];
-  const auto part = [](const Json& one) {
-    return fmt::format("{} of {}", one["left_out"].get<std::int64_t>(),
-                       one["of"].get<std::int64_t>());
-  };
-  fmt::print("{:<24}{} modes, {} rows under contacts: {} instead of {} multiplications a step\n",
-             "left out", part(left_out["modes"]), part(left_out["contact_rows"]),
-             left_out["multiplications"]["done"].get<std::int64_t>(),
-             left_out["multiplications"]["of"].get<std::int64_t>());
-  for (const Json& what : left_out["rest"]) fmt::print("{:<24}{}\n", "", what.get<std::string>());
+  print_left_out(results["left_out"]);
   const std::string step_time =
       results["step_ns"].is_null()
           ? ""
@@ -120,14 +123,35 @@ void print_summary(const Json& results, const std::string& output) {
   fmt::print("{:<24}{:.3g} s stepping{}, {:.3g} s set-up, {:.3g} s output\n", "time taken",
              results["wall_s"].get<double>(), step_time, results["setup_s"].get<double>(),
              results["output_s"].get<double>());
+}
+
+void print_forces(const Json& results) {
   const auto print_force = [&](const std::string& name, const Json& force) {
     fmt::print("{:<23} {} to {} N\n", name, result_text(force["min"]), result_text(force["max"]));
   };
   if (results.contains("contact_force")) print_force("contact force", results["contact_force"]);
-  if (results.contains("contacts")) {
-    for (const auto& [name, contact] : results["contacts"].items())
-      print_force("contact force, " + name, contact["contact_force"]);
+  if (!results.contains("contacts")) return;
+  for (const auto& [name, contact] : results["contacts"].items())
+    print_force("contact force, " + name, contact["contact_force"]);
+}
+
+void print_error(const Json& error) {
+  if (error.is_null()) return;
+  if (!error["failure"].is_null()) {
+    fmt::print("{:<24}not estimated: {}\n", "error", error["failure"].get<std::string>());
+    return;
   }
+  fmt::print(
+      "{:<24}{} of the envelope of the acceleration, {} of the acceleration, {} of the "
+      "force: {} ({:.3g} s)\n",
+      "error", result_text(error["envelope"]), result_text(error["acceleration"]),
+      result_text(error["force"]), error["is"].get<std::string>(), error["wall_s"].get<double>());
+}
+
+void print_summary(const Json& results, const std::string& output) {
+  fmt::print("{:<24}{}\n", "status", result_text(results["status"]));
+  print_work(results);
+  print_forces(results);
   if (!results["perturbation"].is_null()) {
     fmt::print("{:<24}{:.6g} Hz, growth {:.6g} 1/s\n", "perturbed mode",
                results["perturbation"]["frequency"].get<double>(),
@@ -147,19 +171,7 @@ void print_summary(const Json& results, const std::string& output) {
                results["energy_error"].get<double>());
   }
   print_contact_gain(results["contact_gain"]);
-  if (!results["error"].is_null()) {
-    const Json& error = results["error"];
-    if (error["failure"].is_null()) {
-      fmt::print(
-          "{:<24}{} of the envelope of the acceleration, {} of the acceleration, {} of the "
-          "force: {} ({:.3g} s)\n",
-          "error", result_text(error["envelope"]), result_text(error["acceleration"]),
-          result_text(error["force"]), error["is"].get<std::string>(),
-          error["wall_s"].get<double>());
-    } else {
-      fmt::print("{:<24}not estimated: {}\n", "error", error["failure"].get<std::string>());
-    }
-  }
+  print_error(results["error"]);
   fmt::print("{:<24}{}\n", "run file", output);
 }
 

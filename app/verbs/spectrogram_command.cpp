@@ -112,6 +112,83 @@ Attributes data_attributes(const Json& settings, const RecordedStretch& run) {
   return attributes;
 }
 
+/// What is drawn, and what is said of it.
+struct DrawnSpectrogram {
+  std::string series;
+  PieceSettings pieces;
+  SpectrogramPicture picture;
+  std::vector<NumberedBurst> bursts;
+  std::vector<PredictedBurst> predictions;
+  double highest = 0.0;  ///< amplitude
+};
+
+/// The picture but for its numbers.
+void describe(const PictureOptions& options, const RecordedStretch& run, DrawnSpectrogram& drawn) {
+  SpectrogramPicture& picture = drawn.picture;
+  picture.title = channel_name(drawn.series);
+  picture.units = run.file.units(drawn.series);
+  picture.max_frequency = drawn.pieces.max_frequency;
+  picture.reference = settle_reference(options, picture.units);
+  if (options.range) picture.range = option_value("--range", *options.range, "", Range::positive());
+  picture.mean_lines = main_lobe_lines(drawn.pieces.parameters.window);
+  drawn.bursts = bursts_in(run, options);
+  picture.marks = burst_marks(drawn.bursts);
+  picture.caption =
+      fmt::format("Peak amplitudes: {}. {}{}.", pieces_text(drawn.pieces.parameters, run.interval),
+                  filters_text(run.file, {drawn.series}), source_text(run));
+  if (!drawn.bursts.empty()) {
+    picture.caption +=
+        fmt::format(" Dashed: bursts in {}{}, frequency at the steepest rise.",
+                    acceleration_name(run.file), options.band ? ", band " + *options.band : "");
+  }
+  if (!options.predict) return;
+  drawn.predictions = match_bursts(read_locus_windows(*options.predict), drawn.bursts);
+  for (SpectrogramMark& mark : predicted_marks(drawn.predictions))
+    picture.marks.push_back(std::move(mark));
+  picture.caption += fmt::format(" Dotted: unstable windows of {}.",
+                                 fs::path(*options.predict).filename().string());
+}
+
+Json settings_json(const RecordedStretch& run, const DrawnSpectrogram& drawn) {
+  const SpectrogramParameters& parameters = drawn.pieces.parameters;
+  return {{"channel", drawn.picture.title},
+          {"units", drawn.picture.units},
+          {"window", window_name(parameters.window)},
+          {"length", static_cast<double>(parameters.length) * run.interval},
+          {"length_samples", parameters.length},
+          {"overlap", parameters.overlap},
+          {"from", run.first_time()},
+          {"to", run.last_time()}};
+}
+
+void print_drawn(const PictureOptions& options, const RecordedStretch& run,
+                 const DrawnSpectrogram& drawn, const Spectrogram& spectrogram,
+                 const Json& settings) {
+  if (options.common.json) {
+    const SpectrogramPicture& picture = drawn.picture;
+    Json object = {{"figure", options.output},
+                   {"data", options.data ? Json(*options.data) : Json(nullptr)}};
+    object.update(settings);
+    object["max_frequency"] = picture.max_frequency;
+    object["reference"] = picture.reference;
+    object["range"] = picture.range;
+    object["pieces"] = spectrogram.times.size();
+    object["line_spacing"] = spectrogram.frequencies[1];
+    object["highest_amplitude"] = drawn.highest;
+    object["highest_level"] =
+        drawn.highest > 0.0 ? number(decibels(drawn.highest, picture.reference)) : Json(nullptr);
+    object["bursts"] = drawn.bursts.size();
+    if (options.predict) object["prediction"] = prediction_json(drawn.predictions);
+    print_json(object);
+    return;
+  }
+  fmt::print("{}\n", options.output);
+  if (options.data) fmt::print("{}\n", *options.data);
+  if (options.band && drawn.bursts.empty())
+    fmt::print("no bursts of {} in the band {}\n", acceleration_name(run.file), *options.band);
+  if (options.predict) print_prediction(drawn.predictions);
+}
+
 }  // namespace
 
 ExitCode draw_spectrogram(const PictureOptions& options) {
@@ -119,83 +196,29 @@ ExitCode draw_spectrogram(const PictureOptions& options) {
   check_data_file(options);
   const RecordedStretch run = open_stretch(options);
   const RecordedSettings scene = recorded_settings(run.file, run.path);
-  const std::string series =
-      spectral_series(run.file, shown_series(options, run, scene.spectrogram));
+  DrawnSpectrogram drawn;
+  drawn.series = spectral_series(run.file, shown_series(options, run, scene.spectrogram));
   check_prediction(options);
-  check_band(options, run, series);
-  const std::string units = run.file.units(series);
-  const auto [parameters, max_frequency] = settle_pieces(
+  check_band(options, run, drawn.series);
+  drawn.pieces = settle_pieces(
       options, run, scene, scene.spectrogram,
       [&](double highest) { return std::sqrt(run.duration() / highest); }, 0.75);
-  check_size(parameters, run);
-  SpectrogramPicture picture;
-  picture.title = channel_name(series);
-  picture.units = units;
-  picture.max_frequency = max_frequency;
-  picture.reference = settle_reference(options, units);
-  if (options.range) picture.range = option_value("--range", *options.range, "", Range::positive());
-  picture.mean_lines = main_lobe_lines(parameters.window);
-  const std::vector<NumberedBurst> bursts = bursts_in(run, options);
-  picture.marks = burst_marks(bursts);
-  picture.caption =
-      fmt::format("Peak amplitudes: {}. {}{}.", pieces_text(parameters, run.interval),
-                  filters_text(run.file, {series}), source_text(run));
-  if (!bursts.empty()) {
-    picture.caption +=
-        fmt::format(" Dashed: bursts in {}{}, frequency at the steepest rise.",
-                    acceleration_name(run.file), options.band ? ", band " + *options.band : "");
-  }
-
-  std::vector<PredictedBurst> predictions;
-  if (options.predict) {
-    predictions = match_bursts(read_locus_windows(*options.predict), bursts);
-    for (SpectrogramMark& mark : predicted_marks(predictions))
-      picture.marks.push_back(std::move(mark));
-    picture.caption += fmt::format(" Dotted: unstable windows of {}.",
-                                   fs::path(*options.predict).filename().string());
-  }
+  check_size(drawn.pieces.parameters, run);
+  describe(options, run, drawn);
 
   std::optional<Activity> transforming(std::in_place, "transforming the pieces");
-  const Spectrogram spectrogram =
-      make_spectrogram(run.finite_values(series), run.interval, parameters, run.first_time());
-  const double highest = highest_amplitude(spectrogram, picture.max_frequency, picture.mean_lines);
+  const Spectrogram spectrogram = make_spectrogram(run.finite_values(drawn.series), run.interval,
+                                                   drawn.pieces.parameters, run.first_time());
+  drawn.highest =
+      highest_amplitude(spectrogram, drawn.picture.max_frequency, drawn.picture.mean_lines);
   transforming.reset();
-  const Json settings = {{"channel", picture.title},
-                         {"units", units},
-                         {"window", window_name(parameters.window)},
-                         {"length", static_cast<double>(parameters.length) * run.interval},
-                         {"length_samples", parameters.length},
-                         {"overlap", parameters.overlap},
-                         {"from", run.first_time()},
-                         {"to", run.last_time()}};
+  const Json settings = settings_json(run, drawn);
   if (options.data) {
-    write_spectrogram_file(*options.data, options.common.overwrite(), spectrogram, units,
-                           data_attributes(settings, run));
+    write_spectrogram_file(*options.data, options.common.overwrite(), spectrogram,
+                           drawn.picture.units, data_attributes(settings, run));
   }
-  plot_spectrogram(spectrogram, picture, options.output);
-
-  if (options.common.json) {
-    Json object = {{"figure", options.output},
-                   {"data", options.data ? Json(*options.data) : Json(nullptr)}};
-    object.update(settings);
-    object["max_frequency"] = max_frequency;
-    object["reference"] = picture.reference;
-    object["range"] = picture.range;
-    object["pieces"] = spectrogram.times.size();
-    object["line_spacing"] = spectrogram.frequencies[1];
-    object["highest_amplitude"] = highest;
-    object["highest_level"] =
-        highest > 0.0 ? number(decibels(highest, picture.reference)) : Json(nullptr);
-    object["bursts"] = bursts.size();
-    if (options.predict) object["prediction"] = prediction_json(predictions);
-    print_json(object);
-  } else {
-    fmt::print("{}\n", options.output);
-    if (options.data) fmt::print("{}\n", *options.data);
-    if (options.band && bursts.empty())
-      fmt::print("no bursts of {} in the band {}\n", acceleration_name(run.file), *options.band);
-    if (options.predict) print_prediction(predictions);
-  }
+  plot_spectrogram(spectrogram, drawn.picture, options.output);
+  print_drawn(options, run, drawn, spectrogram, settings);
   return ExitCode::done;
 }
 

@@ -114,20 +114,65 @@ void add_axis(FigureScript& script, char name, const std::string& label, const P
       gnuplot_string(label), axis.range.lower, axis.range.upper, ticks);
 }
 
+void check_panels(const std::vector<DiagramPanel>& panels) {
+  if (panels.empty()) throw std::invalid_argument("plot_panels: no diagram");
+  for (const DiagramPanel& panel : panels) {
+    for (const PanelCurve& curve : panel.curves) {
+      if (curve.x.size() == curve.y.size()) continue;
+      throw std::invalid_argument(fmt::format("plot_panels: {} values against {} in '{}'",
+                                              curve.y.size(), curve.x.size(), curve.label));
+    }
+  }
+}
+
+/// The axes of one diagram.
+struct PanelPlane {
+  PanelAxis x, y;
+};
+
+/// Writes the points of a diagram as gnuplot reads them.
+PanelPlane add_panel_data(FigureScript& script, const DiagramPanel& panel, std::size_t number) {
+  const PanelPlane plane{make_axis(panel, &PanelCurve::x, panel.x_kind),
+                         make_axis(panel, &PanelCurve::y, panel.y_kind)};
+  for (std::size_t c = 0; c < panel.curves.size(); ++c) {
+    const PanelCurve& curve = panel.curves[c];
+    std::string data;
+    bool is_empty = true;
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+      const bool is_shown = plane.x.shows(curve.x[i]) && plane.y.shows(curve.y[i]);
+      data += is_shown
+                  ? fmt::format("{:.8g} {:.8g}\n", plane.x.number(curve.x[i]),
+                                plane.y.number(curve.y[i]))
+                  : "\n";
+      is_empty &= !is_shown;
+    }
+    if (is_empty) data = "NaN NaN\n";  // gnuplot refuses data without a number
+    script.append(block_name(number, c) + " << END_OF_DATA\n" + data + "END_OF_DATA\n");
+  }
+  return plane;
+}
+
+/// What gnuplot is to plot of a diagram.
+std::string panel_plots(const DiagramPanel& panel, std::size_t number) {
+  std::string plots;
+  for (std::size_t c = 0; c < panel.curves.size(); ++c) {
+    const PanelCurve& curve = panel.curves[c];
+    const char* how = "with points pointtype 7 pointsize 0.7";
+    if (curve.mark == Mark::line) how = "with lines linewidth 1.8";
+    if (curve.mark == Mark::dashed_line) how = "with lines dashtype 2 linewidth 1.6";
+    plots += fmt::format(
+        ", {} using 1:2 {} linecolor '{}' {}", block_name(number, c), how, colour_of(curve.colour),
+        curve.label.empty() ? std::string("notitle") : "title " + legend_text(curve.label));
+  }
+  return plots;
+}
+
 }  // namespace
 
 void plot_panels(const std::vector<DiagramPanel>& panels, const std::string& caption,
                  const std::filesystem::path& figure) {
   check_figure_name(figure);
-  if (panels.empty()) throw std::invalid_argument("plot_panels: no diagram");
-  for (const DiagramPanel& panel : panels) {
-    for (const PanelCurve& curve : panel.curves) {
-      if (curve.x.size() != curve.y.size()) {
-        throw std::invalid_argument(fmt::format("plot_panels: {} values against {} in '{}'",
-                                                curve.y.size(), curve.x.size(), curve.label));
-      }
-    }
-  }
+  check_panels(panels);
   const std::size_t num_columns = std::min<std::size_t>(3, panels.size());
   const std::size_t num_rows = (panels.size() + num_columns - 1) / num_columns;
   FigureSize size;
@@ -143,26 +188,9 @@ void plot_panels(const std::vector<DiagramPanel>& panels, const std::string& cap
   script.add("{}", axes_style);
   script.add("set key above horizontal Left reverse samplen 1.5 spacing 1.05 font ',{}'",
              caption_font);
-  std::vector<PanelAxis> x_axes;
-  std::vector<PanelAxis> y_axes;
-  for (std::size_t p = 0; p < panels.size(); ++p) {
-    x_axes.push_back(make_axis(panels[p], &PanelCurve::x, panels[p].x_kind));
-    y_axes.push_back(make_axis(panels[p], &PanelCurve::y, panels[p].y_kind));
-    for (std::size_t c = 0; c < panels[p].curves.size(); ++c) {
-      const PanelCurve& curve = panels[p].curves[c];
-      std::string data;
-      bool is_empty = true;
-      for (std::size_t i = 0; i < curve.x.size(); ++i) {
-        const bool is_shown = x_axes[p].shows(curve.x[i]) && y_axes[p].shows(curve.y[i]);
-        data += is_shown ? fmt::format("{:.8g} {:.8g}\n", x_axes[p].number(curve.x[i]),
-                                       y_axes[p].number(curve.y[i]))
-                         : "\n";
-        is_empty &= !is_shown;
-      }
-      if (is_empty) data = "NaN NaN\n";  // gnuplot refuses data without a number
-      script.append(block_name(p, c) + " << END_OF_DATA\n" + data + "END_OF_DATA\n");
-    }
-  }
+  std::vector<PanelPlane> planes;
+  for (std::size_t p = 0; p < panels.size(); ++p)
+    planes.push_back(add_panel_data(script, panels[p], p));
   script.add("set multiplot");
   add_caption(script, lines);
   for (std::size_t p = 0; p < panels.size(); ++p) {
@@ -171,20 +199,10 @@ void plot_panels(const std::vector<DiagramPanel>& panels, const std::string& cap
     const double bottom = caption_height + static_cast<double>(rows_below) * panel_height;
     script.set_margins(left + 2.7, left + panel_width - 0.6, bottom + gap_below_axis,
                        bottom + panel_height - 1.3);
-    add_axis(script, 'x', panels[p].x_label, x_axes[p]);
-    add_axis(script, 'y', panels[p].y_label, y_axes[p]);
+    add_axis(script, 'x', panels[p].x_label, planes[p].x);
+    add_axis(script, 'y', panels[p].y_label, planes[p].y);
     script.add("set size {}", panels[p].is_to_scale ? "ratio -1" : "noratio");
-    std::string plots;
-    for (std::size_t c = 0; c < panels[p].curves.size(); ++c) {
-      const PanelCurve& curve = panels[p].curves[c];
-      const char* how = "with points pointtype 7 pointsize 0.7";
-      if (curve.mark == Mark::line) how = "with lines linewidth 1.8";
-      if (curve.mark == Mark::dashed_line) how = "with lines dashtype 2 linewidth 1.6";
-      plots += fmt::format(
-          ", {} using 1:2 {} linecolor '{}' {}", block_name(p, c), how, colour_of(curve.colour),
-          curve.label.empty() ? std::string("notitle") : "title " + legend_text(curve.label));
-    }
-    script.add("plot NaN notitle{}", plots);
+    script.add("plot NaN notitle{}", panel_plots(panels[p], p));
     if (p == 0) script.add("unset label");  // the caption is drawn once
   }
   script.add("unset multiplot");

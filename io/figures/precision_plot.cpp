@@ -44,79 +44,103 @@ std::string legend_of(const PrecisionCurve& curve) {
   return curve.slope ? fmt::format("{} (slope {:.2f})", curve.name, *curve.slope) : curve.name;
 }
 
-}  // namespace
+constexpr double legend_font = 9.5;
 
-void plot_precision(const PrecisionPicture& picture, const std::filesystem::path& figure) {
+/// The curves that have points, and what their axes show.
+struct PrecisionPlane {
+  std::vector<PrecisionCurve> curves;
+  ValueRange x_range, y_range;
+};
+
+PrecisionPlane plane_of(const PrecisionPicture& picture) {
   ValueRange times;
   ValueRange errors;
-  std::vector<PrecisionCurve> curves;
+  PrecisionPlane plane;
   for (const PrecisionCurve& curve : picture.curves) {
     if (std::none_of(curve.points.begin(), curve.points.end(), is_drawable)) continue;
-    curves.push_back(curve);
+    plane.curves.push_back(curve);
     for (const PrecisionCurve::Point& point : curve.points) {
       if (!is_drawable(point)) continue;
       times.include(std::span(&point.seconds, 1));
       errors.include(std::span(&point.error, 1));
     }
   }
-  if (curves.empty()) throw std::invalid_argument("precision plot: no point to draw");
-  const auto include_line = [&](double error) {
+  if (plane.curves.empty()) throw std::invalid_argument("precision plot: no point to draw");
+  for (const double error : {picture.reference_error, picture.wanted.value_or(0.0)})
     if (error > 0.0) errors.include(std::span(&error, 1));
-  };
-  include_line(picture.reference_error);
-  include_line(picture.wanted.value_or(0.0));
-  const ValueRange x_range = log_range(times);
-  const ValueRange y_range = log_range(errors);
+  plane.x_range = log_range(times);
+  plane.y_range = log_range(errors);
+  return plane;
+}
 
-  // All lengths in cm.
+/// Places on the page, cm.
+struct PrecisionLayout {
   FigureSize size;
-  size.width = 23.0;
-  const double line = line_height(size.font_size);
-  constexpr double plane_height = 10.5;
-  constexpr double legend_font = 9.5;
-  const double legend_line = line_height(legend_font);
-  const double left = 3.2;
+  double line = 0.0;
+  double left = 3.2, right = 0.0;
+  double below = 0.0, plane_height = 10.5;
+  std::vector<std::string> caption;
+  double caption_height = 0.0;
+
+  /// Height of a row of the legend, counted from the top.
+  double legend_height(double row) const {
+    return below + plane_height - row * line_height(legend_font) * 1.15;
+  }
+};
+
+PrecisionLayout precision_layout(const PrecisionPicture& picture,
+                                 const std::vector<PrecisionCurve>& curves) {
+  PrecisionLayout layout;
+  layout.size.width = 23.0;
+  layout.line = line_height(layout.size.font_size);
   double legend_width = text_width("none is better in both", legend_font) + 1.0;
   for (const PrecisionCurve& curve : curves)
     legend_width = std::max(legend_width, text_width(legend_of(curve), legend_font) + 1.0);
-  const double right = size.width - legend_width - 0.8;
-  const std::vector<std::string> caption =
-      wrapped(picture.caption, caption_font, size.width - left - 0.3);
-  const double caption_height =
-      static_cast<double>(caption.size()) * line_height(caption_font) + 0.3;
-  const double below = 2.7 * line + caption_height;
-  size.height = below + plane_height + 0.5 * line;
+  layout.right = layout.size.width - legend_width - 0.8;
+  layout.caption = wrapped(picture.caption, caption_font, layout.size.width - layout.left - 0.3);
+  layout.caption_height =
+      static_cast<double>(layout.caption.size()) * line_height(caption_font) + 0.3;
+  layout.below = 2.7 * layout.line + layout.caption_height;
+  layout.size.height = layout.below + layout.plane_height + 0.5 * layout.line;
+  return layout;
+}
 
-  FigureScript script(size);
-  script.set_margins(left, right, below, below + plane_height);
-  script.set_log_axis('x', x_range);
-  script.set_log_axis('y', y_range);
+void add_axes(FigureScript& script, const PrecisionPicture& picture, const PrecisionPlane& plane,
+              const PrecisionLayout& layout) {
+  script.set_margins(layout.left, layout.right, layout.below, layout.below + layout.plane_height);
+  script.set_log_axis('x', plane.x_range);
+  script.set_log_axis('y', plane.y_range);
   script.add("{}\nunset key", axes_style);
-  script.add_text("time of stepping (s)", 0.5 * (left + right), below - 1.9 * line, "center");
-  script.add_text(picture.error_label, 0.7 * line, below + 0.5 * plane_height, "center rotate");
-  for (std::size_t i = 0; i < caption.size(); ++i) {
+  script.add_text("time of stepping (s)", 0.5 * (layout.left + layout.right),
+                  layout.below - 1.9 * layout.line, "center");
+  script.add_text(picture.error_label, 0.7 * layout.line,
+                  layout.below + 0.5 * layout.plane_height, "center rotate");
+  for (std::size_t i = 0; i < layout.caption.size(); ++i) {
     script.add_text(
-        caption[i], left,
-        caption_height - 0.2 - (static_cast<double>(i) + 0.3) * line_height(caption_font), "left",
-        caption_font);
+        layout.caption[i], layout.left,
+        layout.caption_height - 0.2 - (static_cast<double>(i) + 0.3) * line_height(caption_font),
+        "left", caption_font);
   }
+}
+
+/// A line across the plane, named in the legend, where its name covers no curve.
+void add_level(FigureScript& script, const PrecisionLayout& layout, double error, double row,
+               const char* text, const char* colour) {
+  const double height = layout.legend_height(row);
+  script.add(
+      "set arrow from graph 0, first {0:.6g} to graph 1, first {0:.6g} nohead dashtype 2 "
+      "linecolor '{1}' linewidth 1.2\n"
+      "set arrow from screen {2:.6f}, screen {4:.6f} to screen {3:.6f}, screen {4:.6f} nohead "
+      "dashtype 2 linecolor '{1}' linewidth 1.2",
+      error, colour, script.across(layout.right + 0.35), script.across(layout.right + 0.85),
+      script.up(height));
+  script.add_text(text, layout.right + 0.9, height, "left", legend_font);
+}
+
+/// Data and legend of the curves. @return what gnuplot is to plot
+std::string add_curves(FigureScript& script, const PrecisionLayout& layout,
+                       const std::vector<PrecisionCurve>& curves) {
   int next_label = 1000;  // beyond those of add_text()
-  // Named in the legend, where their names cover no curve.
-  double next_row = static_cast<double>(curves.size()) + 1.9;
-  const auto across = [&](double error, const char* text, const char* colour) {
-    if (!(error > 0.0)) return;
-    const double height = below + plane_height - next_row * legend_line * 1.15;
-    next_row += 1.0;
-    script.add(
-        "set arrow from graph 0, first {0:.6g} to graph 1, first {0:.6g} nohead dashtype 2 "
-        "linecolor '{1}' linewidth 1.2\n"
-        "set arrow from screen {2:.6f}, screen {4:.6f} to screen {3:.6f}, screen {4:.6f} nohead "
-        "dashtype 2 linecolor '{1}' linewidth 1.2",
-        error, colour, script.across(right + 0.35), script.across(right + 0.85), script.up(height));
-    script.add_text(text, right + 0.9, height, "left", legend_font);
-  };
-  across(picture.reference_error, "reference itself", "#707070");
-  across(picture.wanted.value_or(0.0), "asked for", "#cc0000");
   std::string plot = "plot NaN";
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const std::string block = fmt::format("$curve{}", i);
@@ -129,23 +153,36 @@ void plot_precision(const PrecisionPicture& picture, const std::filesystem::path
         "{0} using 1:($3 > 0 ? $2 : NaN) with points pointtype 6 pointsize 3 linewidth 1.8 "
         "linecolor '#000000'",
         block, mark, colour);
-    const double height =
-        below + plane_height - (static_cast<double>(i) + 0.6) * legend_line * 1.15;
+    const double height = layout.legend_height(static_cast<double>(i) + 0.6);
     script.add(
         "set label {} at screen {:.6f}, screen {:.6f} point pointtype {} pointsize 1.6 "
         "linecolor '{}'",
-        next_label++, script.across(right + 0.6), script.up(height), mark, colour);
-    script.add_text(legend_of(curves[i]), right + 0.9, height, "left", legend_font);
+        next_label++, script.across(layout.right + 0.6), script.up(height), mark, colour);
+    script.add_text(legend_of(curves[i]), layout.right + 0.9, height, "left", legend_font);
   }
-  const double ring_height =
-      below + plane_height - (static_cast<double>(curves.size()) + 0.9) * legend_line * 1.15;
+  const double ring_height = layout.legend_height(static_cast<double>(curves.size()) + 0.9);
   script.add(
       "set label {} at screen {:.6f}, screen {:.6f} point pointtype 6 pointsize 3 "
       "linewidth 1.8 linecolor '#000000'",
-      next_label, script.across(right + 0.6), script.up(ring_height));
-  script.add_text("none is better in both", right + 0.9, ring_height, "left", legend_font);
-  script.append(plot);
-  draw_figure(figure, script.text(), size);
+      next_label, script.across(layout.right + 0.6), script.up(ring_height));
+  script.add_text("none is better in both", layout.right + 0.9, ring_height, "left", legend_font);
+  return plot;
+}
+
+}  // namespace
+
+void plot_precision(const PrecisionPicture& picture, const std::filesystem::path& figure) {
+  const PrecisionPlane plane = plane_of(picture);
+  const PrecisionLayout layout = precision_layout(picture, plane.curves);
+  FigureScript script(layout.size);
+  add_axes(script, picture, plane, layout);
+  double row = static_cast<double>(plane.curves.size()) + 1.9;
+  if (picture.reference_error > 0.0)
+    add_level(script, layout, picture.reference_error, row++, "reference itself", "#707070");
+  if (const double wanted = picture.wanted.value_or(0.0); wanted > 0.0)
+    add_level(script, layout, wanted, row, "asked for", "#cc0000");
+  script.append(add_curves(script, layout, plane.curves));
+  draw_figure(figure, script.text(), layout.size);
 }
 
 }  // namespace stridor

@@ -98,40 +98,62 @@ double shape_scale(const std::vector<BodyShape>& bodies) {
   return largest > 0.0 ? share * extent_of(bodies, view_of(bodies)).diagonal() / largest : 0.0;
 }
 
-void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure) {
-  check_figure_name(figure);
-  const double scale = shape_scale(picture.bodies);
-  const PictureView view = view_of(picture.bodies);
-  Extent extent = extent_of(picture.bodies, view);
-  constexpr double quarter = -0.5 * std::numbers::pi;  // Re(u e^{-iπ/2}) = Im u
-  const std::array<std::pair<double, const char*>, 2> phases{
-      {{0.0, "real part"}, {quarter, "imaginary part"}}};
-  for (const auto& [phase, name] : phases)
-    for (const BodyShape& body : picture.bodies) extent.include(displaced(body, view, scale, phase));
-  const double margin = 0.03 * extent.diagonal();
-  const ValueRange x_range{extent.x.lower - margin, extent.x.upper + margin};
-  const ValueRange y_range{extent.y.lower - margin, extent.y.upper + margin};
-  const AxisScale x = axis_scale(x_range.lower, x_range.upper, 7);
-  const AxisScale y = axis_scale(y_range.lower, y_range.upper, 4);
+namespace {
 
-  // All lengths in cm; one length is the same along both axes.
+constexpr double quarter = -0.5 * std::numbers::pi;  // Re(u e^{-iπ/2}) = Im u
+constexpr std::array<std::pair<double, const char*>, 2> phases{
+    {{0.0, "real part"}, {quarter, "imaginary part"}}};
+
+/// What the diagrams show of the bodies, and where they are on the page, cm; one length is the same along
+/// both axes.
+struct ShapeLayout {
+  double scale = 0.0;
+  PictureView view;
+  ValueRange x_range, y_range;
+  AxisScale x, y;
   FigureSize size;
-  const double line = line_height(size.font_size);
-  const double character = character_width(size.font_size);
-  const double left =
-      1.4 * line + (static_cast<double>(tick_characters(y_range, y)) + 1.3) * character;
-  double right = size.width - 0.8;
-  const double ratio = (y_range.upper - y_range.lower) / (x_range.upper - x_range.lower);
-  constexpr double most_height = 12.0;
-  const double panel_height = std::min(most_height, (right - left) * ratio);
-  right = left + panel_height / ratio;
-  const std::vector<std::string> caption =
-      wrapped(picture.caption, caption_font, size.width - left - 1.2);
-  const double below = 2.7 * line + caption_height(caption);
-  const double upper = below + panel_height + 1.6 * line;
-  size.height = upper + panel_height + 1.5 * line;
+  double line = 0.0;
+  double left = 0.0, right = 0.0;
+  double below = 0.0, upper = 0.0;  ///< lower edges of the diagrams
+  double panel_height = 0.0;
+  std::vector<std::string> caption;
+};
 
-  FigureScript script(size);
+ShapeLayout shape_layout(const ShapePicture& picture) {
+  ShapeLayout layout;
+  layout.scale = shape_scale(picture.bodies);
+  layout.view = view_of(picture.bodies);
+  Extent extent = extent_of(picture.bodies, layout.view);
+  for (const auto& [phase, name] : phases)
+    for (const BodyShape& body : picture.bodies)
+      extent.include(displaced(body, layout.view, layout.scale, phase));
+  const double margin = 0.03 * extent.diagonal();
+  layout.x_range = {extent.x.lower - margin, extent.x.upper + margin};
+  layout.y_range = {extent.y.lower - margin, extent.y.upper + margin};
+  layout.x = axis_scale(layout.x_range.lower, layout.x_range.upper, 7);
+  layout.y = axis_scale(layout.y_range.lower, layout.y_range.upper, 4);
+
+  layout.line = line_height(layout.size.font_size);
+  const double character = character_width(layout.size.font_size);
+  layout.left =
+      1.4 * layout.line +
+      (static_cast<double>(tick_characters(layout.y_range, layout.y)) + 1.3) * character;
+  const double widest = layout.size.width - 0.8;
+  const double ratio = (layout.y_range.upper - layout.y_range.lower) /
+                       (layout.x_range.upper - layout.x_range.lower);
+  constexpr double most_height = 12.0;
+  layout.panel_height = std::min(most_height, (widest - layout.left) * ratio);
+  layout.right = layout.left + layout.panel_height / ratio;
+  layout.caption = wrapped(picture.caption, caption_font, layout.size.width - layout.left - 1.2);
+  layout.below = 2.7 * layout.line + caption_height(layout.caption);
+  layout.upper = layout.below + layout.panel_height + 1.6 * layout.line;
+  layout.size.height = layout.upper + layout.panel_height + 1.5 * layout.line;
+  return layout;
+}
+
+void add_shape_data(FigureScript& script, const ShapePicture& picture, const ShapeLayout& layout) {
+  const AxisScale& x = layout.x;
+  const AxisScale& y = layout.y;
   std::string contacts = "$contacts << END_OF_DATA\n";
   for (const Eigen::Vector2d& contact : picture.contacts)
     contacts +=
@@ -140,54 +162,78 @@ void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure
   for (std::size_t b = 0; b < picture.bodies.size(); ++b) {
     const BodyShape& body = picture.bodies[b];
     const std::vector<std::vector<int>> sides = element_sides(body);
-    script.append(line_data(fmt::format("$rest_{}", b), body.outlines, seen(body.nodes, view), x, y));
+    script.append(line_data(fmt::format("$rest_{}", b), body.outlines, seen(body.nodes, layout.view),
+                            x, y));
     for (std::size_t p = 0; p < phases.size(); ++p) {
-      const Eigen::MatrixX2d moved = displaced(body, view, scale, phases[p].first);
+      const Eigen::MatrixX2d moved = displaced(body, layout.view, layout.scale, phases[p].first);
       script.append(line_data(fmt::format("$mesh_{}_{}", b, p), sides, moved, x, y));
       script.append(line_data(fmt::format("$moved_{}_{}", b, p), body.outlines, moved, x, y));
     }
   }
-  script.add("set multiplot\n{}\nunset key", axes_style);
-  for (std::size_t p = 0; p < phases.size(); ++p) {
-    const bool is_last = p + 1 == phases.size();
-    const double bottom = is_last ? below : upper;
-    script.set_margins(left, right, bottom, bottom + panel_height);
-    script.set_axis('x', x_range, x);
-    if (!is_last) script.add("set xtics format ''");
-    script.set_axis('y', y_range, y);
-    script.add("unset label");
-    script.add_text(phases[p].second, left, bottom + panel_height + 0.65 * line, "left");
-    script.add_text(axis_label(view.is_planar ? "y" : "upwards", "m", y), 0.7 * line, bottom + 0.5 * panel_height,
-                    "center rotate");
-    if (is_last) {
-      script.add_text(axis_label(view.is_planar ? "x" : "across, x to the lower right, y to the upper right", "m", x), 0.5 * (left + right), below - 1.9 * line, "center");
-      script.add_caption(caption, left, below - 2.7 * line);
-    }
-    std::string plot = "plot NaN";
-    // gnuplot refuses data without a line; bodies in space have no outlines.
-    for (std::size_t b = 0; b < picture.bodies.size(); ++b) {
-      if (!picture.bodies[b].outlines.empty())
-        plot += fmt::format(", $rest_{} using 1:2 with lines linewidth 0.8 linecolor '#909090'", b);
-    }
-    for (std::size_t b = 0; b < picture.bodies.size(); ++b) {
-      const char* colour = shape_colours[b % shape_colours.size()];
-      if (!element_sides(picture.bodies[b]).empty()) {
-        plot += fmt::format(", $mesh_{}_{} using 1:2 with lines linewidth 0.5 linecolor '{}'", b, p,
-                            colour);
-      }
-      if (!picture.bodies[b].outlines.empty()) {
-        plot += fmt::format(", $moved_{}_{} using 1:2 with lines linewidth 1.6 linecolor '{}'", b, p,
-                            colour);
-      }
-    }
-    if (!picture.contacts.empty() && view.is_planar)
-      plot +=
-          ", $contacts using 1:2 with points pointtype 6 pointsize 1.6 linewidth 2 linecolor "
-          "'#e07b00'";
-    script.add("{}", plot);
+}
+
+/// What gnuplot is to plot at a phase.
+std::string shape_plots(const ShapePicture& picture, const ShapeLayout& layout, std::size_t phase) {
+  std::string plot = "plot NaN";
+  // gnuplot refuses data without a line; bodies in space have no outlines.
+  for (std::size_t b = 0; b < picture.bodies.size(); ++b) {
+    if (!picture.bodies[b].outlines.empty())
+      plot += fmt::format(", $rest_{} using 1:2 with lines linewidth 0.8 linecolor '#909090'", b);
   }
+  for (std::size_t b = 0; b < picture.bodies.size(); ++b) {
+    const char* colour = shape_colours[b % shape_colours.size()];
+    if (!element_sides(picture.bodies[b]).empty()) {
+      plot += fmt::format(", $mesh_{}_{} using 1:2 with lines linewidth 0.5 linecolor '{}'", b,
+                          phase, colour);
+    }
+    if (!picture.bodies[b].outlines.empty()) {
+      plot += fmt::format(", $moved_{}_{} using 1:2 with lines linewidth 1.6 linecolor '{}'", b,
+                          phase, colour);
+    }
+  }
+  if (!picture.contacts.empty() && layout.view.is_planar)
+    plot +=
+        ", $contacts using 1:2 with points pointtype 6 pointsize 1.6 linewidth 2 linecolor "
+        "'#e07b00'";
+  return plot;
+}
+
+void add_shape_panel(FigureScript& script, const ShapePicture& picture, const ShapeLayout& layout,
+                     std::size_t phase) {
+  const bool is_last = phase + 1 == phases.size();
+  const double bottom = is_last ? layout.below : layout.upper;
+  script.set_margins(layout.left, layout.right, bottom, bottom + layout.panel_height);
+  script.set_axis('x', layout.x_range, layout.x);
+  if (!is_last) script.add("set xtics format ''");
+  script.set_axis('y', layout.y_range, layout.y);
+  script.add("unset label");
+  script.add_text(phases[phase].second, layout.left,
+                  bottom + layout.panel_height + 0.65 * layout.line, "left");
+  script.add_text(axis_label(layout.view.is_planar ? "y" : "upwards", "m", layout.y),
+                  0.7 * layout.line, bottom + 0.5 * layout.panel_height, "center rotate");
+  if (is_last) {
+    const char* across = layout.view.is_planar
+                             ? "x"
+                             : "across, x to the lower right, y to the upper right";
+    script.add_text(axis_label(across, "m", layout.x), 0.5 * (layout.left + layout.right),
+                    layout.below - 1.9 * layout.line, "center");
+    script.add_caption(layout.caption, layout.left, layout.below - 2.7 * layout.line);
+  }
+  script.add("{}", shape_plots(picture, layout, phase));
+}
+
+}  // namespace
+
+void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure) {
+  check_figure_name(figure);
+  const ShapeLayout layout = shape_layout(picture);
+  FigureScript script(layout.size);
+  add_shape_data(script, picture, layout);
+  script.add("set multiplot\n{}\nunset key", axes_style);
+  for (std::size_t phase = 0; phase < phases.size(); ++phase)
+    add_shape_panel(script, picture, layout, phase);
   script.add("unset multiplot");
-  draw_figure(figure, script.text(), size);
+  draw_figure(figure, script.text(), layout.size);
 }
 
 VtkMesh vtk_mesh(const std::vector<BodyShape>& bodies) {

@@ -65,7 +65,7 @@ ValueRange value_range(const SpectrumPanel& panel, const SpectrumPicture& pictur
 }
 
 // What a panel draws, and the room that it needs.
-struct Layout {
+struct SpectraOfPanel {
   std::vector<Curve> curves;
   ValueRange range;
   AxisScale scale;
@@ -74,7 +74,7 @@ struct Layout {
 };
 
 void add_data(FigureScript& script, const std::string& block, const Curve& curve,
-              const AxisScale& frequency, const Layout& layout) {
+              const AxisScale& frequency, const SpectraOfPanel& layout) {
   script.add("{} << END_OF_DATA", block);
   std::string text;
   for (std::size_t i = 0; i < curve.times.size(); ++i) {
@@ -119,143 +119,183 @@ std::vector<MarkGroup> grouped(const std::vector<FrequencyMark>& marks, double d
   return groups;
 }
 
-void plot_spectra(const std::vector<SpectrumPanel>& panels, const SpectrumPicture& picture,
-                  const std::filesystem::path& figure) {
-  check_figure_name(figure);
+namespace {
+
+void check_spectra(const std::vector<SpectrumPanel>& panels, const SpectrumPicture& picture) {
   if (panels.empty()) refuse_spectrum("no panels");
   if (!is_positive_number(picture.max_frequency))
     refuse_spectrum("the highest frequency must be positive");
   if (!is_positive_number(picture.range)) refuse_spectrum("the range must be positive");
-  const bool is_level = picture.scale == AmplitudeScale::level;
-
-  FigureSize size;
-  const double line = line_height(size.font_size);
-  const double key_line = line_height(mark_font);
-  const double character = character_width(size.font_size);
-  const double panel_height = panels.size() == 1 ? 6.0 : 4.2;
-
-  std::vector<Layout> layouts;
-  std::size_t most_characters = 1;
-  std::size_t most_lines = 1;
   for (const SpectrumPanel& panel : panels) {
     if (panel.curves.empty()) refuse_spectrum("a panel without a curve");
     if (!is_positive_number(panel.reference)) refuse_spectrum("the reference must be positive");
-    Layout layout;
-    for (const SpectrumCurve& curve : panel.curves)
-      layout.curves.push_back(drawn_curve(curve, panel.reference, picture));
-    layout.range = value_range(panel, picture);
-    layout.scale = axis_scale(layout.range.lower, layout.range.upper, 5);
-    const std::string label =
-        is_level ? level_label(panel.reference, panel.units)
-                 : axis_label("amplitude", typeset_units(panel.units), layout.scale);
-    layout.labels = wrapped_label(label, size.font_size, panel_height + 0.5);
+  }
+}
+
+/// Everything on the page, cm.
+struct SpectrumPage {
+  FigureSize size;
+  double line = 0.0;      ///< height of one of text
+  double key_line = 0.0;  ///< of one of the key
+  double panel_height = 0.0;
+  double left = 0.0, right = 0.0;
+  ValueRange frequencies;
+  AxisScale frequency;
+  std::vector<SpectraOfPanel> panels;
+  std::vector<FrequencyMark> marks;                 ///< that are on the axis
+  std::vector<MarkGroup> groups;                    ///< of marks with one label
+  std::vector<std::pair<double, double>> extents;   ///< of the labels, across
+  std::vector<int> rows;                            ///< of the labels, above the first panel
+  int num_rows = 0;
+  std::vector<std::string> caption;
+};
+
+SpectraOfPanel panel_layout(const SpectrumPanel& panel, const SpectrumPicture& picture,
+                    const SpectrumPage& page) {
+  SpectraOfPanel layout;
+  for (const SpectrumCurve& curve : panel.curves)
+    layout.curves.push_back(drawn_curve(curve, panel.reference, picture));
+  layout.range = value_range(panel, picture);
+  layout.scale = axis_scale(layout.range.lower, layout.range.upper, 5);
+  const bool is_level = picture.scale == AmplitudeScale::level;
+  const std::string label =
+      is_level ? level_label(panel.reference, panel.units)
+               : axis_label("amplitude", typeset_units(panel.units), layout.scale);
+  layout.labels = wrapped_label(label, page.size.font_size, page.panel_height + 0.5);
+  return layout;
+}
+
+/// Labels of the marks, in as many rows above the first panel as it takes: none is left out.
+void place_marks(const SpectrumPicture& picture, SpectrumPage& page) {
+  for (const FrequencyMark& mark : picture.marks) {
+    if (mark.frequency >= 0.0 && mark.frequency <= picture.max_frequency)
+      page.marks.push_back(mark);
+  }
+  page.groups = grouped(page.marks, 0.02 * picture.max_frequency);
+  for (const MarkGroup& group : page.groups) {
+    const double width = text_width(group.label, mark_font) + 0.3;
+    const double share = 0.5 * (group.lower + group.upper) / picture.max_frequency;
+    const double begin =
+        std::clamp(page.left + (page.right - page.left) * share - 0.5 * width, page.left,
+                   std::max(page.left, page.right - width));
+    page.extents.emplace_back(begin, begin + width);
+  }
+  page.rows = rows_without_overlap(
+      page.extents, static_cast<int>(std::max<std::size_t>(1, page.extents.size())));
+  page.num_rows =
+      page.rows.empty() ? 0 : *std::max_element(page.rows.begin(), page.rows.end()) + 1;
+}
+
+SpectrumPage spectrum_page(const std::vector<SpectrumPanel>& panels,
+                           const SpectrumPicture& picture) {
+  SpectrumPage page;
+  page.line = line_height(page.size.font_size);
+  page.key_line = line_height(mark_font);
+  page.panel_height = panels.size() == 1 ? 6.0 : 4.2;
+  std::size_t most_characters = 1;
+  std::size_t most_lines = 1;
+  for (const SpectrumPanel& panel : panels) {
+    const SpectraOfPanel& layout = page.panels.emplace_back(panel_layout(panel, picture, page));
     most_characters = std::max(most_characters, tick_characters(layout.range, layout.scale));
     most_lines = std::max(most_lines, layout.labels.size());
-    layouts.push_back(std::move(layout));
   }
-  const double left = (static_cast<double>(most_lines) + 0.45) * line +
-                      (static_cast<double>(most_characters) + 1.2) * character;
-  const double right = size.width - 0.8;
-  const ValueRange frequencies{0.0, picture.max_frequency};
-  const AxisScale frequency = frequency_scale(picture.max_frequency, 8);
+  page.left = (static_cast<double>(most_lines) + 0.45) * page.line +
+              (static_cast<double>(most_characters) + 1.2) * character_width(page.size.font_size);
+  page.right = page.size.width - 0.8;
+  page.frequencies = {0.0, picture.max_frequency};
+  page.frequency = frequency_scale(picture.max_frequency, 8);
+  place_marks(picture, page);
 
-  // Labels of the marks, in rows above the first panel.
-  std::vector<FrequencyMark> marks;
-  for (const FrequencyMark& mark : picture.marks) {
-    if (mark.frequency >= 0.0 && mark.frequency <= picture.max_frequency) marks.push_back(mark);
-  }
-  const auto place_of_frequency = [&](double hertz) {
-    return left + (right - left) * hertz / picture.max_frequency;
-  };
-  const std::vector<MarkGroup> groups = grouped(marks, 0.02 * picture.max_frequency);
-  std::vector<std::pair<double, double>> extents;
-  for (const MarkGroup& group : groups) {
-    const double width = text_width(group.label, mark_font) + 0.3;
-    const double begin =
-        std::clamp(place_of_frequency(0.5 * (group.lower + group.upper)) - 0.5 * width, left,
-                   std::max(left, right - width));
-    extents.emplace_back(begin, begin + width);
-  }
-  // As many rows as it takes: none is left out.
-  const std::vector<int> rows =
-      rows_without_overlap(extents, static_cast<int>(std::max<std::size_t>(1, extents.size())));
-  const int num_rows = rows.empty() ? 0 : *std::max_element(rows.begin(), rows.end()) + 1;
-
-  const std::vector<std::string> caption =
-      wrapped(picture.caption, caption_font, size.width - left - 0.3);
-  double height = 2.7 * line + caption_height(caption);
+  page.caption = wrapped(picture.caption, caption_font, page.size.width - page.left - 0.3);
+  double height = 2.7 * page.line + caption_height(page.caption);
   for (std::size_t p = panels.size(); p-- > 0;) {
-    layouts[p].bottom = height;
-    height += panel_height + 0.3 + key_line * static_cast<double>(panels[p].curves.size()) +
-              (p == 0 ? key_line * num_rows : 0.3);
+    page.panels[p].bottom = height;
+    height += page.panel_height + 0.3 +
+              page.key_line * static_cast<double>(panels[p].curves.size()) +
+              (p == 0 ? page.key_line * page.num_rows : 0.3);
   }
-  size.height = height + 0.2;
+  page.size.height = height + 0.2;
+  return page;
+}
 
-  FigureScript script(size);
+/// The key of a panel, a line each above it, and the marks with their labels.
+void add_key_and_marks(FigureScript& script, const SpectrumPage& page, std::size_t p) {
+  const SpectraOfPanel& layout = page.panels[p];
+  const double top = layout.bottom + page.panel_height;
+  int arrow = 1;
+  script.add("unset arrow");
+  for (const FrequencyMark& mark : page.marks) {
+    const double x = as_number(mark.frequency, page.frequency);
+    script.add(
+        "set arrow {} from first {:.9g}, graph 0 to first {:.9g}, graph 1 nohead back "
+        "linecolor '#b00020' linewidth 1 dashtype (16,10)",
+        arrow++, x, x);
+  }
+  for (std::size_t c = 0; c < layout.curves.size(); ++c) {
+    const double y = top + 0.25 +
+                     page.key_line * (static_cast<double>(layout.curves.size() - c) - 0.5) +
+                     (p == 0 ? page.key_line * page.num_rows : 0.0);
+    script.add(
+        "set arrow {} from screen {:.6f}, screen {:.6f} to screen {:.6f}, screen {:.6f} nohead "
+        "linecolor '{}' linewidth 2",
+        arrow++, script.across(page.left), script.up(y), script.across(page.left + 0.7),
+        script.up(y), spectrum_colours[c % spectrum_colours.size()]);
+    script.add_text(layout.curves[c].name, page.left + 0.85, y, "left", mark_font);
+  }
+  if (p > 0) return;
+  for (std::size_t g = 0; g < page.groups.size(); ++g) {
+    if (page.rows[g] < 0) continue;
+    script.add_text(page.groups[g].label,
+                    0.5 * (page.extents[g].first + page.extents[g].second),
+                    top + 0.15 + page.key_line * (page.rows[g] + 0.5),
+                    "center textcolor '#b00020'", mark_font);
+  }
+}
+
+void add_spectrum_panel(FigureScript& script, const SpectrumPage& page, std::size_t p) {
+  const SpectraOfPanel& layout = page.panels[p];
+  script.set_margins(page.left, page.right, layout.bottom, layout.bottom + page.panel_height);
+  script.set_axis('y', layout.range, layout.scale);
+  const bool is_last = p + 1 == page.panels.size();
+  if (is_last) {
+    script.add_text(axis_label("frequency", "Hz", page.frequency), 0.5 * (page.left + page.right),
+                    layout.bottom - 1.9 * page.line, "center");
+  }
+  script.add("set format x '{}'", is_last ? fmt::format("%.{}f", page.frequency.decimals) : "");
+  for (std::size_t i = 0; i < layout.labels.size(); ++i) {
+    script.add_text(layout.labels[i], (0.7 + static_cast<double>(i)) * page.line,
+                    layout.bottom + 0.5 * page.panel_height, "center rotate");
+  }
+  add_key_and_marks(script, page, p);
+  std::string curves;
+  for (std::size_t c = 0; c < layout.curves.size(); ++c) {
+    curves += fmt::format("{}$curve_{}_{} using 1:2 with lines linewidth 1 linecolor '{}'",
+                          c == 0 ? "" : ", ", p, c, spectrum_colours[c % spectrum_colours.size()]);
+  }
+  script.add("plot {}\nunset label", curves);
+}
+
+}  // namespace
+
+void plot_spectra(const std::vector<SpectrumPanel>& panels, const SpectrumPicture& picture,
+                  const std::filesystem::path& figure) {
+  check_figure_name(figure);
+  check_spectra(panels, picture);
+  const SpectrumPage page = spectrum_page(panels, picture);
+  FigureScript script(page.size);
   for (std::size_t p = 0; p < panels.size(); ++p) {
-    for (std::size_t c = 0; c < layouts[p].curves.size(); ++c) {
-      add_data(script, fmt::format("$curve_{}_{}", p, c), layouts[p].curves[c], frequency,
-               layouts[p]);
+    for (std::size_t c = 0; c < page.panels[p].curves.size(); ++c) {
+      add_data(script, fmt::format("$curve_{}_{}", p, c), page.panels[p].curves[c], page.frequency,
+               page.panels[p]);
     }
   }
   script.add("set multiplot");
   script.add("{}\nunset key", axes_style);
-  script.set_axis('x', frequencies, frequency);
-  script.add_caption(caption, left, layouts.back().bottom - 2.7 * line);
-  for (std::size_t p = 0; p < panels.size(); ++p) {
-    const Layout& layout = layouts[p];
-    const double top = layout.bottom + panel_height;
-    script.set_margins(left, right, layout.bottom, top);
-    script.set_axis('y', layout.range, layout.scale);
-    const bool is_last = p + 1 == panels.size();
-    if (is_last) {
-      script.add_text(axis_label("frequency", "Hz", frequency), 0.5 * (left + right),
-                      layout.bottom - 1.9 * line, "center");
-    }
-    script.add("set format x '{}'", is_last ? fmt::format("%.{}f", frequency.decimals) : "");
-    for (std::size_t i = 0; i < layout.labels.size(); ++i) {
-      script.add_text(layout.labels[i], (0.7 + static_cast<double>(i)) * line,
-                      layout.bottom + 0.5 * panel_height, "center rotate");
-    }
-    int arrow = 1;
-    script.add("unset arrow");
-    for (const FrequencyMark& mark : marks) {
-      const double x = as_number(mark.frequency, frequency);
-      script.add(
-          "set arrow {} from first {:.9g}, graph 0 to first {:.9g}, graph 1 nohead back "
-          "linecolor '#b00020' linewidth 1 dashtype (16,10)",
-          arrow++, x, x);
-    }
-    // The key: a line each above the panel.
-    for (std::size_t c = 0; c < layout.curves.size(); ++c) {
-      const double y = top + 0.25 +
-                       key_line * (static_cast<double>(layout.curves.size() - c) - 0.5) +
-                       (p == 0 ? key_line * num_rows : 0.0);
-      script.add(
-          "set arrow {} from screen {:.6f}, screen {:.6f} to screen {:.6f}, screen {:.6f} nohead "
-          "linecolor '{}' linewidth 2",
-          arrow++, script.across(left), script.up(y), script.across(left + 0.7), script.up(y),
-          spectrum_colours[c % spectrum_colours.size()]);
-      script.add_text(layout.curves[c].name, left + 0.85, y, "left", mark_font);
-    }
-    if (p == 0) {
-      for (std::size_t g = 0; g < groups.size(); ++g) {
-        if (rows[g] < 0) continue;
-        script.add_text(groups[g].label, 0.5 * (extents[g].first + extents[g].second),
-                        top + 0.15 + key_line * (rows[g] + 0.5), "center textcolor '#b00020'",
-                        mark_font);
-      }
-    }
-    std::string curves;
-    for (std::size_t c = 0; c < layout.curves.size(); ++c) {
-      curves +=
-          fmt::format("{}$curve_{}_{} using 1:2 with lines linewidth 1 linecolor '{}'",
-                      c == 0 ? "" : ", ", p, c, spectrum_colours[c % spectrum_colours.size()]);
-    }
-    script.add("plot {}\nunset label", curves);
-  }
+  script.set_axis('x', page.frequencies, page.frequency);
+  script.add_caption(page.caption, page.left, page.panels.back().bottom - 2.7 * page.line);
+  for (std::size_t p = 0; p < panels.size(); ++p) add_spectrum_panel(script, page, p);
   script.add("unset multiplot");
-  draw_figure(figure, script.text(), size);
+  draw_figure(figure, script.text(), page.size);
 }
 
 }  // namespace stridor

@@ -1,6 +1,7 @@
 #include "io/scene/expression.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <muParser.h>
 
 #include <algorithm>
@@ -14,164 +15,12 @@
 
 #include "core/suggestion.hpp"
 #include "core/units.hpp"
+#include "io/scene/calculator.hpp"
 
 namespace stridor {
 namespace {
 
 constexpr std::size_t longest_expression = 500;  ///< bytes of an expression
-constexpr std::array<std::string_view, 11> functions{"sqrt",  "sin", "cos",   "tan", "exp", "ln",
-                                                     "log10", "abs", "round", "min", "max"};
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-bool is_name_start(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-bool is_blank(char c) {
-  return c == ' ' || c == '\t';
-}
-bool is_function(std::string_view name) {
-  return std::find(functions.begin(), functions.end(), name) != functions.end();
-}
-
-/// What a step of an evaluation has no finite value for.
-[[noreturn]] void fail(const std::string& message) {
-  throw std::domain_error(message);
-}
-double finite(double value, const char* what) {
-  if (!std::isfinite(value)) fail(fmt::format("{} is outside the range of double precision", what));
-  return value;
-}
-
-double plus(double a, double b) {
-  return finite(a + b, "a sum");
-}
-double minus(double a, double b) {
-  return finite(a - b, "a difference");
-}
-double times(double a, double b) {
-  return finite(a * b, "a product");
-}
-double over(double a, double b) {
-  if (b == 0.0) fail(fmt::format("{} is divided by 0", a));
-  return finite(a / b, "a quotient");
-}
-double power(double a, double b) {
-  if (a == 0.0 && b < 0.0) fail(fmt::format("0^{} divides by 0", b));
-  const double value = std::pow(a, b);
-  if (std::isnan(value)) {
-    fail(
-        fmt::format("({})^{} is no real number; only a whole power of a negative number is", a, b));
-  }
-  return finite(value, "a power");
-}
-double negative(double a) {
-  return -a;
-}
-double positive(double a) {
-  return a;
-}
-double root(double a) {
-  if (a < 0.0) fail(fmt::format("sqrt({}) is no real number", a));
-  return std::sqrt(a);
-}
-double sine(double a) {
-  return std::sin(a);
-}
-double cosine(double a) {
-  return std::cos(a);
-}
-double tangent(double a) {
-  return std::tan(a);
-}
-double exponential(double a) {
-  return finite(std::exp(a), "exp");
-}
-double natural_logarithm(double a) {
-  if (a <= 0.0) fail(fmt::format("ln({}) is no number; only a positive number has a logarithm", a));
-  return std::log(a);
-}
-double decimal_logarithm(double a) {
-  if (a <= 0.0)
-    fail(fmt::format("log10({}) is no number; only a positive number has a logarithm", a));
-  return std::log10(a);
-}
-double magnitude(double a) {
-  return std::abs(a);
-}
-double rounded(double a) {
-  return std::round(a);
-}
-double smallest(const double* values, int count) {
-  return *std::min_element(values, values + count);
-}
-double largest(const double* values, int count) {
-  return *std::max_element(values, values + count);
-}
-
-/// The number at the beginning of a text: its length and value; nothing where none begins there.
-/// The value is infinite where no double can hold it.
-std::optional<std::pair<std::size_t, double>> number_at(std::string_view text) {
-  const bool starts = !text.empty() && (is_digit(text[0]) ||
-                                        (text[0] == '.' && text.size() > 1 && is_digit(text[1])));
-  if (!starts) return std::nullopt;
-  double value = 0.0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (status == std::errc::result_out_of_range) value = HUGE_VAL;
-  return std::pair(static_cast<std::size_t>(end - text.data()), value);
-}
-
-/// The language of expressions: of muParser only what is named here.
-class Calculator : public mu::ParserBase {
- public:
-  Calculator() {
-    EnableBuiltInOprt(false);  // its division by 0 would be infinite, and its '=' assigns
-    AddValIdent(read_number);
-    InitCharSets();
-    InitFun();
-    InitConst();
-    InitOprt();
-  }
-
- private:
-  static int read_number(const char* text, int* position, double* value) {
-    const auto number = number_at(text);
-    if (!number) return 0;
-    *position += static_cast<int>(number->first);
-    *value = number->second;
-    return 1;
-  }
-  void InitCharSets() override {
-    DefineNameChars("0123456789_abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
-    DefineOprtChars("+-*/^");
-    DefineInfixOprtChars("+-");
-  }
-  void InitFun() override {
-    DefineFun("sqrt", root);
-    DefineFun("sin", sine);
-    DefineFun("cos", cosine);
-    DefineFun("tan", tangent);
-    DefineFun("exp", exponential);
-    DefineFun("ln", natural_logarithm);
-    DefineFun("log10", decimal_logarithm);
-    DefineFun("abs", magnitude);
-    DefineFun("round", rounded);
-    DefineFun("min", smallest);
-    DefineFun("max", largest);
-  }
-  void InitConst() override { DefineConst("pi", std::numbers::pi); }
-  void InitOprt() override {
-    DefineOprt("+", plus, mu::prADD_SUB);
-    DefineOprt("-", minus, mu::prADD_SUB);
-    DefineOprt("*", times, mu::prMUL_DIV);
-    DefineOprt("/", over, mu::prMUL_DIV);
-    DefineOprt("^", power, mu::prPOW, mu::oaRIGHT);
-    DefineInfixOprt("-", negative);
-    DefineInfixOprt("+", positive);
-  }
-};
-
 /// An expression without its '=', and where its names and numbers are.
 class Words {
  public:
@@ -300,6 +149,7 @@ class Words {
     words.refuse(at, fmt::format("a number or a name is missing before '{}'", word));
   words.refuse_unit(at);
   if (is_function(word)) words.refuse(at, fmt::format("{0} needs its argument: {0}(...)", word));
+  const std::span<const std::string_view> functions = function_names();
   std::vector<std::string> known(functions.begin(), functions.end());
   if (words.is_called(at)) {
     const std::string advice = did_you_mean(word, known);
@@ -382,15 +232,15 @@ double evaluate(const std::string& expression, const std::map<std::string, doubl
   const Words words(expression);
   // muParser wants to be able to write to variables.
   std::map<std::string, double> variables;
-  Calculator calculator;
+  const std::unique_ptr<mu::ParserBase> calculator = make_calculator();
   for (const std::string& name : words.names()) {
     const auto found = numbers.find(name);
     if (found == numbers.end()) continue;
-    calculator.DefineVar(name, &(variables[name] = found->second));
+    calculator->DefineVar(name, &(variables[name] = found->second));
   }
   try {
-    calculator.SetExpr(words.plain());
-    return finite(calculator.Eval(), "the result");
+    calculator->SetExpr(words.plain());
+    return finite(calculator->Eval(), "the result");
   } catch (const std::domain_error& error) {
     words.refuse(error.what());
   } catch (const mu::ParserError& error) {
@@ -399,7 +249,7 @@ double evaluate(const std::string& expression, const std::map<std::string, doubl
 }
 
 struct CompiledExpression::Implementation {
-  std::unique_ptr<mu::ParserBase> calculator = std::make_unique<Calculator>();
+  std::unique_ptr<mu::ParserBase> calculator = make_calculator();
 };
 
 CompiledExpression::CompiledExpression(const std::string& expression,

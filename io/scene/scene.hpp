@@ -46,6 +46,8 @@ struct Scene {
   static const Schema& schema();
 };
 
+/// Whether `terms` keeps one of its names.
+bool keeps_term(const Scene& scene, const std::string& name);
 /// What `terms` keeps.
 KeptTerms kept_terms(const Scene& scene);
 /// What it keeps of contacts on the faces of spinning bodies.

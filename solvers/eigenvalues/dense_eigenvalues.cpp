@@ -165,8 +165,19 @@ bool is_near_axis(Complex s) {
   return std::abs(s.real()) <= near * std::abs(s);
 }
 
-DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work) {
-  check_pencil(pencil);
+namespace {
+
+/// The pencil on the motions that fit its constraints, as a matrix of states: displacements scaled by W, and
+/// velocities.
+struct StateMatrix {
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd scale;          ///< W
+  Eigen::MatrixXd displacements;  ///< L_p: W times the modes of every scaled displacement
+  Eigen::Index size() const { return displacements.cols(); }
+};
+
+/// @throws NumericalError if the contact jams
+StateMatrix state_matrix(const Pencil& pencil) {
   const Eigen::MatrixXd gap_rows = pencil.compatibility * pencil.ports;
   const Eigen::MatrixXd force_rows = pencil.equilibrium * pencil.ports;
   const Eigen::VectorXd W = displacement_scale(pencil);
@@ -191,27 +202,51 @@ DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work) {
                     "(reciprocal condition {:.1e}): the contact jams",
                     rcond));
   }
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(2 * size, 2 * size);
-  matrix.topRightCorner(size, size) = L_p.transpose() * W.asDiagonal() * L_C;
-  matrix.bottomLeftCorner(size, size) =
+  StateMatrix state{Eigen::MatrixXd::Zero(2 * size, 2 * size), W, L_p};
+  state.matrix.topRightCorner(size, size) = L_p.transpose() * W.asDiagonal() * L_C;
+  state.matrix.bottomLeftCorner(size, size) =
       -mass.solve(L_E.transpose() * (K * (inverse_W.asDiagonal() * L_p)));
-  matrix.bottomRightCorner(size, size) = -mass.solve(L_E.transpose() * (C * L_C));
+  state.matrix.bottomRightCorner(size, size) = -mass.solve(L_E.transpose() * (C * L_C));
+  return state;
+}
 
-  const bool with_vectors = work == DenseWork::residuals || work == DenseWork::conditions;
-  const bool with_conditions = work == DenseWork::near_axis || work == DenseWork::conditions;
-  const LapackResult found = graded_eigenvalues_of(matrix, W.minCoeff(), work);
-  // Two equal real ones come out as a pair by rounding.
-  Eigen::VectorXd im = found.im;
-  constexpr double real_ratio = 1e-10;
-  for (Eigen::Index i = 0; i < 2 * size; ++i)
-    if (std::abs(im(i)) <= real_ratio * std::abs(found.re(i))) im(i) = 0.0;
+/// Those not below the real axis, by frequency and growth.
+std::vector<Eigen::Index> upper_ones(const Eigen::VectorXd& re, const Eigen::VectorXd& im) {
   std::vector<Eigen::Index> order;
-  for (Eigen::Index i = 0; i < 2 * size; ++i) {
+  for (Eigen::Index i = 0; i < im.size(); ++i) {
     if (im(i) >= 0.0) order.push_back(i);
   }
   std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
-    return std::pair(im(a), found.re(a)) < std::pair(im(b), found.re(b));
+    return std::pair(im(a), re(a)) < std::pair(im(b), re(b));
   });
+  return order;
+}
+
+/// The modal coordinates of an eigenvector, of length 1.
+Eigen::VectorXcd modal_vector(const StateMatrix& state, const LapackResult& found, Eigen::Index i) {
+  // Of a pair the real part stands in its first column, the imaginary part in its second.
+  const Eigen::Index first = found.im(i) < 0.0 ? i - 1 : i;
+  Eigen::VectorXcd scaled = found.vectors.col(first).head(state.size()).cast<Complex>();
+  if (found.im(i) != 0.0) scaled.imag() = found.vectors.col(first + 1).head(state.size());
+  Eigen::VectorXcd q = state.scale.cwiseInverse().asDiagonal() * (state.displacements * scaled);
+  q.normalize();
+  return q;
+}
+
+}  // namespace
+
+DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work) {
+  check_pencil(pencil);
+  const StateMatrix state = state_matrix(pencil);
+  const bool with_vectors = work == DenseWork::residuals || work == DenseWork::conditions;
+  const bool with_conditions = work == DenseWork::near_axis || work == DenseWork::conditions;
+  const LapackResult found = graded_eigenvalues_of(state.matrix, state.scale.minCoeff(), work);
+  // Two equal real ones come out as a pair by rounding.
+  Eigen::VectorXd im = found.im;
+  constexpr double real_ratio = 1e-10;
+  for (Eigen::Index i = 0; i < im.size(); ++i)
+    if (std::abs(im(i)) <= real_ratio * std::abs(found.re(i))) im(i) = 0.0;
+  const std::vector<Eigen::Index> order = upper_ones(found.re, im);
 
   DenseSpectrum spectrum;
   spectrum.norm = found.norm;
@@ -221,12 +256,7 @@ DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work) {
   for (const Eigen::Index i : order) {
     Eigenvalue eigenvalue{Complex(found.re(i), im(i)), 0.0};
     if (with_vectors) {
-      // Of a pair the real part stands in its first column, the imaginary part in its second.
-      const Eigen::Index first = found.im(i) < 0.0 ? i - 1 : i;
-      Eigen::VectorXcd scaled = found.vectors.col(first).head(size).cast<Complex>();
-      if (found.im(i) != 0.0) scaled.imag() = found.vectors.col(first + 1).head(size);
-      Eigen::VectorXcd q = inverse_W.asDiagonal() * (L_p * scaled);
-      q.normalize();
+      const Eigen::VectorXcd q = modal_vector(state, found, i);
       eigenvalue.residual = relative_residual(pencil, eigenvalue.s, q);
       spectrum.right.col(static_cast<Eigen::Index>(spectrum.eigenvalues.size())) = q;
     }

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/errors.hpp"
+#include "solvers/eigenvalues/aberth.hpp"
 #include "solvers/eigenvalues/eigenvector.hpp"
 #include "solvers/eigenvalues/search_failure.hpp"
 
@@ -15,96 +16,6 @@ namespace stridor {
 namespace {
 
 using Complex = std::complex<double>;
-
-constexpr double unit_roundoff = std::numeric_limits<double>::epsilon();
-
-/// Iterates of one search. A pair stands for itself and its conjugate.
-struct Iterates {
-  std::vector<Complex> pairs;
-  std::vector<Complex> singles;
-};
-
-/// Ehrlich-Aberth iteration on the zeros of P_h for one set of starts.
-class Aberth {
- public:
-  Aberth(SecularFunction& function, double height) : function_(function), height_(height) {}
-
-  /// @param is_done iterates that stay where they are, pairs first; the others become true as they
-  ///                converge
-  /// @return whether every iterate has converged
-  bool run(Iterates& iterates, std::vector<bool>& is_done) {
-    constexpr int max_sweeps = 100;
-    hints_.assign(is_done.size(), -1);
-    last_.assign(is_done.size(), std::numeric_limits<double>::infinity());
-    for (int sweep = 0; sweep < max_sweeps; ++sweep) {
-      bool all_done = true;
-      for (std::size_t j = 0; j < is_done.size(); ++j) {
-        if (!is_done[j]) is_done[j] = improve(iterates, j, sweep);
-        all_done = all_done && is_done[j];
-      }
-      if (all_done) return true;
-    }
-    return false;
-  }
-
-  int evaluations() const { return evaluations_; }
-
- private:
-  /// One step of iterate j; whether it was the last one needed.
-  bool improve(Iterates& iterates, std::size_t j, int sweep) {
-    const std::size_t num_pairs = iterates.pairs.size();
-    Complex& s = j < num_pairs ? iterates.pairs[j] : iterates.singles[j - num_pairs];
-    const SecularFunction::LogSlope slope = function_.log_slope_below(s, height_, hints_[j]);
-    ++evaluations_;
-    if (slope.is_zero) return true;
-    Complex repulsion = 0.0;
-    double spacing = std::numeric_limits<double>::infinity();
-    const auto repel = [&](Complex other) {
-      const Complex difference = s - other;
-      const double square = std::norm(difference);
-      // Two iterates on the same spot are a double zero, or part company by rounding.
-      if (square == 0.0) return;
-      spacing = std::min(spacing, square);
-      repulsion += std::conj(difference) / square;
-    };
-    for (std::size_t k = 0; k < num_pairs; ++k) {
-      if (k != j) repel(iterates.pairs[k]);
-      repel(std::conj(iterates.pairs[k]));
-    }
-    for (std::size_t k = 0; k < iterates.singles.size(); ++k) {
-      if (num_pairs + k != j) repel(iterates.singles[k]);
-    }
-    spacing = std::sqrt(spacing);
-    Complex step = -1.0 / (slope.value - repulsion);
-    if (j >= num_pairs && s.imag() == 0.0) step.imag(0.0);
-    // Beyond its surroundings a step tells nothing.
-    const double farthest = std::abs(s) + 0.1 * function_.extent();
-    double length = std::abs(step);
-    if (!std::isfinite(length)) step = 1e-3 * farthest;
-    if (length > farthest) step *= farthest / length;
-    s += step;
-    length = std::abs(step);
-    const double size = function_.size_of(s);
-    const double rounding = unit_roundoff * size;
-    // A small step next to another iterate is the other's doing, unless a zero is as close.
-    constexpr double nearby = 1e-6;
-    const bool is_near_zero = 1.0 <= std::abs(slope.value) * std::max(spacing, nearby * size);
-    // Steps towards a double zero end when they have reached the rounding of P_h.
-    constexpr int num_expected = 20;
-    const bool has_stalled =
-        sweep > num_expected && length >= 0.9 * last_[j] && length <= 1e-7 * size;
-    const bool is_small =
-        length * length <= 1e-2 * rounding * spacing || length <= 4.0 * rounding || has_stalled;
-    last_[j] = length;
-    return is_small && is_near_zero;
-  }
-
-  SecularFunction& function_;
-  double height_;
-  std::vector<int> hints_;
-  std::vector<double> last_;
-  int evaluations_ = 0;
-};
 
 /// Whether a pole is far from the imaginary axis, as those of high modes under damping in
 /// proportion to stiffness: its height says little about where it is.
@@ -234,11 +145,11 @@ bool send_back(std::vector<Complex>& found, std::vector<bool>& is_done,
 
 enum class Settled { all_below, some_above, not_converged };
 
-/// Iterates until every zero is below the line; those above it start anew.
+/// AberthIterates until every zero is below the line; those above it start anew.
 /// @param movable  pairs or singles of the iterates: those that may start anew
 /// @param is_valid called after each iteration; where it returns false, that counts as not converged
 template <class IsValid>
-Settled settle_below(SecularFunction& function, double height, Iterates& iterates,
+Settled settle_below(SecularFunction& function, double height, AberthIterates& iterates,
                      std::vector<Complex>& movable, int& evaluations, const IsValid& is_valid) {
   std::vector<bool> is_done(iterates.pairs.size() + iterates.singles.size(), false);
   const std::vector<Complex> starts =
@@ -257,7 +168,7 @@ Settled settle_below(SecularFunction& function, double height, Iterates& iterate
 /// Zeros of P_h as conjugate pairs, `number` of them with one on the real axis where it is odd.
 bool find_pairs(SecularFunction& function, double height, int number, std::vector<Complex>& zeros,
                 int& evaluations) {
-  Iterates iterates;
+  AberthIterates iterates;
   iterates.pairs = starts_below(function, height, number / 2);
   if (number % 2 == 1) iterates.singles.emplace_back(-0.1 * function.extent(), 0.0);
   const Settled settled = settle_below(function, height, iterates, iterates.pairs, evaluations, [&] {
@@ -288,7 +199,7 @@ bool find_zeros(SecularFunction& function, double height, int number, std::vecto
   // Mostly there are no real eigenvalues, and pairs stay pairs.
   if (find_pairs(function, height, number, zeros, evaluations)) return true;
   // Two real zeros cannot come out of a pair: all on their own, from starts that are not conjugate.
-  Iterates iterates;
+  AberthIterates iterates;
   std::vector<Complex>& starts = iterates.singles;
   const std::vector<double> real = real_poles(function);
   for (std::size_t j = 0; j < real.size(); ++j) {

@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "substructures/bodies/beam_additions.hpp"
 #include "substructures/bodies/beam_mesh.hpp"
@@ -100,269 +104,174 @@ SparseMatrix assemble(const std::vector<ElementDofs>& elements, const Q8Matrix& 
 
 }  // namespace
 
-const Schema& MaterialParameters::schema() {
-  static const Schema keys =
-      SchemaOf<MaterialParameters>("material")
-          .real("youngs_modulus", &MaterialParameters::youngs_modulus,
-                {.doc = "Young's modulus.", .unit = "Pa", .range = Range::positive()})
-          .real("poissons_ratio", &MaterialParameters::poissons_ratio,
-                {.doc = "Poisson's ratio.", .range = Range::inside(-1.0, 0.5)})
-          .real("density", &MaterialParameters::density,
-                {.doc = "Mass density.", .unit = "kg m-3", .range = Range::positive()});
-  return keys;
-}
-
-const Schema& MeshParameters::schema() {
-  static const Schema keys =
-      SchemaOf<MeshParameters>("mesh")
-          .integer("along", &MeshParameters::along,
-                   {.doc = "Elements along the axis.", .range = Range::between(1, 1'000'000)})
-          .integer("through", &MeshParameters::through,
-                   {.doc = "Elements through the thickness.", .range = Range::between(1, 10'000)})
-          .check([](const MeshParameters& mesh, std::vector<Problem>& problems) {
-            if (static_cast<double>(mesh.along) * mesh.through > 1e7) {
-              problems.push_back(
-                  {"along", "along x through must not exceed 1e7 elements", {}, 0, 0});
-            }
-          });
-  return keys;
-}
-
-const Schema& SupportParameters::schema() {
-  static const std::vector<std::pair<std::string, Support>> names{{"free", Support::free},
-                                                                  {"clamped", Support::clamped},
-                                                                  {"pinned", Support::pinned},
-                                                                  {"guided", Support::guided}};
-  static const Schema keys =
-      SchemaOf<SupportParameters>("supports")
-          .choice("start", &SupportParameters::start, names,
-                  {.doc = "Support of the end where the axis starts.", .optional = true})
-          .choice("end", &SupportParameters::end, names,
-                  {.doc = "Support of the other end; a guided end follows drive.velocity in x and "
-                          "carries drive.load in y.",
-                   .optional = true})
-          .check([](const SupportParameters& supports, std::vector<Problem>& problems) {
-            if (supports.start == Support::guided && supports.end == Support::guided) {
-              problems.push_back({"end",
-                                  "both ends are guided; the drive can hold one end of a body only",
-                                  {},
-                                  0,
-                                  0});
-            }
-          });
-  return keys;
-}
-
-const Schema& InterfaceParameters::schema() {
-  static const Schema keys =
-      SchemaOf<InterfaceParameters>("interface")
-          .real("spacing", &InterfaceParameters::spacing,
-                {.doc = "Distance of the surface nodes kept as master nodes; default: every node.",
-                 .unit = "m",
-                 .range = Range::positive(),
-                 .optional = true});
-  return keys;
-}
-
-const Schema& ReductionParameters::schema() {
-  static const Schema keys =
-      SchemaOf<ReductionParameters>("reduction")
-          .integer("fixed_interface_modes", &ReductionParameters::fixed_interface_modes,
-                   {.doc = "Number of fixed-interface modes kept (Craig-Bampton).",
-                    .range = Range::between(0, 100'000)});
-  return keys;
-}
-
-const Schema& BeamParameters::schema() {
-  static const Schema keys =
-      SchemaOf<BeamParameters>("beam")
-          .real("length", &BeamParameters::length,
-                {.doc = "Length along the axis.", .unit = "m", .range = Range::positive()})
-          .real("thickness", &BeamParameters::thickness,
-                {.doc = "Thickness in the plane.", .unit = "m", .range = Range::positive()})
-          .real("width", &BeamParameters::width,
-                {.doc = "Width out of the plane.", .unit = "m", .range = Range::positive()})
-          .real("angle", &BeamParameters::angle,
-                {.doc = "Angle of the axis, from its start (the tip) to its end, against +x.",
-                 .unit = "rad",
-                 .range = Range::between(-7.0, 7.0)})
-          .section("material", &BeamParameters::material,
-                   {.doc = "Isotropic linear elastic material."})
-          .section("mesh", &BeamParameters::mesh,
-                   {.doc = "Structured mesh of plane-stress Q8 elements."})
-          .section("damping", &BeamParameters::damping,
-                   {.doc = "Rayleigh damping and its schedule."})
-          .section("supports", &BeamParameters::supports,
-                   {.doc = "What holds the ends.", .optional = true})
-          .named_sections("points", &BeamParameters::points,
-                          {.doc = "Points of its own, by name.", .optional = true})
-          .named_sections("springs", &BeamParameters::springs,
-                          {.doc = "Springs to the ground, by name; the damping of the beam "
-                                  "includes them.",
-                           .optional = true})
-          .choice("across", &BeamParameters::across,
-                  {{"held", AcrossMotion::held}, {"rigid", AcrossMotion::rigid}},
-                  {.doc = "Motion across the plane, along z: none, or as a rigid body on what "
-                          "springs have along z.",
-                   .optional = true})
-          .section("interface", &BeamParameters::interface,
-                   {.doc = "Surface nodes kept for contact.", .optional = true})
-          .section("reduction", &BeamParameters::reduction, {.doc = "Craig-Bampton reduction."})
-          .check([](const BeamParameters& beam, std::vector<Problem>& problems) {
-            if (beam.across == AcrossMotion::held) return;
-            if (beam.supports.start == Support::free && beam.supports.end == Support::free) return;
-            problems.push_back({"across",
-                                "must be `held`: a support of an end holds it along z as well",
-                                {},
-                                0,
-                                0});
-          })
-          .check([](const BeamParameters& beam, std::vector<Problem>& problems) {
-            constexpr double flattest = 1e10;
-            const double ratio =
-                beam.length / beam.mesh.along / (beam.thickness / beam.mesh.through);
-            if (ratio <= flattest && ratio >= 1.0 / flattest) return;
-            problems.push_back({"thickness",
-                                fmt::format("{:g} m on a length of {:g} m makes elements {:.3g} "
-                                            "times as long as high, of which no stiffness can be "
-                                            "computed; check the units of both",
-                                            beam.thickness, beam.length, ratio),
-                                {},
-                                0,
-                                0});
-          });
-  return keys;
-}
-
 namespace {
 
-BodyMatrices make_mesh(const BeamParameters& parameters) {
-  const auto& supports = parameters.supports;
-  if (supports.start == Support::guided && supports.end == Support::guided) {
-    throw std::invalid_argument("make_beam: both ends are guided");
+/// Makes the body of a beam from its nodes to its names.
+class BeamMesher {
+ public:
+  explicit BeamMesher(const BeamParameters& parameters)
+      : parameters_(parameters), grid_{parameters.mesh.along, parameters.mesh.through} {}
+
+  BodyMatrices make() {
+    body_.damping = parameters_.damping;
+    place_nodes();
+    assemble_elements(number_dofs());
+    name_points();
+    name_surfaces();
+    return std::move(body_);
   }
-  const NodeGrid grid{parameters.mesh.along, parameters.mesh.through};
-  const int last_column = grid.num_columns() - 1;
-  const int last_row = grid.full_column() - 1;
 
-  BodyMatrices body;
-  body.damping = parameters.damping;
+ private:
+  void place_nodes();
+  int number_dofs();
+  void hold_end(Support support, int column);
+  void assemble_elements(int num_dofs);
+  std::vector<ElementDofs> element_dofs() const;
+  void add_base_inertia(const std::vector<ElementDofs>& elements, const Q8Matrix& mass);
+  void name_points();
+  void name_surfaces();
 
+  int last_column() const { return grid_.num_columns() - 1; }
+  int last_row() const { return grid_.full_column() - 1; }
+
+  // DoFs before they are numbered.
+  static constexpr int unset = -2;
+  static constexpr int shared_y = -3;
+
+  const BeamParameters& parameters_;
+  NodeGrid grid_;
+  BodyMatrices body_;
+};
+
+void BeamMesher::place_nodes() {
   // Exact directions for the right angles, so that a horizontal surface is exactly horizontal.
-  double cosine = std::cos(parameters.angle);
-  double sine = std::sin(parameters.angle);
+  double cosine = std::cos(parameters_.angle);
+  double sine = std::sin(parameters_.angle);
   if (std::abs(cosine) < 1e-15) cosine = 0.0;
   if (std::abs(sine) < 1e-15) sine = 0.0;
-  body.nodes.resize(grid.num_nodes(), 3);
-  for (int i = 0; i <= last_column; ++i) {
-    for (int j = 0; j <= last_row; j += (i % 2 == 0 ? 1 : 2)) {
-      const double a = parameters.length * i / last_column;
-      const double b = parameters.thickness * (static_cast<double>(j) / last_row - 0.5);
-      body.nodes.row(grid.node(i, j)) << a * cosine - b * sine, a * sine + b * cosine, 0.0;
+  body_.nodes.resize(grid_.num_nodes(), 3);
+  for (int i = 0; i <= last_column(); ++i) {
+    for (int j = 0; j <= last_row(); j += (i % 2 == 0 ? 1 : 2)) {
+      const double a = parameters_.length * i / last_column();
+      const double b = parameters_.thickness * (static_cast<double>(j) / last_row() - 0.5);
+      body_.nodes.row(grid_.node(i, j)) << a * cosine - b * sine, a * sine + b * cosine, 0.0;
     }
   }
+}
 
-  // Supports first mark held and shared DoFs; the DoFs are numbered after that.
-  constexpr int unset = -2;
-  constexpr int shared_y = -3;
-  body.node_dofs.assign(static_cast<std::size_t>(grid.num_nodes()), {unset, unset});
-  const auto dofs_of = [&](int node) -> std::array<int, 2>& {
-    return body.node_dofs[static_cast<std::size_t>(node)];
+void BeamMesher::hold_end(Support support, int column) {
+  const auto set = [&](int row, const std::array<int, 2>& dofs) {
+    body_.node_dofs[static_cast<std::size_t>(grid_.node(column, row))] = dofs;
   };
-  const auto support_end = [&](Support support, int column) {
-    if (support == Support::pinned)
-      dofs_of(grid.node(column, grid.through)) = {BodyMatrices::held, BodyMatrices::held};
-    for (int j = 0; j <= last_row; ++j) {
-      if (support == Support::clamped)
-        dofs_of(grid.node(column, j)) = {BodyMatrices::held, BodyMatrices::held};
-      if (support == Support::guided)
-        dofs_of(grid.node(column, j)) = {BodyMatrices::held, shared_y};
-    }
-  };
-  support_end(supports.start, 0);
-  support_end(supports.end, last_column);
+  if (support == Support::pinned) set(grid_.through, {BodyMatrices::held, BodyMatrices::held});
+  for (int j = 0; j <= last_row(); ++j) {
+    if (support == Support::clamped) set(j, {BodyMatrices::held, BodyMatrices::held});
+    if (support == Support::guided) set(j, {BodyMatrices::held, shared_y});
+  }
+}
 
+/// Numbers the DoFs that no support holds. @return how many there are
+int BeamMesher::number_dofs() {
+  body_.node_dofs.assign(static_cast<std::size_t>(grid_.num_nodes()), {unset, unset});
+  hold_end(parameters_.supports.start, 0);
+  hold_end(parameters_.supports.end, last_column());
   int num_dofs = 0;
-  for (auto& dofs : body.node_dofs) {
+  for (auto& dofs : body_.node_dofs) {
     for (int& dof : dofs) {
       if (dof == unset) {
         dof = num_dofs++;
       } else if (dof == shared_y) {
-        if (body.load_dof == BodyMatrices::held) body.load_dof = num_dofs++;
-        dof = body.load_dof;
+        if (body_.load_dof == BodyMatrices::held) body_.load_dof = num_dofs++;
+        dof = body_.load_dof;
       }
     }
   }
+  return num_dofs;
+}
 
-  // All elements are congruent, so one pair of element matrices serves them all.
-  const auto element_nodes = [&](int column, int row) { return grid.element(column, row); };
+std::vector<ElementDofs> BeamMesher::element_dofs() const {
+  std::vector<ElementDofs> elements;
+  elements.reserve(static_cast<std::size_t>(grid_.along) * static_cast<std::size_t>(grid_.through));
+  for (int column = 0; column < grid_.along; ++column) {
+    for (int row = 0; row < grid_.through; ++row) {
+      ElementDofs& dofs = elements.emplace_back();
+      std::size_t k = 0;
+      for (const int node : grid_.element(column, row))
+        for (const int dof : body_.node_dofs[static_cast<std::size_t>(node)]) dofs[k++] = dof;
+    }
+  }
+  return elements;
+}
+
+/// All elements are congruent, so one pair of element matrices serves them all.
+void BeamMesher::assemble_elements(int num_dofs) {
   ElementNodes<ElementShape::quad8> corners;
   for (int k = 0; k < 8; ++k)
-    corners.row(k) = body.nodes.row(element_nodes(0, 0)[static_cast<std::size_t>(k)]).head<2>();
-  const auto& material = parameters.material;
+    corners.row(k) = body_.nodes.row(grid_.element(0, 0)[static_cast<std::size_t>(k)]).head<2>();
+  const auto& material = parameters_.material;
   const ElementSection section{
       ElasticLaw(IsotropicElasticity{material.youngs_modulus, material.poissons_ratio},
                  PlaneState::stress),
-      material.density, parameters.width};
+      material.density, parameters_.width};
   Q8Matrix stiffness = element_stiffness<ElementShape::quad8>(corners, section, 1);
   const auto nodal_mass = element_mass<ElementShape::quad8>(corners, section, 1);
   Q8Matrix mass = Q8Matrix::Zero();
   direction_part(mass, 0, 0) = direction_part(mass, 1, 1) = nodal_mass;
   balance_translations(stiffness);
 
-  std::vector<ElementDofs> elements;
-  elements.reserve(static_cast<std::size_t>(grid.along) * static_cast<std::size_t>(grid.through));
-  for (int column = 0; column < grid.along; ++column) {
-    for (int row = 0; row < grid.through; ++row) {
-      ElementDofs& dofs = elements.emplace_back();
-      std::size_t k = 0;
-      for (const int node : element_nodes(column, row))
-        for (const int dof : dofs_of(node)) dofs[k++] = dof;
+  const std::vector<ElementDofs> elements = element_dofs();
+  body_.mass = assemble(elements, mass, num_dofs);
+  body_.stiffness = assemble(elements, stiffness, num_dofs);
+  if (body_.follows_drive()) add_base_inertia(elements, mass);
+}
+
+/// Held nodes move with the support: every x displacement of an element counts.
+void BeamMesher::add_base_inertia(const std::vector<ElementDofs>& elements, const Q8Matrix& mass) {
+  body_.base_inertia = Eigen::VectorXd::Zero(body_.mass.rows());
+  Eigen::Vector<double, 16> inertia = Eigen::Vector<double, 16>::Zero();
+  for (Eigen::Index b = 0; b < 16; b += 2) inertia += mass.col(b);
+  for (const ElementDofs& dofs : elements) {
+    for (Eigen::Index a = 0; a < 16; ++a) {
+      const int dof = dofs[static_cast<std::size_t>(a)];
+      if (dof != BodyMatrices::held) body_.base_inertia(dof) += inertia(a);
     }
   }
-  body.mass = assemble(elements, mass, num_dofs);
-  body.stiffness = assemble(elements, stiffness, num_dofs);
-  if (body.follows_drive()) {
-    body.base_inertia = Eigen::VectorXd::Zero(num_dofs);
-    // Held nodes move with the support: every x displacement of an element counts.
-    Eigen::Vector<double, 16> inertia = Eigen::Vector<double, 16>::Zero();
-    for (Eigen::Index b = 0; b < 16; b += 2) inertia += mass.col(b);
-    for (const ElementDofs& dofs : elements) {
-      for (Eigen::Index a = 0; a < 16; ++a) {
-        const int dof = dofs[static_cast<std::size_t>(a)];
-        if (dof != BodyMatrices::held) body.base_inertia(dof) += inertia(a);
-      }
-    }
-  }
+}
 
-  body.points = {
-      {"start_bottom", grid.node(0, 0)},         {"start_top", grid.node(0, last_row)},
-      {"end_bottom", grid.node(last_column, 0)}, {"end_top", grid.node(last_column, last_row)},
-      {"start", grid.node(0, grid.through)},     {"end", grid.node(last_column, grid.through)}};
-  const double rounding = 1e-12 * parameters.thickness;
-  const bool top_is_lower = body.nodes(body.points["start_top"], 1) <
-                            body.nodes(body.points["start_bottom"], 1) - rounding;
-  body.points["tip"] = body.points[top_is_lower ? "start_top" : "start_bottom"];
-  const bool start_is_free = supports.start == Support::free;
-  if (start_is_free != (supports.end == Support::free)) {
-    body.points["free_end"] = body.points[start_is_free ? "start_top" : "end_top"];
-  }
+void BeamMesher::name_points() {
+  std::map<std::string, int>& points = body_.points;
+  points = {{"start_bottom", grid_.node(0, 0)},
+            {"start_top", grid_.node(0, last_row())},
+            {"end_bottom", grid_.node(last_column(), 0)},
+            {"end_top", grid_.node(last_column(), last_row())},
+            {"start", grid_.node(0, grid_.through)},
+            {"end", grid_.node(last_column(), grid_.through)}};
+  const double rounding = 1e-12 * parameters_.thickness;
+  const bool top_is_lower =
+      body_.nodes(points["start_top"], 1) < body_.nodes(points["start_bottom"], 1) - rounding;
+  points["tip"] = points[top_is_lower ? "start_top" : "start_bottom"];
+  const bool start_is_free = parameters_.supports.start == Support::free;
+  if (start_is_free != (parameters_.supports.end == Support::free))
+    points["free_end"] = points[start_is_free ? "start_top" : "end_top"];
+}
 
-  for (int i = 0; i <= last_column; ++i) {
-    body.surfaces["top"].push_back(grid.node(i, last_row));
-    body.surfaces["bottom"].push_back(grid.node(last_column - i, 0));
+void BeamMesher::name_surfaces() {
+  for (int i = 0; i <= last_column(); ++i) {
+    body_.surfaces["top"].push_back(grid_.node(i, last_row()));
+    body_.surfaces["bottom"].push_back(grid_.node(last_column() - i, 0));
   }
-  for (int j = 0; j <= last_row; ++j) {
-    body.surfaces["start_face"].push_back(grid.node(0, j));
-    body.surfaces["end_face"].push_back(grid.node(last_column, last_row - j));
+  for (int j = 0; j <= last_row(); ++j) {
+    body_.surfaces["start_face"].push_back(grid_.node(0, j));
+    body_.surfaces["end_face"].push_back(grid_.node(last_column(), last_row() - j));
   }
-  return body;
 }
 
 }  // namespace
 
 BodyMatrices make_beam(const BeamParameters& parameters) {
-  BodyMatrices body = make_mesh(parameters);
+  if (parameters.supports.start == Support::guided && parameters.supports.end == Support::guided)
+    throw std::invalid_argument("make_beam: both ends are guided");
+  BodyMatrices body = BeamMesher(parameters).make();
   if (parameters.across == AcrossMotion::rigid) add_motion_across(parameters, body);
   for (const auto& [name, point] : parameters.points)
     add_beam_point("points." + name, name, point, body);

@@ -37,6 +37,7 @@ struct SupportParameters {
 
 struct InterfaceParameters {
   std::optional<double> spacing;  ///< distance of the master nodes kept, m; all nodes where absent
+  std::optional<int> modes;       ///< in which it moves; in all of its DoFs where absent
   static const Schema& schema();
 };
 
@@ -80,6 +81,7 @@ struct BeamParameters : BodyParametersOf<BeamParameters> {
   RayleighDamping* own_damping() override { return &damping; }
   std::optional<int> num_modes() const override { return reduction.fixed_interface_modes; }
   std::optional<double> interface_spacing() const override { return interface.spacing; }
+  std::optional<int> interface_modes() const override { return interface.modes; }
   bool is_filled() const override { return true; }
   std::vector<DrawnElement> elements() const override;
   double num_slave_nodes(const std::string& name) const override;

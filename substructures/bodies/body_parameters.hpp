@@ -69,6 +69,8 @@ class BodyParameters {
   virtual std::optional<int> num_modes() const { return std::nullopt; }
   /// Distance of the nodes kept of a master surface, m; nothing: every node.
   virtual std::optional<double> interface_spacing() const { return std::nullopt; }
+  /// Modes in which the interface of its reduction moves; nothing: in all of its DoFs.
+  virtual std::optional<int> interface_modes() const { return std::nullopt; }
   /// Whether the nodes fill the body, so that the side of a surface on which it lies can be told.
   virtual bool is_filled() const { return false; }
   /// Whether it has a face of this name (BodyMatrices::faces).

@@ -58,6 +58,7 @@ void take_system(const SparseSystem& system, BodyMatrices& body) {
   body.mass = system.mass;
   const SparseMatrix transposed = system.position.transpose();
   body.stiffness = 0.5 * (system.position + transposed);
+  body.loss_stiffness = system.loss;
   const SparseMatrix skew = 0.5 * (system.position - transposed);
   const std::optional<RayleighDamping> damping =
       proportional_damping(system.velocity, body.mass, body.stiffness);
@@ -168,7 +169,7 @@ ReductionSize TouchedMatrixBodyParameters::reduction_size(double interface_nodes
   const auto n = static_cast<double>(matrices->mass.rows());
   auto entries = static_cast<double>(matrices->stiffness.nonZeros());
   for (std::size_t i = 0; i < matrices->terms.size(); ++i) {
-    if (!is_of_velocity(body.terms[i].role))
+    if (!is_of_velocity(body.terms[i].role) && body.terms[i].role != MatrixRole::structural)
       entries += static_cast<double>(matrices->terms[i].nonZeros());
   }
   const double d = has_nodes() ? dimension_of(*matrices) : 2.0;

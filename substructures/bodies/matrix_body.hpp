@@ -29,6 +29,7 @@ enum class MatrixRole {
   circulatory,  ///< of q, skew-symmetric
   velocity,     ///< of q̇, of any kind
   position,     ///< of q, of any kind
+  structural,   ///< of q, symmetric: the imaginary part of a complex stiffness
 };
 
 /// Whether a matrix is multiplied with velocities, else with displacements.
@@ -42,14 +43,15 @@ struct MatrixTermParameters {
   static const Schema& schema();
 };
 
-/// M q̈ + (D + G + Σ f_i D_i) q̇ + (K + N + Σ f_j K_j) q = 0   (HS (28); docs/theory.md, 10.3)
+/// M q̈ + (D + G + Σ f_i D_i) q̇ + (K + N + Σ f_j K_j + i Σ f_k L_k) q = 0   (HS (28);
+/// docs/theory.md, 10.3)
 struct MatrixBodyParameters {
   MatrixText mass;                          ///< M, symmetric positive semidefinite
   MatrixText damping;                       ///< D
   MatrixText gyroscopic;                    ///< G, skew-symmetric
   MatrixText stiffness;                     ///< K
   MatrixText circulatory;                   ///< N, skew-symmetric
-  std::vector<MatrixTermParameters> terms;  ///< f_i D_i and f_j K_j
+  std::vector<MatrixTermParameters> terms;  ///< f_i D_i, f_j K_j and f_k L_k
   static const Schema& schema();
 };
 
@@ -146,6 +148,7 @@ struct TouchedMatrixBodyParameters : BodyParametersOf<TouchedMatrixBodyParameter
   BodyMatrices make() const override;
   std::optional<int> num_modes() const override;
   std::optional<double> interface_spacing() const override { return interface.spacing; }
+  std::optional<int> interface_modes() const override { return interface.modes; }
   bool is_filled() const override;
   std::vector<DrawnElement> elements() const override;
   double num_slave_nodes(const std::string& name) const override;

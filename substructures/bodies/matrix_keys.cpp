@@ -21,10 +21,13 @@ const Schema& MatrixTermParameters::schema() {
                {"stiffness", MatrixRole::stiffness},
                {"circulatory", MatrixRole::circulatory},
                {"velocity", MatrixRole::velocity},
-               {"position", MatrixRole::position}},
+               {"position", MatrixRole::position},
+               {"structural", MatrixRole::structural}},
               {.doc = "What it adds to: damping, gyroscopic (skew-symmetric) or velocity (any) to "
                       "the matrix of velocities; stiffness, circulatory (skew-symmetric) or "
-                      "position (any) to that of displacements."})
+                      "position (any) to that of displacements; structural (symmetric) to the "
+                      "imaginary part of a complex stiffness, by which every mode gets the viscous "
+                      "damping of the same loss."})
           .text_rows("matrix", &P::matrix,
                      {.doc = "The matrix: a file, from the folder of the scene, or a list of rows, "
                              "each a list or a text of numbers."})
@@ -59,7 +62,10 @@ const Schema& MatrixBodyParameters::schema() {
           .check([](const P& body, std::vector<Problem>& problems) {
             const bool has_position =
                 std::any_of(body.terms.begin(), body.terms.end(),
-                            [](const auto& term) { return !is_of_velocity(term.role); });
+                            [](const auto& term) {
+                              return !is_of_velocity(term.role) &&
+                                     term.role != MatrixRole::structural;
+                            });
             if (!body.stiffness.empty() || has_position) return;
             problems.push_back({"stiffness",
                                 "is missing; give it, or a term of the role stiffness or position",

@@ -66,6 +66,7 @@ struct MeshBodyParameters : BodyParametersOf<MeshBodyParameters> {
   std::vector<Problem> warnings() const override;
   std::optional<int> num_modes() const override;
   std::optional<double> interface_spacing() const override { return interface.spacing; }
+  std::optional<int> interface_modes() const override { return interface.modes; }
   bool is_filled() const override;
   bool is_spatial() const override;
   std::vector<DrawnElement> elements() const override;

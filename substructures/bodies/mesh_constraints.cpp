@@ -9,6 +9,7 @@
 #include "substructures/bodies/free_motions.hpp"
 #include "substructures/elements/mesh_surfaces.hpp"
 #include "substructures/elements/side_search.hpp"
+#include "substructures/matrices/dof_sum.hpp"
 
 namespace stridor {
 namespace {
@@ -35,33 +36,6 @@ HeldDirections held_directions(const MeshSupportParameters& support) {
     held.round[i] = has(of_line[i]);
   }
   return held;
-}
-
-DofSum scaled(const DofSum& sum, double factor) {
-  DofSum result;
-  if (factor == 0.0) return result;
-  for (const DofWeight& dof : sum) result.push_back({dof.dof, factor * dof.weight});
-  return result;
-}
-
-/// Every DoF once, ascending; those that cancel are left out.
-DofSum gathered(DofSum all) {
-  std::stable_sort(all.begin(), all.end(),
-                   [](const DofWeight& a, const DofWeight& b) { return a.dof < b.dof; });
-  DofSum sum;
-  for (const DofWeight& dof : all) {
-    if (!sum.empty() && sum.back().dof == dof.dof) {
-      sum.back().weight += dof.weight;
-    } else {
-      sum.push_back(dof);
-    }
-  }
-  std::erase_if(sum, [](const DofWeight& dof) { return dof.weight == 0.0; });
-  return sum;
-}
-
-void append(DofSum& all, const DofSum& more) {
-  all.insert(all.end(), more.begin(), more.end());
 }
 
 /// What holds one node.

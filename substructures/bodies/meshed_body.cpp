@@ -125,6 +125,8 @@ void add_given_matrices(const NodalMatrices& given, const Mesh& mesh,
   body.damping = given.damping;
   body.mass = projected(given.mass, choice);
   body.stiffness = projected(given.stiffness, choice);
+  if (given.loss_stiffness.size() > 0)
+    body.loss_stiffness = projected(given.loss_stiffness, choice);
   if (given.velocity.size() > 0) {
     const SparseMatrix transposed = choice.transpose();
     body.velocity = transposed * given.velocity * choice;

@@ -274,6 +274,7 @@ NamedMatrices read_matrices(const MatrixBodyParameters& body, const MatrixNodesP
     const MatrixRole role = body.terms[i].role;
     if (role == MatrixRole::gyroscopic || role == MatrixRole::circulatory)
       expect_symmetry(key_of_term(i), parts.terms[i], -1.0);
+    if (role == MatrixRole::structural) expect_symmetry(key_of_term(i), parts.terms[i], 1.0);
   }
   return parts;
 }

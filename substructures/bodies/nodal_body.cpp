@@ -106,6 +106,7 @@ void turn(const NamedMatrices& matrices, const NodeRows& nodes, double angle,
   turn.apply(system.mass);
   turn.apply(system.velocity);
   turn.apply(system.position);
+  if (system.loss.size() > 0) turn.apply(system.loss);
 }
 
 double unit_of(const std::string& unit, const char* key, const char* of) {
@@ -130,7 +131,12 @@ SparseSystem sum(const NamedMatrices& matrices, const MatrixBodyParameters& body
   system.velocity = matrices.damping + matrices.gyroscopic;
   system.position = matrices.stiffness + matrices.circulatory;
   for (std::size_t i = 0; i < body.terms.size(); ++i) {
-    SparseMatrix& to = is_of_velocity(body.terms[i].role) ? system.velocity : system.position;
+    const MatrixRole role = body.terms[i].role;
+    if (role == MatrixRole::structural && system.loss.size() == 0)
+      system.loss.resize(system.size(), system.size());
+    SparseMatrix& to = role == MatrixRole::structural ? system.loss
+                       : is_of_velocity(role)         ? system.velocity
+                                                      : system.position;
     const SparseMatrix before = to;
     to = before + body.terms[i].factor * matrices.terms.at(i);
   }
@@ -147,6 +153,7 @@ SparseSystem sum(const NamedMatrices& matrices, const MatrixBodyParameters& body
   system.mass = scaled(system.mass, scales, energy * time * time);
   system.velocity = scaled(system.velocity, scales, energy * time);
   system.position = scaled(system.position, scales, energy);
+  if (system.loss.size() > 0) system.loss = scaled(system.loss, scales, energy);
   return system;
 }
 
@@ -220,7 +227,8 @@ BodyMatrices make_nodal_body(const TouchedMatrixBodyParameters& parameters) {
   const NodalMatrices nodal{dimension_of(matrices),        std::move(parts.mass),
                             std::move(parts.stiffness),    parts.damping,
                             std::move(parts.velocity),     std::move(parts.circulatory),
-                            std::move(nodes.rows),         std::move(nodes.rotations)};
+                            std::move(nodes.rows),         std::move(nodes.rotations),
+                            std::move(parts.loss_stiffness)};
   BodyMatrices body = make_meshed_body(mesh_keys(parameters), nodal);
   add_point_surfaces(parameters, body);
   return body;

@@ -17,6 +17,7 @@ struct NodalMatrices {
   std::vector<int> rows;
   /// Row of rotation 3 x node + axis likewise; empty where no node turns.
   std::vector<int> rotations;
+  SparseMatrix loss_stiffness{};  ///< as BodyMatrices has it
 };
 
 }  // namespace stridor

@@ -118,12 +118,8 @@ void mirror(Eigen::MatrixXd& matrix) {
   matrix.triangularView<Eigen::StrictlyUpper>() = matrix.transpose();
 }
 
-}  // namespace
-
-ReducedBody make_craig_bampton(const BodyMatrices& body, std::span<const int> interface,
-                               Eigen::Index num_modes, std::span<const int> watched) {
-  const auto nb = static_cast<Eigen::Index>(interface.size());
-  const Partition partition = partition_dofs(body.num_dofs(), interface);
+void check_arguments(const BodyMatrices& body, const Partition& partition, Eigen::Index num_modes,
+                     std::span<const int> watched) {
   if (num_modes < 0 || num_modes > partition.num_interior) {
     throw std::invalid_argument(
         fmt::format("make_craig_bampton: {} fixed-interface modes asked, {} interior DoFs",
@@ -135,36 +131,39 @@ ReducedBody make_craig_bampton(const BodyMatrices& body, std::span<const int> in
           fmt::format("make_craig_bampton: watched DoF {} is out of range", dof));
     }
   }
+}
 
-  const Blocks stiffness = split(body.stiffness, partition, interface);
-  const Blocks mass = split(body.mass, partition, interface);
+/// The interior part of T: Ψ and Φ.
+struct InteriorShapes {
+  VectorBlock psi;
+  Modes modes;
+  const Eigen::MatrixXd& phi() const { return modes.shapes; }
+};
+
+/// Φ from block Lanczos, then Ψ in groups of columns.
+InteriorShapes interior_shapes(const Blocks& stiffness, const SparseMatrix& mass,
+                               Eigen::Index num_modes) {
   const SparseCholesky factor(stiffness.ii, "the stiffness of the interior");
-  const Modes modes = lowest_modes(factor, stiffness.ii, mass.ii, num_modes);
-  const Eigen::MatrixXd& phi = modes.shapes;
-
-  ReducedBody reduced;
-  reduced.damping = body.damping;
-  reduced.num_interface = nb;
-  const Eigen::Index n = nb + num_modes;
-  reduced.stiffness = Eigen::MatrixXd::Zero(n, n);
-  reduced.stiffness.topLeftCorner(nb, nb) = stiffness.bb;
-  reduced.stiffness.diagonal().tail(num_modes) = modes.omega_squared;
-  reduced.mass = Eigen::MatrixXd::Identity(n, n);
-  reduced.mass.topLeftCorner(nb, nb) = mass.bb;
-
-  VectorBlock psi = -stiffness.ib;
-  Activity solving(fmt::format("{} constraint modes of {} unknowns", nb, partition.num_interior));
+  InteriorShapes shapes;
+  shapes.modes = lowest_modes(factor, stiffness.ii, mass, num_modes);
+  shapes.psi = -stiffness.ib;
+  const Eigen::Index nb = stiffness.ib.cols();
+  Activity solving(fmt::format("{} constraint modes of {} unknowns", nb, stiffness.ii.rows()));
   for_column_groups(nb, [&](Eigen::Index first, Eigen::Index count) {
     throw_if_stopped();
     solving.report(static_cast<double>(first) / static_cast<double>(nb));
-    factor.solve_in_place(psi.middleCols(first, count));
+    factor.solve_in_place(shapes.psi.middleCols(first, count));
   });
+  return shapes;
+}
 
-  reduced.stiffness.topLeftCorner(nb, nb) += stiffness.ib.transpose() * psi;
-  correct_softest(stiffness, psi, reduced.stiffness);
-
+/// Adds what the interior brings to the lower triangle of TᵀMT.
+void add_interior_mass(const Blocks& mass, const InteriorShapes& shapes, Eigen::MatrixXd& reduced) {
+  const VectorBlock& psi = shapes.psi;
+  const Eigen::Index nb = psi.cols();
+  const Eigen::Index num_modes = shapes.phi().cols();
   Activity projecting("mass of the constraint modes");
-  VectorBlock inertia_storage(partition.num_interior, std::min(group_width, nb));
+  VectorBlock inertia_storage(psi.rows(), std::min(group_width, nb));
   for_column_groups(nb, [&](Eigen::Index first, Eigen::Index count) {
     throw_if_stopped();
     projecting.report(static_cast<double>(first) / static_cast<double>(nb));
@@ -173,62 +172,99 @@ ReducedBody make_craig_bampton(const BodyMatrices& body, std::span<const int> in
     auto inertia = inertia_storage.leftCols(count);
     inertia.noalias() = mass.ii * psi_group;
     inertia += mass.ib.middleCols(first, count);
-    reduced.mass.block(first, first, num_rest, count) +=
+    reduced.block(first, first, num_rest, count) +=
         psi.rightCols(num_rest).transpose() * inertia +
         mass.ib.rightCols(num_rest).transpose() * psi_group;
-    reduced.mass.block(nb, first, num_modes, count) = phi.transpose() * inertia;
+    reduced.block(nb, first, num_modes, count) = shapes.phi().transpose() * inertia;
   });
+}
+
+/// Rows of T.
+Eigen::MatrixXd rows_of(std::span<const int> dofs, const Partition& partition,
+                        const InteriorShapes& shapes) {
+  const Eigen::Index n = shapes.psi.cols() + shapes.phi().cols();
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(dofs.size()), n);
+  for (std::size_t r = 0; r < dofs.size(); ++r) {
+    if (dofs[r] == BodyMatrices::held) continue;
+    const auto dof = static_cast<std::size_t>(dofs[r]);
+    auto row = rows.row(static_cast<Eigen::Index>(r));
+    if (partition.is_interface[dof]) {
+      row(partition.position[dof]) = 1.0;
+    } else {
+      row << shapes.psi.row(partition.position[dof]), shapes.phi().row(partition.position[dof]);
+    }
+  }
+  return rows;
+}
+
+/// Terms beside mass and stiffness, by all of T.
+void reduce_other_terms(const BodyMatrices& body, const Partition& partition,
+                        const InteriorShapes& shapes, ReducedBody& reduced) {
+  const bool spins = body.spin && body.spin->gyroscopic.size() > 0;
+  if (body.velocity.size() == 0 && body.loss_stiffness.size() == 0 && !spins) return;
+  std::vector<int> all(static_cast<std::size_t>(body.num_dofs()));
+  std::iota(all.begin(), all.end(), 0);
+  const Eigen::MatrixXd T = rows_of(all, partition, shapes);
+  if (body.velocity.size() > 0)
+    reduced.coupled = {T.transpose() * (body.velocity * T), T.transpose() * (body.circulatory * T)};
+  if (body.loss_stiffness.size() > 0)
+    reduced.loss_stiffness = T.transpose() * (body.loss_stiffness * T);
+  if (spins) reduced.spin = reduce_spin(body, T);
+}
+
+/// Tᵀ of BodyMatrices::base_inertia.
+Eigen::VectorXd reduced_base_inertia(const Eigen::VectorXd& whole, const Partition& partition,
+                                     const InteriorShapes& shapes) {
+  const Eigen::Index nb = shapes.psi.cols();
+  const Eigen::Index num_modes = shapes.phi().cols();
+  Eigen::VectorXd interior(partition.num_interior);
+  Eigen::VectorXd reduced(nb + num_modes);
+  for (Eigen::Index dof = 0; dof < whole.size(); ++dof) {
+    const auto d = static_cast<std::size_t>(dof);
+    (partition.is_interface[d] ? reduced : interior)(partition.position[d]) = whole(dof);
+  }
+  // BLAS takes no empty matrix.
+  if (partition.num_interior > 0) {
+    reduced.head(nb) += shapes.psi.transpose() * interior;
+    reduced.tail(num_modes) = shapes.phi().transpose() * interior;
+  }
+  return reduced;
+}
+
+}  // namespace
+
+ReducedBody make_craig_bampton(const BodyMatrices& body, std::span<const int> interface,
+                               Eigen::Index num_modes, std::span<const int> watched) {
+  const auto nb = static_cast<Eigen::Index>(interface.size());
+  const Partition partition = partition_dofs(body.num_dofs(), interface);
+  check_arguments(body, partition, num_modes, watched);
+  const Blocks stiffness = split(body.stiffness, partition, interface);
+  const Blocks mass = split(body.mass, partition, interface);
+  const InteriorShapes shapes = interior_shapes(stiffness, mass.ii, num_modes);
+
+  ReducedBody reduced;
+  reduced.damping = body.damping;
+  reduced.num_interface = nb;
+  const Eigen::Index n = nb + num_modes;
+  reduced.stiffness = Eigen::MatrixXd::Zero(n, n);
+  reduced.stiffness.topLeftCorner(nb, nb) = stiffness.bb;
+  reduced.stiffness.diagonal().tail(num_modes) = shapes.modes.omega_squared;
+  reduced.stiffness.topLeftCorner(nb, nb) += stiffness.ib.transpose() * shapes.psi;
+  correct_softest(stiffness, shapes.psi, reduced.stiffness);
   mirror(reduced.stiffness);
+  reduced.mass = Eigen::MatrixXd::Identity(n, n);
+  reduced.mass.topLeftCorner(nb, nb) = mass.bb;
+  add_interior_mass(mass, shapes, reduced.mass);
   mirror(reduced.mass);
   if (partition.num_interior > 0 && nb > 0) {
     constexpr double eps = std::numeric_limits<double>::epsilon();
     reduced.interface_rounding = 16.0 * std::sqrt(static_cast<double>(body.num_dofs())) * eps *
                                  stiffness.bb.diagonal().maxCoeff();
   }
-
-  // Rows of T.
-  const auto rows_of = [&](std::span<const int> dofs) {
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(dofs.size()), n);
-    for (std::size_t r = 0; r < dofs.size(); ++r) {
-      if (dofs[r] == BodyMatrices::held) continue;
-      const auto dof = static_cast<std::size_t>(dofs[r]);
-      auto row = rows.row(static_cast<Eigen::Index>(r));
-      if (partition.is_interface[dof]) {
-        row(partition.position[dof]) = 1.0;
-      } else {
-        row << psi.row(partition.position[dof]), phi.row(partition.position[dof]);
-      }
-    }
-    return rows;
-  };
-  reduced.rows = rows_of(watched);
-  const bool spins = body.spin && body.spin->gyroscopic.size() > 0;
-  if (body.velocity.size() > 0 || body.loss_stiffness.size() > 0 || spins) {
-    std::vector<int> all(static_cast<std::size_t>(body.num_dofs()));
-    std::iota(all.begin(), all.end(), 0);
-    const Eigen::MatrixXd T = rows_of(all);
-    if (body.velocity.size() > 0)
-      reduced.coupled = {T.transpose() * (body.velocity * T),
-                         T.transpose() * (body.circulatory * T)};
-    if (body.loss_stiffness.size() > 0)
-      reduced.loss_stiffness = T.transpose() * (body.loss_stiffness * T);
-    if (spins) reduced.spin = reduce_spin(body, T);
-  }
-
-  if (body.base_inertia.size() > 0) {
-    Eigen::VectorXd interior(partition.num_interior);
-    reduced.base_inertia.resize(n);
-    for (Eigen::Index dof = 0; dof < body.num_dofs(); ++dof) {
-      const auto d = static_cast<std::size_t>(dof);
-      (partition.is_interface[d] ? reduced.base_inertia : interior)(partition.position[d]) =
-          body.base_inertia(dof);
-    }
-    // BLAS takes no empty matrix.
-    if (partition.num_interior > 0) {
-      reduced.base_inertia.head(nb) += psi.transpose() * interior;
-      reduced.base_inertia.tail(num_modes) = phi.transpose() * interior;
-    }
-  }
+  reduced.rows = rows_of(watched, partition, shapes);
+  reduce_other_terms(body, partition, shapes, reduced);
+  if (body.base_inertia.size() > 0)
+    reduced.base_inertia = reduced_base_inertia(body.base_inertia, partition, shapes);
   return reduced;
 }
 

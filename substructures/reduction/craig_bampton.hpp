@@ -20,7 +20,10 @@ struct ReducedBody {
   Eigen::MatrixXd rows;
   /// Tᵀ M r of BodyMatrices::base_inertia; empty where the body does not follow the drive.
   Eigen::VectorXd base_inertia;
-  Eigen::Index num_interface = 0;  ///< leading coordinates that are interface DoFs
+  Eigen::Index num_interface = 0;  ///< leading coordinates that are of the interface
+  /// X of with_interface_modes(), a row for each DoF of the interface; empty where these DoFs are the
+  /// leading coordinates.
+  Eigen::MatrixXd interface_modes;
   /// Rounding of the entries of `stiffness` between interface DoFs, N/m: what is left of entries of
   /// the full stiffness that cancel in the motion of a soft or free body. 0 where nothing cancels.
   double interface_rounding = 0.0;

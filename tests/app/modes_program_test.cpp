@@ -140,7 +140,8 @@ TEST(ModesProgram, ThePageRunsFromTheFirstLineToTheLast) {
     words >> word;
     while (words >> word) {
       if (word.starts_with("scenes/")) word = (root / word).string();
-      if (word.find('.') != std::string::npos && !word.starts_with("-") && arguments.back() == "-o")
+      const bool is_made = !arguments.empty() && (arguments.back() == "-o" || arguments.back() == "--figure");
+      if (word.find('.') != std::string::npos && !word.starts_with("-") && is_made)
         word = (folder / word).string();
       if (fs::exists(folder / word)) word = (folder / word).string();
       arguments.push_back(word);

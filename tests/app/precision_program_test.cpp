@@ -202,6 +202,55 @@ TEST(PrecisionProgram, RejectsBadInput) {
               HasSubstr("no motion of a point among the channels"));
 }
 
+TEST(PrecisionProgram, ComparesReducedBodiesWithFullOnesWithoutARun) {
+  const TemporaryFolder folder;
+  const std::string of_frozen = scene_path("examples/frozen_growth.yaml");
+  const std::vector<std::string> asked{"precision", of_frozen,       "--reduction", "--frequencies",
+                                       "3kHz,1kHz", "-o", folder.path().string()};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), asked.begin(), asked.end());
+    return Program(more).run();
+  };
+  const ProgramResult result = with({"--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json object = Json::parse(result.out);
+  ASSERT_EQ(object["reduction"].size(), 2u);
+  for (const Json& body : object["reduction"]) {
+    EXPECT_EQ(body["frequencies"], Json::array({1000.0, 3000.0}));
+    EXPECT_GT(body["unknowns"].get<int>(), body["interface"].get<int>() + body["modes"].get<int>());
+    ASSERT_EQ(body["errors"].size(), 2u);
+    EXPECT_GT(body["errors"][0].get<double>(), 0.0);
+    EXPECT_LT(body["errors"][0].get<double>(), 1e-2);
+  }
+  EXPECT_EQ(Json::parse(contents_of(folder / "precision.json")), object);
+  EXPECT_EQ(with({}).exit_code, 4);  // is there already
+  const ProgramResult text = with({"--force"});
+  EXPECT_THAT(text.out, HasSubstr("cantilever: "));
+  EXPECT_THAT(text.out, HasSubstr("1000 Hz"));
+  // One mode fewer of each body answers less well.
+  const Json fewer = Json::parse(
+      with({"--force", "--json", "--set", "substructures.cantilever.reduction.fixed_interface_modes=1"})
+          .out);
+  EXPECT_GT(fewer["reduction"][0]["errors"][1].get<double>(),
+            object["reduction"][0]["errors"][1].get<double>());
+  // So does an interface that moves in a few modes.
+  const std::string few_modes = "substructures.cantilever.interface.modes=30";
+  const Json coarse = Json::parse(with({"--force", "--json", "--set", few_modes}).out);
+  EXPECT_EQ(coarse["reduction"][0]["interface_modes"], 30);
+  EXPECT_EQ(coarse["reduction"][1]["interface_modes"], nullptr);
+  EXPECT_GT(coarse["reduction"][0]["errors"][0].get<double>(),
+            object["reduction"][0]["errors"][0].get<double>());
+  EXPECT_LT(coarse["reduction"][0]["errors"][0].get<double>(), 0.2);
+  const ProgramResult too_many = with({"--force", "--set", "substructures.cantilever.interface.modes=999"});
+  EXPECT_EQ(too_many.exit_code, 2);
+  EXPECT_THAT(too_many.err, HasSubstr("999 modes asked of the interface of 'cantilever'"));
+  const ProgramResult whole =
+      Program({"precision", scene_path("examples/mass_on_belt.yaml"), "--reduction"}).run();
+  EXPECT_EQ(whole.exit_code, 0) << whole.err;
+  EXPECT_THAT(whole.out, HasSubstr("no body is reduced"));
+  EXPECT_EQ(Program({"precision", of_frozen, "--reduction", "--frequencies", "-1"}).run().exit_code, 2);
+}
+
 TEST(PrecisionProgram, DoesNotOverwriteUnasked) {
   const TemporaryFolder folder;
   write_file(folder / "precision.json", "mine");

@@ -384,7 +384,7 @@ TEST(BodyTypes, AreNamedInTheirOwnFilesAndWhereTheyAreRegisteredOnly) {
   const std::string list = "substructures/bodies/body_types.cpp";
   const std::vector<OwnedName> types{
       {"BeamParameters",
-       {list, "substructures/bodies/beam.hpp", "substructures/bodies/beam.cpp",
+       {list, "substructures/bodies/beam.hpp", "substructures/bodies/beam.cpp", "substructures/bodies/beam_keys.cpp",
         "substructures/bodies/beam_additions.hpp", "substructures/bodies/beam_additions.cpp"}},
       {"LumpedParameters",
        {list, "substructures/bodies/lumped_body.hpp", "substructures/bodies/lumped_body.cpp"}},

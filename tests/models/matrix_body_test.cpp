@@ -1,5 +1,7 @@
 // Bodies given by their matrices, in contact.
 #include "substructures/bodies/matrix_body.hpp"
+#include "substructures/bodies/whole_body.hpp"
+#include "substructures/reduction/modal_body.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -52,6 +54,25 @@ TEST(MatrixBody, KeepsTheSymmetricStiffnessApartFromWhatCouples) {
   EXPECT_EQ(body.node_dofs[1], (std::array{BodyMatrices::held, 2}));
   EXPECT_EQ(body.surfaces.at("top"), (std::vector{0, 1}));
   EXPECT_FALSE(body.follows_drive());
+}
+
+TEST(MatrixBody, StructuralTermsGiveEveryModeHalfTheirLossFactorOfCriticalDamping) {
+  constexpr double loss = 0.02;
+  TouchedMatrixBodyParameters given = small_body();
+  NamedMatrices matrices = *given.matrices;
+  matrices.damping = matrices.gyroscopic = matrices.circulatory = SparseMatrix(3, 3);
+  matrices.stiffness = sparse(Eigen::Matrix3d{{50, 4, 0}, {4, 60, -7}, {0, -7, 70}});
+  matrices.terms = {matrices.stiffness};
+  given.matrices = std::make_shared<const NamedMatrices>(matrices);
+  given.body.terms = {{MatrixRole::structural, {}, loss}};
+  const BodyMatrices body = make_matrix_body(given);
+  EXPECT_LT((body.loss_stiffness - loss * body.stiffness).norm(), 1e-14);
+  EXPECT_EQ(body.velocity.size(), 0);
+  const std::vector<int> all{0, 1, 2};
+  const ModalBody modal = make_modal(make_whole(body, all));
+  // With a uniform loss factor the damping between modes is diagonal, η ω.
+  Eigen::MatrixXd expected = (loss * modal.omega).asDiagonal();
+  EXPECT_LT((modal.coupled.velocity - expected).norm(), 1e-12 * expected.norm());
 }
 
 TEST(MatrixBody, FollowsTheDriveWithTheInertiaOfItsTranslation) {
