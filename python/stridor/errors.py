@@ -1,0 +1,90 @@
+"""What a verb of the program fails with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing that is wrong, and where.
+
+    Attributes
+    ----------
+    message : str
+    file : str
+        A file, or the setting that it came from ("--set key=value"); "" where it has no place.
+    line, column : int
+        From 1; 0 where there is none.
+    key : str
+        The key of the scene, "contact.friction.coefficient".
+    """
+
+    message: str
+    file: str = ""
+    line: int = 0
+    column: int = 0
+    key: str = ""
+
+    def __str__(self) -> str:
+        place = ":".join(str(part) for part in (self.file, self.line, self.column) if part)
+        named = f"{self.key}: {self.message}" if self.key else self.message
+        return f"{place}: {named}" if place else named
+
+
+class Error(Exception):
+    """Any failure of the program.
+
+    Attributes
+    ----------
+    problems : list of Problem
+    exit_code : int
+    """
+
+    exit_code = 1
+
+    def __init__(self, problems: list[Problem]):
+        super().__init__("\n".join(str(problem) for problem in problems))
+        self.problems = problems
+
+
+class ConfigError(Error):
+    """The scene or an argument is wrong: every problem with its place."""
+
+    exit_code = 2
+
+
+class NumericalError(Error):
+    """The numbers failed: singular, diverged, persistent sliding lost."""
+
+    exit_code = 3
+
+
+class FileError(Error):
+    """A file is missing, damaged, full or may not be overwritten."""
+
+    exit_code = 4
+
+
+class Stopped(Error):
+    """Stopped on request.
+
+    Attributes
+    ----------
+    file : str or None
+        The run file, where the run can be resumed: ``stridor.run(resume=error.file)``.
+    """
+
+    exit_code = 5
+
+    def __init__(self, problems: list[Problem], file: str | None = None):
+        super().__init__(problems)
+        self.file = file
+
+
+_BY_EXIT_CODE = {kind.exit_code: kind for kind in (ConfigError, NumericalError, FileError, Stopped)}
+
+
+def of_exit_code(code: int, problems: list[Problem]) -> Error:
+    """The error of an exit code of the program."""
+    return _BY_EXIT_CODE.get(code, Error)(problems)

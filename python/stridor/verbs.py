@@ -1,0 +1,230 @@
+"""The verbs of the program. Keyword arguments are named as the options of the command line; where a name
+is a word of Python, an underscore follows: ``from_``."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Mapping
+
+import numpy as np
+
+from . import errors, files, invocation
+from .scene import Place, Scene, as_scene
+
+Settings = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Eigenvalues:
+    """What `eig` finds.
+
+    Attributes
+    ----------
+    values : complex array
+        s, 1/s: the real part is a growth rate, the imaginary part a circular frequency.
+    stable : bool
+        Whether none grows within `window`.
+    window : tuple of float
+        Frequencies for which that holds, Hz.
+    equilibrium : dict
+        Contact forces, positions and displacements.
+    raw : dict
+        The whole JSON object, with `explanation` where it was asked for.
+    """
+
+    values: np.ndarray
+    stable: bool
+    window: tuple[float, float]
+    equilibrium: dict[str, Any]
+    raw: dict[str, Any]
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        """Hz."""
+        return self.values.imag / (2.0 * np.pi)
+
+    @property
+    def growth(self) -> np.ndarray:
+        """1/s."""
+        return self.values.real
+
+
+def call(verb: str, scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> dict[str, Any]:  # noqa: A002
+    """Any verb that takes a scene.
+
+    Returns
+    -------
+    dict
+        The JSON object of the verb.
+
+    Examples
+    --------
+    >>> found = call("threshold", example("elastic_pads"), parameter="parameters.mu", from_=0.1, to=0.5)
+    >>> round(found["roots"][0]["value"], 3)
+    0.263
+    """
+    words = [verb, *as_scene(scene, set).words(), *invocation.arguments_of(options)]
+    return invocation.call(words)
+
+
+def _output(output: Place | None, name: str) -> str:
+    """The file to write; without a name one in a new folder of its own."""
+    return os.fspath(output) if output is not None else str(Path(tempfile.mkdtemp(prefix="stridor-")) / name)
+
+
+def run(scene: Scene | Place | None = None, *, output: Place | None = None, set: Settings | None = None,  # noqa: A002
+        resume: Place | None = None, **options: Any) -> files.Run:
+    """A transient.
+
+    Parameters
+    ----------
+    scene : Scene or path
+        None with `resume`.
+    output : path, optional
+        Run file; default: one in a new folder of its own.
+    set : mapping, optional
+        Keys of the scene that are set anew.
+    resume : path, optional
+        A run file that was interrupted, from which the run goes on.
+    **options
+        ``verify``, ``error``, ``max_wall``, ``force``, ``vtu``: as of ``stridor run``.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    Stopped
+        By Ctrl-C or `max_wall`; its `file` can be resumed.
+    """
+    file = os.fspath(resume) if resume is not None else _output(output, "run.h5")
+    if resume is not None:
+        words = ["run", "--resume", file]
+    else:
+        if scene is None:
+            raise TypeError("run() needs a scene, or `resume`")
+        words = ["run", *as_scene(scene, set).words(), "--output", file]
+    try:
+        invocation.call([*words, *invocation.arguments_of(options)])
+    except errors.Stopped as stopped:
+        raise errors.Stopped(stopped.problems, file) from None
+    opened = files.open(file)
+    assert isinstance(opened, files.Run)
+    return opened
+
+
+def eig(scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> Eigenvalues:  # noqa: A002
+    """The sliding equilibrium and its eigenvalues.
+
+    Parameters
+    ----------
+    **options
+        ``about`` ("undeformed" or "deformed"), ``count``, ``below``, ``at``, ``explain``, ``mode``,
+        ``shapes``: as of ``stridor eig``.
+
+    Examples
+    --------
+    >>> found = eig(example("frozen_growth"), about="deformed", count=10)
+    >>> found.values.shape, found.stable
+    ((10,), False)
+    >>> round(float(found.growth.max()), 1) > 0
+    True
+    """
+    raw = call("eig", scene, set=set, **options)
+    values = np.array([complex(re, im) for re, im in raw["eigenvalues"]])
+    upper = raw["window"][1]
+    return Eigenvalues(values, raw["stable"], (raw["window"][0], np.inf if upper is None else upper),
+                       raw["equilibrium"], raw)
+
+
+def locus(scene: Scene | Place, *, output: Place | None = None, set: Settings | None = None,  # noqa: A002
+          **options: Any) -> files.Locus:
+    """Eigenvalues along a key.
+
+    Parameters
+    ----------
+    output : path, optional
+        File; default: one in a new folder of its own.
+    **options
+        ``parameter``, ``from_``, ``to``, ``points``, ``about``, ``count``, ``below``, ``figure``.
+    """
+    return _written("locus", scene, output, set, options)
+
+
+def map(scene: Scene | Place, *, x: tuple[str, Any, Any, int], y: tuple[str, Any, Any, int],  # noqa: A001
+        output: Place | None = None, set: Settings | None = None, **options: Any) -> files.StabilityMap:  # noqa: A002
+    """Stability over two keys, each (key, first value, last value, number of values).
+
+    Examples
+    --------
+    >>> found = map(example("disc_and_pads"), x=("parameters.mu", 0.2, 0.5, 4),
+    ...             y=("substructures.disc.spin", 5, 10, 2))
+    >>> found.growth.shape
+    (2, 4)
+    """
+    file = _output(output, "map.h5")
+    axes = ["--x", *[str(part) for part in x], "--y", *[str(part) for part in y]]
+    invocation.call(["map", *as_scene(scene, set).words(), *axes, "--output", file,
+                  *invocation.arguments_of(options)])
+    opened = files.open(file)
+    assert isinstance(opened, files.StabilityMap)
+    return opened
+
+
+def frf(scene: Scene | Place, *, output: Place | None = None, set: Settings | None = None,  # noqa: A002
+        motions: Any = None, **options: Any) -> files.FrequencyResponses:
+    """Frequency responses.
+
+    Parameters
+    ----------
+    output : path, optional
+        HDF5 file; default: one in a new folder of its own.
+    motions : str or list of str, optional
+        Motions that are wanted (``--output`` of the command line).
+    **options
+        ``input``, ``from_``, ``to``, ``points``, ``scale``, ``about``, ``figure``, ``compare``, ``node``.
+    """
+    file = _output(output, "frf.h5")
+    words = ["frf", *as_scene(scene, set).words(), "-o", file, *invocation.arguments_of({"output": motions}),
+             *invocation.arguments_of(options)]
+    invocation.call(words)
+    opened = files.open(file)
+    assert isinstance(opened, files.FrequencyResponses)
+    return opened
+
+
+def _written(verb: str, scene: Scene | Place, output: Place | None, set: Settings | None,  # noqa: A002
+             options: Mapping[str, Any]) -> Any:
+    file = _output(output, verb + ".h5")
+    call(verb, scene, set=set, output=file, **options)
+    return files.open(file)
+
+
+def threshold(scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> list[dict[str, Any]]:  # noqa: A002
+    """Every value of a key where the stability changes: ``parameter``, ``from_``, ``to``."""
+    return call("threshold", scene, set=set, **options)["roots"]
+
+
+def cycle(scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> dict[str, Any]:  # noqa: A002
+    """A periodic motion and its multipliers."""
+    return call("cycle", scene, set=set, **options)
+
+
+def sweep(scene: Scene | Place, *, output: Place | None = None, set: Settings | None = None,  # noqa: A002
+          **options: Any) -> files.ResultFile:
+    """Transients or cycles along a key: ``parameter``, ``from_``, ``to``, ``points``, ``threads``."""
+    return _written("sweep", scene, output, set, options)
+
+
+def compare(scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> list[dict[str, Any]]:  # noqa: A002
+    """The four contact assumptions on the same work, a row each."""
+    return call("compare", scene, set=set, **options)["rows"]
+
+
+def precision(scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> dict[str, Any]:  # noqa: A002
+    """Error against run time; with ``reduction=True`` that of the reduced bodies alone."""
+    return call("precision", scene, set=set, **options)
