@@ -60,40 +60,50 @@ Json modes_json(const System& system, double highest) {
   return bodies;
 }
 
-/// Computations omitted from every step, and the cost avoided by truncated modes and omitted rows.
-/// @param highest frequency of a retained mode, rad/s
-Json left_out_json(const System& system, double highest, bool has_ledger) {
-  // Rows of the bodies that contacts follow at a time, and all on which they might be.
-  std::vector<Eigen::Index> followed(system.bodies.size(), 0);
-  std::vector<Eigen::Index> touchable(system.bodies.size(), 0);
+/// What the contacts of a system follow, and what none of them needs.
+struct ContactWork {
+  /// Rows of the bodies that contacts follow at a time, and all on which they might be.
+  std::vector<Eigen::Index> followed, touchable;
   bool has_friction = false;
   bool slides_only = true;
   bool has_fixed_normal = true;
+};
+
+ContactWork contact_work(const System& system) {
+  ContactWork work;
+  work.followed.assign(system.bodies.size(), 0);
+  work.touchable.assign(system.bodies.size(), 0);
   for (const ContactPoint& contact : system.contacts) {
+    const auto slave = static_cast<std::size_t>(contact.slave_body);
+    const auto master = static_cast<std::size_t>(system.master_of(contact));
     if (contact.face || contact.space) {
       const auto num_slave = static_cast<Eigen::Index>(contact.num_slave_ports());
       const auto on_face = static_cast<Eigen::Index>(system.num_master_ports(contact));
-      const auto master = static_cast<std::size_t>(system.master_of(contact));
-      followed[static_cast<std::size_t>(contact.slave_body)] += num_slave;
-      touchable[static_cast<std::size_t>(contact.slave_body)] += num_slave;
-      followed[master] += on_face;
-      touchable[master] += on_face;
-      has_friction |= !contact.friction.is_frictionless();
-      slides_only = has_fixed_normal = false;
+      work.followed[slave] += num_slave;
+      work.touchable[slave] += num_slave;
+      work.followed[master] += on_face;
+      work.touchable[master] += on_face;
+      work.has_friction |= !contact.friction.is_frictionless();
+      work.slides_only = work.has_fixed_normal = false;
       continue;
     }
     const MasterSurface& surface = system.surface_of(contact);
-    const auto slave = static_cast<std::size_t>(contact.slave_body);
-    const auto master = static_cast<std::size_t>(surface.body);
-    followed[slave] += 2;
-    touchable[slave] += 2;
-    followed[master] += 2 * surface.stencil_size();
-    touchable[master] += 2 * static_cast<Eigen::Index>(surface.positions.size());
-    has_friction |= contact.substrate || !contact.friction.is_frictionless();
-    slides_only &= contact.unilateral_from() == std::numeric_limits<double>::infinity();
-    has_fixed_normal &= contact.assumption == ContactAssumption::subs_a ||
-                        contact.assumption == ContactAssumption::subs_c;
+    work.followed[slave] += 2;
+    work.touchable[slave] += 2;
+    work.followed[master] += 2 * surface.stencil_size();
+    work.touchable[master] += 2 * static_cast<Eigen::Index>(surface.positions.size());
+    work.has_friction |= contact.substrate || !contact.friction.is_frictionless();
+    work.slides_only &= contact.unilateral_from() == std::numeric_limits<double>::infinity();
+    work.has_fixed_normal &= contact.assumption == ContactAssumption::subs_a ||
+                             contact.assumption == ContactAssumption::subs_c;
   }
+  return work;
+}
+
+/// Computations omitted from every step, and the cost avoided by truncated modes and omitted rows.
+/// @param highest frequency of a retained mode, rad/s
+Json left_out_json(const System& system, double highest, bool has_ledger) {
+  const ContactWork work = contact_work(system);
   Eigen::Index moving = 0, modes = 0, rows = 0, all_rows = 0, done = 0, all = 0;
   double damping_until = 0.0;
   for (std::size_t b = 0; b < system.bodies.size(); ++b) {
@@ -102,18 +112,18 @@ Json left_out_json(const System& system, double highest, bool has_ledger) {
     moving += of_body;
     modes += modal.size();
     if (modal.size() > 0) {
-      rows += followed[b];
-      all_rows += touchable[b];
+      rows += work.followed[b];
+      all_rows += work.touchable[b];
     }
     // Correct and predict a mode: 4, and a force and a displacement at every row.
-    done += of_body * (4 + 2 * followed[b]);
-    all += modal.size() * (4 + 2 * touchable[b]);
+    done += of_body * (4 + 2 * work.followed[b]);
+    all += modal.size() * (4 + 2 * work.touchable[b]);
     damping_until = std::max(damping_until, modal.damping.constant_from());
   }
   Json rest = Json::array();
-  if (slides_only) rest.push_back("stick, slip and lift-off");
-  if (!has_friction) rest.push_back("friction");
-  if (has_fixed_normal) rest.push_back("rotation of the normal");
+  if (work.slides_only) rest.push_back("stick, slip and lift-off");
+  if (!work.has_friction) rest.push_back("friction");
+  if (work.has_fixed_normal) rest.push_back("rotation of the normal");
   if (!has_ledger) rest.push_back("energy ledger");
   const auto push_changes = [&](const char* of, double until) {
     rest.push_back(until > 0.0 ? fmt::format("changes of {} from {:.4g} s on", of, until)

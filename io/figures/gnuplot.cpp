@@ -114,11 +114,11 @@ bool has_fonts(const std::vector<fs::path>& folders) {
   return false;
 }
 
-void draw_figure(const fs::path& figure, const std::string& script, FigureSize size) {
-  check_figure_name(figure);
-  if (!(size.width > 0.0 && size.height > 0.0 && size.font_size > 0.0)) {
-    throw std::invalid_argument("draw_figure: the size must be positive");
-  }
+namespace {
+
+/// Whether a figure can be drawn where it is to stand.
+/// @throws FileError with the reason
+void check_place(const fs::path& figure) {
   const std::string ending = figure.extension().string();
   // Without fonts gnuplot draws figures without any text and reports success.
   if (ending != ".svg" && std::getenv("FONTCONFIG_FILE") == nullptr && !has_fonts(font_folders())) {
@@ -138,7 +138,37 @@ void draw_figure(const fs::path& figure, const std::string& script, FigureSize s
         figure.string(), "",
         fmt::format("cannot write in the folder '{}': {}", folder.string(), std::strerror(errno)));
   }
+}
 
+/// @throws FileError if gnuplot could not be started, or did not do what it was told
+void check_outcome(const HelperOutcome& outcome, const fs::path& messages_path,
+                   const std::string& figure) {
+  if (outcome.spawn_error == ENOENT)
+    throw FileError(figure, "", fmt::format("gnuplot is not installed; {}", packages));
+  if (outcome.spawn_error != 0) {
+    throw FileError(figure, "",
+                    fmt::format("cannot start gnuplot: {}", std::strerror(outcome.spawn_error)));
+  }
+  const std::string messages = read_messages(messages_path);
+  if (WIFSIGNALED(outcome.status)) {
+    throw FileError(figure, "",
+                    fmt::format("gnuplot was ended by signal {}", WTERMSIG(outcome.status)));
+  }
+  if (WEXITSTATUS(outcome.status) != 0 || !messages.empty()) {
+    throw FileError(
+        figure, "",
+        fmt::format("gnuplot failed: {}", messages.empty() ? "no reason given" : messages));
+  }
+}
+
+}  // namespace
+
+void draw_figure(const fs::path& figure, const std::string& script, FigureSize size) {
+  check_figure_name(figure);
+  if (!(size.width > 0.0 && size.height > 0.0 && size.font_size > 0.0)) {
+    throw std::invalid_argument("draw_figure: the size must be positive");
+  }
+  check_place(figure);
   const Activity drawing("drawing " + figure.filename().string());
   const ScratchFolder scratch("figure", {"script.gp", "messages"}, figure.string());
   PartFile part(figure.string());
@@ -147,7 +177,8 @@ void draw_figure(const fs::path& figure, const std::string& script, FigureSize s
   {
     std::ofstream file(script_path, std::ios::binary);
     file << "set encoding utf8\n"
-         << terminal(ending, size) << "set output " << gnuplot_string(part.path()) << '\n'
+         << terminal(figure.extension().string(), size) << "set output "
+         << gnuplot_string(part.path()) << '\n'
          << script << "\nset output\n";
     file.close();
     if (!file)
@@ -155,25 +186,9 @@ void draw_figure(const fs::path& figure, const std::string& script, FigureSize s
   }
   const fs::path messages_path = scratch / "messages";
   // -d: no start-up files.
-  const HelperOutcome outcome =
-      run_helper({"gnuplot", "-d", script_path.string()}, "", messages_path.string());
-  if (outcome.spawn_error == ENOENT) {
-    throw FileError(figure.string(), "", fmt::format("gnuplot is not installed; {}", packages));
-  }
-  if (outcome.spawn_error != 0) {
-    throw FileError(figure.string(), "",
-                    fmt::format("cannot start gnuplot: {}", std::strerror(outcome.spawn_error)));
-  }
-  const std::string messages = read_messages(messages_path);
-  if (WIFSIGNALED(outcome.status)) {
-    throw FileError(figure.string(), "",
-                    fmt::format("gnuplot was ended by signal {}", WTERMSIG(outcome.status)));
-  }
-  if (WEXITSTATUS(outcome.status) != 0 || !messages.empty()) {
-    throw FileError(
-        figure.string(), "",
-        fmt::format("gnuplot failed: {}", messages.empty() ? "no reason given" : messages));
-  }
+  check_outcome(run_helper({"gnuplot", "-d", script_path.string()}, "", messages_path.string()),
+                messages_path, figure.string());
+  std::error_code error;
   const auto drawn = fs::file_size(part.path(), error);
   if (error || drawn == 0) throw FileError(figure.string(), "", "gnuplot wrote no picture");
   part.replace();

@@ -188,6 +188,20 @@ void add_polygon(FigureScript& script, int number, const Polygon& polygon, const
              border, hex(colour_of(polygon.surface), polygon.light));
 }
 
+/// Named edges of a planar mesh.
+void add_lines(FigureScript& script, const MeshPicture& picture, const Layout& layout) {
+  for (const auto& [surface, points] : picture.lines()) {
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+      const Eigen::Vector2d from = layout(points[i]);
+      const Eigen::Vector2d to = layout(points[i + 1]);
+      script.add("set arrow from screen {:.5f},{:.5f} to screen {:.5f},{:.5f} nohead front linewidth "
+                 "3 linecolor rgb '{}'",
+                 script.across(from.x()), script.up(from.y()), script.across(to.x()),
+                 script.up(to.y()), hex(colour_of(surface), 1.0));
+    }
+  }
+}
+
 void add_legend(FigureScript& script, int& number, const std::vector<std::string>& names,
                 double left, double top) {
   const double line = line_height(caption_font);
@@ -264,16 +278,7 @@ void plot_mesh(const Mesh& mesh, const std::string& caption, const std::filesyst
                                 hex(colour_of(polygon.surface), polygon.light));
     add_polygon(script, number++, polygon, layout, border);
   }
-  for (const auto& [surface, points] : picture.lines()) {
-    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-      const Eigen::Vector2d from = layout(points[i]);
-      const Eigen::Vector2d to = layout(points[i + 1]);
-      script.add("set arrow from screen {:.5f},{:.5f} to screen {:.5f},{:.5f} nohead front linewidth "
-                 "3 linecolor rgb '{}'",
-                 script.across(from.x()), script.up(from.y()), script.across(to.x()),
-                 script.up(to.y()), hex(colour_of(surface), 1.0));
-    }
-  }
+  add_lines(script, picture, layout);
   add_legend(script, number, picture.names(), size.width - legend_width, size.height - 0.7);
   add_triad(script, picture, 0.0, below + 0.2);
   script.add_caption(lines, 0.5, below);

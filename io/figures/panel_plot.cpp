@@ -167,6 +167,32 @@ std::string panel_plots(const DiagramPanel& panel, std::size_t number) {
   return plots;
 }
 
+/// Writes a field and its curve, both mirrored, as gnuplot reads them. @return the data of the curve
+std::string add_field_data(FigureScript& script, const FieldPicture& picture) {
+  const std::size_t nx = picture.num_columns;
+  const std::size_t ny = picture.values.size() / nx;
+  std::string data;
+  for (std::size_t row = 0; row < 2 * ny; ++row) {
+    const std::size_t j = row < ny ? ny - 1 - row : row - ny;
+    for (std::size_t i = 0; i < nx; ++i) {
+      const double value = picture.values[j * nx + i];
+      // gnuplot complains of NaN in a matrix.
+      data += std::isfinite(value) ? fmt::format("{:.5g} ", value) : "-1e30 ";
+    }
+    data += '\n';
+  }
+  script.append("$field << END_OF_DATA\n" + data + "END_OF_DATA\n");
+  std::string curve;
+  for (std::size_t i = 0; i < picture.curve_x.size(); ++i)
+    curve += fmt::format("{:.8g} {:.8g}\n", picture.curve_x[i], picture.curve_y[i]);
+  for (std::size_t i = picture.curve_x.size(); i-- > 0;)
+    curve += fmt::format("{:.8g} {:.8g}\n", picture.curve_x[i], -picture.curve_y[i]);
+  if (!picture.curve_x.empty())
+    curve += fmt::format("{:.8g} {:.8g}\n", picture.curve_x[0], picture.curve_y[0]);
+  script.append("$curve << END_OF_DATA\n" + curve + "END_OF_DATA\n");
+  return curve;
+}
+
 }  // namespace
 
 void plot_panels(const std::vector<DiagramPanel>& panels, const std::string& caption,
@@ -231,25 +257,7 @@ void plot_field(const FieldPicture& picture, const std::string& caption,
   size.height = bottom + plane_height + 0.6;
 
   FigureScript script(size);
-  std::string data;
-  for (std::size_t row = 0; row < 2 * ny; ++row) {
-    const std::size_t j = row < ny ? ny - 1 - row : row - ny;
-    for (std::size_t i = 0; i < nx; ++i) {
-      const double value = picture.values[j * nx + i];
-      // gnuplot complains of NaN in a matrix.
-      data += std::isfinite(value) ? fmt::format("{:.5g} ", value) : "-1e30 ";
-    }
-    data += '\n';
-  }
-  script.append("$field << END_OF_DATA\n" + data + "END_OF_DATA\n");
-  std::string curve;
-  for (std::size_t i = 0; i < picture.curve_x.size(); ++i)
-    curve += fmt::format("{:.8g} {:.8g}\n", picture.curve_x[i], picture.curve_y[i]);
-  for (std::size_t i = picture.curve_x.size(); i-- > 0;)
-    curve += fmt::format("{:.8g} {:.8g}\n", picture.curve_x[i], -picture.curve_y[i]);
-  if (!picture.curve_x.empty())
-    curve += fmt::format("{:.8g} {:.8g}\n", picture.curve_x[0], picture.curve_y[0]);
-  script.append("$curve << END_OF_DATA\n" + curve + "END_OF_DATA\n");
+  const std::string curve = add_field_data(script, picture);
   script.set_margins(left, left + plane_width, bottom, bottom + plane_height);
   add_caption(script, lines);
   script.add("set minussign\nset border linecolor '#404040'\nset tics out nomirror scale 0.6");

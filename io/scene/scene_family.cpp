@@ -7,73 +7,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/suggestion.hpp"
-#include "core/units.hpp"
 #include "io/scene/assignment.hpp"
 #include "io/scene/body_reader.hpp"
 #include "io/scene/channels.hpp"
 #include "io/scene/scene_reader.hpp"
-#include "io/scene/scene_words.hpp"
 #include "solvers/equilibrium/equilibrium.hpp"
 
 namespace stridor {
 namespace {
-
-std::vector<std::string> key_names(const Schema& schema) {
-  std::vector<std::string> names;
-  for (const Key& key : schema.keys) names.push_back(key.name);
-  return names;
-}
-
-[[noreturn]] void fail_unknown(const std::string& option, const std::string& path,
-                               const std::string& part, const std::string& below,
-                               const std::vector<std::string>& known) {
-  std::string advice = did_you_mean(part, known);
-  if (advice.empty()) advice = fmt::format("; known there: {}", fmt::join(known, ", "));
-  throw ConfigError(option, fmt::format("'{}': there is no key '{}'{}{}", path, part,
-                                        below.empty() ? "" : " in '" + below + "'", advice));
-}
-
-/// An entry of named sections and what it holds.
-struct NamedEntry {
-  std::string name;
-  std::size_t alternative = 0;
-  const void* object = nullptr;
-};
-
-/// The parameters of a scene.
-NamedNumbers parameters_of(const Schema& schema, const void* object) {
-  for (const Key& key : schema.keys)
-    if (key.kind == KeyKind::parameters) return std::get<NamedNumbers>(key.read(object));
-  return {};
-}
-
-NumericKey parameter_key(const NamedNumbers& numbers, const std::string& path,
-                         const std::string& option) {
-  const std::size_t dot = std::min(path.find('.'), path.size());
-  const std::string name = path.substr(std::min(dot + 1, path.size()));
-  std::vector<std::string> names;
-  for (const NamedNumber& number : numbers) {
-    names.push_back(number.name);
-    if (number.name != name) continue;
-    if (!number.is_used) {
-      throw ConfigError(option, fmt::format("no expression of the scene uses '{}', so varying it "
-                                            "changes nothing",
-                                            path));
-    }
-    return {path, number.unit, Range::any()};
-  }
-  fail_unknown(option, path, name, path.substr(0, dot), names);
-}
-
-std::vector<NamedEntry> entries_of(const Key& key, const void* object) {
-  std::vector<NamedEntry> entries;
-  if (object == nullptr) return entries;
-  key.visit(object, [&](const std::string& name, std::size_t alternative, const void* entry) {
-    entries.push_back({name, alternative, entry});
-  });
-  return entries;
-}
 
 bool is_straight_along_drive(const MasterSurface& surface) {
   constexpr double negligible = 1e-12;
@@ -120,145 +61,6 @@ void keep_contents(const LoadedScene& changed, const ModelParameters& from, Mode
 }
 
 }  // namespace
-
-bool is_parameter(const NumericKey& key) {
-  return key.path.starts_with("parameters.");
-}
-
-NumericKey find_numeric_key(const Scene& scene, const std::string& path,
-                            const std::string& option) {
-  return find_numeric_key(Scene::schema(), &scene, path, option);
-}
-
-NumericKey find_numeric_key(const Schema& keys, const void* object, const std::string& path,
-                            const std::string& option) {
-  const Schema* schema = &keys;
-  std::string walked;
-  for (std::size_t begin = 0; begin <= path.size();) {
-    const std::size_t end = std::min(path.find('.', begin), path.size());
-    const std::string part = path.substr(begin, end - begin);
-    const Key* key = schema->find(part);
-    if (key == nullptr) {
-      if (schema == &keys) {
-        for (const NamedNumber& number : parameters_of(keys, object)) {
-          if (number.name != part) continue;
-          throw ConfigError(option, fmt::format("'{0}' is a parameter of the scene; write "
-                                                "'parameters.{0}'",
-                                                part));
-        }
-      }
-      fail_unknown(option, path, part, walked, key_names(*schema));
-    }
-    walked = join_path(walked, part);
-    begin = end + 1;
-    const bool is_last = end == path.size();
-    switch (key->kind) {
-      case KeyKind::section: {
-        if (is_last) {
-          if (const Key* number = number_in_place_of(*key))
-            return {path, number->unit, number->range, false};
-          throw ConfigError(option,
-                            fmt::format("'{}' is a section; name one of its numbers ({})", path,
-                                        fmt::join(key_names(key->alternatives[0].schema()), ", ")));
-        }
-        const auto entries = entries_of(*key, object);
-        object = entries.empty() ? nullptr : entries.front().object;
-        schema = &key->alternatives[0].schema();
-        break;
-      }
-      case KeyKind::named_sections: {
-        const auto entries = entries_of(*key, object);
-        std::vector<std::string> names;
-        names.reserve(entries.size());
-        for (const NamedEntry& entry : entries) names.push_back(entry.name);
-        const std::size_t stop =
-            std::min(path.find('.', std::min(begin, path.size())), path.size());
-        const std::string name = is_last ? "" : path.substr(begin, stop - begin);
-        const auto found = std::find(names.begin(), names.end(), name);
-        if (found == names.end()) fail_unknown(option, path, name, walked, names);
-        const NamedEntry& entry = entries[static_cast<std::size_t>(found - names.begin())];
-        schema = &key->alternatives[entry.alternative].schema();
-        object = entry.object;
-        walked = join_path(walked, name);
-        begin = stop + 1;
-        if (stop == path.size()) {
-          throw ConfigError(option, fmt::format("'{}' is a section; name one of its numbers ({})",
-                                                path, fmt::join(key_names(*schema), ", ")));
-        }
-        break;
-      }
-      case KeyKind::parameters:
-        return parameter_key(std::get<NamedNumbers>(key->read(object)), path, option);
-      case KeyKind::integer:
-      case KeyKind::real:
-      case KeyKind::curve:
-        if (!is_last) fail_unknown(option, path, path.substr(begin), walked, {});
-        return {path, key->unit, key->range, key->kind == KeyKind::integer};
-      case KeyKind::flag:
-      case KeyKind::text:
-      case KeyKind::choice:
-      case KeyKind::real_list:
-      case KeyKind::text_list:
-      case KeyKind::section_list:
-        throw ConfigError(option, fmt::format("'{}' is no number that could be varied, but {}",
-                                              walked, expected_of(*key)));
-    }
-  }
-  throw ConfigError(option, fmt::format("'{}' is not a key path", path));
-}
-
-double parse_value(const NumericKey& key, const std::string& text, const std::string& option) {
-  double value = 0.0;
-  try {
-    value = parse_quantity(text, key.unit);
-  } catch (const std::invalid_argument& error) {
-    throw ConfigError(option, fmt::format("{} ({})", error.what(), key.path));
-  }
-  if (key.is_integer && value != std::round(value)) {
-    throw ConfigError(option, fmt::format("'{}' must be a whole number, as {} is", text, key.path));
-  }
-  if (!key.range.contains(value)) {
-    throw ConfigError(option, fmt::format("{} must be {}{}{}, got '{}'", key.path, key.range.text(),
-                                          key.unit.empty() ? "" : " ", key.unit, text));
-  }
-  return value;
-}
-
-std::vector<double> spaced_values(const NumericKey& key, double from, double to, int count,
-                                  Spacing spacing) {
-  if (count < 1) throw ConfigError("--points", fmt::format("must be at least 1, got {}", count));
-  if (from == to) return {from};
-  if (count < 2) {
-    throw ConfigError("--points", fmt::format("1 point is enough only where both ends of the range "
-                                              "of {} are the same",
-                                              key.path));
-  }
-  if (spacing == Spacing::logarithmic && !(from > 0.0 && to > 0.0)) {
-    throw ConfigError("--scale", fmt::format("a logarithmic scale needs positive values of {}, got "
-                                             "{:g} to {:g}",
-                                             key.path, from, to));
-  }
-  std::vector<double> values;
-  for (int i = 0; i < count; ++i) {
-    const double share = static_cast<double>(i) / (count - 1);
-    double value = spacing == Spacing::linear ? (1.0 - share) * from + share * to
-                                              : from * std::pow(to / from, share);
-    if (i == 0) value = from;
-    if (i == count - 1) value = to;
-    // 0.6·1 + 0.4·6 is not 3 to the last bit.
-    constexpr double rounding = 1e-12;
-    if (key.is_integer && std::abs(value - std::round(value)) <= rounding * std::abs(value))
-      value = std::round(value);
-    if (key.is_integer && value != std::round(value)) {
-      throw ConfigError("--points",
-                        fmt::format("{} points from {:g} to {:g} are not whole numbers, as {} is; "
-                                    "{:g} points would be",
-                                    count, from, to, key.path, std::abs(to - from) + 1.0));
-    }
-    values.push_back(value);
-  }
-  return values;
-}
 
 std::optional<std::string> start_key(const ModelParameters& model) {
   const auto pairs = model.pairs();
