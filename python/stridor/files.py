@@ -112,9 +112,10 @@ class ResultFile:
         """The command line that made it."""
         return self.attributes.get("command", "")
 
-    def __getitem__(self, name: str) -> Series:
-        """A dataset by its path, "/eigenvalues/growth"."""
-        return Series(name, self._file[name])
+    def __getitem__(self, name: str) -> Any:
+        """A dataset by its path, "/eigenvalues/growth": a `Series`, or a text or number alone."""
+        dataset = self._file[name]
+        return Series(name, dataset) if dataset.shape else _plain(dataset[()])
 
     def datasets(self) -> list[str]:
         """Paths of all datasets."""

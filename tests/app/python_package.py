@@ -4,6 +4,7 @@ import doctest
 import importlib
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -81,6 +82,66 @@ class Interrupt(unittest.TestCase):
                 time_of_rows = np.asarray(half.time)
                 self.assertGreater(len(time_of_rows), 0)
                 self.assertTrue(np.all(np.diff(time_of_rows) > 0.0))
+
+
+class Files(unittest.TestCase):
+    """Every dataset of every kind of file, with its unit, is in docs/files.md."""
+
+    @staticmethod
+    def rows_of_page():
+        page = pathlib.Path(__file__).parents[2] / "docs" / "files.md"
+        rows = []
+        for line in page.read_text().splitlines():
+            cells = [cell.strip() for cell in line.split("|")]
+            if not line.startswith("| `/"):
+                continue
+            path = re.escape(cells[1].strip("`")).replace("\\<", "<").replace("\\>", ">")
+            rows.append((re.compile(re.sub("<[a-z]+>", "[^/]+", path)), cells[3]))
+        return rows
+
+    def expect_listed(self, path):
+        rows = self.rows_of_page()
+        self.assertGreater(len(rows), 60)
+        with stridor.open(path) as file:
+            for name in file.datasets():
+                found = file["/" + name]
+                units = found.units if isinstance(found, stridor.Series) else ""
+                listed = [unit for row, unit in rows if row.fullmatch("/" + name)]
+                self.assertTrue(listed, f"/{name} of {path} is not in docs/files.md")
+                fits = any(unit in ("", units) or unit.startswith("of the") for unit in listed)
+                self.assertTrue(fits, f"/{name} of {path} is in {units}, docs/files.md says {listed}")
+
+    def test_every_dataset_of_every_kind_is_on_the_page(self):
+        with tempfile.TemporaryDirectory() as folder:
+            def made(name, *words):
+                file = os.path.join(folder, name)
+                out = "--data" if words[0] == "spectrogram" else "-o"
+                more = ["-o", os.path.join(folder, "a.png")] if words[0] == "spectrogram" else []
+                subprocess.run([stridor.program(), *words, out, file, *more], check=True,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                return file
+
+            example = stridor.example
+            run = made("run.h5", "run", example("frozen_growth"), "--set", "time.end=0.1", "--set",
+                       "record.energy=true", "--set", "measure.from=0.05")
+            files = [
+                run, made("belt.h5", "run", example("mass_on_belt"), "--set", "time.end=1"),
+                made("block.h5", "run", example("sliding_block"), "--set", "time.end=2e-3", "--set", "measure.from=1e-3"),
+                made("sphere.h5", "run", example("viscoelastic_sphere"), "--set", "time.end=0.2"),
+                made("disc.h5", "run", example("disc_squeal"), "--set", "time.end=1e-3"),
+                made("locus.h5", "locus", example("beam_on_beam"), "--from", "30mm", "--to", "98mm", "--points", "3"),
+                made("map.h5", "map", example("disc_and_pads"), "--x", "parameters.mu", "0.2", "0.5", "3", "--y",
+                     "substructures.disc.spin", "5", "10", "2"),
+                made("sweep.h5", "sweep", example("mass_on_belt"), "--parameter", "parameters.mu_d", "--from", "0.1",
+                     "--to", "0.3", "--points", "2", "--set", "time.end=1", "--set", "measure.from=0.5"),
+                made("cycle.h5", "cycle", example("mass_on_belt")),
+                made("frf.h5", "frf", example("reed"), "--input", "reed.middle.y", "--from", "100", "--to", "3000",
+                     "--points", "5"),
+                made("amplitudes.h5", "spectrogram", run, "--channel", "cantilever.free_end.y.displacement"),
+                made("contact.h5", "contact", example("viscoelastic_contact"), "--speed", "0.1", "--indentation", "0.01"),
+            ]
+            for file in files:
+                self.expect_listed(file)
 
 
 class KilledRun(unittest.TestCase):
