@@ -55,9 +55,13 @@ class Arnoldi {
     constexpr double long_enough = 0.01;  // to be orthogonal to 1e-14 after one round
     const double length = state.norm();
     const auto basis = basis_.leftCols(dim_);
+    // OpenBLAS (0.3.21, zgemv for Haswell) reads some numbers behind the end of the vector.
+    constexpr Eigen::Index read_beyond = 16;
+    Eigen::VectorXcd with_room = Eigen::VectorXcd::Zero(dim_ + read_beyond);
+    auto products = with_room.head(dim_);
     for (int round = 0; round < 2; ++round) {
       if (round > 0 && state.norm() > long_enough * length) break;
-      const Eigen::VectorXcd products = basis.adjoint() * state;
+      products.noalias() = basis.adjoint() * state;
       state.noalias() -= basis * products;
       if (inside != nullptr) Eigen::Map<Eigen::VectorXcd>(inside, dim_) += products;
     }
