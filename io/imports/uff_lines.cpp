@@ -64,15 +64,17 @@ void take_binary(const SourceText& source, const UffLine& head, Lines& lines,
   }
   for (std::int64_t i = 0; i < *num_lines && !lines.is_at_end(); ++i)
     dataset.lines.push_back(lines.next());
-  if (*num_bytes > size - static_cast<std::int64_t>(std::min(lines.offset(), source.text.size()))) {
+  // Behind a last line without an end there is nothing.
+  const std::size_t begin = std::min(lines.offset(), source.text.size());
+  if (*num_bytes > size - static_cast<std::int64_t>(begin)) {
     refuse_at(head.place,
               fmt::format("{} bytes of data are announced, the file ends before", *num_bytes));
   }
   const auto size_of_data = static_cast<std::size_t>(*num_bytes);
   constexpr std::int64_t big_endian = 2;
   dataset.data = UffBytes{count(1) == big_endian, count(2).value_or(2),
-                          std::string_view(source.text).substr(lines.offset(), size_of_data)};
-  lines.go_to(lines.offset() + size_of_data);
+                          std::string_view(source.text).substr(begin, size_of_data)};
+  lines.go_to(begin + size_of_data);
 }
 
 }  // namespace

@@ -222,6 +222,11 @@ TEST(UffFunctions, RefusesWithThePlaceAndWhatWasExpected) {
   std::string cut = binary_of(6, true, false, false);
   cut.resize(cut.size() - 20);
   EXPECT_THAT(refusal(cut), HasSubstr("the file ends before"));
+  // The head of binary data ends the file.
+  EXPECT_THAT(refusal("    -1\n   58b     1     2           0          24     0     0           0           0"),
+              HasSubstr("the file ends before"));
+  EXPECT_THAT(refusal("    -1\n   58b     1     2           0           0     0     0           0           0"),
+              HasSubstr("five lines of text"));
   std::string vax = binary_of(6, true, false, false);
   vax.replace(vax.find("     1     2"), 12, "     1     1");
   EXPECT_THAT(refusal(vax), HasSubstr("IEEE 754"));
