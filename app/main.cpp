@@ -124,6 +124,7 @@ int run_verb(int argc, char** argv) {
   add_precision_command(program, action, command);
   add_spectrogram_command(program, action);
   add_sound_command(program, action);
+  add_report_command(program, action, command);
   add_eig_command(program, action);
   add_locus_command(program, action, command);
   add_frf_command(program, action, command);

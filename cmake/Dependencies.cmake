@@ -7,6 +7,7 @@ find_package(muparser REQUIRED)
 find_package(FFTW3 REQUIRED)
 find_package(SuiteSparse REQUIRED COMPONENTS CHOLMOD UMFPACK)
 find_package(UDUNITS2 REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(BLAS REQUIRED)
 find_package(LAPACK REQUIRED)
 

@@ -62,10 +62,11 @@ std::vector<BodyShape> ShapeRecovery::shapes(const std::vector<double>& displace
   return shapes;
 }
 
-std::vector<BodyShape> mode_shape(const Model& model, const Equilibrium& equilibrium,
-                                  const Eigen::VectorXcd& mode, BodyCache& cache) {
+std::vector<BodyShape> ShapeRecovery::mode(const Equilibrium& equilibrium,
+                                           const Eigen::VectorXcd& mode) const {
+  const System& system = model_->system;
   Eigen::Index num_modes = 0;
-  for (const SystemBody& body : model.system.bodies) num_modes += body.modal.size();
+  for (const SystemBody& body : system.bodies) num_modes += body.modal.size();
   if (mode.size() != num_modes) {
     throw std::invalid_argument(fmt::format(
         "mode_shape: the mode has {} entries, the bodies have {} modes", mode.size(), num_modes));
@@ -75,18 +76,23 @@ std::vector<BodyShape> mode_shape(const Model& model, const Equilibrium& equilib
   std::vector<Eigen::VectorXcd> moving;
   Eigen::Index first = 0;
   const bool is_deformed = equilibrium.state.geometry == ContactGeometry::deformed;
-  for (std::size_t b = 0; b < model.system.bodies.size(); ++b) {
-    const SystemBody& body = model.system.bodies[b];
+  for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+    const SystemBody& body = system.bodies[b];
     const Eigen::Index size = body.modal.size();
     moving.emplace_back(body.modal.shapes * mode.segment(first, size));
     first += size;
-    displaced.push_back(body.follows_drive() ? model.system.path_share(static_cast<int>(b)) *
+    displaced.push_back(body.follows_drive() ? system.path_share(static_cast<int>(b)) *
                                                    equilibrium.state.drive_displacement
                                              : 0.0);
     still.emplace_back();
     if (is_deformed && size > 0) still.back() = body.modal.shapes * equilibrium.displacement[b];
   }
-  return ShapeRecovery(model, cache).shapes(displaced, still, moving);
+  return shapes(displaced, still, moving);
+}
+
+std::vector<BodyShape> mode_shape(const Model& model, const Equilibrium& equilibrium,
+                                  const Eigen::VectorXcd& mode, BodyCache& cache) {
+  return ShapeRecovery(model, cache).mode(equilibrium, mode);
 }
 
 }  // namespace stridor

@@ -28,6 +28,8 @@ class ShapeRecovery {
   std::vector<BodyShape> shapes(const std::vector<double>& displaced,
                                 const std::vector<Eigen::VectorXd>& still,
                                 const std::vector<Eigen::VectorXcd>& moving) const;
+  /// A mode about an equilibrium, as mode_shape() gives it. @throws as mode_shape()
+  std::vector<BodyShape> mode(const Equilibrium& equilibrium, const Eigen::VectorXcd& mode) const;
 
  private:
   struct Part {

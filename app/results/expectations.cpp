@@ -40,14 +40,24 @@ std::optional<double> number_at(const Json& object, const std::string& path) {
 
 }  // namespace
 
-void check_expectations(const std::vector<Expectation>& expectations, const Json& results) {
-  std::vector<std::string> failures;
+std::vector<JudgedExpectation> judged(const std::vector<Expectation>& expectations,
+                                      const Json& results) {
+  std::vector<JudgedExpectation> all;
   for (const Expectation& expectation : expectations) {
     const auto value = number_at(results, expectation.result);
+    all.push_back({expectation, value,
+                   value && std::abs(*value - expectation.value) <= expectation.tolerance});
+  }
+  return all;
+}
+
+void check_expectations(const std::vector<Expectation>& expectations, const Json& results) {
+  std::vector<std::string> failures;
+  for (const auto& [expectation, value, is_met] : judged(expectations, results)) {
     if (!value) {
       failures.push_back(fmt::format("{}: expected {:g}, but the run has no such number",
                                      expectation.result, expectation.value));
-    } else if (!(std::abs(*value - expectation.value) <= expectation.tolerance)) {
+    } else if (!is_met) {
       failures.push_back(fmt::format("{}: expected {:g} within {:g}, got {:.9g}",
                                      expectation.result, expectation.value, expectation.tolerance,
                                      *value));

@@ -87,6 +87,7 @@ void add_map_command(CLI::App& program, Action& action, const std::string& comma
 void add_threshold_command(CLI::App& program, Action& action);
 void add_spectrogram_command(CLI::App& program, Action& action);
 void add_sound_command(CLI::App& program, Action& action);
+void add_report_command(CLI::App& program, Action& action, const std::string& command_line);
 void add_frf_command(CLI::App& program, Action& action, const std::string& command_line);
 
 }  // namespace stridor

@@ -5,25 +5,15 @@
 #include <cmath>
 #include <complex>
 #include <filesystem>
-#include <limits>
-#include <memory>
-#include <numbers>
 #include <string>
 
-#include "analysis/explanation.hpp"
+#include "app/stability/analysed_spectrum.hpp"
 #include "app/stability/eigenvalue_report.hpp"
 #include "app/stability/equilibrium_report.hpp"
-#include "app/stability/found_spectrum.hpp"
-#include "app/stability/sliding_state.hpp"
-#include "app/stability/stability.hpp"
 #include "app/stability/verdict.hpp"
-#include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "io/figures/shape_plot.hpp"
 #include "models/mode_shape.hpp"
-#include "solvers/eigenvalues/eigenvector.hpp"
-#include "solvers/eigenvalues/secular_eigenvalues.hpp"
-#include "solvers/integrators/retained_modes.hpp"
 
 namespace stridor {
 namespace {
@@ -52,47 +42,6 @@ SceneFamily make_family(const LoadedScene& loaded, const EigOptions& options,
   const NumericKey key = find_stability_key(loaded.scene, *path, "--at");
   values.push_back(parse_value(key, *options.at, "--at"));
   return SceneFamily(loaded, {key});
-}
-
-/// Of a mode found by the problem on the ports of contacts.
-Json explanation_json(const Pencil& pencil, const Eigenvalue& eigenvalue) {
-  const Eigenvector vector = eigenvector(pencil, eigenvalue.s);
-  const ModeQuotients seen = mode_quotients(pencil, eigenvalue.s, vector.right);
-  const ModeEnergy energy = mode_energy(pencil, eigenvalue.s, vector);
-  const double frequency = eigenvalue.frequency();
-  // Modes far above take no part; those a little above may.
-  const std::vector<Eigenvalue> modes =
-      secular_eigenvalues(frictionless(pencil), SpectrumWindow::below(1.5 * frequency));
-  std::vector<Eigenvalue> vibrating;
-  std::copy_if(modes.begin(), modes.end(), std::back_inserter(vibrating),
-               [](const Eigenvalue& one) { return one.s.imag() > 0.0; });
-  const std::vector<Participation> shares = participations(pencil, vibrating, vector.right);
-  Json frictionless_modes = Json::array();
-  for (std::size_t i = 0; i < std::min<std::size_t>(2, shares.size()); ++i)
-    frictionless_modes.push_back({{"frequency", shares[i].frequency}, {"share", shares[i].share}});
-  return {{"quotients", quotients_json(seen)},
-          {"energy", energy_json(energy, frequency)},
-          {"frictionless_modes", frictionless_modes}};
-}
-
-/// By the problem on the ports of contacts, where it can be solved.
-/// @param whole with all modes, for shapes
-FoundSpectrum find_on_ports(const Pencil& of, const Pencil& whole, const StabilityOptions& options,
-                            double trusted) {
-  const auto pencil = std::make_shared<const Pencil>(of);
-  const LowestEigenvalues lowest = find_lowest(of, options.eigenvalue_method(), options.window());
-  FoundSpectrum found{lowest.method_name(), lowest.eigenvalues};
-  std::vector<std::complex<double>> roots;
-  for (const Eigenvalue& one : found.eigenvalues) roots.push_back(one.s);
-  found.highest = verdict_limit(roots, options.window(), trusted);
-  found.explain = [pencil, all = found.eigenvalues](std::size_t chosen) {
-    return explanation_json(*pencil, all[chosen]);
-  };
-  found.shape = [whole, all = found.eigenvalues](std::size_t chosen) {
-    return eigenvector(whole, all[chosen].s).right;
-  };
-  if (!lowest.remark.empty()) found.more["remark"] = lowest.remark;
-  return found;
 }
 
 /// The largest displacement of any node, 0 where nothing moves.
@@ -212,40 +161,6 @@ void print_explanation(const Json& explanation) {
   }
 }
 
-/// Sliding state and spectrum of a scene.
-struct Analysis {
-  SceneFamily::Member member;
-  SlidingState state;  ///< empty where the model is sparse
-  FoundSpectrum found;
-  double trusted = std::numeric_limits<double>::infinity();  ///< Hz
-
-  bool is_sparse() const { return member.model->sparse.has_value(); }
-  bool has_contacts() const { return !member.model->system.contacts.empty(); }
-};
-
-Analysis analyse(const EigOptions& options, const LoadedScene& loaded,
-                 const SceneFamily::Member& member) {
-  const Activity solving("equilibrium and eigenvalues");
-  Analysis analysis;
-  analysis.member = member;
-  if (analysis.is_sparse()) {
-    analysis.found = find_sparse(*member.model->sparse, options.stability.window());
-    return analysis;
-  }
-  const System& system = member.model->system;
-  analysis.state = sliding_state_of(member, options.stability.geometry(),
-                                    kept_terms(loaded.scene), "");
-  analysis.trusted =
-      std::min(trusted_frequency(system),
-               asked_frequency(system, loaded.scene.time) / (2.0 * std::numbers::pi));
-  const Pencil& whole = analysis.state.pencil;
-  analysis.found = has_contacts(whole)
-                       ? find_on_ports(retained(whole, system, loaded.scene.time), whole,
-                                       options.stability, analysis.trusted)
-                       : find_dense(whole, options.stability.window(), analysis.trusted);
-  return analysis;
-}
-
 /// The eigenvalue to explain or draw: of those over which the verdict is, where none is named.
 std::size_t mode_of_interest(const Analysis& analysis, const std::optional<int>& mode) {
   const FoundSpectrum& found = analysis.found;
@@ -339,7 +254,7 @@ ExitCode eig(EigOptions options) {
   make_choices(options.stability, loaded.scene);
   std::vector<double> values;
   SceneFamily family = make_family(loaded, options, values);
-  return report(options, loaded, analyse(options, loaded, family.at(values)));
+  return report(options, loaded, analyse(options.stability, loaded, family.at(values)));
 }
 
 }  // namespace

@@ -11,6 +11,42 @@
 #include "io/hdf5/regular_file.hpp"
 
 namespace stridor {
+namespace {
+
+// Text or one number; anything else (references of dimension scales, arrays) is not given.
+void read_attribute(const Checker& at, hid_t file, hid_t object, const std::string& path,
+                    const std::string& name, AttributeValues& values) {
+  const Handle attribute = at.own(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, path,
+                                  "cannot read an attribute");
+  const Handle type =
+      at.own(H5Aget_type(attribute.id()), H5Tclose, path, "cannot read an attribute");
+  const Handle space =
+      at.own(H5Aget_space(attribute.id()), H5Sclose, path, "cannot read an attribute");
+  if (H5Sget_simple_extent_npoints(space.id()) != 1) return;
+  const H5T_class_t kind = H5Tget_class(type.id());
+  if (kind == H5T_STRING) {
+    values[name] = read_text(at, file, type.id(), path, [&](hid_t memory, void* target) {
+      return H5Aread(attribute.id(), memory, target);
+    });
+  } else if (kind == H5T_FLOAT || kind == H5T_INTEGER) {
+    double number = 0.0;
+    at.check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &number), path, "cannot read an attribute");
+    values[name] = number;
+  }
+}
+
+herr_t keep_name(hid_t, const char* name, const H5A_info_t*, void* names) {
+  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+  return 0;
+}
+
+herr_t keep_dataset(hid_t, const char* name, const H5O_info_t* info, void* paths) {
+  if (info->type == H5O_TYPE_DATASET)
+    static_cast<std::vector<std::string>*>(paths)->push_back(std::string("/") + name);
+  return 0;
+}
+
+}  // namespace
 
 Handle open_hdf5_file(const Checker& at) {
   const std::string& path = at.path();
@@ -52,6 +88,37 @@ std::string read_text(const Checker& at, hid_t file, hid_t type, const std::stri
   std::string text(H5Tget_size(type), '\0');
   at.check(read(type, text.data()), dataset, "cannot be read");
   return text.substr(0, text.find('\0'));
+}
+
+std::string read_text_dataset(const Checker& at, hid_t file, const std::string& path) {
+  if (!is_object_path(path) || H5LTpath_valid(file, path.c_str(), true) <= 0)
+    throw FileError(at.path(), path, "is missing");
+  const Handle dataset =
+      at.own(H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose, path, "cannot be opened");
+  const Handle type = at.own(H5Dget_type(dataset.id()), H5Tclose, path, "cannot be read");
+  const Handle space = at.own(H5Dget_space(dataset.id()), H5Sclose, path, "cannot be read");
+  if (H5Tget_class(type.id()) != H5T_STRING || H5Sget_simple_extent_npoints(space.id()) != 1)
+    throw FileError(at.path(), path, "is not text");
+  return read_text(at, file, type.id(), path, [&](hid_t memory, void* target) {
+    return H5Dread(dataset.id(), memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, target);
+  });
+}
+
+AttributeValues read_attributes(const Checker& at, hid_t file, hid_t object,
+                                const std::string& path) {
+  std::vector<std::string> names;
+  at.check(H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep_name, &names), path,
+           "cannot read its attributes");
+  AttributeValues values;
+  for (const std::string& name : names) read_attribute(at, file, object, path, name, values);
+  return values;
+}
+
+std::vector<std::string> dataset_paths(const Checker& at, hid_t file) {
+  std::vector<std::string> paths;
+  at.check(H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, keep_dataset, &paths, H5O_INFO_BASIC), "",
+           "cannot be searched");
+  return paths;
 }
 
 Hdf5Array open_array(const Checker& at, hid_t file, const std::string& path, std::size_t rank) {

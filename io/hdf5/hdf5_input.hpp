@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "io/hdf5/hdf5_handles.hpp"
@@ -26,6 +28,22 @@ void check_plausible(const Checker& at, hid_t file, std::uint64_t length,
 /// @throws FileError as check_plausible(), or if HDF5 refuses
 std::string read_text(const Checker& at, hid_t file, hid_t type, const std::string& dataset,
                       const std::function<herr_t(hid_t, void*)>& read);
+
+/// The text that a dataset holds.
+/// @throws FileError if it is missing or holds anything else, or HDF5 refuses
+std::string read_text_dataset(const Checker& at, hid_t file, const std::string& path);
+
+/// Text or numbers, by name.
+using AttributeValues = std::map<std::string, std::variant<std::string, double>>;
+
+/// The attributes of an object that are a text or one number; others, such as references of
+/// dimension scales, are left out.
+/// @throws FileError if HDF5 refuses, like the next
+AttributeValues read_attributes(const Checker& at, hid_t file, hid_t object,
+                                const std::string& path);
+
+/// Paths of all datasets, in alphabetical order within each group.
+std::vector<std::string> dataset_paths(const Checker& at, hid_t file);
 
 /// A dataset of real numbers with its extents.
 struct Hdf5Array {

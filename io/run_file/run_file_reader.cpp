@@ -12,53 +12,6 @@
 #include "io/run_file/run_file.hpp"
 
 namespace stridor {
-namespace {
-
-using Values = std::map<std::string, std::variant<std::string, double>>;
-
-// Text or one number; anything else (references of dimension scales, arrays) is not given.
-void read_attribute(const Checker& at, hid_t file, hid_t object, const std::string& path,
-                    const std::string& name, Values& values) {
-  const Handle attribute = at.own(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, path,
-                                  "cannot read an attribute");
-  const Handle type =
-      at.own(H5Aget_type(attribute.id()), H5Tclose, path, "cannot read an attribute");
-  const Handle space =
-      at.own(H5Aget_space(attribute.id()), H5Sclose, path, "cannot read an attribute");
-  if (H5Sget_simple_extent_npoints(space.id()) != 1) return;
-  const H5T_class_t kind = H5Tget_class(type.id());
-  if (kind == H5T_STRING) {
-    values[name] = read_text(at, file, type.id(), path, [&](hid_t memory, void* target) {
-      return H5Aread(attribute.id(), memory, target);
-    });
-  } else if (kind == H5T_FLOAT || kind == H5T_INTEGER) {
-    double number = 0.0;
-    at.check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &number), path, "cannot read an attribute");
-    values[name] = number;
-  }
-}
-
-herr_t keep_name(hid_t, const char* name, const H5A_info_t*, void* names) {
-  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
-  return 0;
-}
-
-Values read_attributes(const Checker& at, hid_t file, hid_t object, const std::string& path) {
-  std::vector<std::string> names;
-  at.check(H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep_name, &names), path,
-           "cannot read its attributes");
-  Values values;
-  for (const std::string& name : names) read_attribute(at, file, object, path, name, values);
-  return values;
-}
-
-herr_t keep_dataset(hid_t, const char* name, const H5O_info_t* info, void* paths) {
-  if (info->type == H5O_TYPE_DATASET)
-    static_cast<std::vector<std::string>*>(paths)->push_back(std::string("/") + name);
-  return 0;
-}
-
-}  // namespace
 
 struct RunFileReader::Impl {
   explicit Impl(const std::string& path) : at(path) {}
@@ -70,7 +23,6 @@ struct RunFileReader::Impl {
   Impl& operator=(const Impl&) = delete;
 
   void read_header();
-  std::string text(const std::string& path) const;
   Hdf5Array rows_of(const std::string& path) const;
   std::vector<double> read_all(const std::string& path) const;
   void read_part(const std::string& path, std::uint64_t begin, std::span<double> target) const;
@@ -84,7 +36,7 @@ struct RunFileReader::Impl {
 };
 
 void RunFileReader::Impl::read_header() {
-  const Values values = read_attributes(at, file.id(), file.id(), "/");
+  const AttributeValues values = read_attributes(at, file.id(), file.id(), "/");
   const auto format = values.find("format");
   const double* number = format == values.end() ? nullptr : std::get_if<double>(&format->second);
   if (number == nullptr)
@@ -110,27 +62,12 @@ void RunFileReader::Impl::read_header() {
     }
     *target = *value;
   }
-  header.scene_text = text("/scene/text");
-  header.scene_resolved = text("/scene/resolved");
+  header.scene_text = read_text_dataset(at, file.id(), "/scene/text");
+  header.scene_resolved = read_text_dataset(at, file.id(), "/scene/resolved");
   // Files of earlier versions have none.
   if (H5LTpath_valid(file.id(), "/scene/digests", true) > 0)
-    header.scene_digests = text("/scene/digests");
+    header.scene_digests = read_text_dataset(at, file.id(), "/scene/digests");
   num_rows = open_array(at, file.id(), "/time", 1).shape.front();
-}
-
-std::string RunFileReader::Impl::text(const std::string& path) const {
-  if (H5LTpath_valid(file.id(), path.c_str(), true) <= 0)
-    throw FileError(at.path(), path, "is missing");
-  const Handle dataset =
-      at.own(H5Dopen2(file.id(), path.c_str(), H5P_DEFAULT), H5Dclose, path, "cannot be opened");
-  const Handle type = at.own(H5Dget_type(dataset.id()), H5Tclose, path, "cannot be read");
-  const Handle space = at.own(H5Dget_space(dataset.id()), H5Sclose, path, "cannot be read");
-  if (H5Tget_class(type.id()) != H5T_STRING || H5Sget_simple_extent_npoints(space.id()) != 1) {
-    throw FileError(at.path(), path, "is not text");
-  }
-  return read_text(at, file.id(), type.id(), path, [&](hid_t memory, void* target) {
-    return H5Dread(dataset.id(), memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, target);
-  });
 }
 
 /// A series, which has a value for every row.
@@ -165,12 +102,8 @@ void RunFileReader::Impl::read_part(const std::string& path, std::uint64_t begin
 }
 
 std::vector<std::string> RunFileReader::Impl::arrays(bool series) const {
-  std::vector<std::string> datasets;
-  at.check(
-      H5Ovisit2(file.id(), H5_INDEX_NAME, H5_ITER_INC, keep_dataset, &datasets, H5O_INFO_BASIC), "",
-      "cannot be searched");
   std::vector<std::string> found;
-  for (const std::string& path : datasets) {
+  for (const std::string& path : dataset_paths(at, file.id())) {
     const Handle dataset =
         at.own(H5Dopen2(file.id(), path.c_str(), H5P_DEFAULT), H5Dclose, path, "cannot be opened");
     const Handle space = at.own(H5Dget_space(dataset.id()), H5Sclose, path, "cannot be read");

@@ -205,6 +205,10 @@ const std::vector<Verb>& verbs() {
          return Words{"sound", folder + "/run.h5",  "--channel", system.channel,
                       "-o",    folder + "/run.wav"};
        }},
+      {"report", "a page of a run",
+       [](S, T, T folder) {
+         return Words{"report", folder + "/run.h5", "-o", folder + "/run.html"};
+       }},
       {"eig", "eigenvalues and what explains them",
        [](S, T scene, T) {
          return Words{"eig", scene, "--explain"};
@@ -273,7 +277,8 @@ std::vector<const Reason*> outcomes_of(const System& system) {
   const Reason* of_run = nullptr;
   for (const Verb& verb : verbs()) {
     const bool reads_run =
-        verb.name == "plot" || verb.name == "spectrogram" || verb.name == "sound";
+        verb.name == "plot" || verb.name == "spectrogram" || verb.name == "sound" ||
+        verb.name == "report";
     if (reads_run && of_run != nullptr) {
       outcomes.push_back(of_run);
       continue;

@@ -35,8 +35,8 @@ const std::map<std::string, Strings> rooms_in_order{
     {"solvers",
      {"algebra", "half_space", "eigenvalues", "equilibrium", "integrators", "contact",
       "transient"}},
-    {"io", {"hdf5", "imports", "scene", "run_file", "results", "figures"}},
-    {"app", {"terminal", "results", "stability", "runs", "verbs"}}};
+    {"io", {"hdf5", "imports", "scene", "run_file", "results", "figures", "report"}},
+    {"app", {"terminal", "results", "stability", "runs", "report", "verbs"}}};
 /// The files that stand in no room of a folder that has rooms.
 const Strings files_without_room{"app/main.cpp"};
 

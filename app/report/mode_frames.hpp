@@ -1,0 +1,37 @@
+// Shapes of modes in a report, at some values of the key along which the page moves.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/report/report_section.hpp"
+
+namespace stridor {
+
+/// Along what modes are shown.
+struct FramedRange {
+  std::string parameter;       ///< key of the scene
+  std::vector<double> values;  ///< ascending
+  std::string about;           ///< of StabilityOptions; empty: the default of the scene
+};
+
+/// How much of a page they may take.
+struct FrameBudget {
+  double bytes = 0.0;
+  int most_values = 1;
+};
+
+/// Computes the modes of a scene at equally spaced values of a key and adds them to a section as a
+/// view, with the places of all nodes there, and the times at which a run of the scene passes the
+/// values. What cannot be computed or drawn becomes a remark of the section: files that the scene
+/// names may be gone, the values may have no equilibrium.
+///
+/// @param resolved the scene, as result files hold it
+/// @param source   of it, for messages
+/// @param range    nothing: the scene as it stands, or along the whole way of its drive
+void add_mode_frames(const std::string& resolved, const std::string& source,
+                     const std::optional<FramedRange>& range, const FrameBudget& budget,
+                     ReportPage& page, Json& section);
+
+}  // namespace stridor

@@ -1,0 +1,57 @@
+#include "app/report/report_section.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "core/errors.hpp"
+#include "io/figures/axes.hpp"
+
+namespace stridor {
+
+Json report_section(const ResultFile& file, const ReportContext& context) {
+  using Make = Json (*)(const ResultFile&, const ReportContext&);
+  static const std::vector<std::pair<std::string, Make>> kinds{
+      {"run", run_section},
+      {"locus", locus_section},
+      {"stability map", map_section},
+      {"sweep of transients", sweep_section},
+      {"sweep of limit cycles", sweep_section},
+      {"limit cycle", cycle_section},
+      {"frequency responses", response_section},
+      {"spectrogram", spectrogram_section},
+      {"sliding contacts", contact_section}};
+  const std::string kind = file.kind();
+  std::vector<std::string> names;
+  for (const auto& [name, make] : kinds) {
+    if (name == kind) return make(file, context);
+    names.push_back(name);
+  }
+  throw FileError(file.path(), "",
+                  kind.empty() ? "is no file of results of stridor (no attribute 'kind')"
+                               : fmt::format("is of the kind '{}'; a report shows: {}", kind,
+                                             fmt::join(names, ", ")));
+}
+
+Json section_head(const ResultFile& file, const std::string& kind) {
+  Json head = {{"kind", kind}, {"file", std::filesystem::path(file.path()).filename().string()}};
+  for (const char* name : {"command", "date", "version", "commit", "scene", "scene_hash", "about",
+                           "method", "parameter"}) {
+    if (const std::string text = file.text(name); !text.empty()) head[name] = text;
+  }
+  if (const std::string scene = file.text("scene_resolved"); !scene.empty())
+    head["scene_resolved"] = scene;
+  head["views"] = Json::array();
+  return head;
+}
+
+Json verdict(const std::string& level, const std::string& text) {
+  return {{"level", level}, {"text", text}};
+}
+
+std::string shown(double value, const std::string& units) {
+  if (units.empty() || units == "1") return fmt::format("{:.4g}", value);
+  return quantity_text(value, units);
+}
+
+}  // namespace stridor

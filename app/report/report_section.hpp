@@ -1,0 +1,75 @@
+// Sections of a report: what the page tells of each file of results.
+//
+// A section is JSON for the scripts of the page: what the file is, a verdict, and views of its
+// numbers, which stand in blocks of the page.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "app/terminal/command.hpp"
+#include "io/report/report_page.hpp"
+#include "io/results/locus_file.hpp"
+#include "io/results/result_file.hpp"
+
+namespace stridor {
+
+/// What a report is asked for.
+struct ReportOptions {
+  CommonOptions common;
+  std::vector<std::string> files;
+  std::string output;
+  std::string budget = "8MiB";
+  std::vector<std::string> channels;  ///< of runs; the most useful ones where none is named
+  bool is_full = false;               ///< every sample, whatever the budget
+  bool without_shapes = false;
+  std::string command_line;
+};
+
+/// Unstable windows that are to be set beside the bursts of runs of the same scene.
+struct WindowsOfScene {
+  std::string file;
+  std::string scene_hash;
+  std::vector<TimedWindow> windows;
+};
+
+/// What all sections share.
+struct ReportContext {
+  const ReportOptions& options;
+  ReportPage& page;
+  double bytes_per_file = 0.0;  ///< of the page, for each file
+  std::vector<WindowsOfScene> windows;
+};
+
+/// The section of a file. @throws FileError if it is no file of results, or damaged
+Json report_section(const ResultFile& file, const ReportContext& context);
+
+/// What every section begins with: file, kind, and where it comes from.
+Json section_head(const ResultFile& file, const std::string& kind);
+
+/// A verdict: the level ("calm", "loud", "failed" or "told") chooses a colour and a sign.
+Json verdict(const std::string& level, const std::string& text);
+
+/// "0.123 m/s^2" for people, with a prefix where the unit has one.
+std::string shown(double value, const std::string& units);
+
+/// Levels over time and frequency as a view of the page, in steps of half a decibel, the highest of
+/// neighbours where there are more than a picture shows.
+/// @param amplitude row per frequency, column per time
+/// @param units     of the amplitudes
+Json levels_view(const std::vector<double>& times, const std::vector<double>& frequencies,
+                 const Eigen::MatrixXd& amplitude, double max_frequency, const std::string& units,
+                 ReportPage& page);
+
+// Sections by kind; throw as report_section().
+Json run_section(const ResultFile& file, const ReportContext& context);
+Json locus_section(const ResultFile& file, const ReportContext& context);
+Json map_section(const ResultFile& file, const ReportContext& context);
+Json sweep_section(const ResultFile& file, const ReportContext& context);
+Json cycle_section(const ResultFile& file, const ReportContext& context);
+Json response_section(const ResultFile& file, const ReportContext& context);
+Json spectrogram_section(const ResultFile& file, const ReportContext& context);
+Json contact_section(const ResultFile& file, const ReportContext& context);
+
+}  // namespace stridor

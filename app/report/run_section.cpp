@@ -1,0 +1,253 @@
+// Of a run: what was heard and what was predicted, histories, spectrogram, shapes, checks.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "app/report/histories.hpp"
+#include "app/report/mode_frames.hpp"
+#include "app/results/expectations.hpp"
+#include "app/results/pictures.hpp"
+#include "app/stability/prediction.hpp"
+#include "core/activity.hpp"
+#include "core/errors.hpp"
+
+namespace stridor {
+namespace {
+
+Json spectrogram_json(const RecordedStretch& run, const std::string& series, ReportPage& page) {
+  const PictureOptions options;
+  const RecordedSettings scene = recorded_settings(run.file, run.path);
+  const PieceSettings pieces = settle_pieces(
+      options, run, scene, scene.spectrogram,
+      [&](double highest) { return std::sqrt(run.duration() / highest); }, 0.75);
+  const Spectrogram spectrogram = make_spectrogram(run.finite_values(series), run.interval,
+                                                   pieces.parameters, run.first_time());
+  const std::string units = run.file.units(series);
+  Json view = levels_view(spectrogram.times, spectrogram.frequencies, spectrogram.amplitude,
+                          pieces.max_frequency, units, page);
+  view["channel"] = channel_name(series);
+  view["caption"] = fmt::format("Peak amplitudes: {}.", pieces_text(pieces.parameters, run.interval));
+  return view;
+}
+
+/// Views of the vibration that bursts are sought in; nothing where it has too few samples or some
+/// that are not finite.
+void add_spectrogram(const RecordedStretch& run, const ReportContext& context, Json& section) {
+  const auto acceleration = acceleration_channel(run.file);
+  std::string series = acceleration.value_or("");
+  if (!context.options.channels.empty())
+    series = find_series(run, context.options.channels.front(), "--channel");
+  if (series.empty()) {
+    const auto spectral = chosen_series(run.file, SeriesUse::spectrum, 1);
+    if (spectral.empty()) return;
+    series = spectral.front();
+  }
+  series = spectral_series(run.file, series);
+  try {
+    const Activity transforming("transforming the pieces of the spectrogram");
+    section["views"].push_back(spectrogram_json(run, series, context.page));
+  } catch (const ConfigError& error) {
+    section["remarks"].push_back(std::string("No spectrogram: ") + error.what());
+  } catch (const FileError& error) {
+    section["remarks"].push_back(std::string("No spectrogram: ") + error.what());
+  }
+}
+
+Json bursts_json_of(const std::vector<NumberedBurst>& bursts) {
+  Json rows = Json::array();
+  for (const auto& [count, burst] : bursts) {
+    rows.push_back({{"number", count},
+                    {"start", burst.start},
+                    {"end", burst.end},
+                    {"frequency", burst.frequency},
+                    {"peak", number(burst.peak)},
+                    {"gain", number(burst.gain)}});
+  }
+  return rows;
+}
+
+/// The windows that a locus of the same scene predicts, beside the bursts.
+Json predictions_of(const RecordedStretch& run, const ReportContext& context,
+                    const std::vector<NumberedBurst>& bursts, Json& section) {
+  Json rows = Json::array();
+  for (const WindowsOfScene& one : context.windows) {
+    if (one.scene_hash != run.file.header().scene_hash) {
+      section["remarks"].push_back(
+          fmt::format("{} is of another scene ({} instead of {}): its windows are not set beside the "
+                      "bursts.",
+                      std::filesystem::path(one.file).filename().string(), one.scene_hash,
+                      run.file.header().scene_hash));
+      continue;
+    }
+    for (Json& row : prediction_json(match_bursts(one.windows, bursts))) rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// What a run is judged by.
+struct Heard {
+  std::vector<NumberedBurst> bursts;
+  Json predictions;
+  bool is_searched = false;  ///< for bursts
+  bool grows = false;        ///< some mode about the sliding equilibrium
+  std::string growth;        ///< what is said of the modes
+};
+
+/// The fastest growth of the modes in the frames of a section.
+void judge_modes(const Json& section, Heard& heard) {
+  double fastest = -std::numeric_limits<double>::infinity();
+  double frequency = 0.0;
+  std::size_t places = 0;
+  for (const Json& view : section["views"]) {
+    if (view["type"] != "modes") continue;
+    places += view["frames"].size();
+    for (const Json& frame : view["frames"])
+      for (const Json& mode : frame["modes"]) {
+        const auto growth = mode["growth"].get<double>();
+        if (growth <= fastest) continue;
+        fastest = growth;
+        frequency = mode["frequency"].get<double>();
+      }
+  }
+  if (!std::isfinite(fastest)) return;
+  heard.grows = fastest > 0.0;
+  heard.growth = heard.grows
+                     ? fmt::format(" Small vibrations about the sliding equilibrium grow, fastest at {} "
+                                   "with {:.3g} 1/s.",
+                                   shown(frequency, "Hz"), fastest)
+                     : fmt::format(" No mode grows at the {} {} looked at.", places,
+                                   places == 1 ? "place" : "places");
+}
+
+Json run_verdict(const Json& results, const RecordedStretch& run, const Heard& heard) {
+  const std::string status = results.value("status", std::string());
+  const std::vector<NumberedBurst>& bursts = heard.bursts;
+  const Json& predictions = heard.predictions;
+  std::string text;
+  std::string level = !bursts.empty() || heard.grows ? "loud" : heard.is_searched ? "calm" : "told";
+  if (status == "done") {
+    text = fmt::format("Ran to its end at {}. ", shown(run.last_time(), "s"));
+  } else if (status.empty()) {
+    text = fmt::format("Has not ended, or was killed; rows up to {}. ", shown(run.last_time(), "s"));
+    level = "failed";
+  } else {
+    text = fmt::format("Ended as '{}' at {}. ", status, shown(run.last_time(), "s"));
+    level = "failed";
+  }
+  if (bursts.empty()) {
+    text += heard.is_searched ? "No bursts of vibration were found."
+                              : "Bursts were not sought: that needs an acceleration and measure.band.";
+  } else {
+    const auto loudest =
+        std::max_element(bursts.begin(), bursts.end(), [](const auto& a, const auto& b) {
+          return a.burst.peak < b.burst.peak;
+        });
+    text += fmt::format("{} {} of vibration; the loudest reaches {} at {}, from {} to {}.",
+                        bursts.size(), bursts.size() == 1 ? "burst" : "bursts",
+                        shown(loudest->burst.peak, "m/s^2"), shown(loudest->burst.frequency, "Hz"),
+                        shown(loudest->burst.start, "s"), shown(loudest->burst.end, "s"));
+  }
+  if (!predictions.empty()) {
+    const auto num_heard = std::count_if(predictions.begin(), predictions.end(), [](const Json& row) {
+      return !row["burst"].is_null();
+    });
+    text += fmt::format(" Of {} unstable windows that the run passes, {} {} heard.",
+                        predictions.size(), num_heard, num_heard == 1 ? "was" : "were");
+  }
+  return verdict(level, text + heard.growth);
+}
+
+/// Along how far the drive has moved the bodies; nothing where it has not.
+std::optional<FramedRange> way_of(const RunFileReader& file) {
+  constexpr const char* place = "/final/drive_displacement";
+  if (!file.has(place)) return std::nullopt;
+  const std::vector<double> displacement = file.static_array(place);
+  if (displacement.empty() || displacement.front() == 0.0 || !std::isfinite(displacement.front()))
+    return std::nullopt;
+  const double end = displacement.front();
+  return FramedRange{drive_displacement_name, {std::min(0.0, end), std::max(0.0, end)}, ""};
+}
+
+/// The numbers that the scene expects of its run, beside those that it has.
+void add_expectations(const std::string& resolved, const Json& results,
+                      const std::vector<NumberedBurst>& bursts, Json& section) {
+  std::vector<Expectation> expectations;
+  try {
+    expectations = load_resolved_scene(resolved, "/scene/resolved").scene.expect;
+  } catch (const std::exception&) {
+    return;  // of another version of the program; the numbers themselves are shown
+  }
+  if (expectations.empty()) return;
+  Json nested = Json::object();
+  for (const auto& [name, value] : results.items()) {
+    std::string pointer = "/" + name;
+    std::replace(pointer.begin(), pointer.end(), '.', '/');
+    try {
+      nested[Json::json_pointer(pointer)] = value;
+    } catch (const Json::exception&) {
+      nested[name] = value;  // a result and one of its parts
+    }
+  }
+  nested["bursts"] = bursts_json_of(bursts);
+  Json rows = Json::array();
+  for (const auto& [expectation, value, is_met] : judged(expectations, nested)) {
+    rows.push_back({{"result", expectation.result},
+                    {"expected", expectation.value},
+                    {"tolerance", expectation.tolerance},
+                    {"value", value ? number(*value) : Json(nullptr)},
+                    {"is_met", is_met}});
+  }
+  section["expectations"] = rows;
+}
+
+Json results_json(const RunFileReader& file) {
+  Json results = Json::object();
+  for (const auto& [name, value] : file.results()) {
+    if (const double* real = std::get_if<double>(&value)) results[name] = number(*real);
+    else results[name] = std::get<std::string>(value);
+  }
+  return results;
+}
+
+}  // namespace
+
+Json run_section(const ResultFile& source, const ReportContext& context) {
+  PictureOptions options;
+  options.file = source.path();
+  const RecordedStretch run = open_stretch(options);
+  const RunFileHeader& header = run.file.header();
+  Json section = section_head(source, "run");
+  section["scene_resolved"] = header.scene_resolved;
+  section["scene_text"] = header.scene_text;
+  section["samples"] = run.samples.size();
+  section["remarks"] = Json::array();
+  Heard heard;
+  heard.bursts = bursts_in(run, options);
+  heard.is_searched = acceleration_channel(run.file).has_value() &&
+                      recorded_settings(run.file, run.path).measure.band.size() == 2;
+  heard.predictions = predictions_of(run, context, heard.bursts, section);
+  section["verdict"] = nullptr;  // stands above what it needs
+  section["views"].push_back({{"type", "bursts"},
+                              {"bursts", bursts_json_of(heard.bursts)},
+                              {"predicted", heard.predictions}});
+  add_spectrogram(run, context, section);
+  section["views"].push_back(histories_view(run, context, 0.7 * context.bytes_per_file));
+  const bool has_locus =
+      std::any_of(context.windows.begin(), context.windows.end(), [&](const WindowsOfScene& one) {
+        return one.scene_hash == header.scene_hash;  // which shows them
+      });
+  if (!context.options.without_shapes && !has_locus) {
+    add_mode_frames(header.scene_resolved, source.path() + ":/scene/resolved", way_of(run.file),
+                    {0.25 * context.bytes_per_file, 41}, context.page, section);
+    judge_modes(section, heard);
+  }
+  const Json results = results_json(run.file);
+  section["verdict"] = run_verdict(results, run, heard);
+  section["results"] = results;
+  add_expectations(header.scene_resolved, results, heard.bursts, section);
+  return section;
+}
+
+}  // namespace stridor

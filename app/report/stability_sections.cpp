@@ -1,0 +1,131 @@
+// Of loci and maps.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/report/mode_frames.hpp"
+#include "core/errors.hpp"
+
+namespace stridor {
+namespace {
+
+/// Numbers of one column of all branches, one after the other.
+std::vector<double> of_branches(const ResultFile& file, const std::vector<std::string>& branches,
+                                const std::string& column) {
+  std::vector<double> all;
+  for (const std::string& branch : branches) {
+    const std::vector<double> values = file.read("/branches/" + branch + "/" + column);
+    all.insert(all.end(), values.begin(), values.end());
+  }
+  return all;
+}
+
+Json windows_of(const std::vector<TimedWindow>& windows) {
+  Json rows = Json::array();
+  for (const TimedWindow& one : windows) {
+    rows.push_back({{"from", one.window.from},
+                    {"to", one.window.to},
+                    {"frequency", one.window.frequency},
+                    {"growth_max", one.window.growth_max},
+                    {"value_max", one.window.value_max},
+                    {"from_time", number(one.from_time)},
+                    {"to_time", number(one.to_time)},
+                    {"gain", number(one.gain)}});
+  }
+  return rows;
+}
+
+Json locus_verdict(const std::vector<TimedWindow>& windows, const std::string& parameter) {
+  if (windows.empty())
+    return verdict("calm", fmt::format("Stable: no vibration grows anywhere along {}.", parameter));
+  const auto worst = std::max_element(windows.begin(), windows.end(), [](const auto& a, const auto& b) {
+    return a.window.growth_max < b.window.growth_max;
+  });
+  return verdict("loud", fmt::format("{} unstable {} of {}; the fastest growth, {:.4g} 1/s at {}, is "
+                                     "between {:.6g} and {:.6g}.",
+                                     windows.size(), windows.size() == 1 ? "window" : "windows",
+                                     parameter, worst->window.growth_max,
+                                     shown(worst->window.frequency, "Hz"), worst->window.from,
+                                     worst->window.to));
+}
+
+/// The growth over two parameters as a field of the page.
+Json map_view(const ResultFile& file, ReportPage& page) {
+  const std::vector<double> x = file.read("/x");
+  const std::vector<double> y = file.read("/y");
+  const std::vector<double> growth = file.read("/growth", 2);
+  if (growth.size() != x.size() * y.size())
+    throw FileError(file.path(), "/growth",
+                    fmt::format("has {} entries, /x and /y {} and {}", growth.size(), x.size(), y.size()));
+  Json lines = Json::array();
+  for (const std::string& name : file.names_in("/boundary"))
+    lines.push_back(page.add_numbers(file.read("/boundary/" + name, 2)));
+  return {{"type", "field"},
+          {"x", {{"name", file.text("x")}, {"units", file.array("/x").units}, {"values", page.add_numbers(x)}}},
+          {"y", {{"name", file.text("y")}, {"units", file.array("/y").units}, {"values", page.add_numbers(y)}}},
+          {"value", {{"name", "largest growth rate"}, {"units", "1/s"}, {"values", page.add_numbers(growth)}}},
+          {"missing", "no sliding equilibrium"},
+          {"scale", "signed"},
+          {"lines", lines},
+          {"reproduce", fmt::format("stridor eig {} --set {}=@X@ --set {}=@Y@", file.text("scene"),
+                                    file.text("x"), file.text("y"))}};
+}
+
+}  // namespace
+
+Json locus_section(const ResultFile& file, const ReportContext& context) {
+  Json section = section_head(file, "locus");
+  section["remarks"] = Json::array();
+  const std::vector<TimedWindow> windows = read_locus_windows(file.path());
+  const std::string parameter = file.text("parameter");
+  section["verdict"] = locus_verdict(windows, parameter);
+  section["views"].push_back({{"type", "windows"},
+                              {"parameter", parameter},
+                              {"units", file.array("/values").units},
+                              {"windows", windows_of(windows)}});
+  const std::vector<std::string> branches = file.names_in("/branches");
+  Json sizes = Json::array();
+  for (const std::string& branch : branches)
+    sizes.push_back(file.array("/branches/" + branch + "/value").shape.front());
+  ReportPage& page = context.page;
+  section["views"].push_back(
+      {{"type", "locus"},
+       {"parameter", parameter},
+       {"units", file.array("/values").units},
+       {"sizes", sizes},
+       {"value", page.add_numbers(of_branches(file, branches, "value"))},
+       {"growth", page.add_numbers(of_branches(file, branches, "growth"))},
+       {"frequency", page.add_numbers(of_branches(file, branches, "frequency"))},
+       {"windows", windows_of(windows)}});
+  const std::string scene = file.text("scene_resolved");
+  if (!context.options.without_shapes && !scene.empty()) {
+    const FramedRange range{parameter, file.read("/values"), file.text("about")};
+    add_mode_frames(scene, file.path() + ":scene_resolved", range,
+                    {0.5 * context.bytes_per_file, 41}, page, section);
+  }
+  return section;
+}
+
+Json map_section(const ResultFile& file, const ReportContext& context) {
+  Json section = section_head(file, "stability map");
+  const std::vector<double> growth = file.read("/growth", 2);
+  const auto is_unstable = [](double value) { return value > 0.0; };
+  const auto is_known = [](double value) { return std::isfinite(value); };
+  const auto unstable = std::count_if(growth.begin(), growth.end(), is_unstable);
+  const auto known = std::count_if(growth.begin(), growth.end(), is_known);
+  std::string text = fmt::format("Of {} points {} are unstable", growth.size(), unstable);
+  if (known < std::ssize(growth))
+    text += fmt::format(", {} have no sliding equilibrium", std::ssize(growth) - known);
+  if (unstable > 0) {
+    double most = 0.0;
+    for (const double value : growth)
+      if (value > most) most = value;
+    text += fmt::format("; the fastest growth is {:.4g} 1/s", most);
+  }
+  section["verdict"] = verdict(unstable > 0 ? "loud" : "calm", text + ".");
+  section["views"].push_back(map_view(file, context.page));
+  return section;
+}
+
+}  // namespace stridor

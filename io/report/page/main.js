@@ -1,0 +1,130 @@
+// The page as a whole.
+
+const kindNames = {run: 'Run', locus: 'Eigenvalues along a key', 'stability map': 'Stability map', 'sweep of transients': 'Sweep of runs',
+  'sweep of limit cycles': 'Sweep of limit cycles', 'limit cycle': 'Limit cycle', 'frequency responses': 'Frequency responses',
+  spectrogram: 'Spectrogram', 'sliding contacts': 'Sliding contacts'};
+
+function viewOf(section, type) { return section.views.find(view => view.type === type); }
+
+// What is shared by the views of each section: the stretch of time of a run, the value of a key.
+function prepare(sections) {
+  for (const section of sections) {
+    const histories = viewOf(section, 'histories'), picture = viewOf(section, 'spectrogram'), bursts = viewOf(section, 'bursts');
+    if (histories || picture) {
+      const time = histories && !histories.time.values ? histories.time : picture ? picture.time : null;
+      const view = time ? new TimeView(time.from, time.from + (time.step || 1) * Math.max(1, time.count - 1)) : null;
+      section.run = {view, clock: null, bursts: bursts ? bursts.bursts : [], predicted: bursts ? bursts.predicted : [], places: []};
+    }
+    const modes = viewOf(section, 'modes');
+    if (modes && modes.parameter) section.place = new Place(modes.frames.map(frame => frame.value), modes.frames.map(frame => frame.time));
+    const locus = viewOf(section, 'locus');
+    if (section.place && locus && locus.windows.length)
+      section.place.set(locus.windows.reduce((a, b) => b.growth_max > a.growth_max ? b : a).value_max);
+  }
+  const runs = sections.filter(section => section.kind === 'run' && section.run);
+  for (const section of sections) {
+    if (!section.place) continue;
+    for (const other of runs) {
+      if (other.scene_hash !== section.scene_hash) continue;
+      other.run.places.push(section.place);
+      section.place.listeners.add(() => { const moment = section.place.moment; if (moment !== null) other.run.view.mark(moment); });
+    }
+  }
+}
+
+async function completePlace(section) {
+  const locus = viewOf(section, 'locus');
+  if (!locus || section.place) return;
+  const values = await numbersOf(locus.value);
+  let low = Infinity, high = -Infinity;
+  for (const value of values) { low = Math.min(low, value); high = Math.max(high, value); }
+  if (low < high) section.place = new Place([low, high], [null, null]);
+}
+
+function framed(parent, title, minHeight, make) {
+  const place = element('div');
+  place.style.minHeight = minHeight + 'px';
+  if (title) parent.append(element('h3', {}, title));
+  parent.append(place);
+  whenSeen(place, async () => { await make(place); place.style.minHeight = ''; });
+}
+
+function makeView(parent, view, section) {
+  const run = section.run;
+  switch (view.type) {
+    case 'bursts': makeBursts(parent, view, run, section); break;
+    case 'windows': makeWindows(parent, view, section); break;
+    case 'spectrogram': framed(parent, 'Spectrogram', 430, place => makeSpectrogram(place, view, run)); break;
+    case 'histories':
+      framed(parent, 'Histories', 60, async place => {
+        if (!run.view) {
+          const clock = await clockOf(view.time);
+          run.view = new TimeView(clock.first, clock.last);
+          parent.insertBefore(timeTools(run.view), place);
+        }
+        await makeHistories(place, view, run);
+        const sound = element('div');
+        if (section.kind === 'run') { place.append(element('h3', {}, 'Sound'), sound); makeSound(sound, view, run, section); }
+      });
+      break;
+    case 'locus':
+      framed(parent, 'Root locus', 440, async place => {
+        await completePlace(section);
+        if (!section.place) { place.append(element('p', {class: 'faint'}, 'One value alone makes no locus.')); return; }
+        place.append(placeTools(section, view));
+        await makeLocus(place, view, section);
+      });
+      break;
+    case 'modes':
+      framed(parent, 'Shapes of modes', 340, async place => {
+        if (section.place && !viewOf(section, 'locus')) place.append(placeTools(section, view));
+        await makeModes(place, view, section);
+      });
+      break;
+    case 'field': framed(parent, null, 480, place => makeField(place, view, section)); break;
+    case 'curves': framed(parent, null, 260, place => makeCurves(place, view)); break;
+  }
+}
+
+function makeSection(section, number) {
+  const title = `${kindNames[section.kind] || section.kind}: ${section.file}`;
+  const place = element('section', {id: `section-${number}`, 'aria-label': title}, element('h2', {}, title), makeVerdict(section.verdict));
+  for (const remark of section.remarks || []) place.append(element('p', {class: 'faint'}, remark));
+  if (section.run && section.run.view && section.kind === 'run') place.append(timeTools(section.run.view));
+  for (const view of section.views) makeView(place, view, section);
+  if (section.results && Object.keys(section.results).length) place.append(makeResults(section.results));
+  if (section.expectations) place.append(makeExpectations(section.expectations));
+  place.append(makeSource(section));
+  return place;
+}
+
+// Numbers by which a program can tell that the page shows what the files hold.
+function selfCheck(sections) {
+  return {sections: sections.length, bursts: sections.flatMap(section => section.run ? section.run.bursts.map(burst => burst.frequency) : []),
+    peaks: sections.flatMap(section => (viewOf(section, 'histories') || {series: []}).series.map(series => Math.max(Math.abs(series.min ?? 0), Math.abs(series.max ?? 0))))};
+}
+
+async function makePage() {
+  const {sections} = report;
+  prepare(sections);
+  document.getElementById('head').append(element('h1', {}, report.title.replace(/ – stridor$/, '')),
+    ...(sections.length > 1 ? sections.map(section => makeVerdict({level: section.verdict.level, text: `${section.file}: ${section.verdict.text}`})) : []));
+  if (sections.length > 1) {
+    document.getElementById('contents').append(element('ul', {}, sections.map((section, number) =>
+      element('li', {}, element('a', {href: `#section-${number}`}, `${kindNames[section.kind] || section.kind}: ${section.file}`)))));
+  }
+  const main = document.getElementById('sections');
+  sections.forEach((section, number) => main.append(makeSection(section, number)));
+  document.getElementById('foot').append(element('p', {class: 'faint'}, `stridor ${report.version} (${report.commit}); page made by `, element('code', {}, report.command),
+    '. Everything shown is in this file; it asks nothing of the network.'));
+  if (location.hash === '#all') await makeAll();
+  let rounds = 0;
+  while (location.hash === '#all' && waiting.size && ++rounds < 10) await makeAll();
+  document.documentElement.dataset.check = JSON.stringify(selfCheck(sections));
+  document.documentElement.dataset.ready = 'yes';
+}
+
+makePage().catch(error => {
+  document.getElementById('head').append(element('p', {class: 'verdict failed', role: 'alert'}, `The page cannot be shown: ${error.message || error}`));
+  document.documentElement.dataset.ready = 'failed';
+});

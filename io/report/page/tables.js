@@ -1,0 +1,77 @@
+// What is said in words and numbers: verdicts, bursts, windows, results, where all comes from.
+
+function rowThat(act, cells) {
+  return element('tr', {tabindex: '0', role: 'button', onclick: act,
+    onkeydown: event => { if (event.key === 'Enter' || event.key === ' ') { event.preventDefault(); act(); } }}, cells);
+}
+
+function cell(text, isText = false) { return element('td', isText ? {class: 'text'} : {}, text); }
+
+function headRow(names) {
+  return element('thead', {}, element('tr', {}, names.map(name => element('th', {scope: 'col'}, name))));
+}
+
+const verdictSigns = {calm: ['✓', 'Calm.'], loud: ['!', 'Loud.'], failed: ['✗', 'Failed.'], told: ['·', '']};
+
+function makeVerdict(verdict) {
+  const [sign, word] = verdictSigns[verdict.level] || verdictSigns.told;
+  return element('p', {class: `verdict ${verdict.level}`}, element('b', {}, `${sign} ${word}`), verdict.text);
+}
+
+function makeBursts(place, view, run, section) {
+  const act = (from, to) => () => {
+    run.view.show(from, to);
+    const moment = 0.5 * (from + to);
+    run.view.mark(moment);
+    for (const listen of run.places) { const value = listen.valueAt(moment); if (value !== null) listen.set(value); }
+  };
+  if (view.bursts.length) {
+    place.append(element('h3', {}, 'Bursts of vibration'), element('div', {class: 'scroll'}, element('table', {},
+      headRow(['Burst', 'From', 'To', 'Frequency', 'Peak', 'Gain (ln)']),
+      element('tbody', {}, view.bursts.map(burst => rowThat(act(burst.start, burst.end),
+        [cell(burst.number), cell(shown(burst.start, 's')), cell(shown(burst.end, 's')), cell(shown(burst.frequency, 'Hz', 5)), cell(shown(burst.peak, 'm/s^2')), cell(digits(burst.gain, 3))]))))));
+  }
+  if (view.predicted.length) {
+    place.append(element('h3', {}, 'Unstable windows that the run passes'), element('div', {class: 'scroll'}, element('table', {},
+      headRow(['From', 'To', 'Frequency', 'Fastest growth', 'Gain', 'Burst', 'its frequency', 'its gain']),
+      element('tbody', {}, view.predicted.map(row => rowThat(act(row.from, row.to),
+        [cell(shown(row.from, 's')), cell(shown(row.to, 's')), cell(shown(row.frequency, 'Hz', 5)), cell(digits(row.growth_max, 3) + ' 1/s'), cell(digits(row.gain, 3)),
+          cell(row.burst ?? 'not heard'), cell(row.burst === null ? '' : shown(row.burst_frequency, 'Hz', 5)), cell(row.burst === null ? '' : digits(row.burst_gain, 3))]))))));
+  }
+  if (view.bursts.length || view.predicted.length)
+    place.append(element('p', {class: 'faint'}, 'A click on a row shows that time in all views. The gain is the logarithm of how many times the vibration has grown.'));
+}
+
+function makeWindows(place, view, section) {
+  if (!view.windows.length) return;
+  const hasTimes = view.windows.some(window => window.from_time !== null);
+  place.append(element('h3', {}, 'Unstable windows'), element('div', {class: 'scroll'}, element('table', {},
+    headRow(['From', 'To', 'Frequency', 'Fastest growth', ...(hasTimes ? ['Gain', 'Passed'] : [])]),
+    element('tbody', {}, view.windows.map(window => rowThat(() => section.place && section.place.set(window.value_max),
+      [cell(shown(window.from, view.units, 6)), cell(shown(window.to, view.units, 6)), cell(shown(window.frequency, 'Hz', 6)), cell(digits(window.growth_max, 4) + ' 1/s'),
+        ...(hasTimes ? [cell(digits(window.gain, 3)), cell(window.from_time === null ? 'not passed' : `${shown(window.from_time, 's')} to ${shown(window.to_time, 's')}`)] : [])]))))),
+  element('p', {class: 'faint'}, `Of ${view.parameter}; a click moves the position to the fastest growth.`));
+}
+
+function makeResults(results) {
+  const rows = Object.entries(results).map(([name, value]) => element('tr', {}, cell(name, true), cell(typeof value === 'number' ? digits(value, 6) : String(value ?? '–'))));
+  return element('details', {open: rows.length < 12}, element('summary', {}, 'Checks and results of the run'), element('div', {class: 'scroll'}, element('table', {}, element('tbody', {}, rows))));
+}
+
+function makeExpectations(rows) {
+  const met = rows.filter(row => row.is_met).length;
+  return element('details', {open: met < rows.length}, element('summary', {}, `${met} of ${rows.length} expectations of the scene are met`),
+    element('div', {class: 'scroll'}, element('table', {}, headRow(['Result', 'Expected', 'Within', 'Got', '']),
+      element('tbody', {}, rows.map(row => element('tr', {}, cell(row.result, true), cell(digits(row.expected, 6)), cell(digits(row.tolerance, 3)),
+        cell(digits(row.value, 6)), cell(row.is_met ? '✓' : '✗ not met')))))));
+}
+
+function makeSource(section) {
+  const lines = [['Command', section.command], ['Made', section.date], ['By', section.version ? `stridor ${section.version} (${section.commit})` : null],
+    ['Scene', section.scene], ['Scene hash', section.scene_hash], ['About', section.about ? `the ${section.about} geometry` : null], ['Method', section.method]];
+  const place = element('details', {}, element('summary', {}, 'How to repeat this'), element('table', {}, element('tbody', {}, lines.filter(([, value]) => value)
+    .map(([name, value]) => element('tr', {}, cell(name, true), element('td', {class: 'text'}, element('code', {}, value)))))));
+  if (section.scene_text) place.append(element('h3', {}, 'The scene as written'), element('pre', {tabindex: '0'}, section.scene_text));
+  if (section.scene_resolved) place.append(element('h3', {}, 'The scene with all defaults and settings'), element('pre', {tabindex: '0'}, section.scene_resolved));
+  return place;
+}

@@ -1,0 +1,56 @@
+// Any file of results, read by what stands in it.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace stridor {
+
+/// An array of numbers in a file of results.
+struct ResultArray {
+  std::string path;                ///< "/eigenvalues/growth"
+  std::vector<std::size_t> shape;  ///< the last extent is contiguous
+  std::string units;               ///< empty where the file gives none
+};
+
+/// Reads files of all verbs (docs/files.md).
+class ResultFile {
+ public:
+  using Values = std::map<std::string, std::variant<std::string, double>>;
+
+  /// @throws FileError if the file is missing, unreadable, not HDF5, damaged or truncated
+  explicit ResultFile(const std::string& path);
+  ~ResultFile();
+  ResultFile(ResultFile&&) noexcept;
+  ResultFile& operator=(ResultFile&&) noexcept;
+
+  const std::string& path() const;
+  /// What the file holds: attribute `kind`; "run" of run files; empty where it does not say.
+  std::string kind() const;
+  /// Attributes of the root that are a text or one number.
+  const Values& attributes() const;
+  /// One of them that is a text; empty where there is none.
+  std::string text(const std::string& name) const;
+
+  /// All arrays of numbers, by path.
+  const std::vector<ResultArray>& arrays() const;
+  bool has(const std::string& path) const;
+  /// @throws FileError if there is no such array
+  const ResultArray& array(const std::string& path) const;
+  /// The numbers of an array.
+  /// @param rank how many extents are expected
+  /// @throws FileError naming the dataset if it is missing, of another rank, or cannot be read
+  std::vector<double> read(const std::string& path, std::size_t rank = 1) const;
+  /// Names of the groups and arrays in a group, in alphabetical order; none where it is missing.
+  std::vector<std::string> names_in(const std::string& group) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace stridor

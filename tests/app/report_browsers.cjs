@@ -1,0 +1,224 @@
+// Reports opened in Chromium (playwright-core) and Firefox (puppeteer-core): what they show, and that they
+// ask nothing of the network. Both browsers are those of Debian. Exits with 77 where something is missing.
+'use strict';
+const {execFileSync} = require('child_process');
+const fs = require('fs');
+const os = require('os');
+const path = require('path');
+const assert = require('assert/strict');
+
+const skipped = why => { console.log(`skipped: ${why}`); process.exit(77); };
+const load = name => { try { return require(name); } catch { return skipped(`no ${name} (NODE_PATH)`); } };
+const found = names => names.find(name => fs.existsSync(name)) || skipped(`none of ${names.join(', ')}`);
+const {chromium} = load('playwright-core');
+const puppeteer = load('puppeteer-core');
+const chromiumPath = found(['/usr/bin/chromium']);
+const firefoxPath = found(['/usr/bin/firefox-esr', '/usr/bin/firefox']);
+const program = process.env.STRIDOR_PROGRAM;
+const source = process.env.STRIDOR_SOURCE_DIR;
+
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'stridor-report-'));
+process.on('exit', () => fs.rmSync(folder, {recursive: true, force: true}));
+const at = name => path.join(folder, name);
+const stridor = (...words) => execFileSync(program, words, {encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'], maxBuffer: 1 << 28});
+
+const beams = path.join(source, 'scenes/beam_on_beam.yaml');
+stridor('run', beams, '-o', at('run.h5'));
+stridor('locus', beams, '--from', '30mm', '--to', '98mm', '--points', '137', '--about', 'deformed', '-o', at('locus.h5'));
+stridor('report', at('run.h5'), at('locus.h5'), '-o', at('beams.html'));
+stridor('run', path.join(source, 'scenes/examples/meshed_disc.yaml'), '-o', at('disc.h5'));
+stridor('report', at('disc.h5'), '-o', at('disc.html'));
+stridor('map', path.join(source, 'scenes/viscoelastic_sphere.yaml'), '--x', 'parameters.v', '1e-3', '1', '9', '--y', 'parameters.tau0', '1e-3', '1', '7', '--scale', 'log', '-o', at('map.h5'));
+stridor('report', at('map.h5'), '-o', at('map.html'));
+const info = JSON.parse(stridor('info', at('run.h5'), '--json'));
+
+// How many colours a canvas shows: a blank one has one.
+const coloursOf = `canvas => {
+  const copy = document.createElement('canvas');
+  copy.width = canvas.width; copy.height = canvas.height;
+  const context = copy.getContext('2d');
+  context.drawImage(canvas, 0, 0);
+  return new Set(new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer)).size;
+}`;
+const url = (name, hash = '#all') => `file://${at(name)}${hash}`;
+const near = (a, b, share) => assert.ok(Math.abs(a - b) <= share * Math.abs(b), `${a} is not ${b}`);
+
+function sameAsTheFile(check) {
+  assert.deepEqual(check.bursts, info.bursts.map(burst => burst.frequency));
+  assert.ok(check.peaks.length >= 3);
+}
+
+async function opened(browser, name, messages, requests, options = {}, hash = '#all') {
+  const page = await browser.newPage({viewport: {width: 1200, height: 900}, ...options});
+  page.on('console', message => messages.push(message.text()));
+  page.on('pageerror', error => messages.push(String(error.stack)));
+  page.on('request', request => requests.push(request.url()));
+  await page.goto(url(name, hash));
+  await page.waitForFunction(() => document.documentElement.dataset.ready === 'yes', null, {timeout: 60000});
+  return page;
+}
+
+async function inChromium() {
+  const browser = await chromium.launch({executablePath: chromiumPath, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic', '--autoplay-policy=no-user-gesture-required']});
+  const messages = [], requests = [];
+  const page = await opened(browser, 'beams.html', messages, requests);
+  sameAsTheFile(JSON.parse(await page.evaluate(() => document.documentElement.dataset.check)));
+
+  // Every canvas shows something.
+  for (const canvas of await page.$$('canvas')) {
+    if (await canvas.isVisible()) assert.ok(await canvas.evaluate(eval(coloursOf)) > 2, 'a canvas is blank');
+  }
+
+  // The pointer on a burst in the spectrogram tells its frequency.
+  const burst = info.bursts[info.bursts.length - 1];
+  await page.evaluate(() => [...document.querySelectorAll('div')].find(d => d.spectrogram).scrollIntoView({block: 'center'}));
+  const spot = await page.evaluate(([moment, hertz]) => {
+    const chart = [...document.querySelectorAll('div')].find(d => d.spectrogram).spectrogram;
+    const box = chart.canvas.getBoundingClientRect();
+    return [box.left + chart.px(moment), box.top + chart.py(hertz)];
+  }, [0.5 * (burst.start + burst.end), burst.frequency]);
+  await page.mouse.move(...spot);
+  const told = await page.evaluate(() => [...document.querySelectorAll('div')].find(d => d.spectrogram).spectrogram.readout.textContent);
+  assert.match(told, /burst \d+: [\d.]+ k?Hz/);
+  assert.match(told, /dB/);
+
+  // A drag zooms all views to the same stretch, Back returns.
+  const drag = await page.evaluate(() => {
+    const box = [...document.querySelectorAll('div')].find(d => d.spectrogram).spectrogram.canvas.getBoundingClientRect();
+    return [box.left + 0.5 * box.width, box.left + 0.7 * box.width, box.top + 0.5 * box.height];
+  });
+  await page.mouse.move(drag[0], drag[2]);
+  await page.mouse.down();
+  await page.mouse.move(drag[1], drag[2], {steps: 4});
+  await page.mouse.up();
+  const views = await page.evaluate(() => {
+    const run = report.sections[0].run;
+    const diagram = [...document.querySelectorAll('div')].find(d => d.diagram).diagram;
+    return {from: run.view.from, to: run.view.to, low: diagram.scales.x.min, high: diagram.scales.x.max, all: run.view.last};
+  });
+  assert.ok(views.to - views.from < 0.5 * views.all && views.to > views.from);
+  near(views.low, views.from, 1e-9);
+  near(views.high, views.to, 1e-9);
+  await page.getByRole('button', {name: 'Back'}).first().click();
+  assert.ok(await page.evaluate(() => report.sections[0].run.view.to - report.sections[0].run.view.from) > 0.9 * views.all);
+
+  // Below one sample per pixel the very samples are drawn.
+  const shownSamples = await page.evaluate(() => {
+    const run = report.sections[0].run;
+    run.view.set(1.9, 1.904);
+    const place = [...document.querySelectorAll('div')].find(d => d.diagram);
+    return [Array.from(place.diagram.data[0]), Array.from(place.diagram.data[1])];
+  });
+  const python = `
+import h5py, json
+f = h5py.File(${JSON.stringify(at('run.h5'))}, 'r')
+name = '/channels/${info.results['free_end_acceleration.channel']}'
+t = f['/time'][()]; keep = (t >= 1.8999) & (t <= 1.9041)
+print(json.dumps([t[keep].tolist(), f[name][()][keep].tolist()]))`;
+  let recorded = null;
+  try { recorded = JSON.parse(execFileSync('/usr/bin/python3', ['-c', python], {encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore']})); } catch { console.log('no h5py: samples not compared'); }
+  if (recorded) {
+    const scale = await page.evaluate(() => scaleFor(report.sections[0].views.find(v => v.type === 'histories').series[0].max, 'm/s^2')[0]);
+    let compared = 0;
+    shownSamples[0].forEach((moment, i) => {
+      const k = recorded[0].findIndex(t => Math.abs(t - moment) < 1e-7);
+      if (k < 0) return;
+      assert.ok(Math.abs(shownSamples[1][i] * scale - recorded[1][k]) < 1e-4, `sample at ${moment}`);
+      ++compared;
+    });
+    assert.ok(compared > 300, `${compared} samples`);
+  }
+
+  // A row of the table, by the keyboard, moves all views to the burst.
+  await page.locator('tr[tabindex]').first().focus();
+  await page.keyboard.press('Enter');
+  const first = await page.evaluate(() => ({from: report.sections[0].run.view.from, to: report.sections[0].run.view.to, moment: report.sections[0].run.view.moment}));
+  assert.ok(first.from < info.bursts[0].start && first.to > info.bursts[0].end && first.to - first.from < 1);
+  assert.ok(first.moment > info.bursts[0].start && first.moment < info.bursts[0].end);
+
+  // The slider moves the markers, the shape and the moment of the run.
+  const place = () => page.evaluate(() => {
+    const mesh = [...document.querySelectorAll('div')].find(d => d.mesh).mesh;
+    return {value: report.sections[1].place.value, moment: report.sections[0].run.view.moment, middle: mesh.places[3 * mesh.parts[1].first]};
+  });
+  await page.getByRole('button', {name: 'Pause'}).click();
+  const slider = page.locator('input[type=range][aria-label="contact.start"]').first();
+  await slider.fill('100');
+  await page.waitForTimeout(200);
+  const before = await place();
+  await slider.fill('900');
+  await page.waitForTimeout(300);
+  const after = await place();
+  near(after.value, 0.03 + 0.9 * 0.068, 1e-3);
+  assert.ok(after.moment > before.moment + 1);
+  assert.ok(after.middle - before.middle > 0.03, 'the sliding body moves with the slider');
+
+  // The hover of the locus names the branch.
+  const branch = await page.evaluate(() => {
+    const plane = [...document.querySelectorAll('div')].find(d => d.locus).locus.plane;
+    plane.canvas.scrollIntoView({block: 'center'});
+    const box = plane.canvas.getBoundingClientRect();
+    const one = [...document.querySelectorAll('div')].find(d => d.locus).locus.branches.find(b => b.frequency[0] > 3000 && b.frequency[0] < 4000);
+    return [box.left + plane.px(one.growth[0]), box.top + plane.py(one.frequency[0])];
+  });
+  await page.mouse.move(...branch);
+  assert.match(await page.evaluate(() => [...document.querySelectorAll('div')].find(d => d.locus).locus.plane.readout.textContent), /branch \d+ at contact.start = .*kHz, growth/);
+
+  // Sound: a tone comes through at its level, and what is shown is played.
+  const tone = await page.evaluate(() => {
+    const {resampled} = [...document.querySelectorAll('div')].find(d => d.sound).sound;
+    const samples = Float64Array.from({length: 4000}, (_, i) => Math.sin(2 * Math.PI * 0.05 * i));
+    const heard = resampled(samples, 0.48);
+    let off = 0;
+    for (let i = 200; i < heard.length - 200; ++i) off = Math.max(off, Math.abs(heard[i] - Math.sin(2 * Math.PI * 0.05 * i / 0.48)));
+    return off;
+  });
+  assert.ok(tone < 1e-2, `resampled tone off by ${tone}`);
+  await page.getByRole('button', {name: 'Play what is shown'}).click();
+  await page.waitForFunction(() => /loudest/.test([...document.querySelectorAll('div')].find(d => d.sound).textContent), null, {timeout: 20000});
+  await page.close();
+
+  // Narrow, dark, in space, a map.
+  for (const name of ['beams.html', 'disc.html', 'map.html']) {
+    const narrow = await opened(browser, name, messages, requests, {viewport: {width: 400, height: 800}, colorScheme: 'dark'});
+    assert.ok(await narrow.evaluate(() => document.documentElement.scrollWidth) <= 400, `${name} is wider than 400 px`);
+    assert.equal(await narrow.evaluate(() => getComputedStyle(document.body).backgroundColor), 'rgb(20, 23, 28)');
+    await narrow.close();
+  }
+  const disc = await opened(browser, 'disc.html', messages, requests);
+  assert.ok(await disc.evaluate(() => !![...document.querySelectorAll('div')].find(d => d.mesh).mesh.gl), 'WebGL 2 is used where it is');
+  assert.ok(await disc.evaluate(`(${coloursOf})([...document.querySelectorAll('div')].find(d => d.mesh).mesh.canvas)`) > 10);
+  await disc.close();
+  const map = await opened(browser, 'map.html', messages, requests);
+  await map.evaluate(() => [...document.querySelectorAll('div')].find(d => d.field).field.chart.click(0.03, 0.03));
+  assert.match(await map.evaluate(() => document.body.textContent), /Repeat it with stridor eig .*viscoelastic_sphere.yaml --set parameters.v=0.03\d* --set parameters.tau0=0.03/);
+  await map.close();
+
+  // Not everything is unpacked at once.
+  const lazy = await opened(browser, 'beams.html', messages, requests, {}, '');
+  assert.ok(await lazy.evaluate(() => waiting.size) > 0);
+  await lazy.close();
+  assert.deepEqual(messages, []);
+  for (const one of requests) assert.match(one, /^(file|blob):/);
+  await browser.close();
+}
+
+async function inFirefox() {
+  const browser = await puppeteer.launch({browser: 'firefox', executablePath: firefoxPath, headless: true});
+  const errors = [];
+  for (const name of ['beams.html', 'disc.html', 'map.html']) {
+    const page = await browser.newPage();
+    page.on('pageerror', error => errors.push(String(error)));
+    await page.goto(url(name));
+    await page.waitForFunction(() => document.documentElement.dataset.ready === 'yes', {timeout: 60000});
+    if (name === 'beams.html') sameAsTheFile(JSON.parse(await page.evaluate(() => document.documentElement.dataset.check)));
+    const colours = await page.evaluate(`[...document.querySelectorAll('canvas')].filter(c => c.clientWidth && c.isConnected).map(${coloursOf})`);
+    assert.ok(colours.length >= 2 && colours.every(count => count > 2), `${name}: ${colours}`);
+    await page.close();
+  }
+  assert.deepEqual(errors, []);
+  await browser.close();
+}
+
+inChromium().then(() => console.log('Chromium: met')).then(inFirefox).then(() => console.log('Firefox: met'))
+  .then(() => process.exit(0), error => { console.error(error); process.exit(1); });

@@ -1,0 +1,247 @@
+// Pages that the program makes of files of results, and its messages where it cannot.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "tests/app/pictures_fixture.hpp"
+#include "tests/support/report_blocks.hpp"
+
+namespace stridor {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Json = nlohmann::json;
+
+/// The view of a type in a section; null where there is none.
+Json view_of(const Json& section, const std::string& type) {
+  for (const Json& view : section["views"])
+    if (view["type"] == type) return view;
+  return nullptr;
+}
+
+class ReportProgram : public Pictures {
+ protected:
+  static ProgramResult report(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "report");
+    return Program(arguments).run();
+  }
+  /// Expects success. @return the page
+  std::string page_of(std::vector<std::string> arguments, const std::string& name = "page.html") const {
+    arguments.insert(arguments.end(), {"-o", path(name)});
+    const ProgramResult result = report(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return contents_of(path(name));
+  }
+  static std::string scene(const std::string& name) {
+    return std::string(STRIDOR_SOURCE_DIR) + "/scenes/" + name;
+  }
+  /// Runs a verb that writes a file. @return the file
+  std::string made(std::vector<std::string> arguments, const std::string& name) const {
+    arguments.insert(arguments.end(), {"-o", path(name)});
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return path(name);
+  }
+};
+
+TEST_F(ReportProgram, ARunIsShownWithItsVerdictBurstsAndSamples) {
+  const std::string page = page_of({make_run()});
+  const Json contents = contents_of_report(page);
+  ASSERT_EQ(contents["sections"].size(), 1u);
+  const Json& section = contents["sections"][0];
+  EXPECT_EQ(section["kind"], "run");
+  EXPECT_EQ(section["verdict"]["level"], "failed");  // nothing in the file says that it ended
+  EXPECT_THAT(section["verdict"]["text"].get<std::string>(), HasSubstr("1 burst"));
+  EXPECT_EQ(section["scene_text"], "format: 2\n");
+  const Json bursts = view_of(section, "bursts")["bursts"];
+  ASSERT_EQ(bursts.size(), 1u);
+  EXPECT_EQ(bursts[0]["frequency"], tone);
+  const Json histories = view_of(section, "histories");
+  ASSERT_EQ(histories["series"].size(), 4u);
+  EXPECT_EQ(histories["time"]["count"], num_rows);
+  EXPECT_NEAR(histories["time"]["step"].get<double>(), interval, 1e-12);
+  for (const Json& series : histories["series"]) {
+    const std::string name = series["name"];
+    const std::string place =
+        name == "contact.force" ? "/contact/contact/force" : "/channels/" + name;
+    const std::vector<double> samples = numbers_of(page, series["samples"]);
+    ASSERT_EQ(samples.size(), num_rows);
+    const double bound = (series["max"].get<double>() - series["min"].get<double>()) / 1.3e5 + 1e-15;
+    for (std::size_t i = 0; i < num_rows; ++i)
+      ASSERT_NEAR(samples[i], value_at(place, static_cast<double>(i) * interval), bound) << name;
+  }
+}
+
+// The loudest level stands where the tone is; the levels are peak amplitudes over 1 µm/s².
+TEST_F(ReportProgram, TheSpectrogramHasTheToneAtItsPlace) {
+  const std::string page = page_of({make_run()});
+  const Json contents = contents_of_report(page);
+  const Json view = view_of(contents["sections"][0], "spectrogram");
+  ASSERT_FALSE(view.is_null());
+  const std::vector<double> levels = numbers_of(page, view["levels"]);
+  const auto lines = view["frequency"]["count"].get<std::size_t>();
+  const auto most = static_cast<std::size_t>(std::max_element(levels.begin(), levels.end()) - levels.begin());
+  EXPECT_EQ(levels[most], 255.0);
+  const auto centre = [&](const char* axis, std::size_t i) {
+    return view[axis]["from"].get<double>() + (static_cast<double>(i) + 0.5) * view[axis]["step"].get<double>();
+  };
+  EXPECT_NEAR(centre("frequency", most % lines), tone, view["frequency"]["step"].get<double>());
+  EXPECT_GT(centre("time", most / lines), 0.2);
+  EXPECT_LT(centre("time", most / lines), 0.3);
+  // Half-way between two lines a tone under Hann's window reads 1.42 dB too low.
+  const double level = 20.0 * std::log10(2.0 / 1e-6);
+  EXPECT_LT(view["top"].get<double>(), level + 0.05);
+  EXPECT_GT(view["top"].get<double>(), level - 1.45);
+}
+
+TEST_F(ReportProgram, BeyondTheBudgetThereAreExtremesAndThePageSaysSo) {
+  RunContents contents;
+  contents.rows = 200000;
+  const std::string run = make_run(contents);
+  const std::string small = page_of({run, "--budget", "600kB"}, "small.html");
+  EXPECT_LE(small.size(), 700000u);
+  const Json view = view_of(contents_of_report(small)["sections"][0], "histories");
+  const auto factor = view["series"][0]["factor"].get<std::size_t>();
+  ASSERT_GT(factor, 1u);
+  EXPECT_THAT(view["note"].get<std::string>(), HasSubstr("--full"));
+  const std::vector<double> pairs = numbers_of(small, view["series"][0]["samples"]);
+  ASSERT_EQ(pairs.size(), 2 * ((contents.rows + factor - 1) / factor));
+  const auto [least, most] = std::minmax_element(pairs.begin(), pairs.end());
+  EXPECT_NEAR(*least, view["series"][0]["min"].get<double>(), 1e-4);
+  EXPECT_NEAR(*most, view["series"][0]["max"].get<double>(), 1e-4);
+  const std::string full = page_of({run, "--budget", "600kB", "--full"}, "full.html");
+  EXPECT_EQ(view_of(contents_of_report(full)["sections"][0], "histories")["series"][0]["factor"], 1);
+}
+
+TEST_F(ReportProgram, TwoCallsGiveEqualBytes) {
+  const std::string run = make_run();
+  const std::string first = page_of({run, "--force"});
+  EXPECT_EQ(page_of({run, "--force"}), first);
+}
+
+// The scene slides over half of its way, where the locus has windows; both are in one page.
+TEST_F(ReportProgram, ALocusIsSetBesideTheRunOfItsScene) {
+  const std::string beams = scene("beam_on_beam.yaml");
+  const std::string locus = made({"locus", beams, "--from", "88mm", "--to", "95mm", "--points", "36", "--about", "deformed"}, "locus.h5");
+  const std::string run = made({"run", beams}, "run.h5");
+  const std::string page = page_of({run, locus});
+  const Json contents = contents_of_report(page);
+  ASSERT_EQ(contents["sections"].size(), 2u);
+  const Json predicted = view_of(contents["sections"][0], "bursts")["predicted"];
+  ASSERT_GE(predicted.size(), 2u);
+  EXPECT_TRUE(std::any_of(predicted.begin(), predicted.end(), [](const Json& row) { return !row["burst"].is_null(); }));
+  EXPECT_TRUE(view_of(contents["sections"][0], "modes").is_null());  // they are with the locus
+  const Json& expectations = contents["sections"][0]["expectations"];
+  EXPECT_FALSE(expectations.empty());
+  for (const Json& row : expectations) EXPECT_TRUE(row["is_met"].get<bool>()) << row;
+
+  const Json modes = view_of(contents["sections"][1], "modes");
+  ASSERT_FALSE(modes.is_null());
+  EXPECT_TRUE(modes["planar"].get<bool>());
+  ASSERT_GE(modes["frames"].size(), 8u);
+  const Json& frame = modes["frames"][0];
+  EXPECT_EQ(frame["value"], 0.088);
+  const auto nodes = modes["nodes"].get<std::size_t>();
+  EXPECT_EQ(numbers_of(page, frame["places"]).size(), 3 * nodes);
+  const std::vector<double> moved = numbers_of(page, frame["displacements"]);
+  ASSERT_EQ(moved.size(), 6 * nodes * frame["modes"].size());
+  // Every mode is scaled to a largest displacement of 1.
+  for (std::size_t m = 0; m < frame["modes"].size(); ++m) {
+    const auto begin = moved.begin() + static_cast<std::ptrdiff_t>(6 * nodes * m);
+    const auto end = begin + static_cast<std::ptrdiff_t>(3 * nodes);
+    EXPECT_NEAR(std::max(*std::max_element(begin, end), -*std::min_element(begin, end)), 1.0, 1e-3);
+  }
+  // The modes are those that `eig` finds there.
+  const Json eig = json_of({"eig", beams, "--at", "88mm", "--about", "deformed"});
+  for (const Json& one : eig["eigenvalues"]) {
+    const double frequency = one[1].get<double>() / (2.0 * std::numbers::pi);
+    if (frequency <= 0.0) continue;
+    EXPECT_TRUE(std::any_of(frame["modes"].begin(), frame["modes"].end(), [&](const Json& mode) {
+      return std::abs(mode["frequency"].get<double>() - frequency) < 1e-6 * frequency;
+    })) << frequency;
+  }
+}
+
+TEST_F(ReportProgram, ALocusOfAnotherSceneIsNotSetBesideARun) {
+  const std::string locus =
+      made({"locus", scene("beam_on_beam.yaml"), "--from", "90mm", "--to", "93mm", "--points", "7", "--about", "deformed"}, "locus.h5");
+  const Json contents = contents_of_report(page_of({make_run(), locus, "--no-shapes"}));
+  const Json& section = contents["sections"][0];
+  ASSERT_EQ(section["remarks"].size(), 1u);
+  EXPECT_THAT(section["remarks"][0].get<std::string>(), HasSubstr("is of another scene"));
+  EXPECT_TRUE(view_of(section, "bursts")["predicted"].empty());
+}
+
+TEST_F(ReportProgram, EveryKindOfFileHasASection) {
+  const std::string belt = scene("examples/mass_on_belt.yaml");
+  const std::string sphere = scene("viscoelastic_sphere.yaml");
+  const std::string reed = scene("examples/reed.yaml");
+  const std::vector<std::pair<std::string, std::string>> files{
+      {made({"map", sphere, "--x", "parameters.v", "1e-3", "1", "4", "--y", "parameters.tau0", "1e-3", "1", "3"}, "map.h5"), "field"},
+      {made({"sweep", sphere, "--set", "parameters.v=0.03", "--parameter", "parameters.tau0", "--from", "0.01", "--to", "0.1", "--points", "3"}, "sweep.h5"), "curves"},
+      {made({"cycle", sphere}, "cycle.h5"), "histories"},
+      {made({"frf", reed, "--input", "reed.middle.y", "--output", "reed.tip.y.displacement", "--from", "100Hz", "--to", "2kHz", "--points", "50"}, "frf.h5"), "curves"},
+      {made({"contact", scene("viscoelastic_contact.yaml"), "--speed", "0.1,1", "--indentation", "0.01", "--set", "contacts.tip.normal.solver.grid=32"}, "contact.h5"), "field"}};
+  std::vector<std::string> arguments;
+  for (const auto& file : files) arguments.push_back(file.first);
+  const std::string page = page_of(arguments);
+  const Json contents = contents_of_report(page);
+  ASSERT_EQ(contents["sections"].size(), files.size());
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const Json& section = contents["sections"][i];
+    EXPECT_FALSE(view_of(section, files[i].second).is_null()) << section["kind"];
+    EXPECT_FALSE(section["verdict"]["text"].get<std::string>().empty());
+    EXPECT_THAT(section["command"].get<std::string>(), HasSubstr("stridor"));
+  }
+  const Json map = view_of(contents["sections"][0], "field");
+  EXPECT_EQ(numbers_of(page, map["value"]["values"]).size(), 12u);
+  EXPECT_THAT(map["reproduce"].get<std::string>(), HasSubstr("--set parameters.v=@X@"));
+}
+
+TEST_F(ReportProgram, SaysWhyThereAreNoShapes) {
+  const std::string page = page_of({make_run()});
+  const Json contents = contents_of_report(page);
+  const Json& remarks = contents["sections"][0]["remarks"];
+  ASSERT_EQ(remarks.size(), 1u);
+  EXPECT_THAT(remarks[0].get<std::string>(), HasSubstr("No shapes of modes: "));
+}
+
+TEST_F(ReportProgram, AKilledRunIsShownAsFarAsItGot) {
+  RunContents contents;
+  contents.has_bursts = false;
+  contents.rows = 100;
+  const ProgramResult result = report({make_run(contents), "-o", path("page.html")});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("Has not ended, or was killed; rows up to 9.9 ms"));
+}
+
+TEST_F(ReportProgram, RefusesWhatIsNoFileOfResults) {
+  const std::string run = make_run();
+  const auto refused = [](const ProgramResult& result, int code, const std::string& message) {
+    EXPECT_EQ(result.exit_code, code) << result.out;
+    EXPECT_THAT(result.err, HasSubstr(message));
+  };
+  refused(report({run, "-o", path("page.png")}), 2, "does not end in .html");
+  refused(report({path("missing.h5"), "-o", path("page.html")}), 4, "cannot be opened");
+  refused(report({scene("beam_on_beam.yaml"), "-o", path("page.html")}), 4, "is not an HDF5 file");
+  refused(report({run, "-o", path("page.html"), "--budget", "20kB"}), 2, "give at least 300kB");
+  refused(report({run, "-o", path("page.html"), "--budget", "much"}), 2, "--budget");
+  refused(report({run, "-o", path("page.html"), "--channel", "nothing"}), 2, "nothing");
+  edit(run, [](hid_t file) { H5Adelete(file, "format"); });
+  refused(report({run, "-o", path("page.html")}), 4, "is no file of results");
+  EXPECT_FALSE(exists("page.html"));
+  page_of({make_run({}, "other.h5")});
+  refused(report({path("other.h5"), "-o", path("page.html")}), 4, "exists; use --force to overwrite it");
+}
+
+}  // namespace
+}  // namespace stridor
