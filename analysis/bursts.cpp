@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/burst_growth.hpp"
 #include "analysis/quiet_level.hpp"
-#include "analysis/spectrogram.hpp"
+#include "analysis/ridges.hpp"
 #include "analysis/vibration_blocks.hpp"
-#include "core/fft_plan.hpp"
 
 namespace stridor {
 namespace {
@@ -101,108 +101,6 @@ class SwellFinder {
   std::vector<Swell> swells_;
 };
 
-/// Growth of an envelope, not counted below a floor, within the measured part of a signal.
-struct Slopes {
-  IndexRange measured;
-  double interval;
-  double floor;
-
-  /// Over i − half … i + half, as far as that is measured; 1/s.
-  double at(const VibrationPiece& piece, std::size_t i, std::size_t half) const {
-    const std::size_t left = i < measured.begin + half ? measured.begin : i - half;
-    const std::size_t right = std::min(i + half, measured.end - 1);
-    if (left == right) return -std::numeric_limits<double>::infinity();
-    return std::log(std::max(piece.envelope(right), floor) /
-                    std::max(piece.envelope(left), floor)) /
-           (static_cast<double>(right - left) * interval);
-  }
-};
-
-struct Rise {
-  std::size_t at;
-  double slope;  ///< 1/s
-};
-
-Rise steepest_rise(VibrationBlocks& vibration, IndexRange range, std::size_t half,
-                   const Slopes& slopes) {
-  Rise steepest{range.end - 1, -std::numeric_limits<double>::infinity()};
-  vibration.for_each(range, [&](const VibrationPiece& piece, IndexRange part) {
-    for (std::size_t i = part.begin; i < part.end; ++i) {
-      const double slope = slopes.at(piece, i, half);
-      if (slope > steepest.slope) steepest = {i, slope};
-    }
-  });
-  return steepest;
-}
-
-/// The band in which a vibration can grow and change its frequency within T/2.
-Band own_band(double frequency, double interval, double smoothing) {
-  const double width = 2.0 / smoothing;
-  const double nyquist = 0.5 / interval;
-  return {std::max(frequency - width, 0.5 * frequency),
-          std::min(frequency + width, 0.5 * (frequency + nyquist))};
-}
-
-struct Growth {
-  double steepest;  ///< 1/s
-  double gain;
-};
-
-/// Growth of the envelope of a burst's own frequency. Its steepest rise is sought in `rising`,
-/// where the burst is stronger than anything else in the band; it sets in where, going back from
-/// there, half of that is left.
-/// @param end the last sample of the burst
-Growth growth_of(VibrationBlocks& own, IndexRange rising, std::size_t end, std::size_t half,
-                 const Slopes& slopes) {
-  const Rise rise = steepest_rise(own, rising, 2 * half, slopes);
-  std::size_t onset = rise.at;
-  while (onset > slopes.measured.begin && slopes.at(own.at(onset), onset, half) > 0.5 * rise.slope)
-    --onset;
-  const double before = own.at(onset).envelope(onset);
-  double largest = before;
-  own.for_each({onset, end + 1}, [&](const VibrationPiece& piece, IndexRange part) {
-    for (const double e : piece.envelope(part)) largest = std::max(largest, e);
-  });
-  return {rise.slope, std::log(largest / std::max(before, slopes.floor))};
-}
-
-/// Frequency of the strongest line in the band around a sample of the whole signal.
-double dominant_frequency(VibrationBlocks& vibration, const BurstParameters& parameters,
-                          std::size_t at) {
-  const double interval = vibration.interval();
-  const double duration = std::max(2.0 * parameters.smoothing, 8.0 / parameters.band.lower);
-  const std::size_t wanted = 2 * half_width(interval, duration);
-  const std::size_t length = std::min(std::max<std::size_t>(wanted, 2), vibration.size());
-  const std::size_t begin =
-      std::min(at < length / 2 ? 0 : at - length / 2, vibration.size() - length);
-  // Zeros to four times the length: the parabola through three lines is then good to 10⁻³ of the
-  // resolution 1/duration.
-  RealFft fft(fast_fft_length(4 * length));
-  const std::vector<double> window = make_window(WindowKind::hann, length);
-  vibration.for_each({begin, begin + length}, [&](const VibrationPiece& piece, IndexRange part) {
-    for (std::size_t i = part.begin; i < part.end; ++i)
-      fft.input()[i - begin] = window[i - begin] * piece.filtered(i);
-  });
-  fft.execute();
-
-  const auto lines = fft.output();
-  const double resolution = 1.0 / (static_cast<double>(fft.length()) * interval);
-  const auto lowest =
-      std::max<std::size_t>(1, static_cast<std::size_t>(parameters.band.lower / resolution));
-  const auto highest = std::min(
-      lines.size() - 2, static_cast<std::size_t>(std::ceil(parameters.band.upper / resolution)));
-  std::size_t best = lowest;
-  for (std::size_t k = lowest; k <= highest; ++k) {
-    if (std::norm(lines[k]) > std::norm(lines[best])) best = k;
-  }
-  const double left = std::log(std::norm(lines[best - 1]));
-  const double centre = std::log(std::norm(lines[best]));
-  const double right = std::log(std::norm(lines[best + 1]));
-  const double curvature = left - 2.0 * centre + right;
-  const double offset = curvature < 0.0 ? 0.5 * (left - right) / curvature : 0.0;
-  return resolution * (static_cast<double>(best) + std::clamp(offset, -0.5, 0.5));
-}
-
 /// The largest absolute sample of a signal. @throws std::invalid_argument unless all are finite
 double largest_of(const SampleSource& samples) {
   constexpr std::size_t at_a_time = std::size_t{1} << 16;
@@ -230,23 +128,31 @@ struct Measured {
   double time_at(std::size_t i) const {
     return first + static_cast<double>(i) * vibration.interval();
   }
-  double envelope(std::size_t i) const { return vibration.at(i).envelope(i); }
+};
+
+/// A sound from one of its minima to the next: where and in which band its burst is sought.
+struct Sound {
+  IndexRange range;
+  Band band;
+  double start_frequency;
+  double end_frequency;
 };
 
 /// Frequency, growth and gain of a burst from its rise.
+/// @param own the vibration in the band of the sound
 /// @param end its last sample
-void follow_growth(SignalBlocks& blocks, const Measured& measured, const Swell& swell,
-                   std::size_t end, Burst& burst) {
+void follow_growth(SignalBlocks& blocks, const Measured& measured, const Sound& sound,
+                   VibrationBlocks& own, const Swell& swell, std::size_t end, Burst& burst) {
   const double interval = blocks.interval();
   const double smoothing = measured.parameters.smoothing;
   const std::size_t half = half_width(interval, smoothing);
   const IndexRange rising{swell.crossing, swell.high + 1};
-  const Rise rise = steepest_rise(measured.vibration, rising, 2 * half,
-                                  {measured.range, interval, measured.level.rms});
-  burst.frequency = dominant_frequency(measured.vibration, measured.parameters, rise.at);
-  const Band own = own_band(burst.frequency, interval, smoothing);
-  VibrationBlocks vibration(blocks, {measured.parameters.band, own}, 0.5 * smoothing);
-  const Growth growth = growth_of(vibration, rising, end, half,
+  const Rise rise =
+      steepest_rise(own, rising, 2 * half, {measured.range, interval, measured.level.rms});
+  burst.frequency = dominant_frequency(own, measured.parameters, sound.band, rise.at);
+  const Band band = own_band(burst.frequency, burst.frequency, interval, smoothing);
+  VibrationBlocks narrow(blocks, {measured.parameters.band, band}, 0.5 * smoothing);
+  const Growth growth = growth_of(narrow, rising, end, half,
                                   {measured.range, interval, rounding_level * measured.largest});
   burst.growth = growth.steepest;
   burst.gain = growth.gain;
@@ -254,13 +160,22 @@ void follow_growth(SignalBlocks& blocks, const Measured& measured, const Swell& 
 
 /// The burst of a swell; nothing where it is too short.
 /// @param limit the last sample that it may have
-std::optional<Burst> burst_of(SignalBlocks& blocks, const Measured& measured, const Swell& swell,
-                              std::size_t limit) {
-  const double edge = std::numbers::sqrt2 * swell.before;
+std::optional<Burst> burst_of(SignalBlocks& blocks, const Measured& measured, const Sound& sound,
+                              VibrationBlocks& own, const Swell& swell, std::size_t limit) {
+  const auto envelope = [&](std::size_t i) { return own.at(i).envelope(i); };
+  // What is in the band besides adds its power to that of the burst.
+  double beside = swell.before;
+  const std::size_t lately =
+      16 * half_width(measured.vibration.interval(), measured.parameters.smoothing);
+  const std::size_t from = swell.low - std::min(lately, swell.low - measured.range.begin);
+  own.for_each({from, swell.low + 1}, [&](const VibrationPiece& piece, IndexRange part) {
+    for (const double e : piece.envelope(part)) beside = std::min(beside, e);
+  });
+  const double edge = std::hypot(swell.before, beside);
   std::size_t start = swell.crossing;
-  while (start > swell.low && measured.envelope(start) > edge) --start;
+  while (start > swell.low && envelope(start) > edge) --start;
   std::size_t end = swell.high;
-  while (end < limit && measured.envelope(end) > edge) ++end;
+  while (end < limit && envelope(end) > edge) ++end;
 
   Burst burst{};
   burst.start = measured.time_at(start);
@@ -268,7 +183,7 @@ std::optional<Burst> burst_of(SignalBlocks& blocks, const Measured& measured, co
   if (burst.end - burst.start < measured.parameters.minimum_duration) return std::nullopt;
   std::size_t highest = start;
   burst.peak = -1.0;
-  measured.vibration.for_each({start, end + 1}, [&](const VibrationPiece& piece, IndexRange part) {
+  own.for_each({start, end + 1}, [&](const VibrationPiece& piece, IndexRange part) {
     for (std::size_t i = part.begin; i < part.end; ++i) {
       const double value = std::abs(piece.filtered(i));
       if (value > burst.peak) {
@@ -278,23 +193,107 @@ std::optional<Burst> burst_of(SignalBlocks& blocks, const Measured& measured, co
     }
   });
   burst.peak_time = measured.time_at(highest);
-  follow_growth(blocks, measured, swell, end, burst);
+  burst.start_frequency = sound.start_frequency;
+  burst.end_frequency = sound.end_frequency;
+  follow_growth(blocks, measured, sound, own, swell, end, burst);
   return burst;
+}
+
+/// The loudest swell of a sound by its envelope at every sample, with where it must end.
+std::optional<Burst> burst_of(SignalBlocks& blocks, const Measured& measured, const Sound& sound) {
+  const QuietLevel& level = measured.level;
+  VibrationBlocks own(blocks, {measured.parameters.band, sound.band},
+                      measured.parameters.smoothing);
+  SwellFinder finder(sound.range.begin, level.rms, level.threshold / level.rms);
+  own.for_each(sound.range, [&](const VibrationPiece& piece, IndexRange part) {
+    finder.take(piece.envelope(part));
+  });
+  const std::vector<Swell> swells = std::move(finder).finish();
+  std::optional<Burst> loudest;
+  for (std::size_t j = 0; j < swells.size(); ++j) {
+    const std::size_t limit = j + 1 < swells.size() ? swells[j + 1].low : sound.range.end - 1;
+    const auto burst = burst_of(blocks, measured, sound, own, swells[j], limit);
+    if (burst && (!loudest || burst->peak > loudest->peak)) loudest = burst;
+  }
+  return loudest;
+}
+
+/// The parts of a ridge that may hold a burst each.
+/// @param hop   samples from one point to the next
+/// @param reach samples before and behind a ridge in which its sound may be heard
+std::vector<Sound> sounds_of(const Ridge& ridge, const Measured& measured, std::size_t hop,
+                             std::size_t reach) {
+  const QuietLevel& level = measured.level;
+  // Levels of short spectra scatter, and their pieces are longer than T: the envelope decides.
+  const double ratio = std::max(1.2, 0.6 * level.threshold / level.rms);
+  const bool is_quiet_before = ridge.front().at >= measured.range.begin + hop;
+  std::vector<double> levels;
+  if (is_quiet_before) levels.push_back(level.rms);
+  for (const RidgePoint& point : ridge) levels.push_back(point.level);
+  SwellFinder swells(0, level.rms, ratio);
+  swells.take(levels);
+  const std::vector<Swell> found = std::move(swells).finish();
+  const auto point_of = [&](std::size_t i) {
+    return std::min(i - std::min<std::size_t>(i, is_quiet_before ? 1 : 0), ridge.size() - 1);
+  };
+  std::vector<Sound> sounds;
+  for (std::size_t j = 0; j < found.size(); ++j) {
+    const std::size_t first = point_of(found[j].low);
+    const bool is_last = j + 1 == found.size();
+    const std::size_t last = is_last ? ridge.size() - 1 : point_of(found[j + 1].low);
+    double lowest = ridge[first].frequency;
+    double highest = lowest;
+    for (std::size_t i = first; i <= last; ++i) {
+      lowest = std::min(lowest, ridge[i].frequency);
+      highest = std::max(highest, ridge[i].frequency);
+    }
+    // Before and behind a ridge the sound is there, though not above the floor.
+    const std::size_t before = found[j].low == 0 ? reach : 0;
+    const std::size_t behind = is_last ? reach : 0;
+    const std::size_t begin = ridge[first].at - std::min(before, ridge[first].at - measured.range.begin);
+    const std::size_t end = std::min(measured.range.end, ridge[last].at + behind + 1);
+    sounds.push_back({{begin, end},
+                      own_band(lowest, highest, measured.vibration.interval(),
+                               measured.parameters.smoothing),
+                      ridge[first].frequency,
+                      ridge[last].frequency});
+  }
+  return sounds;
+}
+
+/// Drops bursts that are at the same time as a louder one and nearer to it than bands tell apart.
+void keep_loudest(std::vector<Burst>& bursts, double smoothing) {
+  const std::vector<Burst> all = bursts;
+  std::erase_if(bursts, [&](const Burst& one) {
+    return std::any_of(all.begin(), all.end(), [&](const Burst& other) {
+      return other.peak > one.peak && other.start < one.end && one.start < other.end &&
+             std::abs(other.frequency - one.frequency) < 2.0 / smoothing;
+    });
+  });
 }
 
 std::vector<Burst> bursts_of(SignalBlocks& blocks, const Measured& measured) {
   const QuietLevel& level = measured.level;
   if (!(level.rms > 0.0) || !std::isfinite(level.threshold)) return {};
-  SwellFinder finder(measured.range.begin, level.rms, level.threshold / level.rms);
-  measured.vibration.for_each(measured.range, [&](const VibrationPiece& piece, IndexRange part) {
-    finder.take(piece.envelope(part));
-  });
-  const std::vector<Swell> swells = std::move(finder).finish();
+  RidgeFinder finder(blocks.interval(), measured.parameters.band, measured.parameters.smoothing,
+                     level.rms, measured.range, blocks.size());
+  measured.vibration.for_each(finder.needed(),
+                              [&](const VibrationPiece& piece, IndexRange part) {
+                                finder.take(piece.filtered(part));
+                              });
+  const std::size_t hop = finder.hop();
+  const std::size_t reach = hop + finder.half_piece();
+  const std::vector<Ridge> ridges = std::move(finder).finish();
   std::vector<Burst> bursts;
-  for (std::size_t j = 0; j < swells.size(); ++j) {
-    const std::size_t limit = j + 1 < swells.size() ? swells[j + 1].low : measured.range.end - 1;
-    if (const auto burst = burst_of(blocks, measured, swells[j], limit)) bursts.push_back(*burst);
+  for (const Ridge& ridge : ridges) {
+    for (const Sound& sound : sounds_of(ridge, measured, hop, reach)) {
+      if (const auto burst = burst_of(blocks, measured, sound)) bursts.push_back(*burst);
+    }
   }
+  keep_loudest(bursts, measured.parameters.smoothing);
+  std::sort(bursts.begin(), bursts.end(), [](const Burst& a, const Burst& b) {
+    return std::pair(a.start, a.frequency) < std::pair(b.start, b.frequency);
+  });
   return bursts;
 }
 

@@ -22,15 +22,17 @@ struct BurstParameters {
   double minimum_duration = 10.0e-3;  ///< s, of a burst from start to end, ≥ 0
 };
 
-/// A stretch in which the vibration grows, and dies out or is cut off.
+/// A stretch in which a sound grows, and dies out or is cut off.
 struct Burst {
   double start;      ///< s, where the envelope leaves √2 times the level before for good
   double end;        ///< s, where it is back there, at latest before the next burst
   double frequency;  ///< Hz, at the steepest rise
   double growth;     ///< 1/s, of ln envelope of its own frequency at the steepest rise
-  double peak;       ///< largest |band-passed value|
+  double peak;       ///< largest |value| in the band of its own frequencies
   double peak_time;  ///< s, of that value
   double gain;       ///< ln of the rise of the envelope of its own frequency
+  double start_frequency;  ///< Hz, where it was first heard: above the quiet level
+  double end_frequency;    ///< Hz, where it was heard last
 };
 
 /// Level that the envelope of a signal without bursts keeps to.
@@ -83,21 +85,23 @@ std::vector<double> burst_envelope(std::span<const double> samples, double inter
 QuietLevel find_quiet_level(std::span<const double> samples, double interval,
                             const BurstParameters& parameters, double first = 0.0);
 
-/// The bursts of a signal.
+/// The bursts of a signal, any number at the same time.
 ///
-/// With e the envelope (burst_envelope()), σ and θ of find_quiet_level() and c = max(e, σ): a burst
-/// is a rise of c from a minimum to a maximum by at least the factor θ/σ ≥ F, and hence above θ.
-/// Two maxima are two bursts if c falls between them by that factor below the lower one; else they
-/// are one. Since F ≥ 2, a dip of less than 6 dB never divides, and a fall to the quiet level
-/// always does if both maxima are bursts. Bursts of less than the minimum duration are dropped.
+/// With σ and θ of find_quiet_level(): sounds are the ridges of the signal above σ (RidgeFinder). Of each
+/// sound e is the envelope in the band of its own frequencies, from 2/T below the lowest to 2/T above
+/// the highest of them, and c = max(e, σ). A burst is a rise of c from a minimum to a maximum by at least
+/// the factor θ/σ ≥ F, and hence above θ. Two maxima are two bursts if c falls between them by that factor
+/// below the lower one; else they are one. Since F ≥ 2, a dip of less than 6 dB never divides, and a fall
+/// to the quiet level always does if both maxima are bursts. Bursts of less than the minimum duration are
+/// dropped, and those beside a louder one at the same time, nearer to it than 2/T.
 ///
 /// The level before, L, is the minimum of c before the rise: the quiet level, or what is left of
-/// the burst before. Start is the last time before the rise at which e ≤ √2 L, when the burst
-/// itself has become as strong as the level; end is the first time after the maximum at which e ≤
-/// √2 L, at latest the minimum before the next burst or the end of the measured window. Steepest
+/// the burst before; n is the minimum of e over 8 T before, at most L: what is in the own band besides. Start is the last time before the rise
+/// at which e² ≤ L² + n², when the burst itself has become as strong as the level; end is the first
+/// time after the maximum at which it is so again, at latest the minimum before the next burst or the end of the measured window. Steepest
 /// rise is the largest difference of ln e over 2 T, sought from where the envelope has risen by θ/σ
 /// to the maximum, so that the noise before does not count; the frequency f is that of the highest
-/// line in the band of the spectrum (Hann window of 2 T, at least 8 periods of band.lower, lines
+/// line in its own band of the spectrum (Hann window of 2 T, at least 8 periods of band.lower, lines
 /// interpolated) around that time.
 ///
 /// Growth and gain are those of the burst's own frequency, so that they do not depend on what else
@@ -107,7 +111,7 @@ QuietLevel find_quiet_level(std::span<const double> samples, double interval,
 /// of it. That leaves out what seeded the burst, be it a blow or noise: for an unstable window in
 /// which the growth varies as √(1 − x²) it leaves out 3 % of its integral.
 ///
-/// Limits: T blurs the envelope; an apex between growth a and decay b loses about (a + b) T/16 of
+/// Limits: sounds nearer to each other than 4/T are one; T blurs the envelope; an apex between growth a and decay b loses about (a + b) T/16 of
 /// the gain. The growth, a maximum, reads some 1/s too high in noise. A blow later than about T
 /// before the onset counts as growth. Where noise fills the band around f, growth is followed back
 /// to a few times that noise only, and the gain is uncertain by about 1.5. A blow that rings down
@@ -121,7 +125,7 @@ QuietLevel find_quiet_level(std::span<const double> samples, double interval,
 /// @param interval   dt in s
 /// @param parameters see there; the filter runs over all samples, inside the measured window or not
 /// @param first      time of sample 0 in s
-/// @return in order of time
+/// @return in order of their start
 /// @throws std::invalid_argument if a parameter or sample is out of range, or if no sample lies in
 ///         the given quiet window
 std::vector<Burst> find_bursts(std::span<const double> samples, double interval,

@@ -63,7 +63,9 @@ Json bursts_json_of(const std::vector<NumberedBurst>& bursts) {
                     {"end", burst.end},
                     {"frequency", burst.frequency},
                     {"peak", number(burst.peak)},
-                    {"gain", number(burst.gain)}});
+                    {"gain", number(burst.gain)},
+                    {"start_frequency", number(burst.start_frequency)},
+                    {"end_frequency", number(burst.end_frequency)}});
   }
   return rows;
 }

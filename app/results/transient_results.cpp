@@ -174,7 +174,9 @@ Json bursts_json(const std::vector<Burst>& bursts) {
                     {"end", burst.end},
                     {"frequency", burst.frequency},
                     {"peak", burst.peak},
-                    {"gain", burst.gain}});
+                    {"gain", burst.gain},
+                    {"start_frequency", burst.start_frequency},
+                    {"end_frequency", burst.end_frequency}});
   }
   return list;
 }

@@ -35,7 +35,9 @@ void store_bursts(RunFileWriter& writer, const std::vector<Burst>& bursts) {
       {"end", &Burst::end, "s"},
       {"frequency", &Burst::frequency, "Hz"},
       {"peak", &Burst::peak, "m/s^2"},
-      {"gain", &Burst::gain, "1"}};
+      {"gain", &Burst::gain, "1"},
+      {"start_frequency", &Burst::start_frequency, "Hz"},
+      {"end_frequency", &Burst::end_frequency, "Hz"}};
   for (const auto& [name, member, units] : properties) {
     std::vector<double> values;
     values.reserve(bursts.size());

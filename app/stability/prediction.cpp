@@ -12,6 +12,7 @@ std::vector<PredictedBurst> match_bursts(const std::vector<TimedWindow>& windows
   constexpr double largest_delay = 0.05;  // s
   constexpr double frequency_tolerance = 0.02;
   std::vector<PredictedBurst> predictions;
+  std::vector<double> overlaps;  // of each window with its burst, s
   for (const TimedWindow& window : windows) {
     if (!std::isfinite(window.from_time) || !std::isfinite(window.to_time)) continue;
     PredictedBurst prediction{window, std::nullopt};
@@ -26,8 +27,31 @@ std::vector<PredictedBurst> match_bursts(const std::vector<TimedWindow>& windows
       }
     }
     predictions.push_back(prediction);
+    overlaps.push_back(best);
+  }
+  // A burst belongs to the one window that it overlaps most.
+  for (std::size_t i = 0; i < predictions.size(); ++i) {
+    for (std::size_t k = 0; k < predictions.size() && predictions[i].burst; ++k) {
+      const bool is_same = predictions[k].burst && k != i &&
+                           predictions[k].burst->number == predictions[i].burst->number;
+      if (is_same && (overlaps[k] > overlaps[i] || (overlaps[k] == overlaps[i] && k < i)))
+        predictions[i].burst.reset();
+    }
   }
   return predictions;
+}
+
+std::vector<std::size_t> unexplained(const std::vector<PredictedBurst>& predictions,
+                                     const std::vector<NumberedBurst>& bursts) {
+  std::vector<std::size_t> numbers;
+  for (const NumberedBurst& one : bursts) {
+    const bool is_explained =
+        std::any_of(predictions.begin(), predictions.end(), [&](const PredictedBurst& prediction) {
+          return prediction.burst && prediction.burst->number == one.number;
+        });
+    if (!is_explained) numbers.push_back(one.number);
+  }
+  return numbers;
 }
 
 std::vector<SpectrogramMark> predicted_marks(const std::vector<PredictedBurst>& predictions) {

@@ -18,7 +18,8 @@ struct PredictedBurst {
   std::optional<NumberedBurst> burst;
 };
 
-/// Gives every window the burst of like frequency that overlaps it most in time.
+/// Gives every window the burst of like frequency that overlaps it most in time, and every burst to
+/// no more than the one window that it overlaps most.
 ///
 /// Windows without times are omitted. A burst lags behind its window, since it starts where it
 /// rises out of the quiet and ends long after: it counts if it is present in the window, or
@@ -26,6 +27,10 @@ struct PredictedBurst {
 /// window.
 std::vector<PredictedBurst> match_bursts(const std::vector<TimedWindow>& windows,
                                          const std::vector<NumberedBurst>& bursts);
+
+/// Numbers of the bursts to which no window belongs.
+std::vector<std::size_t> unexplained(const std::vector<PredictedBurst>& predictions,
+                                     const std::vector<NumberedBurst>& bursts);
 
 std::vector<SpectrogramMark> predicted_marks(const std::vector<PredictedBurst>& predictions);
 

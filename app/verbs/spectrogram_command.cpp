@@ -178,7 +178,10 @@ void print_drawn(const PictureOptions& options, const RecordedStretch& run,
     object["highest_level"] =
         drawn.highest > 0.0 ? number(decibels(drawn.highest, picture.reference)) : Json(nullptr);
     object["bursts"] = drawn.bursts.size();
-    if (options.predict) object["prediction"] = prediction_json(drawn.predictions);
+    if (options.predict) {
+      object["prediction"] = prediction_json(drawn.predictions);
+      object["unexplained"] = unexplained(drawn.predictions, drawn.bursts);
+    }
     print_json(object);
     return;
   }
@@ -186,7 +189,10 @@ void print_drawn(const PictureOptions& options, const RecordedStretch& run,
   if (options.data) fmt::print("{}\n", *options.data);
   if (options.band && drawn.bursts.empty())
     fmt::print("no bursts of {} in the band {}\n", acceleration_name(run.file), *options.band);
-  if (options.predict) print_prediction(drawn.predictions);
+  if (!options.predict) return;
+  print_prediction(drawn.predictions);
+  for (const std::size_t number : unexplained(drawn.predictions, drawn.bursts))
+    fmt::print("burst {} belongs to no window\n", number);
 }
 
 }  // namespace

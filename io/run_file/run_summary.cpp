@@ -140,7 +140,7 @@ std::vector<Burst> recorded_bursts(const RunFileReader& file, const std::string&
         std::pair{"/bursts/gain", &Burst::gain}}) {
     const std::vector<double> values = file.static_array(name);
     if (member == &Burst::start) {
-      bursts.assign(values.size(), {unknown, unknown, unknown, unknown, unknown, unknown, unknown});
+      bursts.assign(values.size(), {unknown, unknown, unknown, unknown, unknown, unknown, unknown, unknown, unknown});
     }
     if (values.size() != bursts.size()) {
       throw FileError(
@@ -154,6 +154,18 @@ std::vector<Burst> recorded_bursts(const RunFileReader& file, const std::string&
       if (member == &Burst::end && values[i] < bursts[i].start)
         throw FileError(path, name, fmt::format("lies before the start in entry {}", i));
     }
+  }
+  // Files of earlier versions do not have these.
+  for (const auto& [name, member] : {std::pair{"/bursts/start_frequency", &Burst::start_frequency},
+                                     std::pair{"/bursts/end_frequency", &Burst::end_frequency}}) {
+    if (!file.has(name)) continue;
+    const std::vector<double> values = file.static_array(name);
+    if (values.size() != bursts.size()) {
+      throw FileError(
+          path, name,
+          fmt::format("has {} entries, but /bursts/start has {}", values.size(), bursts.size()));
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) bursts[i].*member = values[i];
   }
   return bursts;
 }

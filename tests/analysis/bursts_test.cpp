@@ -303,6 +303,59 @@ TEST(Bursts, SeveralAreToldApart) {
   for (std::size_t i = 0; i < 3; ++i) expect_found(found[i], wanted[i], level);
 }
 
+TEST(Bursts, AnyNumberAtTheSameTimeIsFound) {
+  const double level = band_rms(wide.band);
+  const std::vector<Synthetic> wanted{{0.60, 0.66, 85.0, 50.0, 3.5e3},
+                                      {0.62, 0.70, 60.0, 50.0, 6.1e3},
+                                      {0.64, 0.70, 85.0, 50.0, 10.6e3}};
+  std::vector<double> samples = white(120000, 41);
+  for (const Synthetic& one : wanted) one.add_to(samples, level);
+  const auto found = find_bursts(samples, dt, wide);
+  ASSERT_THAT(found, SizeIs(3));
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    expect_found(found[i], wanted[i], level);
+    EXPECT_NEAR(found[i].start_frequency, wanted[i].frequency, 50.0);
+    EXPECT_NEAR(found[i].end_frequency, wanted[i].frequency, 50.0);
+  }
+}
+
+// 60 dB beside the louder one, and still 20 dB above the noise.
+TEST(Bursts, OneBesideAnotherAThousandTimesLouderIsFound) {
+  const double level = band_rms(wide.band);
+  const Synthetic loud{0.60, 0.60 + 9.2 / 60.0, 60.0, 50.0, 3.5e3};
+  const Synthetic quiet{0.65, 0.65 + 2.3 / 60.0, 60.0, 50.0, 10.6e3};
+  std::vector<double> samples = white(120000, 42);
+  loud.add_to(samples, level);
+  quiet.add_to(samples, level);
+  const auto found = find_bursts(samples, dt, wide);
+  ASSERT_THAT(found, SizeIs(2));
+  EXPECT_NEAR(found[0].frequency, loud.frequency, 50.0);
+  EXPECT_NEAR(std::log(found[0].peak / level), 9.2 + 0.35, 0.15);
+  EXPECT_NEAR(found[1].frequency, quiet.frequency, 50.0);
+  expect_gain(found[1].gain, quiet.gain());
+  EXPECT_NEAR(found[1].start, quiet.start, wide.smoothing);
+}
+
+TEST(Bursts, OneThatChangesItsFrequencyIsOneAndSaysFromWhereToWhere) {
+  // 3.5 kHz at 0.6 s and 5 kHz at 0.75 s: ten times its own band's width in all.
+  const Synthetic envelope{0.6, 0.68, 60.0, 50.0, 0.0};
+  const double level = band_rms(wide.band);
+  std::vector<double> samples = white(120000, 43);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double t = static_cast<double>(i) * dt;
+    const double phase = two_pi * (3.5e3 * (t - 0.6) + 0.5 * 1.0e4 * (t - 0.6) * (t - 0.6));
+    if (t > 0.5 && t < 0.9) samples[i] += envelope.amplitude(t, level) * std::sin(phase);
+  }
+  const auto found = find_bursts(samples, dt, wide);
+  ASSERT_THAT(found, SizeIs(1));
+  const auto frequency_at = [](double t) { return 3.5e3 + 1.0e4 * (t - 0.6); };
+  EXPECT_NEAR(found[0].start_frequency, frequency_at(found[0].start), 100.0);
+  EXPECT_NEAR(found[0].end_frequency, frequency_at(found[0].end), 150.0);
+  EXPECT_NEAR(found[0].peak_time, envelope.peak_time, 1.0e-3);
+  EXPECT_GT(found[0].frequency, found[0].start_frequency);
+  EXPECT_LT(found[0].frequency, frequency_at(envelope.peak_time) + 50.0);
+}
+
 TEST(Bursts, ADipOfLessThanSixDecibelsDoesNotDivideAndAReturnToQuietDoes) {
   const double level = band_rms(wide.band);
   for (const double depth : {0.55, 1.0}) {

@@ -45,6 +45,17 @@ TEST(MatchBursts, AnotherFrequencyIsAnotherBurst) {
   EXPECT_FALSE(match_bursts(windows, {burst(1, 1.0, 1.3, 3500.0 * 1.021)})[0].burst);
 }
 
+TEST(MatchBursts, ABurstBelongsToOneWindowAloneTheOneThatItOverlapsMost) {
+  const auto rows = match_bursts({window(1.0, 1.1, 3500.0), window(1.2, 1.4, 3500.0)},
+                                 {burst(1, 1.05, 1.5, 3500.0)});
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_FALSE(rows[0].burst.has_value());
+  ASSERT_TRUE(rows[1].burst.has_value());
+  EXPECT_TRUE(unexplained(rows, {burst(1, 1.05, 1.5, 3500.0)}).empty());
+  EXPECT_EQ(unexplained(rows, {burst(1, 1.05, 1.5, 3500.0), burst(2, 3.0, 3.1, 3500.0)}),
+            std::vector<std::size_t>{2});
+}
+
 TEST(MatchBursts, WindowsThatNoRunPassesAreLeftOut) {
   constexpr double never = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(match_bursts({window(never, never, 3500.0)}, {}).empty());

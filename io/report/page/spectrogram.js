@@ -60,7 +60,8 @@ async function makeSpectrogram(place, view, run) {
       for (const burst of run.bursts) {
         c.strokeStyle = '#ff9d5c';
         const half = 0.02 * (chart.y.to - chart.y.from);
-        const y0 = chart.py(burst.frequency + half), y1 = chart.py(burst.frequency - half);
+        const sounds = [burst.frequency, burst.start_frequency, burst.end_frequency].filter(isFinite).filter(Boolean);
+        const y0 = chart.py(Math.max(...sounds) + half), y1 = chart.py(Math.min(...sounds) - half);
         c.strokeRect(chart.px(burst.start), y0, Math.max(2, chart.px(burst.end) - chart.px(burst.start)), y1 - y0);
         c.fillStyle = '#ffffff';
         c.fillText(String(burst.number), chart.px(burst.start) + 2, y0 - 1);

@@ -18,6 +18,12 @@ function makeVerdict(verdict) {
   return element('p', {class: `verdict ${verdict.level}`}, element('b', {}, `${sign} ${word}`), verdict.text);
 }
 
+// The window to which a burst belongs.
+function explanation(view, burst) {
+  const window = view.predicted.find(row => row.burst === burst.number);
+  return window ? `window of ${shown(window.frequency, 'Hz', 5)} from ${shown(window.from, 's')}` : 'no window';
+}
+
 function makeBursts(place, view, run, section) {
   const act = (from, to) => () => {
     run.view.show(from, to);
@@ -27,9 +33,9 @@ function makeBursts(place, view, run, section) {
   };
   if (view.bursts.length) {
     place.append(element('h3', {}, 'Bursts of vibration'), element('div', {class: 'scroll'}, element('table', {},
-      headRow(['Burst', 'From', 'To', 'Frequency', 'Peak', 'Gain (ln)']),
+      headRow(['Burst', 'From', 'To', 'Frequency', 'Peak', 'Gain (ln)', ...(view.predicted.length ? ['Explained by'] : [])]),
       element('tbody', {}, view.bursts.map(burst => rowThat(act(burst.start, burst.end),
-        [cell(burst.number), cell(shown(burst.start, 's')), cell(shown(burst.end, 's')), cell(shown(burst.frequency, 'Hz', 5)), cell(shown(burst.peak, 'm/s^2')), cell(digits(burst.gain, 3))]))))));
+        [cell(burst.number), cell(shown(burst.start, 's')), cell(shown(burst.end, 's')), cell(shown(burst.frequency, 'Hz', 5)), cell(shown(burst.peak, 'm/s^2')), cell(digits(burst.gain, 3)), ...(view.predicted.length ? [cell(explanation(view, burst))] : [])]))))));
   }
   if (view.predicted.length) {
     place.append(element('h3', {}, 'Unstable windows that the run passes'), element('div', {class: 'scroll'}, element('table', {},
