@@ -37,6 +37,7 @@ Json curves_of_group(const ResultFile& file, const std::string& group, const std
 
 Json sweep_section(const ResultFile& file, const ReportContext& context) {
   Json section = section_head(file, file.kind());
+  section["remarks"] = Json::array();
   std::vector<std::string> groups;
   if (file.has("/value")) {
     groups.emplace_back("");
@@ -51,6 +52,13 @@ Json sweep_section(const ResultFile& file, const ReportContext& context) {
     view["x"]["name"] = file.text("parameter");
     if (const std::string units = file.text("units_of_value"); !units.empty()) view["x"]["units"] = units;
     if (!group.empty()) view["title"] = group.substr(1);
+    const std::vector<std::string> reasons = file.texts(group + "/reason");
+    const std::vector<double> values = file.read(group + "/value");
+    for (std::size_t i = 0; i < std::min(reasons.size(), values.size()); ++i) {
+      if (reasons[i].empty()) continue;
+      section["remarks"].push_back(
+          fmt::format("{} = {:g} failed: {}", file.text("parameter"), values[i], reasons[i]));
+    }
     view["table"] = true;
     points += file.array(group + "/value").shape.front();
     section["views"].push_back(std::move(view));

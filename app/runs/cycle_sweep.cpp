@@ -157,6 +157,12 @@ void write_file(const SweepOptions& options, const LoadedScene& loaded, const Nu
     add_result("stick_fraction", "1", "/stick_fraction");
     add_result("free_fraction", "1", "/free_fraction");
     add("status", "1", [](const SweepPoint& p) { return p.cycle.status; });
+    Column reason{"/" + name + "/reason", "", {}};
+    for (const SweepPoint& point : points) {
+      reason.texts.push_back(point.cycle.failure.empty() ? ""
+                                                         : cycle_failure(point.cycle, point.oscillator));
+    }
+    columns.push_back(std::move(reason));
     add("equilibrium_stable", "1", [](const SweepPoint& p) { return p.is_stable; });
   }
   Attributes attributes = cycle_attributes(loaded, options.command_line);

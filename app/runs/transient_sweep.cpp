@@ -214,14 +214,17 @@ void write_file(const SweepOptions& options, const LoadedScene& loaded, const Nu
                 const Points& points) {
   std::vector<Column> columns{{"/value", printed_units(key), values_of(points)}};
   Column failed{"/failed", "1", {}};
+  Column reason{"/reason", "", {}};
   Column num_bursts{"/num_bursts", "1", {}};
   for (const TransientPoint& point : points) {
     failed.values.push_back(point.failure.empty() ? 0.0 : 1.0);
+    reason.texts.push_back(point.failure);
     const bool has_bursts = point.results.contains("bursts") && point.results["bursts"].is_array();
     num_bursts.values.push_back(has_bursts ? static_cast<double>(point.results["bursts"].size())
                                            : std::numeric_limits<double>::quiet_NaN());
   }
   columns.push_back(failed);
+  columns.push_back(reason);
   columns.push_back(num_bursts);
   for (const SweptNumber& number : swept_numbers) {
     columns.push_back(

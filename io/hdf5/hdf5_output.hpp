@@ -22,6 +22,18 @@ Handle text_type(const Checker& at, std::size_t length, const std::string& datas
 void write_attribute(const Checker& at, hid_t object, const std::string& dataset,
                      const std::string& name, const std::variant<std::string, double>& value);
 
+/// Writes the attributes by which other programs introduce a file, made of those that it has: `title`
+/// (kind and scene), `history` (the command), `source` (the program and its version).
+/// @throws FileError if HDF5 refuses, like the next
+void write_introduction(const Checker& at, hid_t file, const Attributes& attributes);
+
+/// Says what viewers of NeXus draw when a file is opened: a group /plot (NXdata), named by the
+/// attribute `default` of the root, with soft links to a dataset and its axes.
+/// @param signal path of the dataset
+/// @param axes   path of the axis of each of its extents; empty where it has none
+void write_default_plot(const Checker& at, hid_t file, const std::string& signal,
+                        const std::vector<std::string>& axes);
+
 /// Fills a file that is being made.
 class Hdf5Writer {
  public:
@@ -32,13 +44,22 @@ class Hdf5Writer {
 
   /// @throws FileError if HDF5 refuses, like the next
   void make_group(const std::string& path) const;
-  /// Writes a dataset of numbers with its unit as an attribute.
+  /// Writes a dataset of numbers with its unit, and what it is, as attributes.
   /// @param shape  extents, the last one contiguous in `values`
   /// @return the dataset
   Handle write(const std::string& path, const std::vector<hsize_t>& shape, const double* values,
                const std::string& units) const;
   Handle write(const std::string& path, const std::vector<double>& values,
                const std::string& units) const;
+  /// Writes texts of one fixed length.
+  void write_texts(const std::string& path, const std::vector<std::string>& texts) const;
+  /// Makes a dataset the scale of an extent of others: their coordinate for readers like xarray.
+  void make_scale(const Handle& dataset, const std::string& path) const;
+  /// Ties an extent of a dataset to a scale.
+  void tie(const Handle& dataset, const std::string& path, const Handle& scale,
+           unsigned extent) const;
+  /// As write_default_plot().
+  void make_default_plot(const std::string& signal, const std::vector<std::string>& axes) const;
 
  private:
   const Checker& at_;

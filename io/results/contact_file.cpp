@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+#include <tuple>
+
 #include "io/hdf5/hdf5_output.hpp"
 
 namespace stridor {
@@ -10,10 +13,16 @@ namespace {
 void write_fields(const Hdf5Writer& writer, const std::string& group, const ContactFields& fields) {
   writer.make_group(group);
   const std::vector<hsize_t> plane{fields.y.size(), fields.x.size()};
-  writer.write(group + "/x", {fields.x.size()}, fields.x.data(), "m");
-  writer.write(group + "/y", {fields.y.size()}, fields.y.data(), "m");
-  writer.write(group + "/pressure", plane, fields.pressure.data(), "Pa");
-  writer.write(group + "/gap", plane, fields.gap.data(), "m");
+  const Handle x = writer.write(group + "/x", fields.x, "m");
+  const Handle y = writer.write(group + "/y", fields.y, "m");
+  writer.make_scale(x, group + "/x");
+  writer.make_scale(y, group + "/y");
+  for (const auto& [name, values, units] : {std::tuple{"/pressure", &fields.pressure, "Pa"},
+                                            std::tuple{"/gap", &fields.gap, "m"}}) {
+    const Handle field = writer.write(group + name, plane, values->data(), units);
+    writer.tie(field, group + name, y, 0);
+    writer.tie(field, group + name, x, 1);
+  }
   if (!fields.edge.empty())
     writer.write(group + "/edge", {fields.edge.size(), 2}, fields.edge.front().data(), "m");
 }
@@ -27,11 +36,23 @@ void write_contact_file(const std::string& path, Overwrite overwrite,
   all.insert(all.end(), attributes.begin(), attributes.end());
   write_hdf5_file(path, overwrite, all, [&](const Hdf5Writer& writer) {
     writer.make_group("/rows");
-    for (const ContactColumn& column : columns)
-      writer.write("/rows/" + column.name, column.values, column.units);
+    std::optional<Handle> speed;
+    for (const ContactColumn& column : columns) {
+      const std::string dataset = "/rows/" + column.name;
+      Handle written = writer.write(dataset, column.values, column.units);
+      if (column.name == "speed") {
+        writer.make_scale(written, dataset);
+        speed = std::move(written);
+      } else if (speed) {
+        writer.tie(written, dataset, *speed, 0);
+      }
+    }
     writer.make_group("/contacts");
     for (std::size_t k = 0; k < fields.size(); ++k)
       write_fields(writer, fmt::format("/contacts/{:03}", k), fields[k]);
+    if (!fields.empty()) {
+      writer.make_default_plot("/contacts/000/pressure", {"/contacts/000/y", "/contacts/000/x"});
+    }
   });
 }
 

@@ -7,6 +7,8 @@
 #include <array>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <tuple>
 
 #include "core/errors.hpp"
 #include "io/hdf5/damage_guard.hpp"
@@ -19,16 +21,18 @@ namespace {
 /// A column of /unstable: its name, unit and the member it holds.
 struct WindowColumn {
   const char* name;
-  const char* units;  ///< null: that of the parameter
+  const char* units;  ///< null: that of the parameter; per_second: that by a second
   double& (*of)(TimedWindow&);
 };
+
+constexpr const char* per_second = "/s";
 
 const std::array<WindowColumn, 9> columns{{
     {"from", nullptr, [](TimedWindow& w) -> double& { return w.window.from; }},
     {"to", nullptr, [](TimedWindow& w) -> double& { return w.window.to; }},
     {"frequency", "Hz", [](TimedWindow& w) -> double& { return w.window.frequency; }},
     {"growth_max", "1/s", [](TimedWindow& w) -> double& { return w.window.growth_max; }},
-    {"growth_integral", "unit of the parameter/s",
+    {"growth_integral", per_second,
      [](TimedWindow& w) -> double& { return w.window.growth_integral; }},
     {"value_max", nullptr, [](TimedWindow& w) -> double& { return w.window.value_max; }},
     {"from_time", "s", [](TimedWindow& w) -> double& { return w.from_time; }},
@@ -36,7 +40,14 @@ const std::array<WindowColumn, 9> columns{{
     {"gain", "1", [](TimedWindow& w) -> double& { return w.gain; }},
 }};
 
-void write_eigenvalues(const Hdf5Writer& writer, const Locus& locus) {
+/// The unit of a column of windows.
+std::string units_of(const WindowColumn& column, const std::string& parameter) {
+  if (column.units == nullptr) return parameter;
+  if (column.units != per_second) return column.units;
+  return parameter + "/s";
+}
+
+void write_eigenvalues(const Hdf5Writer& writer, const Locus& locus, const Handle& values) {
   std::size_t most = 0;
   for (const auto& list : locus.eigenvalues) most = std::max(most, list.size());
   std::vector<double> growth;
@@ -49,8 +60,18 @@ void write_eigenvalues(const Hdf5Writer& writer, const Locus& locus) {
     }
   }
   writer.make_group("/eigenvalues");
-  writer.write("/eigenvalues/growth", {locus.eigenvalues.size(), most}, growth.data(), "1/s");
-  writer.write("/eigenvalues/frequency", {locus.eigenvalues.size(), most}, frequency.data(), "Hz");
+  std::vector<double> numbers_of_modes(most);
+  std::iota(numbers_of_modes.begin(), numbers_of_modes.end(), 1.0);
+  const Handle number = writer.write("/eigenvalues/number", numbers_of_modes, "1");
+  writer.make_scale(number, "/eigenvalues/number");
+  for (const auto& [path, numbers, units] :
+       {std::tuple{"/eigenvalues/growth", &growth, "1/s"},
+        std::tuple{"/eigenvalues/frequency", &frequency, "Hz"}}) {
+    const Handle written =
+        writer.write(path, {locus.eigenvalues.size(), most}, numbers->data(), units);
+    writer.tie(written, path, values, 0);
+    writer.tie(written, path, number, 1);  // netCDF wants all extents named, or none
+  }
 }
 
 void write_branches(const Hdf5Writer& writer, const Locus& locus, const std::string& units) {
@@ -65,9 +86,11 @@ void write_branches(const Hdf5Writer& writer, const Locus& locus, const std::str
     }
     const std::string group = fmt::format("/branches/{:03}", k);
     writer.make_group(group);
-    writer.write(group + "/value", branch.values, units);
-    writer.write(group + "/growth", growth, "1/s");
-    writer.write(group + "/frequency", frequency, "Hz");
+    const Handle value = writer.write(group + "/value", branch.values, units);
+    writer.make_scale(value, group + "/value");
+    for (const auto& [name, numbers, unit] : {std::tuple{"/growth", &growth, "1/s"},
+                                              std::tuple{"/frequency", &frequency, "Hz"}})
+      writer.tie(writer.write(group + name, *numbers, unit), group + name, value, 0);
   }
 }
 
@@ -84,16 +107,17 @@ void write_locus_file(const std::string& path, Overwrite overwrite, const Locus&
                       const std::vector<TimedWindow>& windows, const std::string& units,
                       const Attributes& attributes) {
   write_hdf5_file(path, overwrite, of_kind("locus", attributes), [&](const Hdf5Writer& writer) {
-    writer.write("/values", locus.values, units);
-    write_eigenvalues(writer, locus);
+    const Handle values = writer.write("/values", locus.values, units);
+    writer.make_scale(values, "/values");
+    write_eigenvalues(writer, locus, values);
     write_branches(writer, locus, units);
     writer.make_group("/unstable");
     for (const WindowColumn& column : columns) {
-      std::vector<double> values;
-      for (TimedWindow window : windows) values.push_back(column.of(window));
-      writer.write(std::string("/unstable/") + column.name, values,
-                   column.units != nullptr ? column.units : units);
+      std::vector<double> numbers;
+      for (TimedWindow window : windows) numbers.push_back(column.of(window));
+      writer.write(std::string("/unstable/") + column.name, numbers, units_of(column, units));
     }
+    writer.make_default_plot("/eigenvalues/growth", {"/values", "/eigenvalues/number"});
   });
 }
 
@@ -102,19 +126,25 @@ void write_map_file(const std::string& path, Overwrite overwrite, const Stabilit
                     const Attributes& attributes) {
   write_hdf5_file(path, overwrite, of_kind("stability map", attributes),
                   [&](const Hdf5Writer& writer) {
-                    writer.write("/x", map.x, x_units);
-                    writer.write("/y", map.y, y_units);
+                    const Handle x = writer.write("/x", map.x, x_units);
+                    const Handle y = writer.write("/y", map.y, y_units);
+                    writer.make_scale(x, "/x");
+                    writer.make_scale(y, "/y");
                     std::vector<double> growth;
                     for (const auto& row : map.growth)
                       growth.insert(growth.end(), row.begin(), row.end());
-                    writer.write("/growth", {map.y.size(), map.x.size()}, growth.data(), "1/s");
+                    const Handle field =
+                        writer.write("/growth", {map.y.size(), map.x.size()}, growth.data(), "1/s");
+                    writer.tie(field, "/growth", y, 0);
+                    writer.tie(field, "/growth", x, 1);
+                    writer.make_default_plot("/growth", {"/y", "/x"});
                     writer.make_group("/boundary");
                     for (std::size_t k = 0; k < map.boundary.size(); ++k) {
                       std::vector<double> points;
                       for (const auto& point : map.boundary[k])
                         points.insert(points.end(), point.begin(), point.end());
                       writer.write(fmt::format("/boundary/{:03}", k), {map.boundary[k].size(), 2},
-                                   points.data(), x_units + ", " + y_units);
+                                   points.data(), x_units == y_units ? x_units : "1");
                     }
                   });
 }

@@ -2,6 +2,7 @@
 //
 //     /                       attributes: what was computed, of what and how
 //     /values                 of the parameter
+//     /eigenvalues/number     1, 2, …
 //     /eigenvalues/growth     1/s, [value][eigenvalue], ascending frequency; NaN where fewer
 //     /eigenvalues/frequency  Hz, likewise
 //     /branches/<k>/          value, growth, frequency of one eigenvalue that was followed

@@ -1,8 +1,5 @@
 #include "io/results/response_file.hpp"
 
-#include <hdf5.h>
-#include <hdf5_hl.h>
-
 #include <set>
 
 #include "io/hdf5/hdf5_output.hpp"
@@ -15,10 +12,8 @@ void write_response_file(const std::string& path, Overwrite overwrite,
   Attributes all{{"kind", std::string("frequency responses")}};
   all.insert(all.end(), attributes.begin(), attributes.end());
   write_hdf5_file(path, overwrite, all, [&](const Hdf5Writer& writer) {
-    const Checker& at = writer.checker();
     const Handle frequency = writer.write("/frequency", frequencies, "Hz");
-    at.check(H5DSset_scale(frequency.id(), "frequency"), "/frequency",
-             "cannot be made a dimension scale");
+    writer.make_scale(frequency, "/frequency");
     writer.make_group("/responses");
     std::set<std::string> groups;
     for (const ResponseCurve& curve : curves) {
@@ -32,10 +27,12 @@ void write_response_file(const std::string& path, Overwrite overwrite,
           part.push_back(is_real ? value.real() : value.imag());
         const std::string dataset = group + (is_real ? "/real" : "/imaginary");
         const Handle written = writer.write(dataset, part, curve.units);
-        at.check(H5DSattach_scale(written.id(), frequency.id(), 0), dataset,
-                 "cannot be tied to /frequency");
+        writer.tie(written, dataset, frequency, 0);
       }
     }
+    if (curves.empty()) return;
+    writer.make_default_plot("/responses/" + curves[0].output + "/" + curves[0].input + "/real",
+                             {"/frequency"});
   });
 }
 

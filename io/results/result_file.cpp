@@ -84,7 +84,7 @@ std::string ResultFile::text(const std::string& name) const {
 std::string ResultFile::kind() const {
   const std::string kind = text("kind");
   if (!kind.empty()) return kind;
-  // Run files of earlier versions have no kind, but a format.
+  // Run files and spectrograms of earlier versions have no kind.
   if (impl_->attributes.contains("format") && has("/time")) return "run";
   return has("/times") && has("/frequencies") && has("/amplitude") ? "spectrogram" : "";
 }
@@ -107,6 +107,34 @@ const ResultArray& ResultFile::array(const std::string& path) const {
 std::vector<double> ResultFile::read(const std::string& path, std::size_t rank) const {
   const QuietErrors quiet;
   return read_array(impl_->at, open_array(impl_->at, impl_->file.id(), path, rank), path);
+}
+
+std::vector<std::string> ResultFile::texts(const std::string& path) const {
+  const QuietErrors quiet;
+  const Checker& at = impl_->at;
+  const hid_t file = impl_->file.id();
+  if (H5Lexists(file, path.c_str(), H5P_DEFAULT) <= 0) return {};
+  const Handle dataset =
+      at.own(H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose, path, "cannot be opened");
+  const Handle type = at.own(H5Dget_type(dataset.id()), H5Tclose, path, "cannot be read");
+  const Handle space = at.own(H5Dget_space(dataset.id()), H5Sclose, path, "cannot be read");
+  if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) > 0 ||
+      H5Sget_simple_extent_ndims(space.id()) != 1)
+    throw FileError(at.path(), path, "does not hold texts of one length");
+  const std::size_t length = H5Tget_size(type.id());
+  const auto count = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.id()));
+  check_plausible(at, file, static_cast<std::uint64_t>(length) * count, path);
+  std::string stored(length * count, '\0');
+  if (count > 0) {
+    at.check(H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, stored.data()), path,
+             "cannot be read");
+  }
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string text = stored.substr(i * length, length);
+    texts.push_back(text.substr(0, text.find('\0')));
+  }
+  return texts;
 }
 
 std::vector<std::string> ResultFile::names_in(const std::string& group) const {

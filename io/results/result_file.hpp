@@ -45,6 +45,9 @@ class ResultFile {
   /// @param rank how many extents are expected
   /// @throws FileError naming the dataset if it is missing, of another rank, or cannot be read
   std::vector<double> read(const std::string& path, std::size_t rank = 1) const;
+  /// The texts of a dataset, in order; none where there is no such dataset.
+  /// @throws FileError if it holds anything else, or cannot be read
+  std::vector<std::string> texts(const std::string& path) const;
   /// Names of the groups and arrays in a group, in alphabetical order; none where it is missing.
   std::vector<std::string> names_in(const std::string& group) const;
 

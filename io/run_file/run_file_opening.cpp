@@ -13,6 +13,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "io/hdf5/dataset_names.hpp"
 #include "io/hdf5/part_file.hpp"
 #include "io/hdf5/write_lock.hpp"
 #include "io/run_file/run_file_writer_impl.hpp"
@@ -171,6 +172,13 @@ Handle RunFileWriter::Impl::create_series(const std::string& path, SeriesKind ki
   return dataset;
 }
 
+/// The series that viewers draw: an acceleration where there is one.
+std::optional<std::string> RunFileWriter::Impl::default_series() const {
+  for (const Column& column : columns)
+    if (column.spec.path.ends_with(".acceleration")) return column.spec.path;
+  return columns.empty() ? std::nullopt : std::optional(columns.front().spec.path);
+}
+
 void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& header,
                                  const std::vector<StaticArray>& statics) {
   check_target(at.path(), overwrite);
@@ -194,21 +202,34 @@ void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& heade
           std::pair{"date", &header.date}}) {
       write_attribute(at, file.id(), "", name, *text);
     }
+    write_attribute(at, file.id(), "", "kind", std::string("run"));
+    write_introduction(at, file.id(),
+                       {{"kind", std::string("run")},
+                        {"version", header.version},
+                        {"commit", header.commit},
+                        {"command", header.command}});
     write_text(at, file.id(), links, "/scene/text", header.scene_text);
     write_text(at, file.id(), links, "/scene/resolved", header.scene_resolved);
     write_text(at, file.id(), links, "/scene/digests", header.scene_digests);
 
     time_dataset = create_series("/time", SeriesKind::real, "s");
     at.check(H5DSset_scale(time_dataset.id(), "time"), "/time", "cannot be made a dimension scale");
+    write_attribute(at, time_dataset.id(), "/time", "long_name", std::string("time"));
     for (Column& column : columns) {
       const SeriesSpec& spec = column.spec;
       column.dataset = create_series(spec.path, spec.kind, spec.units);
+      bool has_long_name = false;
       for (const auto& [name, value] : spec.attributes) {
+        has_long_name = has_long_name || name == "long_name";
         write_attribute(at, column.dataset.id(), spec.path, name, value);
+      }
+      if (!has_long_name) {
+        write_attribute(at, column.dataset.id(), spec.path, "long_name", long_name_of(spec.path));
       }
       at.check(H5DSattach_scale(column.dataset.id(), time_dataset.id(), 0), spec.path,
                "cannot be tied to /time");
     }
+    if (const auto series = default_series()) write_default_plot(at, file.id(), *series, {"/time"});
     create_checkpoints();
     for (const StaticArray& array : statics) write_array(array.path, array.values, array.units);
     commit("");
@@ -237,6 +258,8 @@ void RunFileWriter::Impl::create_checkpoints() {
                                        creation.id(), H5P_DEFAULT),
                             H5Dclose, path, "cannot make the dataset");
     write_attribute(at, checkpoints[i].id(), path, "units", "1");
+    write_attribute(at, checkpoints[i].id(), path, "long_name",
+                    std::string("state from which the run can go on, as bytes"));
   }
 }
 

@@ -9,6 +9,7 @@
 #include <exception>
 #include <stdexcept>
 
+#include "io/hdf5/dataset_names.hpp"
 #include "io/run_file/run_file_writer_impl.hpp"
 
 namespace stridor {
@@ -249,6 +250,7 @@ void RunFileWriter::Impl::write_array(const std::string& path, std::span<const d
   at.check(H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
            path, "cannot be written");
   write_attribute(at, dataset.id(), path, "units", units);
+  write_attribute(at, dataset.id(), path, "long_name", long_name_of(path));
 }
 
 void RunFileWriter::write_static(const std::string& path, std::span<const double> values,

@@ -49,6 +49,7 @@ struct RunFileWriter::Impl {
   void create_checkpoints();
   void write_checkpoint(const State& state);
   Handle create_series(const std::string& path, SeriesKind kind, const std::string& units);
+  std::optional<std::string> default_series() const;
   void write_array(const std::string& path, std::span<const double> values,
                    const std::string& units);
   void reserve(std::uint64_t rows) const;

@@ -303,7 +303,7 @@ class FrequencyResponses(ResultFile):
         return group["real"][:] + 1j * group["imaginary"][:]
 
 
-_KINDS = {"locus": Locus, "map": StabilityMap, "stability map": StabilityMap,
+_KINDS = {"run": Run, "locus": Locus, "map": StabilityMap, "stability map": StabilityMap,
           "frequency responses": FrequencyResponses}
 
 
@@ -322,6 +322,6 @@ def open(path: Place) -> ResultFile:  # noqa: A001, as in h5py and xarray
     except OSError as error:
         raise errors.FileError([errors.Problem(str(error), file=os.fspath(path))]) from error
     kind = _plain(file.attrs.get("kind", b""))
-    if not kind and "time" in file and "channels" in file:
+    if not kind and "time" in file and "scene" in file:  # runs of earlier versions
         return Run(path, file)
     return _KINDS.get(kind, ResultFile)(path, file)

@@ -236,7 +236,10 @@ TEST_F(ReportProgram, RefusesWhatIsNoFileOfResults) {
   refused(report({run, "-o", path("page.html"), "--budget", "20kB"}), 2, "give at least 300kB");
   refused(report({run, "-o", path("page.html"), "--budget", "much"}), 2, "--budget");
   refused(report({run, "-o", path("page.html"), "--channel", "nothing"}), 2, "nothing");
-  edit(run, [](hid_t file) { H5Adelete(file, "format"); });
+  edit(run, [](hid_t file) {
+    H5Adelete(file, "format");
+    H5Adelete(file, "kind");
+  });
   refused(report({run, "-o", path("page.html")}), 4, "is no file of results");
   EXPECT_FALSE(exists("page.html"));
   page_of({make_run({}, "other.h5")});

@@ -17,6 +17,7 @@
 #include "io/hdf5/hdf5_handles.hpp"
 #include "io/imports/law_table_file.hpp"
 #include "io/results/locus_file.hpp"
+#include "io/results/result_file.hpp"
 #include "io/run_file/run_file.hpp"
 
 namespace {
@@ -226,6 +227,17 @@ void attempt(Read&& read) {
   }
 }
 
+void read_result_file(const std::string& path) {
+  const ResultFile file(path);
+  (void)file.kind();
+  for (const ResultArray& array : file.arrays()) {
+    attempt([&] { (void)file.read(array.path, array.shape.size()); });
+    attempt([&] { (void)file.texts(array.path); });
+    (void)file.names_in(array.path.substr(0, array.path.rfind('/')));
+  }
+  attempt([&] { (void)file.texts("/scene/text"); });
+}
+
 void read_run_file(const std::string& path) {
   const RunFileReader reader(path);
   attempt([&] { (void)reader.series_names(); });
@@ -255,6 +267,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   make_file(path, {data, size});
   attempt([] { read_run_file(path); });
   attempt([] { (void)read_locus_windows(path); });
+  attempt([] { read_result_file(path); });
   attempt([] { read_law(path); });
   unlink(path.c_str());
   return 0;
