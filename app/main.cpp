@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "app/terminal/command.hpp"
+#include "app/terminal/manual.hpp"
 #include "app/terminal/progress.hpp"
 #include "app/terminal/remark.hpp"
 #include "core/blas_memory.hpp"
@@ -80,8 +81,7 @@ std::string joined_arguments(int argc, char** argv) {
 std::string verb_problem(CLI::App& program, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return "";
   std::vector<std::string> verbs;
-  for (const CLI::App* verb : program.get_subcommands([](const CLI::App*) { return true; }))
-    verbs.push_back(verb->get_name());
+  for (const CLI::App* verb : verbs_of(program)) verbs.push_back(verb->get_name());
   if (std::find(verbs.begin(), verbs.end(), argv[1]) != verbs.end()) return "";
   return fmt::format("there is no verb '{}'{} (there are: {})", argv[1],
                      did_you_mean(argv[1], verbs), fmt::join(verbs, ", "));
@@ -134,6 +134,18 @@ int run_verb(int argc, char** argv) {
   add_fit_command(program, action);
   add_cycle_command(program, action, command);
   add_sweep_command(program, action, command);
+  add_hidden_commands(program, action);
+  std::string progress;
+  for (CLI::App* verb : program.get_subcommands([](const CLI::App*) { return true; })) {
+    verb->add_option("--progress", progress,
+                     "Tell progress on stderr as JSON, a line each, for programs")
+        ->check(CLI::IsMember({"json"}));
+  }
+  // Words that are being typed need not make a command yet.
+  if (argc > 2 && std::string_view(argv[1]) == "complete" && std::string_view(argv[2]) == "--") {
+    print_candidates(program, {argv + 3, argv + argc});
+    return static_cast<int>(ExitCode::done);
+  }
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -148,6 +160,7 @@ int run_verb(int argc, char** argv) {
     }
     return program.exit(error);
   }
+  if (!progress.empty()) Progress::tell_as_json();
   reserve_blas_memory();
   // Shown while nothing of the verb's own is, as during set-up.
   const Progress whole(argv[1]);

@@ -12,3 +12,15 @@ install(DIRECTORY python/stridor DESTINATION ${STRIDOR_PYTHON_DIR}
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
   FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
+
+# Pages of the manual, which the program itself writes, and completion in shells.
+set(STRIDOR_MANUAL "${PROJECT_BINARY_DIR}/manual")
+add_custom_command(OUTPUT "${STRIDOR_MANUAL}/stridor.1"
+  COMMAND stridor manual "${STRIDOR_MANUAL}" "${PROJECT_SOURCE_DIR}/docs/files.md"
+  DEPENDS stridor "${PROJECT_SOURCE_DIR}/docs/files.md" VERBATIM)
+add_custom_target(manual ALL DEPENDS "${STRIDOR_MANUAL}/stridor.1")
+install(DIRECTORY "${STRIDOR_MANUAL}/" DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN "*.1")
+install(DIRECTORY "${STRIDOR_MANUAL}/" DESTINATION ${CMAKE_INSTALL_MANDIR}/man5 FILES_MATCHING PATTERN "*.5")
+install(FILES cmake/completions/stridor.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME stridor)
+install(FILES cmake/completions/_stridor DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+install(FILES cmake/completions/stridor.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)

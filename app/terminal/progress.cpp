@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <thread>
 #include <vector>
 
@@ -44,6 +45,10 @@ class ProgressDisplay {
     if (!progress.is_open_) return;
     progress.is_open_ = false;
     std::erase(open_, &progress);
+    if (is_json_ && progress.pace_ && progress.pace_->fraction() >= 1.0) {
+      print_remark("{}\n", progress.json_line(*progress.pace_, progress.detail_, Clock::now()));
+      std::fflush(stderr);
+    }
     clear();
   }
   template <class Change>
@@ -51,8 +56,9 @@ class ProgressDisplay {
     const std::lock_guard lock(changing_);
     change();
     const auto now = Clock::now();
-    if (is_terminal_ ? now >= next_drawing_ : now >= next_line_) show(now);
+    if (draws_often() ? now >= next_drawing_ : now >= next_line_) show(now);
   }
+  void tell_as_json() { is_json_ = true; }
 
  private:
   ProgressDisplay() {
@@ -73,6 +79,7 @@ class ProgressDisplay {
   using Clock = std::chrono::steady_clock;
   static constexpr auto line_interval = std::chrono::seconds(10);
   static constexpr auto drawing_interval = std::chrono::milliseconds(100);
+  static constexpr auto json_interval = std::chrono::milliseconds(250);
   static constexpr auto tick = std::chrono::milliseconds(500);
   /// Shorter phases need not be shown.
   static constexpr auto patience = std::chrono::seconds(1);
@@ -89,9 +96,11 @@ class ProgressDisplay {
     std::unique_lock lock(changing_);
     while (!wake_.wait_for(lock, tick, [this] { return is_over_; })) {
       const auto now = Clock::now();
-      if (now >= (is_terminal_ ? start_ + patience : next_line_)) show(now);
+      if (now >= (is_json_ ? next_drawing_ : is_terminal_ ? start_ + patience : next_line_)) show(now);
     }
   }
+
+  bool draws_often() const { return is_terminal_ || is_json_; }
 
   void show(Clock::time_point now) {
     if (open_.empty()) return;
@@ -102,7 +111,7 @@ class ProgressDisplay {
     const bool is_activity = !newest.pace_ && !activity.what.empty();
     // The first one lasts as long as the program, which may be printing.
     if (!newest.pace_ && !is_activity && open_.size() == 1) return;
-    next_drawing_ = now + drawing_interval;
+    next_drawing_ = now + (is_json_ ? json_interval : drawing_interval);
     next_line_ = now + line_interval;
     if (is_activity) {
       if (activity.count != activity_count_) {
@@ -112,6 +121,11 @@ class ProgressDisplay {
       activity_pace_.report(activity.fraction, now);
       detail = activity.what;
       pace = activity_pace_;
+    }
+    if (is_json_) {
+      print_remark("{}\n", newest.json_line(pace, detail, now));
+      std::fflush(stderr);
+      return;
     }
     if (!is_terminal_) {
       print_remark("{}\n", newest.line(pace, detail, "", now));
@@ -139,6 +153,7 @@ class ProgressDisplay {
   std::thread ticker_;
   std::vector<Progress*> open_;
   bool is_over_ = false;
+  bool is_json_ = false;
   bool is_drawn_ = false;
   bool is_activity_drawn_ = false;
   const bool is_terminal_ = isatty(STDERR_FILENO) == 1;
@@ -155,6 +170,21 @@ Progress::Progress(std::string what) : what_(std::move(what)) {
 
 Progress::~Progress() {
   finish();
+}
+
+void Progress::tell_as_json() {
+  ProgressDisplay::one().tell_as_json();
+}
+
+std::string Progress::json_line(const Pace& pace, const std::string& detail,
+                                SteadyTime now) const {
+  const std::optional<double> left = pace.left(now);
+  return nlohmann::ordered_json{
+      {"phase", phase_.empty() ? what_ : what_ + ", " + phase_},
+      {"text", detail},
+      {"fraction", pace.fraction() > 0.0 ? nlohmann::ordered_json(pace.fraction()) : nullptr},
+      {"seconds_left", left ? nlohmann::ordered_json(*left) : nullptr}}
+      .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 std::string Progress::line(const Pace& pace, const std::string& detail, const std::string& bar,

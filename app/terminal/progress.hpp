@@ -31,12 +31,21 @@ class Progress {
   /// Removes the bar.
   void finish();
 
+  /// From now on progress is told as JSON, a line each on stderr, four times a second:
+  ///
+  ///     {"phase": "run", "text": "t = 1.25 of 2.25 s", "fraction": 0.55, "seconds_left": 0.8}
+  ///
+  /// The last two are null where they are not known; the last line of a phase has the fraction 1 where
+  /// it was finished.
+  static void tell_as_json();
+
   /// Text of a plain line from the reports so far.
   std::string text(SteadyTime now) const;
 
  private:
   friend class ProgressDisplay;
 
+  std::string json_line(const Pace& pace, const std::string& detail, SteadyTime now) const;
   std::string line(const Pace& pace, const std::string& detail, const std::string& bar,
                    SteadyTime now) const;
 

@@ -7,8 +7,9 @@ import os
 import shutil
 import signal
 import subprocess
+import threading
 from pathlib import Path
-from typing import Any, Mapping, Sequence
+from typing import Any, Callable, Mapping, Sequence
 
 from . import errors
 
@@ -79,10 +80,61 @@ def setting(key: str, value: Any) -> str:
     return f"{key}={text}"
 
 
-def call(words: Sequence[str]) -> dict[str, Any]:
+Progress = Callable[[float, "float | None", str], None]
+
+
+def _follow(process: subprocess.Popen, progress: Progress) -> str:
+    """Hands what the program tells of its progress to a function. Returns the rest of its messages."""
+    rest = []
+    assert process.stderr is not None
+    for line in process.stderr:
+        try:
+            told = json.loads(line)
+        except json.JSONDecodeError:
+            rest.append(line)
+            continue
+        if not isinstance(told, dict) or "fraction" not in told:
+            rest.append(line)
+        elif told["fraction"] is not None:
+            progress(told["fraction"], told["seconds_left"], ": ".join(filter(None, (told["phase"], told["text"]))))
+    return "".join(rest)
+
+
+def _communicate(process: subprocess.Popen, progress: Progress) -> tuple[str, str]:
+    """Output and messages of a program whose progress is followed."""
+    out: list[str] = []
+    assert process.stdout is not None
+    reader = threading.Thread(target=lambda: out.append(process.stdout.read()), daemon=True)
+    reader.start()
+    err = ""
+    try:
+        err = _follow(process, progress)
+    except KeyboardInterrupt:
+        process.send_signal(signal.SIGINT)
+    except BaseException:
+        process.send_signal(signal.SIGINT)
+        raise
+    finally:
+        assert process.stderr is not None
+        err += process.stderr.read()
+        process.wait()
+        reader.join()
+        process.stderr.close()
+        process.stdout.close()
+    return "".join(out), err
+
+
+def call(words: Sequence[str], progress: Progress | None = None) -> dict[str, Any]:
     """Runs the program with ``--json``.
 
     On Ctrl-C the program is asked to end in order, which leaves a run resumable, and waited for.
+
+    Parameters
+    ----------
+    progress : callable, optional
+        Is called a few times a second with the fraction done of the phase at work, the time left in s
+        or None, and a text; at last with 1. What it raises ends the program in order, as Ctrl-C does,
+        and is raised again.
 
     Returns
     -------
@@ -94,10 +146,14 @@ def call(words: Sequence[str]) -> dict[str, Any]:
     Error
         As its exit code says: `ConfigError`, `NumericalError`, `FileError` or `Stopped`.
     """
-    process = subprocess.Popen([program(), *words, "--json"], stdout=subprocess.PIPE,
+    more = [] if progress is None else ["--progress", "json"]
+    process = subprocess.Popen([program(), *words, "--json", *more], stdout=subprocess.PIPE,
                                stderr=subprocess.PIPE, text=True, start_new_session=True)
     try:
-        out, err = process.communicate()
+        if progress is None:
+            out, err = process.communicate()
+        else:
+            out, err = _communicate(process, progress)
     except KeyboardInterrupt:
         process.send_signal(signal.SIGINT)
         out, err = process.communicate()
@@ -110,6 +166,8 @@ def call(words: Sequence[str]) -> dict[str, Any]:
     except json.JSONDecodeError:
         answer = {}
     if process.returncode == 0:
+        if progress is not None:
+            progress(1.0, 0.0, "done")
         return answer
     raise errors.of_exit_code(process.returncode, _problems(answer, err, process.returncode))
 

@@ -1,5 +1,6 @@
 """The verbs of the program. Keyword arguments are named as the options of the command line; where a name
-is a word of Python, an underscore follows: ``from_``."""
+is a word of Python, an underscore follows: ``from_``. Every verb takes ``progress``, a function that is
+called a few times a second with the fraction done, the time left in s or None, and a text."""
 
 from __future__ import annotations
 
@@ -66,8 +67,9 @@ def call(verb: str, scene: Scene | Place, *, set: Settings | None = None, **opti
     >>> round(found["roots"][0]["value"], 3)
     0.263
     """
+    progress = options.pop("progress", None)
     words = [verb, *as_scene(scene, set).words(), *invocation.arguments_of(options)]
-    return invocation.call(words)
+    return invocation.call(words, progress)
 
 
 def _output(output: Place | None, name: str) -> str:
@@ -108,8 +110,9 @@ def run(scene: Scene | Place | None = None, *, output: Place | None = None, set:
         if scene is None:
             raise TypeError("run() needs a scene, or `resume`")
         words = ["run", *as_scene(scene, set).words(), "--output", file]
+    progress = options.pop("progress", None)
     try:
-        invocation.call([*words, *invocation.arguments_of(options)])
+        invocation.call([*words, *invocation.arguments_of(options)], progress)
     except errors.Stopped as stopped:
         raise errors.Stopped(stopped.problems, file) from None
     opened = files.open(file)
@@ -168,8 +171,9 @@ def map(scene: Scene | Place, *, x: tuple[str, Any, Any, int], y: tuple[str, Any
     """
     file = _output(output, "map.h5")
     axes = ["--x", *[str(part) for part in x], "--y", *[str(part) for part in y]]
+    progress = options.pop("progress", None)
     invocation.call(["map", *as_scene(scene, set).words(), *axes, "--output", file,
-                  *invocation.arguments_of(options)])
+                     *invocation.arguments_of(options)], progress)
     opened = files.open(file)
     assert isinstance(opened, files.StabilityMap)
     return opened
@@ -189,9 +193,10 @@ def frf(scene: Scene | Place, *, output: Place | None = None, set: Settings | No
         ``input``, ``from_``, ``to``, ``points``, ``scale``, ``about``, ``figure``, ``compare``, ``node``.
     """
     file = _output(output, "frf.h5")
+    progress = options.pop("progress", None)
     words = ["frf", *as_scene(scene, set).words(), "-o", file, *invocation.arguments_of({"output": motions}),
              *invocation.arguments_of(options)]
-    invocation.call(words)
+    invocation.call(words, progress)
     opened = files.open(file)
     assert isinstance(opened, files.FrequencyResponses)
     return opened

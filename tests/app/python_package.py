@@ -84,6 +84,39 @@ class Interrupt(unittest.TestCase):
                 self.assertTrue(np.all(np.diff(time_of_rows) > 0.0))
 
 
+class Progress(unittest.TestCase):
+    def test_is_told_from_the_beginning_to_the_end(self):
+        told = []
+        stridor.run(stridor.example("beam_on_beam"), progress=lambda *one: told.append(one)).close()
+        fractions = [one[0] for one in told]
+        self.assertGreater(len(fractions), 3)
+        self.assertEqual(fractions, sorted(fractions))
+        self.assertEqual(told[-1], (1.0, 0.0, "done"))
+        self.assertTrue(any("t = " in text for _, _, text in told), told)
+        self.assertTrue(any(left is not None and left > 0.0 for _, left, _ in told), told)
+
+    def test_what_it_raises_ends_the_run_in_order(self):
+        class Enough(Exception):
+            pass
+
+        def stop(fraction, _left, _text):
+            if fraction > 0.2:
+                raise Enough
+
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "run.h5")
+            with self.assertRaises(Enough):
+                stridor.run(stridor.example("beam_on_beam"), output=file, progress=stop)
+            with stridor.open(file) as half:
+                self.assertEqual(half.status, "stopped")
+                self.assertGreater(len(half.time), 0)
+
+    def test_errors_are_those_of_a_call_without_it(self):
+        with self.assertRaises(stridor.ConfigError) as wrong:
+            stridor.run(stridor.example("frozen_growth"), set={"time.step": -1.0}, progress=print)
+        self.assertEqual(wrong.exception.problems[0].key, "time.step")
+
+
 class Files(unittest.TestCase):
     """Every dataset of every kind of file, with its unit, is in docs/files.md."""
 

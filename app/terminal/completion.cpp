@@ -1,0 +1,148 @@
+#include "app/terminal/completion.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <optional>
+
+#include "app/terminal/manual.hpp"
+#include "io/figures/run_panels.hpp"
+#include "io/run_file/run_file.hpp"
+#include "io/scene/numeric_key.hpp"
+#include "io/scene/scene.hpp"
+
+namespace stridor {
+namespace {
+
+using Candidates = std::vector<Candidate>;
+
+/// Options behind which a key stands that is varied.
+bool takes_key(const std::string& option) {
+  return option == "--parameter" || option == "--x" || option == "--y";
+}
+
+const CLI::App* verb_named(const CLI::App& program, const std::string& name) {
+  for (const CLI::App* verb : verbs_of(program))
+    if (verb->get_name() == name) return verb;
+  return nullptr;
+}
+
+const CLI::Option* option_named(const CLI::App& verb, const std::string& written) {
+  for (const CLI::Option* option : verb.get_options()) {
+    for (const std::string& name : option->get_lnames())
+      if ("--" + name == written) return option;
+    for (const std::string& name : option->get_snames())
+      if ("-" + name == written) return option;
+  }
+  return nullptr;
+}
+
+/// The file with one of these endings among the words.
+std::optional<std::string> file_among(const std::vector<std::string>& words,
+                                      const std::vector<std::string>& endings) {
+  for (const std::string& word : words) {
+    for (const std::string& ending : endings) {
+      std::error_code unreadable;
+      if (word.ends_with(ending) && std::filesystem::is_regular_file(word, unreadable)) return word;
+    }
+  }
+  return std::nullopt;
+}
+
+void collect_keys(const SceneNode& node, const std::string& path, std::vector<std::string>& keys) {
+  if (node.kind == SceneNode::Kind::map) {
+    for (const SceneEntry& entry : node.entries)
+      collect_keys(entry.value, join_path(path, entry.key), keys);
+  } else if (!path.empty()) {
+    keys.push_back(path);
+  }
+}
+
+/// Every key that the scene has or has a default for.
+/// @param varied numbers alone
+Candidates keys_of(const std::string& file, bool varied) {
+  const LoadedScene loaded = load_scene(file, {});
+  std::vector<std::string> keys;
+  collect_keys(read_scene_text(loaded.resolved(), file), "", keys);
+  Candidates found;
+  for (const std::string& key : keys) {
+    std::string meaning;
+    bool is_number = true;
+    try {
+      meaning = find_numeric_key(loaded.scene, key, "").unit;
+    } catch (const std::exception&) {
+      is_number = false;
+    }
+    if (is_number || !varied) found.push_back({varied ? key : key + "=", meaning});
+  }
+  return found;
+}
+
+Candidates channels_of(const std::string& file) {
+  const RunFileReader run(file);
+  Candidates found;
+  for (const std::string& series : run.series_names())
+    found.push_back({channel_name(series), run.units(series)});
+  return found;
+}
+
+/// The words of a list "{a,b,c}" in the type of an option.
+Candidates values_of_type(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t begin = type.find('{');
+  const std::size_t end = type.rfind('}');
+  Candidates found;
+  if (begin == std::string::npos || end == std::string::npos || end < begin) return found;
+  for (std::size_t at = begin + 1; at < end;) {
+    const std::size_t comma = std::min(type.find(',', at), end);
+    found.push_back({type.substr(at, comma - at), ""});
+    at = comma + 1;
+  }
+  return found;
+}
+
+Candidates options_of(const CLI::App& verb) {
+  Candidates found;
+  for (const CLI::Option* option : verb.get_options())
+    for (const std::string& name : option->get_lnames())
+      found.push_back({"--" + name, option->get_description()});
+  return found;
+}
+
+Candidates all_candidates(const CLI::App& program, const std::vector<std::string>& words) {
+  if (words.size() <= 1) {
+    Candidates found;
+    for (const CLI::App* verb : verbs_of(program))
+      found.push_back({verb->get_name(), verb->get_description()});
+    return found;
+  }
+  const CLI::App* verb = verb_named(program, words.front());
+  if (verb == nullptr) return {};
+  const std::string& before = words[words.size() - 2];
+  if (const CLI::Option* option = option_named(*verb, before)) {
+    if (before == "--set" || takes_key(before)) {
+      const auto scene = file_among(words, {".yaml", ".yml"});
+      return scene ? keys_of(*scene, before != "--set") : Candidates{};
+    }
+    if (before == "--channel") {
+      const auto run = file_among(words, {".h5", ".hdf5"});
+      return run ? channels_of(*run) : Candidates{};
+    }
+    if (option->get_items_expected_max() > 0) return values_of_type(*option);
+  }
+  return words.back().starts_with("-") ? options_of(*verb) : Candidates{};
+}
+
+}  // namespace
+
+std::vector<Candidate> candidates(const CLI::App& program, const std::vector<std::string>& words) {
+  Candidates found = all_candidates(program, words);
+  const std::string begun = words.empty() ? "" : words.back();
+  std::erase_if(found, [&](const Candidate& one) { return !one.word.starts_with(begun); });
+  for (Candidate& one : found)
+    std::replace_if(
+        one.meaning.begin(), one.meaning.end(), [](char c) { return c == '\t' || c == '\n'; }, ' ');
+  return found;
+}
+
+}  // namespace stridor

@@ -1,0 +1,22 @@
+// What a word of the command line may go on to, for completion in shells.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace stridor {
+
+/// A word that fits, and what it is.
+struct Candidate {
+  std::string word;
+  std::string meaning;
+};
+
+/// Candidates for the last of some words behind the name of the program: verbs, options of the verb,
+/// values of an option that has a list of them, keys of the scene that is named after `--set` (with
+/// `=`) and where a key is varied, channels of the run file that is named after `--channel`. None where
+/// a file may stand.
+std::vector<Candidate> candidates(const CLI::App& program, const std::vector<std::string>& words);
+
+}  // namespace stridor
