@@ -229,12 +229,25 @@ bool add_frame(Frames& frames, SceneFamily& family, const std::vector<double>& a
   }
 }
 
-void make_frames(const std::string& resolved, const std::string& source,
-                 const std::optional<FramedRange>& range, const FrameBudget& budget,
-                 ReportPage& page, Json& section) {
-  const LoadedScene loaded = load_resolved_scene(resolved, source);
+/// The scene as written where it is still there and the same: only that has expressions, on which a
+/// parameter acts.
+LoadedScene load_framed(const FramedScene& scene) {
+  if (!scene.path.empty() && !scene.hash.empty()) {
+    try {
+      LoadedScene written = load_scene(scene.path, {});
+      if (written.hash() == scene.hash) return written;
+    } catch (const ConfigError&) {
+    } catch (const FileError&) {
+    }
+  }
+  return load_resolved_scene(scene.resolved, scene.source);
+}
+
+void make_frames(const FramedScene& scene, const std::optional<FramedRange>& range,
+                 const FrameBudget& budget, ReportPage& page, Json& section) {
+  const LoadedScene loaded = load_framed(scene);
   StabilityOptions options;
-  options.scene = source;
+  options.scene = scene.source;
   options.count = most_modes;
   if (range) options.about = range->about;
   make_choices(options, loaded.scene);
@@ -277,12 +290,11 @@ void make_frames(const std::string& resolved, const std::string& source,
 
 }  // namespace
 
-void add_mode_frames(const std::string& resolved, const std::string& source,
-                     const std::optional<FramedRange>& range, const FrameBudget& budget,
-                     ReportPage& page, Json& section) {
+void add_mode_frames(const FramedScene& scene, const std::optional<FramedRange>& range,
+                     const FrameBudget& budget, ReportPage& page, Json& section) {
   const Activity computing("shapes of modes for the report");
   try {
-    make_frames(resolved, source, range, budget, page, section);
+    make_frames(scene, range, budget, page, section);
   } catch (const Interrupted&) {
     throw;
   } catch (const std::exception& error) {

@@ -9,6 +9,14 @@
 
 namespace stridor {
 
+/// Where the scene of a result file is to be had.
+struct FramedScene {
+  std::string resolved;  ///< as the file holds it: with the values that expressions had
+  std::string source;    ///< of it, for messages
+  std::string path;      ///< of the scene as written; it is taken where it still has the same hash
+  std::string hash;
+};
+
 /// Along what modes are shown.
 struct FramedRange {
   std::string parameter;       ///< key of the scene
@@ -27,11 +35,8 @@ struct FrameBudget {
 /// values. What cannot be computed or drawn becomes a remark of the section: files that the scene
 /// names may be gone, the values may have no equilibrium.
 ///
-/// @param resolved the scene, as result files hold it
-/// @param source   of it, for messages
 /// @param range    nothing: the scene as it stands, or along the whole way of its drive
-void add_mode_frames(const std::string& resolved, const std::string& source,
-                     const std::optional<FramedRange>& range, const FrameBudget& budget,
-                     ReportPage& page, Json& section);
+void add_mode_frames(const FramedScene& scene, const std::optional<FramedRange>& range,
+                     const FrameBudget& budget, ReportPage& page, Json& section);
 
 }  // namespace stridor

@@ -241,8 +241,8 @@ Json run_section(const ResultFile& source, const ReportContext& context) {
         return one.scene_hash == header.scene_hash;  // which shows them
       });
   if (!context.options.without_shapes && !has_locus) {
-    add_mode_frames(header.scene_resolved, source.path() + ":/scene/resolved", way_of(run.file),
-                    {0.25 * context.bytes_per_file, 41}, context.page, section);
+    add_mode_frames({header.scene_resolved, source.path() + ":/scene/resolved", "", ""},
+                    way_of(run.file), {0.25 * context.bytes_per_file, 41}, context.page, section);
     judge_modes(section, heard);
   }
   const Json results = results_json(run.file);

@@ -21,6 +21,43 @@ std::vector<double> of_branches(const ResultFile& file, const std::vector<std::s
   return all;
 }
 
+/// Eigenvalues that were followed as curves; where none was, those of every value as points, a row for
+/// each place in the order of their frequencies.
+Json curves_view(const ResultFile& file, ReportPage& page) {
+  Json sizes = Json::array();
+  const std::vector<std::string> branches = file.names_in("/branches");
+  for (const std::string& branch : branches)
+    sizes.push_back(file.array("/branches/" + branch + "/value").shape.front());
+  if (!branches.empty()) {
+    return {{"sizes", sizes},
+            {"value", page.add_numbers(of_branches(file, branches, "value"))},
+            {"growth", page.add_numbers(of_branches(file, branches, "growth"))},
+            {"frequency", page.add_numbers(of_branches(file, branches, "frequency"))}};
+  }
+  const std::vector<double> values = file.read("/values");
+  const std::vector<double> growth = file.read("/eigenvalues/growth", 2);
+  const std::vector<double> frequency = file.read("/eigenvalues/frequency", 2);
+  const std::size_t most = values.empty() ? 0 : growth.size() / values.size();
+  if (growth.size() != most * values.size() || frequency.size() != growth.size())
+    throw FileError(file.path(), "/eigenvalues", "is unlike /values in extent");
+  std::vector<double> all_values;
+  std::vector<double> all_growth;
+  std::vector<double> all_frequency;
+  for (std::size_t k = 0; k < most; ++k) {
+    sizes.push_back(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      all_values.push_back(values[i]);
+      all_growth.push_back(growth[i * most + k]);
+      all_frequency.push_back(frequency[i * most + k]);
+    }
+  }
+  return {{"sizes", sizes},
+          {"points", true},
+          {"value", page.add_numbers(all_values)},
+          {"growth", page.add_numbers(all_growth)},
+          {"frequency", page.add_numbers(all_frequency)}};
+}
+
 Json windows_of(const std::vector<TimedWindow>& windows) {
   Json rows = Json::array();
   for (const TimedWindow& one : windows) {
@@ -84,24 +121,19 @@ Json locus_section(const ResultFile& file, const ReportContext& context) {
                               {"parameter", parameter},
                               {"units", file.array("/values").units},
                               {"windows", windows_of(windows)}});
-  const std::vector<std::string> branches = file.names_in("/branches");
-  Json sizes = Json::array();
-  for (const std::string& branch : branches)
-    sizes.push_back(file.array("/branches/" + branch + "/value").shape.front());
   ReportPage& page = context.page;
-  section["views"].push_back(
-      {{"type", "locus"},
-       {"parameter", parameter},
-       {"units", file.array("/values").units},
-       {"sizes", sizes},
-       {"value", page.add_numbers(of_branches(file, branches, "value"))},
-       {"growth", page.add_numbers(of_branches(file, branches, "growth"))},
-       {"frequency", page.add_numbers(of_branches(file, branches, "frequency"))},
-       {"windows", windows_of(windows)}});
+  Json view = {{"type", "locus"},
+               {"parameter", parameter},
+               {"units", file.array("/values").units},
+               {"windows", windows_of(windows)}};
+  view.update(curves_view(file, page));
+  section["views"].push_back(std::move(view));
   const std::string scene = file.text("scene_resolved");
   if (!context.options.without_shapes && !scene.empty()) {
     const FramedRange range{parameter, file.read("/values"), file.text("about")};
-    add_mode_frames(scene, file.path() + ":scene_resolved", range,
+    add_mode_frames({scene, file.path() + ":scene_resolved", file.text("scene"),
+                     file.text("scene_hash")},
+                    range,
                     {0.5 * context.bytes_per_file, 41}, page, section);
   }
   return section;

@@ -171,6 +171,23 @@ TEST_F(ReportProgram, ALocusIsSetBesideTheRunOfItsScene) {
   }
 }
 
+// Matrices that nothing touches are looked at value by value: there are no curves.
+TEST_F(ReportProgram, ALocusWithoutBranchesIsShownByItsEigenvalues) {
+  const std::string locus = made({"locus", scene("examples/two_springs_on_a_belt.yaml"), "--parameter", "parameters.mu",
+                                  "--from", "0", "--to", "1", "--points", "11"},
+                                 "locus.h5");
+  const std::string page = page_of({locus});
+  const Json contents = contents_of_report(page);
+  const Json view = view_of(contents["sections"][0], "locus");
+  EXPECT_TRUE(view["points"].get<bool>());
+  EXPECT_EQ(view["sizes"], Json::array({11, 11}));
+  const std::vector<double> frequency = numbers_of(page, view["frequency"]);
+  ASSERT_EQ(frequency.size(), 22u);
+  // K = [[2, 1], [1, 2]] without friction: sqrt(2 -+ 1)/2 pi.
+  EXPECT_NEAR(frequency[0], 1.0 / (2.0 * std::numbers::pi), 1e-9);
+  EXPECT_NEAR(frequency[11], std::sqrt(3.0) / (2.0 * std::numbers::pi), 1e-9);
+}
+
 TEST_F(ReportProgram, ALocusOfAnotherSceneIsNotSetBesideARun) {
   const std::string locus =
       made({"locus", scene("beam_on_beam.yaml"), "--from", "90mm", "--to", "93mm", "--points", "7", "--about", "deformed"}, "locus.h5");

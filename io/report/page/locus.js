@@ -82,7 +82,8 @@ async function makeLocus(place, view, section) {
     paint: chart => {
       zeroLine(chart, true);
       for (const branch of vibrating) {
-        for (let i = 1; i < branch.values.length; ++i)
+        if (view.points) for (let i = 0; i < branch.values.length; ++i) chart.dot(branch.growth[i], branch.frequency[i], tint(branch.values[i]), 2);
+        else for (let i = 1; i < branch.values.length; ++i)
           chart.line(branch.growth.subarray(i - 1, i + 1), branch.frequency.subarray(i - 1, i + 1), tint(branch.values[i]), 1.8);
         const now = branchAt(branch, where.value);
         if (now) chart.dot(now.growth, now.frequency, now.growth > 0 ? colour('loud') : colour('accent'), section.branch === branch.number ? 6 : 4, colour('ground'));
@@ -105,7 +106,10 @@ async function makeLocus(place, view, section) {
       c.fillStyle = colour('burst');
       for (const window of view.windows) c.fillRect(chart.px(window.from), f.y, Math.max(1, chart.px(window.to) - chart.px(window.from)), f.height);
       zeroLine(chart, false);
-      for (const branch of vibrating) chart.line(branch.values, branch.growth, lineColour(branch.number), section.branch === branch.number ? 2.6 : 1.2);
+      for (const branch of vibrating) {
+        if (view.points) for (let i = 0; i < branch.values.length; ++i) chart.dot(branch.values[i], branch.growth[i], lineColour(branch.number), 1.8);
+        else chart.line(branch.values, branch.growth, lineColour(branch.number), section.branch === branch.number ? 2.6 : 1.2);
+      }
       c.fillStyle = colour('mark');
       c.fillRect(chart.px(where.value) - 0.75, f.y, 1.5, f.height);
     },
@@ -128,10 +132,11 @@ async function makeLocus(place, view, section) {
     return branch ? branchAt(branch, where.value) : null;
   };
   if (section.branch === undefined) {
-    const worst = vibrating.reduce((a, b) => Math.max(...b.growth) > Math.max(...a.growth) ? b : a, vibrating[0]);
+    const most = branch => branch.growth.reduce((a, b) => b > a ? b : a, -Infinity);
+    const worst = vibrating.reduce((a, b) => most(b) > most(a) ? b : a, vibrating[0]);
     if (worst) section.branch = worst.number;
   }
-  place.append(element('figcaption', {}, 'Colour on the left: position along the key, dark to light; shaded on the right: unstable windows. Click a branch to follow its mode.'));
+  place.append(element('figcaption', {}, `Colour on the left: position along the key, dark to light; shaded on the right: unstable windows. ${view.points ? 'Points in the order of their frequencies at each value.' : 'Click a branch to follow its mode.'}`));
   const draw = () => { plane.draw(); along.draw(); };
   where.listeners.add(draw);
   draw();
