@@ -4,7 +4,7 @@ set(STRIDOR_PYTHON_DIR "lib/python3/dist-packages" CACHE PATH "Where Python pack
 
 install(TARGETS stridor RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 # Not the meshes that gmsh makes beside its geometries.
-install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/stridor
+install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/stridor USE_SOURCE_PERMISSIONS
   REGEX "-[0-9a-f]+\\.msh$" EXCLUDE)
 install(FILES docs/scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/stridor)
 install(DIRECTORY python/stridor DESTINATION ${STRIDOR_PYTHON_DIR}
