@@ -162,14 +162,6 @@ void compute(const ResponseStudy& study, const NamedFunction& named, ComparedRes
                    root_mean_square(compared.measured.values);
 }
 
-/// "17-MAY-24" of "2024-05-17T08:30:00Z", as the format wants it.
-std::string date_of(const std::string& time) {
-  constexpr std::array months{"JAN", "FEB", "MAR", "APR", "MAY", "JUN",
-                              "JUL", "AUG", "SEP", "OCT", "NOV", "DEC"};
-  const auto month = static_cast<std::size_t>(std::stoi(time.substr(5, 2))) - 1;
-  return fmt::format("{}-{}-{}", time.substr(8, 2), months.at(month), time.substr(2, 2));
-}
-
 bool is_of_study(const ResponseStudy& study, const NamedFunction& named) {
   const auto has = [](const std::vector<Channel>& channels, const std::string& name) {
     return std::any_of(channels.begin(), channels.end(),
@@ -234,9 +226,7 @@ UffContents uff_contents(const ResponseStudy& study, const std::vector<double>& 
   UffContents contents;
   contents.title = "frequency responses of " + study.loaded().path;
   contents.program = std::string("stridor ") + std::string(version);
-  const std::string now = utc_now();  // "2024-05-17T08:30:00Z"
-  contents.date = date_of(now);
-  contents.time = now.substr(11, 8);
+  contents.stamp(utc_now());
   BodyCache cache;
   const ModelParameters parameters = parameters_with_files(study.loaded(), cache);
   const PlacedModel placed = place_model(parameters, cache);

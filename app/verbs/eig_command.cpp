@@ -10,9 +10,11 @@
 #include "app/stability/analysed_spectrum.hpp"
 #include "app/stability/eigenvalue_report.hpp"
 #include "app/stability/equilibrium_report.hpp"
+#include "app/stability/shape_files.hpp"
 #include "app/stability/verdict.hpp"
 #include "core/errors.hpp"
 #include "io/figures/shape_plot.hpp"
+#include "io/hdf5/part_file.hpp"
 #include "models/mode_shape.hpp"
 
 namespace stridor {
@@ -24,6 +26,8 @@ struct EigOptions {
   bool explain = false;
   std::optional<int> mode;
   std::optional<std::string> shapes;
+  std::optional<std::string> universal;  ///< file to write
+  std::optional<std::string> compared;   ///< universal file of measured shapes
 };
 
 constexpr int num_frames = 24;
@@ -171,6 +175,50 @@ std::size_t mode_of_interest(const Analysis& analysis, const std::optional<int>&
   return chosen_mode(choice, num_real_of(choice), mode);
 }
 
+/// All modes as a universal file, and beside measured ones.
+void add_shape_files(const EigOptions& options, const Analysis& analysis, Json& object) {
+  if (!options.universal && !options.compared) return;
+  const ShapedModes shapes = shaped_modes(analysis, options.universal ? "--uff" : "--compare");
+  if (options.universal) {
+    write_text_file(*options.universal, uff_text(uff_contents(shapes, options.stability.scene), "--uff"));
+    object["uff"] = *options.universal;
+  }
+  if (!options.compared) return;
+  const ShapeComparison comparison =
+      compared_shapes(shapes, read_uff_file(*options.compared), "--compare", *options.compared);
+  Json rows = Json::array();
+  for (std::size_t m = 0; m < comparison.measured.size(); ++m) {
+    const auto column = comparison.assurance.col(static_cast<Eigen::Index>(m));
+    Eigen::Index best = 0;
+    column.maxCoeff(&best);
+    const Eigenvalue& computed = shapes.modes[static_cast<std::size_t>(best)].eigenvalue;
+    rows.push_back({{"measured", comparison.measured[m].number},
+                    {"measured_frequency", comparison.measured[m].frequency},
+                    {"mode", best + 1},
+                    {"frequency", computed.frequency()},
+                    {"mac", column[best]},
+                    {"macs", std::vector<double>(column.begin(), column.end())}});
+  }
+  object["comparison"] = {{"file", *options.compared},
+                          {"nodes", comparison.num_nodes},
+                          {"farthest", comparison.farthest},
+                          {"modes", rows}};
+}
+
+void print_comparison(const Json& comparison) {
+  fmt::print("\n{} measured nodes, at most {:.3g} m from a node of the scene\n",
+             comparison["nodes"].get<std::size_t>(), comparison["farthest"].get<double>());
+  fmt::print("{:>8} {:>14} {:>6} {:>14} {:>10} {:>7}\n", "measured", "Hz", "mode", "Hz", "difference",
+             "MAC");
+  for (const Json& row : comparison["modes"]) {
+    const auto measured = row["measured_frequency"].get<double>();
+    const auto computed = row["frequency"].get<double>();
+    fmt::print("{:>8} {:>14.3f} {:>6} {:>14.3f} {:>8.2f} % {:>7.4f}\n", row["measured"].get<std::int64_t>(),
+               measured, row["mode"].get<int>(), computed,
+               measured > 0.0 ? 100.0 * (computed / measured - 1.0) : 0.0, row["mac"].get<double>());
+  }
+}
+
 void print_report(const EigOptions& options, const Analysis& analysis, const Json& object) {
   const FoundSpectrum& found = analysis.found;
   if (!analysis.is_sparse())
@@ -199,6 +247,8 @@ void print_report(const EigOptions& options, const Analysis& analysis, const Jso
     fmt::print("{} and {} files for ParaView\n", object["files"][0].get<std::string>(),
                object["files"].size() - 1);
   }
+  if (options.compared) print_comparison(object["comparison"]);
+  if (options.universal) fmt::print("{}\n", *options.universal);
 }
 
 ExitCode report(const EigOptions& options, const LoadedScene& loaded, const Analysis& analysis) {
@@ -239,6 +289,7 @@ ExitCode report(const EigOptions& options, const LoadedScene& loaded, const Anal
                                      found.shape(chosen), number_of_mode);
     }
   }
+  add_shape_files(options, analysis, object);
   if (options.stability.common.json) {
     print_json(object);
   } else {
@@ -250,6 +301,7 @@ ExitCode report(const EigOptions& options, const LoadedScene& loaded, const Anal
 ExitCode eig(EigOptions options) {
   if (options.mode && !options.explain && !options.shapes)
     throw ConfigError("--mode", "names the mode to explain or draw; add --explain or --shapes");
+  if (options.universal) check_output(*options.universal, options.stability.common.overwrite());
   const LoadedScene loaded = load_scene(options.stability.scene, options.stability.common.sets);
   make_choices(options.stability, loaded.scene);
   std::vector<double> values;
@@ -276,6 +328,10 @@ void add_eig_command(CLI::App& program, Action& action) {
       ->check(CLI::Range(1, 100000));
   verb->add_option("--shapes", options->shapes,
                    "Folder for a picture of the mode and its motion for ParaView (VTK)");
+  verb->add_option("--uff", options->universal,
+                   "Universal file to write: all modes at all nodes (datasets 2411, 82, 55)");
+  verb->add_option("--compare", options->compared,
+                   "Universal file of measured shapes (15 or 2411, 55) to set beside: frequencies and MAC");
   add_force_option(*verb, options->stability.common);
   verb->callback([options, &action] { action = [options] { return eig(*options); }; });
 }

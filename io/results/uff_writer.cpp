@@ -35,6 +35,38 @@ void add_nodes(const std::vector<UffNode>& nodes, std::string& text) {
   text += "    -1\n";
 }
 
+/// Trace lines (82): eight labels in a line of the file.
+void add_lines(const std::vector<std::vector<std::int64_t>>& lines, std::string& text) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    text += fmt::format("    -1\n    82\n{:10}{:10}{:10}\nNONE\n", i + 1, lines[i].size(), 1);
+    for (std::size_t k = 0; k < lines[i].size(); ++k)
+      text += fmt::format("{:10}{}", lines[i][k], (k + 1) % 8 == 0 || k + 1 == lines[i].size() ? "\n" : "");
+    text += "    -1\n";
+  }
+}
+
+/// Data at nodes (55): a complex mode of the first order, three displacements at each node.
+void add_mode(const UffMode& mode, const UffContents& contents, std::string& text) {
+  if (mode.shape.size() != contents.nodes.size())
+    throw std::invalid_argument("uff_text: a mode needs a value for each node");
+  text += fmt::format("    -1\n    55\n{}\n{}\n{:<10}{:<10}\nlargest displacement 1\nNONE\n",
+                      record_text(contents.title), record_text(contents.program), contents.date,
+                      contents.time);
+  constexpr int structural = 1, complex_mode = 3, translations = 2, displacement = 8, complex_data = 5;
+  text += fmt::format("{:10}{:10}{:10}{:10}{:10}{:10}\n", structural, complex_mode, translations,
+                      displacement, complex_data, 3);
+  text += fmt::format("{:10}{:10}{:10}{:10}\n", 2, 6, 1, mode.number);
+  text += fmt::format("{:13.5E}{:13.5E}{:13.5E}{:13.5E}{:13.5E}{:13.5E}\n", mode.eigenvalue.real(),
+                      mode.eigenvalue.imag(), 0.0, 0.0, 0.0, 0.0);
+  for (std::size_t i = 0; i < mode.shape.size(); ++i) {
+    text += fmt::format("{:10}\n", contents.nodes[i].number);
+    for (const std::complex<double>& value : mode.shape[i])
+      text += fmt::format("{:13.5E}{:13.5E}", value.real(), value.imag());
+    text += '\n';
+  }
+  text += "    -1\n";
+}
+
 /// First abscissa and increment as the format holds them.
 struct EvenAbscissas {
   double first = 0.0;
@@ -114,10 +146,20 @@ void add_function(const UffFunction& function, std::size_t number, const UffCont
 
 }  // namespace
 
+void UffContents::stamp(const std::string& utc) {
+  constexpr std::array months{"JAN", "FEB", "MAR", "APR", "MAY", "JUN",
+                              "JUL", "AUG", "SEP", "OCT", "NOV", "DEC"};
+  const auto month = static_cast<std::size_t>(std::stoi(utc.substr(5, 2))) - 1;
+  date = fmt::format("{}-{}-{}", utc.substr(8, 2), months.at(month), utc.substr(2, 2));
+  time = utc.substr(11, 8);
+}
+
 std::string uff_text(const UffContents& contents, const std::string& key) {
   std::string text;
   add_head(contents, text);
   add_nodes(contents.nodes, text);
+  add_lines(contents.lines, text);
+  for (const UffMode& mode : contents.modes) add_mode(mode, contents, text);
   for (std::size_t i = 0; i < contents.functions.size(); ++i)
     add_function(contents.functions[i], i + 1, contents, key, text);
   return text;

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <complex>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,6 +19,13 @@ struct UffNode {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< m
 };
 
+/// A complex mode at all nodes, in their order.
+struct UffMode {
+  std::int64_t number = 0;
+  std::complex<double> eigenvalue;  ///< 1/s
+  std::vector<std::array<std::complex<double>, 3>> shape;  ///< x, y, z
+};
+
 /// What a universal file holds.
 struct UffContents {
   std::string title;
@@ -23,14 +33,21 @@ struct UffContents {
   std::string date;     ///< "26-NOV-26" and "17:24:09", as record 3 of 151 has them
   std::string time;
   std::vector<UffNode> nodes;
+  std::vector<std::vector<std::int64_t>> lines{};  ///< labels of nodes in order
+  std::vector<UffMode> modes{};
   std::vector<UffFunction> functions;  ///< at even abscissas, in SI units
+
+  /// Date and time from "2024-05-17T08:30:00Z".
+  void stamp(const std::string& utc);
 };
 
-/// The text of a file: dataset 151 (head), 164 (SI), 2411 (nodes), and a 58 for each function, in
-/// double precision at even abscissas.
+/// The text of a file: dataset 151 (head), 164 (SI), 2411 (nodes), 82 (lines), a 55 for each mode (complex
+/// displacements, modal a and b unknown and 0), and a 58 for each function, in double precision at even
+/// abscissas.
 ///
 /// First abscissa and increment have six digits there (E13.5).
-/// @throws std::invalid_argument if abscissas and values of a function are not as many
+/// @throws std::invalid_argument if abscissas and values of a function are not as many, or a mode has
+///         not a value for each node
 /// @throws ConfigError at `key` if the abscissas are not those that six digits give, to 1e-9
 std::string uff_text(const UffContents& contents, const std::string& key);
 

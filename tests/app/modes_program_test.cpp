@@ -153,5 +153,49 @@ TEST(ModesProgram, ThePageRunsFromTheFirstLineToTheLast) {
   EXPECT_GE(number, 5);
 }
 
+nlohmann::json eig_json(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "eig");
+  arguments.emplace_back("--json");
+  const ProgramResult result = Program(arguments).run();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return nlohmann::json::parse(result.out, nullptr, false);
+}
+
+// The modes of a scene, written as if they had been measured, are those of the scene; with another
+// friction they are still alike, at other frequencies.
+TEST(ShapeFiles, ModesAreThoseThatWereWritten) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "modes.uff").string();
+  const std::string scene = scene_path("examples/bracket.yaml");
+  const auto written = eig_json({scene, "--count", "8", "--uff", file});
+  EXPECT_EQ(written["uff"], file);
+  const auto compared = eig_json({scene, "--count", "8", "--compare", file});
+  const auto& modes = compared["comparison"]["modes"];
+  // Measured frequencies are those without damping, of six digits.
+  std::vector<double> undamped;
+  for (const auto& one : written["eigenvalues"]) {
+    if (one[1].get<double>() > 0.0)
+      undamped.push_back(std::hypot(one[0].get<double>(), one[1].get<double>()) / (2.0 * std::numbers::pi));
+  }
+  EXPECT_LT(compared["comparison"]["farthest"].get<double>(), 1e-9);
+  ASSERT_EQ(modes.size(), 8u);
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    EXPECT_EQ(modes[i]["mode"], i + 1);
+    EXPECT_GT(modes[i]["mac"].get<double>(), 0.99) << modes[i];
+    EXPECT_EQ(modes[i]["macs"].size(), 8u);
+    EXPECT_NEAR(modes[i]["measured_frequency"].get<double>(), undamped.at(i), 1e-5 * undamped[i]);
+  }
+  const ProgramResult again = Program({"eig", scene, "--uff", file}).run();
+  EXPECT_EQ(again.exit_code, 4);
+  EXPECT_THAT(again.err, HasSubstr("--force"));
+}
+
+TEST(ShapeFiles, RefusesPlacesThatAreNotThoseOfTheScene) {
+  const ProgramResult result =
+      Program({"eig", scene_path("examples/reed.yaml"), "--compare", scene_path("examples/reed.uff")}).run();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("node 1 of"), HasSubstr("away from every node of the bodies")));
+}
+
 }  // namespace
 }  // namespace stridor::test

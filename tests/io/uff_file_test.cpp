@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/errors.hpp"
+#include "io/results/uff_writer.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace stridor {
@@ -134,6 +135,35 @@ TEST(Uff, WrongFilesAreAnsweredWithPlaceAndWhatWasExpected) {
               HasSubstr("999 bytes of data are announced"));
   EXPECT_THAT(message_of<FileError>([] { read_uff_file("/nowhere/a.uff"); }),
               HasSubstr("expected a universal file"));
+}
+
+// What is written is read: E13.5 has six digits.
+TEST(UffWriter, ModesComeBackWithTheirNodes) {
+  UffContents contents;
+  contents.title = "modes";
+  contents.program = "stridor";
+  contents.stamp("2024-05-17T08:30:00Z");
+  EXPECT_EQ(contents.date, "17-MAY-24");
+  EXPECT_EQ(contents.time, "08:30:00");
+  contents.nodes = {{1, "a", {0.0, 0.01, -2.5}}, {2, "a", {1.0, 0.0, 0.0}}};
+  contents.lines = {{1, 2, 1, 2, 1, 2, 1, 2, 1}};
+  const std::complex<double> s(-12.5, 4321.0);
+  contents.modes = {{7, s, {{{{1.0, 0.0}, {-0.25, 0.125}, {0.0, 0.0}}}, {{{0.5, -0.5}, {0.0, 1e-7}, {2e-3, 0.0}}}}}};
+  const std::string text = uff_text(contents, "-o");
+  EXPECT_THAT(text, HasSubstr("    -1\n    82\n         1         9         1\nNONE\n         1         2"));
+  const ModalTest test = read(text);
+  ASSERT_THAT(test.nodes, SizeIs(2));
+  EXPECT_EQ(test.nodes.at(1), Eigen::Vector3d(0.0, 0.01, -2.5));
+  ASSERT_THAT(test.modes, SizeIs(1));
+  const TestMode& mode = test.modes[0];
+  EXPECT_EQ(mode.number, 7);
+  EXPECT_TRUE(mode.is_complex);
+  EXPECT_NEAR(mode.frequency, std::abs(s) / (2.0 * std::numbers::pi), 1e-5 * mode.frequency);
+  EXPECT_NEAR(mode.damping_ratio, 12.5 / std::abs(s), 1e-6);
+  EXPECT_EQ(mode.shape.at(1)[1], std::complex<double>(-0.25, 0.125));
+  EXPECT_EQ(mode.shape.at(2)[1], std::complex<double>(0.0, 1e-7));
+  contents.modes[0].shape.pop_back();
+  EXPECT_THROW(uff_text(contents, "-o"), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,0 +1,156 @@
+#include "app/stability/shape_files.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "core/errors.hpp"
+#include "core/stop_token.hpp"
+#include "core/version.hpp"
+#include "io/figures/mesh_picture.hpp"
+#include "io/run_file/run_file.hpp"
+
+namespace stridor {
+namespace {
+
+/// The shapes of all bodies, one below the other, with the largest displacement 1 and real.
+Eigen::MatrixX3cd stacked_shape(const std::vector<BodyShape>& bodies, Eigen::Index num_nodes) {
+  Eigen::MatrixX3cd all(num_nodes, 3);
+  Eigen::Index first = 0;
+  for (const BodyShape& body : bodies) {
+    all.middleRows(first, body.displacement.rows()) = body.displacement;
+    first += body.displacement.rows();
+  }
+  std::complex<double> largest = 0.0;
+  for (const std::complex<double>& u : all.reshaped())
+    if (std::abs(u) > std::abs(largest)) largest = u;
+  if (std::abs(largest) > 0.0) all /= largest;
+  return all;
+}
+
+void keep_nodes(const std::vector<BodyShape>& bodies, ShapedModes& shapes) {
+  Eigen::Index num_nodes = 0;
+  for (const BodyShape& body : bodies) num_nodes += body.nodes.rows();
+  shapes.places.resize(num_nodes, 3);
+  int first = 0;
+  for (const BodyShape& body : bodies) {
+    shapes.places.middleRows(first, body.nodes.rows()) = body.nodes;
+    shapes.bodies.insert(shapes.bodies.end(), static_cast<std::size_t>(body.nodes.rows()), body.name);
+    std::vector<std::vector<int>> lines = face_loops(body.elements);
+    for (std::vector<int>& loop : lines) loop.push_back(loop.front());
+    lines.insert(lines.end(), body.outlines.begin(), body.outlines.end());
+    for (std::vector<int>& line : lines) {
+      for (int& node : line) node += first;
+      shapes.lines.push_back(std::move(line));
+    }
+    first += static_cast<int>(body.nodes.rows());
+  }
+}
+
+}  // namespace
+
+ShapedModes shaped_modes(const Analysis& analysis, const std::string& option) {
+  const FoundSpectrum& found = analysis.found;
+  if (!found.shape) {
+    throw ConfigError(option,
+                      "needs bodies that are reduced (reduction), or fewer unknowns than these");
+  }
+  BodyCache cache;
+  const ShapeRecovery recovery(*analysis.member.model, cache);
+  ShapedModes shapes;
+  for (std::size_t i = 0; i < found.eigenvalues.size(); ++i) {
+    if (!(found.eigenvalues[i].s.imag() > 0.0)) continue;
+    if (stop_requested()) throw Interrupted("nothing has been written");
+    const std::vector<BodyShape> bodies =
+        recovery.mode(analysis.state.equilibrium, found.shape(i));
+    if (shapes.modes.empty()) keep_nodes(bodies, shapes);
+    if (shapes.places.rows() == 0) throw ConfigError(option, "no body of the scene has nodes");
+    shapes.modes.push_back({i, found.eigenvalues[i], stacked_shape(bodies, shapes.places.rows())});
+  }
+  if (shapes.modes.empty()) throw ConfigError(option, "no mode vibrates");
+  return shapes;
+}
+
+UffContents uff_contents(const ShapedModes& shapes, const std::string& scene) {
+  UffContents contents;
+  contents.title = "modes of " + scene;
+  contents.program = std::string("stridor ") + std::string(version);
+  contents.stamp(utc_now());
+  for (Eigen::Index i = 0; i < shapes.places.rows(); ++i)
+    contents.nodes.push_back({i + 1, shapes.bodies[static_cast<std::size_t>(i)],
+                              shapes.places.row(i).transpose()});
+  for (const std::vector<int>& line : shapes.lines) {
+    contents.lines.emplace_back();
+    for (const int node : line) contents.lines.back().push_back(node + 1);
+  }
+  std::int64_t number = 0;
+  for (const ShapedMode& mode : shapes.modes) {
+    UffMode one;
+    one.number = ++number;
+    one.eigenvalue = mode.eigenvalue.s;
+    for (Eigen::Index i = 0; i < mode.displacement.rows(); ++i)
+      one.shape.push_back({mode.displacement(i, 0), mode.displacement(i, 1), mode.displacement(i, 2)});
+    contents.modes.push_back(std::move(one));
+  }
+  return contents;
+}
+
+ShapeComparison compared_shapes(const ShapedModes& shapes, const ModalTest& measured,
+                                const std::string& option, const std::string& path) {
+  ShapeComparison comparison;
+  comparison.measured = measured.modes;
+  const Eigen::RowVector3d low = shapes.places.colwise().minCoeff();
+  const Eigen::RowVector3d high = shapes.places.colwise().maxCoeff();
+  const double extent = (high - low).norm();
+  std::map<std::int64_t, Eigen::Index> node_of;  // of the scene, by the label of the test
+  for (const TestMode& mode : measured.modes) {
+    for (const auto& entry : mode.shape) {
+      const std::int64_t label = entry.first;
+      if (node_of.contains(label)) continue;
+      const auto place = measured.nodes.find(label);
+      if (place == measured.nodes.end()) {
+        throw ConfigError(option, fmt::format("{} has no place of node {} (dataset 15 or 2411)", path, label));
+      }
+      Eigen::Index nearest = 0;
+      const double distance =
+          (shapes.places.rowwise() - place->second.transpose()).rowwise().norm().minCoeff(&nearest);
+      if (!(distance <= 0.05 * extent)) {
+        throw ConfigError(option,
+                          fmt::format("node {} of {} at ({:.4g}, {:.4g}, {:.4g}) m is {:.3g} m away from every "
+                                      "node of the bodies, whose extent is {:.3g} m; the test and the scene "
+                                      "are to have the same coordinates",
+                                      label, path, place->second.x(), place->second.y(), place->second.z(),
+                                      distance, extent));
+      }
+      comparison.farthest = std::max(comparison.farthest, distance);
+      node_of.emplace(label, nearest);
+    }
+  }
+  comparison.num_nodes = node_of.size();
+  comparison.assurance.resize(static_cast<Eigen::Index>(shapes.modes.size()),
+                              static_cast<Eigen::Index>(measured.modes.size()));
+  for (std::size_t c = 0; c < shapes.modes.size(); ++c) {
+    for (std::size_t m = 0; m < measured.modes.size(); ++m) {
+      std::complex<double> common = 0.0;
+      double of_computed = 0.0;
+      double of_measured = 0.0;
+      for (const auto& [label, values] : measured.modes[m].shape) {
+        for (Eigen::Index d = 0; d < 3; ++d) {
+          const std::complex<double> a = shapes.modes[c].displacement(node_of.at(label), d);
+          const std::complex<double> b = values[static_cast<std::size_t>(d)];
+          common += std::conj(a) * b;
+          of_computed += std::norm(a);
+          of_measured += std::norm(b);
+        }
+      }
+      const double size = of_computed * of_measured;
+      comparison.assurance(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(m)) =
+          size > 0.0 ? std::norm(common) / size : 0.0;
+    }
+  }
+  return comparison;
+}
+
+}  // namespace stridor

@@ -1,0 +1,52 @@
+// Shapes of modes for programs of modal tests, and beside those that a test has measured.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/stability/analysed_spectrum.hpp"
+#include "io/imports/uff_file.hpp"
+#include "io/results/uff_writer.hpp"
+#include "models/mode_shape.hpp"
+
+namespace stridor {
+
+/// A mode on the nodes of all bodies, one body after the other.
+struct ShapedMode {
+  std::size_t place = 0;  ///< in the list of the spectrum
+  Eigenvalue eigenvalue;
+  Eigen::MatrixX3cd displacement;  ///< m; the largest is 1 and real
+};
+
+/// The vibrating modes of a spectrum with their shapes.
+struct ShapedModes {
+  std::vector<std::string> bodies;  ///< of the nodes
+  Eigen::MatrixX3d places;          ///< m
+  std::vector<std::vector<int>> lines;  ///< what is drawn between nodes
+  std::vector<ShapedMode> modes;
+};
+
+/// @param option that asked for shapes, for messages
+/// @throws ConfigError if the bodies have no shapes, or no nodes
+ShapedModes shaped_modes(const Analysis& analysis, const std::string& option);
+
+/// As a universal file: 2411 (nodes from 1), 82 (lines) and a 55 for each mode.
+UffContents uff_contents(const ShapedModes& shapes, const std::string& scene);
+
+/// Modal assurance criterion |φᴴψ|²/(φᴴφ ψᴴψ) of computed and measured modes over the nodes that were
+/// measured.
+struct ShapeComparison {
+  std::vector<TestMode> measured;
+  Eigen::MatrixXd assurance;  ///< [computed mode][measured mode]
+  double farthest = 0.0;      ///< of a measured node from the node of the scene taken for it, m
+  std::size_t num_nodes = 0;
+};
+
+/// Every measured node is taken to be the node of the scene that is nearest to it.
+/// @param option, path where the measured shapes come from, for messages
+/// @throws ConfigError if a measured node is farther from every node than 5 % of the extent of the
+///         bodies, or the file holds no places
+ShapeComparison compared_shapes(const ShapedModes& shapes, const ModalTest& measured,
+                                const std::string& option, const std::string& path);
+
+}  // namespace stridor
