@@ -1,8 +1,9 @@
 #include "app/runs/transient.hpp"
 
 #include <numbers>
-#include <tuple>
+#include <utility>
 
+#include "app/runs/heard_windows.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "io/run_file/initial_state.hpp"
@@ -26,24 +27,6 @@ std::vector<StaticArray> modes_of(const System& system) {
     arrays.push_back({"/modal/" + body.name + "/damping_ratio", std::move(damping_ratio), "1"});
   }
   return arrays;
-}
-
-/// One array per property of the bursts, so that any reader of HDF5 can take them.
-void store_bursts(RunFileWriter& writer, const std::vector<Burst>& bursts) {
-  const std::vector<std::tuple<const char*, double Burst::*, const char*>> properties{
-      {"start", &Burst::start, "s"},
-      {"end", &Burst::end, "s"},
-      {"frequency", &Burst::frequency, "Hz"},
-      {"peak", &Burst::peak, "m/s^2"},
-      {"gain", &Burst::gain, "1"},
-      {"start_frequency", &Burst::start_frequency, "Hz"},
-      {"end_frequency", &Burst::end_frequency, "Hz"}};
-  for (const auto& [name, member, units] : properties) {
-    std::vector<double> values;
-    values.reserve(bursts.size());
-    for (const Burst& burst : bursts) values.push_back(burst.*member);
-    writer.write_static(std::string("/bursts/") + name, values, units);
-  }
 }
 
 /// How the bodies and the drives were when the run began, so that one that goes on begins likewise:
@@ -166,6 +149,10 @@ void Transient::write_frames(const std::filesystem::path& folder, double interva
   frame_interval_ = interval;
 }
 
+void Transient::compare_with(std::vector<TimedWindow> windows) {
+  windows_ = std::move(windows);
+}
+
 /// Shapes before the present time are those of a run that this one goes on with.
 MarchEnd Transient::run_from_frame_to_frame() {
   const double end = loaded_->scene.time->end * (1.0 + 1e-12);
@@ -219,10 +206,13 @@ Json Transient::finish(const Json& error) {
           : Json(nullptr);
   results["file"] = file_;
   write_final_motion();
-  store_results(*writer_, results);
-  if (acceleration && acceleration->bursts && !acceleration->bursts->empty()) {
-    store_bursts(*writer_, *acceleration->bursts);
+  const bool is_searched = acceleration && acceleration->bursts;
+  if (is_searched) store_bursts(*writer_, *acceleration->bursts);
+  if (windows_) {
+    results["prediction"] = results["unexplained"] = nullptr;
+    if (is_searched) store_heard_windows(*writer_, *windows_, *acceleration->bursts, results);
   }
+  store_results(*writer_, results);
   writer_->close();
   return results;
 }

@@ -6,10 +6,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/runs/run_driver.hpp"
 #include "app/runs/run_frames.hpp"
 #include "app/runs/run_keeping.hpp"
+#include "io/results/locus_file.hpp"
 #include "io/run_file/initial_state.hpp"
 
 namespace stridor {
@@ -35,6 +37,9 @@ class Transient {
   /// Has run_to_end() write the shapes of the bodies at equal times (RunFrames).
   /// @throws FileError as RunFrames
   void write_frames(const std::filesystem::path& folder, double interval);
+
+  /// Has finish() set unstable windows beside the bursts of the run (store_heard_windows()).
+  void compare_with(std::vector<TimedWindow> windows);
 
   /// Stores the state of the run in its file.
   /// @throws FileError if it cannot be written
@@ -68,6 +73,7 @@ class Transient {
   RunKeeper keeper_;
   Model model_;
   InitialState start_;
+  std::optional<std::vector<TimedWindow>> windows_;  ///< predicted, where they are to be compared
   std::unique_ptr<RunFrames> frames_;
   double frame_interval_ = 0.0;  ///< s
   std::unique_ptr<RunDriver> driver_;

@@ -5,7 +5,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/errors.hpp"
+#include "io/scene/scene_family.hpp"
+
 namespace stridor {
+
+std::vector<TimedWindow> read_predictions(const std::string& file) {
+  const std::string parameter = read_locus_parameter(file);
+  if (!parameter.empty() && !parameter.ends_with(".start") &&
+      parameter != drive_displacement_name) {
+    throw ConfigError(
+        "--predict", fmt::format("'{}' is a locus over {}, which a run does not pass through; give "
+                                 "one over the contact position (`locus` without --parameter)",
+                                 file, parameter));
+  }
+  return read_locus_windows(file);
+}
 
 std::vector<PredictedBurst> match_bursts(const std::vector<TimedWindow>& windows,
                                          const std::vector<NumberedBurst>& bursts) {
@@ -41,16 +56,24 @@ std::vector<PredictedBurst> match_bursts(const std::vector<TimedWindow>& windows
   return predictions;
 }
 
+std::vector<std::optional<std::size_t>> windows_of(const std::vector<PredictedBurst>& predictions,
+                                                   const std::vector<NumberedBurst>& bursts) {
+  std::vector<std::optional<std::size_t>> windows(bursts.size());
+  for (std::size_t k = 0; k < bursts.size(); ++k) {
+    for (std::size_t i = 0; i < predictions.size(); ++i) {
+      const auto& burst = predictions[i].burst;
+      if (burst && burst->number == bursts[k].number) windows[k] = i;
+    }
+  }
+  return windows;
+}
+
 std::vector<std::size_t> unexplained(const std::vector<PredictedBurst>& predictions,
                                      const std::vector<NumberedBurst>& bursts) {
+  const auto windows = windows_of(predictions, bursts);
   std::vector<std::size_t> numbers;
-  for (const NumberedBurst& one : bursts) {
-    const bool is_explained =
-        std::any_of(predictions.begin(), predictions.end(), [&](const PredictedBurst& prediction) {
-          return prediction.burst && prediction.burst->number == one.number;
-        });
-    if (!is_explained) numbers.push_back(one.number);
-  }
+  for (std::size_t k = 0; k < bursts.size(); ++k)
+    if (!windows[k]) numbers.push_back(bursts[k].number);
   return numbers;
 }
 

@@ -18,6 +18,12 @@ struct PredictedBurst {
   std::optional<NumberedBurst> burst;
 };
 
+/// The unstable windows of a locus, to be set beside the bursts of a run.
+/// @param file as given with --predict
+/// @throws ConfigError where the locus is over something that a run does not pass through,
+///         FileError where the file cannot be read or is no locus
+std::vector<TimedWindow> read_predictions(const std::string& file);
+
 /// Gives every window the burst of like frequency that overlaps it most in time, and every burst to
 /// no more than the one window that it overlaps most.
 ///
@@ -28,6 +34,9 @@ struct PredictedBurst {
 std::vector<PredictedBurst> match_bursts(const std::vector<TimedWindow>& windows,
                                          const std::vector<NumberedBurst>& bursts);
 
+/// For every burst the index of the window among the predictions that explains it, if one does.
+std::vector<std::optional<std::size_t>> windows_of(const std::vector<PredictedBurst>& predictions,
+                                                   const std::vector<NumberedBurst>& bursts);
 /// Numbers of the bursts to which no window belongs.
 std::vector<std::size_t> unexplained(const std::vector<PredictedBurst>& predictions,
                                      const std::vector<NumberedBurst>& bursts);

@@ -6,13 +6,17 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "app/results/pictures.hpp"
 #include "app/results/transient_results.hpp"
 #include "app/runs/cycle_motion.hpp"
 #include "app/runs/error_estimate.hpp"
+#include "app/runs/heard_windows.hpp"
 #include "app/runs/run_ending.hpp"
 #include "app/runs/transient.hpp"
+#include "app/stability/prediction.hpp"
 #include "app/terminal/command.hpp"
 #include "app/terminal/progress.hpp"
 #include "core/errors.hpp"
@@ -31,6 +35,7 @@ struct RunOptions {
   double max_wall = std::numeric_limits<double>::infinity();  ///< s
   bool verify = false;
   bool error = false;
+  std::optional<std::string> predict;       ///< locus file
   std::optional<std::string> vtu;           ///< folder
   std::optional<std::string> vtu_interval;  ///< as the user wrote it
   std::string command_line;
@@ -86,6 +91,7 @@ void print_cycles(const Json& results, const std::string& output) {
              result_text(results["contact_force"]["max"]));
   print_acceleration(results);
   print_bursts(results);
+  print_heard_windows(results);
   print_fractions(results);
   print_law_exceeded(results);
   fmt::print("{:<24}{}\n", "run file", output);
@@ -159,6 +165,7 @@ void print_summary(const Json& results, const std::string& output) {
   }
   print_acceleration(results);
   print_bursts(results);
+  print_heard_windows(results);
   const bool has_contacts = !results.contains("contacts") || !results["contacts"].empty();
   if (has_contacts) {
     print_fractions(results);
@@ -246,6 +253,18 @@ std::optional<double> frame_interval(const RunOptions& options, const LoadedScen
   return interval;
 }
 
+/// Windows to be set beside the bursts; what cannot be compared is refused before the run.
+std::optional<std::vector<TimedWindow>> predicted_windows(const RunOptions& options,
+                                                          const LoadedScene& loaded) {
+  if (!options.predict) return std::nullopt;
+  if (loaded.scene.measure.band.empty()) {
+    throw ConfigError("--predict",
+                      "sets windows beside bursts, but the scene seeks none; give it measure.band, "
+                      "the frequencies in which they are sought");
+  }
+  return read_predictions(*options.predict);
+}
+
 /// @param study of the scene, where the error is to be estimated
 ExitCode run_to_end(Transient& transient, const LoadedScene& loaded, const std::string& file,
                     const std::optional<StudiedScene>& study, const RunEnding& ending) {
@@ -267,8 +286,10 @@ ExitCode begin(const RunOptions& options) {
   loaded.require_section("time", "run");
   const auto study = studied(loaded, options);
   const std::optional<double> frames = frame_interval(options, loaded);
+  auto windows = predicted_windows(options, loaded);
   Transient transient(loaded, output);
   if (frames) transient.write_frames(*options.vtu, *frames);
+  if (windows) transient.compare_with(std::move(*windows));
   print_warnings(scene_warnings(loaded, transient.model()));
   return run_to_end(transient, loaded, options.output, study, ending);
 }
@@ -279,6 +300,11 @@ ExitCode report_done(const RunOptions& options, const RunFileReader& reader) {
     throw ConfigError("--error", options.resumed +
                                      " holds a whole run; an error is estimated with the run, "
                                      "so begin it anew");
+  }
+  if (options.predict) {
+    throw ConfigError("--predict", fmt::format("{} holds a whole run; `stridor spectrogram {} "
+                                               "--predict` sets windows beside its bursts",
+                                               options.resumed, options.resumed));
   }
   const Json results = stored_results(reader);
   if (options.common.json) {
@@ -308,8 +334,10 @@ ExitCode resume(const RunOptions& options) {
   const LoadedScene loaded = load_resolved_scene(interrupted.scene_text, source);
   const auto study = studied(loaded, options);
   const std::optional<double> frames = frame_interval(options, loaded);
+  auto windows = predicted_windows(options, loaded);
   Transient transient(loaded, interrupted);
   if (frames) transient.write_frames(*options.vtu, *frames);
+  if (windows) transient.compare_with(std::move(*windows));
   return run_to_end(transient, loaded, options.resumed, study, ending);
 }
 
@@ -346,6 +374,8 @@ void add_run_command(CLI::App& program, Action& action, const std::string& comma
   verb->add_flag("--verify", options->verify,
                  "Compare the results with the scene's `expect` block; exit 3 where they differ");
   verb->add_flag("--error", options->error, "Estimate the error of the run by a second, finer one");
+  verb->add_option("--predict", options->predict,
+                   "Locus file (`locus -o`) whose unstable windows are set beside the bursts");
   verb->add_option("--vtu", options->vtu,
                    "Folder for the shapes of the bodies over time, as files for ParaView (run.pvd)");
   verb->add_option("--vtu-interval", options->vtu_interval,

@@ -10,9 +10,7 @@
 #include "core/errors.hpp"
 #include "io/figures/axes.hpp"
 #include "io/figures/spectrogram_plot.hpp"
-#include "io/results/locus_file.hpp"
 #include "io/results/spectrogram_file.hpp"
-#include "io/scene/scene_family.hpp"
 
 namespace stridor {
 namespace {
@@ -75,18 +73,6 @@ std::string acceleration_name(const RunFileReader& file) {
   return series ? channel_name(*series) : "the run";
 }
 
-/// Windows of a locus belong to times of a run only where it is one over the path.
-void check_prediction(const PictureOptions& options) {
-  if (!options.predict) return;
-  const std::string parameter = read_locus_parameter(*options.predict);
-  if (parameter.empty() || parameter.ends_with(".start") || parameter == drive_displacement_name)
-    return;
-  throw ConfigError("--predict",
-                    fmt::format("'{}' is a locus over {}, which a run does not pass through; give "
-                                "one over the contact position (`locus` without --parameter)",
-                                *options.predict, parameter));
-}
-
 /// Bursts are sought in one channel, whichever is shown.
 void check_band(const PictureOptions& options, const RecordedStretch& run,
                 const std::string& series) {
@@ -118,6 +104,7 @@ struct DrawnSpectrogram {
   PieceSettings pieces;
   SpectrogramPicture picture;
   std::vector<NumberedBurst> bursts;
+  std::vector<TimedWindow> windows;  ///< of --predict
   std::vector<PredictedBurst> predictions;
   double highest = 0.0;  ///< amplitude
 };
@@ -142,7 +129,7 @@ void describe(const PictureOptions& options, const RecordedStretch& run, DrawnSp
                     acceleration_name(run.file), options.band ? ", band " + *options.band : "");
   }
   if (!options.predict) return;
-  drawn.predictions = match_bursts(read_locus_windows(*options.predict), drawn.bursts);
+  drawn.predictions = match_bursts(drawn.windows, drawn.bursts);
   for (SpectrogramMark& mark : predicted_marks(drawn.predictions))
     picture.marks.push_back(std::move(mark));
   picture.caption += fmt::format(" Dotted: unstable windows of {}.",
@@ -204,7 +191,7 @@ ExitCode draw_spectrogram(const PictureOptions& options) {
   const RecordedSettings scene = recorded_settings(run.file, run.path);
   DrawnSpectrogram drawn;
   drawn.series = spectral_series(run.file, shown_series(options, run, scene.spectrogram));
-  check_prediction(options);
+  if (options.predict) drawn.windows = read_predictions(*options.predict);
   check_band(options, run, drawn.series);
   drawn.pieces = settle_pieces(
       options, run, scene, scene.spectrogram,

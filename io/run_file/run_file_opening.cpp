@@ -68,7 +68,7 @@ void remove_results(const Checker& at) {
                        "is damaged or truncated");
   staged.opened();
   bool has_results = false;
-  for (const char* path : {"/final", "/results", "/bursts"}) {
+  for (const char* path : {"/final", "/results", "/bursts", "/windows"}) {
     if (H5Lexists(file.id(), path, H5P_DEFAULT) <= 0) continue;
     has_results = true;
     at.check(H5Ldelete(file.id(), path, H5P_DEFAULT), path, "cannot be removed");

@@ -198,12 +198,28 @@ class Run(ResultFile):
 
     @property
     def bursts(self) -> np.ndarray:
-        """Bursts as a structured array with start, end, frequency, peak and gain."""
-        names = ["start", "end", "frequency", "peak", "gain"]
-        group = self._file.get("bursts")
-        columns = [group[name][:] if group is not None and name in group else np.zeros(0)
-                   for name in names]
-        return np.rec.fromarrays(columns, names=names)
+        """Bursts as a structured array with start, end, frequency, peak and gain, the frequencies at
+        which each begins and ends (NaN in files of earlier versions), and the index of its window in
+        `windows`, -1 where none explains it or none were predicted."""
+        return self._records("bursts", {"start": np.nan, "end": np.nan, "frequency": np.nan, "peak": np.nan,
+                                        "gain": np.nan, "start_frequency": np.nan, "end_frequency": np.nan,
+                                        "window": -1})
+
+    @property
+    def windows(self) -> np.ndarray:
+        """Unstable windows of ``run(..., predict=LOCUS)`` as a structured array with from, to, frequency,
+        growth_max and gain, and the index of its burst in `bursts`, -1 where it was not heard."""
+        return self._records("windows", {"from": np.nan, "to": np.nan, "frequency": np.nan,
+                                         "growth_max": np.nan, "gain": np.nan, "burst": -1})
+
+    def _records(self, name: str, missing: Mapping[str, float]) -> np.ndarray:
+        """The datasets of a group side by side; whole numbers are indices."""
+        group = self._file.get(name)
+        found = {} if group is None else {key: group[key][:] for key in missing if key in group}
+        length = len(next(iter(found.values()))) if found else 0
+        columns = [found.get(key, np.full(length, value)).astype(int if value == -1 else float)
+                   for key, value in missing.items()]
+        return np.rec.fromarrays(columns, names=list(missing))
 
     @property
     def status(self) -> str:

@@ -92,7 +92,7 @@ def run(scene: Scene | Place | None = None, *, output: Place | None = None, set:
     resume : path, optional
         A run file that was interrupted, from which the run goes on.
     **options
-        ``verify``, ``error``, ``max_wall``, ``force``, ``vtu``: as of ``stridor run``.
+        ``verify``, ``error``, ``max_wall``, ``force``, ``vtu``, ``predict``: as of ``stridor run``.
 
     Returns
     -------

@@ -54,6 +54,11 @@ TEST(MatchBursts, ABurstBelongsToOneWindowAloneTheOneThatItOverlapsMost) {
   EXPECT_TRUE(unexplained(rows, {burst(1, 1.05, 1.5, 3500.0)}).empty());
   EXPECT_EQ(unexplained(rows, {burst(1, 1.05, 1.5, 3500.0), burst(2, 3.0, 3.1, 3500.0)}),
             std::vector<std::size_t>{2});
+  const auto windows =
+      windows_of(rows, {burst(2, 3.0, 3.1, 3500.0), burst(1, 1.05, 1.5, 3500.0)});
+  ASSERT_EQ(windows.size(), 2u);
+  EXPECT_FALSE(windows[0].has_value());
+  EXPECT_EQ(windows[1], std::size_t{1});
 }
 
 TEST(MatchBursts, WindowsThatNoRunPassesAreLeftOut) {

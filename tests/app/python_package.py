@@ -157,8 +157,16 @@ class Files(unittest.TestCase):
             example = stridor.example
             run = made("run.h5", "run", example("frozen_growth"), "--set", "time.end=0.1", "--set",
                        "record.energy=true", "--set", "measure.from=0.05")
+            locus = made("path.h5", "locus", example("beam_on_beam"), "--from", "60mm", "--to", "76mm", "--points", "33",
+                         "--about", "deformed")
+            heard = made("heard.h5", "run", example("beam_on_beam"), "--set", "time.end=1.7", "--predict", locus)
+            with stridor.open(heard) as opened:
+                # The window of 74.3 mm is heard, that of 62 mm is not.
+                self.assertEqual(opened.bursts["window"].tolist(), [1])
+                self.assertEqual(opened.windows["burst"].tolist(), [-1, 0])
+                self.assertAlmostEqual(opened.windows["gain"][1], opened.bursts["gain"][0], delta=0.5)
             files = [
-                run, made("belt.h5", "run", example("mass_on_belt"), "--set", "time.end=1"),
+                run, heard, made("belt.h5", "run", example("mass_on_belt"), "--set", "time.end=1"),
                 made("block.h5", "run", example("sliding_block"), "--set", "time.end=2e-3", "--set", "measure.from=1e-3"),
                 made("sphere.h5", "run", example("viscoelastic_sphere"), "--set", "time.end=0.2"),
                 made("disc.h5", "run", example("disc_squeal"), "--set", "time.end=1e-3"),

@@ -1,15 +1,22 @@
 // The locus about the deformed sliding equilibrium says which bursts a transient shows.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "tests/support/dataset.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {
 namespace {
 
 using namespace test;
+using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
 Json run_json(std::vector<std::string> arguments) {
@@ -31,6 +38,33 @@ void PrintTo(const Case& one, std::ostream* stream) {
 /// Of the gain: the mode changes its shape as it grows (docs/theory.md, 7.6).
 constexpr double gain_tolerance = 0.2;
 
+/// That the datasets of a run file hold what its results say, and point at each other.
+void expect_stored(const std::string& run, const Json& results) {
+  const Json& rows = results["prediction"];
+  const std::vector<double> window_of = dataset(run, "/bursts/window");
+  const std::vector<double> burst_of = dataset(run, "/windows/burst");
+  ASSERT_EQ(window_of.size(), results["bursts"].size());
+  ASSERT_EQ(burst_of.size(), rows.size());
+  for (const auto& [name, key] :
+       {std::pair{"/windows/from", "from"}, std::pair{"/windows/to", "to"},
+        std::pair{"/windows/frequency", "frequency"}, std::pair{"/windows/gain", "gain"},
+        std::pair{"/windows/growth_max", "growth_max"}}) {
+    const std::vector<double> values = dataset(run, name);
+    ASSERT_EQ(values.size(), rows.size()) << name;
+    for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(values[i], rows[i][key]) << name;
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Json& burst = rows[i]["burst"];
+    EXPECT_EQ(burst_of[i], burst.is_null() ? -1.0 : burst.get<double>() - 1.0);
+    if (burst_of[i] < 0.0) continue;
+    EXPECT_EQ(window_of.at(static_cast<std::size_t>(burst_of[i])), static_cast<double>(i));
+  }
+  for (std::size_t k = 0; k < window_of.size(); ++k) {
+    const Json& window = results["bursts"][k]["window"];
+    EXPECT_EQ(window_of[k], window.is_null() ? -1.0 : window.get<double>() - 1.0);
+  }
+}
+
 class PredictionTest : public ::testing::TestWithParam<Case> {};
 
 TEST_P(PredictionTest, EveryBurstHasItsWindow) {
@@ -39,9 +73,9 @@ TEST_P(PredictionTest, EveryBurstHasItsWindow) {
   const std::string run = (folder / "run.h5").string();
   const std::string locus = (folder / "locus.h5").string();
   const std::string friction = std::string("contact.friction.coefficient=") + GetParam().friction;
-  run_json({"run", scene, "-o", run, "--set", friction});
   run_json({"locus", scene, "--from", "30 mm", "--to", "97.5 mm", "--points", "271", "--about",
             "deformed", "-o", locus, "--set", friction});
+  const Json results = run_json({"run", scene, "-o", run, "--set", friction, "--predict", locus});
   const Json picture =
       run_json({"spectrogram", run, "-o", (folder / "figure.png").string(), "--predict", locus});
   // Three of 3.5 kHz, and during the third one of 10.6 kHz.
@@ -63,6 +97,10 @@ TEST_P(PredictionTest, EveryBurstHasItsWindow) {
   }
   EXPECT_EQ(num_near_10_kHz, 1);
   EXPECT_EQ(picture["unexplained"], Json::array());
+  // The run itself says the same.
+  EXPECT_EQ(results["prediction"], picture["prediction"]);
+  EXPECT_EQ(results["unexplained"], picture["unexplained"]);
+  expect_stored(run, results);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PredictionTest,
@@ -70,6 +108,75 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PredictionTest,
                                            Case{"beam_on_beam_leading.yaml", "0.3"},
                                            Case{"beam_on_beam.yaml", "0.26"},
                                            Case{"beam_on_beam_leading.yaml", "0.34"}));
+
+TEST(Prediction, ARunSaysWhichWindowsWereHeardAndWhichBurstsNoneExplains) {
+  const TemporaryFolder folder;
+  const std::string scene = scene_path("beam_on_beam.yaml");
+  const std::string locus = (folder / "locus.h5").string();
+  const std::string run = (folder / "run.h5").string();
+  // To 1.75 s there is one burst, at 1.54 s and 74 mm, which this locus does not reach.
+  run_json({"locus", scene, "--from", "60 mm", "--to", "65 mm", "--points", "21", "--about",
+            "deformed", "-o", locus});
+  const ProgramResult said = Program({"run", scene, "-o", run, "--predict", locus, "--set",
+                                      "time.end=1.7"})
+                                 .run();
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_THAT(said.out, HasSubstr("window predicted        1.119 to 1.15"));
+  EXPECT_THAT(said.out, HasSubstr("gain 1.08: not heard\n"));
+  EXPECT_THAT(said.out, HasSubstr("unexplained             burst 1 belongs to no window\n"));
+  EXPECT_EQ(dataset(run, "/bursts/window"), std::vector<double>{-1.0});
+  EXPECT_EQ(dataset(run, "/windows/burst"), std::vector<double>{-1.0});
+
+  const ProgramResult done = Program({"run", "--resume", run, "--predict", locus}).run();
+  EXPECT_EQ(done.exit_code, 2);
+  EXPECT_THAT(done.err, HasSubstr("holds a whole run"));
+}
+
+TEST(Prediction, ARunThatWentOnSaysTheSameOfTheWholeAsOneWithoutAStop) {
+  const TemporaryFolder folder;
+  const std::string scene = scene_path("beam_on_beam.yaml");
+  const std::string locus = (folder / "locus.h5").string();
+  const std::string whole = (folder / "whole.h5").string();
+  const std::string stopped = (folder / "stopped.h5").string();
+  run_json({"locus", scene, "--from", "60 mm", "--to", "76 mm", "--points", "65", "--about",
+            "deformed", "-o", locus});
+  run_json({"run", scene, "-o", whole, "--predict", locus, "--set", "time.end=1.7"});
+  // Early, so that what it says of the part before the stop is other than what there is in all.
+  ASSERT_EQ(Program({"run", scene, "-o", stopped, "--predict", locus, "--set", "time.end=1.7",
+                     "--max-wall", "0.1"})
+                .run()
+                .exit_code,
+            5);
+  run_json({"run", "--resume", stopped, "--predict", locus});
+  EXPECT_EQ(dataset(whole, "/windows/burst"), (std::vector<double>{-1.0, 0.0}));
+  for (const char* name : {"/windows/from", "/windows/to", "/windows/frequency", "/windows/gain",
+                           "/windows/burst", "/bursts/window", "/bursts/start", "/bursts/gain"})
+    EXPECT_EQ(dataset(stopped, name), dataset(whole, name)) << name;
+}
+
+TEST(Prediction, WhatCannotBeComparedIsRefusedBeforeTheRun) {
+  const TemporaryFolder folder;
+  const std::string scene = scene_path("beam_on_beam.yaml");
+  const std::string locus = (folder / "locus.h5").string();
+  const std::string run = (folder / "run.h5").string();
+  const auto refusal = [&](const std::string& file, const std::string& set) {
+    const ProgramResult result =
+        Program({"run", scene, "-o", run, "--predict", file, "--set", set}).run();
+    EXPECT_FALSE(std::filesystem::exists(run));
+    return std::pair(result.exit_code, result.err);
+  };
+  run_json({"locus", scene, "--parameter", "contact.friction.coefficient", "--from", "0", "--to",
+            "0.3", "--points", "3", "-o", locus});
+  const auto [other_key, about_key] = refusal(locus, "time.end=0.1");
+  EXPECT_EQ(other_key, 2);
+  EXPECT_THAT(about_key, HasSubstr("is a locus over contact.friction.coefficient"));
+  const auto [no_band, about_band] = refusal(locus, "measure.band=[]");
+  EXPECT_EQ(no_band, 2);
+  EXPECT_THAT(about_band, HasSubstr("measure.band"));
+  const auto [no_file, about_file] = refusal((folder / "none.h5").string(), "time.end=0.1");
+  EXPECT_EQ(no_file, 4);
+  EXPECT_THAT(about_file, HasSubstr("none.h5"));
+}
 
 }  // namespace
 }  // namespace stridor
