@@ -183,6 +183,25 @@ TEST(Pages, OfOtherProgramsWorkFromTheirFirstLineToTheLast) {
   }
 }
 
+TEST(Pages, OfRefusalsShowWhatIsPrinted) {
+  const UserFolder folder;
+  int num_refused = 0;
+  for (const std::string& block : blocks_of(source / "docs" / "refusals.md", "text")) {
+    if (!block.starts_with("$ ")) continue;  // of two processes at once
+    UserFolder::Outcome outcome{};
+    for (const std::string& line : lines_of(block)) {
+      if (line.starts_with("$ ")) {
+        outcome = folder.run(line.substr(2));
+        continue;
+      }
+      EXPECT_GE(outcome.exit_code, 2) << block << outcome.output;
+      EXPECT_NE(outcome.output.find(line), std::string::npos) << line << "\n" << outcome.output;
+      ++num_refused;
+    }
+  }
+  EXPECT_GE(num_refused, 18);
+}
+
 TEST(Snippets, OfPythonRun) {
   const UserFolder folder;
   const std::string python = python_with_h5py(folder);

@@ -135,4 +135,22 @@ TEST(Links, OfTheCodeToSectionsOfTheTheoryLeadSomewhere) {
   EXPECT_GE(num_references, 80);
 }
 
+TEST(Gallery, ListsEveryScene) {
+  const std::string gallery = whole_text(root_folder / "docs/gallery.md");
+  const std::string index = whole_text(root_folder / "scenes/examples/README.md");
+  int num_scenes = 0;
+  for (const std::string folder : {"scenes", "scenes/examples"}) {
+    for (const auto& entry : fs::directory_iterator(root_folder / folder)) {
+      if (entry.path().extension() != ".yaml") continue;
+      const std::string name = entry.path().filename().string();
+      const std::string in_index = folder == "scenes" ? "](../" + name + ")" : "](" + name + ")";
+      EXPECT_NE(index.find(in_index), std::string::npos) << name << ": run docs/make_gallery.py";
+      EXPECT_NE(gallery.find("](../" + folder + "/" + name + ")"), std::string::npos)
+          << name << ": run docs/make_gallery.py";
+      ++num_scenes;
+    }
+  }
+  EXPECT_GE(num_scenes, 40);
+}
+
 }  // namespace
