@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Makes the figures of README.md, docs/tutorial.md, docs/seeds.md, docs/viscoelastic_contact.md,
 # docs/viscoelastic_sphere.md, docs/precision.md and docs/disc_and_pads.md anew; takes some minutes.
+# The animated one of README.md is made by animate.py.
 # Usage: docs/figures/make.sh [STRIDOR], by default build/release/stridor of this source tree.
 set -euo pipefail
 here=$(CDPATH='' cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)

@@ -97,12 +97,56 @@ std::vector<fs::path> documents() {
   return all;
 }
 
-TEST(Readme, CommandsWorkAsPrintedOneAfterTheOther) {
+/// The block of a language that begins with a word.
+std::string block_of(const fs::path& document, const std::string& language,
+                     const std::string& beginning) {
+  for (const std::string& one : blocks_of(document, language))
+    if (one.starts_with(beginning)) return one;
+  ADD_FAILURE() << document << " has no block of " << language << " with " << beginning;
+  return {};
+}
+
+TEST(Readme, SceneGivesWhatIsPrintedBelowIt) {
   const UserFolder folder;
-  std::string block;
-  for (const std::string& one : blocks_of(source / "README.md", "sh"))
-    if (one.starts_with("stridor ")) block = one;
-  ASSERT_FALSE(block.empty());
+  const fs::path readme = source / "README.md";
+  write_file(folder / "beam.yaml", block_of(readme, "yaml", "format:"));
+  const auto checked = folder.run("stridor check beam.yaml");
+  EXPECT_EQ(checked.exit_code, 0) << checked.output;
+  EXPECT_NE(checked.output.find("no errors"), std::string::npos) << checked.output;
+  const auto outcome = folder.run(block_of(readme, "sh", "stridor run beam.yaml"));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  const auto printed = lines_of(block_of(readme, "text", "modes of"));
+  EXPECT_EQ(printed.size(), 6u);
+  for (const std::string& line : printed)
+    EXPECT_NE(outcome.output.find(line + "\n"), std::string::npos) << line << "\n" << outcome.output;
+}
+
+TEST(Readme, SceneSquealsForTheReasonGiven) {
+  const UserFolder folder;
+  const fs::path readme = source / "README.md";
+  write_file(folder / "beam.yaml", block_of(readme, "yaml", "format:"));
+  const std::string text = contents_of(readme);
+  std::smatch command, reason;
+  ASSERT_TRUE(std::regex_search(text, command, std::regex("`(stridor eig beam\\.yaml [^`]*)`")));
+  ASSERT_TRUE(std::regex_search(
+      text, reason,
+      std::regex("a mode of ([0-9]+) Hz gains\\s+([0-9.]+) % of its energy at the contact in each "
+                 "cycle and loses ([0-9.]+) % by")));
+  const auto outcome = folder.run(command[1]);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  std::smatch mode, energy;
+  ASSERT_TRUE(std::regex_search(outcome.output, mode, std::regex("at ([0-9.]+) Hz, growth")));
+  ASSERT_TRUE(std::regex_search(
+      outcome.output, energy,
+      std::regex("of its energy \\+([0-9.]+) % enters at the contact in each cycle, -([0-9.]+) %")));
+  EXPECT_NEAR(std::stod(mode[1]), std::stod(reason[1]), 0.5);
+  EXPECT_NEAR(std::stod(energy[1]), std::stod(reason[2]), 0.05);
+  EXPECT_NEAR(std::stod(energy[2]), std::stod(reason[3]), 0.05);
+}
+
+TEST(Commands, WorkAsPrintedOneAfterTheOther) {
+  const UserFolder folder;
+  const std::string block = block_of(source / "docs" / "commands.md", "sh", "stridor check");
   // Shorter runs, whose results are not those expected of the whole.
   const std::string shorter = " --set time.end=0.45";
   int num_run = 0;
@@ -137,6 +181,25 @@ TEST(Pages, OfOtherProgramsWorkFromTheirFirstLineToTheLast) {
     }
     EXPECT_EQ(num_run, 4) << program;
   }
+}
+
+TEST(Pages, OfRefusalsShowWhatIsPrinted) {
+  const UserFolder folder;
+  int num_refused = 0;
+  for (const std::string& block : blocks_of(source / "docs" / "refusals.md", "text")) {
+    if (!block.starts_with("$ ")) continue;  // of two processes at once
+    UserFolder::Outcome outcome{};
+    for (const std::string& line : lines_of(block)) {
+      if (line.starts_with("$ ")) {
+        outcome = folder.run(line.substr(2));
+        continue;
+      }
+      EXPECT_GE(outcome.exit_code, 2) << block << outcome.output;
+      EXPECT_NE(outcome.output.find(line), std::string::npos) << line << "\n" << outcome.output;
+      ++num_refused;
+    }
+  }
+  EXPECT_GE(num_refused, 18);
 }
 
 TEST(Snippets, OfPythonRun) {

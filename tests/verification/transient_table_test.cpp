@@ -2,7 +2,7 @@
 // them.
 //
 // The reference values come from a prototype written apart from this program in another language
-// with the same equations and step (docs/theory.md, 5.1). Contact forces agree to 1e-4; bursts are
+// with the same equations and step (docs/theory.md, 5). Contact forces agree to 1e-4; bursts are
 // amplified noise, so 5 % are allowed in their r.m.s. and 10 % in peaks, which the low-pass of the
 // channels touches.
 #include <gmock/gmock.h>

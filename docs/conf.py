@@ -1,0 +1,60 @@
+"""The documents as a site, made by `./run docs`: takes Debian's python3-sphinx, python3-myst-parser and furo.
+
+The pages stay plain Markdown, which hosts of repositories show as it is; what Sphinx wants besides
+is added here while it reads.
+"""
+import pathlib
+import re
+
+HERE = pathlib.Path(__file__).resolve().parent
+LINK = re.compile(r"\[([^\]]*)\]\(([^)#:]+)\)")
+
+project = "stridor"
+extensions = ["myst_parser"]
+root_doc = "index"
+exclude_patterns = ["_build", "figures"]
+myst_enable_extensions = ["dollarmath", "amsmath"]
+myst_heading_anchors = 4
+myst_dmath_double_inline = True
+suppress_warnings = ["myst.header"]  # tables of contents begin where pages do
+html_theme = "furo"
+html_title = "stridor"
+html_copy_source = False
+highlight_language = "none"
+
+TREE = """
+
+```{toctree}
+:hidden:
+:glob:
+*
+```
+"""
+CHAPTERS = TREE.replace("\n*\n", "\ntheory/*\n")
+
+
+def without_links_out(text, folder):
+    """Links to folders and pages of the source tree that are no part of the site become their text.
+
+    Those that lead nowhere stay, so that Sphinx finds them.
+    """
+    def replaced(match):
+        target = (folder / match[2]).resolve()
+        is_outside = not target.is_relative_to(HERE) and target.exists()
+        return match[1] if is_outside and (target.is_dir() or target.suffix == ".md") else match[0]
+
+    return LINK.sub(replaced, text)
+
+
+def complete(_app, name, source):
+    """Formulas in fences as directives; the trees of pages, which plain Markdown does not have."""
+    source[0] = without_links_out(source[0], (HERE / name).parent)
+    source[0] = source[0].replace("```math\n", "```{math}\n")
+    if name == "index":
+        source[0] += TREE
+    if name == "theory":
+        source[0] += CHAPTERS
+
+
+def setup(app):
+    app.connect("source-read", complete)
