@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "app/report/histories.hpp"
 #include "app/report/mode_frames.hpp"
@@ -123,6 +124,37 @@ void judge_modes(const Json& section, Heard& heard) {
                                    places == 1 ? "place" : "places");
 }
 
+/// The windows that `run --predict` set beside the bursts of a run.
+Json recorded_predictions(const ResultFile& file, const std::vector<NumberedBurst>& bursts) {
+  Json rows = Json::array();
+  if (!file.has("/windows/from")) return rows;
+  std::map<std::string, std::vector<double>> columns;
+  for (const char* name : {"from", "to", "frequency", "growth_max", "gain", "burst"}) {
+    const std::string path = std::string("/windows/") + name;
+    columns[name] = file.read(path);
+    if (columns[name].size() != columns["from"].size())
+      throw FileError(file.path(), path, "is unlike /windows/from in length");
+  }
+  for (std::size_t i = 0; i < columns["from"].size(); ++i) {
+    Json row = {{"from", number(columns["from"][i])},
+                {"to", number(columns["to"][i])},
+                {"frequency", number(columns["frequency"][i])},
+                {"growth_max", number(columns["growth_max"][i])},
+                {"gain", number(columns["gain"][i])},
+                {"burst", nullptr}};
+    const double index = columns["burst"][i];
+    if (index >= 0.0 && index < static_cast<double>(bursts.size())) {
+      const NumberedBurst& burst = bursts[static_cast<std::size_t>(index)];
+      row["burst"] = burst.number;
+      row["burst_start"] = burst.burst.start;
+      row["burst_frequency"] = burst.burst.frequency;
+      row["burst_gain"] = number(burst.burst.gain);
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
 Json run_verdict(const Json& results, const RecordedStretch& run, const Heard& heard) {
   const std::string status = results.value("status", std::string());
   const std::vector<NumberedBurst>& bursts = heard.bursts;
@@ -230,6 +262,7 @@ Json run_section(const ResultFile& source, const ReportContext& context) {
   heard.is_searched = acceleration_channel(run.file).has_value() &&
                       recorded_settings(run.file, run.path).measure.band.size() == 2;
   heard.predictions = predictions_of(run, context, heard.bursts, section);
+  if (heard.predictions.empty()) heard.predictions = recorded_predictions(source, heard.bursts);
   section["verdict"] = nullptr;  // stands above what it needs
   section["views"].push_back({{"type", "bursts"},
                               {"bursts", bursts_json_of(heard.bursts)},

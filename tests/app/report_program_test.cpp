@@ -144,6 +144,16 @@ TEST_F(ReportProgram, ALocusIsSetBesideTheRunOfItsScene) {
   EXPECT_FALSE(expectations.empty());
   for (const Json& row : expectations) EXPECT_TRUE(row["is_met"].get<bool>()) << row;
 
+  // A run that was set beside the locus holds the same.
+  const std::string heard = made({"run", beams, "--predict", locus}, "heard.h5");
+  const Json alone = contents_of_report(page_of({heard, "--no-shapes"}, "alone.html"));
+  const Json again = view_of(alone["sections"][0], "bursts")["predicted"];
+  ASSERT_EQ(again.size(), predicted.size());
+  for (std::size_t i = 0; i < predicted.size(); ++i) {
+    for (const char* key : {"from", "to", "frequency", "gain", "burst"})
+      EXPECT_EQ(again[i][key], predicted[i][key]) << key;
+  }
+
   const Json modes = view_of(contents["sections"][1], "modes");
   ASSERT_FALSE(modes.is_null());
   EXPECT_TRUE(modes["planar"].get<bool>());
