@@ -72,11 +72,11 @@ pid_t process_of(std::string_view number) {
 bool is_ours(const Descriptor& file, const struct stat& status) {
   if (!S_ISREG(status.st_mode) || status.st_uid != geteuid()) return false;
   if (status.st_blocks == 0) return true;
-  std::array<char, 8> head{};
+  std::array<char, 16> head{};
   const ssize_t count = pread(file.number(), head.data(), head.size(), 0);
   const std::string_view begin(head.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
-  constexpr std::array<std::string_view, 7> beginnings{"\x89HDF", "\x89PNG", "<?xml", "%PDF",
-                                                       "{",       "# vtk",   "//"};
+  constexpr std::array<std::string_view, 9> beginnings{
+      "\x89HDF", "\x89PNG", "<?xml", "%PDF", "{", "# vtk", "//", "<!DOCTYPE html>", "RIFF"};
   return std::any_of(beginnings.begin(), beginnings.end(),
                      [&](std::string_view one) { return begin.substr(0, one.size()) == one; });
 }

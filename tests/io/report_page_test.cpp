@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <random>
 #include <stdexcept>
@@ -152,6 +153,20 @@ TEST(ReportPage, APageThatIsNotFinishedLeavesNothing) {
   }
   EXPECT_THROW(ReportPage(path, Overwrite::no, "x"), FileError);
   EXPECT_THROW(ReportPage((folder / "none/page.html").string(), Overwrite::no, "x"), FileError);
+}
+
+// A process that was killed leaves what it had written under another name; that of nobody goes.
+TEST(ReportPage, WhatAKilledProcessLeftIsTakenAway) {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "page.html").string();
+  // No process has a number this large (kernel.pid_max is at most 2^22).
+  std::ofstream(path + ".part-4194305") << "<!DOCTYPE html>\n<html";
+  std::ofstream(path + ".part-4194306") << "a note of somebody";
+  {
+    ReportPage page(path, Overwrite::no, "x");
+    page.finish({});
+  }
+  EXPECT_THAT(folder.files(), ::testing::UnorderedElementsAre("page.html", "page.html.part-4194306"));
 }
 
 }  // namespace
