@@ -96,12 +96,13 @@ QuietLevel find_quiet_level(std::span<const double> samples, double interval,
 /// dropped, and those beside a louder one at the same time, nearer to it than 2/T.
 ///
 /// The level before, L, is the minimum of c before the rise: the quiet level, or what is left of
-/// the burst before; n is the minimum of e over 8 T before, at most L: what is in the own band besides. Start is the last time before the rise
-/// at which e² ≤ L² + n², when the burst itself has become as strong as the level; end is the first
-/// time after the maximum at which it is so again, at latest the minimum before the next burst or the end of the measured window. Steepest
-/// rise is the largest difference of ln e over 2 T, sought from where the envelope has risen by θ/σ
-/// to the maximum, so that the noise before does not count; the frequency f is that of the highest
-/// line in its own band of the spectrum (Hann window of 2 T, at least 8 periods of band.lower, lines
+/// the burst before; n is the minimum of e over 8 T before, at most L: what is in the own band
+/// besides. Start is the last time before the rise at which e² ≤ L² + n², when the burst itself has
+/// become as strong as the level; end is the first time after the maximum at which it is so again,
+/// at latest the minimum before the next burst or the end of the measured window. Steepest rise is
+/// the largest difference of ln e over 2 T, sought from where the envelope has risen by θ/σ to the
+/// maximum, so that the noise before does not count; the frequency f is that of the highest line in
+/// its own band of the spectrum (Hann window of 2 T, at least 8 periods of band.lower, lines
 /// interpolated) around that time.
 ///
 /// Growth and gain are those of the burst's own frequency, so that they do not depend on what else
@@ -111,8 +112,8 @@ QuietLevel find_quiet_level(std::span<const double> samples, double interval,
 /// of it. That leaves out what seeded the burst, be it a blow or noise: for an unstable window in
 /// which the growth varies as √(1 − x²) it leaves out 3 % of its integral.
 ///
-/// Limits: sounds nearer to each other than 4/T are one; T blurs the envelope; an apex between growth a and decay b loses about (a + b) T/16 of
-/// the gain. The growth, a maximum, reads some 1/s too high in noise. A blow later than about T
+/// Limits: sounds nearer to each other than 4/T are one; T blurs the envelope; an apex between growth
+/// a and decay b loses about (a + b) T/16 of the gain. The growth, a maximum, reads some 1/s too high in noise. A blow later than about T
 /// before the onset counts as growth. Where noise fills the band around f, growth is followed back
 /// to a few times that noise only, and the gain is uncertain by about 1.5. A blow that rings down
 /// is also a burst, with a growth of the order of 1/T. A vibration that already decays when the

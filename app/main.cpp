@@ -106,13 +106,7 @@ std::string option_problem(CLI::App& program, int argc, char** argv) {
   return "";
 }
 
-int run_verb(int argc, char** argv) {
-  CLI::App program{"stridor: friction-induced vibration of sliding flexible bodies", "stridor"};
-  program.set_version_flag("--version", fmt::format("stridor {} ({})", version, commit));
-  program.require_subcommand(1);
-  program.failure_message(CLI::FailureMessage::help);
-  Action action;
-  const std::string command = joined_arguments(argc, argv);
+void add_verbs(CLI::App& program, Action& action, const std::string& command) {
   add_run_command(program, action, command);
   add_check_command(program, action);
   add_draw_command(program, action);
@@ -135,6 +129,16 @@ int run_verb(int argc, char** argv) {
   add_cycle_command(program, action, command);
   add_sweep_command(program, action, command);
   add_hidden_commands(program, action);
+}
+
+int run_verb(int argc, char** argv) {
+  CLI::App program{"stridor: friction-induced vibration of sliding flexible bodies", "stridor"};
+  program.set_version_flag("--version", fmt::format("stridor {} ({})", version, commit));
+  program.require_subcommand(1);
+  program.failure_message(CLI::FailureMessage::help);
+  Action action;
+  const std::string command = joined_arguments(argc, argv);
+  add_verbs(program, action, command);
   std::string progress;
   for (CLI::App* verb : program.get_subcommands([](const CLI::App*) { return true; })) {
     verb->add_option("--progress", progress,
