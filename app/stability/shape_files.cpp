@@ -1,7 +1,9 @@
 #include "app/stability/shape_files.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -11,6 +13,7 @@
 #include "core/version.hpp"
 #include "io/figures/mesh_picture.hpp"
 #include "io/run_file/run_file.hpp"
+#include "models/placed_model.hpp"
 
 namespace stridor {
 namespace {
@@ -45,8 +48,73 @@ void keep_nodes(const std::vector<BodyShape>& bodies, ShapedModes& shapes) {
       for (int& node : line) node += first;
       shapes.lines.push_back(std::move(line));
     }
+    for (DrawnElement element : body.elements) {
+      for (int& node : element.nodes) node += first;
+      shapes.elements.push_back(std::move(element));
+    }
     first += static_cast<int>(body.nodes.rows());
   }
+}
+
+/// The row of every measured node.
+/// @param farthest becomes the largest distance of those that were matched by place, m
+NodesByLabel matched_nodes(const ShapedModes& shapes, const ModalTest& measured,
+                           const NodesByLabel& named, const std::string& path, double& farthest) {
+  const Eigen::RowVector3d low = shapes.places.colwise().minCoeff();
+  const Eigen::RowVector3d high = shapes.places.colwise().maxCoeff();
+  const double extent = (high - low).norm();
+  NodesByLabel node_of;
+  for (const TestMode& mode : measured.modes) {
+    for (const auto& entry : mode.shape) {
+      const std::int64_t label = entry.first;
+      if (node_of.contains(label)) continue;
+      if (const auto name = named.find(label); name != named.end()) {
+        node_of.insert(*name);
+        continue;
+      }
+      const auto place = measured.nodes.find(label);
+      if (place == measured.nodes.end()) {
+        throw ConfigError("--compare", fmt::format("{} has no place of node {} (dataset 15 or 2411); "
+                                                   "name it with --node {}=BODY.POINT",
+                                                   path, label, label));
+      }
+      Eigen::Index nearest = 0;
+      const double distance =
+          (shapes.places.rowwise() - place->second.transpose()).rowwise().norm().minCoeff(&nearest);
+      if (!(distance <= 0.05 * extent)) {
+        throw ConfigError("--compare",
+                          fmt::format("node {} of {} at ({:.4g}, {:.4g}, {:.4g}) m is {:.3g} m away from every "
+                                      "node of the bodies, whose extent is {:.3g} m; the test and the scene "
+                                      "are to have the same coordinates, or --node {}=BODY.POINT names the point",
+                                      label, path, place->second.x(), place->second.y(), place->second.z(),
+                                      distance, extent, label));
+      }
+      farthest = std::max(farthest, distance);
+      node_of.emplace(label, nearest);
+    }
+  }
+  for (const auto& [label, node] : named) {
+    if (!node_of.contains(label))
+      throw ConfigError("--node", fmt::format("no mode of {} has a node {}", path, label));
+  }
+  return node_of;
+}
+
+double modal_assurance(const ShapedMode& computed, const TestMode& measured, const NodesByLabel& node_of) {
+  std::complex<double> common = 0.0;
+  double of_computed = 0.0;
+  double of_measured = 0.0;
+  for (const auto& [label, values] : measured.shape) {
+    for (Eigen::Index d = 0; d < 3; ++d) {
+      const std::complex<double> a = computed.displacement(node_of.at(label), d);
+      const std::complex<double> b = values[static_cast<std::size_t>(d)];
+      common += std::conj(a) * b;
+      of_computed += std::norm(a);
+      of_measured += std::norm(b);
+    }
+  }
+  const double size = of_computed * of_measured;
+  return size > 0.0 ? std::norm(common) / size : 0.0;
 }
 
 }  // namespace
@@ -85,6 +153,10 @@ UffContents uff_contents(const ShapedModes& shapes, const std::string& scene) {
     contents.lines.emplace_back();
     for (const int node : line) contents.lines.back().push_back(node + 1);
   }
+  for (const DrawnElement& element : shapes.elements) {
+    contents.elements.push_back({element.shape, {}});
+    for (const int node : element.nodes) contents.elements.back().nodes.push_back(node + 1);
+  }
   std::int64_t number = 0;
   for (const ShapedMode& mode : shapes.modes) {
     UffMode one;
@@ -97,57 +169,49 @@ UffContents uff_contents(const ShapedModes& shapes, const std::string& scene) {
   return contents;
 }
 
+NodesByLabel nodes_at_points(const ShapedModes& shapes, const LoadedScene& loaded,
+                             const std::vector<NodeName>& names) {
+  NodesByLabel nodes;
+  if (names.empty()) return nodes;
+  BodyCache cache;
+  const ModelParameters parameters = parameters_with_files(loaded, cache);
+  const PlacedModel placed = place_model(parameters, cache);
+  for (const NodeName& name : names) {
+    const auto body = std::find_if(placed.bodies.begin(), placed.bodies.end(),
+                                   [&](const ModelBody& one) { return one.name == name.point.body; });
+    const auto first = std::find(shapes.bodies.begin(), shapes.bodies.end(), name.point.body);
+    if (body == placed.bodies.end() || first == shapes.bodies.end()) {
+      const std::set<std::string> known(shapes.bodies.begin(), shapes.bodies.end());
+      throw ConfigError("--node", fmt::format("no body '{}' has nodes (these have: {})", name.point.body,
+                                              fmt::join(known, ", ")));
+    }
+    const int node = node_at(*body, name.point.point, "--node");
+    const Eigen::Index start = first - shapes.bodies.begin();
+    const Eigen::Index size = std::count(first, shapes.bodies.end(), name.point.body);
+    Eigen::Index row = node;
+    if (row >= size) {
+      (shapes.places.middleRows(start, size).rowwise() - body->place_of(node).transpose())
+          .rowwise()
+          .norm()
+          .minCoeff(&row);
+    }
+    nodes[name.node] = start + row;
+  }
+  return nodes;
+}
+
 ShapeComparison compared_shapes(const ShapedModes& shapes, const ModalTest& measured,
-                                const std::string& option, const std::string& path) {
+                                const NodesByLabel& named, const std::string& path) {
   ShapeComparison comparison;
   comparison.measured = measured.modes;
-  const Eigen::RowVector3d low = shapes.places.colwise().minCoeff();
-  const Eigen::RowVector3d high = shapes.places.colwise().maxCoeff();
-  const double extent = (high - low).norm();
-  std::map<std::int64_t, Eigen::Index> node_of;  // of the scene, by the label of the test
-  for (const TestMode& mode : measured.modes) {
-    for (const auto& entry : mode.shape) {
-      const std::int64_t label = entry.first;
-      if (node_of.contains(label)) continue;
-      const auto place = measured.nodes.find(label);
-      if (place == measured.nodes.end()) {
-        throw ConfigError(option, fmt::format("{} has no place of node {} (dataset 15 or 2411)", path, label));
-      }
-      Eigen::Index nearest = 0;
-      const double distance =
-          (shapes.places.rowwise() - place->second.transpose()).rowwise().norm().minCoeff(&nearest);
-      if (!(distance <= 0.05 * extent)) {
-        throw ConfigError(option,
-                          fmt::format("node {} of {} at ({:.4g}, {:.4g}, {:.4g}) m is {:.3g} m away from every "
-                                      "node of the bodies, whose extent is {:.3g} m; the test and the scene "
-                                      "are to have the same coordinates",
-                                      label, path, place->second.x(), place->second.y(), place->second.z(),
-                                      distance, extent));
-      }
-      comparison.farthest = std::max(comparison.farthest, distance);
-      node_of.emplace(label, nearest);
-    }
-  }
+  const NodesByLabel node_of = matched_nodes(shapes, measured, named, path, comparison.farthest);
   comparison.num_nodes = node_of.size();
   comparison.assurance.resize(static_cast<Eigen::Index>(shapes.modes.size()),
                               static_cast<Eigen::Index>(measured.modes.size()));
   for (std::size_t c = 0; c < shapes.modes.size(); ++c) {
     for (std::size_t m = 0; m < measured.modes.size(); ++m) {
-      std::complex<double> common = 0.0;
-      double of_computed = 0.0;
-      double of_measured = 0.0;
-      for (const auto& [label, values] : measured.modes[m].shape) {
-        for (Eigen::Index d = 0; d < 3; ++d) {
-          const std::complex<double> a = shapes.modes[c].displacement(node_of.at(label), d);
-          const std::complex<double> b = values[static_cast<std::size_t>(d)];
-          common += std::conj(a) * b;
-          of_computed += std::norm(a);
-          of_measured += std::norm(b);
-        }
-      }
-      const double size = of_computed * of_measured;
       comparison.assurance(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(m)) =
-          size > 0.0 ? std::norm(common) / size : 0.0;
+          modal_assurance(shapes.modes[c], measured.modes[m], node_of);
     }
   }
   return comparison;

@@ -1,10 +1,13 @@
 // Shapes of modes for programs of modal tests, and beside those that a test has measured.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "app/stability/analysed_spectrum.hpp"
+#include "app/stability/measured_responses.hpp"
 #include "io/imports/uff_file.hpp"
 #include "io/results/uff_writer.hpp"
 #include "models/mode_shape.hpp"
@@ -23,6 +26,7 @@ struct ShapedModes {
   std::vector<std::string> bodies;  ///< of the nodes
   Eigen::MatrixX3d places;          ///< m
   std::vector<std::vector<int>> lines;  ///< what is drawn between nodes
+  std::vector<DrawnElement> elements;   ///< of those bodies that have them
   std::vector<ShapedMode> modes;
 };
 
@@ -30,7 +34,7 @@ struct ShapedModes {
 /// @throws ConfigError if the bodies have no shapes, or no nodes
 ShapedModes shaped_modes(const Analysis& analysis, const std::string& option);
 
-/// As a universal file: 2411 (nodes from 1), 82 (lines) and a 55 for each mode.
+/// As a universal file: 2411 (nodes from 1), 2412 (elements), 82 (lines) and a 55 for each mode.
 UffContents uff_contents(const ShapedModes& shapes, const std::string& scene);
 
 /// Modal assurance criterion |φᴴψ|²/(φᴴφ ψᴴψ) of computed and measured modes over the nodes that were
@@ -42,11 +46,19 @@ struct ShapeComparison {
   std::size_t num_nodes = 0;
 };
 
-/// Every measured node is taken to be the node of the scene that is nearest to it.
-/// @param option, path where the measured shapes come from, for messages
-/// @throws ConfigError if a measured node is farther from every node than 5 % of the extent of the
-///         bodies, or the file holds no places
+/// Rows of `shapes` by the label of a measured node.
+using NodesByLabel = std::map<std::int64_t, Eigen::Index>;
+
+/// The nodes at named points of bodies; of a point between nodes the nearest node of its body.
+/// @throws ConfigError at --node if there is no such body with nodes, or no such point
+NodesByLabel nodes_at_points(const ShapedModes& shapes, const LoadedScene& loaded,
+                             const std::vector<NodeName>& names);
+
+/// A measured node is what `named` says, else the node of the scene that is nearest to it.
+/// @param path of the measured shapes, for messages
+/// @throws ConfigError if a measured node without a name is farther from every node than 5 % of the
+///         extent of the bodies or the file has no place of it, or a named node has not been measured
 ShapeComparison compared_shapes(const ShapedModes& shapes, const ModalTest& measured,
-                                const std::string& option, const std::string& path);
+                                const NodesByLabel& named, const std::string& path);
 
 }  // namespace stridor

@@ -13,6 +13,7 @@
 #include "app/stability/shape_files.hpp"
 #include "app/stability/verdict.hpp"
 #include "core/errors.hpp"
+#include "io/figures/assurance_plot.hpp"
 #include "io/figures/shape_plot.hpp"
 #include "io/hdf5/part_file.hpp"
 #include "models/mode_shape.hpp"
@@ -28,6 +29,8 @@ struct EigOptions {
   std::optional<std::string> shapes;
   std::optional<std::string> universal;  ///< file to write
   std::optional<std::string> compared;   ///< universal file of measured shapes
+  std::vector<std::string> nodes;        ///< of it, "NUMBER=BODY.POINT"
+  std::optional<std::string> figure;     ///< of the assurance criteria
 };
 
 constexpr int num_frames = 24;
@@ -176,7 +179,8 @@ std::size_t mode_of_interest(const Analysis& analysis, const std::optional<int>&
 }
 
 /// All modes as a universal file, and beside measured ones.
-void add_shape_files(const EigOptions& options, const Analysis& analysis, Json& object) {
+void add_shape_files(const EigOptions& options, const LoadedScene& loaded, const Analysis& analysis,
+                     Json& object) {
   if (!options.universal && !options.compared) return;
   const ShapedModes shapes = shaped_modes(analysis, options.universal ? "--uff" : "--compare");
   if (options.universal) {
@@ -184,8 +188,9 @@ void add_shape_files(const EigOptions& options, const Analysis& analysis, Json& 
     object["uff"] = *options.universal;
   }
   if (!options.compared) return;
+  const NodesByLabel named = nodes_at_points(shapes, loaded, parse_node_names(options.nodes));
   const ShapeComparison comparison =
-      compared_shapes(shapes, read_uff_file(*options.compared), "--compare", *options.compared);
+      compared_shapes(shapes, read_uff_file(*options.compared), named, *options.compared);
   Json rows = Json::array();
   for (std::size_t m = 0; m < comparison.measured.size(); ++m) {
     const auto column = comparison.assurance.col(static_cast<Eigen::Index>(m));
@@ -203,6 +208,15 @@ void add_shape_files(const EigOptions& options, const Analysis& analysis, Json& 
                           {"nodes", comparison.num_nodes},
                           {"farthest", comparison.farthest},
                           {"modes", rows}};
+  if (!options.figure) return;
+  AssurancePicture picture{comparison.assurance, {}, {}};
+  for (const ShapedMode& mode : shapes.modes) picture.computed.push_back(mode.eigenvalue.frequency());
+  for (const TestMode& mode : comparison.measured) picture.measured.push_back(mode.frequency);
+  plot_assurance(picture,
+                 fmt::format("{} beside {}: modal assurance criterion at {} nodes.",
+                             options.stability.scene, *options.compared, comparison.num_nodes),
+                 *options.figure);
+  object["figure"] = *options.figure;
 }
 
 void print_comparison(const Json& comparison) {
@@ -248,6 +262,7 @@ void print_report(const EigOptions& options, const Analysis& analysis, const Jso
                object["files"].size() - 1);
   }
   if (options.compared) print_comparison(object["comparison"]);
+  if (options.figure) fmt::print("{}\n", *options.figure);
   if (options.universal) fmt::print("{}\n", *options.universal);
 }
 
@@ -289,7 +304,7 @@ ExitCode report(const EigOptions& options, const LoadedScene& loaded, const Anal
                                      found.shape(chosen), number_of_mode);
     }
   }
-  add_shape_files(options, analysis, object);
+  add_shape_files(options, loaded, analysis, object);
   if (options.stability.common.json) {
     print_json(object);
   } else {
@@ -302,6 +317,11 @@ ExitCode eig(EigOptions options) {
   if (options.mode && !options.explain && !options.shapes)
     throw ConfigError("--mode", "names the mode to explain or draw; add --explain or --shapes");
   if (options.universal) check_output(*options.universal, options.stability.common.overwrite());
+  if (!options.compared && (options.figure || !options.nodes.empty())) {
+    throw ConfigError(options.figure ? "--figure" : "--node",
+                      "is of the comparison with measured shapes; give it with --compare");
+  }
+  if (options.figure) check_figure(*options.figure, options.stability.common);
   const LoadedScene loaded = load_scene(options.stability.scene, options.stability.common.sets);
   make_choices(options.stability, loaded.scene);
   std::vector<double> values;
@@ -329,9 +349,16 @@ void add_eig_command(CLI::App& program, Action& action) {
   verb->add_option("--shapes", options->shapes,
                    "Folder for a picture of the mode and its motion for ParaView (VTK)");
   verb->add_option("--uff", options->universal,
-                   "Universal file to write: all modes at all nodes (datasets 2411, 82, 55)");
+                   "Universal file to write: all modes at all nodes (datasets 2411, 2412, 82, 55)");
   verb->add_option("--compare", options->compared,
                    "Universal file of measured shapes (15 or 2411, 55) to set beside: frequencies and MAC");
+  verb->add_option("--node", options->nodes,
+                   "Which point a measured node is, NUMBER=BODY.POINT, where places do not tell; may be "
+                   "repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  verb->add_option("--figure", options->figure,
+                   "Picture of the criteria of all computed and measured modes: .png, .svg or .pdf");
   add_force_option(*verb, options->stability.common);
   verb->callback([options, &action] { action = [options] { return eig(*options); }; });
 }

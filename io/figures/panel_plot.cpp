@@ -18,7 +18,7 @@ constexpr std::array<const char*, 8> panel_colours{"#0b5394", "#e07b00", "#2a8a4
                                                    "#6a3d9a", "#808080", "#17a2b8", "#8c564b"};
 constexpr double gap_below_axis = 1.6;  // cm: numbers and label
 
-const char* colour_of(int number) {
+const char* panel_colour(int number) {
   return panel_colours[static_cast<std::size_t>(number) % panel_colours.size()];
 }
 
@@ -161,7 +161,7 @@ std::string panel_plots(const DiagramPanel& panel, std::size_t number) {
     if (curve.mark == Mark::line) how = "with lines linewidth 1.8";
     if (curve.mark == Mark::dashed_line) how = "with lines dashtype 2 linewidth 1.6";
     plots += fmt::format(
-        ", {} using 1:2 {} linecolor '{}' {}", block_name(number, c), how, colour_of(curve.colour),
+        ", {} using 1:2 {} linecolor '{}' {}", block_name(number, c), how, panel_colour(curve.colour),
         curve.label.empty() ? std::string("notitle") : "title " + legend_text(curve.label));
   }
   return plots;

@@ -35,12 +35,58 @@ void add_nodes(const std::vector<UffNode>& nodes, std::string& text) {
   text += "    -1\n";
 }
 
+/// How a universal file holds a shape: the number of its kind, and its nodes in the order there, which goes
+/// around the lower side from corner to middle to corner, up the edges, and around the upper side.
+struct ElementRecord {
+  int kind = 0;
+  std::vector<int> order;  ///< empty where it is that of the shape
+};
+
+ElementRecord element_record(ElementShape shape) {
+  switch (shape) {
+    case ElementShape::tri3: return {41, {}};
+    case ElementShape::tri6: return {42, {0, 3, 1, 4, 2, 5}};
+    case ElementShape::quad4: return {44, {}};
+    case ElementShape::quad8: return {45, {0, 4, 1, 5, 2, 6, 3, 7}};
+    case ElementShape::tet4: return {111, {}};
+    case ElementShape::tet10: return {118, {0, 4, 1, 5, 2, 6, 7, 8, 9, 3}};
+    case ElementShape::wedge6: return {112, {}};
+    case ElementShape::wedge15: return {113, {0, 6, 1, 7, 2, 8, 12, 13, 14, 3, 9, 4, 10, 5, 11}};
+    case ElementShape::hex8: return {115, {}};
+    case ElementShape::hex20:
+      return {116, {0, 8, 1, 9, 2, 10, 3, 11, 16, 17, 18, 19, 4, 12, 5, 13, 6, 14, 7, 15}};
+  }
+  throw std::invalid_argument("uff_text: unknown shape of an element");
+}
+
+/// Labels of nodes, eight in a line of the file.
+void add_labels(const std::vector<std::int64_t>& labels, const std::vector<int>& order, std::string& text) {
+  for (std::size_t k = 0; k < labels.size(); ++k) {
+    const std::int64_t label = order.empty() ? labels[k] : labels[static_cast<std::size_t>(order[k])];
+    text += fmt::format("{:10}{}", label, (k + 1) % 8 == 0 || k + 1 == labels.size() ? "\n" : "");
+  }
+}
+
+void add_elements(const std::vector<UffElement>& elements, std::string& text) {
+  if (elements.empty()) return;
+  constexpr int property = 1, material = 1, colour = 7;
+  text += "    -1\n  2412\n";
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const ElementRecord record = element_record(elements[i].shape);
+    if (elements[i].nodes.size() != static_cast<std::size_t>(facts_of(elements[i].shape).num_nodes))
+      throw std::invalid_argument("uff_text: an element has not the nodes of its shape");
+    text += fmt::format("{:10}{:10}{:10}{:10}{:10}{:10}\n", i + 1, record.kind, property, material, colour,
+                        elements[i].nodes.size());
+    add_labels(elements[i].nodes, record.order, text);
+  }
+  text += "    -1\n";
+}
+
 /// Trace lines (82): eight labels in a line of the file.
 void add_lines(const std::vector<std::vector<std::int64_t>>& lines, std::string& text) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     text += fmt::format("    -1\n    82\n{:10}{:10}{:10}\nNONE\n", i + 1, lines[i].size(), 1);
-    for (std::size_t k = 0; k < lines[i].size(); ++k)
-      text += fmt::format("{:10}{}", lines[i][k], (k + 1) % 8 == 0 || k + 1 == lines[i].size() ? "\n" : "");
+    add_labels(lines[i], {}, text);
     text += "    -1\n";
   }
 }
@@ -158,6 +204,7 @@ std::string uff_text(const UffContents& contents, const std::string& key) {
   std::string text;
   add_head(contents, text);
   add_nodes(contents.nodes, text);
+  add_elements(contents.elements, text);
   add_lines(contents.lines, text);
   for (const UffMode& mode : contents.modes) add_mode(mode, contents, text);
   for (std::size_t i = 0; i < contents.functions.size(); ++i)

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/imports/uff_functions.hpp"
+#include "substructures/elements/mesh.hpp"
 
 namespace stridor {
 
@@ -17,6 +18,12 @@ struct UffNode {
   std::int64_t number = 0;
   std::string name;  ///< "<body>.<point>"
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< m
+};
+
+/// An element, with the labels of its nodes in the order of its shape.
+struct UffElement {
+  ElementShape shape = ElementShape::quad8;
+  std::vector<std::int64_t> nodes;
 };
 
 /// A complex mode at all nodes, in their order.
@@ -34,6 +41,7 @@ struct UffContents {
   std::string time;
   std::vector<UffNode> nodes;
   std::vector<std::vector<std::int64_t>> lines{};  ///< labels of nodes in order
+  std::vector<UffElement> elements{};
   std::vector<UffMode> modes{};
   std::vector<UffFunction> functions;  ///< at even abscissas, in SI units
 
@@ -41,10 +49,11 @@ struct UffContents {
   void stamp(const std::string& utc);
 };
 
-/// The text of a file: dataset 151 (head), 164 (SI), 2411 (nodes), 82 (lines), a 55 for each mode (complex
-/// displacements, modal a and b unknown and 0), and a 58 for each function, in double precision at even
-/// abscissas.
+/// The text of a file: dataset 151 (head), 164 (SI), 2411 (nodes), 2412 (elements), 82 (lines), a 55 for
+/// each mode (complex displacements, modal a and b unknown and 0), and a 58 for each function, in double
+/// precision at even abscissas.
 ///
+/// Elements are there to be drawn: planar ones are called plane stress, all have property and material 1.
 /// First abscissa and increment have six digits there (E13.5).
 /// @throws std::invalid_argument if abscissas and values of a function are not as many, or a mode has
 ///         not a value for each node

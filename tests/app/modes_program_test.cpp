@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
@@ -188,6 +189,48 @@ TEST(ShapeFiles, ModesAreThoseThatWereWritten) {
   const ProgramResult again = Program({"eig", scene, "--uff", file}).run();
   EXPECT_EQ(again.exit_code, 4);
   EXPECT_THAT(again.err, HasSubstr("--force"));
+}
+
+TEST(ShapeFiles, MatchNamedNodesWherePlacesDoNotTell) {
+  const TemporaryFolder folder;
+  const std::string scene = scene_path("examples/reed.yaml");
+  const std::string file = scene_path("examples/reed.uff");
+  const std::string figure = (folder / "mac.svg").string();
+  // The reed of the test lies elsewhere than in the scene; two of its nodes have names there.
+  EXPECT_THAT(Program({"eig", scene, "--compare", file, "--node", "4=reed.tip"}).run().err,
+              HasSubstr("--node 1=BODY.POINT"));
+  const std::string two_nodes = (folder / "two.uff").string();
+  const auto shape = [](int number, const char* hertz, const char* middle, const char* tip) {
+    std::string lines = "    -1\n    55\nNONE\nNONE\nNONE\nNONE\nNONE\n";
+    lines += "         1         2         2         8         2         3\n";
+    lines += "         2         4         1" + std::string(9, ' ') + std::to_string(number) + "\n";
+    lines += std::string("  ") + hertz + "  1.00000E+00  1.00000E-02  0.00000E+00\n";
+    return lines + "         2\n" + middle + "\n         4\n" + tip + "\n    -1\n";
+  };
+  std::ofstream(two_nodes) << shape(1, "1.00000E+02", "  0.00000E+00  3.00000E-01  0.00000E+00",
+                                    "  0.00000E+00  1.00000E+00  0.00000E+00");
+  const auto compared = eig_json({scene, "--compare", two_nodes, "--node", "2=reed.middle", "--node", "4=reed.tip",
+                                  "--figure", figure});
+  EXPECT_EQ(compared["comparison"]["nodes"], 2);
+  EXPECT_EQ(compared["comparison"]["farthest"], 0.0);
+  EXPECT_EQ(compared["figure"], figure);
+  const std::string picture = contents_of(figure);
+  EXPECT_THAT(picture, AllOf(HasSubstr("measured (Hz)"), HasSubstr("computed (Hz)")));
+
+  const auto refusal = [&](const std::string& node) {
+    const ProgramResult result = Program({"eig", scene, "--compare", two_nodes, "--node", "2=reed.middle", "--node",
+                                          "4=reed.tip", "--node", node})
+                                     .run();
+    EXPECT_EQ(result.exit_code, 2) << node;
+    return result.err;
+  };
+  EXPECT_THAT(refusal("7=reed.tip"), HasSubstr("no mode of"));
+  EXPECT_THAT(refusal("2=red.tip"), HasSubstr("no body 'red' has nodes (these have: reed)"));
+  EXPECT_THAT(refusal("2=reed.tp"), HasSubstr("did you mean 'tip'"));
+  EXPECT_THAT(refusal("two=reed.tip"), HasSubstr("expected NUMBER=BODY.POINT"));
+  const ProgramResult alone = Program({"eig", scene, "--figure", figure}).run();
+  EXPECT_EQ(alone.exit_code, 2);
+  EXPECT_THAT(alone.err, HasSubstr("give it with --compare"));
 }
 
 TEST(ShapeFiles, RefusesPlacesThatAreNotThoseOfTheScene) {

@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <sstream>
 
 #include "core/errors.hpp"
 #include "io/results/uff_writer.hpp"
+#include "substructures/elements/shape_functions.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace stridor {
@@ -163,6 +165,56 @@ TEST(UffWriter, ModesComeBackWithTheirNodes) {
   EXPECT_EQ(mode.shape.at(1)[1], std::complex<double>(-0.25, 0.125));
   EXPECT_EQ(mode.shape.at(2)[1], std::complex<double>(0.0, 1e-7));
   contents.modes[0].shape.pop_back();
+  EXPECT_THROW(uff_text(contents, "-o"), std::invalid_argument);
+}
+
+// In a universal file nodes go around the lower side, up the edges, around the upper side; a node in the
+// middle of an edge stands between its corners.
+TEST(UffWriter, NodesOfElementsGoAroundTheirSides) {
+  struct Expected {
+    ElementShape shape;
+    int kind, around_lower, upwards;  // nodes around the lower side, in the middles of upright edges
+  };
+  const std::vector<Expected> all = {
+      {ElementShape::tri3, 41, 3, 0},    {ElementShape::tri6, 42, 6, 0},   {ElementShape::quad4, 44, 4, 0},
+      {ElementShape::quad8, 45, 8, 0},   {ElementShape::tet4, 111, 3, 0},  {ElementShape::wedge6, 112, 3, 0},
+      {ElementShape::wedge15, 113, 6, 3}, {ElementShape::hex8, 115, 4, 0}, {ElementShape::hex20, 116, 8, 4},
+      {ElementShape::tet10, 118, 6, 3}};
+  for (const Expected& one : all) {
+    const Eigen::Matrix<double, Eigen::Dynamic, 3> places = natural_nodes(one.shape);
+    UffContents contents;
+    UffElement element{one.shape, {}};
+    for (Eigen::Index i = 0; i < places.rows(); ++i) element.nodes.push_back(10 * i + 10);
+    contents.elements = {element};
+    const std::string text = uff_text(contents, "-o");
+    const std::string record =
+        fmt::format("    -1\n  2412\n         1{:10}         1         1         7{:10}\n", one.kind, places.rows());
+    const std::size_t at = text.find(record);
+    ASSERT_NE(at, std::string::npos) << facts_of(one.shape).name << '\n' << text;
+    std::istringstream words(text.substr(at + record.size()));
+    std::vector<Eigen::RowVector3d> nodes;
+    for (Eigen::Index i = 0, label = 0; i < places.rows() && words >> label; ++i)
+      nodes.push_back(places.row(label / 10 - 1));
+    ASSERT_EQ(nodes.size(), static_cast<std::size_t>(places.rows()));
+    const auto goes_around = [&](std::size_t first, int count) {
+      for (int k = 1; k < count; k += 2) {
+        const Eigen::RowVector3d middle = 0.5 * (nodes[first + k - 1] + nodes[first + (k + 1) % count]);
+        EXPECT_LT((nodes[first + k] - middle).norm(), 1e-14) << facts_of(one.shape).name << ' ' << k;
+      }
+    };
+    if (places.rows() == facts_of(one.shape).num_corners) continue;
+    goes_around(0, one.around_lower);
+    const std::size_t upper = static_cast<std::size_t>(one.around_lower + one.upwards);
+    const std::size_t num_upper = nodes.size() - upper;
+    if (num_upper > 1) goes_around(upper, static_cast<int>(num_upper));
+    for (std::size_t k = 0; k < static_cast<std::size_t>(one.upwards); ++k) {
+      const Eigen::RowVector3d above = num_upper > 1 ? nodes[upper + 2 * k] : nodes[upper];
+      EXPECT_LT((nodes[one.around_lower + k] - 0.5 * (nodes[2 * k] + above)).norm(), 1e-14)
+          << facts_of(one.shape).name << ' ' << k;
+    }
+  }
+  UffContents contents;
+  contents.elements = {{ElementShape::tet4, {1, 2, 3}}};
   EXPECT_THROW(uff_text(contents, "-o"), std::invalid_argument);
 }
 
