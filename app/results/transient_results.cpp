@@ -232,6 +232,16 @@ void print_bursts(const Json& results) {
   for (const Json& burst : results["bursts"]) {
     fmt::print("{:<24}{}\n", "burst", burst_text(burst));
   }
+  const Json trusted = results.value("trusted_frequency", Json(nullptr));
+  if (trusted.is_null()) return;
+  const auto above = std::count_if(results["bursts"].begin(), results["bursts"].end(), [&](const Json& burst) {
+    return burst["frequency"].get<double>() > trusted.get<double>();
+  });
+  if (above == 0) return;
+  fmt::print(
+      "{:<24}{} above {:.6g} Hz, more than the bodies resolve by a rule of thumb (half the frequency of the "
+      "highest mode kept, of a plate that of the lowest mode left out): keep more modes (docs/precision.md)\n",
+      "doubtful bursts", above, trusted.get<double>());
 }
 
 }  // namespace stridor

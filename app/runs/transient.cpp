@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/runs/heard_windows.hpp"
+#include "app/stability/verdict.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "io/run_file/initial_state.hpp"
@@ -205,6 +206,7 @@ Json Transient::finish(const Json& error) {
                  {"growth", number(start_.perturbation->real())}}
           : Json(nullptr);
   results["file"] = file_;
+  results["trusted_frequency"] = number(trusted_frequency(model_.system));
   write_final_motion();
   const bool is_searched = acceleration && acceleration->bursts;
   if (is_searched) store_bursts(*writer_, *acceleration->bursts);
