@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <regex>
 #include <sstream>
@@ -181,6 +182,38 @@ TEST(Pages, OfOtherProgramsWorkFromTheirFirstLineToTheLast) {
     }
     EXPECT_EQ(num_run, 4) << program;
   }
+}
+
+/// Whether a program has printed a number to the digits that it shows.
+bool is_printed(double wanted, const std::string& output) {
+  const std::regex number("[0-9]+\\.([0-9]{3,})");
+  for (std::sregex_iterator it(output.begin(), output.end(), number), end; it != end; ++it) {
+    const double half_of_last = 0.5 * std::pow(10.0, -static_cast<double>((*it)[1].length()));
+    if (std::abs(std::stod(it->str()) - wanted) <= 1.001 * half_of_last) return true;
+  }
+  return false;
+}
+
+TEST(Pages, OfDiscAndPadsGiveTheirNumbers) {
+  const UserFolder folder;
+  const std::regex row("\\| [^|]+ \\| `([^`]+)` \\| ([^|]*)\\|.*");
+  const std::regex digits("[0-9]+\\.[0-9]{6,}");
+  int num_rows = 0, num_numbers = 0;
+  for (const std::string& line : lines_of(contents_of(source / "docs" / "disc_and_pads.md"))) {
+    std::smatch cells;
+    if (!std::regex_match(line, cells, row)) continue;
+    std::string command = std::regex_replace(cells[1].str(), std::regex(" E/"), " scenes/examples/");
+    command = std::regex_replace(command, std::regex(" B\\b"), " scenes/disc_and_pads.yaml");
+    command = std::regex_replace(command, std::regex(" L "), " --parameter parameters.load ");
+    const auto outcome = folder.run("stridor " + command);
+    EXPECT_EQ(outcome.exit_code, 0) << command << '\n' << outcome.output;
+    ++num_rows;
+    const std::string ours = cells[2].str();
+    for (std::sregex_iterator it(ours.begin(), ours.end(), digits), end; it != end; ++it, ++num_numbers)
+      EXPECT_TRUE(is_printed(std::stod(it->str()), outcome.output)) << it->str() << '\n' << outcome.output;
+  }
+  EXPECT_EQ(num_rows, 14);
+  EXPECT_EQ(num_numbers, 10);
 }
 
 TEST(Pages, OfRefusalsShowWhatIsPrinted) {
