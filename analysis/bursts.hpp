@@ -113,8 +113,8 @@ QuietLevel find_quiet_level(std::span<const double> samples, double interval,
 /// which the growth varies as √(1 − x²) it leaves out 3 % of its integral.
 ///
 /// Limits: sounds nearer to each other than 4/T are one; T blurs the envelope; an apex between growth
-/// a and decay b loses about (a + b) T/16 of the gain. The growth, a maximum, reads some 1/s too high in noise. A blow later than about T
-/// before the onset counts as growth. Where noise fills the band around f, growth is followed back
+/// a and decay b loses about (a + b) T/16 of the gain. The growth, a maximum, reads some 1/s too
+/// high in noise. A blow later than about T before the onset counts as growth. Where noise fills the band around f, growth is followed back
 /// to a few times that noise only, and the gain is uncertain by about 1.5. A blow that rings down
 /// is also a burst, with a growth of the order of 1/T. A vibration that already decays when the
 /// measured window begins has no rise, and is none. Bursts that fill a third of the window raise an

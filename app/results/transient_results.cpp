@@ -239,8 +239,8 @@ void print_bursts(const Json& results) {
   });
   if (above == 0) return;
   fmt::print(
-      "{:<24}{} above {:.6g} Hz, more than the bodies resolve by a rule of thumb (half the frequency of the "
-      "highest mode kept, of a plate that of the lowest mode left out): keep more modes (docs/precision.md)\n",
+      "{:<24}{} above {:.6g} Hz, more than the bodies resolve (docs/theory/07_stability.md): keep more "
+      "modes\n",
       "doubtful bursts", above, trusted.get<double>());
 }
 

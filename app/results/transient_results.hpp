@@ -29,7 +29,8 @@ Json transient_results(const Simulation& simulation, const System& system,
                        const TimeParameters& time, MarchEnd end, const MeasuredContacts& measured,
                        const std::optional<AccelerationSummary>& acceleration);
 
-/// Writes the bursts of such an object in one line each, or that there are none.
+/// Writes the bursts of such an object in one line each, or that there are none, and how many lie above its
+/// `trusted_frequency`, Hz.
 void print_bursts(const Json& results);
 
 }  // namespace stridor

@@ -100,6 +100,7 @@ NodesByLabel matched_nodes(const ShapedModes& shapes, const ModalTest& measured,
   return node_of;
 }
 
+/// |φᴴψ|²/(φᴴφ ψᴴψ) over the directions of the measured nodes, from 0 to 1; 0 where one of both is at rest.
 double modal_assurance(const ShapedMode& computed, const TestMode& measured, const NodesByLabel& node_of) {
   std::complex<double> common = 0.0;
   double of_computed = 0.0;

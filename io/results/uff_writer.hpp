@@ -33,7 +33,7 @@ struct UffMode {
   std::vector<std::array<std::complex<double>, 3>> shape;  ///< x, y, z
 };
 
-/// What a universal file holds.
+/// Contents of a universal file.
 struct UffContents {
   std::string title;
   std::string program;  ///< that wrote it, with its version
@@ -54,9 +54,9 @@ struct UffContents {
 /// precision at even abscissas.
 ///
 /// Elements are there to be drawn: planar ones are called plane stress, all have property and material 1.
-/// First abscissa and increment have six digits there (E13.5).
-/// @throws std::invalid_argument if abscissas and values of a function are not as many, or a mode has
-///         not a value for each node
+/// First abscissa and increment of a function have six digits (E13.5).
+/// @throws std::invalid_argument if abscissas and values of a function are not as many, a mode has not a
+///         value for each node, or an element not the nodes of its shape
 /// @throws ConfigError at `key` if the abscissas are not those that six digits give, to 1e-9
 std::string uff_text(const UffContents& contents, const std::string& key);
 
