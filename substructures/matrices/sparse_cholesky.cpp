@@ -2,68 +2,26 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/CholmodSupport>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <new>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "core/activity.hpp"
 #include "core/errors.hpp"
+#include "substructures/matrices/supernodal_factor.hpp"
 #include "substructures/matrices/supernode_kernels.hpp"
 
 namespace stridor {
 namespace {
 
-/// Neighbouring columns of L that have their rows in common, stored dense: a lower triangle, and
-/// the rows below it.
-struct Supernode {
-  std::span<const int> rows;  ///< of L, those of the triangle first
-  Eigen::Index num_columns;
-  const double* entries;  ///< rows.size() x num_columns, by columns
-
-  Eigen::Index num_rows() const { return static_cast<Eigen::Index>(rows.size()); }
-  Eigen::Index num_below() const { return num_rows() - num_columns; }
-  std::span<const int> rows_below() const {
-    return rows.subspan(static_cast<std::size_t>(num_columns));
-  }
-  SupernodeView view() const { return {entries, num_rows(), num_columns}; }
-};
-
-class Decomposition : public Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> {
- public:
-  /// @throws std::bad_alloc
-  void factorise(const SparseMatrix& matrix) {
-    analyzePattern(matrix);
-    if (m_cholmodFactor == nullptr) throw std::bad_alloc();
-    factorize(matrix);
-    if (cholmod().status < CHOLMOD_OK) throw std::bad_alloc();
-  }
-
-  std::size_t num_supernodes() const { return m_cholmodFactor->nsuper; }
-
-  Supernode supernode(std::size_t k) const {
-    const auto* column = static_cast<const int*>(m_cholmodFactor->super) + k;
-    const auto* row = static_cast<const int*>(m_cholmodFactor->pi) + k;
-    const auto* entry = static_cast<const int*>(m_cholmodFactor->px) + k;
-    const auto* rows = static_cast<const int*>(m_cholmodFactor->s);
-    return {{rows + row[0], rows + row[1]},
-            column[1] - column[0],
-            static_cast<const double*>(m_cholmodFactor->x) + entry[0]};
-  }
-
-  /// The DoF of each row of L.
-  const int* dofs() const { return static_cast<const int*>(m_cholmodFactor->Perm); }
-};
-
 /// Vectors in the order of L, in strips of eight; those that fill the last strip up are zero.
 class Strips {
  public:
-  Strips(const VectorBlockRef& block, const int* dofs)
-      : size_(block.rows()),
+  Strips(const VectorBlockRef& block, std::span<const int> dofs)
+      : size_(static_cast<Eigen::Index>(dofs.size())),
         num_strips_((block.cols() + strip_width - 1) / strip_width),
         numbers_(static_cast<std::size_t>(size_ * num_strips_ * strip_width)) {
     for (Eigen::Index strip = 0; strip < num_strips_; ++strip) {
@@ -71,22 +29,25 @@ class Strips {
       const Eigen::Index count = std::min(strip_width, block.cols() - first);
       double* to = at(strip, 0);
       for (Eigen::Index row = 0; row < size_; ++row, to += strip_width)
-        std::copy_n(&block(dofs[row], first), count, to);
+        std::copy_n(&block(dofs[static_cast<std::size_t>(row)], first), count, to);
     }
   }
 
-  void write_to(VectorBlockRef& block, const int* dofs) {
+  void write_to(VectorBlockRef& block, std::span<const int> dofs) const {
     for (Eigen::Index strip = 0; strip < num_strips_; ++strip) {
       const Eigen::Index first = strip * strip_width;
       const Eigen::Index count = std::min(strip_width, block.cols() - first);
       const double* from = at(strip, 0);
       for (Eigen::Index row = 0; row < size_; ++row, from += strip_width)
-        std::copy_n(from, count, &block(dofs[row], first));
+        std::copy_n(from, count, &block(dofs[static_cast<std::size_t>(row)], first));
     }
   }
 
   Eigen::Index count() const { return num_strips_; }
   double* at(Eigen::Index strip, Eigen::Index row) {
+    return numbers_.data() + (strip * size_ + row) * strip_width;
+  }
+  const double* at(Eigen::Index strip, Eigen::Index row) const {
     return numbers_.data() + (strip * size_ + row) * strip_width;
   }
   bool is_zero(Eigen::Index row, Eigen::Index count) {
@@ -120,6 +81,7 @@ double softest_over_rounding(const SparseCholesky& factor, const SparseMatrix& m
   Eigen::VectorXd softest(matrix.rows());
   for (Eigen::Index i = 0; i < matrix.rows(); ++i)
     softest(i) = 1.0 + 0.5 * std::sin(static_cast<double>(i + 1));
+  factor.clear_left_out(softest);
   for (int iteration = 0; iteration < 2; ++iteration) {
     start = softest.normalized();
     softest = factor.solve(start);
@@ -141,8 +103,9 @@ constexpr double least_over_rounding = 100.0;
 }  // namespace
 
 struct SparseCholesky::Factor {
-  Decomposition decomposition;
-  Eigen::Index size = 0;
+  SupernodalFactor decomposition;
+  Eigen::Index size = 0;      ///< of the matrix
+  std::vector<int> left_out;  ///< rows and columns that are not of L
 
   void solve_lower(Strips& strips) const {
     Eigen::Index own = 0;  // the first row of the supernode
@@ -164,7 +127,7 @@ struct SparseCholesky::Factor {
   }
 
   void solve_upper(Strips& strips) const {
-    Eigen::Index own = size;
+    auto own = static_cast<Eigen::Index>(decomposition.dofs().size());
     for (std::size_t k = decomposition.num_supernodes(); k-- > 0;) {
       const Supernode node = decomposition.supernode(k);
       own -= node.num_columns;
@@ -184,23 +147,28 @@ struct SparseCholesky::Factor {
   }
 };
 
-SparseCholesky::SparseCholesky(const SparseMatrix& matrix, const std::string& what)
+SparseCholesky::SparseCholesky(const SparseMatrix& matrix, const std::string& what,
+                               std::span<const int> left_out)
     : factor_(std::make_unique<Factor>()) {
   factor_->size = matrix.rows();
-  if (matrix.rows() == 0) return;
-  const Activity factorising(fmt::format("factorising {} x {}", matrix.rows(), matrix.cols()));
-  Decomposition& decomposition = factor_->decomposition;
-  decomposition.cholmod().print = 0;  // its warnings come back as exceptions here
-  const auto refuse = [&] {
+  factor_->left_out.assign(left_out.begin(), left_out.end());
+  std::vector<bool> is_left_out(static_cast<std::size_t>(matrix.rows()), false);
+  for (const int dof : left_out) is_left_out[static_cast<std::size_t>(dof)] = true;
+  std::vector<int> dofs;
+  dofs.reserve(is_left_out.size());
+  for (std::size_t dof = 0; dof < is_left_out.size(); ++dof)
+    if (!is_left_out[dof]) dofs.push_back(static_cast<int>(dof));
+  if (dofs.empty()) return;
+  const Activity factorising(fmt::format("factorising {} x {}", dofs.size(), dofs.size()));
+  if (!factor_->decomposition.factorise(matrix, dofs) ||
+      !(softest_over_rounding(*this, matrix) > least_over_rounding)) {
     throw NumericalError(
+        
         fmt::format("{} ({} x {}) is not positive definite: the supports and the interface leave a "
                     "rigid motion free, the body is too slender for its mesh, or the matrix is "
                     "damaged",
-                    what, matrix.rows(), matrix.cols()));
-  };
-  decomposition.factorise(matrix);
-  if (decomposition.info() != Eigen::Success) refuse();
-  if (!(softest_over_rounding(*this, matrix) > least_over_rounding)) refuse();
+                    what, dofs.size(), dofs.size()));
+  }
 }
 
 SparseCholesky::~SparseCholesky() = default;
@@ -220,7 +188,7 @@ Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& right_hand_sides) c
 
 void SparseCholesky::solve(VectorBlockRef& block, Part part) const {
   if (block.size() == 0) return;
-  const int* dofs = factor_->decomposition.dofs();
+  const std::span<const int> dofs = factor_->decomposition.dofs();
   Strips strips(block, dofs);
   if (part != Part::upper) factor_->solve_lower(strips);
   if (part != Part::lower) factor_->solve_upper(strips);
@@ -241,6 +209,14 @@ void SparseCholesky::solve_upper_in_place(VectorBlockRef block) const {
 
 Eigen::Index SparseCholesky::size() const {
   return factor_->size;
+}
+
+std::span<const int> SparseCholesky::left_out() const {
+  return factor_->left_out;
+}
+
+Eigen::Index SparseCholesky::num_factorised() const {
+  return static_cast<Eigen::Index>(factor_->decomposition.dofs().size());
 }
 
 }  // namespace stridor

@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
+#include <string>
 
 #include "substructures/matrices/body_matrices.hpp"
 
@@ -14,17 +16,20 @@ using VectorBlock = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen:
 /// A block, or neighbouring columns of one.
 using VectorBlockRef = Eigen::Ref<VectorBlock, 0, Eigen::OuterStride<>>;
 
-/// A = L Lᵀ, factorised once, solved often.
+/// A = L Lᵀ, factorised once, solved often; or the part of A without some of its rows and columns.
 ///
-/// L is triangular in an order of the DoFs that keeps it sparse. Vectors are in the order of A
-/// throughout.
+/// L is triangular in an order of the DoFs that keeps it sparse. Vectors have the length and order
+/// of A throughout; entries of DoFs that are left out are neither read nor written.
 class SparseCholesky {
  public:
-  /// @param matrix symmetric; both triangles stored
-  /// @param what   name of the matrix, for the message
-  /// @throws NumericalError if the matrix is not positive definite to working precision
+  /// @param matrix   symmetric; both triangles stored
+  /// @param what     name of the matrix, for the message
+  /// @param left_out DoFs whose rows and columns are not of the part that is factorised
+  /// @throws NumericalError if the part is not positive definite to working precision
   /// @throws std::bad_alloc if the factor has more than 2^31 entries or does not fit into memory
-  SparseCholesky(const SparseMatrix& matrix, const std::string& what);
+  /// Memory: L, and while it is computed one triangle of the matrix.
+  SparseCholesky(const SparseMatrix& matrix, const std::string& what,
+                 std::span<const int> left_out = {});
   ~SparseCholesky();
   SparseCholesky(SparseCholesky&&) noexcept;
   SparseCholesky& operator=(SparseCholesky&&) noexcept;
@@ -42,7 +47,15 @@ class SparseCholesky {
   /// X <- L⁻ᵀ X.
   void solve_upper_in_place(VectorBlockRef block) const;
 
-  Eigen::Index size() const;
+  Eigen::Index size() const;            ///< rows of A
+  Eigen::Index num_factorised() const;  ///< rows of the part that is factorised
+  std::span<const int> left_out() const;
+  /// Sets the rows of DoFs that are left out to zero: multiplied by A, vectors with such zeros give
+  /// what the part gives.
+  template <typename Vectors>
+  void clear_left_out(Vectors& vectors) const {
+    for (const int dof : left_out()) vectors.row(dof).setZero();
+  }
 
  private:
   enum class Part { lower, upper, both };

@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 #include <stdexcept>
+#include <vector>
 
 #include "core/activity.hpp"
 #include "core/errors.hpp"
@@ -25,16 +26,33 @@ using SymmetricEigen = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 /// of them; with more of them the space would have to be larger.
 constexpr Eigen::Index block_width = strip_width;
 
-Modes dense_modes(const SparseMatrix& stiffness, const SparseMatrix& mass, Eigen::Index count) {
-  const SemidefinitePairs all = semidefinite_eigenpairs(
-      Eigen::MatrixXd(stiffness), Eigen::MatrixXd(mass), "fixed-interface modes");
+std::vector<Eigen::Index> factorised_dofs(const SparseCholesky& factor) {
+  std::vector<bool> is_left_out(static_cast<std::size_t>(factor.size()), false);
+  for (const int dof : factor.left_out()) is_left_out[static_cast<std::size_t>(dof)] = true;
+  std::vector<Eigen::Index> dofs;
+  for (Eigen::Index dof = 0; dof < factor.size(); ++dof)
+    if (!is_left_out[static_cast<std::size_t>(dof)]) dofs.push_back(dof);
+  return dofs;
+}
+
+Modes dense_modes(const SparseCholesky& factor, const SparseMatrix& stiffness,
+                  const SparseMatrix& mass, Eigen::Index count) {
+  const std::vector<Eigen::Index> dofs = factorised_dofs(factor);
+  const auto part = [&](const SparseMatrix& matrix) {
+    return Eigen::MatrixXd(Eigen::MatrixXd(matrix)(dofs, dofs));
+  };
+  const SemidefinitePairs all =
+      semidefinite_eigenpairs(part(stiffness), part(mass), "fixed-interface modes");
   if (count > all.values.size()) {
-    throw NumericalError(fmt::format(
-        "fixed-interface modes: {} asked, but only {} of the {} motions of the interior have mass; "
-        "ask for that many at most",
-        count, all.values.size(), mass.rows()));
+    throw NumericalError(
+                         fmt::format("fixed-interface modes: {} asked, but only {} of the {} "
+                                     "motions of the interior have mass; "
+                                     "ask for that many at most",
+                                     count, all.values.size(), dofs.size()));
   }
-  return {all.values.head(count), all.vectors.leftCols(count)};
+  Modes modes{all.values.head(count), Eigen::MatrixXd::Zero(mass.rows(), count)};
+  modes.shapes(dofs, Eigen::all) = all.vectors.leftCols(count);
+  return modes;
 }
 
 /// Replaces W by orthonormal columns Q with W = Q R, and returns R.
@@ -112,7 +130,7 @@ class Lanczos {
         mass_(mass),
         count_(count),
         // The constant part is for clustered eigenvalues, which ask for many steps.
-        basis_(mass.rows(), std::min(mass.rows(), 3 * count + 30 * block_width)),
+        basis_(mass.rows(), std::min(stiffness.num_factorised(), 3 * count + 30 * block_width)),
         projection_(basis_.cols(), basis_.cols()) {}
 
   /// @throws NumericalError
@@ -173,7 +191,8 @@ Modes Lanczos::solve() {
     num_converged = (residuals <= tolerance * values.array().abs()).count();
     if (num_converged == count_) {
       if (!(values(count_ - 1) > 0.0))
-        throw NumericalError("fixed-interface modes: the mass is not positive definite");
+        throw NumericalError(
+                             "fixed-interface modes: the mass is not positive definite");
       VectorBlock shapes = basis_.leftCols(dim_) * vectors;
       stiffness_.solve_upper_in_place(shapes);
       return {values.cwiseInverse(), shapes};
@@ -186,7 +205,8 @@ Modes Lanczos::solve() {
     }
     if (is_exhausted) block = random_block();
   }
-  throw NumericalError(fmt::format("fixed-interface modes: Lanczos found {} of {} eigenpairs",
+  throw NumericalError(
+                       fmt::format("fixed-interface modes: Lanczos found {} of {} eigenpairs",
                                    num_converged, count_));
 }
 
@@ -195,6 +215,7 @@ VectorBlock Lanczos::random_block() {
   VectorBlock block(basis_.rows(), block_width);
   for (double& entry : block.reshaped())
     entry = static_cast<double>(generator_()) - 0.5 * static_cast<double>(std::mt19937::max());
+  stiffness_.clear_left_out(block);
   split(block);
   return block;
 }
@@ -217,6 +238,7 @@ void Lanczos::apply(VectorBlock& block) {
   } else {
     scratch_.noalias() = mass_ * block;
   }
+  stiffness_.clear_left_out(scratch_);
   block.swap(scratch_);
   stiffness_.solve_lower_in_place(block);
 }
@@ -279,26 +301,29 @@ Eigen::RowVectorXd product_rounding(const SparseMatrix& matrix, const VectorBloc
 
 Modes lowest_modes(const SparseCholesky& stiffness, const SparseMatrix& stiffness_matrix,
                    const SparseMatrix& mass, Eigen::Index count) {
-  const Eigen::Index size = mass.rows();
+  const Eigen::Index size = stiffness.num_factorised();
   if (count < 0 || count > size) {
     throw std::invalid_argument(
         fmt::format("lowest_modes: {} modes asked of {} DoFs", count, size));
   }
-  if (count == 0) return {Eigen::VectorXd(0), Eigen::MatrixXd(size, 0)};
+  if (count == 0) return {Eigen::VectorXd(0), Eigen::MatrixXd(mass.rows(), 0)};
   // A Krylov space needs room beyond the wanted pairs; without it the dense solver is as cheap.
   const Activity searching(fmt::format("{} modes of {} unknowns", count, size));
   const bool is_small = size <= 2 * count + 20 || size <= 60;
-  Modes modes = is_small ? dense_modes(stiffness_matrix, mass, count)
+  Modes modes = is_small ? dense_modes(stiffness, stiffness_matrix, mass, count)
                          : Lanczos(stiffness, mass, count).solve();
 
   const VectorBlock shapes = modes.shapes;
-  const VectorBlock inertia = mass * shapes;
-  const VectorBlock force = stiffness_matrix * shapes;
+  VectorBlock inertia = mass * shapes;
+  VectorBlock force = stiffness_matrix * shapes;
+  stiffness.clear_left_out(inertia);
+  stiffness.clear_left_out(force);
   const Eigen::RowVectorXd rounding = product_rounding(stiffness_matrix, shapes);
   for (Eigen::Index i = 0; i < count; ++i) {
     const double residual = (force.col(i) - modes.omega_squared(i) * inertia.col(i)).norm();
     if (!(residual < 1e-6 * force.col(i).norm() + 10.0 * rounding(i))) {
       throw NumericalError(
+          
           fmt::format("fixed-interface modes: eigenpair {} has a residual of {:.1e}", i + 1,
                       residual / force.col(i).norm()));
     }

@@ -7,15 +7,16 @@ namespace stridor {
 
 struct Modes {
   Eigen::VectorXd omega_squared;  ///< ω², ascending, rad²/s²
-  Eigen::MatrixXd shapes;         ///< columns φ with φᵀ M φ = 1, largest entry positive
+  Eigen::MatrixXd shapes;  ///< n rows; columns φ with φᵀ M φ = 1, largest entry positive
 };
 
-/// The `count` lowest solutions of K φ = ω² M φ by shift-invert Lanczos about 0.
+/// The `count` lowest solutions of K φ = ω² M φ by shift-invert Lanczos about 0. DoFs that the
+/// factor leaves out are held: shapes are zero there.
 ///
-/// @param stiffness factorised K, positive definite, n x n
-/// @param stiffness_matrix K itself
-/// @param mass M, symmetric positive definite, n x n
-/// @param count 0 .. n
+/// @param stiffness factorised K, or a part of it, positive definite
+/// @param stiffness_matrix K itself, n x n
+/// @param mass M, symmetric positive semidefinite, n x n
+/// @param count 0 .. number of DoFs that are factorised
 /// @throws std::invalid_argument if count is out of range
 /// @throws NumericalError if Lanczos does not converge, or a residual
 ///         |K φ − ω² M φ| / |K φ| exceeds 1e-6

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/errors.hpp"
 #include "tests/support/full_model.hpp"
@@ -134,6 +136,49 @@ TEST(SparseCholesky, HalfSolvesLeaveTheOtherColumnsAlone) {
   EXPECT_EQ(VectorBlock(block.middleCols(2, 3)), alone);
   EXPECT_EQ(VectorBlock(block.leftCols(2)), VectorBlock(before.leftCols(2)));
   EXPECT_EQ(VectorBlock(block.rightCols(2)), VectorBlock(before.rightCols(2)));
+}
+
+TEST(SparseCholesky, OfAPartSolvesAsThatPartAlone) {
+  const BodyMatrices body = make_beam(test::paper_cantilever());
+  const auto n = static_cast<int>(body.num_dofs());
+  const std::vector<int> left_out{0, 5, 6, 17, n - 1};
+  std::vector<int> kept;
+  for (int dof = 0; dof < n; ++dof)
+    if (std::find(left_out.begin(), left_out.end(), dof) == left_out.end()) kept.push_back(dof);
+  const Eigen::MatrixXd part = Eigen::MatrixXd(body.stiffness)(kept, kept);
+  const SparseCholesky alone(part.sparseView(), "the part");
+  const SparseCholesky within(body.stiffness, "the part", left_out);
+  EXPECT_EQ(within.size(), n);
+  EXPECT_EQ(within.num_factorised(), n - 5);
+
+  VectorBlock block = VectorBlock::Random(n, 3);
+  const VectorBlock given = block;
+  within.solve_in_place(block);
+  const VectorBlock expected = alone.solve(given(kept, Eigen::all));
+  EXPECT_LE((block(kept, Eigen::all) - expected).norm(), 1e-9 * expected.norm());
+  EXPECT_EQ(block(left_out, Eigen::all), given(left_out, Eigen::all));
+}
+
+TEST(SparseCholesky, OfAPartNeedsOnlyThatPartToBePositiveDefinite) {
+  SparseMatrix matrix = test::chain_stiffness(6);
+  matrix.coeffRef(2, 2) = -1.0;
+  const std::vector<int> left_out{2};
+  EXPECT_NO_THROW(SparseCholesky(matrix, "the chain", left_out));
+  EXPECT_EQ(factor_refusal(matrix), not_positive_definite(6));
+}
+
+TEST(SparseCholesky, DofsOfANodeNeedNotFollowEachOther) {
+  // A pattern without groups, and one in which every DoF but the last has the same neighbours.
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Constant(5, 5, 0.1);
+  dense.diagonal().setConstant(2.0);
+  dense.row(4).head(4).setZero();
+  dense.col(4).head(4).setZero();
+  for (const Eigen::MatrixXd& matrix :
+       {dense, Eigen::MatrixXd(Eigen::MatrixXd(dense.diagonal().asDiagonal()))}) {
+    const SparseCholesky factor(matrix.sparseView(), "the matrix");
+    const Eigen::VectorXd force = Eigen::VectorXd::LinSpaced(5, 1.0, 5.0);
+    EXPECT_LE((matrix * factor.solve(force) - force).norm(), 1e-14 * force.norm());
+  }
 }
 
 TEST(SparseCholesky, OfSizeZeroIsNothing) {
