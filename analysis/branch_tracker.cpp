@@ -68,6 +68,7 @@ class Tracker {
     const auto found = source_.search();
     if (!found) {
       throw SearchFailure(
+          Refusal::eigenvalues_incomplete,
           fmt::format("locus: the eigenvalues at the first value, {:g}, were not found", value_));
     }
     ++locus_.num_places;
@@ -281,6 +282,7 @@ class Tracker {
     constexpr int most_jumps = 10'000;
     if (++num_jumps_ > most_jumps) {
       throw NumericalError(
+          Refusal::eigenvalues_incomplete,
           fmt::format("locus: eigenvalues that nearly coincide cannot be told apart along {:g} to "
                       "{:g}; several "
                       "equal bodies? Ask for single values, or vary what makes the bodies differ",

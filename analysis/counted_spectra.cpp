@@ -38,6 +38,7 @@ SparseSpectrum whole_spectrum(const SparseSystem& system, SpectrumWindow window,
   SparseSpectrum spectrum = sparse_spectrum(system, window, work);
   if (!spectrum.is_complete) {
     throw NumericalError(
+        Refusal::eigenvalues_incomplete,
         fmt::format("below {:.6g} Hz the argument principle counts {} eigenvalues, and {} were "
                     "found with their conjugates; try another frequency with --below",
                     spectrum.rectangle.height / (2.0 * std::numbers::pi), spectrum.num_counted,

@@ -328,7 +328,8 @@ void follow_cycle(const PeriodicMotion& cycle, const TimeParameters& time,
   Simulation simulation(cycle.at_turn, own);
   visit(simulation);
   for (std::int64_t i = 0; i < cycle.num_steps; ++i) {
-    if (simulation.step() != StepOutcome::done) throw NumericalError(simulation.failure());
+    if (simulation.step() != StepOutcome::done)
+      throw NumericalError(simulation.refusal(), simulation.failure());
     visit(simulation);
   }
 }

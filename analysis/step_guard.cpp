@@ -356,12 +356,15 @@ void require_no_own_growth(const System& system, const TimeParameters& time) {
   const std::optional<OwnGrowth> found = own_growth(system, time, contacts);
   if (!found) return;
   const StepStability& stability = found->stability;
-  throw NumericalError(fmt::format(
-      "time.step: with a step of {:.6g} s a motion of {:.4g} Hz grows by {:.4g} 1/s, {}, where "
-      "the bodies in contact do not grow at about that frequency, or less than a tenth as fast. "
-      "Remedy: {}; stridor check --stability shows the whole path.",
-      time.step, stability.frequency, stability.growth, found->name,
-      remedy_text(step_remedy(system, time, contacts), time)));
+  throw NumericalError(
+      Refusal::step_too_large,
+      fmt::format(
+          "time.step: with a step of {:.6g} s a motion of {:.4g} Hz grows by {:.4g} 1/s, {}, where "
+          "the bodies in contact do not grow at about that frequency, or less than a tenth as "
+          "fast. "
+          "Remedy: {}; stridor check --stability shows the whole path.",
+          time.step, stability.frequency, stability.growth, found->name,
+          remedy_text(step_remedy(system, time, contacts), time)));
 }
 
 Simulation make_run_simulation(const System& system, const TimeParameters& time,

@@ -41,8 +41,8 @@ int report(const char* kind, const std::string& message, ExitCode code,
   return static_cast<int>(code);
 }
 
-int report(const char* kind, const std::string& message, ExitCode code) {
-  return report(kind, message, code, {{"", message, {}, 0, 0}});
+int report(const char* kind, const std::string& message, ExitCode code, Refusal refusal) {
+  return report(kind, with_code(message, refusal), code, {{refusal, "", message}});
 }
 
 /// A file that is opened takes the lowest free number: where input or output are closed it would
@@ -65,7 +65,7 @@ int with_output_written(int code) {
                 errno != 0
                     ? fmt::format("the standard output cannot be written: {}", std::strerror(errno))
                     : std::string("the standard output cannot be written"),
-                ExitCode::file_trouble);
+                ExitCode::file_trouble, Refusal::cannot_write);
 }
 
 std::string joined_arguments(int argc, char** argv) {
@@ -158,8 +158,9 @@ int run_verb(int argc, char** argv) {
       std::string problem = verb_problem(program, argc, argv);
       if (problem.empty()) problem = option_problem(program, argc, argv);
       if (problem.empty()) problem = error.what();
-      print_remark("stridor: {}\nTry 'stridor --help' or 'stridor VERB --help'.\n", problem);
-      if (wants_json) finish_json({{"", problem, {}, 0, 0}});
+      print_remark("stridor: {}\nTry 'stridor --help' or 'stridor VERB --help'.\n",
+                   with_code(problem, Refusal::unknown_option));
+      if (wants_json) finish_json({{Refusal::unknown_option, "", problem}});
       return static_cast<int>(ExitCode::bad_input);
     }
     return program.exit(error);
@@ -190,22 +191,27 @@ int run_program(int argc, char** argv) {
   } catch (const ConfigError& error) {
     return report("the input is wrong", error.report(), ExitCode::bad_input, error.problems());
   } catch (const FileError& error) {
-    return report("I/O error", error.what(), ExitCode::file_trouble);
+    return report("I/O error", error.what(), ExitCode::file_trouble, error.refusal());
   } catch (const NumericalError& error) {
-    return report("the computation failed", error.what(), ExitCode::numbers_failed);
+    return report("the computation failed", error.what(), ExitCode::numbers_failed,
+                  error.refusal());
   } catch (const Interrupted& error) {
-    return report("stopped on request", error.what(), ExitCode::stopped);
+    // What is said ends with a command to copy.
+    return report("stopped on request", error.what(), ExitCode::stopped,
+                  {{Refusal::interrupted, "", error.what()}});
   } catch (const std::system_error& error) {
     // fmt says like this that a stream took no more.
     if (std::ferror(stdout) == 0)
-      return report("internal error; please report it", error.what(), ExitCode::internal);
+      return report("internal error; please report it", error.what(), ExitCode::internal,
+                    Refusal::internal_error);
     return report("I/O error",
                   fmt::format("the standard output cannot be written: {}", error.code().message()),
-                  ExitCode::file_trouble);
+                  ExitCode::file_trouble, Refusal::cannot_write);
   } catch (const std::bad_alloc& error) {
-    return report("out of memory", error.what(), ExitCode::internal);
+    return report("out of memory", error.what(), ExitCode::internal, Refusal::out_of_memory);
   } catch (const std::exception& error) {
-    return report("internal error; please report it", error.what(), ExitCode::internal);
+    return report("internal error; please report it", error.what(), ExitCode::internal,
+                  Refusal::internal_error);
   }
 }
 

@@ -28,22 +28,23 @@ std::string Problem::text() const {
 ConfigError::ConfigError(std::vector<Problem> problems)
     : std::runtime_error(join(problems)), problems_(std::move(problems)) {}
 
-ConfigError::ConfigError(std::string key, std::string message)
-    : ConfigError(std::vector<Problem>{{std::move(key), std::move(message), {}, 0, 0}}) {}
+ConfigError::ConfigError(Refusal refusal, std::string key, std::string message)
+    : ConfigError(std::vector<Problem>{{refusal, std::move(key), std::move(message)}}) {}
 
 std::string ConfigError::report() const {
   std::string text;
   for (const Problem& problem : problems_) {
     if (!text.empty()) text += '\n';
-    text += problem.text();
+    text += with_code(problem.text(), problem.refusal);
     if (!problem.excerpt.empty()) text += '\n' + problem.excerpt;
   }
   return text;
 }
 
-FileError::FileError(const std::string& path, const std::string& dataset, const std::string& cause)
-    : std::runtime_error(dataset.empty()
-                             ? fmt::format("{}: {}", path, cause)
-                             : fmt::format("{}: dataset {}: {}", path, dataset, cause)) {}
+FileError::FileError(Refusal refusal, const std::string& path, const std::string& dataset,
+                     const std::string& cause)
+    : std::runtime_error(dataset.empty() ? fmt::format("{}: {}", path, cause)
+                                         : fmt::format("{}: dataset {}: {}", path, dataset, cause)),
+      refusal_(refusal) {}
 
 }  // namespace stridor

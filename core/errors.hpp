@@ -11,14 +11,17 @@
 #include <string>
 #include <vector>
 
+#include "core/refusals.hpp"
+
 namespace stridor {
 
 /// One error in the user's input.
 struct Problem {
+  Refusal refusal;      ///< its kind
   std::string key;      ///< dotted path, e.g. "time.step"; empty where the file as a whole is meant
   std::string message;  ///< error, expected value and remedy; one line, no place
-  std::string
-      source;      ///< file, or "--set key=value"; empty until the reader of the scene fills it in
+  /// File, or "--set key=value"; empty until the reader of the scene fills it in.
+  std::string source{};
   int line = 0;    ///< 1-based; 0 where there is none
   int column = 0;  ///< 1-based; 0 where there is none
   std::string excerpt{};  ///< text written there, with a caret (core/excerpt.hpp); may be empty
@@ -31,10 +34,11 @@ struct Problem {
 class ConfigError : public std::runtime_error {
  public:
   explicit ConfigError(std::vector<Problem> problems);
-  ConfigError(std::string key, std::string message);
+  ConfigError(Refusal refusal, std::string key, std::string message);
 
   const std::vector<Problem>& problems() const { return problems_; }
-  /// The text of every problem, each followed by its excerpt; `what()` is the texts alone.
+  /// The text of every problem with its code, each followed by its excerpt; `what()` is the texts
+  /// alone.
   std::string report() const;
 
  private:
@@ -44,16 +48,29 @@ class ConfigError : public std::runtime_error {
 /// A file cannot be opened, read or written, or has unexpected contents.
 class FileError : public std::runtime_error {
  public:
+  /// @param refusal its kind
   /// @param path    the file
   /// @param dataset dataset or attribute inside it; empty where the file as a whole is meant
   /// @param cause   cause and remedy, one line
-  FileError(const std::string& path, const std::string& dataset, const std::string& cause);
+  FileError(Refusal refusal, const std::string& path, const std::string& dataset,
+            const std::string& cause);
+
+  Refusal refusal() const { return refusal_; }
+
+ private:
+  Refusal refusal_;
 };
 
 /// The computation failed: singular, diverged, or left its range of validity.
 class NumericalError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  NumericalError(Refusal refusal, const std::string& message)
+      : std::runtime_error(message), refusal_(refusal) {}
+
+  Refusal refusal() const { return refusal_; }
+
+ private:
+  Refusal refusal_;
 };
 
 /// The user asked the program to stop (Ctrl-C, SIGTERM).

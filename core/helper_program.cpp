@@ -24,11 +24,12 @@ ScratchFolder::ScratchFolder(const std::string& purpose, const std::vector<std::
   std::error_code error;
   const fs::path base = fs::temp_directory_path(error);
   if (error)
-    throw FileError(owner, "", "cannot make a temporary folder (see TMPDIR): " + error.message());
+    throw FileError(Refusal::cannot_write, owner, "",
+                    "cannot make a temporary folder (see TMPDIR): " + error.message());
   std::string pattern = (base / ("stridor-" + purpose + "-XXXXXX")).string();
   if (mkdtemp(pattern.data()) == nullptr) {
     throw FileError(
-        owner, "",
+        Refusal::cannot_write, owner, "",
         fmt::format("cannot make a temporary folder '{}': {}", pattern, std::strerror(errno)));
   }
   path_ = pattern;

@@ -46,11 +46,12 @@ void say(int descriptor, const char* text) {
   say(STDERR_FILENO, "stridor: stopped on request\n");
   say(STDERR_FILENO, fate);
   if (is_told_as_json) {
-    say(STDOUT_FILENO,
-        has_written ? "{\"errors\": [{\"message\": \"stopped on request; files written before are "
-                      "whole\"}]}\n"
-                    : "{\"errors\": [{\"message\": \"stopped on request; nothing has been "
-                      "written\"}]}\n");
+    say(STDOUT_FILENO, has_written ? "{\"errors\": [{\"code\": \"interrupted\", \"message\": "
+                                     "\"stopped on request; files written before are "
+                                     "whole\"}]}\n"
+                                   : "{\"errors\": [{\"code\": \"interrupted\", \"message\": "
+                                     "\"stopped on request; nothing has been "
+                                     "written\"}]}\n");
   }
   _exit(stopped_exit_code);
 }

@@ -166,7 +166,7 @@ class UnitSystem {
     ut_set_error_message_handler(ut_ignore);
     SystemHandle system(ut_read_xml(nullptr));
     if (!system) {
-      throw FileError("udunits2.xml", "",
+      throw FileError(Refusal::cannot_read, "udunits2.xml", "",
                       "the database of units cannot be read; install libudunits2-data or let "
                       "UDUNITS2_XML_PATH name the file");
     }

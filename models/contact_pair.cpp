@@ -24,7 +24,8 @@ std::vector<int> spaced_nodes(const ModelBody& body, const std::vector<int>& nod
   const std::size_t num_intervals = nodes.size() - 1;
   if (stride < 1 || std::abs(ratio - static_cast<double>(stride)) > 1e-6 * ratio ||
       num_intervals % stride != 0) {
-    throw ConfigError(fmt::format("substructures.{}.interface.spacing", body.name),
+    throw ConfigError(Refusal::wrong_value,
+                      fmt::format("substructures.{}.interface.spacing", body.name),
                       fmt::format("{:g} m must be a whole multiple of the node distance {:g} m and "
                                   "divide the surface of {} such "
                                   "intervals into equal parts",
@@ -42,7 +43,7 @@ void refuse_second_contact(const ContactPair& pair, const std::string& name) {
     const auto first = std::find(nodes.begin(), nodes.end(), nodes[k]);
     if (first == nodes.begin() + static_cast<std::ptrdiff_t>(k)) continue;
     throw ConfigError(
-        pair.key + ".slave",
+        Refusal::doubled_name, pair.key + ".slave",
         fmt::format(
             "'{}' names a node that is slave point {} already, and two contacts at one node "
             "leave their forces undetermined; name every node once",
@@ -70,14 +71,15 @@ void resolve_slaves(ContactPair& pair, const std::vector<ModelBody>& bodies) {
     if (k == 0) pair.slave_body = slave;
     if (slave != pair.slave_body) {
       throw ConfigError(
-          key + ".slave",
+          Refusal::wrong_value, key + ".slave",
           "the points of one pair must belong to one body; use `contacts` for several pairs");
     }
     if (body.matrices.spin) {
-      throw ConfigError(key + ".slave",
-                        fmt::format("'{}' spins, so that its material passes its points in space; make "
-                                    "its surface the master, and points of the other body the slave",
-                                    body.name));
+      throw ConfigError(
+          Refusal::wrong_value, key + ".slave",
+          fmt::format("'{}' spins, so that its material passes its points in space; make "
+                      "its surface the master, and points of the other body the slave",
+                      body.name));
     }
     const auto node = body.matrices.points.find(point);
     const auto edge = body.matrices.surfaces.find(point);
@@ -93,7 +95,7 @@ void resolve_slaves(ContactPair& pair, const std::vector<ModelBody>& bodies) {
       std::vector<std::string> known = names_in_map(body.matrices.points);
       for (const std::string& other : names_in_map(body.matrices.surfaces)) known.push_back(other);
       for (const std::string& other : names_in_map(body.matrices.facets)) known.push_back(other);
-      throw ConfigError(key + ".slave",
+      throw ConfigError(Refusal::unknown_name, key + ".slave",
                         fmt::format("'{}' has no point or surface '{}'{} (it has: {})", body.name,
                                     point, did_you_mean(point, known), listed_names(known)));
     }
@@ -140,26 +142,28 @@ ContactPair resolve_pair(const std::string& name, const std::string& key,
     std::vector<std::string> known = names_in_map(body.matrices.surfaces);
     for (const std::string& facets : names_in_map(body.matrices.facets)) known.push_back(facets);
     for (const std::string& face : names_in_map(body.matrices.faces)) known.push_back(face);
-    throw ConfigError(key + ".master",
+    throw ConfigError(Refusal::unknown_name, key + ".master",
                       fmt::format("'{}' has no surface '{}'{} (it has: {})", body.name, surface,
                                   did_you_mean(surface, known), listed_names(known)));
   }
   resolve_slaves(pair, bodies);
   if (pair.slave_body == pair.master_body) {
-    throw ConfigError(key + ".slave", "slave and master must be different bodies");
+    throw ConfigError(Refusal::wrong_value, key + ".slave",
+                      "slave and master must be different bodies");
   }
   const ModelBody& slave = bodies[static_cast<std::size_t>(pair.slave_body)];
   if (slave.parameters->is_spatial() && !pair.is_in_space) {
-    throw ConfigError(key + ".master",
-                      fmt::format("'{}' is {}; '{}' is a body in space, which slides on the surface of "
-                                  "another such body or on `rigid`",
-                                  parameters.master,
-                                  pair.is_on_face ? "the face of a plate, on which slaves are planar"
-                                                  : "a curve in the plane",
-                                  slave.name));
+    throw ConfigError(
+        Refusal::wrong_value, key + ".master",
+        fmt::format("'{}' is {}; '{}' is a body in space, which slides on the surface of "
+                    "another such body or on `rigid`",
+                    parameters.master,
+                    pair.is_on_face ? "the face of a plate, on which slaves are planar"
+                                    : "a curve in the plane",
+                    slave.name));
   }
   if (parameters.adjust && !pair.is_in_space)
-    throw ConfigError(key + ".adjust", "is of contacts in space");
+    throw ConfigError(Refusal::contradiction, key + ".adjust", "is of contacts in space");
   return pair;
 }
 
@@ -175,7 +179,7 @@ void refuse_shared_nodes(const std::vector<ContactPair>& pairs) {
           [&](int node) { return std::find(others.begin(), others.end(), node) != others.end(); });
       if (!shares) continue;
       throw ConfigError(
-          pairs[i].key + ".slave",
+          Refusal::doubled_name, pairs[i].key + ".slave",
           fmt::format("shares a node with the pair '{}' on the same master, and two contacts at "
                       "one node leave their forces undetermined; remove it from one of them",
                       pairs[j].name));

@@ -20,7 +20,7 @@ Roughness make_roughness(const ContactPair& pair, double length) {
   const double least = length / Roughness::max_correlation_lengths;
   if (!(given->correlation_length >= least)) {
     throw ConfigError(
-        pair.key + ".roughness.correlation_length",
+        Refusal::wrong_value, pair.key + ".roughness.correlation_length",
         fmt::format("{:g} m is too small for a master of {:g} m, on which it takes {:g} m at least",
                     given->correlation_length, length, least));
   }
@@ -34,7 +34,7 @@ MasterSurface make_surface(const ContactPair& pair, ModelBody& body) {
   surface.kind = pair.parameters->surface;
   if (is_endless_master(pair.master_name)) {
     if (pair.parameters->roughness) {
-      throw ConfigError(pair.key + ".roughness",
+      throw ConfigError(Refusal::missing, pair.key + ".roughness",
                         fmt::format("the master `{}` has no end, a rough surface needs one; take "
                                     "the surface of a body",
                                     pair.master_name));
@@ -96,16 +96,17 @@ std::pair<int, Projection> locate_on(const MasterSurface& surface, const Eigen::
 
 void place_slave(const ContactPair& pair, const MasterSurface& surface, ModelBody& slave) {
   if (pair.parameters->start.radius) {
-    throw ConfigError(pair.key_of("start"),
-                      fmt::format("must be a length along the master '{}'; {{radius, angle}} is for "
-                                  "the face of a plate",
-                                  surface.name));
+    throw ConfigError(
+        Refusal::contradiction, pair.key_of("start"),
+        fmt::format("must be a length along the master '{}'; {{radius, angle}} is for "
+                    "the face of a plate",
+                    surface.name));
   }
   const double start = pair.parameters->start.along.value_or(0.0);
   const double length = surface.arc_length.back();
   if (!surface.is_endless && start > length * (1.0 + 1e-12)) {
     throw ConfigError(
-        pair.key + ".start",
+        Refusal::off_the_surface, pair.key + ".start",
         fmt::format("{:g} m is off the master '{}', which is {:g} m long; allowed: 0 to {:g} m",
                     start, surface.name, length, length));
   }
@@ -119,7 +120,7 @@ void place_slave(const ContactPair& pair, const MasterSurface& surface, ModelBod
     slave.place.head<2>() += shift;
     slave.is_placed = true;
   } else if (shift.norm() > 1e-9 * length + height_of_roughness(*pair.parameters)) {
-    throw ConfigError(pair.key + ".start",
+    throw ConfigError(Refusal::doubled_name, pair.key + ".start",
                       fmt::format("'{}' is placed already, and its point stands {:g} m away from "
                                   "the {:g} m asked for; a body can be "
                                   "placed by one pair only",
@@ -145,7 +146,7 @@ void check_side(const ContactPair& pair, const MasterSurface& surface, const Mod
   }
   if (num_over == 0 || height >= 0.0) return;
   throw ConfigError(
-      pair.key + ".slave",
+      Refusal::off_the_surface, pair.key + ".slave",
       fmt::format("'{}' starts on the inner side of its master '{}', on average {:.3g} m deep; "
                   "turn it (substructures.{}.angle), or take a point or edge of its other side",
                   slave.name, surface.name, -height / num_over, slave.name));
@@ -164,14 +165,14 @@ ContactPoint make_curve_contact(const ContactPair& pair, std::size_t k,
   const double length = surface.arc_length.back();
   const double rounding = 1e-9;
   if (!surface.is_endless && (projection.xi < -rounding || projection.xi > 1.0 + rounding)) {
-    throw ConfigError(pair.key_of("start"),
-                      fmt::format("slave point {} starts off the end of the master '{}'", k + 1,
-                                  surface.name));
+    throw ConfigError(
+        Refusal::off_the_surface, pair.key_of("start"),
+        fmt::format("slave point {} starts off the end of the master '{}'", k + 1, surface.name));
   }
   const double gap = projection.normal.dot(point.slave_position -
                                            surface.positions[static_cast<std::size_t>(segment)]);
   if (std::abs(gap) > 1e-6 * length + height_of_roughness(*pair.parameters)) {
-    throw ConfigError(pair.key_of("slave"),
+    throw ConfigError(Refusal::off_the_surface, pair.key_of("slave"),
                       fmt::format("slave point {} starts {:g} m away from the master '{}'; "
                                   "every slave point must lie on it at the "
                                   "start",
@@ -186,13 +187,14 @@ ContactPoint make_curve_contact(const ContactPair& pair, std::size_t k,
 void add_curve_contacts(const ContactPair& pair, const PairDrive& drive,
                         std::vector<ModelBody>& bodies, System& system) {
   if (pair.parameters->normal.number("preload")) {
-    throw ConfigError(pair.key_of("normal.preload"),
+    throw ConfigError(Refusal::contradiction, pair.key_of("normal.preload"),
                       "is of a contact on the face of a plate; on a curve the loads of the drive "
                       "press bodies together");
   }
   if (!pair.parameters->start.at.empty()) {
-    throw ConfigError(pair.key_of("start"), "must be a length along the master; {at} is for contacts "
-                                            "in space");
+    throw ConfigError(Refusal::contradiction, pair.key_of("start"),
+                      "must be a length along the master; {at} is for contacts "
+                      "in space");
   }
   ModelBody& slave = bodies[static_cast<std::size_t>(pair.slave_body)];
   ModelBody& master = bodies[static_cast<std::size_t>(pair.master_body)];

@@ -22,34 +22,37 @@ struct FaceStart {
 /// Refuses what means nothing on a face.
 FaceStart check_face_pair(const ContactPair& pair, const BodyFace& face) {
   const ContactParameters& given = *pair.parameters;
-  const auto refuse = [&](const char* key, const std::string& text) {
-    throw ConfigError(pair.key_of(key), text);
+  const auto refuse = [&](Refusal refusal, const char* key, const std::string& text) {
+    throw ConfigError(refusal, pair.key_of(key), text);
   };
   if (!given.start.radius) {
-    refuse("start", fmt::format("must be {{radius, angle}} on '{}', the face of a plate",
-                                pair.master_name));
+    refuse(Refusal::wrong_value, "start",
+           fmt::format("must be {{radius, angle}} on '{}', the face of a plate", pair.master_name));
   }
   const FaceStart start{*given.start.radius, given.start.angle.value_or(0.0)};
   if (!(start.radius > face.inner_radius && start.radius < face.outer_radius)) {
-    refuse("start.radius", fmt::format("must lie between the edges of the plate, {:g} and {:g} m, "
-                                       "got {:g} m",
-                                       face.inner_radius, face.outer_radius, start.radius));
+    refuse(Refusal::wrong_value, "start.radius",
+           fmt::format("must lie between the edges of the plate, {:g} and {:g} m, "
+                       "got {:g} m",
+                       face.inner_radius, face.outer_radius, start.radius));
   }
   if (given.sliding == SlidingMode::frozen && face.spin != 0.0) {
-    refuse("sliding",
+    refuse(Refusal::wrong_value, "sliding",
            "`frozen` holds what a drive moves at its place; a plate spins in its own: contacts on "
            "it stay at their place as they are");
   }
   const ContactAssumption assumption = given.assumption_or_default();
   if (assumption == ContactAssumption::subs_a || assumption == ContactAssumption::subs_c) {
-    refuse("assumption",
+    refuse(Refusal::contradiction, "assumption",
            "must be subs_b or film on the face of a plate: contacts stay at their place, so that "
            "no motion is prescribed, and normal and place follow from the same slope");
   }
   if (given.surface != SurfaceKind::polyline) {
-    refuse("surface", "is of a curve through nodes; the face of a plate is smooth as it is");
+    refuse(Refusal::contradiction, "surface",
+           "is of a curve through nodes; the face of a plate is smooth as it is");
   }
-  if (given.roughness) refuse("roughness", "is of a curve; the face of a plate has none");
+  if (given.roughness)
+    refuse(Refusal::contradiction, "roughness", "is of a curve; the face of a plate has none");
   return start;
 }
 
@@ -67,10 +70,11 @@ SlaveExtent extent_of_slave(const ContactPair& pair, const ModelBody& slave) {
   for (std::size_t k = 1; k < pair.slave_nodes.size(); ++k) {
     const double gap = y(pair.slave_nodes[k]) - height;
     if (std::abs(gap) <= 1e-6 * size) continue;
-    throw ConfigError(pair.key_of("slave"),
-                      fmt::format("slave point {} starts {:g} m away from the face '{}', which the "
-                                  "first one lies on; every slave point must lie on it at the start",
-                                  k + 1, gap, pair.master_name));
+    throw ConfigError(
+        Refusal::off_the_surface, pair.key_of("slave"),
+        fmt::format("slave point {} starts {:g} m away from the face '{}', which the "
+                    "first one lies on; every slave point must lie on it at the start",
+                    k + 1, gap, pair.master_name));
   }
   return {0.5 * (x.maxCoeff() + x.minCoeff()), height};
 }
@@ -80,7 +84,7 @@ void check_side_of_face(const ContactPair& pair, const ModelBody& slave, double 
   if (!slave.parameters->is_filled()) return;
   const double mean = slave.matrices.nodes.col(1).mean() - height;
   if (mean >= 0.0) return;
-  throw ConfigError(pair.key_of("slave"),
+  throw ConfigError(Refusal::off_the_surface, pair.key_of("slave"),
                     fmt::format("'{}' starts inside the plate '{}', on average {:.3g} m deep: y of "
                                 "its frame points away from the face; take a point or surface of "
                                 "its lower side",
@@ -102,7 +106,7 @@ void place_on_face(const ContactPair& pair, const BodyFace& face, const FaceStar
   const bool is_same =
       (slave.place - place).norm() <= 1e-9 * face.outer_radius && slave.is_mirrored == is_mirrored;
   if (is_same) return;
-  throw ConfigError(pair.key_of("start"),
+  throw ConfigError(Refusal::doubled_name, pair.key_of("start"),
                     fmt::format("'{}' is placed already by another contact, elsewhere; a body can "
                                 "be placed by one pair only",
                                 slave.name));
@@ -132,7 +136,7 @@ void add_face_contacts(const ContactPair& pair, const PairDrive& drive,
     place.radius = start.radius;
     place.turned = (slave.matrices.nodes(node, 0) - extent.middle) / start.radius;
     if (std::abs(place.turned) > std::numbers::pi) {
-      throw ConfigError(pair.key_of("slave"),
+      throw ConfigError(Refusal::off_the_surface, pair.key_of("slave"),
                         fmt::format("slave point {} is {:g} m away from the middle of '{}', beyond "
                                     "half the circumference of {:g} m there",
                                     k + 1, std::abs(place.turned) * start.radius, slave.name,

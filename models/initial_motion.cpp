@@ -53,7 +53,7 @@ Eigen::VectorXd translation(const std::string& key, const Eigen::Vector3d& value
     const double scale = unit.dot(stiffness.cwiseAbs() * unit);
     // A body without interface DoFs in this direction is held by its supports alone.
     if (unit.isZero() || !(energy <= 1e-9 * scale)) {
-      throw ConfigError(key + ".at",
+      throw ConfigError(Refusal::motion_is_held, key + ".at",
                         fmt::format("the supports of '{}' do not let all of it move alike; name "
                                     "a point of it",
                                     built.name));
@@ -91,7 +91,7 @@ Eigen::VectorXd InitialMotion::of(int body, const ModelBody& built,
       if (entry.value.x() != 0.0) prescribed.push_back({entry.rows->x, entry.value.x()});
       if (entry.value.y() != 0.0) prescribed.push_back({entry.rows->y, entry.value.y()});
       if (entry.value.z() != 0.0 && entry.rows->z < 0) {
-        throw ConfigError(entry.key + ".at",
+        throw ConfigError(Refusal::motion_is_held, entry.key + ".at",
                           fmt::format("'{}' does not move along z", built.name));
       }
       if (entry.value.z() != 0.0) prescribed.push_back({entry.rows->z, entry.value.z()});
@@ -103,7 +103,7 @@ Eigen::VectorXd InitialMotion::of(int body, const ModelBody& built,
     try {
       add(static_shape(finished.modal, prescribed));
     } catch (const NumericalError& error) {
-      throw ConfigError(key + ".at", error.what());
+      throw ConfigError(Refusal::wrong_value, key + ".at", error.what());
     }
   }
   return motion;
@@ -144,6 +144,7 @@ Eigen::VectorXd static_shape(const ModalBody& body, std::span<const PrescribedRo
   if (num_elastic == 0 || !(unit > 0.0)) modal.tail(num_elastic).setZero();
   if (!((rows * modal - values).norm() <= 1e-6 * values.norm()))
     throw NumericalError(
+        Refusal::motion_is_held,
         "the body cannot take this motion: a support holds it, or values contradict");
   return body.shapes * modal;
 }

@@ -17,7 +17,8 @@ const Schema& InitialMotionParameters<kind>::schema() {
           .real("z", &Motion::z, {.doc = "Component in z.", .unit = unit, .optional = true})
           .check([](const Motion& motion, std::vector<Problem>& problems) {
             if (motion.x == 0.0 && motion.y == 0.0 && motion.z == 0.0)
-              problems.push_back({"at", "moves nothing: give some of `x`, `y` and `z`", {}, 0, 0});
+              problems.push_back(
+                  {Refusal::motion_is_held, "at", "moves nothing: give some of `x`, `y` and `z`"});
           });
   return keys;
 }
@@ -63,28 +64,19 @@ const Schema& InitialParameters::schema() {
             const bool is_run_file =
                 start.size() > 3 && start.compare(start.size() - 3, 3, ".h5") == 0;
             if (initial.is_file() && !is_run_file) {
-              problems.push_back({"state",
+              problems.push_back({Refusal::wrong_value, "state",
                                   "'" + start +
                                       "' is neither rest nor equilibrium nor a run file "
-                                      "(*.h5)",
-                                  {},
-                                  0,
-                                  0});
+                                      "(*.h5)"});
             }
             if (initial.indentation && start != InitialParameters::equilibrium) {
-              problems.push_back({"indentation",
+              problems.push_back({Refusal::wrong_value, "indentation",
                                   "is over that of the sliding equilibrium: needs state: "
-                                  "equilibrium",
-                                  {},
-                                  0,
-                                  0});
+                                  "equilibrium"});
             }
             if (initial.perturbation && start != InitialParameters::equilibrium) {
-              problems.push_back({"perturbation",
-                                  "is added to the sliding equilibrium: needs state: equilibrium",
-                                  {},
-                                  0,
-                                  0});
+              problems.push_back({Refusal::wrong_value, "perturbation",
+                                  "is added to the sliding equilibrium: needs state: equilibrium"});
             }
           });
   return keys;

@@ -104,7 +104,7 @@ class ModelBuilder {
             return !is_waiting_slave(pair->master_body);
           });
       if (ready == waiting.end()) {
-        throw ConfigError(waiting.front()->key_of("master"),
+        throw ConfigError(Refusal::wrong_value, waiting.front()->key_of("master"),
                           "the pairs form a circle: no body of it can be placed first");
       }
       const ContactPair& pair = **ready;
@@ -152,7 +152,7 @@ class ModelBuilder {
       finished.lowest_omitted = body.matrices.lowest_omitted;
       if (is_sparse && body.is_whole()) {
         if (body.matrices.loss_stiffness.size() > 0) {
-          throw ConfigError(body.key() + ".reduction",
+          throw ConfigError(Refusal::cannot_reduce, body.key() + ".reduction",
                             fmt::format("missing: structural damping (loss factors) goes with the "
                                         "modes of a reduction; give '{}' fixed_interface_modes",
                                         body.name));
@@ -195,16 +195,19 @@ class ModelBuilder {
 namespace {
 
 void check_drive_sections(const ModelParameters& model, std::vector<Problem>& problems) {
-  const auto refuse = [&](const std::string& key, const char* text) {
-    problems.push_back({key, text, {}, 0, 0});
+  const auto refuse = [&](Refusal refusal, const std::string& key, const char* text) {
+    problems.push_back({refusal, key, text});
   };
   if (model.drive && !model.drives.empty())
-    refuse("drives", "give either `drive` (one) or `drives` (several), not both");
+    refuse(Refusal::contradiction, "drives",
+           "give either `drive` (one) or `drives` (several), not both");
   for (const auto& [name, drive] : model.drives) {
     const bool does = !drive.velocity.is_zero() || !drive.load.is_zero() ||
                       !drive.displacement.is_zero() || !drive.moves.empty() ||
                       !drive.load_on.empty() || !drive.displaces.empty();
-    if (!does) refuse("drives." + name, "does nothing: give velocity, load or displacement");
+    if (!does)
+      refuse(Refusal::wrong_value, "drives." + name,
+             "does nothing: give velocity, load or displacement");
   }
 }
 
@@ -235,24 +238,18 @@ const Schema& ModelParameters::schema() {
           .check([](const ModelParameters& model, std::vector<Problem>& problems) {
             if (model.substructures.empty() && model.pairs().empty())
               problems.push_back(
-                  {"substructures", "is missing: there is nothing to move", {}, 0, 0});
+                  {Refusal::missing, "substructures", "is missing: there is nothing to move"});
             if (model.contact && !model.contacts.empty()) {
               problems.push_back(
-                  {"contacts",
-                   "give either `contact` (one pair) or `contacts` (several), not both",
-                   {},
-                   0,
-                   0});
+                  {Refusal::contradiction, "contacts",
+                   "give either `contact` (one pair) or `contacts` (several), not both"});
             }
             check_drive_sections(model, problems);
             const auto pairs = model.pairs();
             for (const auto& [name, pair] : pairs) {
               if (pair.sliding != pairs.begin()->second.sliding) {
-                problems.push_back({"contacts." + name + ".sliding",
-                                    "must be the same for all pairs: one drive may move several",
-                                    {},
-                                    0,
-                                    0});
+                problems.push_back({Refusal::wrong_value, "contacts." + name + ".sliding",
+                                    "must be the same for all pairs: one drive may move several"});
               }
             }
           });
@@ -276,7 +273,7 @@ void require_modes(const Model& model) {
   if (!model.sparse) return;
   for (const auto& [name, body] : model.substructures) {
     if (body->num_modes()) continue;
-    throw ConfigError("substructures." + name + ".reduction",
+    throw ConfigError(Refusal::cannot_reduce, "substructures." + name + ".reduction",
                       fmt::format("missing: the bodies have {} unknowns, too many to keep them all "
                                   "in a run (up to {}); give fixed_interface_modes",
                                   model.sparse->size(), largest_dense_size));

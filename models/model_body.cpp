@@ -60,7 +60,7 @@ int modes_of(ModelBody& body) {
     return *asked;
   }
   if (body.matrices.num_dofs() > largest_dense_size && !body.matrices.is_modal) {
-    throw ConfigError(body.key() + ".reduction",
+    throw ConfigError(Refusal::cannot_reduce, body.key() + ".reduction",
                       fmt::format("missing: {} unknowns are too many to keep them all (up to {}); "
                                   "give fixed_interface_modes",
                                   body.matrices.num_dofs(), largest_dense_size));
@@ -102,7 +102,7 @@ std::vector<ModelBody> make_bodies(const Substructures& substructures, BodyCache
   std::vector<ModelBody> bodies;
   for (const auto& [name, substructure] : substructures) {
     if (name == rigid_master || name == half_space_master) {
-      throw ConfigError("substructures." + name,
+      throw ConfigError(Refusal::doubled_name, "substructures." + name,
                         fmt::format("'{}' is the name of a master; give the body another", name));
     }
     ModelBody body;
@@ -113,7 +113,7 @@ std::vector<ModelBody> make_bodies(const Substructures& substructures, BodyCache
       body.matrices = cache.matrices(*substructure);
     } catch (const ConfigError& error) {
       const Problem& problem = error.problems().front();
-      throw ConfigError(body.key() + "." + problem.key, problem.message);
+      throw ConfigError(problem.refusal, body.key() + "." + problem.key, problem.message);
     }
     bodies.push_back(std::move(body));
   }
@@ -153,22 +153,23 @@ void prepare_bodies(std::span<ModelBody* const> bodies, BodyCache& cache) {
 void check_reduction(const ModelBody& body, int num_modes) {
   const Eigen::Index num_interior = num_interior_of(body);
   if (num_modes > num_interior) {
-    throw ConfigError(body.key() + ".reduction.fixed_interface_modes",
+    throw ConfigError(Refusal::cannot_reduce, body.key() + ".reduction.fixed_interface_modes",
                       fmt::format("{} modes asked, but '{}' has only {} DoFs besides its "
                                   "interface; take at most that",
                                   num_modes, body.name, num_interior));
   }
   const std::optional<int> asked = body.parameters->interface_modes();
   if (asked && body.is_whole()) {
-    throw ConfigError(body.key() + ".interface.modes",
-                      fmt::format("goes with a reduction: give '{}' reduction.fixed_interface_modes",
-                                  body.name));
+    throw ConfigError(
+        Refusal::cannot_reduce, body.key() + ".interface.modes",
+        fmt::format("goes with a reduction: give '{}' reduction.fixed_interface_modes", body.name));
   }
   if (asked && *asked > static_cast<int>(body.interface.size())) {
-    throw ConfigError(body.key() + ".interface.modes",
-                      fmt::format("{} modes asked of the interface of '{}', which has {} DoFs; take "
-                                  "at most that, or leave the key out for all",
-                                  *asked, body.name, body.interface.size()));
+    throw ConfigError(
+        Refusal::cannot_reduce, body.key() + ".interface.modes",
+        fmt::format("{} modes asked of the interface of '{}', which has {} DoFs; take "
+                    "at most that, or leave the key out for all",
+                    *asked, body.name, body.interface.size()));
   }
 }
 
@@ -185,7 +186,7 @@ BodyCache::Reduction reduce_body(ModelBody& body, BodyCache& cache) {
     }
     return made;
   } catch (const NumericalError& error) {
-    throw ConfigError(body.key(),
+    throw ConfigError(Refusal::cannot_reduce, body.key(),
                       fmt::format("cannot be reduced: {}. Give it supports or more contact points",
                                   error.what()));
   }
@@ -203,7 +204,7 @@ void check_coupled(const SystemBody& body, const std::string& key) {
   const CoupledTerms& coupled = body.modal.coupled;
   if (coupled.is_empty() || coupled.position.isZero(0.0)) return;
   if ((body.modal.omega.array() > 0.0).all()) return;
-  throw ConfigError(key + ".circulatory",
+  throw ConfigError(Refusal::wrong_matrix, key + ".circulatory",
                     fmt::format("goes with a stiffness that resists every motion; that of '{}' "
                                 "leaves some free",
                                 body.name));
@@ -213,7 +214,8 @@ std::pair<int, std::string> split_name(const std::string& name, const std::vecto
                                        const std::string& key) {
   const std::size_t dot = name.find('.');
   if (dot == std::string::npos || dot == 0 || dot + 1 == name.size()) {
-    throw ConfigError(key, fmt::format("'{}' is not of the form <body>.<point or surface>", name));
+    throw ConfigError(Refusal::wrong_value, key,
+                      fmt::format("'{}' is not of the form <body>.<point or surface>", name));
   }
   const std::string body_name = name.substr(0, dot);
   std::vector<std::string> names;
@@ -222,16 +224,18 @@ std::pair<int, std::string> split_name(const std::string& name, const std::vecto
     if (bodies[b].name == body_name) return {static_cast<int>(b), name.substr(dot + 1)};
     names.push_back(bodies[b].name);
   }
-  throw ConfigError(key, fmt::format("there is no substructure '{}'{} (there are: {})", body_name,
-                                     did_you_mean(body_name, names), listed_names(names)));
+  throw ConfigError(Refusal::unknown_name, key,
+                    fmt::format("there is no substructure '{}'{} (there are: {})", body_name,
+                                did_you_mean(body_name, names), listed_names(names)));
 }
 
 int node_at(const ModelBody& body, const std::string& point, const std::string& key) {
   const auto node = body.matrices.points.find(point);
   if (node != body.matrices.points.end()) return node->second;
   const auto known = names_in_map(body.matrices.points);
-  throw ConfigError(key, fmt::format("'{}' has no point '{}'{} (it has: {})", body.name, point,
-                                     did_you_mean(point, known), listed_names(known)));
+  throw ConfigError(Refusal::unknown_name, key,
+                    fmt::format("'{}' has no point '{}'{} (it has: {})", body.name, point,
+                                did_you_mean(point, known), listed_names(known)));
 }
 
 std::string listed_names(const std::vector<std::string>& names) {

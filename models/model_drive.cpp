@@ -59,9 +59,10 @@ LoadedPlace place_to_load(const ModelBody& body, const std::string& place, const
     const std::optional<DofSum> load = matrices.load(place + ".y");
     const std::vector<std::string> known = loads_in_y(matrices, true);
     if (!load && known.empty()) {
-      throw ConfigError(key, fmt::format("'{}.{}' is a surface, over which bodies of this type "
-                                         "spread no load; name a point",
-                                         body.name, place));
+      throw ConfigError(Refusal::missing, key,
+                        fmt::format("'{}.{}' is a surface, over which bodies of this type "
+                                    "spread no load; name a point",
+                                    body.name, place));
     }
     found.load = load.value_or(DofSum{});
   } else {
@@ -70,13 +71,15 @@ LoadedPlace place_to_load(const ModelBody& body, const std::string& place, const
     for (const std::string& surface : names_in_map(matrices.facets)) known.push_back(surface);
     for (const std::string& other : names_in_map(matrices.loads))
       if (other.find('.') == std::string::npos) known.push_back(other);
-    throw ConfigError(key, fmt::format("'{}' has no point, surface or load '{}'{} (it has: {})",
-                                       body.name, place, did_you_mean(place, known),
-                                       listed_names(known)));
+    throw ConfigError(
+        Refusal::unknown_name, key,
+        fmt::format("'{}' has no point, surface or load '{}'{} (it has: {})", body.name, place,
+                    did_you_mean(place, known), listed_names(known)));
   }
   if (found.load.empty()) {
-    throw ConfigError(key, fmt::format("'{}.{}' is held in y, so that no load moves it", body.name,
-                                       place));
+    throw ConfigError(
+        Refusal::motion_is_held, key,
+        fmt::format("'{}.{}' is held in y, so that no load moves it", body.name, place));
   }
   return found;
 }
@@ -86,16 +89,18 @@ DofSum spring_to_displace(const ModelBody& body, const std::string& spring,
                           const std::string& key) {
   const std::vector<std::string> known = loads_in_y(body.matrices, false);
   if (!holds(known, spring)) {
-    throw ConfigError(key, fmt::format("'{}' has no spring to ground '{}'{} (it has: {})",
-                                       body.name, spring, did_you_mean(spring, known),
-                                       known.empty() ? "none" : listed_names(known)));
+    throw ConfigError(
+        Refusal::unknown_name, key,
+        fmt::format("'{}' has no spring to ground '{}'{} (it has: {})", body.name, spring,
+                    did_you_mean(spring, known), known.empty() ? "none" : listed_names(known)));
   }
   const DofSum load = body.matrices.load(spring + ".y").value();
   const bool acts = std::any_of(load.begin(), load.end(),
                                 [](const DofWeight& dof) { return dof.weight != 0.0; });
   if (!acts) {
-    throw ConfigError(key, fmt::format("'{}.{}' exerts nothing when its ground end moves in y",
-                                       body.name, spring));
+    throw ConfigError(
+        Refusal::motion_is_held, key,
+        fmt::format("'{}.{}' exerts nothing when its ground end moves in y", body.name, spring));
   }
   return load;
 }
@@ -110,7 +115,8 @@ const ModelBody* body_named(const std::string& name, const std::vector<ModelBody
 
 void require_guided(const ModelBody& body, const std::string& key) {
   if (body.matrices.follows_drive()) return;
-  throw ConfigError(key, fmt::format("'{}' has no guided support", body.name));
+  throw ConfigError(Refusal::motion_is_held, key,
+                    fmt::format("'{}' has no guided support", body.name));
 }
 
 void refuse_repeated(const std::vector<std::string>& list, std::size_t entry,
@@ -118,7 +124,8 @@ void refuse_repeated(const std::vector<std::string>& list, std::size_t entry,
   if (std::find(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(entry), list[entry]) ==
       list.begin() + static_cast<std::ptrdiff_t>(entry))
     return;
-  throw ConfigError(key, fmt::format("'{}' is named already; name it once", list[entry]));
+  throw ConfigError(Refusal::doubled_name, key,
+                    fmt::format("'{}' is named already; name it once", list[entry]));
 }
 
 /// Entries of a list without the name of the body, of those that are places of it, with their numbers.
@@ -161,13 +168,15 @@ void check_moved(const std::string& name, const std::string& key,
     for (const ModelBody& body : bodies)
       if (body.matrices.follows_drive()) known.push_back(body.name);
     for (const auto& one : pairs) known.push_back(one.first + ".master");
-    throw ConfigError(key, fmt::format("there is no '{}' to move{} (there are: {})", name,
-                                       did_you_mean(name, known), listed_names(known)));
+    throw ConfigError(Refusal::unknown_name, key,
+                      fmt::format("there is no '{}' to move{} (there are: {})", name,
+                                  did_you_mean(name, known), listed_names(known)));
   }
   if (!is_endless_master(pair->second.master)) {
-    throw ConfigError(key, fmt::format("'{}' is the surface of a body, which its supports hold; "
-                                       "give that body a guided support",
-                                       pair->second.master));
+    throw ConfigError(Refusal::motion_is_held, key,
+                      fmt::format("'{}' is the surface of a body, which its supports hold; "
+                                  "give that body a guided support",
+                                  pair->second.master));
   }
 }
 
@@ -184,8 +193,9 @@ void check_drives(const std::vector<SceneDrive>& drives,
       check_moved(moves[i], key, pairs, bodies);
       const auto [mover, is_first] = movers.emplace(moves[i], &drive);
       if (is_first) continue;
-      throw ConfigError(key, fmt::format("'{}' is moved by {} already; one drive moves it", moves[i],
-                                         mover->second->key));
+      throw ConfigError(Refusal::doubled_name, key,
+                        fmt::format("'{}' is moved by {} already; one drive moves it", moves[i],
+                                    mover->second->key));
     }
   }
 }
@@ -222,7 +232,7 @@ void assign_drives(const std::vector<SceneDrive>& drives, std::vector<ModelBody>
       if (!drive.moves_guided() && !holds(drive.parameters.moves, body.name)) continue;
       if (body.drive >= 0) {
         throw ConfigError(
-            drive.key_of("moves"),
+            Refusal::doubled_name, drive.key_of("moves"),
             fmt::format("'{}' follows {} already, and a body follows one drive; name in `moves` of "
                         "each what it moves",
                         body.name, drives[static_cast<std::size_t>(body.drive)].key));
@@ -250,12 +260,13 @@ void check_something_follows(const std::vector<SceneDrive>& drives,
     });
     if (is_followed || driven[d].velocity.is_zero()) continue;
     throw ConfigError(
-        drives[d].key_of("velocity"),
-        fmt::format("moves nothing: no body has a support that is guided{0}, and no master is "
-                    "named in {1}.moves; give the body that is to slide a guided support, or move "
-                    "a rigid or half_space master",
-                    drives[d].moves_guided() ? "" : fmt::format(" and named in {}.moves", drives[d].key),
-                    drives[d].key));
+        Refusal::motion_is_held, drives[d].key_of("velocity"),
+        fmt::format(
+            "moves nothing: no body has a support that is guided{0}, and no master is "
+            "named in {1}.moves; give the body that is to slide a guided support, or move "
+            "a rigid or half_space master",
+            drives[d].moves_guided() ? "" : fmt::format(" and named in {}.moves", drives[d].key),
+            drives[d].key));
   }
 }
 

@@ -44,12 +44,12 @@ void add_point(const std::string& name, const ScenePointParameters& point, Model
   const std::string key = "points." + name + ".at";
   BodyMatrices& matrices = body.matrices;
   if (matrices.points.contains(name) || matrices.surfaces.contains(name)) {
-    throw ConfigError("points." + name,
-                      fmt::format("'{}' has a point or surface of this name; take another",
-                                  body.name));
+    throw ConfigError(
+        Refusal::doubled_name, "points." + name,
+        fmt::format("'{}' has a point or surface of this name; take another", body.name));
   }
   if (matrices.nodes.rows() == 0)
-    throw ConfigError(key, fmt::format("'{}' has no nodes", body.name));
+    throw ConfigError(Refusal::unknown_name, key, fmt::format("'{}' has no nodes", body.name));
   const Mesh mesh = mesh_of(body);
   const Eigen::Vector3d place = in_body(body, point.at);
   const Eigen::RowVector3d size =
@@ -75,9 +75,10 @@ void add_point(const std::string& name, const ScenePointParameters& point, Model
   at.head(body.place.size()) += body.place;
   if (body.is_mirrored) at.y() *= -1.0;
   throw ConfigError(
-      key, fmt::format("is not on '{}': its nearest node is at ({:.6g}, {:.6g}, {:.6g}) m, {:.4g} "
-                       "m away; move the point, or give a `tolerance` of at least that",
-                       body.name, at.x(), at.y(), at.z(), distance));
+      Refusal::off_the_surface, key,
+      fmt::format("is not on '{}': its nearest node is at ({:.6g}, {:.6g}, {:.6g}) m, {:.4g} "
+                  "m away; move the point, or give a `tolerance` of at least that",
+                  body.name, at.x(), at.y(), at.z(), distance));
 }
 
 }  // namespace
@@ -101,7 +102,8 @@ const Schema& ScenePointParameters::schema() {
           .check([](const P& point, std::vector<Problem>& problems) {
             if (point.at.size() == 2 || point.at.size() == 3) return;
             problems.push_back(
-                {"at", fmt::format("must have two or three numbers, got {}", point.at.size()), {}, 0, 0});
+                {Refusal::wrong_value, "at",
+                 fmt::format("must have two or three numbers, got {}", point.at.size())});
           });
   return keys;
 }
@@ -120,7 +122,7 @@ void add_scene_points(const std::map<std::string, ScenePointParameters>& points,
     std::vector<std::string> names;
     for (const ModelBody& one : bodies)
       if (one.parameters != nullptr) names.push_back(one.name);
-    throw ConfigError("points." + name + ".of",
+    throw ConfigError(Refusal::unknown_name, "points." + name + ".of",
                       fmt::format("there is no substructure '{}'{} (there are: {})", point.of,
                                   did_you_mean(point.of, names), listed_names(names)));
   }

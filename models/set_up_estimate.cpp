@@ -146,7 +146,7 @@ void require_memory(const SetUpEstimate& estimate, const MemoryLimit& limit) {
       std::max_element(estimate.parts.begin(), estimate.parts.end(),
                        [](const MemoryPart& a, const MemoryPart& b) { return a.bytes < b.bytes; });
   throw ConfigError(
-      largest->key,
+      Refusal::too_large, largest->key,
       fmt::format("the set-up would take about {} of memory and {} of time, but {} is {}; the most "
                   "of it, {}, is for {}; {}",
                   memory_text(needed), duration_text(estimate.seconds()), limit.source,
@@ -156,9 +156,10 @@ void require_memory(const SetUpEstimate& estimate, const MemoryLimit& limit) {
 
 void require_memory_for(const MemoryPart& results, const MemoryLimit& limit) {
   if (results.bytes <= limit.bytes) return;
-  throw ConfigError(results.key, fmt::format("{} would take about {} of memory, but {} is {}; {}",
-                                             results.what, memory_text(results.bytes), limit.source,
-                                             memory_text(limit.bytes), results.remedy));
+  throw ConfigError(Refusal::too_large, results.key,
+                    fmt::format("{} would take about {} of memory, but {} is {}; {}", results.what,
+                                memory_text(results.bytes), limit.source, memory_text(limit.bytes),
+                                results.remedy));
 }
 
 }  // namespace stridor

@@ -16,26 +16,28 @@ Eigen::Vector3d vector_of(const std::vector<double>& components) {
 /// Refuses what means nothing in space.
 void check_keys(const ContactPair& pair) {
   const ContactParameters& given = *pair.parameters;
-  const auto refuse = [&](const char* key, const std::string& text) {
-    throw ConfigError(pair.key_of(key), text);
+  const auto refuse = [&](Refusal refusal, const char* key, const std::string& text) {
+    throw ConfigError(refusal, pair.key_of(key), text);
   };
   const ContactAssumption assumption = given.assumption_or_default();
   if (assumption == ContactAssumption::subs_a || assumption == ContactAssumption::subs_c) {
-    refuse("assumption",
+    refuse(Refusal::contradiction, "assumption",
            "must be subs_b or film in space: place and normal are those of the deformed bodies");
   }
   if (given.start.along || given.start.radius) {
-    refuse("start",
+    refuse(Refusal::wrong_value, "start",
            "must be {at: [x, y, z]} in space, or be left out: bodies stand where their meshes have "
            "them");
   }
-  if (given.roughness) refuse("roughness", "is of a curve; in space there is none");
+  if (given.roughness)
+    refuse(Refusal::contradiction, "roughness", "is of a curve; in space there is none");
   if (given.normal.number("preload")) {
-    refuse("normal.preload", "is of the face of a plate; in space the loads of the drive press bodies "
-                             "together");
+    refuse(Refusal::contradiction, "normal.preload",
+           "is of the face of a plate; in space the loads of the drive press bodies "
+           "together");
   }
   if (given.normal.law->has_area()) {
-    refuse("normal.law",
+    refuse(Refusal::wrong_value, "normal.law",
            fmt::format("is that of a half-space in a plane; in space take {}",
                        normal_laws_with([](const NormalLawType& law) { return !law.has_area(); })));
   }
@@ -57,10 +59,11 @@ void place_slave(const ContactPair& pair, ModelBody& slave) {
   const Eigen::Vector3d shift = vector_of(at) - slave.place_of(pair.slave_nodes.front());
   const double size = extent_of(slave);
   if (slave.is_placed && shift.norm() > 1e-9 * std::max(size, vector_of(at).norm())) {
-    throw ConfigError(pair.key_of("start"),
-                      fmt::format("'{}' is placed already, and its point stands {:g} m away from the "
-                                  "place asked for; a body can be placed by one pair only",
-                                  slave.name, shift.norm()));
+    throw ConfigError(
+        Refusal::doubled_name, pair.key_of("start"),
+        fmt::format("'{}' is placed already, and its point stands {:g} m away from the "
+                    "place asked for; a body can be placed by one pair only",
+                    slave.name, shift.norm()));
   }
   if (!slave.is_placed) slave.place += shift;
   slave.is_placed = true;
@@ -97,7 +100,8 @@ FacetSurface make_facets(const ContactPair& pair, ModelBody& master) {
   try {
     connect_facets(surface, pair.parameters->surface);
   } catch (const std::invalid_argument& error) {
-    throw ConfigError(pair.key_of("master"), fmt::format("'{}' {}", pair.master_name, error.what()));
+    throw ConfigError(Refusal::wrong_value, pair.key_of("master"),
+                      fmt::format("'{}' {}", pair.master_name, error.what()));
   }
   return surface;
 }
@@ -121,12 +125,13 @@ void check_side(const ContactPair& pair, const ModelBody& slave, const Eigen::Ve
   const double height = normal.dot(middle - touched);
   if (!slave.parameters->is_spatial() || height >= 0.0) return;
   throw ConfigError(
-      pair.key_of("slave"),
-      fmt::format("'{}' starts on the inner side of its master '{}': its middle lies {:.3g} m behind "
-                  "the surface; take its surface on the other side, or {}",
-                  slave.name, pair.master_name, -height,
-                  pair.is_on_facets ? "another surface of the master"
-                                    : "turn plane.normal towards the slave"));
+      Refusal::off_the_surface, pair.key_of("slave"),
+      fmt::format(
+          "'{}' starts on the inner side of its master '{}': its middle lies {:.3g} m behind "
+          "the surface; take its surface on the other side, or {}",
+          slave.name, pair.master_name, -height,
+          pair.is_on_facets ? "another surface of the master"
+                            : "turn plane.normal towards the slave"));
 }
 
 /// Where one slave point stands.
@@ -145,11 +150,12 @@ Standing stand(const ContactPair& pair, std::size_t k, const SpacePlace& master,
     const FacetPlace found = locate_on(*surface, place.slave);
     if (found.facet < 0) {
       throw ConfigError(
-          pair.key_of("slave"),
-          fmt::format("slave point {} of '{}', at ({:.6g}, {:.6g}, {:.6g}) m, is beside the surface "
-                      "'{}'; every slave point must stand over it at the start",
-                      k + 1, slave.name, place.slave.x(), place.slave.y(), place.slave.z(),
-                      pair.master_name));
+          Refusal::off_the_surface, pair.key_of("slave"),
+          fmt::format(
+              "slave point {} of '{}', at ({:.6g}, {:.6g}, {:.6g}) m, is beside the surface "
+              "'{}'; every slave point must stand over it at the start",
+              k + 1, slave.name, place.slave.x(), place.slave.y(), place.slave.z(),
+              pair.master_name));
     }
     place.first_facet = found.facet;
     at = {found.xi, found.eta};

@@ -147,13 +147,14 @@ class Frames {
   void add(const SceneFamily::Member& member, std::optional<double> value, double time) {
     const Analysis analysis = analyse(options_, loaded_, member);
     if (!analysis.found.shape)
-      throw ConfigError("", "the bodies are not reduced, and too many unknowns to show at once");
+      throw ConfigError(Refusal::cannot_reduce, "",
+                        "the bodies are not reduced, and too many unknowns to show at once");
     if (model_ != member.model || !recovery_) {
       model_ = member.model;
       recovery_.emplace(*member.model, cache_);
     }
     const std::vector<std::size_t> modes = vibrating(analysis.found, num_modes_);
-    if (modes.empty()) throw NumericalError("no mode vibrates");
+    if (modes.empty()) throw NumericalError(Refusal::eigenvalues_incomplete, "no mode vibrates");
     Json frame = {{"modes", Json::array()}};
     if (value) frame["value"] = *value;
     frame["time"] = number(time);
@@ -184,13 +185,14 @@ class Frames {
  private:
   void begin(const std::vector<BodyShape>& shapes) {
     drawn_ = drawn_nodes(shapes);
-    if (drawn_.count == 0) throw ConfigError("", "no body has nodes to draw");
+    if (drawn_.count == 0) throw ConfigError(Refusal::wrong_value, "", "no body has nodes to draw");
     bool is_planar = true;
     for (const BodyShape& shape : shapes)
       is_planar = is_planar && (shape.nodes.size() == 0 || shape.nodes.col(2).cwiseAbs().maxCoeff() == 0.0);
     while (num_modes_ > 1 && bytes_of_frame() > budget_.bytes) --num_modes_;
     if (bytes_of_frame() > 4.0 * budget_.bytes)
-      throw ConfigError("", fmt::format("{} nodes do not fit into the page (--budget)", drawn_.count));
+      throw ConfigError(Refusal::too_large, "",
+                        fmt::format("{} nodes do not fit into the page (--budget)", drawn_.count));
     view_ = {{"type", "modes"},
              {"planar", is_planar},
              {"nodes", drawn_.count},

@@ -27,7 +27,7 @@ Json report_section(const ResultFile& file, const ReportContext& context) {
     if (name == kind) return make(file, context);
     names.push_back(name);
   }
-  throw FileError(file.path(), "",
+  throw FileError(Refusal::other_kind_of_file, file.path(), "",
                   kind.empty() ? "is no file of results of stridor (no attribute 'kind')"
                                : fmt::format("is of the kind '{}'; a report shows: {}", kind,
                                              fmt::join(names, ", ")));

@@ -133,7 +133,8 @@ Json recorded_predictions(const ResultFile& file, const std::vector<NumberedBurs
     const std::string path = std::string("/windows/") + name;
     columns[name] = file.read(path);
     if (columns[name].size() != columns["from"].size())
-      throw FileError(file.path(), path, "is unlike /windows/from in length");
+      throw FileError(Refusal::file_damaged, file.path(), path,
+                      "is unlike /windows/from in length");
   }
   for (std::size_t i = 0; i < columns["from"].size(); ++i) {
     Json row = {{"from", number(columns["from"][i])},

@@ -39,7 +39,8 @@ Json curves_view(const ResultFile& file, ReportPage& page) {
   const std::vector<double> frequency = file.read("/eigenvalues/frequency", 2);
   const std::size_t most = values.empty() ? 0 : growth.size() / values.size();
   if (growth.size() != most * values.size() || frequency.size() != growth.size())
-    throw FileError(file.path(), "/eigenvalues", "is unlike /values in extent");
+    throw FileError(Refusal::file_damaged, file.path(), "/eigenvalues",
+                    "is unlike /values in extent");
   std::vector<double> all_values;
   std::vector<double> all_growth;
   std::vector<double> all_frequency;
@@ -93,8 +94,9 @@ Json map_view(const ResultFile& file, ReportPage& page) {
   const std::vector<double> y = file.read("/y");
   const std::vector<double> growth = file.read("/growth", 2);
   if (growth.size() != x.size() * y.size())
-    throw FileError(file.path(), "/growth",
-                    fmt::format("has {} entries, /x and /y {} and {}", growth.size(), x.size(), y.size()));
+    throw FileError(
+        Refusal::file_damaged, file.path(), "/growth",
+        fmt::format("has {} entries, /x and /y {} and {}", growth.size(), x.size(), y.size()));
   Json lines = Json::array();
   for (const std::string& name : file.names_in("/boundary"))
     lines.push_back(page.add_numbers(file.read("/boundary/" + name, 2)));

@@ -45,7 +45,7 @@ Json sweep_section(const ResultFile& file, const ReportContext& context) {
     for (const std::string& name : file.names_in(""))
       if (file.has("/" + name + "/value")) groups.push_back("/" + name);
   }
-  if (groups.empty()) throw FileError(file.path(), "/value", "is missing");
+  if (groups.empty()) throw FileError(Refusal::file_damaged, file.path(), "/value", "is missing");
   std::size_t points = 0;
   for (const std::string& group : groups) {
     Json view = curves_of_group(file, group, "value", context.page);
@@ -131,7 +131,8 @@ Json response_section(const ResultFile& file, const ReportContext& context) {
       const std::vector<double> real = file.read(group + "/real");
       const std::vector<double> imaginary = file.read(group + "/imaginary");
       if (real.size() != frequencies.size() || imaginary.size() != frequencies.size())
-        throw FileError(file.path(), group, "is unlike /frequency in length");
+        throw FileError(Refusal::file_damaged, file.path(), group,
+                        "is unlike /frequency in length");
       std::vector<double> size;
       std::vector<double> angle;
       for (std::size_t i = 0; i < real.size(); ++i) {
@@ -171,7 +172,8 @@ Json spectrogram_section(const ResultFile& file, const ReportContext& context) {
   const std::vector<double> frequencies = file.read("/frequencies");
   const std::vector<double> amplitude = file.read("/amplitude", 2);
   if (amplitude.size() != times.size() * frequencies.size() || frequencies.empty())
-    throw FileError(file.path(), "/amplitude", "is unlike /times and /frequencies in extent");
+    throw FileError(Refusal::file_damaged, file.path(), "/amplitude",
+                    "is unlike /times and /frequencies in extent");
   const Eigen::Map<const Eigen::MatrixXd> levels(amplitude.data(),
                                                  static_cast<Eigen::Index>(frequencies.size()),
                                                  static_cast<Eigen::Index>(times.size()));

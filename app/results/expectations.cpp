@@ -64,7 +64,8 @@ void check_expectations(const std::vector<Expectation>& expectations, const Json
     }
   }
   if (!failures.empty())
-    throw NumericalError(fmt::format("expectations not met:\n{}", fmt::join(failures, "\n")));
+    throw NumericalError(Refusal::expectation_missed,
+                         fmt::format("expectations not met:\n{}", fmt::join(failures, "\n")));
   print_remark("{} expectation(s) met\n", expectations.size());
 }
 

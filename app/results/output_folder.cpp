@@ -11,7 +11,9 @@ void prepare_folder(const fs::path& folder, const std::vector<std::string>& name
                     Overwrite overwrite) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw FileError(folder.string(), "", "cannot be made: " + error.message());
+  if (error)
+    throw FileError(Refusal::cannot_write, folder.string(), "",
+                    "cannot be made: " + error.message());
   for (const std::string& name : names) check_replaceable((folder / name).string(), overwrite);
 }
 

@@ -24,8 +24,9 @@ WindowKind window_of(const std::string& text) {
     if (name == text) return kind;
     names.push_back(name);
   }
-  throw ConfigError("--window", fmt::format("there is no window '{}'{} (there are: {})", text,
-                                            did_you_mean(text, names), fmt::join(names, ", ")));
+  throw ConfigError(Refusal::unknown_name, "--window",
+                    fmt::format("there is no window '{}'{} (there are: {})", text,
+                                did_you_mean(text, names), fmt::join(names, ", ")));
 }
 
 std::string stretch_text(const RecordedStretch& run) {
@@ -48,11 +49,12 @@ std::size_t settle_length(const PictureOptions& options, const RecordedStretch& 
                              ? option_value(key, *options.length, "s", Range::positive())
                              : *section->length;
   if (seconds < 1.5 * run.interval) {
-    throw ConfigError(key, fmt::format("{:g} s is less than two samples, which are {:g} s apart",
-                                       seconds, run.interval));
+    throw ConfigError(Refusal::wrong_value, key,
+                      fmt::format("{:g} s is less than two samples, which are {:g} s apart",
+                                  seconds, run.interval));
   }
   if (seconds > (static_cast<double>(available) + 0.5) * run.interval) {
-    throw ConfigError(key,
+    throw ConfigError(Refusal::wrong_value, key,
                       fmt::format("a piece of {:g} s is longer than the {:g} s of {}; give at most "
                                   "--length {:g}, or choose a longer stretch",
                                   seconds, run.duration(), stretch_text(run), run.duration()));
@@ -63,9 +65,10 @@ std::size_t settle_length(const PictureOptions& options, const RecordedStretch& 
 void check_overlap(double overlap, std::size_t length, const char* key) {
   const double samples = static_cast<double>(length);
   if (std::llround(samples * (1.0 - overlap)) < 1) {
-    throw ConfigError(key, fmt::format("{:g} moves a piece of {} samples on by less than one; "
-                                       "allowed: up to {:g}",
-                                       overlap, length, 1.0 - 1.0 / samples));
+    throw ConfigError(Refusal::wrong_value, key,
+                      fmt::format("{:g} moves a piece of {} samples on by less than one; "
+                                  "allowed: up to {:g}",
+                                  overlap, length, 1.0 - 1.0 / samples));
   }
 }
 
@@ -108,11 +111,12 @@ double option_value(const char* option, const std::string& text, const std::stri
   try {
     value = parse_quantity(text, unit);
   } catch (const std::invalid_argument& error) {
-    throw ConfigError(option, error.what());
+    throw ConfigError(Refusal::wrong_value, option, error.what());
   }
   if (!allowed.contains(value)) {
-    throw ConfigError(option, fmt::format("must be {}{}{}, got '{}'", allowed.text(),
-                                          unit.empty() ? "" : " ", unit, text));
+    throw ConfigError(Refusal::wrong_value, option,
+                      fmt::format("must be {}{}{}, got '{}'", allowed.text(),
+                                  unit.empty() ? "" : " ", unit, text));
   }
   return value;
 }
@@ -123,21 +127,24 @@ std::vector<Burst> bursts_of(const RunFileReader& file, const std::string& path,
   constexpr const char* option = "--band";
   const std::size_t comma = band->find(',');
   if (comma == std::string::npos)
-    throw ConfigError(option, fmt::format("'{}' is no band; write LOWER,UPPER", *band));
+    throw ConfigError(Refusal::wrong_value, option,
+                      fmt::format("'{}' is no band; write LOWER,UPPER", *band));
   const Band wanted{option_value(option, band->substr(0, comma), "Hz", Range::positive()),
                     option_value(option, band->substr(comma + 1), "Hz", Range::positive())};
   const double interval = sampling_interval(file, path);
   const double nyquist = interval > 0.0 ? 0.5 / interval : 0.0;
   if (!(wanted.lower < wanted.upper && wanted.upper < nyquist)) {
-    throw ConfigError(option, fmt::format("{:g} to {:g} Hz must be a lower and an upper frequency "
-                                          "below {:g} Hz, half the sampling rate of {}",
-                                          wanted.lower, wanted.upper, nyquist, path));
+    throw ConfigError(Refusal::wrong_value, option,
+                      fmt::format("{:g} to {:g} Hz must be a lower and an upper frequency "
+                                  "below {:g} Hz, half the sampling rate of {}",
+                                  wanted.lower, wanted.upper, nyquist, path));
   }
   auto bursts = bursts_in_band(file, path, recorded_settings(file, path).measure, wanted);
   if (!bursts) {
-    throw ConfigError(option, path +
-                                  " holds no acceleration in the window of measure.from and "
-                                  "measure.to, in which bursts are sought");
+    throw ConfigError(Refusal::not_recorded, option,
+                      path +
+                          " holds no acceleration in the window of measure.from and "
+                          "measure.to, in which bursts are sought");
   }
   return *std::move(bursts);
 }
@@ -157,7 +164,7 @@ std::vector<double> RecordedStretch::finite_values(const std::string& series) co
   std::vector<double> part = values(series);
   for (std::size_t i = 0; i < part.size(); ++i) {
     if (std::isfinite(part[i])) continue;
-    throw FileError(path, series,
+    throw FileError(Refusal::not_recorded, path, series,
                     fmt::format("is not finite at {:g} s; choose another stretch with --from, --to",
                                 file.times()[samples.begin + i]));
   }
@@ -168,19 +175,21 @@ RecordedStretch open_stretch(const PictureOptions& options) {
   auto guard = std::make_unique<DamageGuard>(options.file);
   RecordedStretch run{std::move(guard), RunFileReader(options.file), options.file, 0.0, {}};
   const std::vector<double>& times = run.file.times();
-  if (times.empty()) throw FileError(run.path, "/time", "is empty, nothing has been recorded");
+  if (times.empty())
+    throw FileError(Refusal::not_recorded, run.path, "/time",
+                    "is empty, nothing has been recorded");
   run.interval = sampling_interval(run.file, run.path);
   Window window;
   if (options.from) window.from = option_value("--from", *options.from, "s", Range::any());
   if (options.to) window.to = option_value("--to", *options.to, "s", Range::any());
   if (window.from > window.to)
-    throw ConfigError("--from",
+    throw ConfigError(Refusal::wrong_value, "--from",
                       fmt::format("{:g} s is after --to = {:g} s", window.from, window.to));
   // A single sample has no interval; any does to see whether it is inside.
   run.samples =
       samples_in(window, times.front(), run.interval > 0.0 ? run.interval : 1.0, times.size());
   if (run.samples.is_empty()) {
-    throw ConfigError(options.from ? "--from" : "--to",
+    throw ConfigError(Refusal::not_recorded, options.from ? "--from" : "--to",
                       fmt::format("{} holds no sample there, only from {:g} to {:g} s", run.path,
                                   times.front(), times.back()));
   }
@@ -193,7 +202,7 @@ std::string find_series(const RecordedStretch& run, const std::string& channel, 
     names.push_back(channel_name(series));
     if (names.back() == channel) return series;
   }
-  throw ConfigError(key,
+  throw ConfigError(Refusal::not_recorded, key,
                     fmt::format("{} has no channel '{}'{} (it has: {})", run.path, channel,
                                 did_you_mean(channel, names),
                                 names.empty() ? "none; name channels under `record` in the scene"
@@ -206,8 +215,9 @@ PieceSettings settle_pieces(const PictureOptions& options, const RecordedStretch
                             const std::function<double(double)>& default_length,
                             double default_overlap) {
   if (run.samples.size() < 2) {
-    throw ConfigError("", fmt::format("{} holds a single sample; a spectrum needs a longer stretch",
-                                      stretch_text(run)));
+    throw ConfigError(Refusal::not_recorded, "",
+                      fmt::format("{} holds a single sample; a spectrum needs a longer stretch",
+                                  stretch_text(run)));
   }
   PieceSettings result;
   const double nyquist = 0.5 / run.interval;
@@ -215,7 +225,7 @@ PieceSettings settle_pieces(const PictureOptions& options, const RecordedStretch
     result.max_frequency =
         option_value("--max-frequency", *options.max_frequency, "Hz", Range::positive());
     if (result.max_frequency > nyquist * (1.0 + 1e-9)) {
-      throw ConfigError("--max-frequency",
+      throw ConfigError(Refusal::wrong_value, "--max-frequency",
                         fmt::format("{:g} Hz is above {:g} Hz, the highest frequency that samples "
                                     "{:g} s apart resolve",
                                     result.max_frequency, nyquist, run.interval));

@@ -60,7 +60,7 @@ StepStabilityReport check_step_stability(const Model& model, const TimeParameter
   const System& system = model.system;
   if (std::any_of(system.contacts.begin(), system.contacts.end(),
                   [](const ContactPoint& contact) { return contact.substrate.has_value(); })) {
-    throw ConfigError("--stability",
+    throw ConfigError(Refusal::contradiction, "--stability",
                       "takes contacts that a constraint closes; the step of a contact with a "
                       "substrate has no frozen form");
   }

@@ -22,7 +22,7 @@ ExitCode make_master_curve(const ContactOptions& options, const LoadedScene& loa
   const SlidingContactParameters solver =
       contact.normal.solver.value_or(SlidingContactParameters{});
   const auto refuse = [&](const char* key, const char* message) {
-    throw loaded.located(ConfigError(contact.key + key, message));
+    throw loaded.located(ConfigError(Refusal::wrong_value, contact.key + key, message));
   };
   if (contact.normal.indenter().shape != ProfileShape::paraboloid)
     refuse(".profile.shape", "must be paraboloid: only these lie on one curve");
@@ -56,7 +56,8 @@ ExitCode make_master_curve(const ContactOptions& options, const LoadedScene& loa
                       {"remarks", computed.results[k].remarks()}});
   }
   if (!computed.converged())
-    throw NumericalError("a point of the master curve did not converge; nothing has been written");
+    throw NumericalError(Refusal::no_convergence,
+                         "a point of the master curve did not converge; nothing has been written");
   write_text_file(path, text);
   if (options.common.json) {
     print_json(Json{{"modulus_ratio", computed.curve.modulus_ratio}, {"points", points}});
@@ -88,15 +89,18 @@ ComputedContactTable compute_table(const NormalParameters& normal, const Sliding
       });
   progress.finish();
   if (!computed.converged()) {
-    throw NumericalError(fmt::format(
-        "{} of {:g} contacts of the table did not converge; nothing has been written",
-        count_contacts(computed,
-                       [](const SlidingContactResult& result) { return !result.converged; }),
-        num_contacts));
+    throw NumericalError(
+        Refusal::no_convergence,
+        fmt::format(
+            "{} of {:g} contacts of the table did not converge; nothing has been written",
+            count_contacts(computed,
+                           [](const SlidingContactResult& result) { return !result.converged; }),
+            num_contacts));
   }
   const auto is_positive = [](double value) { return value > 0.0; };
   if (!std::all_of(computed.table.friction.begin(), computed.table.friction.end(), is_positive)) {
     throw NumericalError(
+        Refusal::no_convergence,
         "the friction of a contact of the table is not > 0, since its speed is too low for the "
         "grid: begin at a higher one, or lower solver.tolerance; nothing has been written");
   }

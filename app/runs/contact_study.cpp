@@ -90,7 +90,7 @@ std::vector<StudiedContact> viscoelastic_contacts(const LoadedScene& loaded) {
   }
   if (contacts.empty()) {
     throw loaded.located(ConfigError(
-        model.contact ? "contact" : "contacts",
+        Refusal::wrong_value, model.contact ? "contact" : "contacts",
         fmt::format("the scene has no contact with the normal law {}, the one that `contact` "
                     "evaluates",
                     normal_laws_with([](const NormalLawType& law) { return law.has_area(); }))));
@@ -102,7 +102,7 @@ void require_boundary_elements(const LoadedScene& loaded, const StudiedContact& 
                                const std::string& wanted) {
   if (contact.normal.is_solved()) return;
   throw loaded.located(
-      ConfigError(contact.key + ".form",
+      ConfigError(Refusal::contradiction, contact.key + ".form",
                   fmt::format("must be solve for {}, which takes boundary elements", wanted)));
 }
 
@@ -112,7 +112,7 @@ void check_reach(const LoadedScene& loaded, const StudiedContact& contact,
   const double radius = contact.normal.tip_radius();
   const IndenterProfile profile(contact.normal.indenter());
   const auto refuse = [&](const std::string& message) {
-    throw loaded.located(ConfigError(contact.key + ".profile", message));
+    throw loaded.located(ConfigError(Refusal::wrong_value, contact.key + ".profile", message));
   };
   for (const double indentation : points.indentations) {
     if (!profile.elastic_contact_radius(indentation * radius)) {

@@ -32,29 +32,31 @@ SlidingOscillator oscillator_of(const LoadedScene& loaded, const System& system,
   std::optional<SlidingOscillator> found = as_oscillator(system, &why);
   if (found) return *std::move(found);
   throw loaded.located(ConfigError(
-      key, fmt::format("needs one body of two unknowns, the displacements x and y of one mass, on "
-                       "a half_space that slides under it at a constant speed: {}",
-                       why)));
+      Refusal::missing, key,
+      fmt::format("needs one body of two unknowns, the displacements x and y of one mass, on "
+                  "a half_space that slides under it at a constant speed: {}",
+                  why)));
 }
 
 SubstrateEquilibrium sliding_equilibrium(const SlidingOscillator& oscillator) {
   const SubstrateOscillator& of = oscillator.oscillator;
   SubstrateEquilibrium found = find_equilibrium(of, 1e-2 * of.contact.indentation_unit);
   if (!found.converged) {
-    throw NumericalError(fmt::format(
-        "no sliding equilibrium: Newton's method with bisection did not converge in {} evaluations "
-        "of the contact law; the load into the half_space is {:g} N",
-        found.evaluations, oscillator.force * of.load.y()));
+    throw NumericalError(Refusal::no_equilibrium,
+                         fmt::format("no sliding equilibrium: Newton's method with bisection did "
+                                     "not converge in {} evaluations "
+                                     "of the contact law; the load into the half_space is {:g} N",
+                                     found.evaluations, oscillator.force * of.load.y()));
   }
   return found;
 }
 
 void require_cycle_section(const LoadedScene& loaded) {
   if (loaded.scene.cycle) return;
-  throw loaded.located(ConfigError(
-      "cycle",
-      "missing: a limit cycle is sought after `cycle.settle`, the time that the motion "
-      "takes to settle"));
+  throw loaded.located(
+      ConfigError(Refusal::missing, "cycle",
+                  "missing: a limit cycle is sought after `cycle.settle`, the time that the motion "
+                  "takes to settle"));
 }
 
 CycleScene make_cycle_scene(const LoadedScene& loaded, Model& model) {

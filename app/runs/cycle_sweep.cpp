@@ -231,6 +231,7 @@ ExitCode sweep_cycles(const SweepOptions& options, const LoadedScene& loaded) {
   }
   if (failures.size() == values.size() * branches.size()) {
     throw NumericalError(
+        Refusal::no_convergence,
         fmt::format("none of the {} motions can be followed; {}", failures.size(), failures[0]));
   }
   return ExitCode::done;

@@ -24,6 +24,7 @@ class EventDriver : public RunDriver {
   MarchEnd run_to_end() override;
   double time() const override { return oscillator_.time * motion_.time(); }
   const std::string& failure() const override { return failure_; }
+  Refusal refusal() const override { return Refusal::no_convergence; }
   State save() const override;
   void load(const State& state) override;
   State present_motion() const override;

@@ -69,14 +69,15 @@ Study make_study(const LoadedScene& loaded) {
   (void)sliding_equilibrium(study.oscillator);
   const Scene& scene = loaded.scene;
   if (!scene.record) {
-    throw loaded.located(ConfigError("record",
+    throw loaded.located(ConfigError(Refusal::missing, "record",
                                      "missing: errors are taken at every multiple of "
                                      "record.interval"));
   }
   study.interval = scene.record->interval;
   study.num_samples = static_cast<std::size_t>(scene.time->end / study.interval * (1.0 + 1e-12));
   if (study.num_samples < 2) {
-    throw loaded.located(ConfigError("time.end", "holds less than two samples of record.interval"));
+    throw loaded.located(ConfigError(Refusal::wrong_value, "time.end",
+                                     "holds less than two samples of record.interval"));
   }
   return study;
 }
@@ -215,10 +216,13 @@ void draw(const Study& study, const std::vector<Setting>& settings,
 void refuse_options_of_steps(const PrecisionOptions& options) {
   const char* reason = "is for scenes with time.step, and this one has integrator: event_driven";
   if (options.until)
-    throw ConfigError("--until", fmt::format("{}; here time.end says how far", reason));
-  if (!options.retain.empty()) throw ConfigError("--retain", reason);
-  if (!options.assumptions.empty()) throw ConfigError("--assumptions", reason);
-  if (options.points > 20) throw ConfigError("--points", "is at most 20 with event_driven");
+    throw ConfigError(Refusal::contradiction, "--until",
+                      fmt::format("{}; here time.end says how far", reason));
+  if (!options.retain.empty()) throw ConfigError(Refusal::wrong_value, "--retain", reason);
+  if (!options.assumptions.empty())
+    throw ConfigError(Refusal::wrong_value, "--assumptions", reason);
+  if (options.points > 20)
+    throw ConfigError(Refusal::wrong_value, "--points", "is at most 20 with event_driven");
 }
 
 /// The settings measured, and what came of them.
@@ -233,7 +237,7 @@ EventPrecision measure_all(const Study& study, int points, std::optional<double>
   const Samples reference = run_events(study, reference_tolerance, &failure);
   if (stop_requested()) throw Interrupted("nothing has been written");
   if (reference.size() != study.num_samples)
-    throw NumericalError("the reference motion, event-driven: " + failure);
+    throw NumericalError(Refusal::diverged, "the reference motion, event-driven: " + failure);
   EventPrecision found;
   found.own_error = relative_error(run_events(study, check_tolerance), reference);
   found.settings = settings_of(points);

@@ -73,7 +73,7 @@ void run_all(const PrecisionStudy& study, PrecisionRows& rows) {
     if (end == MarchEnd::stopped)
       throw Interrupted("nothing was measured; --until takes less of the run");
     if (i == 0 && end == MarchEnd::failed)
-      throw NumericalError("the reference itself failed: " + row.run->failure());
+      throw NumericalError(Refusal::diverged, "the reference itself failed: " + row.run->failure());
     return fmt::format("step {:.3g} s", row.time.step);
   });
 }
@@ -102,6 +102,7 @@ void judge(const PrecisionStudy& study, const PrecisionOptions& options, Precisi
   result.own_error = rows[1].error;
   if (!std::isfinite(result.own_error)) {
     throw NumericalError(
+        Refusal::diverged,
         fmt::format("the {} of the reference is zero throughout the window, or its "
                     "check run failed: {}",
                     options.norm, rows[1].run->failure()));
@@ -149,7 +150,7 @@ PrecisionStudy make_precision_study(const PrecisionOptions& options, LoadedScene
     study.plan =
         make_plan(study.model.system, *study.loaded.scene.time, study.interval, study.parameters);
   } catch (const std::invalid_argument& error) {
-    throw study.loaded.located(ConfigError("record.interval", error.what()));
+    throw study.loaded.located(ConfigError(Refusal::wrong_value, "record.interval", error.what()));
   }
   return study;
 }

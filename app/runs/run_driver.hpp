@@ -35,6 +35,7 @@ class RunDriver {
   virtual double time() const = 0;  ///< s
   /// Cause, time and remedy of a failure.
   virtual const std::string& failure() const = 0;
+  virtual Refusal refusal() const = 0;  ///< its kind
 
   virtual State save() const = 0;
   /// Goes on from a state, bit-identically. After begin().

@@ -17,7 +17,8 @@ namespace stridor {
 
 /// Runs to the end, or as far as it gets, and reports the ending.
 ///
-/// @tparam Run  has keeper(), run_to_end(), write_checkpoint(), finish(), time() and failure()
+/// @tparam Run  has keeper(), run_to_end(), write_checkpoint(), finish(), time(), failure() and
+/// refusal()
 /// @param end   of the run, in units of its time()
 /// @param print prints the results where they are not asked for as JSON
 /// @throws Interrupted if the run was stopped, NumericalError if it failed or does not meet its
@@ -41,7 +42,8 @@ ExitCode run_and_report(Run& run, double end, const std::string& file, const Run
   std::fflush(stdout);
   if (how == MarchEnd::stopped) throw_interrupted(run.time(), end, file);
   if (how == MarchEnd::failed) {
-    throw NumericalError(fmt::format("{}\n{} holds everything up to then", run.failure(), file));
+    throw NumericalError(run.refusal(),
+                         fmt::format("{}\n{} holds everything up to then", run.failure(), file));
   }
   if (ending.verify) check_expectations(expectations, results);
   return ExitCode::done;

@@ -13,7 +13,9 @@ RunFrames::RunFrames(const Model& model, std::filesystem::path folder)
     : model_(&model), folder_(std::move(folder)), recovery_(model, cache_) {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
-  if (error) throw FileError(folder_.string(), "", "cannot be made: " + error.message());
+  if (error)
+    throw FileError(Refusal::cannot_write, folder_.string(), "",
+                    "cannot be made: " + error.message());
 }
 
 std::filesystem::path RunFrames::name_of(int number) const {

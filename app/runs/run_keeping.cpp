@@ -46,7 +46,7 @@ InterruptedRun find_interrupted_run(const std::string& file) {
   const RunFileReader reader(file);
   const RunFileHeader& header = reader.header();
   if (header.version != version || header.commit != commit) {
-    throw FileError(file, "",
+    throw FileError(Refusal::other_kind_of_file, file, "",
                     fmt::format("was written by stridor {} ({}), this is {} ({}); only the program "
                                 "that began a run goes on with it bitwise",
                                 header.version, header.commit, version, commit));
@@ -56,14 +56,15 @@ InterruptedRun find_interrupted_run(const std::string& file) {
   const std::string* text =
       status == results.end() ? nullptr : std::get_if<std::string>(&status->second);
   if (is_done(reader))
-    throw FileError(file, "", "holds a whole run, there is nothing to go on with");
+    throw FileError(Refusal::other_kind_of_file, file, "",
+                    "holds a whole run, there is nothing to go on with");
   if (text != nullptr && *text == "failed") {
-    throw FileError(file, "",
+    throw FileError(Refusal::other_kind_of_file, file, "",
                     "holds a run that failed, and would again; change the scene and run it anew");
   }
   std::optional<Checkpoint> checkpoint = reader.checkpoint();
   if (!checkpoint) {
-    throw FileError(file, checkpoint_group,
+    throw FileError(Refusal::file_damaged, file, checkpoint_group,
                     "there is no whole checkpoint to go on from; run the scene anew");
   }
   check_unchanged(
@@ -72,7 +73,7 @@ InterruptedRun find_interrupted_run(const std::string& file) {
 }
 
 void throw_unfit_checkpoint(const std::string& file, const std::string& what) {
-  throw FileError(file, checkpoint_group,
+  throw FileError(Refusal::file_damaged, file, checkpoint_group,
                   fmt::format("does not fit the scene in the file: {}", what));
 }
 

@@ -31,7 +31,8 @@ PeriodicMotion find_scene_cycle(const LoadedScene& loaded, Model& model) {
   const Scene& scene = loaded.scene;
   loaded.require_section("time", "cycle");
   if (const auto why = why_not_periodic(model.system))
-    throw loaded.located(ConfigError("cycle", "the motion cannot repeat itself: " + *why));
+    throw loaded.located(
+        ConfigError(Refusal::wrong_value, "cycle", "the motion cannot repeat itself: " + *why));
   (void)set_initial_state(model.system, loaded);
   try {
     PeriodicMotion found =

@@ -17,6 +17,7 @@ class StepDriver : public RunDriver {
   MarchEnd run_to_end() override { return run_to_step(last_step_); }
   double time() const override { return simulation_.time(); }
   const std::string& failure() const override { return simulation_.failure(); }
+  Refusal refusal() const override { return simulation_.refusal(); }
   State save() const override;
   void load(const State& state) override;
   State present_motion() const override;

@@ -38,9 +38,10 @@ NormParameters norms_of(const StudiedScene& study, const char* end_key) {
                    : Band{std::min(1e3, 0.1 * clean), std::min(15e3, clean)};
   const double needed = norms.window.from + 10.0 * study.interval;
   if (!(norms.window.to >= needed)) {
-    throw ConfigError(end_key, fmt::format("the run ends at {:.6g} s, but errors are taken from "
-                                           "{:.6g} s on (measure.from, or the end of the ramp)",
-                                           end, norms.window.from));
+    throw ConfigError(Refusal::wrong_value, end_key,
+                      fmt::format("the run ends at {:.6g} s, but errors are taken from "
+                                  "{:.6g} s on (measure.from, or the end of the ramp)",
+                                  end, norms.window.from));
   }
   return norms;
 }
@@ -54,8 +55,9 @@ StudiedScene study_scene(LoadedScene loaded, const std::optional<std::string>& u
   const std::optional<Channel> channel =
       scene.record ? compared_channel(scene) : std::optional<Channel>();
   if (!channel) {
-    throw study.loaded.located(ConfigError(
-        "record", "no motion of a point among the channels: errors need one to compare by"));
+    throw study.loaded.located(
+        ConfigError(Refusal::missing, "record",
+                    "no motion of a point among the channels: errors need one to compare by"));
   }
   study.channel = channel->name;
   study.model = build_model(study.loaded);
@@ -67,8 +69,9 @@ StudiedScene study_scene(LoadedScene loaded, const std::optional<std::string>& u
   if (until) {
     end = option_value("--until", *until, "s", Range::positive());
     if (end > scene.time->end) {
-      throw ConfigError("--until", fmt::format("{:.6g} s is beyond the end of the scene, {:.6g} s",
-                                               end, scene.time->end));
+      throw ConfigError(
+          Refusal::wrong_value, "--until",
+          fmt::format("{:.6g} s is beyond the end of the scene, {:.6g} s", end, scene.time->end));
     }
   }
   study.num_samples = static_cast<std::int64_t>(std::floor(end / study.interval + 1e-6));

@@ -55,6 +55,7 @@ class Transient {
   double time() const { return driver_->time(); }
   /// Cause, time and remedy of the failure; empty unless the run has failed.
   const std::string& failure() const { return driver_->failure(); }
+  Refusal refusal() const { return driver_->refusal(); }
   const Model& model() const { return model_; }
 
  private:

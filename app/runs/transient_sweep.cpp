@@ -387,7 +387,8 @@ ExitCode sweep_transients(const SweepOptions& options, const LoadedScene& loaded
   const bool has_any_done = std::any_of(points.begin(), points.end(),
                                         [](const TransientPoint& p) { return p.failure.empty(); });
   if (!has_any_done) {
-    throw NumericalError(fmt::format("none of the {} transients came to its end; {}", points.size(),
+    throw NumericalError(Refusal::diverged,
+                         fmt::format("none of the {} transients came to its end; {}", points.size(),
                                      points.front().failure));
   }
   return ExitCode::done;

@@ -14,12 +14,14 @@ namespace stridor {
 std::size_t chosen_mode(const std::vector<Eigenvalue>& eigenvalues, std::size_t num_real,
                         const std::optional<int>& mode) {
   const std::size_t num_modes = eigenvalues.size() - num_real;
-  if (num_modes == 0) throw ConfigError("--mode", "there is no eigenvalue with a frequency");
+  if (num_modes == 0)
+    throw ConfigError(Refusal::wrong_value, "--mode", "there is no eigenvalue with a frequency");
   if (mode) {
     const auto number = static_cast<std::size_t>(*mode);
     if (number > num_modes) {
       throw ConfigError(
-          "--mode", fmt::format("there are {} modes, got {}; raise --count", num_modes, number));
+          Refusal::wrong_value, "--mode",
+          fmt::format("there are {} modes, got {}; raise --count", num_modes, number));
     }
     return num_real + number - 1;
   }

@@ -24,7 +24,8 @@ std::vector<double> range_values(const NumericKey& key, const RangeOptions& opti
   const double from = parse_value(key, options.from, "--from");
   const double to = parse_value(key, options.to, "--to");
   if (from > to) {
-    throw ConfigError("--from", fmt::format("'{}' is beyond --to '{}'", options.from, options.to));
+    throw ConfigError(Refusal::wrong_value, "--from",
+                      fmt::format("'{}' is beyond --to '{}'", options.from, options.to));
   }
   return spaced_values(key, from, to, options.points, spacing);
 }

@@ -44,6 +44,7 @@ LowestEigenvalues find_lowest(const Pencil& pencil, EigenvalueMethod method,
     } catch (const NumericalError& error) {
       if (pencil.num_eigenvalues() > most_dense) {
         throw NumericalError(
+            Refusal::eigenvalues_incomplete,
             fmt::format("{} (--method dense; taken without being asked for up to {} eigenvalues, "
                         "here there are "
                         "{}), or keep fewer modes (time.retain)",

@@ -63,7 +63,8 @@ class Naming {
   Naming(const ResponseStudy& study, const std::vector<NodeName>& names) : study_(study) {
     for (const NodeName& name : names) {
       if (!points_.emplace(name.node, name.point.body + "." + name.point.point).second)
-        throw ConfigError("--node", fmt::format("node {} has two names", name.node));
+        throw ConfigError(Refusal::doubled_name, "--node",
+                          fmt::format("node {} has two names", name.node));
     }
   }
 
@@ -181,7 +182,8 @@ std::vector<NodeName> parse_node_names(const std::vector<std::string>& words) {
     const char* end = word.data() + std::min(equals, word.size());
     const auto [at, error] = std::from_chars(word.data(), end, name.node);
     if (equals == std::string::npos || dot == std::string::npos || error != std::errc{} || at != end)
-      throw ConfigError("--node", fmt::format("expected NUMBER=BODY.POINT, got '{}'", word));
+      throw ConfigError(Refusal::wrong_value, "--node",
+                        fmt::format("expected NUMBER=BODY.POINT, got '{}'", word));
     name.point = {word.substr(equals + 1, dot - equals - 1), word.substr(dot + 1)};
     names.push_back(std::move(name));
   }
@@ -218,7 +220,7 @@ std::vector<ComparedResponse> compared_responses(const ResponseStudy& study,
   if (!all.empty()) return all;
   std::string text = "nothing of the file can be compared with the responses of the scene";
   for (const std::string& remark : remarks) text += "\n  " + remark;
-  throw ConfigError("--compare", text);
+  throw ConfigError(Refusal::wrong_value, "--compare", text);
 }
 
 UffContents uff_contents(const ResponseStudy& study, const std::vector<double>& frequencies,

@@ -15,9 +15,10 @@ std::vector<TimedWindow> read_predictions(const std::string& file) {
   if (!parameter.empty() && !parameter.ends_with(".start") &&
       parameter != drive_displacement_name) {
     throw ConfigError(
-        "--predict", fmt::format("'{}' is a locus over {}, which a run does not pass through; give "
-                                 "one over the contact position (`locus` without --parameter)",
-                                 file, parameter));
+        Refusal::wrong_value, "--predict",
+        fmt::format("'{}' is a locus over {}, which a run does not pass through; give "
+                    "one over the contact position (`locus` without --parameter)",
+                    file, parameter));
   }
   return read_locus_windows(file);
 }

@@ -22,9 +22,10 @@ constexpr const char* motion_units[] = {"m/N", "m/s/N", "m/s^2/N"};
 Channel motion_channel(const std::string& name, const char* option, const ModelParameters& model) {
   Channel channel = parse_channel(name, option, model);
   if (channel.point) return channel;
-  throw ConfigError(option, fmt::format("'{}' is a quantity of a contact; frequency responses are "
-                                        "those of points of bodies",
-                                        name));
+  throw ConfigError(Refusal::wrong_value, option,
+                    fmt::format("'{}' is a quantity of a contact; frequency responses are "
+                                "those of points of bodies",
+                                name));
 }
 
 /// "pad.tip.y" of an input.
@@ -36,7 +37,8 @@ void refuse_repeated(const std::vector<Channel>& channels, const char* option) {
   for (std::size_t i = 0; i < channels.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j)
       if (channels[i].name == channels[j].name)
-        throw ConfigError(option, fmt::format("'{}' is given twice", channels[i].name));
+        throw ConfigError(Refusal::doubled_name, option,
+                          fmt::format("'{}' is given twice", channels[i].name));
   }
 }
 
@@ -56,10 +58,10 @@ std::pair<int, int> displacement_of(const Model& model, const Channel& channel) 
                                        channel.point->point, "xyz"[channel.direction]);
   const Eigen::MatrixXd& rows = model.system.bodies[static_cast<std::size_t>(point.body)].modal.rows;
   if (row >= 0 && rows.row(row).cwiseAbs().maxCoeff() > 0.0) return {point.body, row};
-  throw ConfigError(channel.key, row < 0
-                                     ? fmt::format("{} does not move: '{}' moves in its plane alone",
-                                                   what, channel.point->body)
-                                     : fmt::format("{} does not move: a support holds it", what));
+  throw ConfigError(Refusal::motion_is_held, channel.key,
+                    row < 0 ? fmt::format("{} does not move: '{}' moves in its plane alone", what,
+                                          channel.point->body)
+                            : fmt::format("{} does not move: a support holds it", what));
 }
 
 Eigen::MatrixXd rows_of(const Model& model, const std::vector<Channel>& channels) {

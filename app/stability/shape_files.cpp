@@ -74,20 +74,22 @@ NodesByLabel matched_nodes(const ShapedModes& shapes, const ModalTest& measured,
       }
       const auto place = measured.nodes.find(label);
       if (place == measured.nodes.end()) {
-        throw ConfigError("--compare", fmt::format("{} has no place of node {} (dataset 15 or 2411); "
-                                                   "name it with --node {}=BODY.POINT",
-                                                   path, label, label));
+        throw ConfigError(Refusal::wrong_value, "--compare",
+                          fmt::format("{} has no place of node {} (dataset 15 or 2411); "
+                                      "name it with --node {}=BODY.POINT",
+                                      path, label, label));
       }
       Eigen::Index nearest = 0;
       const double distance =
           (shapes.places.rowwise() - place->second.transpose()).rowwise().norm().minCoeff(&nearest);
       if (!(distance <= 0.05 * extent)) {
-        throw ConfigError("--compare",
-                          fmt::format("node {} of {} at ({:.4g}, {:.4g}, {:.4g}) m is {:.3g} m away from every "
-                                      "node of the bodies, whose extent is {:.3g} m; the test and the scene "
-                                      "are to have the same coordinates, or --node {}=BODY.POINT names the point",
-                                      label, path, place->second.x(), place->second.y(), place->second.z(),
-                                      distance, extent, label));
+        throw ConfigError(
+            Refusal::off_the_surface, "--compare",
+            fmt::format("node {} of {} at ({:.4g}, {:.4g}, {:.4g}) m is {:.3g} m away from every "
+                        "node of the bodies, whose extent is {:.3g} m; the test and the scene "
+                        "are to have the same coordinates, or --node {}=BODY.POINT names the point",
+                        label, path, place->second.x(), place->second.y(), place->second.z(),
+                        distance, extent, label));
       }
       farthest = std::max(farthest, distance);
       node_of.emplace(label, nearest);
@@ -95,7 +97,8 @@ NodesByLabel matched_nodes(const ShapedModes& shapes, const ModalTest& measured,
   }
   for (const auto& [label, node] : named) {
     if (!node_of.contains(label))
-      throw ConfigError("--node", fmt::format("no mode of {} has a node {}", path, label));
+      throw ConfigError(Refusal::unknown_name, "--node",
+                        fmt::format("no mode of {} has a node {}", path, label));
   }
   return node_of;
 }
@@ -123,7 +126,7 @@ double modal_assurance(const ShapedMode& computed, const TestMode& measured, con
 ShapedModes shaped_modes(const Analysis& analysis, const std::string& option) {
   const FoundSpectrum& found = analysis.found;
   if (!found.shape) {
-    throw ConfigError(option,
+    throw ConfigError(Refusal::cannot_reduce, option,
                       "needs bodies that are reduced (reduction), or fewer unknowns than these");
   }
   BodyCache cache;
@@ -135,10 +138,11 @@ ShapedModes shaped_modes(const Analysis& analysis, const std::string& option) {
     const std::vector<BodyShape> bodies =
         recovery.mode(analysis.state.equilibrium, found.shape(i));
     if (shapes.modes.empty()) keep_nodes(bodies, shapes);
-    if (shapes.places.rows() == 0) throw ConfigError(option, "no body of the scene has nodes");
+    if (shapes.places.rows() == 0)
+      throw ConfigError(Refusal::wrong_value, option, "no body of the scene has nodes");
     shapes.modes.push_back({i, found.eigenvalues[i], stacked_shape(bodies, shapes.places.rows())});
   }
-  if (shapes.modes.empty()) throw ConfigError(option, "no mode vibrates");
+  if (shapes.modes.empty()) throw ConfigError(Refusal::wrong_value, option, "no mode vibrates");
   return shapes;
 }
 
@@ -183,8 +187,9 @@ NodesByLabel nodes_at_points(const ShapedModes& shapes, const LoadedScene& loade
     const auto first = std::find(shapes.bodies.begin(), shapes.bodies.end(), name.point.body);
     if (body == placed.bodies.end() || first == shapes.bodies.end()) {
       const std::set<std::string> known(shapes.bodies.begin(), shapes.bodies.end());
-      throw ConfigError("--node", fmt::format("no body '{}' has nodes (these have: {})", name.point.body,
-                                              fmt::join(known, ", ")));
+      throw ConfigError(Refusal::unknown_name, "--node",
+                        fmt::format("no body '{}' has nodes (these have: {})", name.point.body,
+                                    fmt::join(known, ", ")));
     }
     const int node = node_at(*body, name.point.point, "--node");
     const Eigen::Index start = first - shapes.bodies.begin();

@@ -24,17 +24,19 @@ SlidingState sliding_state_of(const SceneFamily::Member& member, ContactGeometry
                             ? find_equilibrium_at(system, 0, *member.position, asked)
                             : find_equilibrium(system, asked);
   } catch (const NumericalError& error) {
-    throw NumericalError(fmt::format("no sliding equilibrium{}: {}", where, error.what()));
+    throw NumericalError(Refusal::no_equilibrium,
+                         fmt::format("no sliding equilibrium{}: {}", where, error.what()));
   }
   if (state.equilibrium.status != EquilibriumStatus::converged) {
-    throw NumericalError(
-        fmt::format("no sliding equilibrium{}: {}", where, state.equilibrium.failure));
+    throw NumericalError(Refusal::no_equilibrium, fmt::format("no sliding equilibrium{}: {}", where,
+                                                              state.equilibrium.failure));
   }
   const auto& contacts = state.equilibrium.contacts;
   if (!contacts.empty() &&
       std::none_of(contacts.begin(), contacts.end(),
                    [](const ContactEquilibrium& contact) { return contact.is_closed; })) {
-    throw NumericalError(fmt::format("every contact is open in equilibrium{}", where));
+    throw NumericalError(Refusal::no_equilibrium,
+                         fmt::format("every contact is open in equilibrium{}", where));
   }
   state.pencil = linearise(system, state.equilibrium, contact_terms(terms));
   if (!terms.structural_damping) drop_structural_damping(state.pencil);

@@ -63,7 +63,8 @@ NumericKey find_stability_key(const Scene& scene, const std::string& path,
                               const std::string& option) {
   if (path == drive_displacement_name) {
     if (scene.model.pairs().empty())
-      throw ConfigError(option, "'drive.displacement' moves contacts, and the scene has none");
+      throw ConfigError(Refusal::wrong_value, option,
+                        "'drive.displacement' moves contacts, and the scene has none");
     return {path, "m", Range::any(), false};
   }
   NumericKey key = find_numeric_key(scene, path, option);
@@ -72,7 +73,8 @@ NumericKey find_stability_key(const Scene& scene, const std::string& path,
       is_parameter(key) ||
       (section != "initial" && ModelParameters::schema().find(section) != nullptr);
   if (!is_mechanical)
-    throw ConfigError(option, fmt::format("'{}' has no influence on the eigenvalues", path));
+    throw ConfigError(Refusal::wrong_value, option,
+                      fmt::format("'{}' has no influence on the eigenvalues", path));
   return key;
 }
 
@@ -80,7 +82,8 @@ KeyRange make_range(const StabilityScene& scene, const RangeOptions& options) {
   std::string path = options.parameter;
   if (path.empty()) {
     const auto key = scene.default_key();
-    if (!key) throw ConfigError("--parameter", "the scene has no path; name a key");
+    if (!key)
+      throw ConfigError(Refusal::missing, "--parameter", "the scene has no path; name a key");
     path = *key;
   }
   KeyRange range{scene.find_key(path, "--parameter"), {}};

@@ -41,16 +41,15 @@ void check_figure(const std::filesystem::path& figure, const CommonOptions& opti
 }
 
 Json problem_json(const Problem& problem) {
-  return {{"file", problem.source},
-          {"line", problem.line},
-          {"column", problem.column},
-          {"key", problem.key},
-          {"message", problem.message}};
+  return {
+      {"code", code_of(problem.refusal)}, {"file", problem.source}, {"line", problem.line},
+      {"column", problem.column},         {"key", problem.key},     {"message", problem.message}};
 }
 
 void print_warnings(const std::vector<Problem>& warnings) {
   for (const Problem& warning : warnings)
-    fmt::print(stderr, "stridor: warning\n{}\n", ConfigError({warning}).report());
+    fmt::print(stderr, "stridor: warning\n{}\n{}", warning.text(),
+               warning.excerpt.empty() ? "" : warning.excerpt + "\n");
 }
 
 void print_json(Json object) {
@@ -79,9 +78,11 @@ Json number(double value) {
 std::vector<double> spaced_values(const char* option, const std::vector<double>& range) {
   const double count = range[2];
   if (!(range[0] > 0.0) || !(range[1] > range[0]) || !std::isfinite(range[1]))
-    throw ConfigError(option, "needs two positive numbers, the smaller one first");
+    throw ConfigError(Refusal::missing, option,
+                      "needs two positive numbers, the smaller one first");
   if (!(count >= 4.0) || !(count <= 1000.0) || count != std::trunc(count))
-    throw ConfigError(option, fmt::format("{:g} points are not a whole number, 4 to 1000", count));
+    throw ConfigError(Refusal::wrong_value, option,
+                      fmt::format("{:g} points are not a whole number, 4 to 1000", count));
   std::vector<double> values;
   values.reserve(static_cast<std::size_t>(count));
   for (int k = 0; k < static_cast<int>(count); ++k)

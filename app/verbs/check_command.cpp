@@ -50,7 +50,7 @@ std::map<std::string, ImportFacts> imports_of(const Model& model) {
 
 /// Of what has no steps. @throws ConfigError
 void refuse_stability(const CheckOptions& options, const char* reason) {
-  if (options.stability) throw ConfigError("--stability", reason);
+  if (options.stability) throw ConfigError(Refusal::wrong_value, "--stability", reason);
 }
 
 /// Whether only `contact` can do something with a scene.

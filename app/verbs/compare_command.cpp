@@ -45,7 +45,8 @@ class ScratchFolder {
  public:
   ScratchFolder() {
     std::string name = (fs::temp_directory_path() / "stridor-compare-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw FileError(name, "", "cannot be made");
+    if (mkdtemp(name.data()) == nullptr)
+      throw FileError(Refusal::cannot_write, name, "", "cannot be made");
     path_ = name;
   }
   ~ScratchFolder() {
@@ -227,7 +228,7 @@ void check_published_form(const CompareOptions& options, const TimeParameters& t
   if (!(options.window > 0.0)) return;
   if (time.integrator == Integrator::central_difference && !time.retain) return;
   throw ConfigError(
-      "--published-window",
+      Refusal::contradiction, "--published-window",
       fmt::format("the published form takes time.integrator: central_difference with all modes, "
                   "but the scene has {}; leave the option away, or set it",
                   time.retain ? "time.retain" : "integrator: exact"));
@@ -241,12 +242,12 @@ ExitCode compare(const CompareOptions& options) {
   LoadedScene loaded = load_scene(options.scene, options.common.sets);
   for (const char* section : {"time", "contact"}) loaded.require_section(section, "compare");
   if (!loaded.scene.record) {
-    throw loaded.located(
-        ConfigError("record", "missing: compare needs an acceleration to compare by"));
+    throw loaded.located(ConfigError(Refusal::missing, "record",
+                                     "missing: compare needs an acceleration to compare by"));
   }
   if (loaded.scene.time->is_event_driven()) {
-    throw loaded.located(
-        ConfigError("time.integrator", "event_driven knows no contact assumptions to compare"));
+    throw loaded.located(ConfigError(Refusal::contradiction, "time.integrator",
+                                     "event_driven knows no contact assumptions to compare"));
   }
   check_published_form(options, *loaded.scene.time);
   record_contact(loaded.scene);

@@ -24,7 +24,8 @@ SlidingPoints settle_points(const ContactOptions& options, const LoadedScene& lo
   const auto check = [](const char* option, const std::vector<double>& values, const Range& range) {
     for (const double value : values) {
       if (!range.contains(value))
-        throw ConfigError(option, fmt::format("{:g} must be {}", value, range.text()));
+        throw ConfigError(Refusal::wrong_value, option,
+                          fmt::format("{:g} must be {}", value, range.text()));
     }
   };
   check("--speed", options.speeds, Range::any());
@@ -36,9 +37,10 @@ SlidingPoints settle_points(const ContactOptions& options, const LoadedScene& lo
     points.loads = options.loads;
   }
   if (points.speeds.empty())
-    throw ConfigError("--speed", "is needed, since the scene has no sliding.speeds");
+    throw ConfigError(Refusal::missing, "--speed",
+                      "is needed, since the scene has no sliding.speeds");
   if (points.indentations.empty() && points.loads.empty()) {
-    throw ConfigError("--indentation",
+    throw ConfigError(Refusal::missing, "--indentation",
                       "or --load is needed, since the scene has no sliding.indentations");
   }
   return points;
@@ -71,7 +73,7 @@ std::vector<StudiedContact> asked_contacts(const ContactOptions& options,
     std::erase_if(contacts,
                   [&](const StudiedContact& contact) { return contact.name != *options.contact; });
     if (contacts.empty()) {
-      throw ConfigError("--contact",
+      throw ConfigError(Refusal::unknown_name, "--contact",
                         fmt::format("there is no contact '{}' with the normal law viscoelastic{} "
                                     "(there are: {})",
                                     *options.contact, did_you_mean(*options.contact, names),
@@ -86,9 +88,10 @@ std::vector<StudiedContact> asked_contacts(const ContactOptions& options,
       {"--table", options.table.has_value()}};
   for (const auto& [option, is_given] : of_one) {
     if (!is_given || contacts.size() == 1) continue;
-    throw ConfigError("--contact", fmt::format("is needed, since {} is of one contact (there are: "
-                                               "{})",
-                                               option, fmt::join(names, ", ")));
+    throw ConfigError(Refusal::missing, "--contact",
+                      fmt::format("is needed, since {} is of one contact (there are: "
+                                  "{})",
+                                  option, fmt::join(names, ", ")));
   }
   return contacts;
 }
@@ -156,7 +159,8 @@ ExitCode contact(const ContactOptions& options) {
   }
   std::fflush(stdout);
   if (num_failed > 0)
-    throw NumericalError(fmt::format("{} of {} contacts did not converge", num_failed, num_rows));
+    throw NumericalError(Refusal::no_convergence,
+                         fmt::format("{} of {} contacts did not converge", num_failed, num_rows));
   if (options.verify) check_expectations(loaded.scene.expect, results);
   return ExitCode::done;
 }

@@ -32,7 +32,8 @@ std::vector<std::string> recorded_points(const Scene& scene) {
 
 MeshPicture picture_of(const LoadedScene& loaded, BodyCache& cache) {
   if (loaded.scene.model.substructures.empty())
-    throw ConfigError("substructures", "is missing: without bodies there is nothing to draw");
+    throw ConfigError(Refusal::missing, "substructures",
+                      "is missing: without bodies there is nothing to draw");
   try {
     const ModelParameters parameters = parameters_with_files(loaded, cache);
     const PlacedModel model = place_model(parameters, cache);

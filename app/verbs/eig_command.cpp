@@ -42,7 +42,7 @@ SceneFamily make_family(const LoadedScene& loaded, const EigOptions& options,
   loaded.require_section("contact", "eig --at");
   const auto path = start_key(loaded.scene.model);
   if (!path) {
-    throw ConfigError("--at",
+    throw ConfigError(Refusal::wrong_value, "--at",
                       "the scene has several contact pairs; set the `start` of one of them "
                       "with --set");
   }
@@ -81,14 +81,18 @@ std::vector<std::string> write_shapes(const EigOptions& options, const LoadedSce
     return body.outlines.empty() && body.elements.empty();
   });
   if (picture.bodies.empty())
-    throw ConfigError("--shapes", "needs a mesh, or surfaces, of some body to draw");
+    throw ConfigError(Refusal::missing, "--shapes",
+                      "needs a mesh, or surfaces, of some body to draw");
   const std::complex<double> largest = largest_displacement(picture.bodies);
   constexpr double rounding = 1e-9;
   if (!(std::abs(largest) > rounding * of_all))
-    throw ConfigError("--mode", "moves none of the bodies that can be drawn");
+    throw ConfigError(Refusal::motion_is_held, "--mode",
+                      "moves none of the bodies that can be drawn");
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw FileError(folder.string(), "", "cannot be made: " + error.message());
+  if (error)
+    throw FileError(Refusal::cannot_write, folder.string(), "",
+                    "cannot be made: " + error.message());
   for (BodyShape& body : picture.bodies) body.displacement /= largest;
   for (std::size_t i = 0; i < state.equilibrium.contacts.size(); ++i) {
     if (!state.equilibrium.contacts[i].is_closed) continue;
@@ -296,7 +300,7 @@ ExitCode report(const EigOptions& options, const LoadedScene& loaded, const Anal
     }
     if (options.shapes) {
       if (!found.shape) {
-        throw ConfigError("--shapes",
+        throw ConfigError(Refusal::cannot_reduce, "--shapes",
                           "needs bodies that are reduced (reduction), or fewer "
                           "unknowns than these");
       }
@@ -315,10 +319,11 @@ ExitCode report(const EigOptions& options, const LoadedScene& loaded, const Anal
 
 ExitCode eig(EigOptions options) {
   if (options.mode && !options.explain && !options.shapes)
-    throw ConfigError("--mode", "names the mode to explain or draw; add --explain or --shapes");
+    throw ConfigError(Refusal::missing, "--mode",
+                      "names the mode to explain or draw; add --explain or --shapes");
   if (options.universal) check_output(*options.universal, options.stability.common.overwrite());
   if (!options.compared && (options.figure || !options.nodes.empty())) {
-    throw ConfigError(options.figure ? "--figure" : "--node",
+    throw ConfigError(Refusal::contradiction, options.figure ? "--figure" : "--node",
                       "is of the comparison with measured shapes; give it with --compare");
   }
   if (options.figure) check_figure(*options.figure, options.stability.common);

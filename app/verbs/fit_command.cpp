@@ -225,7 +225,8 @@ ExitCode fit(const FitOptions& options) {
     print_coefficients("c", published.friction, is.friction, comparison.moved.friction);
     if (options.figures) fmt::print("{}\n", *options.figures);
   }
-  if (!comparison.refit.converged) throw NumericalError("the refit did not converge");
+  if (!comparison.refit.converged)
+    throw NumericalError(Refusal::no_convergence, "the refit did not converge");
   return ExitCode::done;
 }
 

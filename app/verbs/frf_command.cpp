@@ -43,14 +43,16 @@ bool is_universal(const std::string& file) {
 void check_files(const FrfOptions& options) {
   for (const std::string& file : options.files) {
     if (!is_universal(file) && fs::path(file).extension() != ".h5")
-      throw ConfigError("-o", fmt::format("'{}' ends neither in .h5 (HDF5) nor in .uff or .unv "
-                                          "(universal file, dataset 58)",
-                                          file));
+      throw ConfigError(Refusal::wrong_value, "-o",
+                        fmt::format("'{}' ends neither in .h5 (HDF5) nor in .uff or .unv "
+                                    "(universal file, dataset 58)",
+                                    file));
     check_output(file, options.stability.common.overwrite());
   }
   if (options.figure) check_figure(*options.figure, options.stability.common);
   if (!options.nodes.empty() && !options.measured)
-    throw ConfigError("--node", "names nodes of a measurement; give it with --compare");
+    throw ConfigError(Refusal::wrong_value, "--node",
+                      "names nodes of a measurement; give it with --compare");
 }
 
 std::vector<double> frequencies_of(const FrfOptions& options) {
@@ -58,7 +60,9 @@ std::vector<double> frequencies_of(const FrfOptions& options) {
   const bool is_log = options.scale == "log";
   const double from = parse_value(key, options.from, "--from");
   const double to = parse_value(key, options.to, "--to");
-  if (to < from) throw ConfigError("--to", fmt::format("{:g} Hz lies below --from, {:g} Hz", to, from));
+  if (to < from)
+    throw ConfigError(Refusal::wrong_value, "--to",
+                      fmt::format("{:g} Hz lies below --from, {:g} Hz", to, from));
   return spaced_values(key, from, to, from == to ? 1 : options.points,
                        is_log ? Spacing::logarithmic : Spacing::linear);
 }

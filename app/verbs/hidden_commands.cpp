@@ -24,7 +24,7 @@ struct ManualOptions {
 
 std::string text_of_file(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw FileError(path, "", "cannot be opened");
+  if (!stream) throw FileError(Refusal::cannot_read, path, "", "cannot be opened");
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
@@ -32,7 +32,9 @@ ExitCode write_manual(const CLI::App& program, const ManualOptions& options) {
   const std::string files = text_of_file(options.files_page);
   std::error_code error;
   fs::create_directories(options.folder, error);
-  if (error) throw FileError(options.folder, "", "cannot be made: " + error.message());
+  if (error)
+    throw FileError(Refusal::cannot_write, options.folder, "",
+                    "cannot be made: " + error.message());
   const auto write = [&](const std::string& name, const std::string& page) {
     write_text_file((fs::path(options.folder) / name).string(), page);
   };

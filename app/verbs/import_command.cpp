@@ -25,7 +25,7 @@ double length_of(const std::string& unit) {
   try {
     return parse_quantity("1 " + unit, "m");
   } catch (const std::invalid_argument& error) {
-    throw ConfigError("--length-unit", error.what());
+    throw ConfigError(Refusal::wrong_unit, "--length-unit", error.what());
   }
 }
 
@@ -37,7 +37,8 @@ NamedMatrices read_matrices_of(const ImportedFiles& files, MatrixBodyParameters&
         std::tuple("stiffness", &body.stiffness, &files.stiffness)}) {
     if (!from->empty()) *text = {*from};
     if (from->empty() && text != &body.damping)
-      throw ConfigError("files", fmt::format("there is no {0}; give {0}=FILE too", name));
+      throw ConfigError(Refusal::unknown_name, "files",
+                        fmt::format("there is no {0}; give {0}=FILE too", name));
   }
   if (!files.unknowns.empty()) nodes.unknowns = files.unknowns;
   nodes.nodes = files.nodes;
@@ -102,7 +103,8 @@ ExitCode import_files(const ImportOptions& options) {
     mesh = matrices.mesh;
   } else {
     if (files.mesh.empty())
-      throw ConfigError("files", "hold neither a mesh nor matrices; give one of them");
+      throw ConfigError(Refusal::wrong_value, "files",
+                        "hold neither a mesh nor matrices; give one of them");
     ImportedMesh read = read_mesh_file(files.mesh);
     mesh = std::move(read.mesh);
     summary = std::move(read.summary);
@@ -112,11 +114,14 @@ ExitCode import_files(const ImportOptions& options) {
     try {
       facts.mesh = mesh_facts(mesh, options.thickness);
     } catch (const std::invalid_argument& error) {
-      throw ConfigError("files", fmt::format("{}: {}", files.mesh, error.what()));
+      throw ConfigError(Refusal::wrong_value, "files",
+                        fmt::format("{}: {}", files.mesh, error.what()));
     }
   }
   if (!options.figure.empty()) {
-    if (!facts.mesh) throw ConfigError("--output", "there is no mesh to draw; give mesh=FILE too");
+    if (!facts.mesh)
+      throw ConfigError(Refusal::wrong_value, "--output",
+                        "there is no mesh to draw; give mesh=FILE too");
     plot_mesh(mesh, files.mesh, options.figure);
   }
   Json object = import_json(facts);

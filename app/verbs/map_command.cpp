@@ -51,7 +51,8 @@ Axis make_axis(const StabilityScene& scene, const std::vector<std::string>& writ
   const double from = parse_value(axis.key, written[1], option);
   const double to = parse_value(axis.key, written[2], option);
   if (!(from < to)) {
-    throw ConfigError(option, fmt::format("'{}' must be less than '{}'", written[1], written[2]));
+    throw ConfigError(Refusal::wrong_value, option,
+                      fmt::format("'{}' must be less than '{}'", written[1], written[2]));
   }
   const NumericKey number{option, "", Range::between(2, 100000), true};
   axis.values =
@@ -338,7 +339,8 @@ ExitCode map(MapOptions options) {
       make_axis(loaded, options.x, "--x", options.x_scale.value_or(options.scale)),
       make_axis(loaded, options.y, "--y", options.y_scale.value_or(options.scale))};
   if (axes[0].key.path == axes[1].key.path)
-    throw ConfigError("--y", fmt::format("'{}' is the key of --x already", axes[1].key.path));
+    throw ConfigError(Refusal::doubled_name, "--y",
+                      fmt::format("'{}' is the key of --x already", axes[1].key.path));
   check_size(axes);
   FoundMap found{options, loaded, axes, {}, {}};
   found.map = make_map(loaded, axes, stability, found.resolution);

@@ -22,7 +22,9 @@ struct PlotOptions : PictureOptions {
 /// An option that only some kinds of pictures have.
 void refuse_option(const PlotOptions& options, const char* name,
                    const std::optional<std::string>& value) {
-  if (value) throw ConfigError(name, fmt::format("means nothing for --kind {}", options.kind));
+  if (value)
+    throw ConfigError(Refusal::contradiction, name,
+                      fmt::format("means nothing for --kind {}", options.kind));
 }
 
 /// Channels of a picture where the user names none.
@@ -47,18 +49,19 @@ Wanted wanted_series(const PlotOptions& options, const RecordedStretch& run, Ser
   for (const std::string& channel : options.channels)
     wanted.series.push_back(find_series(run, channel, "--channel"));
   if (wanted.series.size() > most_panels) {
-    throw ConfigError("--channel",
+    throw ConfigError(Refusal::wrong_value, "--channel",
                       fmt::format("{} channels, but one picture holds at most {}; draw several",
                                   wanted.series.size(), most_panels));
   }
   if (!wanted.series.empty()) return wanted;
   wanted.series = chosen_series(run.file, use, most_default_channels);
   if (wanted.series.empty()) {
-    throw ConfigError("", run.path + (run.file.series_names().empty()
-                                          ? " holds no series to plot; name channels under `record` "
-                                            "in the scene"
-                                          : " holds no series that has a spectrum; name one with "
-                                            "--channel"));
+    throw ConfigError(Refusal::not_recorded, "",
+                      run.path + (run.file.series_names().empty()
+                                      ? " holds no series to plot; name channels under `record` "
+                                        "in the scene"
+                                      : " holds no series that has a spectrum; name one with "
+                                        "--channel"));
   }
   for (const std::string& series : series_by_use(run.file, use)) {
     if (std::find(wanted.series.begin(), wanted.series.end(), series) == wanted.series.end())
@@ -134,7 +137,7 @@ std::pair<std::string, std::string> default_pair(const RecordedStretch& run,
   }
   if (remedy.empty()) remedy = "record a displacement and the velocity of the same point";
   throw ConfigError(
-      "--channel",
+      Refusal::not_recorded, "--channel",
       fmt::format("{} holds no displacement with its velocity, and {}; {} (record.channels of the "
                   "scene), or name two channels: --channel A --channel B",
                   run.path, no_silent_derivatives, remedy));
@@ -150,7 +153,8 @@ std::pair<std::string, std::string> phase_series(const PlotOptions& options,
   };
   const std::vector<std::string>& channels = options.channels;
   if (channels.size() > 2)
-    throw ConfigError("--channel", "a phase plot shows one channel against one other");
+    throw ConfigError(Refusal::wrong_value, "--channel",
+                      "a phase plot shows one channel against one other");
   if (channels.size() == 2) return {series_of(channels[0]), series_of(channels[1])};
   if (channels.empty()) {
     const auto [across, up] = default_pair(run, names);
@@ -160,7 +164,7 @@ std::pair<std::string, std::string> phase_series(const PlotOptions& options,
   const std::string partner = partner_of(channels[0]);
   if (std::find(names.begin(), names.end(), partner) == names.end()) {
     throw ConfigError(
-        "--channel",
+        Refusal::not_recorded, "--channel",
         partner.empty()
             ? fmt::format("name a second channel against which to show {}", channels[0])
             : fmt::format("{} is not recorded, and {}; add it to record.channels of the scene, or "
@@ -203,7 +207,8 @@ Drawn draw_phase(const PlotOptions& options, const RecordedStretch& run) {
 AmplitudeScale amplitude_scale(const PlotOptions& options) {
   if (!options.scale || *options.scale == "db") return AmplitudeScale::level;
   if (*options.scale == "linear") return AmplitudeScale::linear;
-  throw ConfigError("--scale", fmt::format("'{}' is neither db nor linear", *options.scale));
+  throw ConfigError(Refusal::wrong_value, "--scale",
+                    fmt::format("'{}' is neither db nor linear", *options.scale));
 }
 
 Drawn draw_spectrum(const PlotOptions& options, const RecordedStretch& run) {
@@ -227,7 +232,7 @@ Drawn draw_spectrum(const PlotOptions& options, const RecordedStretch& run) {
                               [&](const SpectrumPanel& other) { return other.units == units; });
     if (panel == panels.end()) {
       if (options.reference && !panels.empty()) {
-        throw ConfigError("--reference",
+        throw ConfigError(Refusal::wrong_unit, "--reference",
                           fmt::format("the channels have several units ({}, {}); choose those of "
                                       "one with --channel",
                                       panels.front().units, units));

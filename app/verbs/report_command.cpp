@@ -32,22 +32,25 @@ double budget_bytes(const std::string& text) {
   const double bytes = factor * option_value("--budget", number, "", Range::positive());
   constexpr double least = 2e5;
   if (bytes < least) {
-    throw ConfigError("--budget", fmt::format("'{}' is less than the page itself takes; give at least "
-                                              "300kB",
-                                              text));
+    throw ConfigError(Refusal::too_large, "--budget",
+                      fmt::format("'{}' is less than the page itself takes; give at least "
+                                  "300kB",
+                                  text));
   }
   return bytes;
 }
 
 void check_files(const ReportOptions& options) {
   if (fs::path(options.output).extension() != ".html" && fs::path(options.output).extension() != ".htm") {
-    throw ConfigError("--output",
-                      fmt::format("'{}' does not end in .html, the form of reports", options.output));
+    throw ConfigError(
+        Refusal::wrong_value, "--output",
+        fmt::format("'{}' does not end in .html, the form of reports", options.output));
   }
   for (const std::string& file : options.files) {
     std::error_code missing;
     if (fs::equivalent(file, options.output, missing))
-      throw ConfigError("--output", fmt::format("'{}' is also a file to report", options.output));
+      throw ConfigError(Refusal::doubled_name, "--output",
+                        fmt::format("'{}' is also a file to report", options.output));
   }
   check_output(options.output, options.common.overwrite());
 }

@@ -196,7 +196,7 @@ Json error_json(const ErrorEstimate& estimate) {
 std::optional<StudiedScene> studied(const LoadedScene& loaded, const RunOptions& options) {
   if (!options.error) return std::nullopt;
   if (loaded.scene.time->is_event_driven()) {
-    throw ConfigError("--error",
+    throw ConfigError(Refusal::contradiction, "--error",
                       "is for time.step; of time.integrator: event_driven the verb "
                       "`precision` says the error");
   }
@@ -214,6 +214,7 @@ class StudiedRun {
   void write_checkpoint() { transient_->write_checkpoint(); }
   double time() const { return transient_->time(); }
   const std::string& failure() const { return transient_->failure(); }
+  Refusal refusal() const { return transient_->refusal(); }
 
   Json finish() {
     if (!*study_ || end_ != MarchEnd::finished) return transient_->finish();
@@ -238,7 +239,8 @@ class StudiedRun {
 std::optional<double> frame_interval(const RunOptions& options, const LoadedScene& loaded) {
   if (!options.vtu) {
     if (options.vtu_interval)
-      throw ConfigError("--vtu-interval", "is the time between files of --vtu FOLDER; give that too");
+      throw ConfigError(Refusal::wrong_value, "--vtu-interval",
+                        "is the time between files of --vtu FOLDER; give that too");
     return std::nullopt;
   }
   constexpr double num_frames = 100.0;
@@ -247,7 +249,7 @@ std::optional<double> frame_interval(const RunOptions& options, const LoadedScen
       option_value("--vtu-interval", *options.vtu_interval, "s", Range::positive());
   constexpr double most = 1e5;
   if (loaded.scene.time->end > most * interval) {
-    throw ConfigError("--vtu-interval",
+    throw ConfigError(Refusal::too_large, "--vtu-interval",
                       fmt::format("makes more than {:g} files; take a longer one", most));
   }
   return interval;
@@ -258,7 +260,7 @@ std::optional<std::vector<TimedWindow>> predicted_windows(const RunOptions& opti
                                                           const LoadedScene& loaded) {
   if (!options.predict) return std::nullopt;
   if (loaded.scene.measure.band.empty()) {
-    throw ConfigError("--predict",
+    throw ConfigError(Refusal::contradiction, "--predict",
                       "sets windows beside bursts, but the scene seeks none; give it measure.band, "
                       "the frequencies in which they are sought");
   }
@@ -297,14 +299,16 @@ ExitCode begin(const RunOptions& options) {
 /// Says what a run gave that is done already.
 ExitCode report_done(const RunOptions& options, const RunFileReader& reader) {
   if (options.error) {
-    throw ConfigError("--error", options.resumed +
-                                     " holds a whole run; an error is estimated with the run, "
-                                     "so begin it anew");
+    throw ConfigError(Refusal::wrong_value, "--error",
+                      options.resumed +
+                          " holds a whole run; an error is estimated with the run, "
+                          "so begin it anew");
   }
   if (options.predict) {
-    throw ConfigError("--predict", fmt::format("{} holds a whole run; `stridor spectrogram {} "
-                                               "--predict` sets windows beside its bursts",
-                                               options.resumed, options.resumed));
+    throw ConfigError(Refusal::contradiction, "--predict",
+                      fmt::format("{} holds a whole run; `stridor spectrogram {} "
+                                  "--predict` sets windows beside its bursts",
+                                  options.resumed, options.resumed));
   }
   const Json results = stored_results(reader);
   if (options.common.json) {
@@ -345,13 +349,15 @@ ExitCode resume(const RunOptions& options) {
 ExitCode run(const RunOptions& options) {
   const bool has_scene = !options.scene.empty();
   if (options.resumed.empty()) {
-    if (!has_scene) throw ConfigError("", "run: give a scene, or --resume FILE.h5");
-    if (options.output.empty()) throw ConfigError("", "run: --output is required");
+    if (!has_scene)
+      throw ConfigError(Refusal::missing, "", "run: give a scene, or --resume FILE.h5");
+    if (options.output.empty())
+      throw ConfigError(Refusal::missing, "", "run: --output is required");
     return begin(options);
   }
   if (has_scene || !options.output.empty() || !options.common.sets.empty() ||
       options.common.force) {
-    throw ConfigError("",
+    throw ConfigError(Refusal::wrong_value, "",
                       "run: --resume goes on with the scene in the file and writes into it; leave "
                       "scene, --output, --set and --force away");
   }

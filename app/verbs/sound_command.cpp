@@ -37,7 +37,8 @@ struct Sound {
 
 std::vector<std::string> played_series(const PictureOptions& options, const RecordedStretch& run) {
   if (options.channels.size() > 2)
-    throw ConfigError("--channel", "a sound has one channel, or a left and a right one");
+    throw ConfigError(Refusal::wrong_value, "--channel",
+                      "a sound has one channel, or a left and a right one");
   std::vector<std::string> played;
   for (const std::string& channel : options.channels)
     played.push_back(find_series(run, channel, "--channel"));
@@ -45,8 +46,9 @@ std::vector<std::string> played_series(const PictureOptions& options, const Reco
   if (const auto series = acceleration_channel(run.file)) return {*series};
   std::vector<std::string> names;
   for (const std::string& series : run.file.series_names()) names.push_back(channel_name(series));
-  throw ConfigError("--channel", fmt::format("{} has no acceleration; name one of its channels: {}",
-                                             run.path, fmt::join(names, ", ")));
+  throw ConfigError(Refusal::not_recorded, "--channel",
+                    fmt::format("{} has no acceleration; name one of its channels: {}", run.path,
+                                fmt::join(names, ", ")));
 }
 
 double mean_square(const std::vector<double>& values) {
@@ -93,7 +95,7 @@ Sound make_sound(const SoundOptions& options, const RecordedStretch& run) {
     const std::string series = spectral_series(run.file, shown);
     const std::string units = run.file.units(series);
     if (!sound.names.empty() && units != sound.units) {
-      throw ConfigError("--channel",
+      throw ConfigError(Refusal::wrong_unit, "--channel",
                         fmt::format("{} is in {}, {} in {}; a left and a right channel are in one "
                                     "unit, as both are played at the same level",
                                     sound.names[0], sound.units, channel_name(series), units));
@@ -113,15 +115,17 @@ Sound make_sound(const SoundOptions& options, const RecordedStretch& run) {
 /// Refuses what would become no sound, or none that a file holds.
 void check_length(const SoundOptions& options, const RecordedStretch& run) {
   if (run.samples.size() < 2) {
-    throw ConfigError("--from", "one sample makes no sound; choose a longer stretch with --from, "
-                                "--to");
+    throw ConfigError(Refusal::not_recorded, "--from",
+                      "one sample makes no sound; choose a longer stretch with --from, "
+                      "--to");
   }
   const double frames = run.duration() * options.slow * options.rate;
   constexpr double most_frames = 5e8;  // of two channels in memory, 8 GB
   if (frames > most_frames) {
-    throw ConfigError("--slow", fmt::format("{:.3g} s of sound do not fit into a file; lower --slow "
-                                            "or choose a shorter stretch with --from, --to",
-                                            run.duration() * options.slow));
+    throw ConfigError(Refusal::too_large, "--slow",
+                      fmt::format("{:.3g} s of sound do not fit into a file; lower --slow "
+                                  "or choose a shorter stretch with --from, --to",
+                                  run.duration() * options.slow));
   }
 }
 
@@ -156,9 +160,10 @@ void print_sound(const SoundOptions& options, const RecordedStretch& run, const 
 
 ExitCode sound(const SoundOptions& options) {
   if (fs::path(options.run.output).extension() != ".wav") {
-    throw ConfigError("--output", fmt::format("'{}' does not end in .wav, the form of sound files "
-                                              "that is written",
-                                              options.run.output));
+    throw ConfigError(Refusal::wrong_value, "--output",
+                      fmt::format("'{}' does not end in .wav, the form of sound files "
+                                  "that is written",
+                                  options.run.output));
   }
   check_output(options.run.output, options.run.common.overwrite());
   const RecordedStretch run = open_stretch(options.run);

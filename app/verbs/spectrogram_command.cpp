@@ -25,24 +25,28 @@ void check_data_file(const PictureOptions& options) {
   if (!options.data) return;
   std::error_code missing;
   if (fs::equivalent(*options.data, options.file, missing))
-    throw ConfigError("--data", fmt::format("'{}' is the run file itself", *options.data));
+    throw ConfigError(Refusal::doubled_name, "--data",
+                      fmt::format("'{}' is the run file itself", *options.data));
   if (fs::path(*options.data) == fs::path(options.output))
-    throw ConfigError("--data", fmt::format("'{}' is also the figure", *options.data));
+    throw ConfigError(Refusal::doubled_name, "--data",
+                      fmt::format("'{}' is also the figure", *options.data));
   check_output(*options.data, options.common.overwrite());
 }
 
 std::string shown_series(const PictureOptions& options, const RecordedStretch& run,
                          const std::optional<SpectrogramSection>& section) {
   if (options.channels.size() > 1)
-    throw ConfigError("--channel", "a spectrogram shows one channel; give the option once");
+    throw ConfigError(Refusal::wrong_value, "--channel",
+                      "a spectrogram shows one channel; give the option once");
   if (!options.channels.empty()) return find_series(run, options.channels.front(), "--channel");
   if (section && section->channel)
     return find_series(run, *section->channel, "spectrogram.channel");
   if (const auto series = acceleration_channel(run.file)) return *series;
   std::vector<std::string> names;
   for (const std::string& series : run.file.series_names()) names.push_back(channel_name(series));
-  throw ConfigError("--channel", fmt::format("{} has no acceleration; name one of its channels: {}",
-                                             run.path, fmt::join(names, ", ")));
+  throw ConfigError(Refusal::not_recorded, "--channel",
+                    fmt::format("{} has no acceleration; name one of its channels: {}", run.path,
+                                fmt::join(names, ", ")));
 }
 
 void check_size(const SpectrogramParameters& parameters, const RecordedStretch& run) {
@@ -50,7 +54,7 @@ void check_size(const SpectrogramParameters& parameters, const RecordedStretch& 
   const double pieces = static_cast<double>(run.samples.size()) /
                         std::max(1.0, std::round(length * (1.0 - parameters.overlap)));
   if (pieces * (0.5 * length + 1.0) <= most_amplitudes) return;
-  throw ConfigError("--overlap",
+  throw ConfigError(Refusal::too_large, "--overlap",
                     fmt::format("{} pieces of {} lines do not fit into memory; lower the overlap, "
                                 "or choose a shorter stretch with --from, --to",
                                 std::llround(pieces), parameters.length / 2 + 1));
@@ -78,9 +82,10 @@ void check_band(const PictureOptions& options, const RecordedStretch& run,
                 const std::string& series) {
   const auto searched = acceleration_channel(run.file);
   if (!options.band || !searched || searched == series) return;
-  throw ConfigError("--band", fmt::format("seeks bursts in {}, but the spectrogram is that of {}; "
-                                          "leave one of --band and --channel away",
-                                          acceleration_name(run.file), channel_name(series)));
+  throw ConfigError(Refusal::contradiction, "--band",
+                    fmt::format("seeks bursts in {}, but the spectrogram is that of {}; "
+                                "leave one of --band and --channel away",
+                                acceleration_name(run.file), channel_name(series)));
 }
 
 Attributes data_attributes(const Json& settings, const RecordedStretch& run) {

@@ -11,12 +11,13 @@ namespace {
 ExitCode sweep(const SweepOptions& options) {
   if (options.output) check_output(*options.output, options.common.overwrite());
   if (options.figure) check_figure(*options.figure, options.common);
-  if (options.range.parameter.empty()) throw ConfigError("--parameter", "name a key of the scene");
+  if (options.range.parameter.empty())
+    throw ConfigError(Refusal::missing, "--parameter", "name a key of the scene");
   const LoadedScene loaded = load_scene(options.scene, options.common.sets);
   loaded.require_section("time", "sweep");
   if (loaded.scene.time->is_event_driven()) return sweep_cycles(options, loaded);
   if (options.is_up_and_down) {
-    throw ConfigError("--up-down",
+    throw ConfigError(Refusal::contradiction, "--up-down",
                       "is for limit cycles (time.integrator: event_driven): every transient starts "
                       "as its scene says");
   }

@@ -13,13 +13,10 @@ void check_coefficient(const char* key, const std::optional<double>& coefficient
                        std::vector<Problem>& problems) {
   constexpr double most = 100.0;
   if (!coefficient || *coefficient <= most) return;
-  problems.push_back({key,
+  problems.push_back({Refusal::wrong_value, key,
                       fmt::format("must be at most {:g}, got {:g}: solids in contact have "
                                   "coefficients of friction below about 10",
-                                  most, *coefficient),
-                      {},
-                      0,
-                      0});
+                                  most, *coefficient)});
 }
 
 namespace {
@@ -28,12 +25,9 @@ void check_keys_of_friction(const FrictionParameters& friction, std::vector<Prob
   const FrictionLawType& law = *friction.law;
   const auto demand = [&](const std::string& key, bool is_wanted) {
     if (friction.numbers.contains(key) == is_wanted) return;
-    problems.push_back({key,
+    problems.push_back({is_wanted ? Refusal::missing : Refusal::contradiction, key,
                         fmt::format("{} by the {} friction law",
-                                    is_wanted ? "missing: needed" : "not used", law.name),
-                        {},
-                        0,
-                        0});
+                                    is_wanted ? "missing: needed" : "not used", law.name)});
   };
   static const std::vector<FrictionKey> all = keys_of_all(friction_law_types());
   for (const FrictionKey& key : all) {
@@ -51,13 +45,10 @@ void check_keys_of_friction(const FrictionParameters& friction, std::vector<Prob
     for (const FrictionLawType& type : friction_law_types()) {
       if (!type.has_jump && !type.needs_area) others += (others.empty() ? "" : " or ") + type.name;
     }
-    problems.push_back({"regularisation",
+    problems.push_back({Refusal::contradiction, "regularisation",
                         "goes with a law that is continuous in sliding: a regularised contact "
                         "never rests, so that `static` would never act; take " +
-                            others,
-                        {},
-                        0,
-                        0});
+                            others});
   }
 }
 

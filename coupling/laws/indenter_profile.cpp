@@ -49,11 +49,9 @@ const Schema& ProfileParameters::schema() {
             const bool has_table = !profile.radii.empty() || !profile.heights.empty();
             if (profile.shape != ProfileShape::table) {
               if (has_table) {
-                problems.push_back({profile.radii.empty() ? "heights" : "radii",
-                                    "needs `shape: table`",
-                                    {},
-                                    0,
-                                    0});
+                problems.push_back({Refusal::wrong_value,
+                                    profile.radii.empty() ? "heights" : "radii",
+                                    "needs `shape: table`"});
               }
               return;
             }
@@ -63,18 +61,15 @@ const Schema& ProfileParameters::schema() {
                                      [](double a, double b) { return !(b > a); }) == column.end();
               if (column.size() < 3 || column.front() != 0.0 || !ascends) {
                 problems.push_back(
-                    {key, "must be three numbers or more, ascending from 0", {}, 0, 0});
+                    {Refusal::wrong_size, key, "must be three numbers or more, ascending from 0"});
               }
             };
             check_column("radii", profile.radii);
             check_column("heights", profile.heights);
             if (profile.radii.size() != profile.heights.size()) {
-              problems.push_back({"heights",
+              problems.push_back({Refusal::wrong_size, "heights",
                                   fmt::format("has {} entries, `radii` {}", profile.heights.size(),
-                                              profile.radii.size()),
-                                  {},
-                                  0,
-                                  0});
+                                              profile.radii.size())});
             }
           });
   return keys;

@@ -12,8 +12,8 @@ namespace {
 
 void check_keys_of_law(const NormalParameters& normal, std::vector<Problem>& problems) {
   const NormalLawType& law = *normal.law;
-  const auto refuse = [&](const std::string& key, const char* what) {
-    problems.push_back({key, fmt::format("{} by the normal law {}", what, law.name), {}, 0, 0});
+  const auto refuse = [&](Refusal refusal, const std::string& key, const char* what) {
+    problems.push_back({refusal, key, fmt::format("{} by the normal law {}", what, law.name)});
   };
   static const std::vector<NormalKey> all = keys_of_all(normal_law_types());
   for (const NormalKey& key : all) {
@@ -21,9 +21,9 @@ void check_keys_of_law(const NormalParameters& normal, std::vector<Problem>& pro
                                   [&](const NormalKey& other) { return other.name == key.name; });
     const bool is_given = normal.numbers.contains(key.name);
     if (own == law.keys.end()) {
-      if (is_given) refuse(key.name, "not used");
+      if (is_given) refuse(Refusal::contradiction, key.name, "not used");
     } else if (own->is_required && !is_given) {
-      refuse(key.name, "missing: needed");
+      refuse(Refusal::missing, key.name, "missing: needed");
     }
   }
   const std::pair<const char*, bool> others[] = {
@@ -32,7 +32,7 @@ void check_keys_of_law(const NormalParameters& normal, std::vector<Problem>& pro
       {"form", normal.form != NormalParameters::published_fit},
       {"solver", normal.solver.has_value()}};
   for (const auto& [key, is_given] : others)
-    if (is_given && !normal.takes(key)) refuse(key, "not used");
+    if (is_given && !normal.takes(key)) refuse(Refusal::contradiction, key, "not used");
   if (law.check != nullptr) law.check(normal, problems);
 }
 

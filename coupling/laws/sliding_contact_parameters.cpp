@@ -28,7 +28,8 @@ const Schema& SlidingContactParameters::schema() {
                     .range = Range::between(1, 1e6)})
           .check([](const SlidingContactParameters& solver, std::vector<Problem>& problems) {
             if (solver.grid % 2 != 0)
-              problems.push_back({"grid", fmt::format("{} is not even", solver.grid), {}, 0, 0});
+              problems.push_back(
+                  {Refusal::wrong_value, "grid", fmt::format("{} is not even", solver.grid)});
           });
   return keys;
 }

@@ -22,7 +22,8 @@ inline FrictionLawType static_dynamic_friction_type() {
               [](const FrictionNumbers& numbers, std::vector<Problem>& problems) {
                 if (!numbers.contains("static") || !numbers.contains("dynamic")) return;
                 if (numbers.at("static") < numbers.at("dynamic"))
-                  problems.push_back({"static", "must not be below `dynamic`", {}, 0, 0});
+                  problems.push_back(
+                      {Refusal::wrong_value, "static", "must not be below `dynamic`"});
               },
           .has_jump = true};
 }

@@ -11,27 +11,29 @@
 namespace stridor {
 namespace {
 
-void add(std::vector<Problem>& problems, const char* key, std::string message) {
-  problems.push_back({key, std::move(message), {}, 0, 0});
+void add(std::vector<Problem>& problems, Refusal refusal, const char* key, std::string message) {
+  problems.push_back({refusal, key, std::move(message)});
 }
 
 /// A viscoelastic law needs either of two keys, or sets of keys.
 void check_either(const NormalParameters& normal, std::vector<Problem>& problems) {
   const bool has_radius = normal.numbers.contains("radius");
   if (normal.profile && has_radius)
-    add(problems, "radius", "cannot stand beside `profile`, which has a radius");
+    add(problems, Refusal::contradiction, "radius",
+        "cannot stand beside `profile`, which has a radius");
   if (!normal.profile && !has_radius) {
-    add(problems, "radius",
+    add(problems, Refusal::missing, "radius",
         fmt::format("missing: needed by the normal law {}, or `profile`", normal.law->name));
   }
   if (normal.material) {
     if (normal.numbers.contains("modulus") || normal.numbers.contains("creep_time"))
-      add(problems, "material", "cannot stand beside `modulus` and `creep_time`, which it says");
+      add(problems, Refusal::contradiction, "material",
+          "cannot stand beside `modulus` and `creep_time`, which it says");
     return;
   }
   for (const char* const key : {"modulus", "creep_time"}) {
     if (normal.numbers.contains(key)) continue;
-    add(problems, key,
+    add(problems, Refusal::missing, key,
         fmt::format("missing: needed by the normal law {}, or `material`", normal.law->name));
   }
 }
@@ -39,19 +41,19 @@ void check_either(const NormalParameters& normal, std::vector<Problem>& problems
 /// The laws that the program has built in are of one indenter and one kind of material.
 void check_shipped_form(const NormalParameters& normal, std::vector<Problem>& problems) {
   if (normal.profile && normal.profile->shape != ProfileShape::paraboloid) {
-    add(problems, "profile.shape",
+    add(problems, Refusal::wrong_value, "profile.shape",
         fmt::format("must be paraboloid with the form {}, which is the law of one; take solve",
                     normal.form));
   }
   if (!normal.material) return;
   if (normal.material->creep_times.size() != 1) {
-    add(problems, "material.creep_times",
+    add(problems, Refusal::wrong_value, "material.creep_times",
         fmt::format("must be one with the form {}, which is the law of such a material; take solve",
                     normal.form));
   }
   constexpr double ratio = 0.1;
   if (std::abs(normal.material->modulus_ratio() - ratio) > 1e-6 * ratio) {
-    add(problems, "material.glassy_modulus",
+    add(problems, Refusal::wrong_value, "material.glassy_modulus",
         fmt::format("must be 10 times rubbery_modulus with the form {}, which is the law of such a "
                     "material; take solve",
                     normal.form));
@@ -63,18 +65,19 @@ void check_viscoelastic(const NormalParameters& normal, std::vector<Problem>& pr
   if (normal.is_solved()) {
     if (!normal.material && normal.numbers.contains("modulus") &&
         normal.numbers.contains("creep_time")) {
-      add(problems, "material",
+      add(problems, Refusal::missing, "material",
           "missing: the form solve needs the whole material, in the place of `modulus` and "
           "`creep_time`");
     }
     return;
   }
   if (normal.solver)
-    add(problems, "solver", fmt::format("not used by the form {}, but by solve", normal.form));
+    add(problems, Refusal::contradiction, "solver",
+        fmt::format("not used by the form {}, but by solve", normal.form));
   if (!normal.has_table()) {
     check_shipped_form(normal, problems);
   } else if (!normal.form.ends_with(".h5")) {
-    add(problems, "form",
+    add(problems, Refusal::wrong_value, "form",
         fmt::format("'{}' is neither published_fit nor boundary_element nor solve nor a file of "
                     "`stridor contact --table` (*.h5)",
                     normal.form));

@@ -12,24 +12,24 @@ namespace {
 
 /// Which laws go together.
 void check_laws(const ContactParameters& contact, std::vector<Problem>& problems) {
-  const auto refuse = [&](const char* key, std::string text) {
-    problems.push_back({key, std::move(text), {}, 0, 0});
+  const auto refuse = [&](Refusal refusal, const char* key, std::string text) {
+    problems.push_back({refusal, key, std::move(text)});
   };
   const NormalLawType& law = *contact.normal.law;
   const auto with_area = [] {
     return normal_laws_with([](const NormalLawType& one) { return one.has_area(); });
   };
   if (!contact.friction && !law.has_area())
-    refuse("friction", "is missing: this normal law brings none of its own");
+    refuse(Refusal::missing, "friction", "is missing: this normal law brings none of its own");
   if (contact.friction && contact.friction->law->needs_area && !law.has_area()) {
-    refuse("normal.law",
+    refuse(Refusal::wrong_value, "normal.law",
            fmt::format("has no area of contact, with which the friction law {} is in proportion; "
                        "take {{law: {}, ...}}, or a friction coefficient",
                        contact.friction->law->name, with_area()));
   }
   if (contact.friction && contact.friction->viscoelastic == FrictionLoad::applied &&
       !law.has_friction) {
-    refuse("normal.law",
+    refuse(Refusal::contradiction, "normal.law",
            fmt::format(
                "has no friction of its own, to which friction.viscoelastic belongs; take {{law: "
                "{}, ...}}, or leave that out",
@@ -37,25 +37,26 @@ void check_laws(const ContactParameters& contact, std::vector<Problem>& problems
   }
   if (law.has_area() && contact.master != half_space_master) {
     refuse(
-        "master",
+        Refusal::contradiction, "master",
         fmt::format("must be `half_space` with the {} normal law, which is that of one", law.name));
   }
   if (!law.has_area() && contact.master == half_space_master) {
-    refuse("master", fmt::format("`half_space` takes the normal law {}, which `normal` must be",
-                                 with_area()));
+    refuse(
+        Refusal::wrong_value, "master",
+        fmt::format("`half_space` takes the normal law {}, which `normal` must be", with_area()));
   }
   if (contact.slave.empty() && !law.has_area()) {
-    refuse("slave",
+    refuse(Refusal::missing, "slave",
            fmt::format("is missing: only a {} normal law, which `stridor contact` evaluates, goes "
                        "without; name at least one point",
                        with_area()));
   }
   if (contact.plane && contact.master != rigid_master)
-    refuse("plane", "is of the master `rigid`");
+    refuse(Refusal::contradiction, "plane", "is of the master `rigid`");
   if (!contact.assumption && !law.has_area())
-    refuse("assumption", "is missing; take subs_a, subs_b, subs_c or film");
+    refuse(Refusal::missing, "assumption", "is missing; take subs_a, subs_b, subs_c or film");
   if (law.has_area() && contact.assumption_or_default() != ContactAssumption::film) {
-    refuse("assumption",
+    refuse(Refusal::contradiction, "assumption",
            fmt::format("must be `film` with the {} normal law: it sticks, slips and lifts off",
                        law.name));
   }
@@ -87,14 +88,14 @@ const Schema& PlaneParameters::schema() {
           .check([](const P& plane, std::vector<Problem>& problems) {
             const auto check = [&](const std::vector<double>& given, const char* key) {
               if (given.empty() || given.size() == 3) return;
-              problems.push_back({key, "must be three numbers", {}, 0, 0});
+              problems.push_back({Refusal::wrong_size, key, "must be three numbers"});
             };
             check(plane.normal, "normal");
             check(plane.point, "point");
             const bool is_zero = std::all_of(plane.normal.begin(), plane.normal.end(),
                                              [](double component) { return component == 0.0; });
             if (!plane.normal.empty() && is_zero)
-              problems.push_back({"normal", "must not be zero", {}, 0, 0});
+              problems.push_back({Refusal::wrong_value, "normal", "must not be zero"});
           });
   return keys;
 }
@@ -125,16 +126,14 @@ const Schema& StartParameters::schema() {
                       .optional = true})
           .check([](const P& start, std::vector<Problem>& problems) {
             if (!start.at.empty() && start.at.size() != 3)
-              problems.push_back({"at", "must be three numbers", {}, 0, 0});
+              problems.push_back({Refusal::wrong_size, "at", "must be three numbers"});
             if (start.along && start.radius) {
-              problems.push_back({"",
+              problems.push_back({Refusal::contradiction, "",
                                   "is either a length along the master or, on the face of a plate, "
-                                  "{radius, angle}",
-                                  {},
-                                  0,
-                                  0});
+                                  "{radius, angle}"});
             } else if (start.along && start.angle) {
-              problems.push_back({"angle", "goes with radius, on the face of a plate", {}, 0, 0});
+              problems.push_back(
+                  {Refusal::contradiction, "angle", "goes with radius, on the face of a plate"});
             }
           });
   return keys;
@@ -260,11 +259,8 @@ const Schema& DriveParameters::schema() {
                       .optional = true})
           .check([](const DriveParameters& drive, std::vector<Problem>& problems) {
             if (!drive.displacement.is_zero() && drive.displaces.empty())
-              problems.push_back({"displaces",
-                                  "is missing: name the springs that `displacement` moves",
-                                  {},
-                                  0,
-                                  0});
+              problems.push_back({Refusal::missing, "displaces",
+                                  "is missing: name the springs that `displacement` moves"});
           });
   return keys;
 }

@@ -98,7 +98,8 @@ void check_figure_name(const fs::path& figure) {
   const std::string ending = figure.extension().string();
   if (ending == ".png" || ending == ".svg" || ending == ".pdf") return;
   throw ConfigError(
-      "", fmt::format("figure '{}': the name must end with .png, .svg or .pdf", figure.string()));
+      Refusal::wrong_value, "",
+      fmt::format("figure '{}': the name must end with .png, .svg or .pdf", figure.string()));
 }
 
 bool has_fonts(const std::vector<fs::path>& folders) {
@@ -122,20 +123,22 @@ void check_place(const fs::path& figure) {
   const std::string ending = figure.extension().string();
   // Without fonts gnuplot draws figures without any text and reports success.
   if (ending != ".svg" && std::getenv("FONTCONFIG_FILE") == nullptr && !has_fonts(font_folders())) {
-    throw FileError(figure.string(), "",
+    throw FileError(Refusal::helper_program, figure.string(), "",
                     fmt::format("there are no fonts to draw it with; {}", packages));
   }
   std::error_code error;
   const fs::path folder = figure.has_parent_path() ? figure.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, error)) {
-    throw FileError(figure.string(), "", fmt::format("there is no folder '{}'", folder.string()));
+    throw FileError(Refusal::cannot_write, figure.string(), "",
+                    fmt::format("there is no folder '{}'", folder.string()));
   }
   if (fs::exists(figure, error) && !fs::is_regular_file(figure, error)) {
-    throw FileError(figure.string(), "", "is not a regular file and is not replaced");
+    throw FileError(Refusal::cannot_write, figure.string(), "",
+                    "is not a regular file and is not replaced");
   }
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     throw FileError(
-        figure.string(), "",
+        Refusal::cannot_write, figure.string(), "",
         fmt::format("cannot write in the folder '{}': {}", folder.string(), std::strerror(errno)));
   }
 }
@@ -144,19 +147,20 @@ void check_place(const fs::path& figure) {
 void check_outcome(const HelperOutcome& outcome, const fs::path& messages_path,
                    const std::string& figure) {
   if (outcome.spawn_error == ENOENT)
-    throw FileError(figure, "", fmt::format("gnuplot is not installed; {}", packages));
+    throw FileError(Refusal::helper_program, figure, "",
+                    fmt::format("gnuplot is not installed; {}", packages));
   if (outcome.spawn_error != 0) {
-    throw FileError(figure, "",
+    throw FileError(Refusal::helper_program, figure, "",
                     fmt::format("cannot start gnuplot: {}", std::strerror(outcome.spawn_error)));
   }
   const std::string messages = read_messages(messages_path);
   if (WIFSIGNALED(outcome.status)) {
-    throw FileError(figure, "",
+    throw FileError(Refusal::helper_program, figure, "",
                     fmt::format("gnuplot was ended by signal {}", WTERMSIG(outcome.status)));
   }
   if (WEXITSTATUS(outcome.status) != 0 || !messages.empty()) {
     throw FileError(
-        figure, "",
+        Refusal::helper_program, figure, "",
         fmt::format("gnuplot failed: {}", messages.empty() ? "no reason given" : messages));
   }
 }
@@ -182,7 +186,8 @@ void draw_figure(const fs::path& figure, const std::string& script, FigureSize s
          << script << "\nset output\n";
     file.close();
     if (!file)
-      throw FileError(figure.string(), "", "cannot write a temporary script; is the disk full?");
+      throw FileError(Refusal::cannot_write, figure.string(), "",
+                      "cannot write a temporary script; is the disk full?");
   }
   const fs::path messages_path = scratch / "messages";
   // -d: no start-up files.
@@ -190,7 +195,8 @@ void draw_figure(const fs::path& figure, const std::string& script, FigureSize s
                 messages_path, figure.string());
   std::error_code error;
   const auto drawn = fs::file_size(part.path(), error);
-  if (error || drawn == 0) throw FileError(figure.string(), "", "gnuplot wrote no picture");
+  if (error || drawn == 0)
+    throw FileError(Refusal::helper_program, figure.string(), "", "gnuplot wrote no picture");
   part.replace();
 }
 

@@ -46,8 +46,12 @@ std::string crash_message(const std::string& path) {
 
 std::string crash_json(const std::string& path) {
   using Json = nlohmann::json;
-  const Json error = {
-      {"file", ""}, {"line", 0}, {"column", 0}, {"key", ""}, {"message", crash_message(path)}};
+  const Json error = {{"code", code_of(Refusal::file_damaged)},
+                      {"file", ""},
+                      {"line", 0},
+                      {"column", 0},
+                      {"key", ""},
+                      {"message", crash_message(path)}};
   const Json object = {{"errors", Json::array({error})}};
   // Names of files need not be UTF-8.
   return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -60,7 +64,8 @@ void DamageGuard::tell_as_json() {
 }
 
 DamageGuard::DamageGuard(const std::string& path)
-    : last_words_(fmt::format("stridor: I/O error\n{}\n", crash_message(path))),
+    : last_words_(fmt::format("stridor: I/O error\n{}\n",
+                              with_code(crash_message(path), Refusal::file_damaged))),
       json_(crash_json(path)),
       outer_(innermost) {
   innermost = this;

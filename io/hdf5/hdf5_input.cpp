@@ -52,12 +52,13 @@ Handle open_hdf5_file(const Checker& at) {
   const std::string& path = at.path();
   struct stat status = {};
   if (stat(path.c_str(), &status) != 0 || ::access(path.c_str(), R_OK) != 0) {
-    throw FileError(path, "", "cannot be opened: " + errno_text(errno));
+    throw FileError(Refusal::cannot_read, path, "", "cannot be opened: " + errno_text(errno));
   }
   const std::string irregular = irregular_kind(path);
-  if (!irregular.empty()) throw FileError(path, "", "is " + irregular + ", not an HDF5 file");
+  if (!irregular.empty())
+    throw FileError(Refusal::file_damaged, path, "", "is " + irregular + ", not an HDF5 file");
   const htri_t is_hdf5 = H5Fis_hdf5(path.c_str());
-  if (is_hdf5 == 0) throw FileError(path, "", "is not an HDF5 file");
+  if (is_hdf5 == 0) throw FileError(Refusal::other_kind_of_file, path, "", "is not an HDF5 file");
   const Handle access = file_access(at);
   return at.own(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose, "",
                 "is damaged or truncated");
@@ -69,7 +70,7 @@ void check_plausible(const Checker& at, hid_t file, std::uint64_t length,
   hsize_t size = 0;
   at.check(H5Fget_filesize(file, &size), dataset, "cannot be read");
   if (length / most_per_byte > size) {
-    throw FileError(at.path(), dataset,
+    throw FileError(Refusal::file_damaged, at.path(), dataset,
                     fmt::format("is damaged: {} entries in a file of {} bytes", length, size));
   }
 }
@@ -92,13 +93,13 @@ std::string read_text(const Checker& at, hid_t file, hid_t type, const std::stri
 
 std::string read_text_dataset(const Checker& at, hid_t file, const std::string& path) {
   if (!is_object_path(path) || H5LTpath_valid(file, path.c_str(), true) <= 0)
-    throw FileError(at.path(), path, "is missing");
+    throw FileError(Refusal::file_damaged, at.path(), path, "is missing");
   const Handle dataset =
       at.own(H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose, path, "cannot be opened");
   const Handle type = at.own(H5Dget_type(dataset.id()), H5Tclose, path, "cannot be read");
   const Handle space = at.own(H5Dget_space(dataset.id()), H5Sclose, path, "cannot be read");
   if (H5Tget_class(type.id()) != H5T_STRING || H5Sget_simple_extent_npoints(space.id()) != 1)
-    throw FileError(at.path(), path, "is not text");
+    throw FileError(Refusal::file_damaged, at.path(), path, "is not text");
   return read_text(at, file, type.id(), path, [&](hid_t memory, void* target) {
     return H5Dread(dataset.id(), memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, target);
   });
@@ -123,18 +124,19 @@ std::vector<std::string> dataset_paths(const Checker& at, hid_t file) {
 
 Hdf5Array open_array(const Checker& at, hid_t file, const std::string& path, std::size_t rank) {
   if (!is_object_path(path) || H5LTpath_valid(file, path.c_str(), true) <= 0)
-    throw FileError(at.path(), path, "is missing");
+    throw FileError(Refusal::file_damaged, at.path(), path, "is missing");
   Hdf5Array array;
   array.dataset =
       at.own(H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose, path, "is not a dataset");
   const Handle type = at.own(H5Dget_type(array.dataset.id()), H5Tclose, path, "cannot be read");
   const H5T_class_t kind = H5Tget_class(type.id());
   if (kind != H5T_FLOAT && kind != H5T_INTEGER)
-    throw FileError(at.path(), path, "does not hold real numbers");
+    throw FileError(Refusal::file_damaged, at.path(), path, "does not hold real numbers");
   const Handle space = at.own(H5Dget_space(array.dataset.id()), H5Sclose, path, "cannot be read");
   const int found = H5Sget_simple_extent_ndims(space.id());
   if (found < 0 || static_cast<std::size_t>(found) != rank)
-    throw FileError(at.path(), path, fmt::format("has {} dimensions, expected {}", found, rank));
+    throw FileError(Refusal::file_damaged, at.path(), path,
+                    fmt::format("has {} dimensions, expected {}", found, rank));
   array.shape.resize(rank);
   at.check(H5Sget_simple_extent_dims(space.id(), array.shape.data(), nullptr), path,
            "cannot be read");

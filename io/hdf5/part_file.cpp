@@ -128,7 +128,8 @@ PartFile::~PartFile() {
 void PartFile::sync() const {
   const int error = sync_to_disk(path_, 0);
   if (error != 0)
-    throw FileError(final_path_, "", fmt::format("cannot be written: {}", std::strerror(error)));
+    throw FileError(Refusal::cannot_write, final_path_, "",
+                    fmt::format("cannot be written: {}", std::strerror(error)));
 }
 
 // The file has its name already, so that an error here is not one of the file.
@@ -150,7 +151,8 @@ void PartFile::move_to_final(Overwrite overwrite) {
       return;
     }
     if (errno == EEXIST && overwrite == Overwrite::yes) throw_being_written(final_path_);
-    if (errno == EEXIST) throw FileError(final_path_, "", "exists; use --force to overwrite it");
+    if (errno == EEXIST)
+      throw FileError(Refusal::file_exists, final_path_, "", "exists; use --force to overwrite it");
   }
   replace();
 }
@@ -158,7 +160,7 @@ void PartFile::move_to_final(Overwrite overwrite) {
 void PartFile::replace() {
   sync();
   if (std::rename(path_.c_str(), final_path_.c_str()) != 0) {
-    throw FileError(final_path_, "",
+    throw FileError(Refusal::cannot_write, final_path_, "",
                     fmt::format("cannot be given its name: {}", std::strerror(errno)));
   }
   sync_name();
@@ -168,7 +170,8 @@ void write_text_file(const std::string& path, const std::string& text) {
   PartFile file(path);
   std::FILE* stream = std::fopen(file.path().c_str(), "we");
   if (stream == nullptr) {
-    throw FileError(path, "", fmt::format("cannot be written: {}", std::strerror(errno)));
+    throw FileError(Refusal::cannot_write, path, "",
+                    fmt::format("cannot be written: {}", std::strerror(errno)));
   }
   file.made();
   lock_for_writing(fileno(stream));
@@ -177,7 +180,7 @@ void write_text_file(const std::string& path, const std::string& text) {
   const int error = errno;
   const bool is_closed = std::fclose(stream) == 0;
   if (!is_taken || !is_closed) {
-    throw FileError(path, "",
+    throw FileError(Refusal::cannot_write, path, "",
                     fmt::format("cannot be written: {}", std::strerror(is_taken ? errno : error)));
   }
   file.replace();

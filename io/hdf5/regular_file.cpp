@@ -17,7 +17,9 @@ std::string irregular_kind(const std::string& path) {
 
 void refuse_irregular_file(const std::string& path) {
   const std::string kind = irregular_kind(path);
-  if (!kind.empty()) throw FileError(path, "", fmt::format("is {}, expected a regular file", kind));
+  if (!kind.empty())
+    throw FileError(Refusal::other_kind_of_file, path, "",
+                    fmt::format("is {}, expected a regular file", kind));
 }
 
 }  // namespace stridor

@@ -153,7 +153,8 @@ StagedFile::~StagedFile() {
 void StagedFile::create(const std::string& path) {
   path_ = path;
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) throw FileError(path, "", "cannot be made: " + errno_text(errno));
+  if (descriptor_ < 0)
+    throw FileError(Refusal::cannot_write, path, "", "cannot be made: " + errno_text(errno));
   lock_for_writing(descriptor_);
 }
 
@@ -161,7 +162,8 @@ void StagedFile::open(const std::string& path) {
   path_ = path;
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor_ < 0)
-    throw FileError(path, "", "cannot be opened for writing: " + errno_text(errno));
+    throw FileError(Refusal::cannot_write, path, "",
+                    "cannot be opened for writing: " + errno_text(errno));
   // The process that wrote it may have replaced it by a copy meanwhile (commit_by_copy).
   if (!lock_for_writing(descriptor_) || !is_named(descriptor_, path)) throw_being_written(path);
   written_end_ = size_of(descriptor_);

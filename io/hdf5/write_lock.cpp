@@ -23,7 +23,7 @@ bool is_named(int descriptor, const std::string& path) {
 }
 
 void throw_being_written(const std::string& path) {
-  throw FileError(path, "",
+  throw FileError(Refusal::file_is_written, path, "",
                   "another process is writing it, a run that goes on; wait for its end or stop "
                   "it (Ctrl-C leaves a checkpoint)");
 }

@@ -77,10 +77,11 @@ std::string complaint_of(const fs::path& path, bool errors_alone) {
 
 [[noreturn]] void refuse_start(const std::string& geometry, int reason) {
   if (reason == ENOENT)
-    throw FileError(geometry, "",
+    throw FileError(Refusal::helper_program, geometry, "",
                     "is a geometry, and gmsh, which divides it into elements, is not "
                     "installed; install the package gmsh, or name a mesh");
-  throw FileError(geometry, "", fmt::format("cannot start gmsh: {}", std::strerror(reason)));
+  throw FileError(Refusal::helper_program, geometry, "",
+                  fmt::format("cannot start gmsh: {}", std::strerror(reason)));
 }
 
 std::string version_of_gmsh(const std::string& geometry, const fs::path& file) {
@@ -97,7 +98,8 @@ std::string version_of_gmsh(const std::string& geometry, const fs::path& file) {
 std::string mesh_with_gmsh(const std::string& geometry, const MeshingOptions& options) {
   const fs::path path = fs::absolute(geometry).lexically_normal();
   if (path.string().find_first_of("\"\n\\") != std::string::npos)
-    throw FileError(geometry, "", "has a name that gmsh cannot be told; rename it");
+    throw FileError(Refusal::helper_program, geometry, "",
+                    "has a name that gmsh cannot be told; rename it");
   std::set<fs::path> seen;
   const std::uint64_t sum =
       sum_of_geometry(path, fnv1a(fmt::format("{:.17g} {}", options.size, options.order)), seen);
@@ -113,7 +115,9 @@ std::string mesh_with_gmsh(const std::string& geometry, const MeshingOptions& op
     std::ofstream file(scratch / "mesh.geo", std::ios::binary);
     file << script_of(path.string(), options);
     file.close();
-    if (!file) throw FileError(geometry, "", "cannot write a temporary script; is the disk full?");
+    if (!file)
+      throw FileError(Refusal::cannot_write, geometry, "",
+                      "cannot write a temporary script; is the disk full?");
   }
   PartFile part(mesh.string());
   part.made();
@@ -123,21 +127,24 @@ std::string mesh_with_gmsh(const std::string& geometry, const MeshingOptions& op
                                            messages, messages);
   if (outcome.spawn_error != 0) refuse_start(geometry, outcome.spawn_error);
   if (WIFSIGNALED(outcome.status))
-    throw FileError(geometry, "",
+    throw FileError(Refusal::helper_program, geometry, "",
                     fmt::format("gmsh was ended by signal {}", WTERMSIG(outcome.status)));
   const bool has_failed = WEXITSTATUS(outcome.status) != 0;
   const std::string complaint = complaint_of(messages, !has_failed);
   if (has_failed || !complaint.empty())
     throw FileError(
-        geometry, "",
+        Refusal::helper_program, geometry, "",
         fmt::format("gmsh failed: {}", complaint.empty() ? "no reason given" : complaint));
   if (!fs::is_regular_file(part.path(), ignored))
-    throw FileError(mesh.string(), "", "gmsh has written no mesh; is the folder writable?");
+    throw FileError(Refusal::helper_program, mesh.string(), "",
+                    "gmsh has written no mesh; is the folder writable?");
   std::ofstream file(part.path(), std::ios::binary | std::ios::app);
   file << fmt::format("$Comments\ngmsh {}: {}, mesh_size {:.17g}, mesh_order {}\n$EndComments\n",
                       version, path.filename().string(), options.size, options.order);
   file.close();
-  if (!file) throw FileError(mesh.string(), "", "cannot be written; is the disk full?");
+  if (!file)
+    throw FileError(Refusal::cannot_write, mesh.string(), "",
+                    "cannot be written; is the disk full?");
   part.replace();
   return mesh.string();
 }

@@ -51,7 +51,7 @@ TabulatedLaw read_law_table(const std::string& path) {
     const Hdf5Array array = open_array(at, file.id(), dataset, 2);
     if (array.shape[0] != table.indentations.size() || array.shape[1] != table.speeds.size()) {
       throw FileError(
-          path, dataset,
+          Refusal::file_damaged, path, dataset,
           fmt::format("is {} x {}, but there are {} indentations and {} speeds", array.shape[0],
                       array.shape[1], table.indentations.size(), table.speeds.size()));
     }
@@ -61,7 +61,8 @@ TabulatedLaw read_law_table(const std::string& path) {
     return TabulatedLaw(table);
   } catch (const std::invalid_argument& error) {
     throw FileError(
-        path, "", fmt::format("is no contact law of `stridor contact --table`: {}", error.what()));
+        Refusal::file_damaged, path, "",
+        fmt::format("is no contact law of `stridor contact --table`: {}", error.what()));
   }
 }
 

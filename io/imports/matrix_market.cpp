@@ -73,7 +73,8 @@ class MarketReader {
   static constexpr long long largest_size = 1'000'000;
 
   [[noreturn]] void fail(const std::string& message, int column) const {
-    throw ConfigError(std::vector<Problem>{{"", message, source_, line_, column, {}}});
+    throw ConfigError(
+        std::vector<Problem>{{Refusal::wrong_text, "", message, source_, line_, column}});
   }
 
   /// The next line with words on it; comments are passed over.

@@ -37,7 +37,8 @@ ImportedMesh read_mesh_file(const std::string& path) {
   SourceText source = read_source_text(path, mesh_formats);
   const std::string foreign = foreign_format(source.text);
   if (!foreign.empty())
-    throw FileError(path, "", fmt::format("is {}; expected {}", foreign, mesh_formats));
+    throw FileError(Refusal::other_kind_of_file, path, "",
+                    fmt::format("is {}; expected {}", foreign, mesh_formats));
   const std::string_view beginning = beginning_of(source.text);
   const std::string ending = lower_case_of(std::filesystem::path(path).extension().string());
   const bool is_gmsh = begins_with(beginning, "$MeshFormat") || begins_with(beginning, "$NOD");
@@ -45,7 +46,7 @@ ImportedMesh read_mesh_file(const std::string& path) {
   if (is_gmsh || (!is_inp && ending == ".msh")) return read_gmsh_mesh(std::move(source));
   if (is_inp || ending == ".inp") return read_inp_mesh(std::move(source), read_included);
   throw FileError(
-      path, "",
+      Refusal::other_kind_of_file, path, "",
       fmt::format("begins with '{}'; expected {}",
                   shown(beginning.substr(0, beginning.find_first_of("\r\n"))), mesh_formats));
 }

@@ -64,9 +64,10 @@ void set(ImportedFiles& all, Member member, const std::string& file) {
     const char* kind = "";
     for (const auto& [name, known] : kinds)
       if (known == member) kind = name;
-    throw ConfigError("files", fmt::format("'{}' and '{}' would both be {}; say what they are: "
-                                           "mass=FILE, stiffness=FILE and the like",
-                                           slot, file, kind));
+    throw ConfigError(Refusal::doubled_name, "files",
+                      fmt::format("'{}' and '{}' would both be {}; say what they are: "
+                                  "mass=FILE, stiffness=FILE and the like",
+                                  slot, file, kind));
   }
   slot = file;
 }
@@ -95,7 +96,7 @@ void sort_out_matrix(ImportedFiles& all, const std::string& file, const std::str
     set(all, &ImportedFiles::stiffness, file);
     return set(all, &ImportedFiles::mass, file);
   }
-  throw ConfigError("files",
+  throw ConfigError(Refusal::wrong_value, "files",
                     fmt::format("cannot tell what '{}' is; say it: mass=FILE, stiffness=FILE, "
                                 "damping=FILE, unknowns=FILE, mesh=FILE or nodes=FILE",
                                 file));

@@ -55,7 +55,7 @@ constexpr std::array<Signature, 20> signatures{{
 
 void refuse_at(const TextPlace& place, const std::string& message) {
   const SourceText& source = *place.source;
-  Problem problem{"", message, source.name, 0, 0, {}};
+  Problem problem{Refusal::wrong_text, "", message, source.name};
   if (source.places == PlaceForm::byte) {
     problem.message = fmt::format("byte {}: {}", place.offset, message);
   } else {
@@ -80,15 +80,19 @@ void refuse_at(const TextPlace& place, const std::string& message) {
 SourceText read_source_text(const std::string& path, const std::string& expected) {
   refuse_irregular_file(path);
   const OpenFile file(std::fopen(path.c_str(), "rb"));
-  if (!file) throw FileError(path, "", fmt::format("cannot be opened; expected {}", expected));
+  if (!file)
+    throw FileError(Refusal::cannot_read, path, "",
+                    fmt::format("cannot be opened; expected {}", expected));
   struct stat status = {};
   if (fstat(fileno(file.get()), &status) != 0 || !S_ISREG(status.st_mode))
-    throw FileError(path, "", fmt::format("is no regular file; expected {}", expected));
+    throw FileError(Refusal::other_kind_of_file, path, "",
+                    fmt::format("is no regular file; expected {}", expected));
   if (status.st_size == 0)
-    throw FileError(path, "", fmt::format("is empty; expected {}", expected));
+    throw FileError(Refusal::other_kind_of_file, path, "",
+                    fmt::format("is empty; expected {}", expected));
   SourceText source{path, std::string(static_cast<std::size_t>(status.st_size), '\0')};
   if (std::fread(source.text.data(), 1, source.text.size(), file.get()) != source.text.size())
-    throw FileError(path, "", "cannot be read to its end");
+    throw FileError(Refusal::cannot_read, path, "", "cannot be read to its end");
   return source;
 }
 

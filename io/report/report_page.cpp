@@ -21,7 +21,8 @@ struct ReportPage::Impl {
   void write(std::string_view text) {
     stream.write(text.data(), static_cast<std::streamsize>(text.size()));
     size += text.size();
-    if (!stream) throw FileError(name, "", "cannot be written: " + errno_message());
+    if (!stream)
+      throw FileError(Refusal::cannot_write, name, "", "cannot be written: " + errno_message());
   }
   static std::string errno_message() {
     return std::error_code(errno, std::generic_category()).message();
@@ -37,12 +38,12 @@ struct ReportPage::Impl {
 
 ReportPage::ReportPage(const std::string& path, Overwrite overwrite, const std::string& title) {
   if (overwrite == Overwrite::no && std::filesystem::exists(path))
-    throw FileError(path, "", "exists; use --force to overwrite it");
+    throw FileError(Refusal::file_exists, path, "", "exists; use --force to overwrite it");
   impl_ = std::make_unique<Impl>(path, overwrite);
   errno = 0;
   impl_->stream.open(impl_->part.path(), std::ios::binary | std::ios::trunc);
   if (!impl_->stream)
-    throw FileError(path, "", "cannot be made: " + Impl::errno_message());
+    throw FileError(Refusal::cannot_write, path, "", "cannot be made: " + Impl::errno_message());
   impl_->part.made();
   std::string head(report_markup);
   const auto put = [&](const std::string& place, std::string_view text) {
@@ -98,7 +99,8 @@ void ReportPage::finish(const nlohmann::ordered_json& contents) {
   impl_->write("</script>\n</body>\n</html>\n");
   impl_->stream.close();
   if (!impl_->stream)
-    throw FileError(impl_->name, "", "cannot be written: " + Impl::errno_message());
+    throw FileError(Refusal::cannot_write, impl_->name, "",
+                    "cannot be written: " + Impl::errno_message());
   impl_->part.move_to_final(impl_->overwrite);
 }
 

@@ -155,14 +155,15 @@ std::vector<TimedWindow> read_locus_windows(const std::string& path) {
   const Checker at(path);
   const Handle file = open_hdf5_file(at);
   if (H5Lexists(file.id(), "/unstable", H5P_DEFAULT) <= 0)
-    throw FileError(path, "/unstable", "is missing; a file of `stridor locus -o` is needed");
+    throw FileError(Refusal::file_damaged, path, "/unstable",
+                    "is missing; a file of `stridor locus -o` is needed");
   // A window takes the memory of all its columns: these are there before it is taken.
   std::vector<std::vector<double>> values;
   for (const WindowColumn& column : columns) {
     const std::string dataset = std::string("/unstable/") + column.name;
     values.push_back(read_array(at, open_array(at, file.id(), dataset, 1), dataset));
     if (values.back().size() != values.front().size()) {
-      throw FileError(path, dataset,
+      throw FileError(Refusal::file_damaged, path, dataset,
                       fmt::format("has {} entries, /unstable/from {}", values.back().size(),
                                   values.front().size()));
     }

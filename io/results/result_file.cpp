@@ -101,7 +101,7 @@ bool ResultFile::has(const std::string& path) const {
 const ResultArray& ResultFile::array(const std::string& path) const {
   for (const ResultArray& array : impl_->arrays)
     if (array.path == path) return array;
-  throw FileError(impl_->at.path(), path, "is missing");
+  throw FileError(Refusal::file_damaged, impl_->at.path(), path, "is missing");
 }
 
 std::vector<double> ResultFile::read(const std::string& path, std::size_t rank) const {
@@ -120,7 +120,7 @@ std::vector<std::string> ResultFile::texts(const std::string& path) const {
   const Handle space = at.own(H5Dget_space(dataset.id()), H5Sclose, path, "cannot be read");
   if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) > 0 ||
       H5Sget_simple_extent_ndims(space.id()) != 1)
-    throw FileError(at.path(), path, "does not hold texts of one length");
+    throw FileError(Refusal::file_damaged, at.path(), path, "does not hold texts of one length");
   const std::size_t length = H5Tget_size(type.id());
   const auto count = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.id()));
   check_plausible(at, file, static_cast<std::uint64_t>(length) * count, path);

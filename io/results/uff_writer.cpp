@@ -129,10 +129,11 @@ EvenAbscissas even_abscissas(const std::vector<double>& abscissa, const std::str
   for (std::size_t i = 0; i < abscissa.size(); ++i) {
     const double there = even.first + even.increment * static_cast<double>(i);
     if (std::abs(there - abscissa[i]) <= 1e-9 * std::abs(abscissa.back())) continue;
-    throw ConfigError(key, fmt::format("universal files hold the first frequency and the increment in "
-                                       "six digits, and {:.9g} with {:.9g} have more; choose the number "
-                                       "of points so that the increment is round",
-                                       abscissa.front(), abscissa[1] - abscissa[0]));
+    throw ConfigError(Refusal::wrong_value, key,
+                      fmt::format("universal files hold the first frequency and the increment in "
+                                  "six digits, and {:.9g} with {:.9g} have more; choose the number "
+                                  "of points so that the increment is round",
+                                  abscissa.front(), abscissa[1] - abscissa[0]));
   }
   return even;
 }

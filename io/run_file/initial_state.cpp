@@ -32,7 +32,8 @@ Eigen::VectorXd as_vector(const std::vector<double>& values) {
 void check_modes(const RunFileReader& file, const std::string& path, const SystemBody& body) {
   constexpr double tolerance = 1e-6;
   const auto refuse = [&](const std::string& why) {
-    throw ConfigError(state_key, fmt::format("{} cannot start '{}': {}", path, body.name, why));
+    throw ConfigError(Refusal::wrong_value, state_key,
+                      fmt::format("{} cannot start '{}': {}", path, body.name, why));
   };
   const std::string dataset = "/modal/" + body.name + "/frequency";
   if (!file.has(dataset)) refuse("it holds no body of that name");
@@ -58,11 +59,11 @@ void start_from_file(System& system, const std::string& path) {
   const bool is_finite = std::all_of(displaced.begin(), displaced.end(),
                                      [](double one) { return std::isfinite(one); });
   if (displaced.size() != system.drives.size() || !is_finite) {
-    throw FileError(path, drive,
-                    system.drives.size() == 1
-                        ? std::string("should be one finite number")
-                        : fmt::format("should be {} finite numbers, one of each drive",
-                                      system.drives.size()));
+    throw FileError(
+        Refusal::file_damaged, path, drive,
+        system.drives.size() == 1
+            ? std::string("should be one finite number")
+            : fmt::format("should be {} finite numbers, one of each drive", system.drives.size()));
   }
   for (std::size_t d = 0; d < displaced.size(); ++d) system.drives[d].displaced = displaced[d];
   for (SystemBody& body : system.bodies) {
@@ -74,7 +75,7 @@ void start_from_file(System& system, const std::string& path) {
     for (const auto& [name, motion] : {std::pair{"/displacement", &body.initial_displacement},
                                        std::pair{"/velocity", &body.initial_velocity}}) {
       if (motion->size() != body.reduced.size() || !motion->allFinite()) {
-        throw FileError(path, group + name,
+        throw FileError(Refusal::file_damaged, path, group + name,
                         fmt::format("should be {} finite numbers", body.reduced.size()));
       }
     }
@@ -89,13 +90,14 @@ Equilibrium equilibrium_at_start(const System& system) {
   for (const ContactPoint& contact : system.contacts)
     state.friction_factor = std::min(state.friction_factor, contact.friction_rise.value(0.0));
   if (state.friction_factor < 1.0) {
-    throw ConfigError(state_key,
+    throw ConfigError(Refusal::wrong_value, state_key,
                       "equilibrium is that under the loads of t = 0, but with drive.ramp they are "
                       "still zero there; set drive.ramp: 0");
   }
   Equilibrium equilibrium = find_equilibrium(system, state);
   if (equilibrium.status != EquilibriumStatus::converged)
-    throw ConfigError(state_key, "there is no sliding equilibrium: " + equilibrium.failure);
+    throw ConfigError(Refusal::no_equilibrium, state_key,
+                      "there is no sliding equilibrium: " + equilibrium.failure);
   return equilibrium;
 }
 
@@ -107,7 +109,7 @@ std::complex<double> perturb(System& system, const Equilibrium& equilibrium,
   std::erase_if(eigenvalues, [](const Eigenvalue& one) { return !(one.s.imag() > 0.0); });
   const auto number = static_cast<std::size_t>(perturbation.eigenvalue);
   if (number > eigenvalues.size()) {
-    throw ConfigError("initial.perturbation.eigenvalue",
+    throw ConfigError(Refusal::wrong_value, "initial.perturbation.eigenvalue",
                       fmt::format("{} is more than the {} eigenvalues with positive frequency",
                                   number, eigenvalues.size()));
   }
@@ -134,13 +136,14 @@ void press_in(System& system, const Equilibrium& equilibrium, double share) {
     rows.push_back({contact.slave_rows.x, 0.0});
     rows.push_back({contact.slave_rows.y, share * equilibrium.contacts[i].gap});
   }
-  if (prescribed.empty()) throw ConfigError(key, "needs a contact with a viscoelastic normal law");
+  if (prescribed.empty())
+    throw ConfigError(Refusal::missing, key, "needs a contact with a viscoelastic normal law");
   for (const auto& [b, rows] : prescribed) {
     SystemBody& body = system.bodies[static_cast<std::size_t>(b)];
     try {
       body.initial_displacement = sum(body.initial_displacement, static_shape(body.modal, rows));
     } catch (const NumericalError& error) {
-      throw ConfigError(key, error.what());
+      throw ConfigError(Refusal::wrong_value, key, error.what());
     }
   }
 }
@@ -197,7 +200,8 @@ void check_gaps(const System& system, const LoadedScene& loaded) {
   std::vector<Problem> problems;
   for (const auto& [body, start] : worst) {
     const ContactPoint& contact = system.contacts[static_cast<std::size_t>(start.contact)];
-    problems.push_back({key_of_start(loaded, contact), gap_message(system, start), {}, 0, 0});
+    problems.push_back(
+        {Refusal::off_the_surface, key_of_start(loaded, contact), gap_message(system, start)});
   }
   throw loaded.located(ConfigError(std::move(problems)));
 }

@@ -44,16 +44,17 @@ void write_text(const Checker& at, hid_t file, const Handle& links, const std::s
 void check_target(const std::string& path, Overwrite overwrite) {
   struct stat status = {};
   const std::string folder = folder_of(path);
-  if (path.empty() || path.back() == '/') throw FileError(path, "", "is not the name of a file");
+  if (path.empty() || path.back() == '/')
+    throw FileError(Refusal::cannot_write, path, "", "is not the name of a file");
   if (stat(folder.c_str(), &status) != 0) {
-    throw FileError(path, "",
+    throw FileError(Refusal::cannot_write, path, "",
                     fmt::format("the folder '{}' cannot be used: {}", folder, errno_text(errno)));
   }
   if (!S_ISDIR(status.st_mode))
-    throw FileError(path, "", fmt::format("'{}' is not a folder", folder));
+    throw FileError(Refusal::cannot_write, path, "", fmt::format("'{}' is not a folder", folder));
   check_replaceable(path, overwrite);
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw FileError(path, "",
+    throw FileError(Refusal::cannot_write, path, "",
                     fmt::format("cannot write in the folder '{}': {}", folder, errno_text(errno)));
   }
 }
@@ -81,10 +82,11 @@ void remove_results(const Checker& at) {
   const int error = staged.commit_by_copy(StagedFile::WithoutRoom::fail);
   staged.freeze();
   if (error == 0) return;
-  throw FileError(at.path(), "",
-                  fmt::format("results of the stopped run cannot be taken out of it: {}; this takes "
-                              "room for a copy of the file beside it, {} bytes. Nothing has changed",
-                              errno_text(error), std::filesystem::file_size(at.path())));
+  throw FileError(
+      Refusal::cannot_write, at.path(), "",
+      fmt::format("results of the stopped run cannot be taken out of it: {}; this takes "
+                  "room for a copy of the file beside it, {} bytes. Nothing has changed",
+                  errno_text(error), std::filesystem::file_size(at.path())));
 }
 
 }  // namespace
@@ -117,14 +119,15 @@ void check_replaceable(const std::string& path, Overwrite overwrite) {
   if (stat(path.c_str(), &status) != 0) {
     if (lstat(path.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) return;
     std::error_code unknown;
-    throw FileError(path, "",
+    throw FileError(Refusal::cannot_write, path, "",
                     fmt::format("is a broken link, to '{}'; remove it, or name another file",
                                 std::filesystem::read_symlink(path, unknown).string()));
   }
-  if (S_ISDIR(status.st_mode)) throw FileError(path, "", "is a folder");
+  if (S_ISDIR(status.st_mode)) throw FileError(Refusal::cannot_write, path, "", "is a folder");
   if (!S_ISREG(status.st_mode))
-    throw FileError(path, "", "is not a regular file and is not replaced");
-  if (overwrite == Overwrite::no) throw FileError(path, "", "exists; use --force to overwrite it");
+    throw FileError(Refusal::cannot_write, path, "", "is not a regular file and is not replaced");
+  if (overwrite == Overwrite::no)
+    throw FileError(Refusal::file_exists, path, "", "exists; use --force to overwrite it");
   const WriteLock none_writes(path);
 }
 

@@ -40,15 +40,17 @@ void RunFileReader::Impl::read_header() {
   const auto format = values.find("format");
   const double* number = format == values.end() ? nullptr : std::get_if<double>(&format->second);
   if (number == nullptr)
-    throw FileError(at.path(), "", "is not a run file of stridor (no attribute 'format')");
+    throw FileError(Refusal::other_kind_of_file, at.path(), "",
+                    "is not a run file of stridor (no attribute 'format')");
   if (*number > run_file_format) {
     throw FileError(
-        at.path(), "",
+        Refusal::other_kind_of_file, at.path(), "",
         fmt::format("has format {:g}, this program reads formats up to {}; use a newer one",
                     *number, run_file_format));
   }
   if (*number != run_file_format)
-    throw FileError(at.path(), "", fmt::format("has the unknown format {:g}", *number));
+    throw FileError(Refusal::other_kind_of_file, at.path(), "",
+                    fmt::format("has the unknown format {:g}", *number));
   for (const auto& [name, target] :
        {std::pair{"version", &header.version}, std::pair{"commit", &header.commit},
         std::pair{"command", &header.command}, std::pair{"scene_hash", &header.scene_hash},
@@ -57,7 +59,7 @@ void RunFileReader::Impl::read_header() {
     const std::string* value =
         found == values.end() ? nullptr : std::get_if<std::string>(&found->second);
     if (value == nullptr) {
-      throw FileError(at.path(), "",
+      throw FileError(Refusal::other_kind_of_file, at.path(), "",
                       fmt::format("is not a run file of stridor (no attribute '{}')", name));
     }
     *target = *value;
@@ -75,7 +77,7 @@ Hdf5Array RunFileReader::Impl::rows_of(const std::string& path) const {
   Hdf5Array array = open_array(at, file.id(), path, 1);
   const hsize_t length = array.shape.front();
   if (length < num_rows) {
-    throw FileError(at.path(), path,
+    throw FileError(Refusal::file_damaged, at.path(), path,
                     fmt::format("has {} rows, but /time has {}", length, num_rows));
   }
   return array;
@@ -182,13 +184,14 @@ std::string RunFileReader::units(const std::string& path) const {
   const auto all = attributes(path);
   const auto found = all.find("units");
   const std::string* text = found == all.end() ? nullptr : std::get_if<std::string>(&found->second);
-  if (text == nullptr) throw FileError(impl_->at.path(), path, "has no attribute 'units'");
+  if (text == nullptr)
+    throw FileError(Refusal::file_damaged, impl_->at.path(), path, "has no attribute 'units'");
   return *text;
 }
 
 std::map<std::string, std::variant<std::string, double>> RunFileReader::attributes(
     const std::string& path) const {
-  if (!has(path)) throw FileError(impl_->at.path(), path, "is missing");
+  if (!has(path)) throw FileError(Refusal::file_damaged, impl_->at.path(), path, "is missing");
   const QuietErrors quiet;
   const Handle object = impl_->at.own(H5Oopen(impl_->file.id(), path.c_str(), H5P_DEFAULT),
                                       H5Oclose, path, "cannot be opened");

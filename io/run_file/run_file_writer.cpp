@@ -31,7 +31,8 @@ void RunFileWriter::Impl::write_checkpoint(const State& state) {
 void RunFileWriter::Impl::require_usable() const {
   if (closed) throw std::invalid_argument("run file: written to after close()");
   if (broken)
-    throw FileError(at.path(), "", "an earlier write failed, nothing more can be written");
+    throw FileError(Refusal::cannot_write, at.path(), "",
+                    "an earlier write failed, nothing more can be written");
 }
 
 // HDF5 holds changes in memory and would write them, half done, when the file is closed. After a
@@ -44,7 +45,9 @@ void RunFileWriter::Impl::abandon() noexcept {
 void RunFileWriter::Impl::commit(const std::string& dataset) {
   at.check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), dataset, "cannot be flushed");
   const int error = restructured ? staged.commit_by_copy() : staged.commit();
-  if (error != 0) throw FileError(at.path(), dataset, "cannot be written: " + errno_text(error));
+  if (error != 0)
+    throw FileError(Refusal::cannot_write, at.path(), dataset,
+                    "cannot be written: " + errno_text(error));
   restructured = false;
 }
 
@@ -64,7 +67,7 @@ void RunFileWriter::Impl::reserve(std::uint64_t rows) const {
   if (needed == 0) return;
   const int error = staged.reserve(needed);
   if (error == 0) return;
-  throw FileError(at.path(), "/time",
+  throw FileError(Refusal::cannot_write, at.path(), "/time",
                   fmt::format("no room for rows {} to {} ({} bytes): {}", num_written,
                               num_written + rows - 1, needed, errno_text(error)));
 }
@@ -317,8 +320,10 @@ void RunFileWriter::close() {
   const std::string cause = impl.close_file();
   if (first) std::rethrow_exception(first);
   if (impl.broken)
-    throw FileError(impl.at.path(), "", "an earlier write failed, the last rows are missing");
-  if (!cause.empty()) throw FileError(impl.at.path(), "", "cannot be closed: " + cause);
+    throw FileError(Refusal::cannot_write, impl.at.path(), "",
+                    "an earlier write failed, the last rows are missing");
+  if (!cause.empty())
+    throw FileError(Refusal::cannot_write, impl.at.path(), "", "cannot be closed: " + cause);
 }
 
 std::uint64_t RunFileWriter::num_written() const {

@@ -144,15 +144,17 @@ std::vector<Burst> recorded_bursts(const RunFileReader& file, const std::string&
     }
     if (values.size() != bursts.size()) {
       throw FileError(
-          path, name,
+          Refusal::file_damaged, path, name,
           fmt::format("has {} entries, but /bursts/start has {}", values.size(), bursts.size()));
     }
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!std::isfinite(values[i]))
-        throw FileError(path, name, fmt::format("is not finite in entry {}", i));
+        throw FileError(Refusal::file_damaged, path, name,
+                        fmt::format("is not finite in entry {}", i));
       bursts[i].*member = values[i];
       if (member == &Burst::end && values[i] < bursts[i].start)
-        throw FileError(path, name, fmt::format("lies before the start in entry {}", i));
+        throw FileError(Refusal::file_damaged, path, name,
+                        fmt::format("lies before the start in entry {}", i));
     }
   }
   // Files of earlier versions do not have these.
@@ -162,7 +164,7 @@ std::vector<Burst> recorded_bursts(const RunFileReader& file, const std::string&
     const std::vector<double> values = file.static_array(name);
     if (values.size() != bursts.size()) {
       throw FileError(
-          path, name,
+          Refusal::file_damaged, path, name,
           fmt::format("has {} entries, but /bursts/start has {}", values.size(), bursts.size()));
     }
     for (std::size_t i = 0; i < values.size(); ++i) bursts[i].*member = values[i];
@@ -175,7 +177,8 @@ std::optional<std::vector<Burst>> bursts_in_band(const RunFileReader& file, cons
   if (const auto channel = acceleration_channel(file)) {
     const RecordedSamples samples(file, *channel);
     for_each_piece(samples, {0, samples.size()}, [&](std::span<const double> piece) {
-      if (!std::isfinite(peak(piece))) throw FileError(path, *channel, "is not finite everywhere");
+      if (!std::isfinite(peak(piece)))
+        throw FileError(Refusal::file_damaged, path, *channel, "is not finite everywhere");
     });
   }
   measure.band = {band.lower, band.upper};
@@ -190,7 +193,7 @@ RecordedSettings recorded_settings(const RunFileReader& file, const std::string&
     read_if_present<MeasureParameters>(scene, "measure", settings.measure);
     read_if_present<SpectrogramSection>(scene, "spectrogram", settings.spectrogram);
   } catch (const ConfigError& error) {
-    throw FileError(path, "/scene/resolved",
+    throw FileError(Refusal::file_damaged, path, "/scene/resolved",
                     fmt::format("cannot be read as a scene: {}", error.what()));
   }
   return settings;
@@ -203,7 +206,7 @@ double sampling_interval(const RunFileReader& file, const std::string& path) {
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double expected = times.front() + static_cast<double>(i) * interval;
     if (!(interval > 0.0 && std::abs(times[i] - expected) <= 1e-3 * interval)) {
-      throw FileError(path, "/time",
+      throw FileError(Refusal::file_damaged, path, "/time",
                       fmt::format("is not equidistant: row {} is {:g} s, expected {:g} s", i,
                                   times[i], expected));
     }

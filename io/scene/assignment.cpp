@@ -62,15 +62,16 @@ struct Assignment {
 /// Refuses what is no line of text.
 void check_line(const std::string& assignment) {
   if (assignment.size() > SceneLimits::assignment) {
-    fail_at({set_option + printable(assignment.substr(0, 40)) + "...", 0, 0}, "",
+    fail_at(Refusal::wrong_value, {set_option + printable(assignment.substr(0, 40)) + "...", 0, 0},
+            "",
             fmt::format("is longer than {} KiB; write it into the scene",
                         SceneLimits::assignment / 1024));
   }
   check_characters(assignment, {set_option + printable(assignment), 0, column_of(0)});
   const std::size_t line_break = assignment.find_first_of("\r\n");
   if (line_break != std::string::npos) {
-    fail_at({set_option + printable(assignment), 0, column_of(line_break)}, "",
-            "has a line break; write --set key.path=value in one line");
+    fail_at(Refusal::wrong_value, {set_option + printable(assignment), 0, column_of(line_break)},
+            "", "has a line break; write --set key.path=value in one line");
   }
 }
 
@@ -80,19 +81,20 @@ Assignment take_apart(const std::string& line) {
   assignment.text = line;
   const std::size_t equals = line.find('=');
   if (equals == std::string::npos) {
-    fail_at(assignment.at(line.size()), "", "has no '='; write --set key.path=value");
+    fail_at(Refusal::wrong_value, assignment.at(line.size()), "",
+            "has no '='; write --set key.path=value");
   }
   assignment.path = line.substr(0, equals);
   assignment.names = path_names(assignment.path);
   if (std::any_of(assignment.names.begin(), assignment.names.end(), [](const std::string& name) {
         return name.empty() || name.find_first_of(" \t") != std::string::npos;
       })) {
-    fail_at(assignment.at(0), "",
+    fail_at(Refusal::wrong_value, assignment.at(0), "",
             fmt::format("'{}' is not a key path; write --set key.path=value", assignment.path));
   }
   assignment.value = line.substr(equals + 1);
   if (assignment.value.find_first_not_of(" \t") == std::string::npos) {
-    fail_at(assignment.at(line.size()), assignment.path,
+    fail_at(Refusal::missing, assignment.at(line.size()), assignment.path,
             "has no value; write --set key.path=value");
   }
   return assignment;
@@ -103,7 +105,7 @@ SceneNode value_of(const Assignment& assignment) {
                         ? scalar_of(assignment.value, assignment.value_place())
                         : parse_yaml(assignment.value, assignment.value_place());
   if (assignment.names.size() + num_levels(value) > SceneLimits::levels) {
-    fail_at(assignment.at(0), assignment.path,
+    fail_at(Refusal::wrong_value, assignment.at(0), assignment.path,
             fmt::format("maps and lists are nested deeper than {} levels", SceneLimits::levels));
   }
   return value;
@@ -114,7 +116,7 @@ SceneNode& item_of(SceneNode& list, const std::string& name, const std::string& 
                    const Place& place, const std::string& path) {
   const auto index = list_index(name, list.items.size());
   if (!index) {
-    fail_at(place, path,
+    fail_at(Refusal::wrong_value, place, path,
             list.items.empty()
                 ? fmt::format("'{}' is an empty list and has no entry '{}'", walked, name)
                 : fmt::format("'{}' is a list; expected an index from 0 to {}, got '{}'", walked,
@@ -152,7 +154,7 @@ SceneNode& opened(SceneNode& root, const Assignment& assignment) {
   for (const std::string& name : assignment.names) {
     const Place place = assignment.at(begin);
     if (node->kind == SceneNode::Kind::scalar) {
-      fail_at(place, assignment.path,
+      fail_at(Refusal::unknown_key, place, assignment.path,
               fmt::format("'{}' is a single value and holds no key '{}'", walked, name));
     }
     node = node->kind == SceneNode::Kind::list

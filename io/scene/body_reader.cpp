@@ -28,7 +28,7 @@ void read_files(const std::string& key, const SceneNode& tree, BodyParameters& b
   } catch (const ConfigError& error) {
     const Problem& problem = error.problems().front();
     if (!problem.source.empty()) throw;  // it names the place in a file
-    throw ConfigError(key + "." + problem.key, problem.message);
+    throw ConfigError(problem.refusal, key + "." + problem.key, problem.message);
   }
   last = body.clone();
 }

@@ -125,7 +125,7 @@ Channel parse_channel(const std::string& name, const std::string& key,
     channel.key = key;
     return channel;
   } catch (const std::string& wrong) {
-    throw ConfigError(key, fmt::format("channel '{}': {}", name, wrong));
+    throw ConfigError(Refusal::unknown_name, key, fmt::format("channel '{}': {}", name, wrong));
   }
 }
 
@@ -141,7 +141,8 @@ std::vector<Channel> parse_channels(const RecordParameters& record, const ModelP
       channels.push_back(parse(name, model));
       channels.back().key = key;
     } catch (const std::string& wrong) {
-      problems.push_back({key, fmt::format("channel '{}': {}", name, wrong), {}, 0, 0});
+      problems.push_back(
+          {Refusal::unknown_name, key, fmt::format("channel '{}': {}", name, wrong)});
     }
   }
   if (!problems.empty()) throw ConfigError(std::move(problems));

@@ -73,18 +73,15 @@ void add_sphere(const SceneNode& tree, Problems& problems) {
     const auto* const former = std::find_if(std::begin(former_keys), std::end(former_keys),
                                             [&](const FormerKey& one) { return path == one.path; });
     if (former != std::end(former_keys)) {
-      problems.push_back({path, fmt::format("is now {}", former->now), {}, 0, 0});
+      problems.push_back({Refusal::former_format, path, fmt::format("is now {}", former->now)});
     } else if (path.starts_with("sphere")) {
-      problems.push_back({path, "is no longer read", {}, 0, 0});
+      problems.push_back({Refusal::former_format, path, "is no longer read"});
     }
   }
-  problems.push_back({"sphere",
+  problems.push_back({Refusal::former_format, "sphere",
                       "is no longer a kind of scene of its own: a sphere on a substrate is a "
                       "`lumped` body on the master `half_space` (docs/format_2.md; "
-                      "scenes/viscoelastic_sphere.yaml)",
-                      {},
-                      0,
-                      0});
+                      "scenes/viscoelastic_sphere.yaml)"});
 }
 
 /// docs/format_2.md, "Disc and pads". UPPER stands for each of the two pads and its contact.
@@ -136,20 +133,15 @@ void add_disc(const SceneNode& tree, Problems& problems) {
     const FormerKey* const former = former_key_of(path);
     if (former == nullptr) continue;
     const std::string rest = path.substr(std::string_view(former->path).size());
-    problems.push_back({path,
-                        rest.empty() ? fmt::format("is now {}", former->now)
-                                     : fmt::format("is now `{}` of {}", rest.substr(1), former->now),
-                        {},
-                        0,
-                        0});
+    problems.push_back({Refusal::former_format, path,
+                        rest.empty()
+                            ? fmt::format("is now {}", former->now)
+                            : fmt::format("is now `{}` of {}", rest.substr(1), former->now)});
   }
-  problems.push_back({"disc",
+  problems.push_back({Refusal::former_format, "disc",
                       "is no longer a kind of scene of its own: a disc is a body of type "
                       "annular_plate, and pads are bodies in contact with its faces "
-                      "(docs/format_2.md; scenes/disc_and_pads.yaml)",
-                      {},
-                      0,
-                      0});
+                      "(docs/format_2.md; scenes/disc_and_pads.yaml)"});
 }
 
 /// docs/format_2.md, "Sliding contact on rubber".
@@ -167,21 +159,16 @@ void add_sliding_contact(const SceneNode& tree, Problems& problems) {
     std::vector<std::string> paths;
     collect_paths(entry->value, section, paths);
     for (const std::string& path : paths) {
-      problems.push_back({path,
-                          fmt::format("is now {}{}", now, path.substr(std::string(section).size())),
-                          {},
-                          0,
-                          0});
+      problems.push_back(
+          {Refusal::former_format, path,
+           fmt::format("is now {}{}", now, path.substr(std::string(section).size()))});
     }
   }
   if (first.empty()) return;
-  problems.push_back({first,
+  problems.push_back({Refusal::former_format, first,
                       "is no longer of a kind of scene of its own: NAME is a contact with `master: "
                       "half_space` and `normal: {law: viscoelastic, form: solve}` "
-                      "(docs/format_2.md; scenes/viscoelastic_contact.yaml)",
-                      {},
-                      0,
-                      0});
+                      "(docs/format_2.md; scenes/viscoelastic_contact.yaml)"});
 }
 
 /// Keys of a body of type `matrices`; docs/format_2.md, "Matrices with factors".
@@ -212,11 +199,8 @@ void add_matrices(const SceneNode& bodies, Problems& problems) {
                          [&](const FormerKey& one) { return path == one.path; });
         const bool is_known = former != std::end(former_keys_of_matrices);
         problems.push_back(
-            {join_path("substructures." + body.key, path),
-             is_known ? fmt::format("is now {}", former->now) : std::string("is no longer read"),
-             {},
-             0,
-             0});
+            {Refusal::former_format, join_path("substructures." + body.key, path),
+             is_known ? fmt::format("is now {}", former->now) : std::string("is no longer read")});
       }
     }
   }
@@ -235,15 +219,12 @@ void refuse_former_keys(const SceneNode& tree) {
   }
   const SceneEntry* const format = tree.entry("format");
   if (format != nullptr && format->value.text == "1") {
-    problems.push_back({"format",
-                        fmt::format("1 is no longer read; {}, and write `format: 2` "
-                                    "(docs/format_2.md lists every key that has moved)",
-                                    problems.empty()
-                                        ? "all keys of this scene stand where they did: try it"
-                                        : "move the keys that are named"),
-                        {},
-                        0,
-                        0});
+    problems.push_back(
+        {Refusal::former_format, "format",
+         fmt::format("1 is no longer read; {}, and write `format: 2` "
+                     "(docs/format_2.md lists every key that has moved)",
+                     problems.empty() ? "all keys of this scene stand where they did: try it"
+                                      : "move the keys that are named")});
   }
   if (problems.empty()) return;
   locate(problems, tree);

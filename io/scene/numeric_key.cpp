@@ -26,8 +26,9 @@ std::vector<std::string> key_names(const Schema& schema) {
                                const std::vector<std::string>& known) {
   std::string advice = did_you_mean(part, known);
   if (advice.empty()) advice = fmt::format("; known there: {}", fmt::join(known, ", "));
-  throw ConfigError(option, fmt::format("'{}': there is no key '{}'{}{}", path, part,
-                                        below.empty() ? "" : " in '" + below + "'", advice));
+  throw ConfigError(Refusal::unknown_key, option,
+                    fmt::format("'{}': there is no key '{}'{}{}", path, part,
+                                below.empty() ? "" : " in '" + below + "'", advice));
 }
 
 /// An entry of named sections and what it holds.
@@ -53,9 +54,10 @@ NumericKey parameter_key(const NamedNumbers& numbers, const std::string& path,
     names.push_back(number.name);
     if (number.name != name) continue;
     if (!number.is_used) {
-      throw ConfigError(option, fmt::format("no expression of the scene uses '{}', so varying it "
-                                            "changes nothing",
-                                            path));
+      throw ConfigError(Refusal::expression, option,
+                        fmt::format("no expression of the scene uses '{}', so varying it "
+                                    "changes nothing",
+                                    path));
     }
     return {path, number.unit, Range::any()};
   }
@@ -99,7 +101,7 @@ class KeyWalk {
       walked_ = join_path(walked_, part);
       if (const auto found = step_into(*key)) return *found;
     }
-    throw ConfigError(option_, fmt::format("'{}' is not a key path", path_));
+    throw ConfigError(Refusal::wrong_value, option_, fmt::format("'{}' is not a key path", path_));
   }
 
  private:
@@ -116,17 +118,19 @@ class KeyWalk {
     if (schema_ == &root_) {
       for (const NamedNumber& number : parameters_of(root_, object_)) {
         if (number.name != part) continue;
-        throw ConfigError(option_, fmt::format("'{0}' is a parameter of the scene; write "
-                                               "'parameters.{0}'",
-                                               part));
+        throw ConfigError(Refusal::wrong_value, option_,
+                          fmt::format("'{0}' is a parameter of the scene; write "
+                                      "'parameters.{0}'",
+                                      part));
       }
     }
     fail_unknown(option_, path_, part, walked_, key_names(*schema_));
   }
 
   [[noreturn]] void refuse_section(const Schema& schema) const {
-    throw ConfigError(option_, fmt::format("'{}' is a section; name one of its numbers ({})", path_,
-                                           fmt::join(key_names(schema), ", ")));
+    throw ConfigError(Refusal::wrong_value, option_,
+                      fmt::format("'{}' is a section; name one of its numbers ({})", path_,
+                                  fmt::join(key_names(schema), ", ")));
   }
 
   /// @return the number, where the key is one; else the walk goes on within it
@@ -161,8 +165,9 @@ class KeyWalk {
       case KeyKind::section_list:
         break;
     }
-    throw ConfigError(option_, fmt::format("'{}' is no number that could be varied, but {}", walked_,
-                                           expected_of(key)));
+    throw ConfigError(
+        Refusal::wrong_value, option_,
+        fmt::format("'{}' is no number that could be varied, but {}", walked_, expected_of(key)));
   }
 
   /// Into the entry that the next part names.
@@ -202,31 +207,37 @@ double parse_value(const NumericKey& key, const std::string& text, const std::st
   try {
     value = parse_quantity(text, key.unit);
   } catch (const std::invalid_argument& error) {
-    throw ConfigError(option, fmt::format("{} ({})", error.what(), key.path));
+    throw ConfigError(Refusal::wrong_value, option, fmt::format("{} ({})", error.what(), key.path));
   }
   if (key.is_integer && value != std::round(value)) {
-    throw ConfigError(option, fmt::format("'{}' must be a whole number, as {} is", text, key.path));
+    throw ConfigError(Refusal::wrong_value, option,
+                      fmt::format("'{}' must be a whole number, as {} is", text, key.path));
   }
   if (!key.range.contains(value)) {
-    throw ConfigError(option, fmt::format("{} must be {}{}{}, got '{}'", key.path, key.range.text(),
-                                          key.unit.empty() ? "" : " ", key.unit, text));
+    throw ConfigError(Refusal::wrong_value, option,
+                      fmt::format("{} must be {}{}{}, got '{}'", key.path, key.range.text(),
+                                  key.unit.empty() ? "" : " ", key.unit, text));
   }
   return value;
 }
 
 std::vector<double> spaced_values(const NumericKey& key, double from, double to, int count,
                                   Spacing spacing) {
-  if (count < 1) throw ConfigError("--points", fmt::format("must be at least 1, got {}", count));
+  if (count < 1)
+    throw ConfigError(Refusal::wrong_value, "--points",
+                      fmt::format("must be at least 1, got {}", count));
   if (from == to) return {from};
   if (count < 2) {
-    throw ConfigError("--points", fmt::format("1 point is enough only where both ends of the range "
-                                              "of {} are the same",
-                                              key.path));
+    throw ConfigError(Refusal::wrong_value, "--points",
+                      fmt::format("1 point is enough only where both ends of the range "
+                                  "of {} are the same",
+                                  key.path));
   }
   if (spacing == Spacing::logarithmic && !(from > 0.0 && to > 0.0)) {
-    throw ConfigError("--scale", fmt::format("a logarithmic scale needs positive values of {}, got "
-                                             "{:g} to {:g}",
-                                             key.path, from, to));
+    throw ConfigError(Refusal::wrong_value, "--scale",
+                      fmt::format("a logarithmic scale needs positive values of {}, got "
+                                  "{:g} to {:g}",
+                                  key.path, from, to));
   }
   std::vector<double> values;
   for (int i = 0; i < count; ++i) {
@@ -240,7 +251,7 @@ std::vector<double> spaced_values(const NumericKey& key, double from, double to,
     if (key.is_integer && std::abs(value - std::round(value)) <= rounding * std::abs(value))
       value = std::round(value);
     if (key.is_integer && value != std::round(value)) {
-      throw ConfigError("--points",
+      throw ConfigError(Refusal::wrong_value, "--points",
                         fmt::format("{} points from {:g} to {:g} are not whole numbers, as {} is; "
                                     "{:g} points would be",
                                     count, from, to, key.path, std::abs(to - from) + 1.0));

@@ -29,7 +29,8 @@ void check_spectrogram(const Scene& scene, std::vector<Problem>& problems) {
   if (!scene.spectrogram) return;
   const SpectrogramSection& section = *scene.spectrogram;
   const auto report = [&](const char* key, std::string message) {
-    problems.push_back({std::string("spectrogram.") + key, std::move(message), {}, 0, 0});
+    problems.push_back(
+        {Refusal::wrong_value, std::string("spectrogram.") + key, std::move(message)});
   };
   const std::vector<std::string> channels =
       scene.record ? scene.record->channels : std::vector<std::string>{};
@@ -68,12 +69,9 @@ void check_terms(const Scene& scene, std::vector<Problem>& problems) {
   for (std::size_t i = 0; i < scene.terms->size(); ++i) {
     const std::string& name = (*scene.terms)[i];
     if (std::find(term_names.begin(), term_names.end(), name) != term_names.end()) continue;
-    problems.push_back({fmt::format("terms.{}", i),
+    problems.push_back({Refusal::unknown_name, fmt::format("terms.{}", i),
                         fmt::format("there is no term '{}'{} (there are: {})", name,
-                                    did_you_mean(name, term_names), fmt::join(term_names, ", ")),
-                        {},
-                        0,
-                        0});
+                                    did_you_mean(name, term_names), fmt::join(term_names, ", "))});
   }
 }
 
@@ -81,8 +79,8 @@ void check_terms(const Scene& scene, std::vector<Problem>& problems) {
 void check_rates(const Scene& scene, std::vector<Problem>& problems) {
   if (!scene.record) return;
   const double interval = scene.record->interval;
-  const auto report = [&](const char* key, std::string message) {
-    problems.push_back({key, std::move(message), {}, 0, 0});
+  const auto report = [&](Refusal refusal, const char* key, std::string message) {
+    problems.push_back({refusal, key, std::move(message)});
   };
   const double step = scene.time ? scene.time->step : interval;
   const double ratio = interval / step;
@@ -90,17 +88,18 @@ void check_rates(const Scene& scene, std::vector<Problem>& problems) {
                            std::round(ratio) <= 1e5;
   const bool is_event_driven = scene.time && scene.time->is_event_driven();
   if (!is_event_driven && !is_multiple) {
-    report("record.interval",
+    report(Refusal::interval, "record.interval",
            fmt::format("{:g} s must be a whole multiple (1 to 100000) of "
                        "time.step = {:g} s, is {:g} of it; the "
                        "nearest is {:g} s",
                        interval, step, ratio, std::clamp(std::round(ratio), 1.0, 1e5) * step));
   }
   if (is_event_driven && scene.record->energy)
-    report("record.energy", "the energy ledger does not know what a half_space stores");
+    report(Refusal::contradiction, "record.energy",
+           "the energy ledger does not know what a half_space stores");
   const double nyquist = 0.5 / interval;
   if (!scene.measure.band.empty() && scene.measure.band.back() >= nyquist) {
-    report("measure.band",
+    report(Refusal::wrong_value, "measure.band",
            fmt::format("reaches {:g} Hz, but record.interval resolves only frequencies below {:g} "
                        "Hz",
                        scene.measure.band.back(), nyquist));

@@ -28,7 +28,9 @@ std::string digits(std::uint64_t sum) {
 std::string digest_of_file(const std::string& path) {
   refuse_irregular_file(path);
   const OpenFile file(std::fopen(path.c_str(), "rbe"));
-  if (!file) throw FileError(path, "", fmt::format("cannot be opened: {}", std::strerror(errno)));
+  if (!file)
+    throw FileError(Refusal::cannot_read, path, "",
+                    fmt::format("cannot be opened: {}", std::strerror(errno)));
   std::vector<char> buffer(std::size_t{1} << 18);
   std::uint64_t sum = fnv1a(std::string_view());
   for (std::size_t count = buffer.size(); count == buffer.size();) {
@@ -36,7 +38,8 @@ std::string digest_of_file(const std::string& path) {
     sum = fnv1a(std::string_view(buffer.data(), count), sum);
   }
   if (std::ferror(file.get()) != 0)
-    throw FileError(path, "", fmt::format("cannot be read: {}", std::strerror(errno)));
+    throw FileError(Refusal::cannot_read, path, "",
+                    fmt::format("cannot be read: {}", std::strerror(errno)));
   return digits(sum);
 }
 
@@ -131,13 +134,13 @@ void check_unchanged(const KeptScene& scene, const std::string& run_file) {
   std::vector<SceneFile> files = read_digests(scene.digests);
   const bool has_text = !files.empty() && files.front().key == text_key;
   if (!has_text || files.front().digest != digits(fnv1a(scene.text))) {
-    throw FileError(run_file, "/scene/text",
+    throw FileError(Refusal::file_damaged, run_file, "/scene/text",
                     "is not the scene with which the run began: the text or its digest "
                     "(/scene/digests) has been changed or damaged since; run the scene anew");
   }
   files.erase(files.begin());
   if (scene_hash(scene.resolved, files) != scene.hash) {
-    throw FileError(run_file, "/scene/resolved",
+    throw FileError(Refusal::file_damaged, run_file, "/scene/resolved",
                     "is not the scene with which the run began: it, the digests of the files that "
                     "it names (/scene/digests) or the attribute scene_hash has been changed or "
                     "damaged since; run the scene anew");
@@ -151,7 +154,7 @@ void check_unchanged(const KeptScene& scene, const std::string& run_file) {
   }
   if (changed.empty()) return;
   throw FileError(
-      run_file, "",
+      Refusal::other_kind_of_file, run_file, "",
       fmt::format("files that its scene names have changed since the run began: {}; put "
                   "the former ones back, or run the scene anew",
                   changed));

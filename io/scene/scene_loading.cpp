@@ -48,10 +48,11 @@ void require_terms(const LoadedScene& loaded) {
   for (const std::string& name : indispensable_terms(loaded.scene.model)) {
     if (keeps_term(loaded.scene, name)) continue;
     throw loaded.located(ConfigError(
-        "terms", fmt::format("`{}` is missing: only friction_damping and structural_damping can be "
-                             "left out, of contacts on the faces of plates friction and geometric, "
-                             "of plates gyroscopic as well",
-                             name)));
+        Refusal::contradiction, "terms",
+        fmt::format("`{}` is missing: only friction_damping and structural_damping can be "
+                    "left out, of contacts on the faces of plates friction and geometric, "
+                    "of plates gyroscopic as well",
+                    name)));
   }
 }
 
@@ -60,8 +61,9 @@ void require_rows(const Model& model, const std::vector<Channel>& channels) {
   for (const Channel& channel : channels) {
     if (!channel.point || !model.points.contains(*channel.point)) continue;
     if (model.points.at(*channel.point).rows.row(channel.direction) >= 0) continue;
-    throw ConfigError(channel.key, fmt::format("channel '{}': '{}' does not move along z",
-                                               channel.name, channel.point->body));
+    throw ConfigError(
+        Refusal::motion_is_held, channel.key,
+        fmt::format("channel '{}': '{}' does not move along z", channel.name, channel.point->body));
   }
 }
 
@@ -99,7 +101,7 @@ void read_named_files(LoadedScene& loaded) {
 void require_bodies(const LoadedScene& loaded) {
   const ModelParameters& model = loaded.scene.model;
   if (model.substructures.empty()) {
-    throw ConfigError("substructures",
+    throw ConfigError(Refusal::missing, "substructures",
                       "is missing: without bodies there are only normal laws, which the verb "
                       "`contact` evaluates");
   }
@@ -107,12 +109,12 @@ void require_bodies(const LoadedScene& loaded) {
   for (const auto& [name, pair] : pairs) {
     const std::string key = model.contact ? name : "contacts." + name;
     if (pair.slave.empty()) {
-      throw ConfigError(key + ".slave",
+      throw ConfigError(Refusal::missing, key + ".slave",
                         "is missing: a contact without it is only one for the verb `contact`");
     }
     if (!pair.normal.is_solved()) continue;
     throw ConfigError(
-        key + ".normal.form",
+        Refusal::missing, key + ".normal.form",
         fmt::format("solve computes every contact by boundary elements, of which bodies in motion "
                     "need a table: `stridor contact {} {}--table law.h5`, and then `form: law.h5`",
                     loaded.path, pairs.size() > 1 ? fmt::format("--contact {} ", name) : ""));
@@ -131,8 +133,9 @@ void LoadedScene::require_section(const std::string& section, const std::string&
                         : section == "record" ? scene.record.has_value()
                                               : !scene.model.pairs().empty();
   if (is_there) return;
-  throw located(ConfigError(
-      section, fmt::format("missing: `{}` needs this section, which the scene has not", verb)));
+  throw located(
+      ConfigError(Refusal::missing, section,
+                  fmt::format("missing: `{}` needs this section, which the scene has not", verb)));
 }
 
 LoadedScene load_scene(const std::string& path, const std::vector<std::string>& sets) {
@@ -171,7 +174,7 @@ Model build_runnable_model(const LoadedScene& loaded, BodyCache& cache) {
   try {
     require_modes(model);
     if (!kept_terms(loaded.scene).has_all_but_damping()) {
-      throw ConfigError("terms",
+      throw ConfigError(Refusal::contradiction, "terms",
                         "must not leave out gyroscopic, friction or geometric in a run, whose "
                         "motion has all terms; eig, locus and the like can do without some");
     }

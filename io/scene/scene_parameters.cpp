@@ -45,13 +45,14 @@ void SceneParameters::add(const SceneEntry& entry, const std::string& path,
   const SceneNode& node = entry.value;
   collect_text_problems(node, path, problems);
   if (is_reserved_name(entry.key)) {
-    problems.push_back(problem_at(
-        entry.place, path,
-        fmt::format("'{}' already means something in expressions; choose another name", entry.key)));
+    problems.push_back(
+        problem_at(Refusal::expression, entry.place, path,
+                   fmt::format("'{}' already means something in expressions; choose another name",
+                               entry.key)));
     return;
   }
   if (!is_parameter_name(entry.key)) {
-    problems.push_back(problem_at(entry.place, path,
+    problems.push_back(problem_at(Refusal::expression, entry.place, path,
                                   "cannot be the name of a parameter; use at most 60 letters, "
                                   "digits and '_', no digit first"));
     return;
@@ -62,7 +63,7 @@ void SceneParameters::add(const SceneEntry& entry, const std::string& path,
   parameter.path = path;
   parameter.number.name = entry.key;
   const auto refuse = [&](const Place& place, std::string message) {
-    problems.push_back(problem_at(place, path, std::move(message)));
+    problems.push_back(problem_at(Refusal::expression, place, path, std::move(message)));
     parameter.state = State::wrong;
   };
   if (node.kind == SceneNode::Kind::null) {
@@ -114,9 +115,10 @@ void SceneParameters::resolve(std::size_t first, std::vector<Problem>& problems)
         if (step - begin == most_shown) names += "... -> ";
         step->parameter->state = State::wrong;
       }
-      problems.push_back(problem_at(needed->node->place, needed->path,
-                                    fmt::format("depends on itself: {}{}; give one of them a number",
-                                                names, needed->number.name)));
+      problems.push_back(
+          problem_at(Refusal::expression, needed->node->place, needed->path,
+                     fmt::format("depends on itself: {}{}; give one of them a number", names,
+                                 needed->number.name)));
     }
   }
 }
@@ -137,7 +139,8 @@ void SceneParameters::evaluate_parameter(Parameter& parameter, std::vector<Probl
       parameter.number.unit = quantity.unit;
     }
   } catch (const std::invalid_argument& error) {
-    problems.push_back(problem_at(parameter.node->place, parameter.path, error.what()));
+    problems.push_back(
+        problem_at(Refusal::expression, parameter.node->place, parameter.path, error.what()));
     return;
   }
   parameter.state = State::known;
@@ -155,7 +158,7 @@ std::optional<double> SceneParameters::value_of(const SceneNode& node, const std
     }
     return evaluate(node.text, values_);
   } catch (const std::invalid_argument& error) {
-    problems.push_back(problem_at(node.place, path, error.what()));
+    problems.push_back(problem_at(Refusal::expression, node.place, path, error.what()));
     return std::nullopt;
   }
 }
@@ -188,7 +191,7 @@ void SceneParameters::refuse_idle_settings(std::vector<Problem>& problems) const
     const bool is_set = parameter.node->place.source.starts_with("--set ");
     if (parameter.number.is_used || !is_set) continue;
     problems.push_back(problem_at(
-        parameter.node->place, parameter.path,
+        Refusal::expression, parameter.node->place, parameter.path,
         "no expression of the scene uses this parameter, so setting it changes nothing"));
   }
 }

@@ -25,11 +25,12 @@ std::vector<std::string_view> lines_of(std::string_view text) {
 
 }  // namespace
 
-Problem problem_at(const Place& place, std::string key, std::string message) {
+Problem problem_at(Refusal refusal, const Place& place, std::string key, std::string message) {
   if (place.line > 0) {
-    return {std::move(key), std::move(message), place.source, place.line, place.column};
+    return {refusal, std::move(key), std::move(message), place.source, place.line, place.column};
   }
-  return {std::move(key),
+  return {refusal,
+          std::move(key),
           std::move(message),
           place.source,
           0,
@@ -37,8 +38,9 @@ Problem problem_at(const Place& place, std::string key, std::string message) {
           place.column > 0 ? excerpt_of(place.source, 0, place.column) : ""};
 }
 
-void fail_at(const Place& place, std::string key, std::string message) {
-  throw ConfigError(std::vector<Problem>{problem_at(place, std::move(key), std::move(message))});
+void fail_at(Refusal refusal, const Place& place, std::string key, std::string message) {
+  throw ConfigError(
+      std::vector<Problem>{problem_at(refusal, place, std::move(key), std::move(message))});
 }
 
 void add_excerpts(std::vector<Problem>& problems, const std::string& source,
@@ -63,7 +65,8 @@ void locate(std::vector<Problem>& problems, const SceneNode& root) {
     if (problem.key.empty()) {
       problem.source = place.source;
     } else {
-      problem = problem_at(place, std::move(problem.key), std::move(problem.message));
+      problem =
+          problem_at(problem.refusal, place, std::move(problem.key), std::move(problem.message));
     }
   }
   add_excerpts(problems, root);

@@ -13,12 +13,14 @@ namespace stridor {
 
 /// A problem at a place. One of `--set` has its excerpt, the assignment, from the beginning; one of
 /// a file gets it from `add_excerpts`, since the place does not hold the line.
-/// @param key path of the key that is meant
-Problem problem_at(const Place& place, std::string key, std::string message);
+/// @param refusal its kind
+/// @param key     path of the key that is meant
+Problem problem_at(Refusal refusal, const Place& place, std::string key, std::string message);
 
 /// Ends the reading.
 /// @throws ConfigError with the one problem_at() a place
-[[noreturn]] void fail_at(const Place& place, std::string key, std::string message);
+[[noreturn]] void fail_at(Refusal refusal, const Place& place, std::string key,
+                          std::string message);
 
 /// Gives the problems that lie in a source the line of its text there as their excerpt.
 void add_excerpts(std::vector<Problem>& problems, const std::string& source, std::string_view text);

@@ -62,7 +62,7 @@ class Reader {
         report_unknown(entry, known_keys(schema, discriminator), key_path);
         collect_text_problems(entry.value, key_path, report_.problems());
       } else if (entry.value.kind == Kind::null) {
-        report_.add(entry.place, key_path,
+        report_.add(Refusal::missing, entry.place, key_path,
                     fmt::format("has no value, expected {}", expected_of(*key)));
         report_.add_text_problems(entry.value, key_path);
       } else {
@@ -71,7 +71,7 @@ class Reader {
     }
     for (const Key& key : schema.keys) {
       if (!key.is_optional && node.entry(key.name) == nullptr) {
-        report_.add(node.place, join_path(path, key.name),
+        report_.add(Refusal::missing, node.place, join_path(path, key.name),
                     fmt::format("required key '{}' is missing, expected {}: {}", key.name,
                                 expected_of(key), key.doc));
       }
@@ -111,7 +111,8 @@ class Reader {
     } else if (advice.empty()) {
       advice = fmt::format("; known here: {}", joined(known));
     }
-    report_.add(entry.place, path, fmt::format("unknown key {}{}", quoted(entry.key), advice));
+    report_.add(Refusal::unknown_key, entry.place, path,
+                fmt::format("unknown key {}{}", quoted(entry.key), advice));
   }
 
   /// Where it is not known which alternative a map is: the keys that none of them has. One of these
@@ -137,7 +138,7 @@ class Reader {
     for (Problem& problem : found) {
       // An empty key means this map; with its place, since the map is known here.
       const Place place = place_of(node, problem.key);
-      report_.add(place, join_path(path, problem.key), std::move(problem.message));
+      report_.add(problem.refusal, place, join_path(path, problem.key), std::move(problem.message));
     }
   }
 
@@ -207,7 +208,7 @@ class Reader {
       const std::string entry_path = join_path(path, entry.key);
       if (!is_section_name(entry.key)) {
         report_.add(
-            entry.place, entry_path,
+            Refusal::wrong_value, entry.place, entry_path,
             fmt::format(
                 "{} cannot be a name; use letters, digits, '_' and '-', a letter or '_' first",
                 quoted(entry.key)));
@@ -215,7 +216,7 @@ class Reader {
         continue;
       }
       if (entry.value.kind == Kind::null) {
-        report_.add(entry.place, entry_path, "has no value, expected a map");
+        report_.add(Refusal::missing, entry.place, entry_path, "has no value, expected a map");
         report_.add_text_problems(entry.value, entry_path);
         continue;
       }
@@ -240,12 +241,13 @@ class Reader {
     const SceneEntry* type = node.entry(key.discriminator);
     if (!type) {
       report_.add(
-          node.place, type_path,
+          Refusal::missing, node.place, type_path,
           fmt::format("required key '{}' is missing, expected {}", key.discriminator, expected));
       return std::nullopt;
     }
     if (type->value.kind != Kind::scalar) {
-      report_.add(type->value.kind == Kind::null ? type->place : type->value.place, type_path,
+      report_.add(Refusal::missing,
+                  type->value.kind == Kind::null ? type->place : type->value.place, type_path,
                   type->value.kind == Kind::null
                       ? fmt::format("has no value, expected {}", expected)
                       : fmt::format("expected {}, got {}", expected, found_in(type->value)));
@@ -253,7 +255,7 @@ class Reader {
     }
     const auto found = std::find(names.begin(), names.end(), type->value.text);
     if (found == names.end()) {
-      report_.add(type->value.place, type_path,
+      report_.add(Refusal::wrong_value, type->value.place, type_path,
                   fmt::format("expected {}, got {}{}", expected, quoted(type->value.text),
                               did_you_mean(type->value.text, names)));
       return meant_alternative(type->value.text, names);

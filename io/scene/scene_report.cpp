@@ -9,8 +9,9 @@
 
 namespace stridor {
 
-void SceneReport::add(const Place& place, const std::string& path, std::string message) {
-  problems_.push_back(problem_at(place, path, std::move(message)));
+void SceneReport::add(Refusal refusal, const Place& place, const std::string& path,
+                      std::string message) {
+  problems_.push_back(problem_at(refusal, place, path, std::move(message)));
 }
 
 void SceneReport::add_text_problems(const SceneNode& node, const std::string& path) {
@@ -23,10 +24,10 @@ void SceneReport::add_text_problems(const SceneNode& node, const std::string& pa
 bool SceneReport::is_kind(const SceneNode& node, SceneNode::Kind kind, const std::string& expected,
                           const std::string& path) {
   if (node.kind == kind) return true;
-  add(node.place, path,
-      node.kind == SceneNode::Kind::null
-          ? fmt::format("has no value, expected {}", expected)
-          : fmt::format("expected {}, got {}", expected, found_in(node)));
+  const bool is_missing = node.kind == SceneNode::Kind::null;
+  add(is_missing ? Refusal::missing : Refusal::wrong_value, node.place, path,
+      is_missing ? fmt::format("has no value, expected {}", expected)
+                 : fmt::format("expected {}, got {}", expected, found_in(node)));
   collect_text_problems(node, path, problems_);
   return false;
 }

@@ -15,7 +15,7 @@ class SceneReport {
   /// @param problems receives what is found; must live longer
   explicit SceneReport(std::vector<Problem>& problems) : problems_(problems) {}
 
-  void add(const Place& place, const std::string& path, std::string message);
+  void add(Refusal refusal, const Place& place, const std::string& path, std::string message);
 
   /// Adds the faults of the text of this node alone; the nodes below it add their own when they are
   /// read.

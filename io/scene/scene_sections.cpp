@@ -47,10 +47,10 @@ const Schema& MeasureParameters::schema() {
             if (!measure.band.empty() &&
                 (measure.band.size() != 2 || measure.band[0] >= measure.band[1])) {
               problems.push_back(
-                  {"band", "must be two frequencies, the lower one first", {}, 0, 0});
+                  {Refusal::wrong_size, "band", "must be two frequencies, the lower one first"});
             }
             if (measure.to && *measure.to <= measure.from)
-              problems.push_back({"to", "must be later than `from`", {}, 0, 0});
+              problems.push_back({Refusal::wrong_value, "to", "must be later than `from`"});
           });
   return keys;
 }

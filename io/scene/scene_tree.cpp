@@ -21,11 +21,11 @@ namespace {
 SceneNode parse_scene(const std::string& text, const std::string& source) {
   SceneNode root = parse_yaml(text, {source, 1, 1});
   if (root.kind == SceneNode::Kind::null) {
-    fail_at({source, 1, 1}, "", "the scene is empty; expected a map of keys");
+    fail_at(Refusal::not_yaml, {source, 1, 1}, "", "the scene is empty; expected a map of keys");
   }
   if (root.kind != SceneNode::Kind::map) {
     fail_at(
-        root.place, "",
+        Refusal::not_yaml, root.place, "",
         fmt::format("expected a map of keys ('key: value', with a space after the colon), got {}",
                     root.kind == SceneNode::Kind::list ? "a list" : "a single value"));
   }
@@ -108,16 +108,21 @@ SceneNode read_scene_file(const std::string& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::not_found) {
-    throw FileError(path, "", "does not exist; give the path of a scene file");
+    throw FileError(Refusal::cannot_read, path, "",
+                    "does not exist; give the path of a scene file");
   }
   if (status.type() == std::filesystem::file_type::directory) {
-    throw FileError(path, "", "is a directory; give the path of a scene file");
+    throw FileError(Refusal::cannot_read, path, "",
+                    "is a directory; give the path of a scene file");
   }
   const std::string irregular = irregular_kind(path);
   if (!irregular.empty())
-    throw FileError(path, "", "is " + irregular + "; give the path of a scene file");
+    throw FileError(Refusal::cannot_read, path, "",
+                    "is " + irregular + "; give the path of a scene file");
   const OpenFile file(std::fopen(path.c_str(), "rb"));
-  if (!file) throw FileError(path, "", fmt::format("cannot be opened: {}", std::strerror(errno)));
+  if (!file)
+    throw FileError(Refusal::cannot_read, path, "",
+                    fmt::format("cannot be opened: {}", std::strerror(errno)));
 
   // Read up to the limit rather than trust the size: files of /proc tell none.
   std::string text;
@@ -128,17 +133,18 @@ SceneNode read_scene_file(const std::string& path) {
     text.append(part.data(), size);
   }
   if (std::ferror(file.get()) != 0) {
-    throw FileError(path, "", fmt::format("cannot be read: {}", std::strerror(errno)));
+    throw FileError(Refusal::cannot_read, path, "",
+                    fmt::format("cannot be read: {}", std::strerror(errno)));
   }
   if (text.starts_with("\x89HDF\r\n\x1a\n")) {
     fail_at(
-        {path, 0, 0}, "",
+        Refusal::not_yaml, {path, 0, 0}, "",
         "is an HDF5 file, not a scene (YAML); `stridor info` says what a run file holds, and its "
         "scene is the text in /scene/text");
   }
   if (text.size() > SceneLimits::bytes) {
     throw FileError(
-        path, "",
+        Refusal::cannot_read, path, "",
         fmt::format("is larger than {} MiB, which no scene is; put large tables into files "
                     "of their own",
                     SceneLimits::bytes / (1024 * 1024)));

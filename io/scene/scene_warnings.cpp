@@ -42,13 +42,10 @@ void look_at_number(const Key& key, double value, const std::string& path, const
     if (key.unit != usual.unit || key.name.find(usual.word) == std::string::npos) continue;
     if (size >= usual.low && size <= usual.high) continue;
     if (!is_written_bare(tree, path)) continue;
-    warnings.push_back({path,
+    warnings.push_back({Refusal::wrong_value, path,
                         fmt::format("is {:g} {}, since bare numbers are in SI units: {} if another "
                                     "one is meant",
-                                    value, key.unit, usual.remedy),
-                        {},
-                        0,
-                        0});
+                                    value, key.unit, usual.remedy)});
   }
 }
 
@@ -58,11 +55,8 @@ void look_at_parameters(const Schema& schema, const void* object, std::vector<Pr
     const Value given = key.read(object);
     for (const NamedNumber& number : std::get<NamedNumbers>(given)) {
       if (number.is_used) continue;
-      warnings.push_back({join_path(key.name, number.name),
-                          "no expression of the scene uses this parameter",
-                          {},
-                          0,
-                          0});
+      warnings.push_back({Refusal::wrong_value, join_path(key.name, number.name),
+                          "no expression of the scene uses this parameter"});
     }
   }
 }
@@ -114,14 +108,11 @@ void look_at_paths(const LoadedScene& loaded, const System& system,
     const auto time = leaving_time(system, contact, loaded.scene.time->end);
     if (!time) continue;
     warnings.push_back(
-        {"time.end",
+        {Refusal::wrong_value, "time.end",
          fmt::format("the drive carries '{}' off the end of its master '{}' at about {:.3g} s (of "
                      "the undeformed bodies), where the run will fail; end it earlier, start "
                      "elsewhere (contact.start) or slide more slowly (drive.velocity)",
-                     contact.name, system.surface_of(contact).name, *time),
-         {},
-         0,
-         0});
+                     contact.name, system.surface_of(contact).name, *time)});
   }
 }
 
@@ -142,13 +133,10 @@ void look_at_channels(const Scene& scene, const Model& model, std::vector<Proble
     const bool is_driven = body.follows_drive() && channel.direction == 0;
     if (is_driven || !is_held(body, point.rows.row(channel.direction))) continue;
     warnings.push_back(
-        {channel.key,
+        {Refusal::wrong_value, channel.key,
          fmt::format("'{}' will be recorded as zeros: '{}' is held in {} at this point; record "
                      "another point or direction",
-                     channel.name, body.name, "xyz"[channel.direction]),
-         {},
-         0,
-         0});
+                     channel.name, body.name, "xyz"[channel.direction])});
   }
 }
 
@@ -174,13 +162,10 @@ std::vector<Problem> scene_warnings(const LoadedScene& loaded, const Model& mode
     }
   }
   if (scene.time && scene.measure.from >= scene.time->end) {
-    warnings.push_back({"measure.from",
+    warnings.push_back({Refusal::wrong_value, "measure.from",
                         fmt::format("{:g} s is not before time.end = {:g} s: the window of the "
                                     "statistics is empty",
-                                    scene.measure.from, scene.time->end),
-                        {},
-                        0,
-                        0});
+                                    scene.measure.from, scene.time->end)});
   }
   look_at_paths(loaded, model.system, warnings);
   look_at_channels(scene, model, warnings);

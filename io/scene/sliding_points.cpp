@@ -18,7 +18,8 @@ const Schema& SlidingPoints::schema() {
                       .optional = true})
           .check([](const SlidingPoints& points, std::vector<Problem>& problems) {
             if (!points.loads.empty() && !points.indentations.empty())
-              problems.push_back({"loads", "cannot stand beside `indentations`", {}, 0, 0});
+              problems.push_back(
+                  {Refusal::contradiction, "loads", "cannot stand beside `indentations`"});
           });
   return keys;
 }

@@ -70,7 +70,8 @@ class ValueReader {
     if (!report_.is_scalar(node, "true or false", path)) return {};
     if (node.text == "true") return true;
     if (node.text == "false") return false;
-    report_.add(node.place, path, fmt::format("expected true or false, got {}", quoted(node.text)));
+    report_.add(Refusal::wrong_value, node.place, path,
+                fmt::format("expected true or false, got {}", quoted(node.text)));
     return {};
   }
 
@@ -84,7 +85,7 @@ class ValueReader {
     const auto [stop, status] = std::from_chars(begin, end, value);
     const bool is_too_large = status == std::errc::result_out_of_range && stop == end;
     if ((status != std::errc() && !is_too_large) || stop != end) {
-      report_.add(node.place, path,
+      report_.add(Refusal::wrong_value, node.place, path,
                   fmt::format("expected a whole number without unit, got {}", quoted(node.text)));
       return {};
     }
@@ -101,7 +102,7 @@ class ValueReader {
     const auto value = parameters_.value_of(node, path, report_.problems());
     if (!value) return {};
     if (*value != std::trunc(*value)) {
-      report_.add(node.place, path,
+      report_.add(Refusal::wrong_value, node.place, path,
                   fmt::format("must be a whole number, got {} (written {}); round() rounds", *value,
                               quoted(node.text)));
       return {};
@@ -117,13 +118,13 @@ class ValueReader {
 
   bool is_in_range(const SceneNode& node, const Key& key, double whole, const std::string& path) {
     if (key.range.contains(whole)) return true;
-    report_.add(node.place, path,
+    report_.add(Refusal::wrong_value, node.place, path,
                 fmt::format("must be {}, got {:.0f}{}", key.range.text(), whole, written(node)));
     return false;
   }
 
   void report_not_storable(const SceneNode& node, const std::string& path) {
-    report_.add(node.place, path,
+    report_.add(Refusal::wrong_value, node.place, path,
                 fmt::format("is too far from 0 to be stored, got {}", quoted(node.text)));
   }
 
@@ -140,11 +141,12 @@ class ValueReader {
                            : read_quantity(node, unit, path);
     if (!value) return std::nullopt;
     if (!range.contains(*value)) {
-      report_.add(node.place, path, range_message(range, *value, unit) + written(node));
+      report_.add(Refusal::wrong_value, node.place, path,
+                  range_message(range, *value, unit) + written(node));
       return std::nullopt;
     }
     if (const std::string message = magnitude_message(*value, unit); !message.empty()) {
-      report_.add(node.place, path, message);
+      report_.add(Refusal::wrong_value, node.place, path, message);
       return std::nullopt;
     }
     return value;
@@ -153,14 +155,14 @@ class ValueReader {
   std::optional<double> read_quantity(const SceneNode& node, const std::string& unit,
                                       const std::string& path) {
     if (quoted(node.text) != "'" + node.text + "'") {  // no number is long or has line breaks
-      report_.add(node.place, path,
+      report_.add(Refusal::wrong_value, node.place, path,
                   fmt::format("expected {}, got {}", in_unit("a number", unit), quoted(node.text)));
       return std::nullopt;
     }
     try {
       return parse_quantity(node.text, unit);
     } catch (const std::invalid_argument& error) {
-      report_.add(node.place, path, error.what());
+      report_.add(Refusal::wrong_unit, node.place, path, error.what());
       return std::nullopt;
     }
   }
@@ -183,7 +185,7 @@ class ValueReader {
     if (!report_.is_scalar(node, expected_of(key), path)) return {};
     if (std::find(key.choices.begin(), key.choices.end(), node.text) != key.choices.end())
       return node.text;
-    report_.add(node.place, path,
+    report_.add(Refusal::wrong_value, node.place, path,
                 fmt::format("expected {}, got {}{}", expected_of(key), quoted(node.text),
                             did_you_mean(node.text, key.choices)));
     return {};
@@ -241,7 +243,7 @@ class ValueReader {
     for (const SceneEntry& entry : node.entries) {
       if (std::find(table_keys.begin(), table_keys.end(), entry.key) != table_keys.end()) continue;
       const std::string suggestion = did_you_mean(entry.key, table_keys);
-      report_.add(entry.place, join_path(path, entry.key),
+      report_.add(Refusal::unknown_key, entry.place, join_path(path, entry.key),
                   fmt::format("unknown key {}{}", quoted(entry.key),
                               suggestion.empty() ? "; known here: times, values" : suggestion));
       collect_text_problems(entry.value, join_path(path, entry.key), report_.problems());
@@ -253,18 +255,20 @@ class ValueReader {
     // What the constructor of TimeCurve would throw for is said here, with its place.
     const SceneNode& times_node = node.entry("times")->value;
     if (times->empty()) {
-      report_.add(times_node.place, join_path(path, "times"), "needs at least one time");
+      report_.add(Refusal::wrong_value, times_node.place, join_path(path, "times"),
+                  "needs at least one time");
       return {};
     }
     if (times->size() != values->size()) {
-      report_.add(node.entry("values")->value.place, join_path(path, "values"),
+      report_.add(Refusal::wrong_size, node.entry("values")->value.place, join_path(path, "values"),
                   fmt::format("has {} entries but times has {}; give one value for each time",
                               values->size(), times->size()));
       return {};
     }
     for (std::size_t i = 1; i < times->size(); ++i) {
       if ((*times)[i] > (*times)[i - 1]) continue;
-      report_.add(times_node.items[i].place, fmt::format("{}.times.{}", path, i),
+      report_.add(Refusal::wrong_value, times_node.items[i].place,
+                  fmt::format("{}.times.{}", path, i),
                   fmt::format("times must increase strictly, got {} s after {} s", (*times)[i],
                               (*times)[i - 1]));
       return {};
@@ -280,12 +284,13 @@ class ValueReader {
     const std::string expected = in_unit("a list of numbers", unit);
     const SceneEntry* entry = table.entry(name);
     if (!entry) {
-      report_.add(table.place, column_path,
+      report_.add(Refusal::missing, table.place, column_path,
                   fmt::format("required key '{}' is missing, expected {}", name, expected));
       return std::nullopt;
     }
     if (entry->value.kind == SceneNode::Kind::null) {
-      report_.add(entry->place, column_path, fmt::format("has no value, expected {}", expected));
+      report_.add(Refusal::missing, entry->place, column_path,
+                  fmt::format("has no value, expected {}", expected));
       return std::nullopt;
     }
     return read_reals(entry->value, unit, range, column_path);

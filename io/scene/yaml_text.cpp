@@ -60,7 +60,7 @@ class TreeBuilder : public YAML::EventHandler {
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (num_documents_++ > 0) {
       fail_at(
-          place_at(mark), "",
+          Refusal::not_yaml, place_at(mark), "",
           "a second YAML document, or text after the end of the first; a scene is one map of keys");
     }
   }
@@ -80,7 +80,8 @@ class TreeBuilder : public YAML::EventHandler {
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto found = anchors_.find(anchor);
     if (found == anchors_.end()) {
-      fail_at(place_at(mark), path(), "an alias inside the value that it stands for");
+      fail_at(Refusal::not_yaml, place_at(mark), path(),
+              "an alias inside the value that it stands for");
     }
     count(found->second.num_nodes, place_at(mark));
     if (frames_.size() + found->second.height > SceneLimits::levels) fail_depth(mark);
@@ -120,7 +121,7 @@ class TreeBuilder : public YAML::EventHandler {
     node.place = place_at(mark);
     if (!tag.empty() && tag != "?" && tag != "!") {
       node.problems.push_back(
-          problem_at(node.place, "",
+          problem_at(Refusal::not_yaml, node.place, "",
                      fmt::format("the YAML tag '{}' has no meaning in a scene; remove it", tag)));
     }
     return node;
@@ -130,7 +131,7 @@ class TreeBuilder : public YAML::EventHandler {
     num_nodes_ += num_nodes;
     if (num_nodes_ > SceneLimits::nodes) {
       fail_at(
-          place, path(),
+          Refusal::not_yaml, place, path(),
           fmt::format(
               "more than {} values (aliases expanded); put large tables into a file of their own",
               SceneLimits::nodes));
@@ -138,7 +139,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   [[noreturn]] void fail_depth(const YAML::Mark& mark) const {
-    fail_at(place_at(mark), path(),
+    fail_at(Refusal::not_yaml, place_at(mark), path(),
             fmt::format("maps and lists are nested deeper than {} levels", SceneLimits::levels));
   }
 
@@ -193,13 +194,14 @@ class TreeBuilder : public YAML::EventHandler {
       return static_cast<unsigned char>(c) < 0x20;
     });
     if (node.kind != SceneNode::Kind::scalar || !node.problems.empty() || has_control) {
-      problems.push_back(problem_at(
-          node.place, "", "a key must be a plain name, without brackets, tags or line breaks"));
+      problems.push_back(
+          problem_at(Refusal::not_yaml, node.place, "",
+                     "a key must be a plain name, without brackets, tags or line breaks"));
       return;
     }
     if (node.text == "<<" && !node.is_quoted) {
       problems.push_back(
-          problem_at(node.place, node.text,
+          problem_at(Refusal::not_yaml, node.place, node.text,
                      "merge keys are not read; write the keys out, or use an alias for a "
                      "whole value"));
       return;
@@ -208,7 +210,7 @@ class TreeBuilder : public YAML::EventHandler {
     if (!is_new) {
       const std::string before =
           first->second > 0 ? fmt::format(", first in line {}", first->second) : "";
-      problems.push_back(problem_at(node.place, node.text,
+      problems.push_back(problem_at(Refusal::doubled_name, node.place, node.text,
                                     fmt::format("is given twice{}; remove one of them", before)));
       return;
     }
@@ -285,9 +287,10 @@ std::optional<Place> tab_before(const std::string& text, const Place& place) {
                                 const std::string& text) {
   using namespace YAML;
   if (const auto tab = tab_before(text, builder.place_at(error.mark)))
-    fail_at(*tab, "", explain(ErrorMsg::TAB_IN_INDENTATION));
+    fail_at(Refusal::not_yaml, *tab, "", explain(ErrorMsg::TAB_IN_INDENTATION));
   if (error.msg == ErrorMsg::DOC_IN_SCALAR || error.msg == ErrorMsg::EOF_IN_SCALAR) {
-    fail_at(builder.last_place(), "", "a quote opened after here is never closed");
+    fail_at(Refusal::not_yaml, builder.last_place(), "",
+            "a quote opened after here is never closed");
   }
   const Place place = builder.place_at(error.mark);
   const bool is_map = error.msg == ErrorMsg::END_OF_MAP_FLOW;
@@ -296,14 +299,14 @@ std::optional<Place> tab_before(const std::string& text, const Place& place) {
     const char bracket = is_map ? '}' : ']';
     const Place& open = builder.open_place();
     if (place == builder.end()) {
-      fail_at(open, "",
+      fail_at(Refusal::not_yaml, open, "",
               fmt::format("the {} that begins here is never closed by '{}'", what, bracket));
     }
     const std::string line = open.line > 0 ? fmt::format(" of line {}", open.line) : "";
-    fail_at(place, "",
+    fail_at(Refusal::not_yaml, place, "",
             fmt::format("a ',' or '{}' is missing before this in the {}{}", bracket, what, line));
   }
-  fail_at(place, "", explain(error.msg));
+  fail_at(Refusal::not_yaml, place, "", explain(error.msg));
 }
 
 }  // namespace
@@ -317,7 +320,7 @@ void check_characters(const std::string& text, Place place) {
         (byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r') || byte == 0x7F;
     if (character.length == 0 || is_control) {
       fail_at(
-          place, "",
+          Refusal::not_yaml, place, "",
           character.length == 0
               ? fmt::format("byte 0x{:02X} is not UTF-8; save the text as UTF-8", byte)
               : fmt::format("control character 0x{:02X}; a scene is plain text in UTF-8", byte));

@@ -18,6 +18,8 @@ class Problem:
         From 1; 0 where there is none.
     key : str
         The key of the scene, "contact.friction.coefficient".
+    code : str
+        Its kind, "off-the-surface": docs/refusals.md has a section for each.
     """
 
     message: str
@@ -25,6 +27,7 @@ class Problem:
     line: int = 0
     column: int = 0
     key: str = ""
+    code: str = ""
 
     def __str__(self) -> str:
         place = ":".join(str(part) for part in (self.file, self.line, self.column) if part)

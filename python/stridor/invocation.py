@@ -176,5 +176,6 @@ def _problems(answer: Mapping[str, Any], err: str, code: int) -> list[errors.Pro
     told = answer.get("errors", [])
     if told:
         return [errors.Problem(one.get("message", ""), one.get("file", ""), one.get("line", 0),
-                               one.get("column", 0), one.get("key", "")) for one in told]
+                               one.get("column", 0), one.get("key", ""), one.get("code", ""))
+                for one in told]
     return [errors.Problem(err.strip() or f"the program ended with {code}")]

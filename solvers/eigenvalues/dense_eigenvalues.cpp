@@ -35,7 +35,8 @@ Eigen::MatrixXd null_space(const Eigen::MatrixXd& rows, const char* name) {
       Eigen::MatrixXd(rows.transpose() * lengths.asDiagonal()));
   qr.setThreshold(1e-12);
   if (qr.rank() < rows.rows()) {
-    throw NumericalError(fmt::format("dense eigenvalues: the {} rows of {} have rank {}",
+    throw NumericalError(Refusal::eigenvalues_incomplete,
+                         fmt::format("dense eigenvalues: the {} rows of {} have rank {}",
                                      rows.rows(), name, qr.rank()));
   }
   const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(n, n);
@@ -88,6 +89,7 @@ LapackResult eigenvalues_of(Eigen::MatrixXd matrix, DenseWork wanted_work) {
   call(work.data(), static_cast<int>(work.size()));
   if (info != 0) {
     throw NumericalError(
+        Refusal::eigenvalues_incomplete,
         fmt::format("dense eigenvalues: the QR iteration failed at {} of {}", info, n));
   }
   return result;
@@ -197,10 +199,10 @@ StateMatrix state_matrix(const Pencil& pencil) {
   const Eigen::PartialPivLU<Eigen::MatrixXd> mass(Eigen::MatrixXd(L_E.transpose() * L_C));
   const double rcond = mass.rcond();
   if (!(rcond > 1e-14)) {
-    throw NumericalError(
-        fmt::format("dense eigenvalues: the reduced mass matrix is singular "
-                    "(reciprocal condition {:.1e}): the contact jams",
-                    rcond));
+    throw NumericalError(Refusal::contact_jams,
+                         fmt::format("dense eigenvalues: the reduced mass matrix is singular "
+                                     "(reciprocal condition {:.1e}): the contact jams",
+                                     rcond));
   }
   StateMatrix state{Eigen::MatrixXd::Zero(2 * size, 2 * size), W, L_p};
   state.matrix.topRightCorner(size, size) = L_p.transpose() * W.asDiagonal() * L_C;

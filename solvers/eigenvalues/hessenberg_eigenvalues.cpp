@@ -72,6 +72,7 @@ RealPairs eigenvalues_of(const Hessenberg& form) {
   call(work.data(), static_cast<int>(work.size()));
   if (info != 0) {
     throw NumericalError(
+        Refusal::eigenvalues_incomplete,
         fmt::format("dense eigenvalues: the QR iteration failed at {} of {}", info, n));
   }
   return pairs;

@@ -318,9 +318,10 @@ std::vector<Eigenvalue> secular_eigenvalues(const Pencil& pencil, const Spectrum
   SecularFunction function(pencil);
   SecularSpectrum spectrum = secular_spectrum(function, window);
   if (!spectrum.is_complete) {
-    throw SearchFailure(fmt::format(
-        "secular eigenvalues: the search for {} eigenvalues did not converge; use the dense method",
-        spectrum.num_counted));
+    throw SearchFailure(Refusal::eigenvalues_incomplete,
+                        fmt::format("secular eigenvalues: the search for {} eigenvalues did not "
+                                    "converge; use the dense method",
+                                    spectrum.num_counted));
   }
   for (Eigenvalue& eigenvalue : spectrum.eigenvalues) {
     eigenvalue.residual =

@@ -66,6 +66,7 @@ std::array<double, UMFPACK_CONTROL> controls() {
 
 [[noreturn]] void fail(int status) {
   throw NumericalError(
+      Refusal::eigenvalues_incomplete,
       status == UMFPACK_ERROR_out_of_memory
           ? std::string("sparse factorisation: memory is exhausted")
           : fmt::format("sparse factorisation: UMFPACK ends with status {}", status));

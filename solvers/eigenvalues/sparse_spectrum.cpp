@@ -35,7 +35,9 @@ Modes symmetric_modes(const SparseSystem& system, Eigen::Index count) {
   const SparseMatrix stiffness = 0.5 * (system.position + transposed);
   const double scale =
       stiffness.diagonal().cwiseAbs().maxCoeff() / system.mass.diagonal().cwiseAbs().maxCoeff();
-  if (!(scale > 0.0)) throw NumericalError("sparse eigenvalues: there is no stiffness");
+  if (!(scale > 0.0))
+    throw NumericalError(Refusal::eigenvalues_incomplete,
+                         "sparse eigenvalues: there is no stiffness");
   for (double shift = 1e-12 * scale;; shift *= 10.0) {
     const SparseMatrix shifted = stiffness + shift * system.mass;
     try {
@@ -113,10 +115,11 @@ void SparseSearch::start() {
   while (true) {
     count = std::min(count, size());
     if (count > most_modes) {
-      throw NumericalError(fmt::format(
-          "sparse eigenvalues: the window takes more than {} modes of the symmetric part; ask for "
-          "fewer eigenvalues or a lower frequency",
-          most_modes));
+      throw NumericalError(Refusal::eigenvalues_incomplete,
+                           fmt::format("sparse eigenvalues: the window takes more than {} modes of "
+                                       "the symmetric part; ask for "
+                                       "fewer eigenvalues or a lower frequency",
+                                       most_modes));
     }
     modes_ = symmetric_modes(pencil_.system(), count);
     const double highest = std::sqrt(std::max(0.0, modes_.omega_squared(count - 1)));
@@ -153,7 +156,8 @@ double SparseSearch::height_for_count() const {
   for (const Complex& s : far_)
     if (s.imag() > 0.0) heights.push_back(s.imag());
   std::sort(heights.begin(), heights.end());
-  if (heights.empty()) throw NumericalError("sparse eigenvalues: nothing vibrates");
+  if (heights.empty())
+    throw NumericalError(Refusal::eigenvalues_incomplete, "sparse eigenvalues: nothing vibrates");
   const auto count = static_cast<std::size_t>(*window_.count);
   for (std::size_t i = count; i > 0 && i < heights.size(); ++i)
     if (heights[i] - heights[i - 1] > 1e-6 * heights[i]) return 0.5 * (heights[i] + heights[i - 1]);

@@ -167,7 +167,8 @@ Eigen::VectorXd EquilibriumEquations::newton_step(const Values& equations) const
 }
 
 void EquilibriumEquations::refuse_singular(const Eigen::MatrixXd& matrix) const {
-  if (!matrix.allFinite()) throw NumericalError("equilibrium: the equations are not finite");
+  if (!matrix.allFinite())
+    throw NumericalError(Refusal::no_equilibrium, "equilibrium: the equations are not finite");
   // The direction of the smallest pivot, however small that is.
   Eigen::FullPivLU<Eigen::MatrixXd> factor(matrix);
   const double smallest = std::abs(factor.matrixLU().diagonal().tail<1>().value());
@@ -179,6 +180,7 @@ void EquilibriumEquations::refuse_singular(const Eigen::MatrixXd& matrix) const 
     Eigen::Index mode = 0;
     rigid.maxCoeff(&mode);
     throw NumericalError(
+        Refusal::no_equilibrium,
         fmt::format("equilibrium: the body '{}' is free to move: neither its supports nor closed "
                     "contacts hold it, or friction jams them",
                     ports_.body_of(mode)));
@@ -186,6 +188,7 @@ void EquilibriumEquations::refuse_singular(const Eigen::MatrixXd& matrix) const 
   Eigen::Index contact = 0;
   free.segment(ports_.num_ports, num_contacts()).maxCoeff(&contact);
   throw NumericalError(
+      Refusal::no_equilibrium,
       fmt::format("equilibrium: the force of {} is undetermined: friction jams it, or other "
                   "contacts hold the same motion",
                   contacts[static_cast<std::size_t>(contact)].point->name));

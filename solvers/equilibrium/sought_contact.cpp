@@ -30,6 +30,7 @@ void require_sliding(const EquilibriumState& state, const SoughtContact& contact
       !state.terms.friction_damping)
     return;
   throw NumericalError(
+      Refusal::no_equilibrium,
       fmt::format("equilibrium: '{}' does not slide, so that its friction has no direction; let a "
                   "drive move its "
                   "slave or its master, or its master spin, or leave friction out",

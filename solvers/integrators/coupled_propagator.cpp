@@ -8,7 +8,7 @@
 namespace stridor {
 void require_exact(const std::string& body, const TimeParameters& time) {
   if (time.integrator == Integrator::exact) return;
-  throw ConfigError("time.integrator",
+  throw ConfigError(Refusal::contradiction, "time.integrator",
                     fmt::format("must be exact: the modes of '{}' are coupled by gyroscopic or "
                                 "circulatory terms or by damping",
                                 body));

@@ -89,7 +89,7 @@ void require_resolved(const Eigen::MatrixXd& turn, const ConservativeMotions& co
   constexpr double largest = CoupledStep::largest_turn;
   if (fastest <= largest) return;
   throw ConfigError(
-      "time.step",
+      Refusal::step_too_large, "time.step",
       fmt::format("the fastest free motion of '{}', whose modes are coupled, has |s| = {:.4g} "
                   "1/s; with a step of {:.4g} s |s| h is {:.3g}, and {:g} is the most that exact "
                   "propagation takes; take a step of {:.3g} s or less",

@@ -11,7 +11,7 @@ namespace {
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& mass) {
   const Eigen::LLT<Eigen::MatrixXd> factor(mass);
   if (factor.info() != Eigen::Success)
-    throw NumericalError("the reduced mass is not positive definite");
+    throw NumericalError(Refusal::singular, "the reduced mass is not positive definite");
   return factor.solve(Eigen::MatrixXd::Identity(mass.rows(), mass.cols()));
 }
 

@@ -137,7 +137,7 @@ double retained_frequency(const System& system, const TimeParameters& time) {
   const double resolved = 2.0 / time.step;
   if (time.retain && time.retain->error && asked > resolved) {
     throw ConfigError(
-        "time.retain.error",
+        Refusal::step_too_large, "time.retain.error",
         fmt::format("takes modes up to {:.4g} Hz, of which a step of {:.4g} s resolves "
                     "those up to {:.4g} Hz; take time.step: {:.3g} or less",
                     asked / (2.0 * std::numbers::pi), time.step,

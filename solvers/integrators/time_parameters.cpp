@@ -22,7 +22,7 @@ const Schema& RetainParameters::schema() {
                  .optional = true})
           .check([](const RetainParameters& retain, std::vector<Problem>& problems) {
             if (retain.frequency.has_value() == retain.error.has_value())
-              problems.push_back({"", "takes either frequency or error", {}, 0, 0});
+              problems.push_back({Refusal::contradiction, "", "takes either frequency or error"});
           });
   return keys;
 }
@@ -30,27 +30,30 @@ const Schema& RetainParameters::schema() {
 namespace {
 
 void check_step(const TimeParameters& time, std::vector<Problem>& problems) {
-  const auto refuse = [&](const char* key, const char* text) {
-    problems.push_back({key, text, {}, 0, 0});
+  const auto refuse = [&](Refusal refusal, const char* key, const char* text) {
+    problems.push_back({refusal, key, text});
   };
   if (time.is_event_driven()) {
-    if (time.step > 0.0) refuse("step", "not used by the integrator event_driven");
+    if (time.step > 0.0)
+      refuse(Refusal::contradiction, "step", "not used by the integrator event_driven");
     if (time.coordinates != Coordinates::modal)
-      refuse("coordinates", "not used by the integrator event_driven");
-    if (time.retain) refuse("retain", "not used by the integrator event_driven");
+      refuse(Refusal::contradiction, "coordinates", "not used by the integrator event_driven");
+    if (time.retain)
+      refuse(Refusal::contradiction, "retain", "not used by the integrator event_driven");
     return;
   }
   if (!(time.step > 0.0)) {
-    refuse("", "`step` is missing, which this integrator needs");
+    refuse(Refusal::wrong_value, "", "`step` is missing, which this integrator needs");
     return;
   }
   if (time.coordinates != Coordinates::modal) {
     if (time.integrator == Integrator::exact)
-      refuse("integrator", "exact takes coordinates: modal");
-    if (time.retain) refuse("retain", "takes coordinates: modal");
+      refuse(Refusal::contradiction, "integrator", "exact takes coordinates: modal");
+    if (time.retain) refuse(Refusal::contradiction, "retain", "takes coordinates: modal");
   }
-  if (time.end < time.step) refuse("end", "is shorter than one step");
-  if (time.end / time.step > 1e15) refuse("step", "the run would take more than 1e15 steps");
+  if (time.end < time.step) refuse(Refusal::wrong_value, "end", "is shorter than one step");
+  if (time.end / time.step > 1e15)
+    refuse(Refusal::wrong_value, "step", "the run would take more than 1e15 steps");
 }
 
 /// A number that is not given where its member is 0.

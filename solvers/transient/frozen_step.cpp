@@ -114,7 +114,8 @@ FrozenModes frozen_modes(const Pencil& contacts, const TimeParameters& time,
 void check_closed(const Eigen::MatrixXd& closed) {
   for (Eigen::Index i = 0; i < closed.rows(); ++i) {
     if (!(closed(i, i) > 0.0))
-      throw NumericalError(fmt::format("no force of contact {} closes its gap: it jams", i));
+      throw NumericalError(Refusal::contact_jams,
+                           fmt::format("no force of contact {} closes its gap: it jams", i));
   }
 }
 

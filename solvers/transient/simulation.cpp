@@ -24,16 +24,17 @@ auto saved_statistics(auto& contact) {
 Simulation::Simulation(const System& given, const TimeParameters& time, Accounts accounts)
     : implementation_(std::make_unique<Implementation>()) {
   if (time.is_event_driven()) {
-    throw ConfigError("time.integrator",
+    throw ConfigError(Refusal::contradiction, "time.integrator",
                       "event_driven has no steps of a given length, which are asked for here; set "
                       "central_difference or exact and time.step");
   }
   if (time.coordinates != Coordinates::modal &&
       (time.integrator == Integrator::exact || time.retain)) {
-    throw ConfigError("time.coordinates", "integrator: exact and retain take coordinates: modal");
+    throw ConfigError(Refusal::contradiction, "time.coordinates",
+                      "integrator: exact and retain take coordinates: modal");
   }
   if ((time.integrator == Integrator::exact || time.retain) && accounts == Accounts::energy) {
-    throw ConfigError("record.energy",
+    throw ConfigError(Refusal::contradiction, "record.energy",
                       "the energy ledger takes time.integrator: central_difference with all modes");
   }
   const bool has_substrate =
@@ -41,7 +42,7 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
                   [](const ContactPoint& point) { return point.substrate.has_value(); });
   for (const ContactPoint& point : given.contacts) {
     if (point.substrate && point.assumption != ContactAssumption::film) {
-      throw ConfigError("contact.assumption",
+      throw ConfigError(Refusal::missing, "contact.assumption",
                         "must be `film` on a half_space: the others slide on a rigid constraint, "
                         "and cannot be compared with it");
     }
@@ -50,19 +51,19 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
     if (!point.face) continue;
     for (const int body : {point.slave_body, point.face->body}) {
       if (!given.bodies[static_cast<std::size_t>(body)].follows_drive()) continue;
-      throw ConfigError(given.drive_of(body)->key + ".moves",
+      throw ConfigError(Refusal::wrong_value, given.drive_of(body)->key + ".moves",
                         fmt::format("'{}' touches a face of a spinning body, on which contacts "
                                     "stay where they are: the drive cannot move it",
                                     given.bodies[static_cast<std::size_t>(body)].name));
     }
   }
   if (has_substrate && time.retain) {
-    throw ConfigError("time.retain",
+    throw ConfigError(Refusal::contradiction, "time.retain",
                       "a contact with a substrate takes all modes; leave out the key, or reduce "
                       "the bodies to fewer modes (reduction.fixed_interface_modes)");
   }
   if (has_substrate && accounts == Accounts::energy) {
-    throw ConfigError("record.energy",
+    throw ConfigError(Refusal::contradiction, "record.energy",
                       "the energy ledger does not know what a substrate stores and dissipates; "
                       "leave it out");
   }
@@ -70,7 +71,7 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
   const StepLimit limit = step_limit(given, time);
   if (!(time.step <= limit.step)) {
     throw ConfigError(
-        "time.step",
+        Refusal::step_too_large, "time.step",
         fmt::format(
             "{:.6g} s is above the largest stable step {:.6g} s of the central difference, set by "
             "the highest mode of '{}'; take at most that, or integrator: exact, which has no such "
@@ -271,8 +272,35 @@ const EnergyLedger* Simulation::energy() const {
   return implementation_->ledger ? &*implementation_->ledger : nullptr;
 }
 
+Refusal refusal_of(StepOutcome outcome) {
+  switch (outcome) {
+    case StepOutcome::master_lost:
+      return Refusal::left_the_surface;
+    case StepOutcome::pulling:
+      return Refusal::contact_pulls;
+    case StepOutcome::sliding_reversed:
+      return Refusal::sliding_turns;
+    case StepOutcome::jammed:
+      return Refusal::contact_jams;
+    case StepOutcome::not_converged:
+      return Refusal::no_convergence;
+    case StepOutcome::sunk:
+      return Refusal::indentation_too_deep;
+    case StepOutcome::overshot:
+      return Refusal::substrate_too_stiff;
+    case StepOutcome::diverged:
+    case StepOutcome::done:
+      break;
+  }
+  return Refusal::diverged;
+}
+
 const std::string& Simulation::failure() const {
   return implementation_->failure;
+}
+
+Refusal Simulation::refusal() const {
+  return implementation_->refusal;
 }
 
 State Simulation::save() const {

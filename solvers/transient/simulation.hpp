@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/refusals.hpp"
 #include "core/state.hpp"
 #include "coupling/system/system.hpp"
 #include "solvers/contact/contact_record.hpp"
@@ -33,6 +34,9 @@ enum class StepOutcome {
   sunk,              ///< a slave point is deeper in its substrate than its radius, or has gone through a plate
   overshot,          ///< a substrate is so stiff for the step that indentations grow with each
 };
+
+/// The kind of a failure.
+Refusal refusal_of(StepOutcome outcome);
 
 /// Quantities that a simulation keeps account of from its start.
 enum class Accounts {
@@ -109,6 +113,7 @@ class Simulation {
 
   /// Failure of the last step that did not end with `done`: place, time, size and remedy.
   const std::string& failure() const;
+  Refusal refusal() const;  ///< its kind
 
   struct Implementation;  ///< see simulation_implementation.hpp
   Implementation& implementation() { return *implementation_; }

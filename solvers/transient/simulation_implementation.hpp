@@ -86,6 +86,7 @@ struct Simulation::Implementation {
   std::vector<ContactRecord*> records;  ///< of all contacts, in the order of the system
   std::vector<std::vector<double>> forces;  ///< per body, at its ports
   std::string failure;
+  Refusal refusal = Refusal::diverged;  ///< kind of `failure`
 
   // Quantities that no longer change are not computed again.
   double loads_constant_from = 0.0;
@@ -402,9 +403,9 @@ struct Simulation::Implementation {
       fit_forces();
       if (lost) {
         fail(faces[*lost], StepOutcome::master_lost);
-        throw NumericalError(failure);
+        throw NumericalError(refusal, failure);
       }
-      if (solve() != StepOutcome::done) throw NumericalError(failure);
+      if (solve() != StepOutcome::done) throw NumericalError(refusal, failure);
     };
     const bool is_loaded = std::any_of(drives.begin(), drives.end(), [](const Drive& drive) {
       return drive.load.value(0.0) != 0.0 || drive.shift.value(0.0) != 0.0 ||
@@ -761,14 +762,22 @@ struct Simulation::Implementation {
       const Propagator::Motion motion = bodies[b]->motion(forces[b].data());
       const double size = motion.displacement.squaredNorm() + motion.velocity.squaredNorm();
       if (size < absurd_motion) continue;
-      failure = fmt::format(
-          "{} at t = {:.9g} s (step {}): the sum of the squares of its displacements and "
-          "velocities is {:.3g}: the computation has diverged. Remedy: take a smaller time.step, "
-          "or check material, damping and initial state of this body.",
-          names[b], time(index), index, size);
-      return StepOutcome::diverged;
+      return fail_with(
+          StepOutcome::diverged,
+          fmt::format(
+              "{} at t = {:.9g} s (step {}): the sum of the squares of its displacements and "
+              "velocities is {:.3g}: the computation has diverged. Remedy: take a smaller "
+              "time.step, "
+              "or check material, damping and initial state of this body.",
+              names[b], time(index), index, size));
     }
     return StepOutcome::done;
+  }
+
+  [[gnu::cold]] StepOutcome fail_with(StepOutcome outcome, std::string text) {
+    failure = std::move(text);
+    refusal = refusal_of(outcome);
+    return outcome;
   }
 
   [[gnu::cold]] StepOutcome fail(const RunningContact& contact, StepOutcome outcome) {
@@ -814,18 +823,18 @@ struct Simulation::Implementation {
         return fail_anywhere(contact, fmt::format("position {:.6g} m", contact.sliding.position()),
                              outcome);
     }
-    failure = fmt::format("{} at t = {:.9g} s (step {}), position {:.6g} m: {}. Remedy: {}.",
-                          contact.point().name, time(index), index, contact.sliding.position(),
-                          what, remedy);
-    return outcome;
+    return fail_with(
+        outcome, fmt::format("{} at t = {:.9g} s (step {}), position {:.6g} m: {}. Remedy: {}.",
+                             contact.point().name, time(index), index, contact.sliding.position(),
+                             what, remedy));
   }
 
   [[gnu::cold]] StepOutcome fail(const RunningFace& face, StepOutcome outcome) {
     const std::string where = face.kinematics->where();
     const auto say = [&](const std::string& what, const char* remedy) {
-      failure = fmt::format("{} at t = {:.9g} s (step {}), {}: {}. Remedy: {}.", face.point().name,
-                            time(index), index, where, what, remedy);
-      return outcome;
+      return fail_with(outcome,
+                       fmt::format("{} at t = {:.9g} s (step {}), {}: {}. Remedy: {}.",
+                                   face.point().name, time(index), index, where, what, remedy));
     };
     if (outcome == StepOutcome::sunk) {
       return say(fmt::format("it has gone {:.4g} m into {}, more than half its thickness",
@@ -881,9 +890,9 @@ struct Simulation::Implementation {
       case StepOutcome::done:
         break;
     }
-    failure = fmt::format("{} at t = {:.9g} s (step {}), {}: {}. Remedy: {}.",
-                          contact.point().name, time(index), index, where, what, remedy);
-    return outcome;
+    return fail_with(outcome,
+                     fmt::format("{} at t = {:.9g} s (step {}), {}: {}. Remedy: {}.",
+                                 contact.point().name, time(index), index, where, what, remedy));
   }
 };
 

@@ -161,20 +161,14 @@ const Schema& AnnularPlateParameters::schema() {
           .check([](const P& plate, std::vector<Problem>& problems) {
             if (plate.outer_radius <= plate.inner_radius) {
               problems.push_back(
-                  {"outer_radius",
+                  {Refusal::wrong_value, "outer_radius",
                    fmt::format("must be larger than inner_radius = {:g} m, got {:g} m",
-                               plate.inner_radius, plate.outer_radius),
-                   {},
-                   0,
-                   0});
+                               plate.inner_radius, plate.outer_radius)});
             }
             if (plate.radial_modes > plate.radial_terms) {
-              problems.push_back({"radial_modes",
+              problems.push_back({Refusal::wrong_value, "radial_modes",
                                   fmt::format("must not exceed radial_terms = {}, got {}",
-                                              plate.radial_terms, plate.radial_modes),
-                                  {},
-                                  0,
-                                  0});
+                                              plate.radial_terms, plate.radial_modes)});
             }
           });
   return keys;

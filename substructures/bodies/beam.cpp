@@ -324,13 +324,10 @@ std::vector<Problem> BeamParameters::warnings() const {
   constexpr double most_slender = 1e4;
   const double ratio = length / thickness;
   if (ratio >= 1.0 && ratio <= most_slender) return {};
-  return {{"thickness",
+  return {{Refusal::wrong_value, "thickness",
            fmt::format(
                "is {:g} m on a length of {:g} m: {}; check the units of both", thickness, length,
-               ratio < 1.0 ? "thicker than long" : fmt::format("{:.3g} times slender", ratio)),
-           {},
-           0,
-           0}};
+               ratio < 1.0 ? "thicker than long" : fmt::format("{:.3g} times slender", ratio))}};
 }
 
 ReductionSize size_of(const MeshParameters& mesh, const ReductionParameters& reduction,

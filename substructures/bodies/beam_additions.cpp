@@ -74,14 +74,16 @@ void add_beam_point(const std::string& key, const std::string& name,
                     const BeamPointParameters& point, BodyMatrices& body) {
   if (body.points.contains(name) || body.surfaces.contains(name)) {
     throw ConfigError(
-        key, fmt::format("'{}' is a point or surface of every beam; take another name", name));
+        Refusal::doubled_name, key,
+        fmt::format("'{}' is a point or surface of every beam; take another name", name));
   }
   const auto surface = body.surfaces.find(point.on);
   if (surface == body.surfaces.end()) {
     std::vector<std::string> names;
     append_names(body.surfaces, names);
-    throw ConfigError(key + ".on", fmt::format("there is no surface '{}'{}", point.on,
-                                               known_names(point.on, names)));
+    throw ConfigError(
+        Refusal::unknown_name, key + ".on",
+        fmt::format("there is no surface '{}'{}", point.on, known_names(point.on, names)));
   }
   const std::vector<int>& nodes = surface->second;
   const Eigen::RowVector3d first = body.nodes.row(nodes.front());
@@ -90,8 +92,9 @@ void add_beam_point(const std::string& key, const std::string& name,
   constexpr double on_a_node = 1e-9;  // of an edge
   const double place = num_edges * point.at / length;
   if (!(place <= num_edges * (1.0 + on_a_node))) {
-    throw ConfigError(key + ".at", fmt::format("{:g} m lies beyond the surface '{}' of {:g} m",
-                                               point.at, point.on, length));
+    throw ConfigError(
+        Refusal::off_the_surface, key + ".at",
+        fmt::format("{:g} m lies beyond the surface '{}' of {:g} m", point.at, point.on, length));
   }
   const double nearest = std::round(2.0 * place);
   if (std::abs(2.0 * place - nearest) <= on_a_node) {

@@ -27,7 +27,7 @@ const Schema& MeshParameters::schema() {
           .check([](const MeshParameters& mesh, std::vector<Problem>& problems) {
             if (static_cast<double>(mesh.along) * mesh.through > 1e7) {
               problems.push_back(
-                  {"along", "along x through must not exceed 1e7 elements", {}, 0, 0});
+                  {Refusal::wrong_value, "along", "along x through must not exceed 1e7 elements"});
             }
           });
   return keys;
@@ -48,11 +48,9 @@ const Schema& SupportParameters::schema() {
                    .optional = true})
           .check([](const SupportParameters& supports, std::vector<Problem>& problems) {
             if (supports.start == Support::guided && supports.end == Support::guided) {
-              problems.push_back({"end",
-                                  "both ends are guided; the drive can hold one end of a body only",
-                                  {},
-                                  0,
-                                  0});
+              problems.push_back(
+                  {Refusal::wrong_value, "end",
+                   "both ends are guided; the drive can hold one end of a body only"});
             }
           });
   return keys;
@@ -121,25 +119,19 @@ const Schema& BeamParameters::schema() {
           .check([](const BeamParameters& beam, std::vector<Problem>& problems) {
             if (beam.across == AcrossMotion::held) return;
             if (beam.supports.start == Support::free && beam.supports.end == Support::free) return;
-            problems.push_back({"across",
-                                "must be `held`: a support of an end holds it along z as well",
-                                {},
-                                0,
-                                0});
+            problems.push_back({Refusal::wrong_value, "across",
+                                "must be `held`: a support of an end holds it along z as well"});
           })
           .check([](const BeamParameters& beam, std::vector<Problem>& problems) {
             constexpr double flattest = 1e10;
             const double ratio =
                 beam.length / beam.mesh.along / (beam.thickness / beam.mesh.through);
             if (ratio <= flattest && ratio >= 1.0 / flattest) return;
-            problems.push_back({"thickness",
+            problems.push_back({Refusal::wrong_value, "thickness",
                                 fmt::format("{:g} m on a length of {:g} m makes elements {:.3g} "
                                             "times as long as high, of which no stiffness can be "
                                             "computed; check the units of both",
-                                            beam.thickness, beam.length, ratio),
-                                {},
-                                0,
-                                0});
+                                            beam.thickness, beam.length, ratio)});
           });
   return keys;
 }

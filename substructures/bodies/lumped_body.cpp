@@ -41,8 +41,9 @@ int node_of(const LumpedParameters& body, const std::string& name, const std::st
   if (found != body.masses.end())
     return static_cast<int>(std::distance(body.masses.begin(), found));
   const std::vector<std::string> names = names_of(body.masses);
-  throw ConfigError(key, fmt::format("there is no mass '{}'{} (there are: {})", name,
-                                     did_you_mean(name, names), fmt::join(names, ", ")));
+  throw ConfigError(Refusal::unknown_name, key,
+                    fmt::format("there is no mass '{}'{} (there are: {})", name,
+                                did_you_mean(name, names), fmt::join(names, ", ")));
 }
 
 /// Adds springs and dampers to the matrices of a body.
@@ -57,7 +58,8 @@ class SpringAssembly {
     for (const std::string& mass : spring.at)
       nodes.push_back(node_of(parameters_, mass, key + ".at"));
     if (nodes.size() == 2 && nodes[0] == nodes[1])
-      throw ConfigError(key + ".at", "must be two different masses, or one to the ground");
+      throw ConfigError(Refusal::wrong_size, key + ".at",
+                        "must be two different masses, or one to the ground");
     const bool is_along =
         spring.stiffness.along || (spring.damping && spring.damping->along);
     const Eigen::Vector3d along =
@@ -80,7 +82,7 @@ class SpringAssembly {
     const Eigen::Vector3d along = place_of(parameters_.masses.at(spring.at[1])) -
                                   place_of(parameters_.masses.at(spring.at[0]));
     if (along.norm() > 0.0) return along.normalized();
-    throw ConfigError(key + ".direction",
+    throw ConfigError(Refusal::missing, key + ".direction",
                       "missing: the two masses stand at one place, so that no line joins them");
   }
 
@@ -135,15 +137,13 @@ void check_directions(const LumpedParameters& body, std::vector<Problem>& proble
                           direction_names.end();
     const auto here = given.begin() + static_cast<std::ptrdiff_t>(i);
     if (is_known && std::find(given.begin(), here, given[i]) == here) continue;
-    problems.push_back({fmt::format("directions.{}", i),
-                        fmt::format("expected x, y or z, each once, got '{}'", given[i]),
-                        {},
-                        0,
-                        0});
+    problems.push_back({Refusal::wrong_value, fmt::format("directions.{}", i),
+                        fmt::format("expected x, y or z, each once, got '{}'", given[i])});
   }
   if (given.empty())
-    problems.push_back({"directions", "is empty; name some of x, y and z", {}, 0, 0});
-  if (body.masses.empty()) problems.push_back({"masses", "is empty; a body needs one", {}, 0, 0});
+    problems.push_back({Refusal::missing, "directions", "is empty; name some of x, y and z"});
+  if (body.masses.empty())
+    problems.push_back({Refusal::missing, "masses", "is empty; a body needs one"});
 }
 
 }  // namespace
@@ -160,7 +160,8 @@ const Schema& LumpedMassParameters::schema() {
                       .optional = true})
           .check([](const P& mass, std::vector<Problem>& problems) {
             if (!mass.at.empty() && mass.at.size() != 2 && mass.at.size() != 3)
-              problems.push_back({"at", "must be two or three lengths: x, y and z", {}, 0, 0});
+              problems.push_back(
+                  {Refusal::wrong_size, "at", "must be two or three lengths: x, y and z"});
           });
   return keys;
 }
@@ -186,15 +187,12 @@ const Schema& LumpedSpringParameters::schema() {
                     .list_key = "vector"})
           .check([](const P& spring, std::vector<Problem>& problems) {
             if (spring.at.size() != 1 && spring.at.size() != 2)
-              problems.push_back({"at", "must be one mass or two", {}, 0, 0});
+              problems.push_back({Refusal::wrong_value, "at", "must be one mass or two"});
             if (spring.direction && !spring.stiffness.along &&
                 !(spring.damping && spring.damping->along)) {
-              problems.push_back({"direction",
+              problems.push_back({Refusal::contradiction, "direction",
                                   "is not used: this stiffness is a matrix, which has its "
-                                  "directions in itself",
-                                  {},
-                                  0,
-                                  0});
+                                  "directions in itself"});
             }
           });
   return keys;
@@ -277,7 +275,8 @@ BodyMatrices LumpedParameters::make() const {
   const int node = node_of(*this, *guided, "guided");
   body.load_dof = body.node_dofs[static_cast<std::size_t>(node)][1];
   if (body.load_dof == BodyMatrices::held)
-    throw ConfigError("guided", "needs a mass that moves in y, on which the load acts");
+    throw ConfigError(Refusal::missing, "guided",
+                      "needs a mass that moves in y, on which the load acts");
   body.base_inertia = Eigen::VectorXd::Zero(n);
   for (const auto& dofs : body.node_dofs) {
     if (dofs[0] != BodyMatrices::held)

@@ -25,14 +25,15 @@ std::string listed(const std::map<std::string, MatrixPointParameters>& points) {
 /// Keys that mean something only where it is known which rows are which nodes.
 void refuse_node_keys(const TouchedMatrixBodyParameters& parameters) {
   const auto refuse = [](const std::string& key) {
-    throw ConfigError(key,
+    throw ConfigError(Refusal::missing, key,
                       "needs to know which rows of the matrices are which nodes; give `unknowns`");
   };
   for (const auto& [name, point] : parameters.points) {
     if (point.node) refuse("points." + name + ".node");
     if (!point.mean_of.empty()) refuse("points." + name + ".mean_of");
     if (point.at.size() != 2)
-      throw ConfigError("points." + name + ".at", "must be two lengths, x and y");
+      throw ConfigError(Refusal::wrong_size, "points." + name + ".at",
+                        "must be two lengths, x and y");
   }
   for (const auto& [name, surface] : parameters.surfaces)
     if (surface.points.empty()) refuse("surfaces." + name);
@@ -46,7 +47,8 @@ void refuse_node_keys(const TouchedMatrixBodyParameters& parameters) {
 int dof_of(std::int64_t number, Eigen::Index num_dofs, const std::string& key) {
   if (number > num_dofs) {
     throw ConfigError(
-        key, fmt::format("there is no unknown {}: the matrices have {}", number, num_dofs));
+        Refusal::unknown_name, key,
+        fmt::format("there is no unknown {}: the matrices have {}", number, num_dofs));
   }
   return static_cast<int>(number) - 1;
 }
@@ -74,19 +76,22 @@ void add_point_surfaces(const TouchedMatrixBodyParameters& parameters, BodyMatri
     if (surface.points.empty()) continue;
     const std::string key = "surfaces." + name + ".points";
     if (body.points.contains(name))
-      throw ConfigError("surfaces." + name, "a point has this name already; take another");
+      throw ConfigError(Refusal::doubled_name, "surfaces." + name,
+                        "a point has this name already; take another");
     std::vector<int> nodes;
     for (const std::string& point : surface.points) {
       const auto found = body.points.find(point);
       if (found == body.points.end()) {
         std::vector<std::string> names;
         for (const auto& entry : body.points) names.push_back(entry.first);
-        throw ConfigError(key, fmt::format("there is no point '{}'{} (there are: {})", point,
-                                           did_you_mean(point, names), listed(parameters.points)));
+        throw ConfigError(Refusal::unknown_name, key,
+                          fmt::format("there is no point '{}'{} (there are: {})", point,
+                                      did_you_mean(point, names), listed(parameters.points)));
       }
       if (!nodes.empty() &&
           !((body.nodes.row(nodes.back()) - body.nodes.row(found->second)).norm() > 0.0)) {
-        throw ConfigError(key, fmt::format("'{}' stands where the point before it does", point));
+        throw ConfigError(Refusal::doubled_name, key,
+                          fmt::format("'{}' stands where the point before it does", point));
       }
       nodes.push_back(found->second);
     }
@@ -116,7 +121,7 @@ BodyMatrices make_matrix_body(const TouchedMatrixBodyParameters& parameters) {
   const MatrixGuideParameters& guide = *parameters.guided;
   body.load_dof = dof_of(guide.load, n, "guided.load");
   if (static_cast<Eigen::Index>(guide.translation.size()) != n) {
-    throw ConfigError("guided.translation",
+    throw ConfigError(Refusal::wrong_size, "guided.translation",
                       fmt::format("has {} numbers, expected one for each of the {} unknowns",
                                   guide.translation.size(), n));
   }

@@ -67,11 +67,9 @@ const Schema& MatrixBodyParameters::schema() {
                                      term.role != MatrixRole::structural;
                             });
             if (!body.stiffness.empty() || has_position) return;
-            problems.push_back({"stiffness",
-                                "is missing; give it, or a term of the role stiffness or position",
-                                {},
-                                0,
-                                0});
+            problems.push_back(
+                {Refusal::missing, "stiffness",
+                 "is missing; give it, or a term of the role stiffness or position"});
           });
   return keys;
 }
@@ -130,19 +128,17 @@ const Schema& MatrixPointParameters::schema() {
           .check([](const P& point, std::vector<Problem>& problems) {
             const bool is_of_nodes = point.node || !point.mean_of.empty();
             if (point.node && !point.mean_of.empty())
-              problems.push_back(
-                  {"mean_of", "is not used: the point is given already; leave it out", {}, 0, 0});
+              problems.push_back({Refusal::contradiction, "mean_of",
+                                  "is not used: the point is given already; leave it out"});
             if (is_of_nodes && (!point.at.empty() || point.x > 0 || point.y > 0)) {
-              problems.push_back({point.node ? "node" : "mean_of",
-                                  "is not used: the point is given already; leave it out",
-                                  {},
-                                  0,
-                                  0});
+              problems.push_back({Refusal::contradiction, point.node ? "node" : "mean_of",
+                                  "is not used: the point is given already; leave it out"});
             }
             if (!is_of_nodes && point.at.empty())
-              problems.push_back({"at", "is missing; give it, `node` or `mean_of`", {}, 0, 0});
+              problems.push_back(
+                  {Refusal::missing, "at", "is missing; give it, `node` or `mean_of`"});
             if (!point.at.empty() && point.at.size() != 2 && point.at.size() != 3)
-              problems.push_back({"at", "must be two or three lengths", {}, 0, 0});
+              problems.push_back({Refusal::wrong_size, "at", "must be two or three lengths"});
           });
   return keys;
 }
@@ -167,9 +163,10 @@ const Schema& MatrixSurfaceParameters::schema() {
           .check([](const P& surface, std::vector<Problem>& problems) {
             const bool is_region = surface.plane || surface.cylinder || surface.box;
             if (is_region && !surface.points.empty())
-              problems.push_back({"points", "is not used beside a region; leave it out", {}, 0, 0});
+              problems.push_back(
+                  {Refusal::contradiction, "points", "is not used beside a region; leave it out"});
             if (!is_region && surface.points.size() < 2)
-              problems.push_back({"points", "must be at least two points", {}, 0, 0});
+              problems.push_back({Refusal::wrong_value, "points", "must be at least two points"});
           });
   return keys;
 }
@@ -194,12 +191,13 @@ const Schema& MatrixGuideParameters::schema() {
           .check([](const P& guide, std::vector<Problem>& problems) {
             const bool is_by_number = guide.load > 0 || !guide.translation.empty();
             if (is_by_number && !guide.on.empty())
-              problems.push_back({"on", "is not used beside `load`; leave it out", {}, 0, 0});
+              problems.push_back(
+                  {Refusal::contradiction, "on", "is not used beside `load`; leave it out"});
             if (!guide.on.empty()) return;
             if (guide.load == 0)
-              problems.push_back({"load", "is missing; give it, or `on`", {}, 0, 0});
+              problems.push_back({Refusal::missing, "load", "is missing; give it, or `on`"});
             if (guide.translation.empty())
-              problems.push_back({"translation", "is missing; give it, or `on`", {}, 0, 0});
+              problems.push_back({Refusal::missing, "translation", "is missing; give it, or `on`"});
           });
   return keys;
 }

@@ -40,9 +40,11 @@ class MeshAdditions {
   void add_point(const std::string& name, const MeshPointParameters& point) {
     const std::string key = "points." + name;
     if (mesh_.surfaces.contains(name))
-      throw ConfigError(key, fmt::format("'{}' is a surface; take another name", name));
+      throw ConfigError(Refusal::doubled_name, key,
+                        fmt::format("'{}' is a surface; take another name", name));
     if (body_.points.contains(name))
-      throw ConfigError(key, fmt::format("'{}' is a point already; take another name", name));
+      throw ConfigError(Refusal::doubled_name, key,
+                        fmt::format("'{}' is a point already; take another name", name));
     if (point.node) {
       body_.points[name] = labelled(*point.node, key + ".node");
     } else if (!point.mean_of.empty()) {
@@ -56,7 +58,8 @@ class MeshAdditions {
     const auto found = std::find(mesh_.node_labels.begin(), mesh_.node_labels.end(), label);
     if (found != mesh_.node_labels.end())
       return static_cast<int>(found - mesh_.node_labels.begin());
-    throw ConfigError(key, fmt::format("no element of the mesh has a node {}", label));
+    throw ConfigError(Refusal::unknown_name, key,
+                      fmt::format("no element of the mesh has a node {}", label));
   }
 
   void add_mean(const std::string& name, const std::string& key, const MeshPointParameters& point) {
@@ -102,7 +105,7 @@ class MeshAdditions {
     constexpr double least = 1e-12;
     if (is_planar ? !(inertia(2, 2) > 0.0)
                   : !(pairs.eigenvalues()(0) > least * pairs.eigenvalues()(2)))
-      throw ConfigError(key + ".rotation",
+      throw ConfigError(Refusal::wrong_mesh, key + ".rotation",
                         "is not defined: all nodes are on one line, about which they do not turn");
     const Eigen::Matrix3d inverse =
         is_planar ? Eigen::Matrix3d(Eigen::Vector3d(0.0, 0.0, 1.0 / inertia(2, 2)).asDiagonal())
@@ -133,7 +136,7 @@ class MeshAdditions {
         find_point(mesh_, named_.turned(given), share_of_extent * extent_of(mesh_));
     if (found.weights.empty()) {
       throw ConfigError(
-          key + ".at",
+          Refusal::off_the_surface, key + ".at",
           fmt::format("lies outside of the mesh: its nearest node, {}, is at {}, {:.4g} m away",
                       mesh_.node_labels[static_cast<std::size_t>(found.nearest)],
                       named_.place_text(found.nearest), found.distance));
@@ -152,17 +155,19 @@ class MeshAdditions {
   void add_mass(const std::string& key, const MeshMassParameters& mass) {
     const auto point = body_.points.find(mass.on);
     if (point == body_.points.end()) {
-      throw ConfigError(key + ".on", fmt::format("there is no point or rigid region '{}'{}",
-                                                 mass.on, known(mass.on, names_of(body_.points))));
+      throw ConfigError(Refusal::unknown_name, key + ".on",
+                        fmt::format("there is no point or rigid region '{}'{}", mass.on,
+                                    known(mass.on, names_of(body_.points))));
     }
     std::vector<Eigen::Triplet<double>> entries;
     const auto add = [&](const DofSum& sum, double inertia) {
       constexpr std::size_t most = 600;
       if (sum.size() > most)
         throw ConfigError(
-            key + ".on", fmt::format("'{}' is a mean over {} unknowns, all of which the mass would "
-                                     "couple; make it a rigid region",
-                                     mass.on, sum.size()));
+            Refusal::contradiction, key + ".on",
+            fmt::format("'{}' is a mean over {} unknowns, all of which the mass would "
+                        "couple; make it a rigid region",
+                        mass.on, sum.size()));
       for (const DofWeight& row : sum)
         for (const DofWeight& column : sum)
           entries.emplace_back(row.dof, column.dof, inertia * row.weight * column.weight);
@@ -173,11 +178,11 @@ class MeshAdditions {
         body_.base_inertia(dof.dof) += mass.mass * dof.weight;
     if (!mass.inertia.empty()) {
       if (!constraints_.regions.contains(mass.on))
-        throw ConfigError(key + ".inertia",
+        throw ConfigError(Refusal::contradiction, key + ".inertia",
                           fmt::format("is of a rigid region; '{}' is a point", mass.on));
       const std::size_t expected = named_.dimension == 2 ? 1 : 3;
       if (mass.inertia.size() != expected)
-        throw ConfigError(key + ".inertia",
+        throw ConfigError(Refusal::wrong_size, key + ".inertia",
                           expected == 1 ? "is one number in a plane" : "is three numbers in space");
       const int rotation = body_.points.at(mass.on + "_rotation");
       for (std::size_t i = 0; i < expected; ++i)
@@ -193,7 +198,7 @@ class MeshAdditions {
     const std::string key = "loads." + name;
     if (mesh_.surfaces.contains(name) || body_.points.contains(name) ||
         parameters_.springs.contains(name))
-      throw ConfigError(key,
+      throw ConfigError(Refusal::doubled_name, key,
                         fmt::format("'{}' is a surface, point or spring; take another name", name));
     const MeshSections sections = named_.sections();
     std::vector<ElementSide> sides;
@@ -216,7 +221,8 @@ class MeshAdditions {
         all.push_back({dof.dof, force * dof.weight});
     }
     body_.loads[name] = merged(std::move(all));
-    if (body_.loads[name].empty()) throw ConfigError(key, "acts on held nodes alone");
+    if (body_.loads[name].empty())
+      throw ConfigError(Refusal::motion_is_held, key, "acts on held nodes alone");
   }
 
   void add_springs() {

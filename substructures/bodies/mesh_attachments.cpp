@@ -11,13 +11,15 @@
 namespace stridor {
 namespace {
 
-void add_problem(std::vector<Problem>& problems, const char* key, std::string text) {
-  problems.push_back({key, std::move(text), {}, 0, 0});
+void add_problem(std::vector<Problem>& problems, Refusal refusal, const char* key,
+                 std::string text) {
+  problems.push_back({refusal, key, std::move(text)});
 }
 
 void expect_names(const std::vector<std::string>& on, const char* what,
                   std::vector<Problem>& problems) {
-  if (on.empty()) add_problem(problems, "on", fmt::format("must name a {}", what));
+  if (on.empty())
+    add_problem(problems, Refusal::missing, "on", fmt::format("must name a {}", what));
 }
 
 template <std::size_t n>
@@ -50,7 +52,7 @@ const Schema& MeshSupportParameters::schema() {
             for (const std::string& direction : support.held) {
               const bool of_line = is_one_of(direction, cylindrical);
               if (!of_line && !is_one_of(direction, cartesian) && !is_one_of(direction, rotations))
-                add_problem(problems, "held",
+                add_problem(problems, Refusal::wrong_value, "held",
                             fmt::format("'{}' is no direction: x, y, z, radial, tangential, axial, "
                                         "or rx, ry, rz of a rigid region",
                                         direction));
@@ -58,10 +60,10 @@ const Schema& MeshSupportParameters::schema() {
               is_straight |= !of_line;
             }
             if (is_round && is_straight)
-              add_problem(problems, "held",
+              add_problem(problems, Refusal::contradiction, "held",
                           "has directions about a line beside others; make two supports");
             if (support.about && !is_round)
-              add_problem(problems, "about",
+              add_problem(problems, Refusal::contradiction, "about",
                           "is not used: no direction is radial, tangential or axial");
             expect_names(support.on, "surface, node set or rigid region", problems);
           });
@@ -103,16 +105,17 @@ const Schema& MeshPointParameters::schema() {
                  .optional = true})
           .check([](const P& point, std::vector<Problem>& problems) {
             const auto superfluous = [&](const char* key) {
-              add_problem(problems, key,
+              add_problem(problems, Refusal::contradiction, key,
                           "is not used: the point is given already; leave one of them out");
             };
             const bool is_placed = !point.at.empty();
             if (point.node && is_placed) superfluous("node");
             if (!point.mean_of.empty() && (point.node || is_placed)) superfluous("mean_of");
             if (!is_placed && !point.node && point.mean_of.empty())
-              add_problem(problems, "at", "is missing; give it, `node` or `mean_of`");
+              add_problem(problems, Refusal::missing, "at",
+                          "is missing; give it, `node` or `mean_of`");
             if (point.rotation && point.mean_of.empty())
-              add_problem(problems, "rotation", "goes with `mean_of`");
+              add_problem(problems, Refusal::contradiction, "rotation", "goes with `mean_of`");
             expect_components(point.at, "at", true, problems);
           });
   return keys;
@@ -158,7 +161,8 @@ const Schema& MeshTieParameters::schema() {
                  .optional = true})
           .check([](const P& tie, std::vector<Problem>& problems) {
             if (tie.slave == tie.master)
-              add_problem(problems, "master", "must be another surface than the slave");
+              add_problem(problems, Refusal::wrong_value, "master",
+                          "must be another surface than the slave");
           });
   return keys;
 }
@@ -178,9 +182,11 @@ const Schema& MeshMassParameters::schema() {
                       .optional = true})
           .check([](const P& given, std::vector<Problem>& problems) {
             if (!given.inertia.empty() && given.inertia.size() != 1 && given.inertia.size() != 3)
-              add_problem(problems, "inertia", "must be one number, or three");
+              add_problem(problems, Refusal::wrong_value, "inertia",
+                          "must be one number, or three");
             if (given.mass == 0.0 && given.inertia.empty())
-              add_problem(problems, "mass", "must not be zero without an inertia");
+              add_problem(problems, Refusal::wrong_value, "mass",
+                          "must not be zero without an inertia");
           });
   return keys;
 }
@@ -201,7 +207,7 @@ const Schema& MeshLoadParameters::schema() {
             expect_names(load.on, "surface", problems);
             expect_components(load.direction, "direction", true, problems);
             if (!load.direction.empty() && !(in_space(load.direction).norm() > 0.0))
-              add_problem(problems, "direction", "must not be zero");
+              add_problem(problems, Refusal::wrong_value, "direction", "must not be zero");
           });
   return keys;
 }

@@ -95,12 +95,9 @@ const Schema& MeshBodyParameters::schema() {
           .check([](const P& body, std::vector<Problem>& problems) {
             if (!body.spin || body.springs.empty() || body.damping.beta == 0.0) return;
             problems.push_back(
-                {"damping.beta",
+                {Refusal::contradiction, "damping.beta",
                  "damps the springs too, which rest while the body spins; damp its materials "
-                 "(material.damping.beta) and leave it at 0",
-                 {},
-                 0,
-                 0});
+                 "(material.damping.beta) and leave it at 0"});
           });
   return keys;
 }
@@ -116,7 +113,7 @@ double MeshBodyParameters::metres_per_unit() const {
   try {
     return parse_quantity("1 " + length_unit, "m");
   } catch (const std::invalid_argument& error) {
-    throw ConfigError("length_unit", error.what());
+    throw ConfigError(Refusal::wrong_unit, "length_unit", error.what());
   }
 }
 
@@ -129,12 +126,13 @@ std::vector<NamedFile> MeshBodyParameters::files() {
 void MeshBodyParameters::read(const BodyFiles& files) {
   if (!is_geometry(file)) {
     if (mesh_size)
-      throw ConfigError("mesh_size", "is not used: the file is a mesh, not a geometry");
+      throw ConfigError(Refusal::contradiction, "mesh_size",
+                        "is not used: the file is a mesh, not a geometry");
     mesh = std::make_shared<const Mesh>(files.mesh("file", file));
     return;
   }
   if (!mesh_size)
-    throw ConfigError("mesh_size",
+    throw ConfigError(Refusal::missing, "mesh_size",
                       "is missing: the file is a geometry, which is divided into elements of it");
   kept_mesh = files.mesh_of_geometry("file", file, {*mesh_size / metres_per_unit(), mesh_order});
   mesh = std::make_shared<const Mesh>(files.mesh("mesh", kept_mesh));

@@ -68,9 +68,11 @@ class ConstraintBuilder {
     for (const auto& [node, point] : ties_) follow_face(node, point);
     for (std::size_t row = 0; row < other_rows_.size(); ++row)
       if (other_rows_[row] == OtherRow::free) made_.others[row] = made_.num_dofs++;
-    if (made_.num_dofs == 0) throw ConfigError("supports", "hold every node of the body");
+    if (made_.num_dofs == 0)
+      throw ConfigError(Refusal::motion_is_held, "supports", "hold every node of the body");
     if (parameters_.guided && made_.load_dof == BodyMatrices::held)
-      throw ConfigError("guided.on", "no node of it moves along y, so the drive has no load on it");
+      throw ConfigError(Refusal::motion_is_held, "guided.on",
+                        "no node of it moves along y, so the drive has no load on it");
     if (mesh_.given() == nullptr) made_.determinate = determinate_dofs(mesh_.mesh, made_);
     return std::move(made_);
   }
@@ -104,8 +106,9 @@ class ConstraintBuilder {
 
   [[noreturn]] void refuse_node(const std::string& key, int node, const std::string& why) const {
     throw ConfigError(
-        key, fmt::format("node {} at {} {}", mesh_.mesh.node_labels[static_cast<std::size_t>(node)],
-                         mesh_.place_text(node), why));
+        Refusal::wrong_mesh, key,
+        fmt::format("node {} at {} {}", mesh_.mesh.node_labels[static_cast<std::size_t>(node)],
+                    mesh_.place_text(node), why));
   }
 
   NodeState& state(int node) { return nodes_[static_cast<std::size_t>(node)]; }
@@ -115,7 +118,8 @@ class ConstraintBuilder {
     for (const auto& [name, region] : parameters_.rigid_regions) {
       const std::string key = "rigid_regions." + name;
       if (mesh_.mesh.surfaces.contains(name) || parameters_.points.contains(name))
-        throw ConfigError(key, fmt::format("'{}' is a surface or point; take another name", name));
+        throw ConfigError(Refusal::doubled_name, key,
+                          fmt::format("'{}' is a surface or point; take another name", name));
       region_names_.push_back(name);
       std::vector<int>& nodes = region_nodes_.emplace_back();
       for (const int node : mesh_.nodes_on(region.on, key + ".on")) {
@@ -138,18 +142,20 @@ class ConstraintBuilder {
     const HeldDirections held = held_directions(support);
     const bool is_named = !support.held.empty();
     if (d_ == 2 && is_named && (held.along[2] || held.round[2]))
-      throw ConfigError(key + ".held", "a planar body does not move along z");
+      throw ConfigError(Refusal::motion_is_held, key + ".held",
+                        "a planar body does not move along z");
     if (d_ == 2 && is_named && (held.about[0] || held.about[1]))
-      throw ConfigError(key + ".held", "a planar body turns about z alone");
+      throw ConfigError(Refusal::motion_is_held, key + ".held",
+                        "a planar body turns about z alone");
     const AxisOfRevolution axis =
         support.about ? support.about->axis(mesh_.turn) : AxisOfRevolution{};
     if (d_ == 2 && held.is_round() && !(axis.direction - Eigen::Vector3d::UnitZ()).isZero(1e-9))
-      throw ConfigError(key + ".about.direction", "is z for a planar mesh");
+      throw ConfigError(Refusal::wrong_mesh, key + ".about.direction", "is z for a planar mesh");
     for (const std::string& on : support.on) {
       const auto region = std::find(region_names_.begin(), region_names_.end(), on);
       if (region != region_names_.end()) {
         if (held.is_round())
-          throw ConfigError(key + ".held",
+          throw ConfigError(Refusal::motion_is_held, key + ".held",
                             fmt::format("'{}' is a rigid region, which is held along "
                                         "x, y, z and about rx, ry, rz",
                                         on));
@@ -162,7 +168,7 @@ class ConstraintBuilder {
         continue;
       }
       if (is_named && (held.about[0] || held.about[1] || held.about[2]))
-        throw ConfigError(key + ".held",
+        throw ConfigError(Refusal::contradiction, key + ".held",
                           fmt::format("'{}' is no rigid region, so that it has no rotations", on));
       for (const int node : mesh_.nodes_on({on}, key + ".on")) hold_node(key, node, held, axis);
     }
@@ -222,8 +228,9 @@ class ConstraintBuilder {
         }
       }
       if (found.empty())
-        throw ConfigError(key, fmt::format("ties nothing: no node of '{}' is on a face of '{}'",
-                                           tie.slave, tie.master));
+        throw ConfigError(Refusal::wrong_mesh, key,
+                          fmt::format("ties nothing: no node of '{}' is on a face of '{}'",
+                                      tie.slave, tie.master));
       for (auto& [node, point] : found) {
         mesh_.mesh.nodes.row(node) = point.place.transpose();
         ties_.emplace(node, std::move(point));

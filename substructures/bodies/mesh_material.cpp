@@ -15,8 +15,9 @@
 namespace stridor {
 namespace {
 
-void add_problem(std::vector<Problem>& problems, const char* key, const char* text) {
-  problems.push_back({key, text, {}, 0, 0});
+void add_problem(std::vector<Problem>& problems, Refusal refusal, const char* key,
+                 const char* text) {
+  problems.push_back({refusal, key, text});
 }
 
 Eigen::Vector3d turned(const Eigen::Matrix2d& turn, Eigen::Vector3d vector) {
@@ -58,7 +59,8 @@ const Schema& OrthotropicParameters::schema() {
             for (const auto& [key, list] : {std::pair("youngs_moduli", &given.youngs_moduli),
                                             std::pair("poissons_ratios", &given.poissons_ratios),
                                             std::pair("shear_moduli", &given.shear_moduli)})
-              if (list->size() != 3) add_problem(problems, key, "must be three numbers");
+              if (list->size() != 3)
+                add_problem(problems, Refusal::wrong_size, key, "must be three numbers");
           });
   return keys;
 }
@@ -77,7 +79,7 @@ const Schema& AxisParameters::schema() {
             expect_components(axis.point, "point", true, problems);
             expect_components(axis.direction, "direction", true, problems);
             if (!axis.direction.empty() && !(in_space(axis.direction).norm() > 0.0))
-              add_problem(problems, "direction", "must not be zero");
+              add_problem(problems, Refusal::wrong_value, "direction", "must not be zero");
           });
   return keys;
 }
@@ -110,15 +112,16 @@ const Schema& MaterialAxesParameters::schema() {
           .check([](const P& axes, std::vector<Problem>& problems) {
             const bool has_vectors = !axes.first.empty() || !axes.second.empty();
             if (!axes.angle && !axes.around && !has_vectors)
-              add_problem(problems, "",
+              add_problem(problems, Refusal::wrong_value, "",
                           "is an angle, the vectors `first` and `second`, or `around` a line: one "
                           "of the three");
             if (axes.around && axes.angle)
-              add_problem(problems, "angle", "cannot stand beside `around`, which says the axes");
+              add_problem(problems, Refusal::contradiction, "angle",
+                          "cannot stand beside `around`, which says the axes");
             for (const auto& [key, vector] :
                  {std::pair("first", &axes.first), std::pair("second", &axes.second)}) {
               if (vector->empty() || (!axes.angle && !axes.around)) continue;
-              add_problem(problems, key,
+              add_problem(problems, Refusal::contradiction, key,
                           axes.around ? "cannot stand beside `around`, which says the axes"
                                       : "cannot stand beside `angle`, which says the axes");
             }
@@ -128,7 +131,8 @@ const Schema& MaterialAxesParameters::schema() {
             const Eigen::Vector3d one = in_space(axes.first);
             const Eigen::Vector3d two = in_space(axes.second);
             if (!(one.cross(two).norm() > 1e-6 * one.norm() * two.norm()))
-              add_problem(problems, "second", "must not be parallel to `first`, nor zero");
+              add_problem(problems, Refusal::wrong_value, "second",
+                          "must not be parallel to `first`, nor zero");
           });
   return keys;
 }
@@ -183,14 +187,15 @@ const Schema& MeshMaterialParameters::schema() {
                  {std::pair("youngs_modulus", material.youngs_modulus),
                   std::pair("poissons_ratio", material.poissons_ratio)}) {
               if (number && material.orthotropic)
-                add_problem(problems, key, "is not used: the material is orthotropic");
+                add_problem(problems, Refusal::contradiction, key,
+                            "is not used: the material is orthotropic");
               if (!number && !material.orthotropic)
-                add_problem(problems, key,
+                add_problem(problems, Refusal::missing, key,
                             "is missing; an isotropic material has both, another one "
                             "`orthotropic`");
             }
             if (material.axes && !material.orthotropic)
-              add_problem(problems, "axes",
+              add_problem(problems, Refusal::contradiction, "axes",
                           "are not used: the material is alike in all directions");
           });
   return keys;
@@ -200,7 +205,7 @@ ElementSection MeshMaterialParameters::section(PlaneState state, const Eigen::Ma
                                                double thickness) const {
   if (!orthotropic) {
     if (!youngs_modulus || !poissons_ratio)
-      throw ConfigError("youngs_modulus", "is missing, with poissons_ratio");
+      throw ConfigError(Refusal::missing, "youngs_modulus", "is missing, with poissons_ratio");
     return {ElasticLaw(IsotropicElasticity{*youngs_modulus, *poissons_ratio}, state), density,
             thickness};
   }
@@ -213,14 +218,14 @@ ElementSection MeshMaterialParameters::section(PlaneState state, const Eigen::Ma
   if (axes && is_fixed) fixed = fixed_axes(*axes, turn);
   if (is_fixed && state != PlaneState::none &&
       !(fixed.col(2) - Eigen::Vector3d::UnitZ()).isZero(1e-9))
-    throw ConfigError("axes",
+    throw ConfigError(Refusal::wrong_mesh, "axes",
                       "axis 3 of a planar mesh is z; `first` and `second` lie in its plane");
   try {
     ElementSection section{ElasticLaw(elasticity, state, fixed), density, thickness};
     if (is_fixed) return section;
     const AxisOfRevolution axis = axes->around->axis(turn);
     if (state != PlaneState::none && !(axis.direction - Eigen::Vector3d::UnitZ()).isZero(1e-9))
-      throw ConfigError("axes.around.direction", "is z for a planar mesh");
+      throw ConfigError(Refusal::wrong_mesh, "axes.around.direction", "is z for a planar mesh");
     section.law_at = [elasticity, state, axis](const Eigen::Vector3d& place) {
       const std::optional<Eigen::Matrix3d> frame = axis.frame_at(place);
       if (!frame)
@@ -229,7 +234,7 @@ ElementSection MeshMaterialParameters::section(PlaneState state, const Eigen::Ma
     };
     return section;
   } catch (const std::invalid_argument&) {
-    throw ConfigError("orthotropic",
+    throw ConfigError(Refusal::wrong_matrix, "orthotropic",
                       "is not positive definite: |ν_ij| must be below √(E_i/E_j), and 1 − ν12 ν21 "
                       "− ν23 ν32 − ν13 ν31 − 2 ν21 ν32 ν13 positive");
   }

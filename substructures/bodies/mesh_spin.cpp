@@ -52,7 +52,8 @@ class MeshSpin {
 
   void check() const {
     if (named_.dimension != 3)
-      throw ConfigError("spin", "is of a body with volumes; a planar mesh does not spin");
+      throw ConfigError(Refusal::not_of_revolution, "spin",
+                        "is of a body with volumes; a planar mesh does not spin");
     check_shape();
     check_materials();
     refuse_attachments();
@@ -88,13 +89,15 @@ class MeshSpin {
     if (shape.num_sectors == 0 || shape.num_sectors > 2) return;
     const auto worst = std::max_element(shape.harmonics.begin(), shape.harmonics.end());
     throw ConfigError(
-        "spin",
-        fmt::format("is of a body of revolution, or of one that repeats itself three times or more "
-                    "around its axis; of mass or stiffness of this one {:.2g} % goes with {} times the angle, "
-                    "and its centre is {:.3g} m off the axis. Seen from space its matrices would "
-                    "change all the time. Give the axis by `about`, or let it be the master of sliding "
-                    "contacts that a drive moves",
-                    100.0 * *worst, worst - shape.harmonics.begin() + 1, shape.eccentricity));
+        Refusal::not_of_revolution, "spin",
+        fmt::format(
+            "is of a body of revolution, or of one that repeats itself three times or more "
+            "around its axis; of mass or stiffness of this one {:.2g} % goes with {} times the "
+            "angle, "
+            "and its centre is {:.3g} m off the axis. Seen from space its matrices would "
+            "change all the time. Give the axis by `about`, or let it be the master of sliding "
+            "contacts that a drive moves",
+            100.0 * *worst, worst - shape.harmonics.begin() + 1, shape.eccentricity));
   }
 
   void check_materials() const {
@@ -114,7 +117,7 @@ class MeshSpin {
         const Eigen::MatrixXd there = law_at(section, beyond);
         constexpr double rounding = 1e-9;
         if ((turned_law(here, R) - there).norm() <= rounding * here.norm()) continue;
-        throw ConfigError(section == 0 ? "material" : "materials",
+        throw ConfigError(Refusal::not_of_revolution, section == 0 ? "material" : "materials",
                           "is not alike around the axis of `spin`; let its axes be `around` that");
       }
     }
@@ -127,14 +130,16 @@ class MeshSpin {
 
   void refuse_attachments() const {
     const auto refuse = [](const char* key) {
-      throw ConfigError(key, "turns with the body, of which only what is alike all around the axis of "
-                             "`spin` can be seen from space; leave it out");
+      throw ConfigError(Refusal::not_of_revolution, key,
+                        "turns with the body, of which only what is alike all around the axis of "
+                        "`spin` can be seen from space; leave it out");
     };
     if (!parameters_.masses.empty()) refuse("masses");
     if (!parameters_.rigid_regions.empty()) refuse("rigid_regions");
     if (parameters_.guided)
-      throw ConfigError("guided", "moves the body with a drive, but it spins in its place; give it "
-                                  "supports");
+      throw ConfigError(Refusal::not_of_revolution, "guided",
+                        "moves the body with a drive, but it spins in its place; give it "
+                        "supports");
   }
 
   bool is_alike_around(const Eigen::Matrix3d& matrix) const {
@@ -152,7 +157,8 @@ class MeshSpin {
       constexpr double rounding = 1e-9;
       if (about.direction.cross(axis_.direction).norm() > rounding ||
           from.cross(axis_.direction).norm() > rounding * extent_of(named_.mesh))
-        throw ConfigError(key + ".about", "is another axis than that of `spin`");
+        throw ConfigError(Refusal::not_of_revolution, key + ".about",
+                          "is another axis than that of `spin`");
     } else if (!support.held.empty()) {
       Eigen::Matrix3d held = Eigen::Matrix3d::Zero();
       for (Eigen::Index i = 0; i < 3; ++i) {
@@ -161,9 +167,10 @@ class MeshSpin {
           held(i, i) = 1.0;
       }
       if (!is_alike_around(held))
-        throw ConfigError(key + ".held", "is not alike all around the axis of `spin`: hold both "
-                                         "directions across it, or neither, or hold radial, "
-                                         "tangential and axial ones");
+        throw ConfigError(Refusal::not_of_revolution, key + ".held",
+                          "is not alike all around the axis of `spin`: hold both "
+                          "directions across it, or neither, or hold radial, "
+                          "tangential and axial ones");
     }
     // Whether its nodes lie all around.
     const Eigen::Vector3d first = axis_.direction.unitOrthogonal();
@@ -182,18 +189,20 @@ class MeshSpin {
     }
     constexpr double uneven = 0.2;
     if (std::abs(once) <= uneven * num_nodes && std::abs(twice) <= uneven * num_nodes) return;
-    throw ConfigError(key + ".on", "is a part of the body that turns with it; a body that spins is "
-                                   "held all around its axis, or not at all");
+    throw ConfigError(Refusal::not_of_revolution, key + ".on",
+                      "is a part of the body that turns with it; a body that spins is "
+                      "held all around its axis, or not at all");
   }
 
   void check_spring(const std::string& name, const SurfaceSpringParameters& spring) const {
     const std::string key = "springs." + name;
     if (!named_.mesh.surfaces.contains(spring.on))
-      throw ConfigError(key + ".on", "must be a surface that goes all around the axis of `spin`");
+      throw ConfigError(Refusal::not_of_revolution, key + ".on",
+                        "must be a surface that goes all around the axis of `spin`");
     const Eigen::Vector3d along =
         spring.direction ? spring.direction->unit() : Eigen::Vector3d::UnitX();
     if (!is_alike_around(spring_matrix(spring.stiffness, along)))
-      throw ConfigError(key + ".stiffness",
+      throw ConfigError(Refusal::not_of_revolution, key + ".stiffness",
                         "must be the same in all directions across the axis of `spin`");
   }
 
@@ -251,8 +260,9 @@ class MeshSpin {
       }
     }
     if (std::find(is_found.begin(), is_found.end(), false) != is_found.end())
-      throw ConfigError("ties", "leave a displacement that belongs to no node, of which a body that spins "
-                                "must have none");
+      throw ConfigError(Refusal::wrong_mesh, "ties",
+                        "leave a displacement that belongs to no node, of which a body that spins "
+                        "must have none");
     SparseMatrix home(constraints_.num_dofs, static_cast<Eigen::Index>(constraints_.rows.size()));
     home.setFromTriplets(entries.begin(), entries.end());
     return home;
@@ -297,14 +307,11 @@ void warn_of_sectors(const MeshBodyParameters& parameters, std::vector<Problem>&
   const Roundness shape =
       roundness(named.mesh, named.sections(), parameters.spin->about.axis(named.turn));
   if (shape.num_sectors <= 2) return;
-  warnings.push_back({"spin",
+  warnings.push_back({Refusal::not_of_revolution, "spin",
                       fmt::format("is of a body that repeats itself {} times around its axis: seen "
                                   "from space it is taken as it stands, which is right for motions "
                                   "with fewer than {} nodal diameters",
-                                  shape.num_sectors, (shape.num_sectors + 1) / 2),
-                      {},
-                      0,
-                      0});
+                                  shape.num_sectors, (shape.num_sectors + 1) / 2)});
 }
 
 }  // namespace stridor

@@ -14,7 +14,7 @@ Eigen::Vector3d in_space(const std::vector<double>& components) {
 void expect_components(const std::vector<double>& given, const char* key, bool may_be_empty,
                        std::vector<Problem>& problems) {
   if (given.size() == 2 || given.size() == 3 || (may_be_empty && given.empty())) return;
-  problems.push_back({key, "must be two or three numbers", {}, 0, 0});
+  problems.push_back({Refusal::wrong_size, key, "must be two or three numbers"});
 }
 
 namespace {
@@ -23,7 +23,7 @@ void expect_direction(const std::vector<double>& given, const char* key, bool ma
                       std::vector<Problem>& problems) {
   expect_components(given, key, may_be_empty, problems);
   if (given.empty() || in_space(given).norm() > 0.0) return;
-  problems.push_back({key, "must not be zero", {}, 0, 0});
+  problems.push_back({Refusal::wrong_value, key, "must not be zero"});
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ const Schema& MeshBoxParameters::schema() {
             expect_components(box.lowest, "lowest", false, problems);
             expect_components(box.highest, "highest", false, problems);
             if (((in_space(box.highest) - in_space(box.lowest)).array() < 0.0).any())
-              problems.push_back({"highest", "must not be below `lowest`", {}, 0, 0});
+              problems.push_back({Refusal::wrong_value, "highest", "must not be below `lowest`"});
           });
   return keys;
 }
@@ -94,7 +94,7 @@ const Schema& MeshSurfaceParameters::schema() {
           .check([](const P& surface, std::vector<Problem>& problems) {
             if (surface.plane || surface.cylinder || surface.box) return;
             problems.push_back(
-                {"plane", "is missing; give a plane, a cylinder or a box", {}, 0, 0});
+                {Refusal::missing, "plane", "is missing; give a plane, a cylinder or a box"});
           });
   return keys;
 }

@@ -85,7 +85,8 @@ void add_outlines(const MeshBodyParameters& parameters, const Mesh& mesh, int di
     try {
       body.surfaces[name] = outline_of(mesh, sides);
     } catch (const std::invalid_argument& error) {
-      if (parameters.surfaces.contains(name)) throw ConfigError("surfaces." + name, error.what());
+      if (parameters.surfaces.contains(name))
+        throw ConfigError(Refusal::wrong_mesh, "surfaces." + name, error.what());
     }
   }
   // What is drawn whether surfaces have names or not.
@@ -113,7 +114,7 @@ void add_element_matrices(const MeshBodyParameters& parameters, const NamedMesh&
       body.base_inertia = choice.transpose() * (all.mass * along_x);
     }
   } catch (const std::invalid_argument& error) {
-    throw ConfigError("file", error.what());
+    throw ConfigError(Refusal::wrong_mesh, "file", error.what());
   }
   add_material_damping(parameters, named, sections, choice, body);
 }
@@ -137,7 +138,7 @@ void add_given_matrices(const NodalMatrices& given, const Mesh& mesh,
   const auto d = static_cast<std::size_t>(given.dimension);
   for (std::size_t k = 0; k < given.rows.size(); k += d) {
     if (given.rows[k] == BodyMatrices::held) {
-      throw ConfigError("guided.on",
+      throw ConfigError(Refusal::wrong_value, "guided.on",
                         fmt::format("the matrices hold node {} along x, so the inertia of a body "
                                     "that is driven along x is not known; leave all nodes free "
                                     "there when they are written",

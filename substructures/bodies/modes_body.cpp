@@ -64,7 +64,8 @@ class ModesBody {
 
   const ModalTest& test(const std::string& key) const {
     if (parameters_.file.empty())
-      throw ConfigError(key, "is of a `file`; give one, or the shapes themselves");
+      throw ConfigError(Refusal::contradiction, key,
+                        "is of a `file`; give one, or the shapes themselves");
     if (!parameters_.test) throw std::invalid_argument("ModesBodyParameters: the file has not been read");
     return *parameters_.test;
   }
@@ -80,9 +81,10 @@ class ModesBody {
         const auto& nodes = test(key).nodes;
         const auto node = nodes.find(*port.node);
         if (node == nodes.end()) {
-          throw ConfigError(key, fmt::format("the file has no place of a node {} (datasets 15, 2411); "
-                                             "give `at`",
-                                             *port.node));
+          throw ConfigError(Refusal::wrong_value, key,
+                            fmt::format("the file has no place of a node {} (datasets 15, 2411); "
+                                        "give `at`",
+                                        *port.node));
         }
         at = node->second;
       }
@@ -112,14 +114,16 @@ class ModesBody {
     for (Eigen::Index i = 0; i < num_given_; ++i) {
       const std::string of = measured_.empty() ? fmt::format("mode {}", i + 1) : source_of(i);
       if (!(masses_(i) > 0.0)) {
-        throw ConfigError("modal_masses", fmt::format("{} has the modal mass {:g} kg: it must be positive; "
-                                                      "give the masses here where the file has none",
-                                                      of, masses_(i)));
+        throw ConfigError(Refusal::wrong_value, "modal_masses",
+                          fmt::format("{} has the modal mass {:g} kg: it must be positive; "
+                                      "give the masses here where the file has none",
+                                      of, masses_(i)));
       }
       if (!(ratio_(i) >= 0.0 && ratio_(i) < 1.0)) {
-        throw ConfigError("damping_ratios", fmt::format("{} has the damping ratio {:g}: it must be at least 0 "
-                                                        "and below 1",
-                                                        of, ratio_(i)));
+        throw ConfigError(Refusal::wrong_value, "damping_ratios",
+                          fmt::format("{} has the damping ratio {:g}: it must be at least 0 "
+                                      "and below 1",
+                                      of, ratio_(i)));
       }
     }
   }
@@ -130,8 +134,9 @@ class ModesBody {
       if (static_cast<double>(mode.number) == number) return mode;
       numbers.push_back(mode.number);
     }
-    throw ConfigError("take", fmt::format("the file has no mode {:g} (there are: {})", number,
-                                          fmt::join(numbers, ", ")));
+    throw ConfigError(
+        Refusal::unknown_name, "take",
+        fmt::format("the file has no mode {:g} (there are: {})", number, fmt::join(numbers, ", ")));
   }
 
   std::string source_of(Eigen::Index mode) const {
@@ -155,8 +160,9 @@ class ModesBody {
 
   void check_count(const std::vector<double>& given, const std::string& key) const {
     if (static_cast<Eigen::Index>(given.size()) == num_given_) return;
-    throw ConfigError(key, fmt::format("has {} numbers; expected one for each of the {} modes",
-                                       given.size(), num_given_));
+    throw ConfigError(Refusal::wrong_size, key,
+                      fmt::format("has {} numbers; expected one for each of the {} modes",
+                                  given.size(), num_given_));
   }
 
   void fill_shapes() {
@@ -191,17 +197,19 @@ class ModesBody {
       const TestMode& mode = *measured_[i];
       const auto found = mode.shape.find(node);
       if (found == mode.shape.end()) {
-        throw ConfigError(key, fmt::format("{} has no values at node {}",
-                                           source_of(static_cast<Eigen::Index>(i)), node));
+        throw ConfigError(Refusal::missing, key,
+                          fmt::format("{} has no values at node {}",
+                                      source_of(static_cast<Eigen::Index>(i)), node));
       }
       const RealisedShape real = realise(mode);
       if (real.complexity > parameters_.complexity) {
         throw ConfigError(
-            "complexity",
-            fmt::format("{} is complex: {:.3g} % of its shape is out of phase, more than {:.3g} %; a "
-                        "body of real modes cannot have it. Leave it out by `take`, or allow more",
-                        source_of(static_cast<Eigen::Index>(i)), 100.0 * real.complexity,
-                        100.0 * parameters_.complexity));
+            Refusal::wrong_value, "complexity",
+            fmt::format(
+                "{} is complex: {:.3g} % of its shape is out of phase, more than {:.3g} %; a "
+                "body of real modes cannot have it. Leave it out by `take`, or allow more",
+                source_of(static_cast<Eigen::Index>(i)), 100.0 * real.complexity,
+                100.0 * parameters_.complexity));
       }
       const std::complex<double> turn = std::polar(1.0, -real.phase);
       for (std::size_t d = 0; d < 3; ++d)
@@ -263,15 +271,16 @@ class ModesBody {
     const Eigen::MatrixXd F = *parameters_.residual_flexibility;
     const auto count = static_cast<Eigen::Index>(residual.on.size());
     if (F.rows() != count || F.cols() != count) {
-      throw ConfigError("residual.flexibility", fmt::format("is {} x {}; expected a row for each of the {} of `on`",
-                                                            F.rows(), F.cols(), count));
+      throw ConfigError(Refusal::wrong_size, "residual.flexibility",
+                        fmt::format("is {} x {}; expected a row for each of the {} of `on`",
+                                    F.rows(), F.cols(), count));
     }
     if ((F - F.transpose()).norm() > 1e-8 * F.norm())
-      throw ConfigError("residual.flexibility", "must be symmetric");
+      throw ConfigError(Refusal::wrong_matrix, "residual.flexibility", "must be symmetric");
     const double highest = omega_.size() > 0 ? omega_.maxCoeff() : 0.0;
     const double omega = residual.frequency ? two_pi * *residual.frequency : 10.0 * highest;
     if (!(omega > highest)) {
-      throw ConfigError("residual.frequency",
+      throw ConfigError(Refusal::wrong_value, "residual.frequency",
                         fmt::format("must lie above the highest mode, {:g} Hz", highest / two_pi));
     }
     const SymmetricEigenpairs pairs = symmetric_eigenpairs(F, "residual flexibility");
@@ -279,10 +288,11 @@ class ModesBody {
     for (Eigen::Index k = 0; k < count; ++k) {
       const double f = pairs.values(k);
       if (f < -1e-8 * largest) {
-        throw ConfigError("residual.flexibility",
-                          fmt::format("has the negative eigenvalue {:g} m/N: what is not among the modes must "
-                                      "yield to forces, not push back",
-                                      f));
+        throw ConfigError(
+            Refusal::wrong_matrix, "residual.flexibility",
+            fmt::format("has the negative eigenvalue {:g} m/N: what is not among the modes must "
+                        "yield to forces, not push back",
+                        f));
       }
       if (f <= 1e-12 * largest) continue;
       Eigen::VectorXd shape = Eigen::VectorXd::Zero(shapes_.rows());
@@ -300,14 +310,17 @@ class ModesBody {
     const auto found = std::find(names_.begin(), names_.end(), port);
     const std::size_t d = dot + 2 == name.size() ? std::string("xyz").find(name.back()) : 3;
     if (dot == std::string::npos || d > 2)
-      throw ConfigError(key, fmt::format("'{}' is not of the form <port>.<x|y|z>", name));
+      throw ConfigError(Refusal::wrong_value, key,
+                        fmt::format("'{}' is not of the form <port>.<x|y|z>", name));
     if (found == names_.end()) {
-      throw ConfigError(key, fmt::format("there is no port '{}'{} (there are: {})", port,
-                                         did_you_mean(port, names_), fmt::join(names_, ", ")));
+      throw ConfigError(Refusal::unknown_name, key,
+                        fmt::format("there is no port '{}'{} (there are: {})", port,
+                                    did_you_mean(port, names_), fmt::join(names_, ", ")));
     }
     const auto p = static_cast<std::size_t>(found - names_.begin());
     if (!moves_[3 * p + d])
-      throw ConfigError(key, fmt::format("'{}' does not move along {}", port, direction_names[d]));
+      throw ConfigError(Refusal::motion_is_held, key,
+                        fmt::format("'{}' does not move along {}", port, direction_names[d]));
     return row_of(p, d);
   }
 
@@ -335,17 +348,18 @@ class ModesBody {
     for (const auto& [name, surface] : parameters_.surfaces) {
       const std::string key = "surfaces." + name;
       if (body.points.contains(name))
-        throw ConfigError(key, "a port has this name already; take another");
+        throw ConfigError(Refusal::doubled_name, key, "a port has this name already; take another");
       std::vector<int>& nodes = body.surfaces[name];
       for (const std::string& point : surface.points) {
         const auto found = body.points.find(point);
         if (found == body.points.end()) {
-          throw ConfigError(key + ".points",
+          throw ConfigError(Refusal::unknown_name, key + ".points",
                             fmt::format("there is no port '{}'{} (there are: {})", point,
                                         did_you_mean(point, names_), fmt::join(names_, ", ")));
         }
         if (!nodes.empty() && (body.nodes.row(nodes.back()) - body.nodes.row(found->second)).norm() <= 0.0)
-          throw ConfigError(key + ".points", fmt::format("'{}' stands where the port before it does", point));
+          throw ConfigError(Refusal::wrong_value, key + ".points",
+                            fmt::format("'{}' stands where the port before it does", point));
         nodes.push_back(found->second);
       }
     }

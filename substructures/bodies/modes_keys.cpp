@@ -15,7 +15,7 @@ namespace {
 void expect_place(const std::vector<double>& at, const char* key, std::vector<Problem>& problems) {
   if (at.empty() || at.size() == 2 || at.size() == 3) return;
   problems.push_back(
-      {key, fmt::format("must be two or three lengths, got {}", at.size()), {}, 0, 0});
+      {Refusal::wrong_size, key, fmt::format("must be two or three lengths, got {}", at.size())});
 }
 
 }  // namespace
@@ -43,11 +43,12 @@ const Schema& ModesPortParameters::schema() {
             for (const auto& [key, given] :
                  {std::pair("x", &port.x), std::pair("y", &port.y), std::pair("z", &port.z)}) {
               if (!port.node || given->empty()) continue;
-              problems.push_back(
-                  {key, "cannot stand beside `node`, whose shapes are in the file", {}, 0, 0});
+              problems.push_back({Refusal::contradiction, key,
+                                  "cannot stand beside `node`, whose shapes are in the file"});
             }
             if (!port.node && port.at.empty())
-              problems.push_back({"at", "is missing; give it, or a `node` of the file", {}, 0, 0});
+              problems.push_back(
+                  {Refusal::missing, "at", "is missing; give it, or a `node` of the file"});
           });
   return keys;
 }
@@ -67,7 +68,9 @@ const Schema& RigidMotionParameters::schema() {
           .check([](const P& rigid, std::vector<Problem>& problems) {
             expect_place(rigid.centre, "centre", problems);
             if (rigid.inertia.size() != 1 && rigid.inertia.size() != 3)
-              problems.push_back({"inertia", fmt::format("must be one or three numbers, got {}", rigid.inertia.size()), {}, 0, 0});
+              problems.push_back(
+                  {Refusal::wrong_size, "inertia",
+                   fmt::format("must be one or three numbers, got {}", rigid.inertia.size())});
           });
   return keys;
 }
@@ -102,55 +105,66 @@ const Schema& ModesBodyParameters::schema() {
                      {.doc = "Of each mode, or one of all; default: those of the file, else 0.",
                       .range = Range::non_negative(),
                       .optional = true})
-          .real_list("modal_masses", &P::modal_masses,
-                     {.doc = "Of the shapes as they are given, of each mode or one of all; default: those "
-                             "of the file, else 1 kg.",
-                      .unit = "kg",
-                      .range = Range::positive(),
-                      .optional = true})
+          .real_list(
+              "modal_masses", &P::modal_masses,
+              {.doc = "Of the shapes as they are given, of each mode or one of all; default: those "
+                      "of the file, else 1 kg.",
+               .unit = "kg",
+               .range = Range::positive(),
+               .optional = true})
           .text("file", &P::file,
-                {.doc = "Universal file (UFF) of a modal test, from the folder of the scene: datasets 55, "
+                {.doc = "Universal file (UFF) of a modal test, from the folder of the scene: "
+                        "datasets 55, "
                         "and 15 or 2411 for places, 164 for units.",
                  .optional = true})
           .real_list("take", &P::take,
                      {.doc = "Numbers of the modes of the file that are taken; default: all.",
                       .optional = true})
           .real("complexity", &P::complexity,
-                {.doc = "Largest part of a complex shape that may be out of phase, and is left out; more is "
+                {.doc = "Largest part of a complex shape that may be out of phase, and is left "
+                        "out; more is "
                         "refused.",
                  .range = {0.0, 1.0, false, false},
                  .optional = true})
-          .named_sections("ports", &P::ports,
-                          {.doc = "Places at which the shapes are known: they touch others, carry loads "
-                                  "and are recorded."})
+          .named_sections(
+              "ports", &P::ports,
+              {.doc = "Places at which the shapes are known: they touch others, carry loads "
+                      "and are recorded."})
           .named_sections("surfaces", &P::surfaces,
                           {.doc = "Outlines of ports on which others slide.", .optional = true})
-          .section("rigid", &P::rigid,
-                   {.doc = "Rigid motions of a body that is free; absent: the modes hold all motions.",
-                    .optional = true})
-          .section("residual", &P::residual,
-                   {.doc = "Flexibility of the modes that are not given, at ports.", .optional = true})
+          .section(
+              "rigid", &P::rigid,
+              {.doc = "Rigid motions of a body that is free; absent: the modes hold all motions.",
+               .optional = true})
+          .section(
+              "residual", &P::residual,
+              {.doc = "Flexibility of the modes that are not given, at ports.", .optional = true})
           .real("complete_up_to", &P::complete_up_to,
-                {.doc = "Frequency below which no mode of the body is missing; results above it are marked.",
+                {.doc = "Frequency below which no mode of the body is missing; results above it "
+                        "are marked.",
                  .unit = "Hz",
                  .range = Range::positive(),
                  .optional = true})
           .check([](const P& body, std::vector<Problem>& problems) {
-            const auto problem = [&](const char* key, const std::string& text) {
-              problems.push_back({key, text, {}, 0, 0});
+            const auto problem = [&](Refusal refusal, const char* key, const std::string& text) {
+              problems.push_back({refusal, key, text});
             };
             const bool has_file = !body.file.empty();
             if (body.frequencies.empty() && !has_file && !body.rigid)
-              problem("frequencies", "is missing; give it, a `file` or `rigid`");
+              problem(Refusal::missing, "frequencies", "is missing; give it, a `file` or `rigid`");
             if (has_file && !body.frequencies.empty())
-              problem("frequencies", "are in the file already; leave one of them out");
-            if (!has_file && !body.take.empty()) problem("take", "is of a `file`; give one");
-            if (body.ports.empty()) problem("ports", "must be at least one");
+              problem(Refusal::contradiction, "frequencies",
+                      "are in the file already; leave one of them out");
+            if (!has_file && !body.take.empty())
+              problem(Refusal::contradiction, "take", "is of a `file`; give one");
+            if (body.ports.empty()) problem(Refusal::wrong_value, "ports", "must be at least one");
             for (const auto& [name, port] : body.ports) {
               if (has_file && !port.node)
-                problem(("ports." + name + ".node").c_str(), "is missing: the shapes are in the file");
+                problem(Refusal::missing, ("ports." + name + ".node").c_str(),
+                        "is missing: the shapes are in the file");
               if (!has_file && port.node)
-                problem(("ports." + name + ".node").c_str(), "is of a `file`; give one");
+                problem(Refusal::contradiction, ("ports." + name + ".node").c_str(),
+                        "is of a `file`; give one");
             }
           });
   return keys;
@@ -177,7 +191,7 @@ void ModesBodyParameters::read(const BodyFiles& read_by) {
                       .matrix
                 : read_by.matrix(residual->flexibility));
   } catch (const std::invalid_argument& error) {
-    throw ConfigError("residual.flexibility", error.what());
+    throw ConfigError(Refusal::wrong_value, "residual.flexibility", error.what());
   }
 }
 
@@ -214,15 +228,16 @@ std::vector<Problem> ModesBodyParameters::warnings() const {
   std::vector<Problem> found;
   if (!test) return found;
   for (const std::string& remark : test->remarks)
-    found.push_back({"file", fmt::format("{} {}", file, remark), {}, 0, 0});
+    found.push_back({Refusal::wrong_value, "file", fmt::format("{} {}", file, remark)});
   double worst = 0.0;
   for (const TestMode& mode : test->modes) worst = std::max(worst, realise(mode).complexity);
   constexpr double rounding = 1e-3;
   if (worst > rounding) {
-    found.push_back({"file", fmt::format("has complex shapes, of which real ones are made: up to {:.2g} % is "
-                                         "out of phase and left out",
-                                         100.0 * worst),
-                     {}, 0, 0});
+    found.push_back(
+        {Refusal::wrong_value, "file",
+         fmt::format("has complex shapes, of which real ones are made: up to {:.2g} % is "
+                     "out of phase and left out",
+                     100.0 * worst)});
   }
   return found;
 }

@@ -38,7 +38,8 @@ void expect_symmetry(const std::string& key, const SparseMatrix& matrix, double 
   const SparseMatrix transposed = matrix.transpose();
   const SparseMatrix difference = matrix - sign * transposed;
   if (difference.norm() > 1e-12 * matrix.norm())
-    throw ConfigError(key, sign > 0.0 ? "must be symmetric" : "must be skew-symmetric");
+    throw ConfigError(Refusal::wrong_matrix, key,
+                      sign > 0.0 ? "must be symmetric" : "must be skew-symmetric");
 }
 
 /// Matrices of a body on their way from files to one order of unknowns.
@@ -75,10 +76,11 @@ class MatrixReader {
 
   void read_all() {
     for (const auto& [name, member] : matrices_of_body) read_one(name, body_.*member);
-    if (body_.mass.empty()) throw ConfigError("mass", "is empty, expected a matrix");
+    if (body_.mass.empty())
+      throw ConfigError(Refusal::missing, "mass", "is empty, expected a matrix");
     for (std::size_t i = 0; i < body_.terms.size(); ++i) {
       if (body_.terms[i].matrix.empty())
-        throw ConfigError(key_of_term(i), "is empty, expected a matrix");
+        throw ConfigError(Refusal::missing, key_of_term(i), "is empty, expected a matrix");
       read_one(key_of_term(i), body_.terms[i].matrix);
     }
   }
@@ -106,13 +108,14 @@ class MatrixReader {
       try {
         read_[key].matrix = files_.matrix(text);
       } catch (const std::invalid_argument& error) {
-        throw ConfigError(key, error.what());
+        throw ConfigError(Refusal::wrong_matrix, key, error.what());
       }
     }
     const SparseMatrix& matrix = read_[key].matrix;
     if (matrix.rows() != matrix.cols()) {
-      throw ConfigError(key, fmt::format("is {} x {}, expected as many rows as columns",
-                                         matrix.rows(), matrix.cols()));
+      throw ConfigError(Refusal::wrong_size, key,
+                        fmt::format("is {} x {}, expected as many rows as columns", matrix.rows(),
+                                    matrix.cols()));
     }
   }
 
@@ -123,8 +126,9 @@ class MatrixReader {
       return !read.second.unknowns.empty();
     });
     if (!nodes_.unknowns.empty() && have_labels)
-      throw ConfigError("unknowns", "is not used: the matrices name the nodes of their rows; leave "
-                                    "it out");
+      throw ConfigError(Refusal::contradiction, "unknowns",
+                        "is not used: the matrices name the nodes of their rows; leave "
+                        "it out");
     if (nodes_.unknowns == MatrixNodesParameters::all_of_mesh) {
       number_mesh();
     } else if (!nodes_.unknowns.empty()) {
@@ -133,8 +137,9 @@ class MatrixReader {
     } else if (have_labels) {
       for (const auto& [key, read] : read_) {
         if (read.unknowns.empty()) {
-          throw ConfigError(key, "does not name the nodes of its rows, as others of the body do; "
-                                 "give all in one format");
+          throw ConfigError(Refusal::missing, key,
+                            "does not name the nodes of its rows, as others of the body do; "
+                            "give all in one format");
         }
         unknowns_.insert(unknowns_.end(), read.unknowns.begin(), read.unknowns.end());
       }
@@ -144,7 +149,7 @@ class MatrixReader {
     } else {
       for (const auto* name : {&nodes_.mesh, &nodes_.nodes}) {
         if (!name->empty())
-          throw ConfigError(name == &nodes_.mesh ? "mesh" : "nodes",
+          throw ConfigError(Refusal::missing, name == &nodes_.mesh ? "mesh" : "nodes",
                             "needs to know which rows of the matrices are which nodes; give "
                             "`unknowns`");
       }
@@ -153,7 +158,8 @@ class MatrixReader {
 
   void number_mesh() {
     if (nodes_.mesh.empty())
-      throw ConfigError("unknowns", "all_of_mesh goes with a mesh; give `mesh`");
+      throw ConfigError(Refusal::contradiction, "unknowns",
+                        "all_of_mesh goes with a mesh; give `mesh`");
     std::vector<std::int64_t> labels = mesh_.node_labels;
     std::sort(labels.begin(), labels.end());
     for (const std::int64_t label : labels)
@@ -195,9 +201,9 @@ class MatrixReader {
       const bool may_be_less = read.is_open && !(has_table && key == "stiffness");
       if (may_be_less && n < size_) read.matrix.conservativeResize(size_, size_);
       if (read.matrix.rows() == size_) continue;
-      throw ConfigError(
-          key, fmt::format("is {} x {}, expected {} x {} as {}", n, n, size_, size_,
-                           has_table ? "`unknowns` says" : "`mass` is"));
+      throw ConfigError(Refusal::wrong_size, key,
+                        fmt::format("is {} x {}, expected {} x {} as {}", n, n, size_, size_,
+                                    has_table ? "`unknowns` says" : "`mass` is"));
     }
   }
 
@@ -211,7 +217,8 @@ class MatrixReader {
     if (unknowns_.empty()) return;
     if (!nodes_.mesh.empty()) {
       if (!nodes_.nodes.empty())
-        throw ConfigError("nodes", "is not used: the mesh has the places of nodes; leave it out");
+        throw ConfigError(Refusal::contradiction, "nodes",
+                          "is not used: the mesh has the places of nodes; leave it out");
       parts.mesh = std::move(mesh_);
     } else {
       NodeTable table = std::move(table_.nodes);
@@ -232,18 +239,20 @@ class MatrixReader {
     for (const NodeUnknown& unknown : parts.unknowns) {
       is_any_there |= labels.contains(unknown.node);
       if (is_planar && unknown.direction == 3) {
-        throw ConfigError("mesh",
-                          fmt::format("is planar, but the matrices move node {} along z: the "
-                                      "program has made volumes of planar elements (CalculiX does); "
-                                      "make the body of volumes, or of `type: mesh`",
-                                      unknown.node));
+        throw ConfigError(
+            Refusal::wrong_mesh, "mesh",
+            fmt::format("is planar, but the matrices move node {} along z: the "
+                        "program has made volumes of planar elements (CalculiX does); "
+                        "make the body of volumes, or of `type: mesh`",
+                        unknown.node));
       }
     }
     if (is_any_there) return;
     if (labels.empty())
-      throw ConfigError("mesh", "is missing: where the nodes are is not known; give `mesh`, or "
-                                "`nodes`, a table 'node, x, y, z'");
-    throw ConfigError(nodes_.mesh.empty() ? "nodes" : "mesh",
+      throw ConfigError(Refusal::missing, "mesh",
+                        "is missing: where the nodes are is not known; give `mesh`, or "
+                        "`nodes`, a table 'node, x, y, z'");
+    throw ConfigError(Refusal::unknown_name, nodes_.mesh.empty() ? "nodes" : "mesh",
                       "has none of the nodes of the matrices; give that with which they were made");
   }
 
@@ -267,7 +276,7 @@ NamedMatrices read_matrices(const MatrixBodyParameters& body, const MatrixNodesP
   NamedMatrices parts = MatrixReader(body, nodes, files).read();
   expect_symmetry("mass", parts.mass, 1.0);
   if (!is_positive_semidefinite(parts.mass))
-    throw ConfigError("mass", "must be positive semidefinite");
+    throw ConfigError(Refusal::wrong_matrix, "mass", "must be positive semidefinite");
   expect_symmetry("gyroscopic", parts.gyroscopic, -1.0);
   expect_symmetry("circulatory", parts.circulatory, -1.0);
   for (std::size_t i = 0; i < body.terms.size(); ++i) {

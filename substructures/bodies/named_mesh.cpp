@@ -29,7 +29,8 @@ auto below_key(const std::string& key, Act&& act) {
     return act();
   } catch (const ConfigError& error) {
     const Problem& problem = error.problems().front();
-    throw ConfigError(problem.key.empty() ? key : key + "." + problem.key, problem.message);
+    throw ConfigError(problem.refusal, problem.key.empty() ? key : key + "." + problem.key,
+                      problem.message);
   }
 }
 
@@ -56,20 +57,21 @@ void NamedMesh::find_dimension() {
   try {
     dimension = mesh.dimension();
   } catch (const std::invalid_argument&) {
-    throw ConfigError("file",
+    throw ConfigError(Refusal::wrong_mesh, "file",
                       "has planar elements beside volumes; give a mesh of one kind, of which "
                       "edges or faces are groups");
   }
   if (dimension == 2 && !parameters_.thickness)
-    throw ConfigError("thickness", "is missing: the mesh is planar");
+    throw ConfigError(Refusal::wrong_mesh, "thickness", "is missing: the mesh is planar");
   if (dimension == 3 && parameters_.thickness)
-    throw ConfigError("thickness", "is of a planar mesh; this one has volumes");
+    throw ConfigError(Refusal::wrong_mesh, "thickness",
+                      "is of a planar mesh; this one has volumes");
 }
 
 void NamedMesh::refuse_empty(const std::string& key, const char* what) const {
   const Eigen::RowVector3d low = mesh.nodes.colwise().minCoeff();
   const Eigen::RowVector3d high = mesh.nodes.colwise().maxCoeff();
-  throw ConfigError(key,
+  throw ConfigError(Refusal::wrong_mesh, key,
                     fmt::format("{} lies there; the mesh reaches from ({:.6g}, {:.6g}, {:.6g}) to "
                                 "({:.6g}, {:.6g}, {:.6g}) m",
                                 what, low(0), low(1), low(2), high(0), high(1), high(2)));
@@ -97,7 +99,8 @@ void NamedMesh::add_surfaces() {
   for (const auto& [name, given] : parameters_.surfaces) {
     const std::string key = "surfaces." + name;
     if (mesh.surfaces.contains(name))
-      throw ConfigError(key, "the file has a surface of this name; take another");
+      throw ConfigError(Refusal::doubled_name, key,
+                        "the file has a surface of this name; take another");
     std::vector<ElementSide> sides = sides_within(
         mesh, outer, given.region(), given.tolerance.value_or(share_of_extent * extent));
     if (sides.empty()) refuse_empty(key, "no outer side of an element");
@@ -135,8 +138,9 @@ MeshSections NamedMesh::sections() const {
     const std::string key = "materials." + name;
     const auto set = mesh.element_sets.find(name);
     if (set == mesh.element_sets.end()) {
-      throw ConfigError(key, fmt::format("there is no element set '{}'{}", name,
-                                         known(name, names_of(mesh.element_sets))));
+      throw ConfigError(Refusal::unknown_name, key,
+                        fmt::format("there is no element set '{}'{}", name,
+                                    known(name, names_of(mesh.element_sets))));
     }
     const auto number = static_cast<int>(sections.sections.size());
     sections.sections.push_back(section_of(material, key));
@@ -144,7 +148,7 @@ MeshSections NamedMesh::sections() const {
       const auto [found, is_new] = owner.emplace(element, name);
       if (!is_new) {
         throw ConfigError(
-            key,
+            Refusal::wrong_mesh, key,
             fmt::format("element {} is in '{}' as well, and can have one material only",
                         mesh.element_labels[static_cast<std::size_t>(element)], found->second));
       }
@@ -172,8 +176,9 @@ std::vector<int> NamedMesh::nodes_on(const std::vector<std::string>& names,
       nodes = set->second;
     }
     if (nodes.empty()) {
-      throw ConfigError(key, fmt::format("there is no surface or node set '{}'{}", name,
-                                         known(name, known_names())));
+      throw ConfigError(
+          Refusal::unknown_name, key,
+          fmt::format("there is no surface or node set '{}'{}", name, known(name, known_names())));
     }
     all.insert(all.end(), nodes.begin(), nodes.end());
   }
@@ -185,7 +190,8 @@ const std::vector<ElementSide>& NamedMesh::surface(const std::string& name,
   const auto found = mesh.surfaces.find(name);
   if (found != mesh.surfaces.end()) return found->second;
   throw ConfigError(
-      key, fmt::format("there is no surface '{}'{}", name, known(name, names_of(mesh.surfaces))));
+      Refusal::unknown_name, key,
+      fmt::format("there is no surface '{}'{}", name, known(name, names_of(mesh.surfaces))));
 }
 
 NodeShares NamedMesh::even_shares(const std::string& name) const {

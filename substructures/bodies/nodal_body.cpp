@@ -35,13 +35,15 @@ MeshBodyParameters mesh_keys(const TouchedMatrixBodyParameters& parameters) {
 void refuse_number_keys(const TouchedMatrixBodyParameters& parameters) {
   for (const auto& [name, point] : parameters.points) {
     if (point.x == 0 && point.y == 0) continue;
-    throw ConfigError(fmt::format("points.{}.{}", name, point.x > 0 ? "x" : "y"),
-                      "is not used: it is known which rows are which nodes; leave it out, the place "
-                      "or `node` says enough");
+    throw ConfigError(
+        Refusal::contradiction, fmt::format("points.{}.{}", name, point.x > 0 ? "x" : "y"),
+        "is not used: it is known which rows are which nodes; leave it out, the place "
+        "or `node` says enough");
   }
   if (parameters.guided && parameters.guided->on.empty()) {
-    throw ConfigError("guided.load",
-                      "is not used: it is known which rows are which nodes; give `on` in its place");
+    throw ConfigError(
+        Refusal::contradiction, "guided.load",
+        "is not used: it is known which rows are which nodes; give `on` in its place");
   }
 }
 
@@ -91,7 +93,7 @@ void turn(const NamedMatrices& matrices, const NodeRows& nodes, double angle,
     const bool has_y = y != BodyMatrices::held;
     if (has_x && has_y) turn.add(x, y);
     if (has_x == has_y) return;
-    throw ConfigError("angle",
+    throw ConfigError(Refusal::contradiction, "angle",
                       fmt::format("the matrices hold node {} along or about {} alone, which is no "
                                   "axis of the body once it is turned; hold it by `supports`",
                                   matrices.mesh.node_labels[node], has_x ? "y" : "x"));
@@ -113,7 +115,7 @@ double unit_of(const std::string& unit, const char* key, const char* of) {
   try {
     return parse_quantity("1 " + unit, of);
   } catch (const std::invalid_argument& error) {
-    throw ConfigError(key, error.what());
+    throw ConfigError(Refusal::wrong_mesh, key, error.what());
   }
 }
 

@@ -114,13 +114,10 @@ const Schema& PlateBodyParameters::schema() {
               if (point.radius >= body.plate.inner_radius &&
                   point.radius <= body.plate.outer_radius)
                 continue;
-              problems.push_back({fmt::format("points.{}.radius", name),
-                                  fmt::format("must lie on the plate, {:g} to {:g} m, got {:g} m",
-                                              body.plate.inner_radius, body.plate.outer_radius,
-                                              point.radius),
-                                  {},
-                                  0,
-                                  0});
+              problems.push_back(
+                  {Refusal::wrong_value, fmt::format("points.{}.radius", name),
+                   fmt::format("must lie on the plate, {:g} to {:g} m, got {:g} m",
+                               body.plate.inner_radius, body.plate.outer_radius, point.radius)});
             }
           });
   return keys;

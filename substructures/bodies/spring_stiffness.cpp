@@ -10,9 +10,13 @@ namespace {
 /// Refuses a matrix that gives energy away in some direction.
 template <class Parameters>
 void check_spring_matrix(const Parameters& given, std::vector<Problem>& problems) {
-  const auto refuse = [&](const char* text) { problems.push_back({"", text, {}, 0, 0}); };
+  const auto refuse = [&](Refusal refusal, const char* text) {
+    problems.push_back({refusal, "", text});
+  };
   if (!given.is_given()) {
-    refuse("is empty; give a number, which acts along a direction, or some of xx, yy, zz, xy, yz, zx");
+    refuse(
+        Refusal::missing,
+        "is empty; give a number, which acts along a direction, or some of xx, yy, zz, xy, yz, zx");
     return;
   }
   if (given.along) {
@@ -20,7 +24,8 @@ void check_spring_matrix(const Parameters& given, std::vector<Problem>& problems
          {std::pair("xx", given.xx), std::pair("yy", given.yy), std::pair("zz", given.zz),
           std::pair("xy", given.xy), std::pair("yz", given.yz), std::pair("zx", given.zx)}) {
       if (entry)
-        problems.push_back({key, "does not go with a number along a direction", {}, 0, 0});
+        problems.push_back(
+            {Refusal::contradiction, key, "does not go with a number along a direction"});
     }
     return;
   }
@@ -29,6 +34,7 @@ void check_spring_matrix(const Parameters& given, std::vector<Problem>& problems
   constexpr double rounding = 1e-12;
   if (pairs.eigenvalues()(0) < -rounding * matrix.cwiseAbs().maxCoeff()) {
     refuse(
+        Refusal::wrong_value,
         "is negative in some direction, so that it would be unstable by itself; the square of xy "
         "must not exceed xx yy, and so on");
   }
@@ -80,8 +86,8 @@ const Schema& SpringDirectionParameters::schema() {
                      {.doc = "Its components along x and y, or x, y and z.", .optional = true})
           .check([](const P& given, std::vector<Problem>& problems) {
             if (given.angle.has_value() == !given.vector.empty()) {
-              problems.push_back(
-                  {"", "is either an angle in the plane or a vector, [1, 0, 1]", {}, 0, 0});
+              problems.push_back({Refusal::contradiction, "",
+                                  "is either an angle in the plane or a vector, [1, 0, 1]"});
               return;
             }
             if (given.angle) return;
@@ -90,7 +96,7 @@ const Schema& SpringDirectionParameters::schema() {
             for (const double component : given.vector) square += component * component;
             if ((size != 2 && size != 3) || square == 0.0) {
               problems.push_back(
-                  {"", "must be two or three components, not all of them 0", {}, 0, 0});
+                  {Refusal::wrong_size, "", "must be two or three components, not all of them 0"});
             }
           });
   return keys;

@@ -71,14 +71,11 @@ const Schema& SurfaceSpringParameters::schema() {
             const bool is_along =
                 spring.stiffness.along || (spring.damping && spring.damping->along);
             if (spring.direction.has_value() == is_along) return;
-            problems.push_back({"direction",
+            problems.push_back({Refusal::contradiction, "direction",
                                 spring.direction
                                     ? "is not used: this stiffness is a matrix, which has its "
                                       "directions in itself"
-                                    : "is missing: needed by a stiffness that is a number",
-                                {},
-                                0,
-                                0});
+                                    : "is missing: needed by a stiffness that is a number"});
           });
   return keys;
 }
@@ -139,11 +136,12 @@ void add_surface_springs(const std::map<std::string, SurfaceSpringParameters>& s
   for (const auto& [name, spring] : springs) {
     const std::string key = "springs." + name;
     if (body.surfaces.contains(name))
-      throw ConfigError(key, fmt::format("'{}' is a surface; take another name", name));
+      throw ConfigError(Refusal::doubled_name, key,
+                        fmt::format("'{}' is a surface; take another name", name));
     const NodeShares shares = shares_of(spring.on);
     if (shares.empty()) {
       throw ConfigError(
-          key + ".on",
+          Refusal::unknown_name, key + ".on",
           fmt::format("there is no surface or point '{}'{} (there are: {})", spring.on,
                       did_you_mean(spring.on, known_names), fmt::join(known_names, ", ")));
     }

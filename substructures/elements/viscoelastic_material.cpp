@@ -34,32 +34,26 @@ const Schema& ViscoelasticMaterial::schema() {
                       .optional = true})
           .check([](const ViscoelasticMaterial& material, std::vector<Problem>& problems) {
             if (material.glassy_modulus <= material.rubbery_modulus) {
-              problems.push_back({"glassy_modulus",
+              problems.push_back({Refusal::wrong_value, "glassy_modulus",
                                   fmt::format("{:g} Pa must be above rubbery_modulus = {:g} Pa",
-                                              material.glassy_modulus, material.rubbery_modulus),
-                                  {},
-                                  0,
-                                  0});
+                                              material.glassy_modulus, material.rubbery_modulus)});
             }
             if (material.creep_times.empty()) {
-              problems.push_back({"creep_times", "needs one time or more", {}, 0, 0});
+              problems.push_back({Refusal::missing, "creep_times", "needs one time or more"});
               return;
             }
             const std::vector<double>& shares = material.creep_shares;
             if (shares.empty() && material.creep_times.size() == 1) return;
             if (shares.size() != material.creep_times.size()) {
-              problems.push_back({"creep_shares",
+              problems.push_back({Refusal::wrong_size, "creep_shares",
                                   fmt::format("has {} entries, `creep_times` {}", shares.size(),
-                                              material.creep_times.size()),
-                                  {},
-                                  0,
-                                  0});
+                                              material.creep_times.size())});
               return;
             }
             const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
             if (std::abs(sum - 1.0) > 1e-9) {
-              problems.push_back(
-                  {"creep_shares", fmt::format("must sum to 1, is {:.10g}", sum), {}, 0, 0});
+              problems.push_back({Refusal::wrong_value, "creep_shares",
+                                  fmt::format("must sum to 1, is {:.10g}", sum)});
             }
           });
   return keys;

@@ -33,11 +33,8 @@ const Schema& RayleighDamping::schema() {
           .check([](const RayleighDamping& damping, std::vector<Problem>& problems) {
             if (!damping.alpha_start && (damping.hold > 0.0 || damping.fade > 0.0)) {
               problems.push_back(
-                  {"alpha_start",
-                   "missing: `hold` and `fade` say how long it lasts; give it or drop them",
-                   {},
-                   0,
-                   0});
+                  {Refusal::missing, "alpha_start",
+                   "missing: `hold` and `fade` say how long it lasts; give it or drop them"});
             }
           });
   return keys;

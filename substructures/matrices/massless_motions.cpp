@@ -33,7 +33,8 @@ SemidefinitePairs semidefinite_eigenpairs(const Eigen::MatrixXd& stiffness,
     return {std::move(pairs.values), std::move(pairs.vectors), Eigen::MatrixXd(n, 0)};
   }
   if ((mass.diagonal().array() < 0.0).any())
-    throw NumericalError(what + ": the mass has a negative entry on its diagonal");
+    throw NumericalError(Refusal::singular,
+                         what + ": the mass has a negative entry on its diagonal");
   // Unknowns without mass keep the scale of the stiffness.
   Eigen::VectorXd scale(n);
   for (Eigen::Index i = 0; i < n; ++i)
@@ -41,10 +42,11 @@ SemidefinitePairs semidefinite_eigenpairs(const Eigen::MatrixXd& stiffness,
   const SymmetricEigenpairs masses =
       symmetric_eigenpairs(scale.asDiagonal() * mass * scale.asDiagonal(), what);
   if (masses.values(0) < -massless_ratio) {
-    throw NumericalError(fmt::format(
-        "{}: the mass is not positive semidefinite; scaled to a unit diagonal its least eigenvalue "
-        "is {:.3g}",
-        what, masses.values(0)));
+    throw NumericalError(Refusal::singular,
+                         fmt::format("{}: the mass is not positive semidefinite; scaled to a unit "
+                                     "diagonal its least eigenvalue "
+                                     "is {:.3g}",
+                                     what, masses.values(0)));
   }
   const auto num_massless = (masses.values.array() <= massless_ratio).count();
   const Eigen::Index num_massive = n - num_massless;
@@ -56,9 +58,12 @@ SemidefinitePairs semidefinite_eigenpairs(const Eigen::MatrixXd& stiffness,
       (factor.matrixLLT().diagonal().array().square() > 1e-12 * own_stiffness.diagonal().array())
           .all();
   if (!is_held) {
-    throw NumericalError(what + ": some motion has neither mass nor stiffness; hold it, or leave "
-                                "the unknowns out that nothing holds (elements of reduced integration have "
-                                "such motions where they are one layer thick)");
+    throw NumericalError(
+        Refusal::singular,
+        what +
+            ": some motion has neither mass nor stiffness; hold it, or leave "
+            "the unknowns out that nothing holds (elements of reduced integration have "
+            "such motions where they are one layer thick)");
   }
   SemidefinitePairs pairs;
   // N L⁻ᵀ with NᵀKN = L Lᵀ.

@@ -163,7 +163,7 @@ SparseCholesky::SparseCholesky(const SparseMatrix& matrix, const std::string& wh
   if (!factor_->decomposition.factorise(matrix, dofs) ||
       !(softest_over_rounding(*this, matrix) > least_over_rounding)) {
     throw NumericalError(
-        
+        Refusal::singular,
         fmt::format("{} ({} x {}) is not positive definite: the supports and the interface leave a "
                     "rigid motion free, the body is too slender for its mesh, or the matrix is "
                     "damaged",

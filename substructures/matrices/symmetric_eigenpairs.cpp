@@ -34,7 +34,8 @@ bool is_finite(const Eigen::MatrixXd& matrix) {
 }
 
 [[noreturn]] void refuse(const std::string& what, int n, const char* why) {
-  throw NumericalError(fmt::format("{}: the eigenproblem of {} unknowns {}", what, n, why));
+  throw NumericalError(Refusal::eigenvalues_incomplete,
+                       fmt::format("{}: the eigenproblem of {} unknowns {}", what, n, why));
 }
 
 /// Pairs `first` to `last` in ascending order, counted from 1.
@@ -76,7 +77,7 @@ SymmetricEigenpairs eigenpairs_in_range(Eigen::MatrixXd matrix, int first, int l
 }
 
 [[noreturn]] void refuse_mass(const std::string& what) {
-  throw NumericalError(what + ": the mass is not positive definite");
+  throw NumericalError(Refusal::singular, what + ": the mass is not positive definite");
 }
 
 }  // namespace

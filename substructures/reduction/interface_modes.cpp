@@ -27,14 +27,16 @@ Eigen::MatrixXd lowest_interface_modes(const ReducedBody& body, Eigen::Index cou
   const Eigen::LLT<Eigen::MatrixXd> factor(stiffness + shift * mass);
   const bool is_positive = (mass.diagonal().array() > 0.0).all();
   if (!is_positive || factor.info() != Eigen::Success)
-    throw NumericalError("interface modes: the mass of the interface is not positive definite");
+    throw NumericalError(Refusal::singular,
+                         "interface modes: the mass of the interface is not positive definite");
   Eigen::MatrixXd matrix = mass;
   factor.matrixL().solveInPlace(matrix);
   factor.matrixU().solveInPlace<Eigen::OnTheRight>(matrix);
   const Eigen::MatrixXd symmetric = 0.5 * (matrix + matrix.transpose());
   const SymmetricEigenpairs pairs = highest_eigenpairs(symmetric, count, "interface modes");
   if (count > 0 && !(pairs.values(0) > 0.0))
-    throw NumericalError("interface modes: the mass of the interface is not positive definite");
+    throw NumericalError(Refusal::singular,
+                         "interface modes: the mass of the interface is not positive definite");
   Eigen::MatrixXd modes =
       pairs.vectors.rowwise().reverse() *
       pairs.values.reverse().cwiseSqrt().cwiseInverse().asDiagonal();  // Xᵀ M X = 1

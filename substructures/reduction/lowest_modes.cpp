@@ -44,7 +44,7 @@ Modes dense_modes(const SparseCholesky& factor, const SparseMatrix& stiffness,
   const SemidefinitePairs all =
       semidefinite_eigenpairs(part(stiffness), part(mass), "fixed-interface modes");
   if (count > all.values.size()) {
-    throw NumericalError(
+    throw NumericalError(Refusal::cannot_reduce,
                          fmt::format("fixed-interface modes: {} asked, but only {} of the {} "
                                      "motions of the interior have mass; "
                                      "ask for that many at most",
@@ -191,7 +191,7 @@ Modes Lanczos::solve() {
     num_converged = (residuals <= tolerance * values.array().abs()).count();
     if (num_converged == count_) {
       if (!(values(count_ - 1) > 0.0))
-        throw NumericalError(
+        throw NumericalError(Refusal::singular,
                              "fixed-interface modes: the mass is not positive definite");
       VectorBlock shapes = basis_.leftCols(dim_) * vectors;
       stiffness_.solve_upper_in_place(shapes);
@@ -205,7 +205,7 @@ Modes Lanczos::solve() {
     }
     if (is_exhausted) block = random_block();
   }
-  throw NumericalError(
+  throw NumericalError(Refusal::eigenvalues_incomplete,
                        fmt::format("fixed-interface modes: Lanczos found {} of {} eigenpairs",
                                    num_converged, count_));
 }
@@ -323,7 +323,7 @@ Modes lowest_modes(const SparseCholesky& stiffness, const SparseMatrix& stiffnes
     const double residual = (force.col(i) - modes.omega_squared(i) * inertia.col(i)).norm();
     if (!(residual < 1e-6 * force.col(i).norm() + 10.0 * rounding(i))) {
       throw NumericalError(
-          
+          Refusal::eigenvalues_incomplete,
           fmt::format("fixed-interface modes: eigenpair {} has a residual of {:.1e}", i + 1,
                       residual / force.col(i).norm()));
     }

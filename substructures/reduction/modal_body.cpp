@@ -72,7 +72,8 @@ ModalBody make_modal(const ReducedBody& body) {
     const double rounding =
         body.interface_rounding * pairs.vectors.col(i).head(body.num_interface).squaredNorm();
     if (squares(i) < -std::max(rigid_below, rounding)) {
-      throw NumericalError(fmt::format("modal form: mode {} has the negative stiffness {:.3e} 1/s²",
+      throw NumericalError(Refusal::singular,
+                           fmt::format("modal form: mode {} has the negative stiffness {:.3e} 1/s²",
                                        i + 1, squares(i)));
     }
     modal.omega(i) = squares(i) <= rigid_below ? 0.0 : std::sqrt(squares(i));
@@ -80,7 +81,8 @@ ModalBody make_modal(const ReducedBody& body) {
   modal.shapes = pairs.vectors;
   if (pairs.massless.cols() > 0) {
     if (!(largest > 0.0))
-      throw NumericalError("modal form: no motion has both mass and stiffness, though some have no "
+      throw NumericalError(Refusal::singular,
+                           "modal form: no motion has both mass and stiffness, though some have no "
                            "mass");
     const double omega = quasi_static_ratio * std::sqrt(largest);
     const Eigen::MatrixXd quasi_static = quasi_static_modes(pairs, body.rows, omega);

@@ -37,15 +37,16 @@ TEST(Check, ShowsTheLineOfEveryErrorWithACaret) {
   const ProgramResult result = Program({"check", path}).run();
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.out, "");
-  EXPECT_EQ(result.err,
-            "stridor: the input is wrong\n" + path +
-                ":3:19: drive.velocity: '1 kg' has unit kg, expected a velocity in m s-1\n"
-                "    3 | drive: {velocity: 1 kg, load: 1, ramp: 0}\n"
-                "      |                   ^\n" +
-                path +
-                ":4:28: time.stepp: unknown key 'stepp', did you mean 'step'?\n"
-                "    4 | time: {step: 1e-7, end: 1, stepp: 2}\n"
-                "      |                            ^\n");
+  EXPECT_EQ(
+      result.err,
+      "stridor: the input is wrong\n" + path +
+          ":3:19: drive.velocity: '1 kg' has unit kg, expected a velocity in m s-1 [wrong-unit]\n"
+          "    3 | drive: {velocity: 1 kg, load: 1, ramp: 0}\n"
+          "      |                   ^\n" +
+          path +
+          ":4:28: time.stepp: unknown key 'stepp', did you mean 'step'? [unknown-key]\n"
+          "    4 | time: {step: 1e-7, end: 1, stepp: 2}\n"
+          "      |                            ^\n");
 }
 
 TEST(Check, ShowsTheAssignmentWhereTheErrorLiesInOne) {
@@ -56,10 +57,11 @@ TEST(Check, ShowsTheAssignmentWhereTheErrorLiesInOne) {
   EXPECT_EQ(result.err,
             "stridor: the input is wrong\n"
             "--set contact.strat=30 mm: contact.strat: unknown key 'strat', did you mean "
-            "'start'?\n"
+            "'start'? [unknown-key]\n"
             "      | --set contact.strat=30 mm\n"
             "      |               ^\n"
-            "--set time.step=2e-7 kg: time.step: '2e-7 kg' has unit kg, expected a time in s\n"
+            "--set time.step=2e-7 kg: time.step: '2e-7 kg' has unit kg, expected a time in s "
+            "[wrong-unit]\n"
             "      | --set time.step=2e-7 kg\n"
             "      |                 ^\n");
 }
@@ -162,8 +164,10 @@ TEST(Check, JsonHoldsPlaceKeyAndMessageAlone) {
   for (const Json& error : errors) {
     std::vector<std::string> names;
     for (const auto& [name, value] : error.items()) names.push_back(name);
-    EXPECT_THAT(names, ::testing::UnorderedElementsAre("file", "line", "column", "key", "message"));
+    EXPECT_THAT(
+        names, ::testing::UnorderedElementsAre("code", "file", "line", "column", "key", "message"));
   }
+  EXPECT_EQ(errors[0]["code"], "wrong-value");
   EXPECT_EQ(errors[0]["file"], path);
   EXPECT_EQ(errors[0]["key"], "drive.ramp");
   EXPECT_EQ(errors[1]["file"], "--set time.step=x");

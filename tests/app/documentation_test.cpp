@@ -7,6 +7,7 @@
 #include <regex>
 #include <sstream>
 
+#include "core/refusals.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {
@@ -18,11 +19,10 @@ using namespace test;
 const fs::path source = STRIDOR_SOURCE_DIR;
 
 /// The texts of the fenced blocks of a language, in the order of the document.
-std::vector<std::string> blocks_of(const fs::path& document, const std::string& language) {
+std::vector<std::string> blocks_in(std::istream& text, const std::string& language) {
   std::vector<std::string> blocks;
-  std::ifstream file(document);
   bool is_inside = false;
-  for (std::string line; std::getline(file, line);) {
+  for (std::string line; std::getline(text, line);) {
     if (is_inside && line == "```") {
       is_inside = false;
     } else if (is_inside) {
@@ -33,6 +33,11 @@ std::vector<std::string> blocks_of(const fs::path& document, const std::string& 
     }
   }
   return blocks;
+}
+
+std::vector<std::string> blocks_of(const fs::path& document, const std::string& language) {
+  std::ifstream file(document);
+  return blocks_in(file, language);
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -216,23 +221,51 @@ TEST(Pages, OfDiscAndPadsGiveTheirNumbers) {
   EXPECT_EQ(num_numbers, 10);
 }
 
+/// The part of a page below each of its headings of the third level.
+std::vector<std::pair<std::string, std::string>> sections_of(const fs::path& page) {
+  std::vector<std::pair<std::string, std::string>> sections;
+  for (const std::string& line : lines_of(contents_of(page))) {
+    if (line.starts_with("### ")) {
+      sections.emplace_back(line.substr(4), "");
+    } else if (!sections.empty()) {
+      sections.back().second += line + "\n";
+    }
+  }
+  return sections;
+}
+
+TEST(Pages, OfRefusalsHasASectionForEveryCode) {
+  std::vector<std::string> codes;
+  for (const Refusal refusal : all_refusals()) codes.emplace_back(code_of(refusal));
+  std::vector<std::string> headings;
+  for (const auto& [heading, text] : sections_of(source / "docs" / "refusals.md")) {
+    headings.push_back(heading);
+    EXPECT_NE(text.find("*Cause.*"), std::string::npos) << heading;
+  }
+  EXPECT_EQ(headings, codes);
+}
+
 TEST(Pages, OfRefusalsShowWhatIsPrinted) {
   const UserFolder folder;
   int num_refused = 0;
-  for (const std::string& block : blocks_of(source / "docs" / "refusals.md", "text")) {
-    if (!block.starts_with("$ ")) continue;  // of two processes at once
-    UserFolder::Outcome outcome{};
-    for (const std::string& line : lines_of(block)) {
-      if (line.starts_with("$ ")) {
-        outcome = folder.run(line.substr(2));
-        continue;
+  for (const auto& [code, text] : sections_of(source / "docs" / "refusals.md")) {
+    std::istringstream stream(text);
+    for (const std::string& block : blocks_in(stream, "text")) {
+      if (!block.starts_with("$ ")) continue;  // of two processes at once
+      UserFolder::Outcome outcome{};
+      for (const std::string& line : lines_of(block)) {
+        if (line.starts_with("$ ")) {
+          outcome = folder.run(line.substr(2));
+          continue;
+        }
+        EXPECT_GE(outcome.exit_code, 2) << block << outcome.output;
+        EXPECT_NE(outcome.output.find(line), std::string::npos) << line << "\n" << outcome.output;
+        EXPECT_NE(outcome.output.find("[" + code + "]"), std::string::npos) << outcome.output;
+        ++num_refused;
       }
-      EXPECT_GE(outcome.exit_code, 2) << block << outcome.output;
-      EXPECT_NE(outcome.output.find(line), std::string::npos) << line << "\n" << outcome.output;
-      ++num_refused;
     }
   }
-  EXPECT_GE(num_refused, 18);
+  EXPECT_GE(num_refused, 28);
 }
 
 TEST(Snippets, OfPythonRun) {

@@ -40,6 +40,7 @@ class Errors(unittest.TestCase):
             stridor.run(scene, set={"time.step": -1.0})
         problem = wrong.exception.problems[0]
         self.assertEqual(problem.key, "time.step")
+        self.assertEqual(problem.code, "wrong-value")
         self.assertEqual(wrong.exception.exit_code, 2)
         with self.assertRaises(stridor.FileError):
             stridor.load("none.yaml")

@@ -38,7 +38,8 @@ inline void PrintTo(const FaultyScene& scene, std::ostream* stream) {
 
 template <class Run>
 void go_to_end(Run& run) {
-  if (run.run_to_end() != MarchEnd::finished) throw NumericalError("the run has not finished");
+  if (run.run_to_end() != MarchEnd::finished)
+    throw NumericalError(Refusal::diverged, "the run has not finished");
   run.finish();
 }
 

@@ -39,7 +39,7 @@ struct Spring {
             .real("preload", &Spring::preload, {.doc = "Preload.", .unit = "N", .optional = true})
             .check([](const Spring& spring, std::vector<Problem>& problems) {
               if (spring.preload && *spring.preload > spring.stiffness)
-                problems.push_back({"preload", "exceeds the stiffness", {}, 0, 0});
+                problems.push_back({Refusal::wrong_value, "preload", "exceeds the stiffness"});
             });
     return keys;
   }

@@ -151,7 +151,8 @@ TEST_F(StopTokenAtOnce, IsToldAsJsonWhereThatIsWanted) {
       },
       testing::ExitedWithCode(stopped_exit_code), "");
   EXPECT_EQ(test::contents_of(out),
-            "{\"errors\": [{\"message\": \"stopped on request; nothing has been written\"}]}\n");
+            "{\"errors\": [{\"code\": \"interrupted\", \"message\": \"stopped on request; nothing "
+            "has been written\"}]}\n");
 }
 
 TEST_F(StopToken, RequestIsSeenByAnotherThread) {

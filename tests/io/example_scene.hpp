@@ -51,7 +51,7 @@ struct Beam {
             .section("material", &Beam::material, {.doc = "What it is made of."})
             .check([](const Beam& beam, std::vector<Problem>& problems) {
               if (beam.modes && *beam.modes > beam.elements) {
-                problems.push_back({"modes", "must not exceed elements", "", 0, 0});
+                problems.push_back({Refusal::wrong_value, "modes", "must not exceed elements"});
               }
             });
     return keys;
@@ -156,7 +156,7 @@ struct Example {
             .include(&Example::recording)
             .check([](const Example& example, std::vector<Problem>& problems) {
               if (example.band.size() == 2 && example.band[0] > example.band[1]) {
-                problems.push_back({"band", "must begin below its end", "", 0, 0});
+                problems.push_back({Refusal::wrong_value, "band", "must begin below its end"});
               }
             });
     return keys;

@@ -167,7 +167,7 @@ TEST(InpRefusals, IncludedFiles) {
   EXPECT_EQ(inp_refusal("*INCLUDE, INPUT=a\n", deeper),
             "axxxxxxxxxxxxxx:1:1: files are included 16 deep or 1000 of them; expected fewer");
   const auto absent = [](const std::string&, const std::string& file) -> SourceText {
-    throw FileError(file, "", "cannot be opened");
+    throw FileError(Refusal::cannot_read, file, "", "cannot be opened");
   };
   EXPECT_EQ(inp_refusal("*INCLUDE, INPUT=a\n", absent),
             "m.inp:1:1: cannot include a file: a: cannot be opened");

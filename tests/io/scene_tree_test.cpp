@@ -547,10 +547,14 @@ TEST(SetValue, DuplicateInTheValueIsKeptAsAProblem) {
 TEST(Locate, GivesTheKeyOrItsNearestAncestor) {
   SceneNode root = read_scene_text("a: 1\nb:\n  c: [5, 6]\n", "s.yaml");
   set_value(root, "d=3");
-  std::vector<Problem> problems{
-      {"b.c.1", "m", "", 0, 0},   {"b.c.7", "m", "", 0, 0}, {"b.missing.x", "m", "", 0, 0},
-      {"nowhere", "m", "", 0, 0}, {"", "m", "", 0, 0},      {"d", "m", "", 0, 0},
-      {"a", "m", "other", 7, 8}};
+  const auto problem = [](const char* key) { return Problem{Refusal::wrong_value, key, "m"}; };
+  std::vector<Problem> problems{problem("b.c.1"),
+                                problem("b.c.7"),
+                                problem("b.missing.x"),
+                                problem("nowhere"),
+                                problem(""),
+                                problem("d"),
+                                {Refusal::wrong_value, "a", "m", "other", 7, 8}};
   locate(problems, root);
   const Place expected[] = {{"s.yaml", 3, 10}, {"s.yaml", 3, 6}, {"s.yaml", 2, 1},
                             {"s.yaml", 1, 1},  {"s.yaml", 0, 0}, {"--set d=3", 0, 0},
@@ -574,11 +578,11 @@ TEST(Find, IsExact) {
 }
 
 TEST(SortByPlace, FileComesFirstAndEqualPlacesKeepTheirOrder) {
-  std::vector<Problem> problems{{"set", "", "--set", 0, 0},
-                                {"b", "", "f", 2, 5},
-                                {"c", "", "f", 2, 1},
-                                {"first", "", "f", 1, 9},
-                                {"second", "", "f", 1, 9}};
+  std::vector<Problem> problems{{Refusal::wrong_value, "set", "", "--set", 0, 0},
+                                {Refusal::wrong_value, "b", "", "f", 2, 5},
+                                {Refusal::wrong_value, "c", "", "f", 2, 1},
+                                {Refusal::wrong_value, "first", "", "f", 1, 9},
+                                {Refusal::wrong_value, "second", "", "f", 1, 9}};
   sort_by_place(problems);
   std::vector<std::string> keys;
   for (const Problem& problem : problems) keys.push_back(problem.key);

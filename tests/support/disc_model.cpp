@@ -104,6 +104,7 @@ FaceSlidingState sliding_state_of(const DiscModel& model, const Eigen::VectorXd&
   SlidingStateSolution found = solve_sliding_state(model.bodies, model.contacts, model.law, loads);
   if (!found.has_converged) {
     throw NumericalError(
+        Refusal::diverged,
         "disc: found no state in which it slides steadily between the pads; friction may draw them "
         "in without bound, as where it times pads.stiffness.coupling exceeds "
         "pads.stiffness.circumferential");
