@@ -78,7 +78,7 @@ Json number(double value) {
 std::vector<double> spaced_values(const char* option, const std::vector<double>& range) {
   const double count = range[2];
   if (!(range[0] > 0.0) || !(range[1] > range[0]) || !std::isfinite(range[1]))
-    throw ConfigError(Refusal::missing, option,
+    throw ConfigError(Refusal::wrong_value, option,
                       "needs two positive numbers, the smaller one first");
   if (!(count >= 4.0) || !(count <= 1000.0) || count != std::trunc(count))
     throw ConfigError(Refusal::wrong_value, option,

@@ -42,7 +42,7 @@ Simulation::Simulation(const System& given, const TimeParameters& time, Accounts
                   [](const ContactPoint& point) { return point.substrate.has_value(); });
   for (const ContactPoint& point : given.contacts) {
     if (point.substrate && point.assumption != ContactAssumption::film) {
-      throw ConfigError(Refusal::missing, "contact.assumption",
+      throw ConfigError(Refusal::contradiction, "contact.assumption",
                         "must be `film` on a half_space: the others slide on a rigid constraint, "
                         "and cannot be compared with it");
     }
