@@ -12,7 +12,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::size_t end = text.find(separator);
   const std::string included = end == std::string::npos ? "" : text.substr(end + separator.size());
   const auto reader = [&](const std::string&, const std::string& file) -> stridor::SourceText {
-    if (file != "a") throw stridor::FileError("fuzz.inp", "", "is not there");
+    if (file != "a")
+      throw stridor::FileError(stridor::Refusal::cannot_read, "fuzz.inp", "", "is not there");
     return {"fuzz.inp", included};
   };
   try {
