@@ -360,6 +360,7 @@ PeriodicMotion find_periodic_motion(const System& system, const TimeParameters& 
   const auto failed = [&] {
     found.status = CycleStatus::diverged;
     found.failure = simulation.failure();
+    found.refusal = simulation.refusal();
     return found;
   };
   if (step_on(simulation, settling) != StepOutcome::done) return failed();

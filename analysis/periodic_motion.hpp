@@ -31,6 +31,7 @@ struct ObservedMotion {
 struct PeriodicMotion {
   CycleStatus status = CycleStatus::diverged;
   std::string failure;  ///< of the simulation; empty unless `diverged`
+  Refusal refusal = Refusal::diverged;  ///< its kind
   ObservedMotion observed;
   /// Statistics of the observed displacement, SI: of the cycle, or of the whole turns after
   /// `settle` where none was solved for.

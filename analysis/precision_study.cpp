@@ -146,9 +146,11 @@ TimedRun::TimedRun(const System& system, const TimeParameters& time, ObservedRow
     simulation_ = make_run_simulation(system, time);
   } catch (const ConfigError& error) {
     failure_ = error.what();
+    refusal_ = error.problems().front().refusal;
     return;
   } catch (const NumericalError& error) {
     failure_ = error.what();
+    refusal_ = error.refusal();
     return;
   }
   sampler_.emplace(*this, steps_per_sample_);
@@ -170,7 +172,10 @@ MarchEnd TimedRun::run_until(std::int64_t sample) {
                         static_cast<std::int64_t>(samples_.displacement.size() - samples_before),
                         seconds_since(start)});
   march_seconds_ += stretches_.back().seconds;
-  if (end == MarchEnd::failed) failure_ = simulation_->failure();
+  if (end == MarchEnd::failed) {
+    failure_ = simulation_->failure();
+    refusal_ = simulation_->refusal();
+  }
   return end;
 }
 

@@ -107,6 +107,7 @@ class TimedRun {
   const SampledRun& samples() const { return samples_; }
   /// Empty as long as nothing went wrong.
   const std::string& failure() const { return failure_; }
+  Refusal refusal() const { return refusal_; }  ///< kind of the failure
   RunCost cost() const;
 
  private:
@@ -131,6 +132,7 @@ class TimedRun {
   std::int64_t steps_per_sample_;
   SampledRun samples_;
   std::string failure_;
+  Refusal refusal_ = Refusal::diverged;
   std::optional<Simulation> simulation_;
   std::optional<Sampler> sampler_;
   std::optional<March> march_;

@@ -196,7 +196,7 @@ int run_program(int argc, char** argv) {
     return report("the computation failed", error.what(), ExitCode::numbers_failed,
                   error.refusal());
   } catch (const Interrupted& error) {
-    // What is said ends with a command to copy.
+    // Without its code: the message ends with a command to copy.
     return report("stopped on request", error.what(), ExitCode::stopped,
                   {{Refusal::interrupted, "", error.what()}});
   } catch (const std::system_error& error) {

@@ -237,7 +237,7 @@ EventPrecision measure_all(const Study& study, int points, std::optional<double>
   const Samples reference = run_events(study, reference_tolerance, &failure);
   if (stop_requested()) throw Interrupted("nothing has been written");
   if (reference.size() != study.num_samples)
-    throw NumericalError(Refusal::diverged, "the reference motion, event-driven: " + failure);
+    throw NumericalError(Refusal::no_convergence, "the reference motion, event-driven: " + failure);
   EventPrecision found;
   found.own_error = relative_error(run_events(study, check_tolerance), reference);
   found.settings = settings_of(points);

@@ -73,7 +73,7 @@ void run_all(const PrecisionStudy& study, PrecisionRows& rows) {
     if (end == MarchEnd::stopped)
       throw Interrupted("nothing was measured; --until takes less of the run");
     if (i == 0 && end == MarchEnd::failed)
-      throw NumericalError(Refusal::diverged, "the reference itself failed: " + row.run->failure());
+      throw NumericalError(row.run->refusal(), "the reference itself failed: " + row.run->failure());
     return fmt::format("step {:.3g} s", row.time.step);
   });
 }
@@ -102,7 +102,7 @@ void judge(const PrecisionStudy& study, const PrecisionOptions& options, Precisi
   result.own_error = rows[1].error;
   if (!std::isfinite(result.own_error)) {
     throw NumericalError(
-        Refusal::diverged,
+        rows[1].run->failure().empty() ? Refusal::no_convergence : rows[1].run->refusal(),
         fmt::format("the {} of the reference is zero throughout the window, or its "
                     "check run failed: {}",
                     options.norm, rows[1].run->failure()));

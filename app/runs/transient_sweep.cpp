@@ -52,6 +52,7 @@ struct TransientPoint {
   double value = 0.0;
   Json results;
   std::string failure;  ///< why it ended early, or did not start
+  Refusal refusal = Refusal::diverged;  ///< its kind
 
   /// A number among the results; NaN where there is none.
   double number_at(const char* pointer) const {
@@ -122,7 +123,10 @@ struct Transit {
     point.value = value;
     // Losing the contact within the filter's look-ahead is no failure of the run asked for.
     if (end == MarchEnd::failed && simulation->step_index() >= end_step) end = MarchEnd::finished;
-    if (end == MarchEnd::failed) point.failure = simulation->failure();
+    if (end == MarchEnd::failed) {
+      point.failure = simulation->failure();
+      point.refusal = simulation->refusal();
+    }
     std::optional<AccelerationSummary> acceleration;
     if (!channels.empty() && memory.values.size() > 1) {
       const double interval =
@@ -159,6 +163,7 @@ std::vector<TransientPoint> points_at(const LoadedScene& scene, const NumericKey
         points[i].value = values[i];
         points[i].results = {{"status", "failed"}};
         points[i].failure = error.what();
+        points[i].refusal = error.refusal();
       }
     }
   }
@@ -387,7 +392,7 @@ ExitCode sweep_transients(const SweepOptions& options, const LoadedScene& loaded
   const bool has_any_done = std::any_of(points.begin(), points.end(),
                                         [](const TransientPoint& p) { return p.failure.empty(); });
   if (!has_any_done) {
-    throw NumericalError(Refusal::diverged,
+    throw NumericalError(points.front().refusal,
                          fmt::format("none of the {} transients came to its end; {}", points.size(),
                                      points.front().failure));
   }

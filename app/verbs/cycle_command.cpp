@@ -111,7 +111,7 @@ Json follow_steps(const CycleCommandOptions& options, const LoadedScene& loaded,
   std::optional<Activity> following(std::in_place, "following the motion until it repeats");
   const PeriodicMotion found = find_scene_cycle(loaded, model);
   following.reset();
-  if (found.status == CycleStatus::diverged) throw NumericalError(Refusal::diverged, found.failure);
+  if (found.status == CycleStatus::diverged) throw NumericalError(found.refusal, found.failure);
   const Json results = step_cycle_json(found);
   if (!options.output && !options.figure) return results;
   const TimeParameters& time = *loaded.scene.time;

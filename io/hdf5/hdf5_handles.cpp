@@ -49,7 +49,7 @@ std::string errno_text(int number) {
 }
 
 void Checker::fail(const std::string& dataset, const std::string& what) const {
-  throw FileError(Refusal::file_damaged, path_, dataset, fmt::format("{}: {}", what, hdf5_cause()));
+  throw FileError(refusal_, path_, dataset, fmt::format("{}: {}", what, hdf5_cause()));
 }
 
 void Checker::check(herr_t status, const std::string& dataset, const char* what) const {

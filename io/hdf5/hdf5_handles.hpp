@@ -61,7 +61,10 @@ std::string errno_text(int number);
 /// Turns failed HDF5 calls into FileErrors that name the file and the dataset.
 class Checker {
  public:
-  explicit Checker(std::string path) : path_(std::move(path)) {}
+  /// @param refusal kind of what fails: file_damaged where the file is read, cannot_write where it is
+  ///                written
+  explicit Checker(std::string path, Refusal refusal = Refusal::file_damaged)
+      : path_(std::move(path)), refusal_(refusal) {}
   const std::string& path() const { return path_; }
 
   /// @throws FileError always: `what`, then hdf5_cause()
@@ -73,6 +76,7 @@ class Checker {
 
  private:
   std::string path_;
+  Refusal refusal_;
 };
 
 /// Access to run files: without locks, and closed together with all that is open in them.

@@ -56,7 +56,7 @@ Handle open_hdf5_file(const Checker& at) {
   }
   const std::string irregular = irregular_kind(path);
   if (!irregular.empty())
-    throw FileError(Refusal::file_damaged, path, "", "is " + irregular + ", not an HDF5 file");
+    throw FileError(Refusal::other_kind_of_file, path, "", "is " + irregular + ", not an HDF5 file");
   const htri_t is_hdf5 = H5Fis_hdf5(path.c_str());
   if (is_hdf5 == 0) throw FileError(Refusal::other_kind_of_file, path, "", "is not an HDF5 file");
   const Handle access = file_access(at);

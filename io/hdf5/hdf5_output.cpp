@@ -153,7 +153,7 @@ void write_hdf5_file(const std::string& path, Overwrite overwrite, const Attribu
                      const std::function<void(const Hdf5Writer&)>& fill) {
   const QuietErrors quiet;
   check_output(path, overwrite);
-  const Checker at(path);
+  const Checker at(path, Refusal::cannot_write);
   PartFile part(path);
   const Handle access = file_access(at);
   Handle file = at.own(H5Fcreate(part.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()),

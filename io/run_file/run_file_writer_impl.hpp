@@ -31,7 +31,7 @@ struct RunFileWriter::Impl {
   };
 
   Impl(const std::string& path, std::vector<SeriesSpec> specs, RunFileOptions chosen)
-      : at(path), options(std::move(chosen)), access(staged.access(at)), links(link_creation(at)) {
+      : at(path, Refusal::cannot_write), options(std::move(chosen)), access(staged.access(at)), links(link_creation(at)) {
     for (SeriesSpec& spec : specs) columns.push_back({std::move(spec), {}, {}});
   }
   ~Impl() {

@@ -43,7 +43,7 @@ void check_step(const TimeParameters& time, std::vector<Problem>& problems) {
     return;
   }
   if (!(time.step > 0.0)) {
-    refuse(Refusal::wrong_value, "", "`step` is missing, which this integrator needs");
+    refuse(Refusal::missing, "", "`step` is missing, which this integrator needs");
     return;
   }
   if (time.coordinates != Coordinates::modal) {

@@ -33,7 +33,7 @@ class Strips {
     }
   }
 
-  void write_to(VectorBlockRef& block, std::span<const int> dofs) const {
+  void write_to(VectorBlockRef& block, std::span<const int> dofs) {
     for (Eigen::Index strip = 0; strip < num_strips_; ++strip) {
       const Eigen::Index first = strip * strip_width;
       const Eigen::Index count = std::min(strip_width, block.cols() - first);
@@ -45,9 +45,6 @@ class Strips {
 
   Eigen::Index count() const { return num_strips_; }
   double* at(Eigen::Index strip, Eigen::Index row) {
-    return numbers_.data() + (strip * size_ + row) * strip_width;
-  }
-  const double* at(Eigen::Index strip, Eigen::Index row) const {
     return numbers_.data() + (strip * size_ + row) * strip_width;
   }
   bool is_zero(Eigen::Index row, Eigen::Index count) {
@@ -152,12 +149,7 @@ SparseCholesky::SparseCholesky(const SparseMatrix& matrix, const std::string& wh
     : factor_(std::make_unique<Factor>()) {
   factor_->size = matrix.rows();
   factor_->left_out.assign(left_out.begin(), left_out.end());
-  std::vector<bool> is_left_out(static_cast<std::size_t>(matrix.rows()), false);
-  for (const int dof : left_out) is_left_out[static_cast<std::size_t>(dof)] = true;
-  std::vector<int> dofs;
-  dofs.reserve(is_left_out.size());
-  for (std::size_t dof = 0; dof < is_left_out.size(); ++dof)
-    if (!is_left_out[dof]) dofs.push_back(static_cast<int>(dof));
+  const std::vector<int> dofs = factorised_dofs();
   if (dofs.empty()) return;
   const Activity factorising(fmt::format("factorising {} x {}", dofs.size(), dofs.size()));
   if (!factor_->decomposition.factorise(matrix, dofs) ||
@@ -213,6 +205,16 @@ Eigen::Index SparseCholesky::size() const {
 
 std::span<const int> SparseCholesky::left_out() const {
   return factor_->left_out;
+}
+
+std::vector<int> SparseCholesky::factorised_dofs() const {
+  std::vector<bool> is_left_out(static_cast<std::size_t>(factor_->size), false);
+  for (const int dof : factor_->left_out) is_left_out[static_cast<std::size_t>(dof)] = true;
+  std::vector<int> dofs;
+  dofs.reserve(is_left_out.size());
+  for (std::size_t dof = 0; dof < is_left_out.size(); ++dof)
+    if (!is_left_out[dof]) dofs.push_back(static_cast<int>(dof));
+  return dofs;
 }
 
 Eigen::Index SparseCholesky::num_factorised() const {

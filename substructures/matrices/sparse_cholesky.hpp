@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "substructures/matrices/body_matrices.hpp"
 
@@ -50,6 +51,7 @@ class SparseCholesky {
   Eigen::Index size() const;            ///< rows of A
   Eigen::Index num_factorised() const;  ///< rows of the part that is factorised
   std::span<const int> left_out() const;
+  std::vector<int> factorised_dofs() const;  ///< the others, ascending
   /// Sets the rows of DoFs that are left out to zero: multiplied by A, vectors with such zeros give
   /// what the part gives.
   template <typename Vectors>

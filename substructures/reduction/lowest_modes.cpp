@@ -26,18 +26,9 @@ using SymmetricEigen = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 /// of them; with more of them the space would have to be larger.
 constexpr Eigen::Index block_width = strip_width;
 
-std::vector<Eigen::Index> factorised_dofs(const SparseCholesky& factor) {
-  std::vector<bool> is_left_out(static_cast<std::size_t>(factor.size()), false);
-  for (const int dof : factor.left_out()) is_left_out[static_cast<std::size_t>(dof)] = true;
-  std::vector<Eigen::Index> dofs;
-  for (Eigen::Index dof = 0; dof < factor.size(); ++dof)
-    if (!is_left_out[static_cast<std::size_t>(dof)]) dofs.push_back(dof);
-  return dofs;
-}
-
 Modes dense_modes(const SparseCholesky& factor, const SparseMatrix& stiffness,
                   const SparseMatrix& mass, Eigen::Index count) {
-  const std::vector<Eigen::Index> dofs = factorised_dofs(factor);
+  const std::vector<int> dofs = factor.factorised_dofs();
   const auto part = [&](const SparseMatrix& matrix) {
     return Eigen::MatrixXd(Eigen::MatrixXd(matrix)(dofs, dofs));
   };

@@ -124,6 +124,27 @@ TEST_F(FileSafety, WhatIsNoRegularFileIsRefusedWithoutWaiting) {
   EXPECT_THAT(said_, HasSubstr("pipe: is not a regular file and is not replaced"));
 }
 
+// ---------------------------------------------------------------- codes
+
+TEST_F(FileSafety, CodesTellWhatCannotBeReadFromWhatCannotBeWritten) {
+  ASSERT_EQ(mkfifo(path("pipe.h5").c_str(), 0600), 0);
+  EXPECT_EQ(shell("$S info pipe.h5"), 4);
+  EXPECT_THAT(said_, HasSubstr("[other-kind-of-file]"));
+  EXPECT_EQ(shell("$S info none.h5"), 4);
+  EXPECT_THAT(said_, HasSubstr("[cannot-read]"));
+  const std::string locus = "$S locus " + scene_path("beam_on_beam.yaml") +
+                            " --from 70mm --to 80mm --points 30 -o locus.h5";
+  EXPECT_EQ(shell("ulimit -f 4; " + locus + " > out"), 4);
+  EXPECT_THAT(said_, HasSubstr("[cannot-write]"));
+}
+
+TEST_F(FileSafety, SweepInWhichEveryRunFailsHasTheCodeOfTheFirst) {
+  EXPECT_EQ(shell("$S sweep " + scene_path("extreme/friction_two.yaml") +
+                  " --parameter contact.friction.coefficient --from 2 --to 2.1 --points 2 > out"),
+            3);
+  EXPECT_THAT(said_, HasSubstr("[contact-pulls]"));
+}
+
 // ---------------------------------------------------------------- memory
 
 TEST_F(FileSafety, TooLittleMemoryForBlasIsSaid) {
