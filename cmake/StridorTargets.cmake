@@ -43,14 +43,21 @@ function(stridor_unity target num_sources)
   endif()
 endfunction()
 
-# stridor_library(FOLDER SOURCES ... LINKS ... [TOGETHER <number of sources>])
-# TOGETHER says how many sources the compiler reads at a time.
+# stridor_library(FOLDER SOURCES ... LINKS ... [PRIVATE_LINKS ...] [PRIVATE_HEADERS ...] [TOGETHER <number>])
+# TOGETHER says how many sources the compiler reads at a time; headers that need a private link are
+# PRIVATE_HEADERS.
 function(stridor_library folder)
-  cmake_parse_arguments(arg "" "TOGETHER" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  cmake_parse_arguments(arg "" "TOGETHER" "SOURCES;LINKS;PRIVATE_LINKS;PRIVATE_HEADERS" ${ARGN})
   add_library(stridor_${folder} STATIC ${arg_SOURCES})
   target_link_libraries(stridor_${folder}
     PUBLIC stridor_options ${arg_LINKS} PRIVATE ${arg_PRIVATE_LINKS})
   target_precompile_headers(stridor_${folder} REUSE_FROM stridor_headers)
+  if(CMAKE_VERIFY_INTERFACE_HEADER_SETS)
+    # The preset headers: read together with others, a source may find what its header forgot to include.
+    file(GLOB_RECURSE headers RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}" "*.hpp")
+    list(REMOVE_ITEM headers ${arg_PRIVATE_HEADERS})
+    target_sources(stridor_${folder} PUBLIC FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}" FILES ${headers})
+  endif()
   if(arg_TOGETHER)
     stridor_unity(stridor_${folder} ${arg_TOGETHER})
   endif()

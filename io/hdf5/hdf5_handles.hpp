@@ -2,6 +2,8 @@
 // io/run_file/run_file.hpp, whose users need no HDF5.
 #pragma once
 
+#include "core/refusals.hpp"
+
 #include <hdf5.h>
 
 #include <array>

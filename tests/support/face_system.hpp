@@ -1,6 +1,8 @@
 // A disc between pads as an ordinary system: bodies and contacts on faces.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <vector>
 
 #include "coupling/kinematics/face_kinematics.hpp"
