@@ -20,7 +20,8 @@ Json report_section(const ResultFile& file, const ReportContext& context) {
       {"limit cycle", cycle_section},
       {"frequency responses", response_section},
       {"spectrogram", spectrogram_section},
-      {"sliding contacts", contact_section}};
+      {"sliding contacts", contact_section},
+      {"study of precision", precision_section}};
   const std::string kind = file.kind();
   std::vector<std::string> names;
   for (const auto& [name, make] : kinds) {

@@ -71,5 +71,6 @@ Json cycle_section(const ResultFile& file, const ReportContext& context);
 Json response_section(const ResultFile& file, const ReportContext& context);
 Json spectrogram_section(const ResultFile& file, const ReportContext& context);
 Json contact_section(const ResultFile& file, const ReportContext& context);
+Json precision_section(const ResultFile& file, const ReportContext& context);
 
 }  // namespace stridor

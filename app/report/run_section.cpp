@@ -262,11 +262,14 @@ Json run_section(const ResultFile& source, const ReportContext& context) {
   heard.bursts = bursts_in(run, options);
   heard.is_searched = acceleration_channel(run.file).has_value() &&
                       recorded_settings(run.file, run.path).measure.band.size() == 2;
+  const Json results = results_json(run.file);
+  const Json resolved = results.value("trusted_frequency", Json(nullptr));
   heard.predictions = predictions_of(run, context, heard.bursts, section);
   if (heard.predictions.empty()) heard.predictions = recorded_predictions(source, heard.bursts);
   section["verdict"] = nullptr;  // stands above what it needs
   section["views"].push_back({{"type", "bursts"},
                               {"bursts", bursts_json_of(heard.bursts)},
+                              {"resolved", resolved.is_number() ? resolved : Json(nullptr)},
                               {"predicted", heard.predictions}});
   add_spectrogram(run, context, section);
   section["views"].push_back(histories_view(run, context, 0.7 * context.bytes_per_file));
@@ -279,7 +282,6 @@ Json run_section(const ResultFile& source, const ReportContext& context) {
                     way_of(run.file), {0.25 * context.bytes_per_file, 41}, context.page, section);
     judge_modes(section, heard);
   }
-  const Json results = results_json(run.file);
   section["verdict"] = run_verdict(results, run, heard);
   section["results"] = results;
   add_expectations(header.scene_resolved, results, heard.bursts, section);

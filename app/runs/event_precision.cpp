@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include "app/results/output_folder.hpp"
 #include "app/results/pictures.hpp"
 #include "app/runs/cycle_motion.hpp"
+#include "app/runs/precision_file.hpp"
 #include "app/terminal/progress.hpp"
 #include "app/terminal/remark.hpp"
 #include "core/errors.hpp"
@@ -36,6 +38,7 @@ struct Setting {
   Samples x;
   double seconds = std::numeric_limits<double>::infinity();
   double error = nan;
+  bool is_on_front = false;  ///< no other setting has both less time and a smaller error
 
   bool is_event_driven() const { return integrator == Integrator::event_driven; }
 };
@@ -171,13 +174,17 @@ std::vector<Setting> settings_of(int points) {
 
 Json row_json(const Study& study, const Setting& setting) {
   const bool is_stable = std::isfinite(setting.error);
-  return {{"integrator", name_of(setting.integrator)},
+  return {{"method", name_of(setting.integrator)},
+          {"integrator", name_of(setting.integrator)},
           {"modes", 2},
           {"step", setting.is_event_driven() ? Json(nullptr) : number(study.step(setting))},
           {"tolerance", setting.is_event_driven() ? number(setting.tolerance) : Json(nullptr)},
           {"wall_s", number(setting.seconds)},
+          {"least_wall_s", number(setting.seconds)},
           {"error", is_stable ? number(setting.error) : Json(nullptr)},
-          {"stable", is_stable}};
+          {"stable", is_stable},
+          {"on_front", setting.is_on_front},
+          {"status", is_stable ? "done" : "useless"}};
 }
 
 void draw(const Study& study, const std::vector<Setting>& settings,
@@ -250,6 +257,13 @@ EventPrecision measure_all(const Study& study, int points, std::optional<double>
                     name_of(setting.integrator));
   }
   progress.finish();
+  for (Setting& setting : found.settings) {
+    setting.is_on_front =
+        std::isfinite(setting.error) &&
+        std::none_of(found.settings.begin(), found.settings.end(), [&](const Setting& other) {
+          return other.seconds < setting.seconds && other.error < setting.error;
+        });
+  }
   for (const Setting& setting : found.settings) {
     const bool is_within = wanted && setting.error + found.own_error <= *wanted;
     if (is_within && (found.tuned == nullptr || setting.seconds < found.tuned->seconds))
@@ -281,7 +295,8 @@ ExitCode precision_of_events(const PrecisionOptions& options, const LoadedScene&
   const Study study = make_study(loaded);
   const bool is_kept = !options.folder.empty();
   if (is_kept) {
-    prepare_folder(options.folder, {precision_figure_name, precision_json_name},
+    prepare_folder(options.folder,
+                   {precision_figure_name, precision_json_name, precision_file_name},
                    options.common.overwrite());
   }
   const EventPrecision found = measure_all(study, options.points, wanted);
@@ -294,18 +309,23 @@ ExitCode precision_of_events(const PrecisionOptions& options, const LoadedScene&
                 {"error_is", fmt::format("difference from the same at {:g}", check_tolerance)}}},
               {"rows", Json::array()}};
   for (const Setting& setting : found.settings) object["rows"].push_back(row_json(study, setting));
-  if (wanted)
-    object["tuned"] = found.tuned != nullptr ? row_json(study, *found.tuned) : Json(nullptr);
+  if (wanted) {
+    object["tune"] = found.tuned != nullptr ? row_json(study, *found.tuned) : Json(nullptr);
+    if (found.tuned != nullptr) object["tune"]["wanted"] = *wanted;
+  }
   if (is_kept) {
-    draw(study, found.settings, std::filesystem::path(options.folder) / precision_figure_name);
-    write_json(std::filesystem::path(options.folder) / precision_json_name, object);
+    const std::filesystem::path folder = options.folder;
+    draw(study, found.settings, folder / precision_figure_name);
+    write_json(folder / precision_json_name, object);
+    write_precision_file(folder / precision_file_name, object, options, loaded);
   }
   if (options.common.json) {
     print_json(object);
   } else {
     print_settings(study, found);
     if (is_kept)
-      fmt::print("{} and {} in {}\n", precision_figure_name, precision_json_name, options.folder);
+      fmt::print("{}, {} and {} in {}\n", precision_figure_name, precision_json_name,
+                 precision_file_name, options.folder);
   }
   if (wanted && found.tuned == nullptr) {
     print_remark("stridor: no setting measured is within {:g}\n", *wanted);

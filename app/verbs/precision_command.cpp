@@ -8,7 +8,7 @@
 #include "app/results/output_folder.hpp"
 #include "app/results/pictures.hpp"
 #include "app/runs/event_precision.hpp"
-#include "app/runs/precision.hpp"
+#include "app/runs/precision_file.hpp"
 #include "app/runs/reduction_report.hpp"
 #include "app/terminal/remark.hpp"
 
@@ -42,7 +42,8 @@ ExitCode precision(const PrecisionOptions& options) {
   const PrecisionStudy study = make_precision_study(options, std::move(loaded));
   const bool is_kept = !options.folder.empty();
   if (is_kept) {
-    prepare_folder(options.folder, {precision_figure_name, precision_json_name},
+    prepare_folder(options.folder,
+                   {precision_figure_name, precision_json_name, precision_file_name},
                    options.common.overwrite());
   }
 
@@ -53,9 +54,10 @@ ExitCode precision(const PrecisionOptions& options) {
   Json object = precision_json(study, options, result, wanted);
   object["reduction"] = reductions;
   if (is_kept) {
-    draw_precision(study, options, result, wanted,
-                   fs::path(options.folder) / precision_figure_name);
-    write_json(fs::path(options.folder) / precision_json_name, object);
+    const fs::path folder = options.folder;
+    draw_precision(study, options, result, wanted, folder / precision_figure_name);
+    write_json(folder / precision_json_name, object);
+    write_precision_file(folder / precision_file_name, object, options, study.loaded);
   }
   if (options.common.json) {
     print_json(object);
@@ -63,7 +65,8 @@ ExitCode precision(const PrecisionOptions& options) {
     print_precision(study, options, result, wanted);
     print_reductions(reductions);
     if (is_kept)
-      fmt::print("\n{} and {} in {}\n", precision_figure_name, precision_json_name, options.folder);
+      fmt::print("\n{}, {} and {} in {}\n", precision_figure_name, precision_json_name,
+                 precision_file_name, options.folder);
   }
   if (wanted && !result.tuned) {
     print_remark(
@@ -83,7 +86,9 @@ void add_precision_command(CLI::App& program, Action& action, const std::string&
   CLI::App* verb = program.add_subcommand(
       "precision", "Error against run time over integrators, steps and retained modes");
   verb->add_option("scene", options->scene, "Scene file (YAML)")->required();
-  verb->add_option("-o,--output", options->folder, "Folder for precision.json and precision.png");
+  verb->add_option(
+      "-o,--output", options->folder,
+      "Folder for precision.json, precision.h5 (which `report` takes) and precision.png");
   verb->add_option("--tune", options->tune,
                    "Name the cheapest setting within this relative error, as lines of a scene");
   verb->add_option("--norm", options->norm,

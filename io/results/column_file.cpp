@@ -15,7 +15,7 @@ std::string group_of(const std::string& path) {
 
 /// Columns of which others are functions.
 bool is_scale(const std::string& path) {
-  return path.ends_with("/time") || path.ends_with("/value");
+  return path.ends_with("/time") || path.ends_with("/value") || path.ends_with("/run_time");
 }
 
 /// The path of the scale that stands in a group.

@@ -29,6 +29,7 @@ struct RunContents {
                                     "/channels/beam.tip.y.velocity", "/contact/contact/force"};
   std::string scene = "format: 2\nmeasure: {from: 0.05, band: [500.0, 2000.0]}\n";
   bool has_bursts = true;
+  double trusted_frequency = 0.0;  ///< Hz, a result of the run where positive
   std::size_t rows = num_rows;
 };
 
@@ -78,6 +79,8 @@ class Pictures : public ::testing::Test {
         writer.write_static(std::string("/bursts/") + property, {&value, 1}, units);
       writer.write_result("free_end_acceleration.channel", "beam.tip.y.acceleration");
     }
+    if (contents.trusted_frequency > 0.0)
+      writer.write_result("trusted_frequency", contents.trusted_frequency);
     writer.close();
     return path(name);
   }

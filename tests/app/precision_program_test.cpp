@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <thread>
 
+#include "io/results/result_file.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor {
@@ -30,6 +32,32 @@ std::vector<std::string> short_study(std::vector<std::string> more) {
                                      "--assumptions", "subs_a"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
+}
+
+/// The HDF5 file of a study holds the rows of its JSON object.
+void expect_same_rows(const ResultFile& file, const Json& object) {
+  EXPECT_EQ(file.kind(), "study of precision");
+  const std::vector<std::string> methods = file.texts("/settings/method");
+  ASSERT_EQ(methods.size(), object["rows"].size());
+  const std::pair<const char*, const char*> columns[] = {{"step", "/step"},
+                                                         {"modes", "/modes"},
+                                                         {"run_time", "/least_wall_s"},
+                                                         {"error", "/error"},
+                                                         {"error_of_force", "/errors/force"}};
+  for (const auto& [name, pointer] : columns) {
+    const std::vector<double> values = file.read(std::string("/settings/") + name);
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+      const Json& row = object["rows"][i];
+      EXPECT_EQ(methods[i], row["method"]);
+      const Json::json_pointer at(pointer);
+      if (!row.contains(at) || row[at].is_null())
+        EXPECT_TRUE(std::isnan(values[i])) << name;
+      else
+        EXPECT_EQ(values[i], row[at].get<double>()) << name;
+    }
+  }
+  EXPECT_EQ(file.read("/reduction/error").size(), 10u);
+  EXPECT_THAT(file.text("tuned"), HasSubstr("step"));
 }
 
 TEST(PrecisionProgram, MeasuresEveryMethodAndNamesTheCheapest) {
@@ -79,6 +107,7 @@ TEST(PrecisionProgram, MeasuresEveryMethodAndNamesTheCheapest) {
   EXPECT_THAT(folder.files(), ::testing::ElementsAre("study"));
   EXPECT_GT(std::filesystem::file_size(folder / "study" / "precision.png"), 1000u);
   EXPECT_EQ(Json::parse(contents_of(folder / "study" / "precision.json")), object);
+  expect_same_rows(ResultFile((folder / "study" / "precision.h5").string()), object);
 
   // The text offered for pasting can be pasted.
   std::string text = contents_of(scene);

@@ -76,10 +76,13 @@ class Readers(unittest.TestCase):
              at("spectrogram.h5"))
         verb("contact", scene("viscoelastic_contact"), "--speed", "0.1,1", "--indentation", "0.01", "--set",
              "contacts.tip.normal.solver.grid=32", "-o", at("contact.h5"))
+        verb("precision", scene("viscoelastic_sphere"), "--points", "2", "-o", at("study"))
+        os.rename(os.path.join(at("study"), "precision.h5"), at("precision.h5"))
         killed_run(at("killed.h5"))
         cls.kinds = {"run": "run", "killed": "run", "locus": "locus", "map": "stability map",
                      "sweep": "sweep of transients", "cycle": "limit cycle", "cycles": "sweep of limit cycles",
-                     "responses": "frequency responses", "spectrogram": "spectrogram", "contact": "sliding contacts"}
+                     "responses": "frequency responses", "spectrogram": "spectrogram", "contact": "sliding contacts",
+                     "precision": "study of precision"}
 
     @classmethod
     def tearDownClass(cls):
@@ -155,7 +158,8 @@ class Readers(unittest.TestCase):
                        "sweep": ("/", ("steps", ("value",))), "responses": ("/", None),
                        "spectrogram": ("/", ("amplitude", ("times", "frequencies"))),
                        "contact": ("/contacts/000", ("pressure", ("y", "x"))), "cycle": ("/channels", None),
-                       "cycles": ("/up", ("period", ("value",))), "run": ("/channels", None), "killed": ("/channels", None)}
+                       "cycles": ("/up", ("period", ("value",))),
+                       "precision": ("/settings", ("error", ("run_time",))), "run": ("/channels", None), "killed": ("/channels", None)}
         for name, _, path in self.files():
             if name == "cycles":
                 with h5py.File(path, "r") as opened:
@@ -179,7 +183,8 @@ class Readers(unittest.TestCase):
     def test_ncdump_lists_variables_with_their_dimensions(self):
         expected = {"map": "growth(y, x)", "spectrogram": "amplitude(times, frequencies)", "sweep": "steps(value)",
                     "run": "force(time)", "killed": "force(time)", "contact": "pressure(y, x)", "cycle": "force(time)",
-                    "responses": "real(frequency)", "locus": "growth(values", "cycles": "period(value)"}
+                    "responses": "real(frequency)", "locus": "growth(values", "cycles": "period(value)",
+                    "precision": "error(run_time)"}
         for name, _, path in self.files():
             answer = subprocess.run(["ncdump", "-h", path], capture_output=True, text=True, check=False)
             self.assertEqual(answer.returncode, 0, answer.stderr)
@@ -190,7 +195,7 @@ class Readers(unittest.TestCase):
         script = "x = load('{path}'); disp(fieldnames(x)); disp(size(x.{field}))"
         fields = {"run": "time", "killed": "time", "locus": "eigenvalues.growth", "map": "growth", "sweep": "steps",
                   "cycle": "time", "responses": "frequency", "spectrogram": "amplitude", "contact": "rows.force",
-                  "cycles": None}
+                  "cycles": None, "precision": "settings.error"}
         for name, _, path in self.files():
             with h5py.File(path, "r") as opened:
                 field = fields[name] or f"{next(place for place in opened if place != 'plot')}.period"

@@ -234,6 +234,37 @@ TEST_F(ReportProgram, EveryKindOfFileHasASection) {
   EXPECT_THAT(map["reproduce"].get<std::string>(), HasSubstr("--set parameters.v=@X@"));
 }
 
+TEST_F(ReportProgram, HasTheFrequencyThatTheBodiesResolve) {
+  const auto resolved = [&](const RunContents& run) {
+    const Json contents = contents_of_report(page_of({make_run(run), "--force"}));
+    return view_of(contents["sections"][0], "bursts")["resolved"];
+  };
+  EXPECT_TRUE(resolved({}).is_null());
+  RunContents doubtful;
+  doubtful.trusted_frequency = 0.8 * tone;
+  EXPECT_EQ(resolved(doubtful), 0.8 * tone);
+}
+
+TEST_F(ReportProgram, AStudyOfPrecisionIsShownAsErrorsOverTimes) {
+  made({"precision", scene("viscoelastic_sphere.yaml"), "--points", "2", "--tune", "1e-3"},
+       "study");
+  const Json study = Json::parse(contents_of(path("study") + "/precision.json"));
+  const Json contents = contents_of_report(page_of({path("study") + "/precision.h5"}));
+  const Json& section = contents["sections"][0];
+  EXPECT_EQ(section["file"], "study/precision.h5");
+  EXPECT_THAT(section["verdict"]["text"].get<std::string>(),
+              HasSubstr("The cheapest within 0.001: event_driven, tolerance "));
+  const Json view = view_of(section, "errors");
+  EXPECT_EQ(view["wanted_error"], 1e-3);
+  ASSERT_EQ(view["settings"].size(), study["rows"].size());
+  for (std::size_t i = 0; i < study["rows"].size(); ++i) {
+    const Json& row = study["rows"][i];
+    EXPECT_EQ(view["settings"][i]["method"], row["integrator"]);
+    EXPECT_EQ(view["settings"][i]["error"], row["error"]);
+    EXPECT_EQ(view["settings"][i]["run_time"], row["wall_s"]);
+  }
+}
+
 TEST_F(ReportProgram, SaysWhyThereAreNoShapes) {
   const std::string page = page_of({make_run()});
   const Json contents = contents_of_report(page);

@@ -339,7 +339,7 @@ TEST(SphereProgram, PrecisionSetsErrorAgainstRunTime) {
   EXPECT_EQ(found["rows"][0]["integrator"], "event_driven");
   EXPECT_EQ(found["rows"][4]["integrator"], "exact");
   EXPECT_EQ(found["rows"][8]["integrator"], "central_difference");
-  EXPECT_LT(found["tuned"]["error"].get<double>(), 1e-4);
+  EXPECT_LT(found["tune"]["error"].get<double>(), 1e-4);
 }
 
 TEST(SphereProgram, SaysWhereTheLawIsExceeded) {

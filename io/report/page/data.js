@@ -91,12 +91,18 @@ function scaleFor(size, units) {
   return [1, prettyUnits(units)];
 }
 
+// 8.2·10⁻⁵.
+function inPowers(value, places) {
+  const [mantissa, power] = value.toExponential(places).split('e');
+  return `${mantissa}·10${power.replace('+', '').replace(/./g, sign => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(sign)])}`;
+}
+
 function digits(value, count = 4) {
   if (value === null || value === undefined) return '–';
   if (!isFinite(value)) return '–';
   if (value === 0) return '0';
   const size = Math.abs(value);
-  if (size >= 1e6 || size < 1e-4) return value.toExponential(Math.max(0, count - 1)).replace('e', '·10^').replace('^+', '^');
+  if (size >= 1e6 || size < 1e-4) return inPowers(value, Math.max(0, count - 1));
   return String(Number(value.toPrecision(count)));
 }
 

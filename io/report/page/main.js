@@ -2,7 +2,8 @@
 
 const kindNames = {run: 'Run', locus: 'Eigenvalues along a key', 'stability map': 'Stability map', 'sweep of transients': 'Sweep of runs',
   'sweep of limit cycles': 'Sweep of limit cycles', 'limit cycle': 'Limit cycle', 'frequency responses': 'Frequency responses',
-  spectrogram: 'Spectrogram', 'sliding contacts': 'Sliding contacts'};
+  spectrogram: 'Spectrogram', 'sliding contacts': 'Sliding contacts',
+  'study of precision': 'Errors against run time'};
 
 function viewOf(section, type) { return section.views.find(view => view.type === type); }
 
@@ -13,7 +14,8 @@ function prepare(sections) {
     if (histories || picture) {
       const time = histories && !histories.time.values ? histories.time : picture ? picture.time : null;
       const view = time ? new TimeView(time.from, time.from + (time.step || 1) * Math.max(1, time.count - 1)) : null;
-      section.run = {view, clock: null, bursts: bursts ? bursts.bursts : [], predicted: bursts ? bursts.predicted : [], places: []};
+      section.run = {view, clock: null, bursts: bursts ? bursts.bursts : [],
+        resolved: bursts ? bursts.resolved : null, predicted: bursts ? bursts.predicted : [], places: []};
     }
     const modes = viewOf(section, 'modes');
     if (modes && modes.parameter) section.place = new Place(modes.frames.map(frame => frame.value), modes.frames.map(frame => frame.time));
@@ -82,6 +84,7 @@ function makeView(parent, view, section) {
       });
       break;
     case 'field': framed(parent, null, 480, place => makeField(place, view, section)); break;
+    case 'errors': framed(parent, null, 400, place => makeErrors(place, view)); break;
     case 'curves': framed(parent, null, 260, place => makeCurves(place, view)); break;
   }
 }

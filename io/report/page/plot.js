@@ -49,7 +49,7 @@ class Axis {
       const [low, high] = this.inside;
       const step = Math.max(1, Math.ceil((high - low) / most));
       const ticks = [];
-      for (let p = Math.ceil(low - 1e-9); p <= high + 1e-9; p += step) ticks.push([10 ** p, digits(10 ** p / factor, 2)]);
+      for (let p = Math.ceil(low - 1e-9); p <= high + 1e-9; p += step) ticks.push([10 ** p, digits(10 ** p / factor, 1).replace(/^1·/, '')]);
       if (ticks.length >= 2) return ticks;
       return niceSteps(this.from, this.to, most).map(v => [v, digits(v / factor, 3)]);
     }

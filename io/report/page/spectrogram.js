@@ -53,6 +53,10 @@ async function makeSpectrogram(place, view, run) {
         const y0 = chart.py(window.frequency + half), y1 = chart.py(window.frequency - half);
         c.strokeRect(chart.px(window.from), y0, Math.max(2, chart.px(window.to) - chart.px(window.from)), y1 - y0);
       }
+      if (run.resolved > chart.y.from && run.resolved < chart.y.to) {
+        c.fillStyle = '#ffffff';
+        c.fillRect(chart.inner.x, chart.py(run.resolved), chart.inner.width, 1);
+      }
       c.setLineDash([]);
       c.font = 'bold 12px system-ui';
       c.textBaseline = 'bottom';
@@ -77,7 +81,7 @@ async function makeSpectrogram(place, view, run) {
       const words = [`${shown(moment, 's', 5)}, ${shown(hertz, 'Hz')}`];
       if (db !== null) words.push(`${db.toFixed(1)} dB, ${shown(view.reference * 10 ** (db / 20), view.units, 3)}`);
       else words.push('below all levels kept');
-      if (burst) words.push(`burst ${burst.number}: ${shown(burst.frequency, 'Hz')}, gain ${digits(burst.gain, 3)}`);
+      if (burst) words.push(`burst ${burst.number}: ${shown(burst.frequency, 'Hz')}, gain ${digits(burst.gain, 3)}${isDoubtful(burst, run.resolved) ? ', above what the bodies resolve' : ''}`);
       return words.join(': ');
     },
     zoomed: () => run.view.set(chart.x.from, chart.x.to),
@@ -92,6 +96,7 @@ async function makeSpectrogram(place, view, run) {
   place.append(element('div', {class: 'tools'}, slider('Shift of levels', -40, 60, 'top'), slider('Range of levels (dB)', 20, 127, 'range'), element('label', {}, 'Colours', choice)),
   element('figcaption', {}, `${view.channel}; 0 dB is ${shown(view.reference, view.units)}, the highest level ${digits(view.top, 4)} dB. ${view.caption || ''} `,
     run.bursts.length ? 'Framed: bursts. ' : '', run.predicted.length ? 'Dotted: predicted windows. ' : '',
+      run.resolved > frequency.from && run.resolved < frequencyEnd ? `White line: ${shown(run.resolved, 'Hz', 4)}, up to which the bodies are resolved. ` : '',
     'Drag to zoom, double click to see all, Ctrl and wheel or + and − to scale.'));
   run.view.listeners.add(() => { chart.x.set(run.view.from, run.view.to); chart.draw(); });
   run.view.momentListeners.add(() => chart.draw());

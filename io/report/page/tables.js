@@ -24,6 +24,9 @@ function explanation(view, burst) {
   return window ? `window of ${shown(window.frequency, 'Hz', 5)} from ${shown(window.from, 's')}` : 'no window';
 }
 
+// Above what the reduced bodies resolve.
+function isDoubtful(burst, resolved) { return resolved > 0 && burst.frequency > resolved; }
+
 function makeBursts(place, view, run, section) {
   const act = (from, to) => () => {
     run.view.show(from, to);
@@ -35,7 +38,7 @@ function makeBursts(place, view, run, section) {
     place.append(element('h3', {}, 'Bursts of vibration'), element('div', {class: 'scroll'}, element('table', {},
       headRow(['Burst', 'From', 'To', 'Frequency', 'Peak', 'Gain (ln)', ...(view.predicted.length ? ['Explained by'] : [])]),
       element('tbody', {}, view.bursts.map(burst => rowThat(act(burst.start, burst.end),
-        [cell(burst.number), cell(shown(burst.start, 's')), cell(shown(burst.end, 's')), cell(shown(burst.frequency, 'Hz', 5)), cell(shown(burst.peak, 'm/s^2')), cell(digits(burst.gain, 3)), ...(view.predicted.length ? [cell(explanation(view, burst))] : [])]))))));
+        [cell(burst.number), cell(shown(burst.start, 's')), cell(shown(burst.end, 's')), cell(shown(burst.frequency, 'Hz', 5) + (isDoubtful(burst, view.resolved) ? ' ?' : '')), cell(shown(burst.peak, 'm/s^2')), cell(digits(burst.gain, 3)), ...(view.predicted.length ? [cell(explanation(view, burst))] : [])]))))));
   }
   if (view.predicted.length) {
     place.append(element('h3', {}, 'Unstable windows that the run passes'), element('div', {class: 'scroll'}, element('table', {},
@@ -44,6 +47,9 @@ function makeBursts(place, view, run, section) {
         [cell(shown(row.from, 's')), cell(shown(row.to, 's')), cell(shown(row.frequency, 'Hz', 5)), cell(digits(row.growth_max, 3) + ' 1/s'), cell(digits(row.gain, 3)),
           cell(row.burst ?? 'not heard'), cell(row.burst === null ? '' : shown(row.burst_frequency, 'Hz', 5)), cell(row.burst === null ? '' : digits(row.burst_gain, 3))]))))));
   }
+  const doubtful = view.bursts.filter(burst => isDoubtful(burst, view.resolved)).length;
+  if (doubtful)
+    place.append(element('p', {class: 'faint'}, `? ${doubtful === 1 ? 'One burst lies' : doubtful + ' bursts lie'} above ${shown(view.resolved, 'Hz', 4)}, more than the bodies resolve: keep more modes in their reductions to be sure of ${doubtful === 1 ? 'it' : 'them'}.`));
   if (view.bursts.length || view.predicted.length)
     place.append(element('p', {class: 'faint'}, 'A click on a row shows that time in all views. The gain is the logarithm of how many times the vibration has grown.'));
 }

@@ -1,0 +1,110 @@
+#include "app/runs/precision_file.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/version.hpp"
+#include "io/figures/axes.hpp"
+#include "io/results/column_file.hpp"
+
+namespace stridor {
+namespace {
+
+/// A number of a row; NaN where there is none.
+double number_in(const Json& row, const char* pointer) {
+  const Json::json_pointer at(pointer);
+  return row.contains(at) && row[at].is_number() ? row[at].get<double>()
+                                                 : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// "exact, to 50 kHz, step 5 us".
+std::string setting_text(const Json& row) {
+  const auto method = row["method"].get<std::string>();
+  return row.contains("step") && row["step"].is_number()
+             ? fmt::format("{}, step {}", method, quantity_text(row["step"].get<double>(), "s"))
+             : fmt::format("{}, tolerance {:.2g}", method, number_in(row, "/tolerance"));
+}
+
+struct SettingNumber {
+  const char* path;
+  const char* units;
+  const char* pointer;  ///< into the row
+};
+/// What the others are seen over stands first.
+constexpr std::array setting_numbers{
+    SettingNumber{"/settings/run_time", "s", "/least_wall_s"},
+    SettingNumber{"/settings/error", "1", "/error"},
+    SettingNumber{"/settings/step", "s", "/step"},
+    SettingNumber{"/settings/tolerance", "1", "/tolerance"},
+    SettingNumber{"/settings/modes", "1", "/modes"},
+    SettingNumber{"/settings/error_of_force", "1", "/errors/force"},
+    SettingNumber{"/settings/error_of_acceleration", "1", "/errors/acceleration"},
+    SettingNumber{"/settings/error_of_envelope", "1", "/errors/envelope"}};
+
+std::vector<Column> columns_of_settings(const Json& rows) {
+  Column method{"/settings/method", "", {}};
+  Column status{"/settings/status", "", {}};
+  Column on_front{"/settings/on_front", "1", {}};
+  for (const Json& row : rows) {
+    method.texts.push_back(row["method"].get<std::string>());
+    status.texts.push_back(row["status"].get<std::string>());
+    on_front.values.push_back(row["on_front"].get<bool>() ? 1.0 : 0.0);
+  }
+  std::vector<Column> columns{std::move(method), std::move(status)};
+  for (const SettingNumber& number : setting_numbers) {
+    columns.push_back({number.path, number.units, {}});
+    for (const Json& row : rows) columns.back().values.push_back(number_in(row, number.pointer));
+  }
+  columns.push_back(std::move(on_front));
+  return columns;
+}
+
+void add_reductions(const Json& reductions, std::vector<Column>& columns) {
+  Column body{"/reduction/body", "", {}};
+  Column frequency{"/reduction/frequency", "Hz", {}};
+  Column error{"/reduction/error", "1", {}};
+  for (const Json& one : reductions) {
+    for (std::size_t i = 0; i < one["errors"].size(); ++i) {
+      const Json& found = one["errors"][i];
+      body.texts.push_back(one["body"].get<std::string>());
+      frequency.values.push_back(one["frequencies"][i].get<double>());
+      error.values.push_back(found.is_null() ? std::numeric_limits<double>::quiet_NaN()
+                                             : found.get<double>());
+    }
+  }
+  if (body.texts.empty()) return;
+  columns.push_back(std::move(body));
+  columns.push_back(std::move(frequency));
+  columns.push_back(std::move(error));
+}
+
+}  // namespace
+
+void write_precision_file(const std::filesystem::path& path, const Json& object,
+                          const PrecisionOptions& options, const LoadedScene& loaded) {
+  std::vector<Column> columns = columns_of_settings(object.value("rows", Json::array()));
+  add_reductions(object.value("reduction", Json::array()), columns);
+  Attributes attributes{{"version", std::string(version)},
+                        {"commit", std::string(commit)},
+                        {"command", options.command_line},
+                        {"scene", options.scene},
+                        {"scene_hash", loaded.hash()},
+                        {"scene_resolved", loaded.resolved()},
+                        {"date", utc_now()},
+                        {"norm", object.value("norm", std::string("displacement"))},
+                        {"channel", object.value("channel", std::string())},
+                        {"reference_error", number_in(object, "/reference/error")},
+                        {"wanted_error", number_in(object, "/tune/wanted")},
+                        {"tuned", std::string()}};
+  if (object.contains("tune") && object["tune"].is_object())
+    std::get<std::string>(attributes.back().second) = setting_text(object["tune"]);
+  write_column_file(path.string(), options.common.overwrite(), "study of precision", columns,
+                    attributes);
+}
+
+}  // namespace stridor
