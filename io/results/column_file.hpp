@@ -17,8 +17,8 @@ struct Column {
 };
 
 /// Writes columns to a file of their own. Columns `time`, `value` and `run_time`, which stand before
-/// depend on them, are the scales of all of their length in their groups and below. The file takes
-/// its name when it is whole.
+/// those that depend on them, are the scales of all of their length in their groups and below. The
+/// file takes its name when it is whole.
 /// @param kind       kind of the file, an attribute of the root
 /// @param attributes of the root besides
 /// @throws FileError if the file exists, its folder is not writable, or anything cannot be written
