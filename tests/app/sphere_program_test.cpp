@@ -425,7 +425,7 @@ TEST(SphereProgram, PrintsTables) {
   table = output_of({"precision", "--set", "time.end=0.5", "--points", "2", "--tune", "1e-3", "-o",
                      folder / "precision"});
   for (const char* text : {"run time (s)", "event_driven", "1.0e-03", "  cheapest\n",
-                           "differs from the same at 1e-12", "precision.png and precision.json"})
+                           "differs from the same at 1e-12", "precision.png, precision.json and precision.h5 in"})
     EXPECT_THAT(table, HasSubstr(text));
   const ProgramResult coarse =
       Program({"precision", scene, "--set", "time.end=0.5", "--points", "2", "--tune", "1e-15"})
