@@ -11,7 +11,7 @@ install(DIRECTORY python/stridor DESTINATION ${STRIDOR_PYTHON_DIR}
   PATTERN "__pycache__" EXCLUDE)
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
-  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.gif")
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.ipynb" PATTERN "*.png" PATTERN "*.gif")
 
 # Pages of the manual, which the program itself writes, and completion in shells.
 set(STRIDOR_MANUAL "${PROJECT_BINARY_DIR}/manual")

@@ -3,12 +3,11 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <regex>
 #include <sstream>
 
 #include "core/refusals.hpp"
-#include "tests/support/program.hpp"
+#include "tests/app/document_fixture.hpp"
 
 namespace stridor {
 namespace {
@@ -16,70 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 using namespace test;
 
-const fs::path source = STRIDOR_SOURCE_DIR;
-
-/// The texts of the fenced blocks of a language, in the order of the document.
-std::vector<std::string> blocks_in(std::istream& text, const std::string& language) {
-  std::vector<std::string> blocks;
-  bool is_inside = false;
-  for (std::string line; std::getline(text, line);) {
-    if (is_inside && line == "```") {
-      is_inside = false;
-    } else if (is_inside) {
-      blocks.back() += line + "\n";
-    } else if (line == "```" + language) {
-      is_inside = true;
-      blocks.emplace_back();
-    }
-  }
-  return blocks;
-}
-
-std::vector<std::string> blocks_of(const fs::path& document, const std::string& language) {
-  std::ifstream file(document);
-  return blocks_in(file, language);
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-/// A folder as a user has it: the scenes beside it, the program on the path, nothing else.
-class UserFolder {
- public:
-  UserFolder() {
-    fs::create_directory(folder_ / "bin");
-    fs::create_directory(folder_ / "work");
-    fs::create_symlink(STRIDOR_PROGRAM, folder_ / "bin" / "stridor");
-    fs::create_directory_symlink(source / "scenes", folder_ / "work" / "scenes");
-  }
-  fs::path operator/(const std::string& name) const { return folder_ / "work" / name; }
-
-  struct Outcome {
-    int exit_code;
-    std::string output;
-  };
-  /// Runs a line of a shell in the folder.
-  Outcome run(const std::string& line) const {
-    write_file(folder_ / "line.sh", line + "\n");
-    const std::string command = "cd '" + (folder_ / "work").string() + "' && PATH='" +
-                                (folder_ / "bin").string() + "':\"$PATH\" bash ../line.sh" +
-                                " >../output 2>&1 </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents_of(folder_ / "output")};
-  }
-  bool has_command(const std::string& line) const { return run(line).exit_code == 0; }
-
- private:
-  TemporaryFolder folder_;
-};
-
-std::string python_with_h5py(const UserFolder& folder) {
+/// The Python that has all of these modules; "" if none has.
+std::string python_with(const std::string& modules, const UserFolder& folder) {
   for (const char* python : {"python3", "/usr/bin/python3"})
-    if (folder.has_command(std::string(python) + " -c 'import h5py'")) return python;
+    if (folder.has_command(std::string(python) + " -c 'import " + modules + "'")) return python;
   return "";
 }
 
@@ -270,7 +209,7 @@ TEST(Pages, OfRefusalsShowWhatIsPrinted) {
 
 TEST(Snippets, OfPythonRun) {
   const UserFolder folder;
-  const std::string python = python_with_h5py(folder);
+  const std::string python = python_with("h5py", folder);
   if (python.empty()) GTEST_SKIP() << "needs python3 with h5py";
   int num_run = 0;
   for (const fs::path& document : documents()) {
@@ -283,6 +222,37 @@ TEST(Snippets, OfPythonRun) {
     }
   }
   EXPECT_GE(num_run, 2);
+}
+
+/// Frequency and gain of the loudest burst as a notebook prints them; empty where it does not.
+std::vector<double> loudest_burst_of(const fs::path& notebook) {
+  const std::string text = contents_of(notebook);
+  std::smatch printed;
+  const std::regex line("loudest burst: ([0-9.]+) Hz, gain ([0-9.]+)");
+  if (!std::regex_search(text, printed, line)) return {};
+  return {std::stod(printed[1]), std::stod(printed[2])};
+}
+
+TEST(Snippets, OfTheNotebookRun) {
+  const UserFolder folder;
+  const std::string python = python_with("nbconvert, ipykernel, matplotlib, h5py", folder);
+  if (python.empty()) {
+    GTEST_SKIP() << "needs python3 with nbconvert, ipykernel, matplotlib and h5py (Debian: "
+                    "jupyter-nbconvert, python3-ipykernel, python3-matplotlib, python3-h5py)";
+  }
+  const fs::path kept = source / "docs" / "squeal_notebook.ipynb";
+  // Settings of the user's own have no part in it.
+  const auto outcome = folder.run(
+      "export JUPYTER_CONFIG_DIR=$PWD JUPYTER_RUNTIME_DIR=$PWD IPYTHONDIR=$PWD MPLCONFIGDIR=$PWD\n"
+      "export PYTHONDONTWRITEBYTECODE=1 STRIDOR_PROGRAM='" STRIDOR_PROGRAM "' PYTHONPATH='" +
+      (source / "python").string() + "'\n" + python + " -m nbconvert --to notebook --execute '" +
+      kept.string() + "' --output-dir . --output executed.ipynb");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const auto shown = loudest_burst_of(kept), printed = loudest_burst_of(folder / "executed.ipynb");
+  ASSERT_EQ(shown.size(), 2u);
+  ASSERT_EQ(printed.size(), 2u);
+  EXPECT_NEAR(printed[0], shown[0], 1e-3 * shown[0]);
+  EXPECT_NEAR(printed[1], shown[1], 0.02);  // its last digit, and rounding of another processor
 }
 
 TEST(Snippets, OfOctaveRun) {
