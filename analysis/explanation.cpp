@@ -60,15 +60,21 @@ ModeEnergy mode_energy(const Pencil& pencil, Complex s, const Eigenvector& vecto
   const Eigen::VectorXcd q = vector.right / length;
   const Eigen::VectorXcd velocity = s * q;
   Eigen::VectorXcd port_force = pencil.equilibrium.transpose() * (vector.force / length);
-  if (pencil.port_stiffness.size() > 0) port_force += pencil.port_stiffness * (pencil.ports * q);
+  const Eigen::VectorXcd y = pencil.ports * q;
+  if (pencil.port_stiffness.size() > 0) port_force += pencil.port_stiffness * y;
+  double stored = pencil.omega.cwiseProduct(q.cwiseAbs()).squaredNorm();
+  if (pencil.normal_stiffness.size() > 0) {
+    const Eigen::VectorXcd spring_force = pencil.normal_stiffness * y;
+    port_force -= spring_force;
+    stored += y.dot(spring_force).real();
+  }
   if (pencil.port_damping.size() > 0) port_force += pencil.port_damping * (pencil.ports * velocity);
   const auto growth_by = [&](Eigen::Index first, Eigen::Index count) {
     const Eigen::VectorXcd motion = pencil.ports.middleRows(first, count) * velocity;
     return -0.25 * motion.dot(port_force.segment(first, count)).real();
   };
   const Eigen::Index num_contact_ports = pencil.num_ports() - pencil.num_body_ports;
-  const double energy =
-      0.25 * (std::norm(s) + pencil.omega.cwiseProduct(q.cwiseAbs()).squaredNorm());
+  const double energy = 0.25 * (std::norm(s) + stored);
   ModeEnergy result;
   result.from_contact = growth_by(0, num_contact_ports) / energy;
   result.by_coupled = growth_by(num_contact_ports, pencil.num_body_ports) / energy;
@@ -83,7 +89,7 @@ Pencil frictionless(const Pencil& pencil) {
   Pencil without = pencil;
   without.damping.setZero();
   without.equilibrium = without.compatibility;
-  without.port_stiffness.resize(0, 0);
+  without.port_stiffness = pencil.normal_stiffness;
   without.port_damping.resize(0, 0);
   return without;
 }

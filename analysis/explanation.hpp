@@ -47,10 +47,11 @@ ModeQuotients mode_quotients(const SparseSystem& system, std::complex<double> s,
 
 /// Sources and sinks of the energy of a mode, averaged over a period.
 ///
-///   2 Re s E = P_contact − P_damping,   E = (|s|² + q̄ᵀ diag(ω²) q)/4  for |q| = 1
+///   2 Re s E = P_contact − P_damping,   E = (|s|² + q̄ᵀ (diag(ω²) + SᵀNS) q)/4  for |q| = 1
 ///
-/// P_contact is the work of the contact forces, of the normal force and of friction, per time;
-/// without friction on the undeformed geometry it vanishes.
+/// with the stiffness N of contacts that give way along their normals. P_contact is the work of the
+/// other contact forces, of the normal force and of friction, per time; without friction on the
+/// undeformed geometry it vanishes.
 struct ModeEnergy {
   double from_contact = 0.0;  ///< P_contact/2E, part of the growth rate, 1/s
   double by_damping = 0.0;    ///< −P_damping/2E, likewise; negative where damping takes energy
@@ -63,8 +64,9 @@ struct ModeEnergy {
 
 ModeEnergy mode_energy(const Pencil& pencil, std::complex<double> s, const Eigenvector& vector);
 
-/// The same system without friction and damping, and with constant contact forces: B_E = B_C, no G
-/// and H. Its modes are real and orthonormal.
+/// The same system without friction and damping, and with constant forces of the contacts that do
+/// not give way: B_E = B_C, G the stiffness of the others along their normals, no H. Its modes are
+/// real and orthonormal.
 Pencil frictionless(const Pencil& pencil);
 
 /// A mode of the frictionless system and its share of a vibration.

@@ -106,6 +106,8 @@ void check_pencil(const Pencil& pencil) {
   if (pencil.compliance.size() > 0) check_size("compliance", pencil.compliance, k, 1);
   if (pencil.port_stiffness.size() > 0) check_size("port_stiffness", pencil.port_stiffness, m, m);
   if (pencil.port_damping.size() > 0) check_size("port_damping", pencil.port_damping, m, m);
+  if (pencil.normal_stiffness.size() > 0)
+    check_size("normal_stiffness", pencil.normal_stiffness, m, m);
   if (k >= n) reject(fmt::format("{} constraints leave nothing of {} modes", k, n));
   if ((pencil.omega.array() < 0.0).any()) reject("omega is negative");
 }
@@ -156,14 +158,17 @@ Pencil with_springs(const Pencil& pencil) {
   sprung.compliance.resize(0);
   if (sprung.port_stiffness.size() == 0)
     sprung.port_stiffness.setZero(pencil.num_ports(), pencil.num_ports());
+  if (sprung.normal_stiffness.size() == 0)
+    sprung.normal_stiffness.setZero(pencil.num_ports(), pencil.num_ports());
   std::vector<Eigen::Index> rigid;
   for (Eigen::Index i = 0; i < pencil.num_constraints(); ++i) {
     if (pencil.compliance(i) == 0.0) {
       rigid.push_back(i);
       continue;
     }
-    sprung.port_stiffness +=
-        pencil.equilibrium.row(i).transpose() * (pencil.compatibility.row(i) / pencil.compliance(i));
+    const Eigen::RowVectorXd spring = pencil.compatibility.row(i) / pencil.compliance(i);
+    sprung.port_stiffness += pencil.equilibrium.row(i).transpose() * spring;
+    sprung.normal_stiffness += pencil.compatibility.row(i).transpose() * spring;
   }
   sprung.compatibility = pencil.compatibility(rigid, Eigen::all);
   sprung.equilibrium = pencil.equilibrium(rigid, Eigen::all);

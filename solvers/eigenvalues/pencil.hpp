@@ -36,6 +36,9 @@ struct Pencil {
   Eigen::VectorXd compliance;
   Eigen::MatrixXd port_stiffness;   ///< G, m x m, N/m; empty where there is none
   Eigen::MatrixXd port_damping;     ///< H, m x m, N s/m; empty where there is none
+  /// The part of G that is left without friction: stiffness of contacts that give way, along their
+  /// normal, symmetric, m x m; empty where there is none. Only frictionless() uses it.
+  Eigen::MatrixXd normal_stiffness;
   Eigen::Index num_body_ports = 0;  ///< of bodies with coupled terms
 
   Eigen::Index num_modes() const { return omega.size(); }
@@ -55,8 +58,8 @@ void check_pencil(const Pencil& pencil);
 /// where there are none.
 Pencil make_modal_pencil(const System& system);
 
-/// The same motion with the constraints that give way as springs on the ports, G += B_Eᵀ B_C/c, and
-/// the rigid ones alone as constraints.
+/// The same motion with the constraints that give way as springs on the ports, G += B_Eᵀ B_C/c, of
+/// which B_Cᵀ B_C/c is left without friction, and the rigid ones alone as constraints.
 Pencil with_springs(const Pencil& pencil);
 
 /// Takes what the contact forces in equilibrium add out of G and H; what is left are the coupled

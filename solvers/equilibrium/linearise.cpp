@@ -54,6 +54,66 @@ void add_motion(Eigen::VectorXd& state, const Eigen::MatrixXd& shapes,
   state += shapes * modal;
 }
 
+/// G, H and what of G is left without friction, on all ports of a system.
+class TermsOnPorts {
+ public:
+  /// With the coupled terms of bodies.
+  explicit TermsOnPorts(const Pencil& bodies)
+      : stiffness_(Eigen::MatrixXd::Zero(bodies.num_ports(), bodies.num_ports())),
+        damping_(stiffness_),
+        normal_stiffness_(stiffness_) {
+    if (bodies.num_body_ports == 0) return;
+    stiffness_ = bodies.port_stiffness;
+    damping_ = bodies.port_damping;
+  }
+
+  /// What the force of a contact adds where it turns or shifts; on ports from `first` on.
+  void add(Eigen::Index first, double force, const ContactLinearisation& local) {
+    block(stiffness_, first, local) = force * local.force_by_position;
+    block(damping_, first, local) = force * local.force_by_velocity;
+  }
+
+  /// A substrate's force varies with indentation and slip instead of closing the gap: on the
+  /// left-hand side b_nᵀ δF_k + b_tᵀ δT with b_n = ∂y/∂z and the friction T against the slip.
+  void add_substrate(Eigen::Index first, const SubstrateContact& substrate,
+                     const ContactEquilibrium& contact, const ContactLinearisation& local,
+                     double friction_factor) {
+    const SubstrateForces forces =
+        substrate.at(-contact.gap, contact.slip_velocity, contact.direction);
+    const auto pushed = [&](double normal, double tangential) -> PortVector {
+      return normal * local.gap_row - friction_factor * tangential * local.tangent_row;
+    };
+    block(stiffness_, first, local) +=
+        pushed(forces.normal.by_indentation, forces.tangential.by_indentation) *
+        local.gap_row.transpose();
+    block(normal_stiffness_, first, local) +=
+        pushed(forces.normal.by_indentation, 0.0) * local.gap_row.transpose();
+    block(damping_, first, local) +=
+        pushed(forces.normal.by_slip, forces.tangential.by_slip) * local.tangent_row.transpose();
+  }
+
+  /// The terms on the ports kept; empty where they vanish.
+  void move_to(Pencil& pencil, const std::vector<Eigen::Index>& kept) const {
+    const auto on_kept = [&](const Eigen::MatrixXd& terms) -> Eigen::MatrixXd {
+      if (terms.isZero(0.0)) return {};
+      return terms(kept, kept);
+    };
+    pencil.port_stiffness = on_kept(stiffness_);
+    pencil.port_damping = on_kept(damping_);
+    pencil.normal_stiffness = on_kept(normal_stiffness_);
+  }
+
+ private:
+  static Eigen::Block<Eigen::MatrixXd> block(Eigen::MatrixXd& terms, Eigen::Index first,
+                                             const ContactLinearisation& local) {
+    return terms.block(first, first, local.gap_row.size(), local.gap_row.size());
+  }
+
+  Eigen::MatrixXd stiffness_;
+  Eigen::MatrixXd damping_;
+  Eigen::MatrixXd normal_stiffness_;
+};
+
 }  // namespace
 
 Pencil linearise(const System& system, const Equilibrium& equilibrium,
@@ -66,13 +126,7 @@ Pencil linearise_constraints(const System& system, const Equilibrium& equilibriu
   if (equilibrium.status != EquilibriumStatus::converged)
     throw std::invalid_argument("linearise: the equilibrium has not converged");
   Pencil pencil = make_modal_pencil(system);
-  const Eigen::Index num_ports = pencil.num_ports();
-  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(num_ports, num_ports);
-  Eigen::MatrixXd damping = stiffness;
-  if (pencil.num_body_ports > 0) {
-    stiffness = pencil.port_stiffness;
-    damping = pencil.port_damping;
-  }
+  TermsOnPorts added(pencil);
   std::vector<Eigen::Index> kept_ports;
   std::vector<Eigen::Index> kept_constraints;
   std::vector<double> compliance;
@@ -80,11 +134,8 @@ Pencil linearise_constraints(const System& system, const Equilibrium& equilibriu
     const ContactEquilibrium& contact = equilibrium.contacts[i];
     if (!contact.is_closed) continue;
     const ContactPoint& point = system.contacts[i];
-    const std::optional<SubstrateContact>& substrate = point.substrate;
     const ContactLinearisation local = linearised(system, point, contact, equilibrium.state, terms);
-    const auto constraint = static_cast<Eigen::Index>(i);
     const Eigen::Index first = first_contact_port(system, static_cast<int>(i));
-    const Eigen::Index size = local.gap_row.size();
     if (point.has_two_tangents()) {
       place_face(pencil, system, static_cast<int>(i), contact.segment, local.gap_row,
                  local.force_row);
@@ -92,28 +143,17 @@ Pencil linearise_constraints(const System& system, const Equilibrium& equilibriu
       place_contact(pencil, system, static_cast<int>(i), contact.segment,
                     {row_of(local.gap_row), row_of(local.force_row)});
     }
-    stiffness.block(first, first, size, size) = contact.force * local.force_by_position;
-    damping.block(first, first, size, size) = contact.force * local.force_by_velocity;
-    if (substrate) {
-      // Its force varies with indentation and slip instead of closing the gap: on the left-hand
-      // side b_nᵀ δF_k + b_tᵀ δT with b_n = ∂y/∂z and the friction T against the slip.
-      const SubstrateForces forces =
-          substrate->at(-contact.gap, contact.slip_velocity, contact.direction);
-      const double factor = equilibrium.state.friction_factor;
-      const auto pushed = [&](double normal, double tangential) -> PortVector {
-        return normal * local.gap_row - factor * tangential * local.tangent_row;
-      };
-      stiffness.block(first, first, size, size) +=
-          pushed(forces.normal.by_indentation, forces.tangential.by_indentation) *
-          local.gap_row.transpose();
-      damping.block(first, first, size, size) +=
-          pushed(forces.normal.by_slip, forces.tangential.by_slip) * local.tangent_row.transpose();
+    added.add(first, contact.force, local);
+    if (point.substrate) {
+      added.add_substrate(first, *point.substrate, contact, local,
+                          equilibrium.state.friction_factor);
     } else {
-      kept_constraints.push_back(constraint);
-      compliance.push_back(system.contacts[i].compliance());
+      kept_constraints.push_back(static_cast<Eigen::Index>(i));
+      compliance.push_back(point.compliance());
     }
-    for (Eigen::Index k = 0; k < size; ++k) kept_ports.push_back(first + k);
+    for (Eigen::Index k = 0; k < local.gap_row.size(); ++k) kept_ports.push_back(first + k);
   }
+  const Eigen::Index num_ports = pencil.num_ports();
   for (Eigen::Index port = num_ports - pencil.num_body_ports; port < num_ports; ++port)
     kept_ports.push_back(port);
   pencil.ports = pencil.ports(kept_ports, Eigen::all).eval();
@@ -125,10 +165,7 @@ Pencil linearise_constraints(const System& system, const Equilibrium& equilibriu
     pencil.compliance = Eigen::Map<const Eigen::VectorXd>(
         compliance.data(), static_cast<Eigen::Index>(compliance.size()));
   }
-  pencil.port_stiffness.resize(0, 0);
-  pencil.port_damping.resize(0, 0);
-  if (!stiffness.isZero(0.0)) pencil.port_stiffness = stiffness(kept_ports, kept_ports);
-  if (!damping.isZero(0.0)) pencil.port_damping = damping(kept_ports, kept_ports);
+  added.move_to(pencil, kept_ports);
   return pencil;
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "solvers/eigenvalues/dense_eigenvalues.hpp"
@@ -83,6 +84,37 @@ TEST_P(ExplanationTest, SharesOfAllModesAddUpToOne) {
     for (const Participation& share : shares) sum += share.share;
     EXPECT_NEAR(sum, 1.0, 1e-9);
     EXPECT_GE(shares[0].share, shares[1].share);
+  }
+}
+
+/// A contact that gives way is a spring of the system without friction too: the modes near those of
+/// a rigid one for a small compliance, and no work of the spring.
+TEST_P(ExplanationTest, ContactThatGivesWayKeepsItsSpringWithoutFriction) {
+  Pencil rigid = random_pencil(GetParam());
+  rigid.port_stiffness.resize(0, 0);
+  rigid.port_damping.resize(0, 0);
+  Pencil soft = rigid;
+  soft.compliance = Eigen::VectorXd::Constant(1, 1e-9);
+  std::vector<double> expected, found;
+  for (const Eigenvalue& one : dense_eigenvalues(frictionless(rigid)))
+    if (one.s.imag() > 0.0) expected.push_back(one.s.imag());
+  const Pencil sprung = with_springs(soft);
+  for (const Eigenvalue& one : dense_eigenvalues(frictionless(sprung)))
+    if (one.s.imag() > 0.0 && one.s.imag() < 100.0) found.push_back(one.s.imag());
+  std::ranges::sort(expected);
+  std::ranges::sort(found);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-6);
+
+  soft.compliance.setConstant(0.1);
+  soft.equilibrium = soft.compatibility;
+  const Pencil without_friction = with_springs(soft);
+  for (const Eigenvalue& one : dense_eigenvalues(without_friction)) {
+    if (one.s.imag() <= 0.0) continue;
+    const ModeEnergy energy =
+        mode_energy(without_friction, one.s, eigenvector(without_friction, one.s));
+    EXPECT_NEAR(energy.from_contact, 0.0, 1e-12 * std::abs(one.s));
+    EXPECT_LT(energy.residual, 1e-10);
   }
 }
 
