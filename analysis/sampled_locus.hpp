@@ -13,7 +13,7 @@ namespace stridor {
 struct SamplingEffort {
   int least_values = 64;  ///< looked at in all, where fewer are asked for
   int most_added = 256;   ///< values put between where eigenvalues cannot be told apart
-  WindowEffort windows;
+  WindowEffort windows{};
   SearchFor wanted = SearchFor::every_window;
 };
 /// For spectra of large matrices.

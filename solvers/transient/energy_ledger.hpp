@@ -51,7 +51,7 @@ struct ContactAction {
   Eigen::Vector2d sliding = Eigen::Vector2d::Zero();  ///< v at t_{n+1}, m/s
   int num_master_rows = 0;
   std::array<int, max_facet_ports> master_rows{};  ///< of the master's body, at its ports
-  TangentPorts normal, along, across;              ///< directions of its forces
+  TangentPorts normal{}, along{}, across{};        ///< directions of its forces
   Eigen::Vector2d drawn = Eigen::Vector2d::Zero();  ///< slip in the step by spin and drives, m
   double lifted = 0.0;                              ///< opening of the gap in the step by drives, m
 };

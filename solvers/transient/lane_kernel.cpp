@@ -206,9 +206,9 @@ STRIDOR_INLINE V solve_contact(const Lanes& lanes) {
   take(c.xi, 0, xi);
   take(c.found_tangent, 0, tx);
   take(c.found_tangent, 1, ty);
-  const auto extend = [&](double* least, double* largest, const V& value) STRIDOR_INLINE_LAMBDA {
-    take(least, 0, value < at<V>(least, 0) ? value : at<V>(least, 0));
-    take(largest, 0, value > at<V>(largest, 0) ? value : at<V>(largest, 0));
+  const auto extend = [&](double* lowest, double* highest, const V& value) STRIDOR_INLINE_LAMBDA {
+    take(lowest, 0, value < at<V>(lowest, 0) ? value : at<V>(lowest, 0));
+    take(highest, 0, value > at<V>(highest, 0) ? value : at<V>(highest, 0));
   };
   const V friction_force = friction * force;
   take(c.force, 0, force);

@@ -37,7 +37,7 @@ struct SupportParameters {
 
 struct InterfaceParameters {
   std::optional<double> spacing;  ///< distance of the master nodes kept, m; all nodes where absent
-  std::optional<int> modes;       ///< in which it moves; in all of its DoFs where absent
+  std::optional<int> modes{};     ///< in which it moves; in all of its DoFs where absent
   static const Schema& schema();
 };
 

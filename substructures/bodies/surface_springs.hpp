@@ -26,7 +26,7 @@ struct SurfaceSpringParameters {
   std::string on;  ///< a surface or point
   SpringMatrixParameters stiffness;
   std::optional<DamperMatrixParameters> damping{};  ///< of a damper beside it
-  std::optional<SpringDirectionParameters> direction;  ///< of a stiffness along one
+  std::optional<SpringDirectionParameters> direction{};  ///< of a stiffness along one
   static const Schema& schema();
 };
 

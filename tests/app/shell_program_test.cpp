@@ -158,8 +158,9 @@ TEST_F(Manual, ScenesAndFilesHavePages) {
     EXPECT_THAT(text, StartsWith(".TH ")) << name;
     // Lines of text that begin with a dot would be commands.
     for (const std::string& line : lines_of(text)) {
-      if (line.starts_with("."))
-        EXPECT_TRUE(std::regex_search(line, std::regex("^\\.(TH|SH|TP|PP|IP|nf|fi)\\b"))) << name << ": " << line;
+      if (!line.starts_with(".")) continue;
+      EXPECT_TRUE(std::regex_search(line, std::regex("^\\.(TH|SH|TP|PP|IP|nf|fi)\\b")))
+          << name << ": " << line;
     }
   }
 }

@@ -389,7 +389,7 @@ class MutantMaker {
       case KeyKind::named_sections:
       case KeyKind::section_list:
       case KeyKind::parameters:
-        if (const Key* number = number_in_place_of(key)) {
+        if (number_in_place_of(key) != nullptr) {
           put(path, "zz", "'zz' is not a number, expected");
         } else {
           refuse("1", "'1'");
