@@ -12,6 +12,7 @@
 #include "io/report/report_page.hpp"
 #include "io/results/locus_file.hpp"
 #include "io/results/result_file.hpp"
+#include "io/scene/scene_mechanics.hpp"
 
 namespace stridor {
 
@@ -30,7 +31,7 @@ struct ReportOptions {
 /// Unstable windows that are to be set beside the bursts of runs of the same scene.
 struct WindowsOfScene {
   std::string file;
-  std::string scene_hash;
+  SceneInFile scene;
   std::vector<TimedWindow> windows;
 };
 

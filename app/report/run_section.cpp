@@ -71,17 +71,21 @@ Json bursts_json_of(const std::vector<NumberedBurst>& bursts) {
   return rows;
 }
 
+SceneInFile scene_of(const RunFileHeader& header) {
+  return {header.scene_hash, header.scene_resolved};
+}
+
 /// The windows that a locus of the same scene predicts, beside the bursts.
 Json predictions_of(const RecordedStretch& run, const ReportContext& context,
                     const std::vector<NumberedBurst>& bursts, Json& section) {
   Json rows = Json::array();
   for (const WindowsOfScene& one : context.windows) {
-    if (one.scene_hash != run.file.header().scene_hash) {
-      section["remarks"].push_back(
-          fmt::format("{} is of another scene ({} instead of {}): its windows are not set beside the "
-                      "bursts.",
-                      std::filesystem::path(one.file).filename().string(), one.scene_hash,
-                      run.file.header().scene_hash));
+    if (!has_same_mechanics(one.scene, scene_of(run.file.header()))) {
+      section["remarks"].push_back(fmt::format(
+          "{} is of another scene ({} instead of {}): its windows are not set beside the "
+          "bursts.",
+          std::filesystem::path(one.file).filename().string(), one.scene.hash,
+          run.file.header().scene_hash));
       continue;
     }
     for (Json& row : prediction_json(match_bursts(one.windows, bursts))) rows.push_back(std::move(row));
@@ -161,7 +165,10 @@ Json run_verdict(const Json& results, const RecordedStretch& run, const Heard& h
   const std::vector<NumberedBurst>& bursts = heard.bursts;
   const Json& predictions = heard.predictions;
   std::string text;
-  std::string level = !bursts.empty() || heard.grows ? "loud" : heard.is_searched ? "calm" : "told";
+  const bool has_tone = results.contains("lasting_tone.frequency");
+  std::string level = !bursts.empty() || has_tone || heard.grows ? "loud"
+                      : heard.is_searched                        ? "calm"
+                                                                 : "told";
   if (status == "done") {
     text = fmt::format("Ran to its end at {}. ", shown(run.last_time(), "s"));
   } else if (status.empty()) {
@@ -184,6 +191,10 @@ Json run_verdict(const Json& results, const RecordedStretch& run, const Heard& h
                         shown(loudest->burst.peak, "m/s^2"), shown(loudest->burst.frequency, "Hz"),
                         shown(loudest->burst.start, "s"), shown(loudest->burst.end, "s"));
   }
+  if (has_tone)
+    text += fmt::format(" A tone of {} lasts throughout, {} r.m.s.",
+                        shown(results["lasting_tone.frequency"].get<double>(), "Hz"),
+                        shown(results["lasting_tone.rms"].get<double>(), "m/s^2"));
   if (!predictions.empty()) {
     const auto num_heard = std::count_if(predictions.begin(), predictions.end(), [](const Json& row) {
       return !row["burst"].is_null();
@@ -275,7 +286,7 @@ Json run_section(const ResultFile& source, const ReportContext& context) {
   section["views"].push_back(histories_view(run, context, 0.7 * context.bytes_per_file));
   const bool has_locus =
       std::any_of(context.windows.begin(), context.windows.end(), [&](const WindowsOfScene& one) {
-        return one.scene_hash == header.scene_hash;  // which shows them
+        return has_same_mechanics(one.scene, scene_of(header));  // which shows them
       });
   if (!context.options.without_shapes && !has_locus) {
     add_mode_frames({header.scene_resolved, source.path() + ":/scene/resolved", "", ""},

@@ -9,6 +9,7 @@
 #include "app/terminal/command.hpp"
 #include "io/figures/spectrogram_plot.hpp"
 #include "io/results/locus_file.hpp"
+#include "io/scene/scene_mechanics.hpp"
 
 namespace stridor {
 
@@ -23,6 +24,10 @@ struct PredictedBurst {
 /// @throws ConfigError where the locus is over something that a run does not pass through,
 ///         FileError where the file cannot be read or is no locus
 std::vector<TimedWindow> read_predictions(const std::string& file);
+
+/// Warns on stderr where a locus is not of the scene of a run (has_same_mechanics()).
+/// @throws FileError where the file cannot be read
+void warn_of_other_scene(const std::string& locus_file, const SceneInFile& of_run);
 
 /// Gives every window the burst of like frequency that overlaps it most in time, and every burst to
 /// no more than the one window that it overlaps most.

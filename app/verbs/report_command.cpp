@@ -64,7 +64,8 @@ std::vector<WindowsOfScene> windows_of_files(const std::vector<ResultFile>& file
     const bool is_passed = std::any_of(windows.begin(), windows.end(), [](const TimedWindow& one) {
       return std::isfinite(one.from_time);
     });
-    if (is_passed) all.push_back({file.path(), file.text("scene_hash"), std::move(windows)});
+    const SceneInFile scene{file.text("scene_hash"), file.text("scene_resolved")};
+    if (is_passed) all.push_back({file.path(), scene, std::move(windows)});
   }
   return all;
 }

@@ -264,7 +264,9 @@ std::optional<std::vector<TimedWindow>> predicted_windows(const RunOptions& opti
                       "sets windows beside bursts, but the scene seeks none; give it measure.band, "
                       "the frequencies in which they are sought");
   }
-  return read_predictions(*options.predict);
+  auto windows = read_predictions(*options.predict);
+  warn_of_other_scene(*options.predict, {loaded.hash(), loaded.resolved()});
+  return windows;
 }
 
 /// @param study of the scene, where the error is to be estimated
