@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "analysis/burst_growth.hpp"
+#include "analysis/lasting_tone.hpp"
 #include "analysis/quiet_level.hpp"
 #include "analysis/ridges.hpp"
 #include "analysis/vibration_blocks.hpp"
@@ -342,7 +343,7 @@ Vibration find_vibration(const SampleSource& samples, double interval,
   const double largest = largest_of(samples);
   Vibration found;
   if (range.is_empty()) return found;
-  SignalBlocks blocks(samples, interval, parameters.band, parameters.smoothing, block);
+  SignalBlocks blocks(samples, interval, parameters.band, lasting_smoothing(parameters), block);
   VibrationBlocks vibration(blocks, {parameters.band}, parameters.smoothing);
   double square = 0.0;
   vibration.for_each(range, [&](const VibrationPiece& piece, IndexRange part) {
@@ -351,6 +352,7 @@ Vibration find_vibration(const SampleSource& samples, double interval,
   found.rms = std::sqrt(square / static_cast<double>(range.size()));
   const QuietLevel level = quiet_level(vibration, largest, parameters, first, range);
   found.bursts = bursts_of(blocks, {vibration, parameters, first, largest, level, range});
+  found.lasting = lasting_tone(blocks, parameters, range, found.rms, largest);
   return found;
 }
 

@@ -132,16 +132,25 @@ QuietLevel find_quiet_level(std::span<const double> samples, double interval,
 std::vector<Burst> find_bursts(std::span<const double> samples, double interval,
                                const BurstParameters& parameters, double first = 0.0);
 
+/// A tone that is there all the time: half the power of the band or more, a quarter of the time at
+/// most below half its r.m.s. value. What fills the window is no rise, and so no burst.
+struct LastingTone {
+  double frequency;  ///< Hz
+  double rms;        ///< of the vibration within 2/T of it
+  double share;      ///< of the power in the band
+};
+
 /// Vibration in the band of the bursts, where it is measured.
 struct Vibration {
   double rms = 0.0;  ///< of band_pass() over parameters.measured; 0 where that holds no sample
   std::vector<Burst> bursts{};
+  std::optional<LastingTone> lasting{};
 };
 
 /// find_bursts() of a signal that need not fit into memory, and its r.m.s. value in their band.
 ///
-/// The signal is read and filtered in blocks (SignalBlocks), three to four times as a whole and
-/// about six times where there are bursts; a signal of one block once. The length of a block does
+/// The signal is read and filtered in blocks (SignalBlocks), five to six times as a whole and
+/// about eight times where there are bursts; a signal of one block once. The length of a block does
 /// not change the result but for rounding.
 ///
 /// @param block samples to a block; about a million where it is not given

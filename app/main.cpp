@@ -106,6 +106,17 @@ std::string option_problem(CLI::App& program, int argc, char** argv) {
   return "";
 }
 
+/// What a required option that is missing means: "--kind is required: history, phase, ...".
+std::string required_problem(CLI::App& program, const CLI::ParseError& error,
+                             const char* verb_name) {
+  const std::string what = error.what();
+  const auto verbs =
+      program.get_subcommands([&](const CLI::App* verb) { return verb->get_name() == verb_name; });
+  if (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr || verbs.empty()) return what;
+  const CLI::Option* option = verbs.front()->get_option_no_throw(what.substr(0, what.find(' ')));
+  return option == nullptr ? what : fmt::format("{}: {}", what, option->get_description());
+}
+
 void add_verbs(CLI::App& program, Action& action, const std::string& command) {
   add_run_command(program, action, command);
   add_check_command(program, action);
@@ -157,9 +168,11 @@ int run_verb(int argc, char** argv) {
     if (is_failure) {
       std::string problem = verb_problem(program, argc, argv);
       if (problem.empty()) problem = option_problem(program, argc, argv);
-      if (problem.empty()) problem = error.what();
-      print_remark("stridor: {}\nTry 'stridor --help' or 'stridor VERB --help'.\n",
-                   with_code(problem, Refusal::unknown_option));
+      if (problem.empty()) problem = required_problem(program, error, argc > 1 ? argv[1] : "");
+      const bool has_verb = argc > 1 && verb_problem(program, argc, argv).empty();
+      print_remark("stridor: {}\nTry 'stridor {}--help'.\n",
+                   with_code(problem, Refusal::unknown_option),
+                   has_verb && argv[1][0] != '-' ? std::string(argv[1]) + " " : "");
       if (wants_json) finish_json({{Refusal::unknown_option, "", problem}});
       return static_cast<int>(ExitCode::bad_input);
     }

@@ -16,4 +16,10 @@ std::string burst_text(const Json& burst) {
                      value("gain"));
 }
 
+std::string lasting_tone_text(const Json& tone) {
+  const auto value = [&](const char* name) { return tone.at(name).get<double>(); };
+  return fmt::format("{:.0f} Hz, {:.4g} m/s^2 r.m.s. throughout, {:.0f} % of the power in the band",
+                     value("frequency"), value("rms"), 100.0 * value("share"));
+}
+
 }  // namespace stridor

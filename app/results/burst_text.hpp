@@ -1,4 +1,4 @@
-// A burst in one line, as `run` and `info` list it.
+// A burst or a tone in one line, as `run` and `info` list it.
 #pragma once
 
 #include <string>
@@ -11,5 +11,9 @@ namespace stridor {
 /// @param burst object with the numbers start, end (s), frequency (Hz), peak (m/s^2) and gain; one
 ///              that is null, because it is not finite, is shown as "nan"
 std::string burst_text(const Json& burst);
+
+/// "2199 Hz, 3290 m/s^2 r.m.s. throughout, 99 % of the power in the band".
+/// @param tone object with the numbers frequency (Hz), rms (m/s^2) and share
+std::string lasting_tone_text(const Json& tone);
 
 }  // namespace stridor

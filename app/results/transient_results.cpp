@@ -182,12 +182,16 @@ Json bursts_json(const std::vector<Burst>& bursts) {
 }
 
 Json acceleration_json(const std::optional<AccelerationSummary>& acceleration) {
-  Json results = {{"free_end_acceleration", nullptr}, {"bursts", nullptr}};
+  Json results = {
+      {"free_end_acceleration", nullptr}, {"bursts", nullptr}, {"lasting_tone", nullptr}};
   if (!acceleration) return results;
   results["free_end_acceleration"] = {{"peak", number(acceleration->peak)},
                                       {"rms", number(acceleration->rms)},
                                       {"channel", acceleration->channel}};
   if (acceleration->bursts) results["bursts"] = bursts_json(*acceleration->bursts);
+  if (const auto& tone = acceleration->lasting)
+    results["lasting_tone"] = {
+        {"frequency", tone->frequency}, {"rms", tone->rms}, {"share", tone->share}};
   return results;
 }
 
@@ -232,6 +236,8 @@ void print_bursts(const Json& results) {
   for (const Json& burst : results["bursts"]) {
     fmt::print("{:<24}{}\n", "burst", burst_text(burst));
   }
+  if (const Json tone = results.value("lasting_tone", Json(nullptr)); !tone.is_null())
+    fmt::print("{:<24}{}\n", "lasting tone", lasting_tone_text(tone));
   const Json trusted = results.value("trusted_frequency", Json(nullptr));
   if (trusted.is_null()) return;
   const auto above = std::count_if(results["bursts"].begin(), results["bursts"].end(), [&](const Json& burst) {

@@ -19,7 +19,7 @@ Json bursts_json(const std::vector<Burst>& bursts);
 /// The largest stable step, s; null where there is none.
 Json step_limit_json(const System& system, const TimeParameters& time);
 
-/// free_end_acceleration and bursts; null where there are none.
+/// free_end_acceleration, bursts and lasting_tone; null where there are none.
 Json acceleration_json(const std::optional<AccelerationSummary>& acceleration);
 
 /// The numbers of a run, without those of its effort and its file.
@@ -29,8 +29,8 @@ Json transient_results(const Simulation& simulation, const System& system,
                        const TimeParameters& time, MarchEnd end, const MeasuredContacts& measured,
                        const std::optional<AccelerationSummary>& acceleration);
 
-/// Writes the bursts of such an object in one line each, or that there are none, and how many lie above its
-/// `trusted_frequency`, Hz.
+/// Writes the bursts of such an object in one line each, or that there are none, its lasting tone,
+/// and how many bursts lie above its `trusted_frequency`, Hz.
 void print_bursts(const Json& results);
 
 }  // namespace stridor

@@ -102,8 +102,8 @@ void print_whole_explanation(const Json& explanation) {
   if (explanation.contains("energy")) {
     const Json& energy = explanation["energy"];
     fmt::print("  growth: {:+.6g} 1/s by damping, {:+.6g} 1/s by coupled terms of bodies\n",
-               energy["growth_by_damping"].get<double>(),
-               energy["growth_by_coupled_terms"].get<double>());
+               energy["growth_by_damping"].get<double>() + 0.0,
+               energy["growth_by_coupled_terms"].get<double>() + 0.0);
   }
   for (const Json& one : explanation["frictionless_modes"]) {
     fmt::print("  {:.1f} % of it is the mode of {:.6g} Hz of the symmetric system\n",

@@ -8,6 +8,18 @@
 #include "core/errors.hpp"
 
 namespace stridor {
+namespace {
+
+/// ": 'parameters.mu', 'parameters.lean', ..." of the parameters of a scene, where it has any.
+std::string examples_of_keys(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const NamedNumber& number : scene.parameters)
+    names.push_back(fmt::format("'parameters.{}'", number.name));
+  if (names.empty()) return ", as 'contact.friction.coefficient' or another number of the scene";
+  return fmt::format(": {}, or another number of the scene", fmt::join(names, ", "));
+}
+
+}  // namespace
 
 SpectrumWindow StabilityOptions::locus_window() const {
   return {count, window().frequency};
@@ -83,7 +95,9 @@ KeyRange make_range(const StabilityScene& scene, const RangeOptions& options) {
   if (path.empty()) {
     const auto key = scene.default_key();
     if (!key)
-      throw ConfigError(Refusal::missing, "--parameter", "the scene has no path; name a key");
+      throw ConfigError(Refusal::missing, "--parameter",
+                        "no place along a path can be varied in this scene; name a key" +
+                            examples_of_keys(scene.loaded().scene));
     path = *key;
   }
   KeyRange range{scene.find_key(path, "--parameter"), {}};

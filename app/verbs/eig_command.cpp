@@ -138,7 +138,9 @@ void print_equilibrium(const System& system, const Equilibrium& equilibrium) {
     fmt::print("{:<20}{}, force {:.6g} N, friction {:.6g} N, sliding at {:.4g} m/s{}\n",
                system.contacts[i].name, place, contact.force,
                std::hypot(contact.friction_force, contact.friction_across), contact.slip_velocity,
-               contact.force < 0.0 ? " (pulls: no equilibrium of real bodies)" : "");
+               contact.force < 0.0    ? " (pulls: no equilibrium of real bodies)"
+               : contact.force == 0.0 ? " (nothing presses: give a load, or normal.preload)"
+                                      : "");
   }
 }
 
@@ -154,7 +156,10 @@ void print_law_ranges(const Json& equilibrium) {
 }
 
 void print_explanation(const Json& explanation) {
-  const auto value = [](const Json& object, const char* key) { return object[key].get<double>(); };
+  // No "-0": nothing is neither fed nor taken.
+  const auto value = [](const Json& object, const char* key) {
+    return object[key].get<double>() + 0.0;
+  };
   const Json& energy = explanation["energy"];
   fmt::print("\nmode {} at {:.2f} Hz, growth {:.4f} 1/s\n", explanation["mode"].get<int>(),
              value(explanation, "frequency"), value(explanation, "growth"));

@@ -68,6 +68,9 @@ ExitCode info(const InfoOptions& options) {
   }
   if (object["bursts"].empty()) line("bursts", "none");
   for (const Json& burst : object["bursts"]) line("burst", burst_text(burst));
+  const Json results = stored_results(file);
+  if (results.contains("lasting_tone") && !options.band)
+    line("lasting tone", lasting_tone_text(results["lasting_tone"]));
   fmt::print("results\n");
   for (const auto& [name, value] : object["results"].items()) {
     line("  " + name, value.is_string() ? value.get<std::string>() : value.dump());

@@ -102,7 +102,7 @@ std::optional<AccelerationSummary> summarise_acceleration(const std::string& cha
   const IndexRange range = samples_in(window, first, interval, values.size());
   if (range.is_empty()) return std::nullopt;
   const Size size = size_in(values, range);
-  AccelerationSummary summary{channel, size.peak, size.rms, std::nullopt};
+  AccelerationSummary summary{channel, size.peak, size.rms};
   if (!measure.band.empty()) {
     const Band band{measure.band[0], measure.band[1]};
     BurstParameters parameters;
@@ -112,6 +112,7 @@ std::optional<AccelerationSummary> summarise_acceleration(const std::string& cha
     Vibration vibration = find_vibration(values, interval, parameters, first);
     summary.rms = vibration.rms;
     summary.bursts = std::move(vibration.bursts);
+    summary.lasting = vibration.lasting;
   }
   return summary;
 }

@@ -17,7 +17,8 @@ struct AccelerationSummary {
   double peak = 0.0;  ///< largest absolute recorded value, m/s²
   double rms = 0.0;   ///< within `measure.band`, m/s²
   /// Bursts in the band; nothing where the scene gives none.
-  std::optional<std::vector<Burst>> bursts;
+  std::optional<std::vector<Burst>> bursts{};
+  std::optional<LastingTone> lasting{};  ///< likewise
 };
 
 /// The path of the acceleration that a run is summed up by: the first channel

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
 #include "io/scene/channels.hpp"
 #include "io/scene/scene_problems.hpp"
+#include "solvers/equilibrium/equilibrium.hpp"
 
 namespace stridor {
 namespace {
@@ -116,6 +118,54 @@ void look_at_paths(const LoadedScene& loaded, const System& system,
   }
 }
 
+enum class Pressing { forces, none, apart, unknown };
+
+/// What presses the contacts in the sliding equilibrium under the loads at a time.
+Pressing pressing_at(const System& system, double time) {
+  EquilibriumState state = sliding_state(system, 0.0);
+  state.drives = drive_states(system, time);
+  Equilibrium equilibrium;
+  try {
+    equilibrium = find_equilibrium(system, state);
+  } catch (const std::exception&) {
+    return Pressing::unknown;  // bodies that nothing holds
+  }
+  if (equilibrium.status != EquilibriumStatus::converged) return Pressing::unknown;
+  const auto has_any = [&](const auto& is_so) {
+    return std::any_of(equilibrium.contacts.begin(), equilibrium.contacts.end(), is_so);
+  };
+  if (has_any([](const ContactEquilibrium& contact) {
+        return contact.is_closed && contact.force != 0.0;
+      }))
+    return Pressing::forces;
+  return has_any([](const ContactEquilibrium& contact) { return contact.is_closed; })
+             ? Pressing::none
+             : Pressing::apart;
+}
+
+/// Loads that never press the bodies together, as one of the wrong sign.
+void look_at_loads(const LoadedScene& loaded, const Model& model, std::vector<Problem>& warnings) {
+  const System& system = model.system;
+  if (!loaded.scene.time || model.sparse || system.contacts.empty()) return;
+  const double end = loaded.scene.time->end;
+  bool is_apart = false;
+  for (const double time : {0.25 * end, 0.5 * end, end, std::numeric_limits<double>::infinity()}) {
+    const Pressing pressing = pressing_at(system, time);
+    if (pressing == Pressing::forces || pressing == Pressing::unknown) return;
+    is_apart |= pressing == Pressing::apart;
+  }
+  const std::string key = find(loaded.tree, "drive") != nullptr    ? "drive"
+                          : find(loaded.tree, "drives") != nullptr ? "drives"
+                                                                   : "";
+  warnings.push_back(
+      {Refusal::wrong_value, key,
+       is_apart
+           ? "the loads pull the bodies apart: no contact is closed in the equilibrium under them; "
+             "loads act in +y, so a load of the other sign presses"
+           : "nothing presses the bodies together: every contact force is 0 in equilibrium; give a "
+             "load or, of a contact, normal.preload"});
+}
+
 /// Whether nothing moves a row of a body: the supports hold it.
 bool is_held(const SystemBody& body, int row) {
   return body.modal.size() > 0 && body.modal.rows.row(row).isZero(0.0) &&
@@ -167,6 +217,7 @@ std::vector<Problem> scene_warnings(const LoadedScene& loaded, const Model& mode
                                     "statistics is empty",
                                     scene.measure.from, scene.time->end)});
   }
+  look_at_loads(loaded, model, warnings);
   look_at_paths(loaded, model.system, warnings);
   look_at_channels(scene, model, warnings);
   locate(warnings, loaded.tree);

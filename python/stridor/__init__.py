@@ -19,13 +19,13 @@ from .errors import ConfigError, Error, FileError, NumericalError, Problem, Stop
 from .files import FrequencyResponses, Locus, ResultFile, Run, Series, StabilityMap, open
 from .invocation import program
 from .scene import Scene, example, load
-from .verbs import (Eigenvalues, call, compare, cycle, eig, frf, locus, map, precision, run, sweep,
-                    threshold)
+from .verbs import (Eigenvalues, call, compare, cycle, eig, frf, locus, map, plot, precision, report, run,
+                    sound, spectrogram, sweep, threshold)
 
 __version__ = "0.1.0"
 __all__ = [
     "ConfigError", "Eigenvalues", "Error", "FileError", "FrequencyResponses", "Locus",
     "NumericalError", "Problem", "ResultFile", "Run", "Scene", "Series", "StabilityMap", "Stopped",
     "call", "compare", "cycle", "eig", "example", "frf", "load", "locus", "map", "open",
-    "precision", "program", "run", "sweep", "threshold"
+    "plot", "precision", "program", "report", "run", "sound", "spectrogram", "sweep", "threshold"
 ]

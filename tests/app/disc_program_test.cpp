@@ -232,7 +232,7 @@ TEST(DiscProgram, RefusesWhatItHasNot) {
   EXPECT_THAT(Program({"eig", brake, "--at", "1"}).run().err, HasSubstr("--at"));
   const ProgramResult unnamed = Program({"threshold", brake, "--from", "0", "--to", "1"}).run();
   EXPECT_EQ(unnamed.exit_code, 2);
-  EXPECT_THAT(unnamed.err, HasSubstr("name a key"));
+  EXPECT_THAT(unnamed.err, HasSubstr("name a key: 'parameters.mu', "));
   EXPECT_EQ(Program({"check", brake}).run().exit_code, 0);
   EXPECT_EQ(Program({"check", brake, "--set", "terms=[x]"}).run().exit_code, 2);
 }
