@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <string_view>
 #include <system_error>
 
 #include "core/errors.hpp"
@@ -48,6 +49,12 @@ HelperOutcome run_helper(std::vector<std::string> words, const std::string& outp
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
+  std::string locale = "LC_ALL=C.UTF-8";
+  std::vector<char*> environment{locale.data()};
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    if (!std::string_view(*variable).starts_with("LC_ALL=")) environment.push_back(*variable);
+  }
+  environment.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   const auto open_for = [&](int number, const std::string& path) {
@@ -59,8 +66,8 @@ HelperOutcome run_helper(std::vector<std::string> words, const std::string& outp
   open_for(STDERR_FILENO, messages);
   pid_t child = -1;
   HelperOutcome outcome;
-  outcome.spawn_error =
-      posix_spawnp(&child, arguments.front(), &actions, nullptr, arguments.data(), environ);
+  outcome.spawn_error = posix_spawnp(&child, arguments.front(), &actions, nullptr, arguments.data(),
+                                     environment.data());
   posix_spawn_file_actions_destroy(&actions);
   if (outcome.spawn_error != 0) return outcome;
   const HelperProcess helper(child);

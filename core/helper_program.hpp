@@ -37,7 +37,9 @@ struct HelperOutcome {
   int status = 0;       ///< as waitpid() has it
 };
 
-/// Runs a program to its end, through no shell and without input; it is ended with this one.
+/// Runs a program to its end, through no shell and without input; it is ended with this one. Its
+/// locale is C.UTF-8 whatever the user's is: in "C" gnuplot complains of characters that it can
+/// draw.
 /// @param words    the program, looked for in PATH, and its arguments
 /// @param output   file for what it prints to stdout; empty: nowhere
 /// @param messages file for what it prints to stderr, which may be `output`

@@ -81,6 +81,12 @@ TEST_F(Gnuplot, EndingOfTheNameChoosesTheFormat) {
   EXPECT_EQ(files().size(), 3U);
 }
 
+TEST_F(Gnuplot, DrawsEveryCharacterWhateverTheLocaleIs) {
+  const ScopedVariable locale("LC_ALL", "C");
+  draw_figure(folder_ / "a.svg", "set title '30° at 5 µm'; plot sin(x)");
+  EXPECT_THAT(contents_of(folder_ / "a.svg"), HasSubstr("30° at 5 µm"));
+}
+
 TEST_F(Gnuplot, PngHasTheSizeAskedFor) {
   draw_figure(folder_ / "a.png", "plot sin(x)", {.width = 8.0, .height = 5.0, .font_size = 10.0});
   // Bytes 16 to 23 of a PNG are width and height, most significant byte first; 100 dots per cm.
