@@ -1,9 +1,12 @@
 #include "io/imports/gmsh_program.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -93,6 +96,25 @@ std::string version_of_gmsh(const std::string& geometry, const fs::path& file) {
   return version;
 }
 
+/// The folder of the user for what can be made again, or "".
+fs::path cache_folder() {
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  if (cache != nullptr && fs::path(cache).is_absolute()) return fs::path(cache) / "stridor";
+  const char* home = std::getenv("HOME");
+  if (home != nullptr && fs::path(home).is_absolute()) return fs::path(home) / ".cache" / "stridor";
+  return "";
+}
+
+/// The folder in which a new mesh is kept: that of the geometry, where this user may write there.
+fs::path folder_to_keep(const fs::path& beside) {
+  if (faccessat(AT_FDCWD, beside.c_str(), W_OK, AT_EACCESS) == 0) return beside;
+  const fs::path cache = cache_folder();
+  if (cache.empty()) return beside;
+  std::error_code error;
+  fs::create_directories(cache, error);
+  return error ? beside : cache;
+}
+
 }  // namespace
 
 std::string mesh_with_gmsh(const std::string& geometry, const MeshingOptions& options) {
@@ -103,10 +125,13 @@ std::string mesh_with_gmsh(const std::string& geometry, const MeshingOptions& op
   std::set<fs::path> seen;
   const std::uint64_t sum =
       sum_of_geometry(path, fnv1a(fmt::format("{:.17g} {}", options.size, options.order)), seen);
-  const fs::path mesh =
-      path.parent_path() / fmt::format("{}-{:016x}.msh", path.stem().string(), sum);
+  const std::string name = fmt::format("{}-{:016x}.msh", path.stem().string(), sum);
   std::error_code ignored;
-  if (fs::is_regular_file(mesh, ignored)) return mesh.string();
+  for (const fs::path& folder : {path.parent_path(), cache_folder()}) {
+    const fs::path kept = folder / name;
+    if (!folder.empty() && fs::is_regular_file(kept, ignored)) return kept.string();
+  }
+  const fs::path mesh = folder_to_keep(path.parent_path()) / name;
 
   const Activity meshing(fmt::format("meshing {} with gmsh", path.filename().string()));
   const ScratchFolder scratch("mesh", {"mesh.geo", "messages", "version"}, geometry);

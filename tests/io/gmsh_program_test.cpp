@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -77,6 +78,26 @@ TEST_F(GmshProgram, FailuresSayWhatGmshSaid) {
   EXPECT_THAT(folder_.files(), testing::UnorderedElementsAre("square.geo"));
   std::filesystem::remove(folder_ / "square.geo");
   EXPECT_THAT(complaint(), HasSubstr("square.geo"));
+}
+
+TEST_F(GmshProgram, KeepsTheMeshInTheCacheOfAUserWhoMayNotWriteBesideTheGeometry) {
+  namespace fs = std::filesystem;
+  constexpr uid_t nobody = 65534;
+  fs::create_directory(folder_ / "cache");
+  fs::permissions(folder_ / "cache", fs::perms::all);
+  fs::permissions(folder_.path(), fs::perms(0555));
+  setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
+  // root may write everywhere.
+  const bool is_root = geteuid() == 0;
+  ASSERT_TRUE(!is_root || seteuid(nobody) == 0);
+  const std::string first = mesh(0.5);
+  const std::string second = mesh(0.5);
+  ASSERT_TRUE(!is_root || seteuid(0) == 0);
+  unsetenv("XDG_CACHE_HOME");
+  fs::permissions(folder_.path(), fs::perms(0755));
+  EXPECT_EQ(fs::path(first).parent_path(), folder_ / "cache" / "stridor");
+  EXPECT_EQ(second, first);
+  EXPECT_GT(read_mesh_file(first).mesh.num_elements(), 0);
 }
 
 TEST_F(GmshProgram, ThatIsMissingIsNamedWithItsPackage) {
