@@ -34,13 +34,15 @@ highlight_language = "none"
 
 TREE = """
 
-```{toctree}
+```{{toctree}}
 :hidden:
+:titlesonly:
 :glob:
-*
+{}
 ```
 """
-CHAPTERS = TREE.replace("\n*\n", "\ntheory/*\n")
+CHAPTERS = TREE.format("theory/*")
+PAGE = re.compile(r"\]\((\w+)\.md\)")
 
 
 def without_links_out(text, folder):
@@ -61,7 +63,8 @@ def complete(_app, name, source):
     source[0] = without_links_out(source[0], (HERE / name).parent)
     source[0] = source[0].replace("```math\n", "```{math}\n")
     if name == "index":
-        source[0] += TREE
+        # Pages in the order in which the home page names them, then the others.
+        source[0] += TREE.format("\n".join([*dict.fromkeys(PAGE.findall(source[0])), "*"]))
     if name == "theory":
         source[0] += CHAPTERS
 

@@ -38,4 +38,7 @@ assert theory.count('class="math') > 100, "the theory has lost its formulas"
 assert "mathjax/MathJax.js" in theory
 home = (pathlib.Path(out) / "index.html").read_text()
 assert "Copyright" not in home
+listed = re.findall(r'toctree-l1"><a[^>]*href="([^"]*)"', home)
+assert len(listed) == len(set(listed)) and not any("#" in link for link in listed), listed
+assert listed[0] == "tutorial.html", "the pages stand in the order of the home page"
 sys.exit("\n".join(problems) or 0)
