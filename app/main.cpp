@@ -157,9 +157,13 @@ int run_verb(int argc, char** argv) {
         ->check(CLI::IsMember({"json"}));
   }
   // Words that are being typed need not make a command yet.
-  if (argc > 2 && std::string_view(argv[1]) == "complete" && std::string_view(argv[2]) == "--") {
-    print_candidates(program, {argv + 3, argv + argc});
-    return static_cast<int>(ExitCode::done);
+  if (argc > 2 && std::string_view(argv[1]) == "complete") {
+    // What stands on the line behind the word, "--", and the words up to it.
+    char** const sign = std::find(argv + 2, argv + argc, std::string_view("--"));
+    if (sign != argv + argc) {
+      print_candidates(program, {sign + 1, argv + argc}, {argv + 2, sign});
+      return static_cast<int>(ExitCode::done);
+    }
   }
   try {
     program.parse(argc, argv);

@@ -91,7 +91,8 @@ void add_report_command(CLI::App& program, Action& action, const std::string& co
 /// What people do not call: pages of the manual.
 void add_hidden_commands(CLI::App& program, Action& action);
 /// For shells: what the last word may go on to, a line each, what it is behind a tab.
-void print_candidates(const CLI::App& program, const std::vector<std::string>& words);
+void print_candidates(const CLI::App& program, const std::vector<std::string>& words,
+                      const std::vector<std::string>& behind);
 void add_frf_command(CLI::App& program, Action& action, const std::string& command_line);
 
 }  // namespace stridor

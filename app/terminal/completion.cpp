@@ -51,6 +51,7 @@ std::optional<std::string> file_among(const std::vector<std::string>& words,
 
 void collect_keys(const SceneNode& node, const std::string& path, std::vector<std::string>& keys) {
   if (node.kind == SceneNode::Kind::map) {
+    if (!path.empty()) keys.push_back(path);  // a number may stand in its place
     for (const SceneEntry& entry : node.entries)
       collect_keys(entry.value, join_path(path, entry.key), keys);
   } else if (!path.empty()) {
@@ -58,12 +59,56 @@ void collect_keys(const SceneNode& node, const std::string& path, std::vector<st
   }
 }
 
+bool is_section(const SceneNode& scene, const std::string& path) {
+  const SceneNode* node = &scene;
+  for (std::size_t begin = 0; begin < path.size();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    const std::string part = path.substr(begin, end - begin);
+    const SceneNode* next = nullptr;
+    for (const SceneEntry& entry : node->entries)
+      if (entry.key == part) next = &entry.value;
+    if (next == nullptr) return false;
+    node = next;
+    begin = end + 1;
+  }
+  return node->kind == SceneNode::Kind::map;
+}
+
+/// What a key may be set to, where that is one of a few words.
+std::vector<std::string> choices_at(const Schema& schema, const std::string& path) {
+  const std::size_t dot = path.find('.');
+  const Key* key = schema.find(path.substr(0, dot));
+  if (key == nullptr) return {};
+  if (dot == std::string::npos) {
+    if (key->kind == KeyKind::flag) return {"true", "false"};
+    return key->choices;
+  }
+  std::string rest = path.substr(dot + 1);
+  if (key->kind == KeyKind::named_sections) {
+    const std::size_t name_end = rest.find('.');
+    if (name_end == std::string::npos) return {};
+    rest.erase(0, name_end + 1);
+  }
+  for (const Alternative& alternative : key->alternatives)
+    if (auto found = choices_at(alternative.schema(), rest); !found.empty()) return found;
+  return {};
+}
+
+/// "key=choice" for the key that is written in front of the sign.
+Candidates settings_of(const std::string& key) {
+  Candidates found;
+  for (const std::string& choice : choices_at(Scene::schema(), key))
+    found.push_back({key + "=" + choice, ""});
+  return found;
+}
+
 /// Every key that the scene has or has a default for.
 /// @param varied numbers alone
 Candidates keys_of(const std::string& file, bool varied) {
   const LoadedScene loaded = load_scene(file, {});
   std::vector<std::string> keys;
-  collect_keys(read_scene_text(loaded.resolved(), file), "", keys);
+  const SceneNode scene = read_scene_text(loaded.resolved(), file);
+  collect_keys(scene, "", keys);
   Candidates found;
   for (const std::string& key : keys) {
     std::string meaning;
@@ -73,7 +118,8 @@ Candidates keys_of(const std::string& file, bool varied) {
     } catch (const std::exception&) {
       is_number = false;
     }
-    if (is_number || !varied) found.push_back({varied ? key : key + "=", meaning});
+    if (is_number || !(varied || is_section(scene, key)))
+      found.push_back({varied ? key : key + "=", meaning});
   }
   return found;
 }
@@ -109,7 +155,9 @@ Candidates options_of(const CLI::App& verb) {
   return found;
 }
 
-Candidates all_candidates(const CLI::App& program, const std::vector<std::string>& words) {
+/// @param behind what stands on the line behind the word that is being typed
+Candidates all_candidates(const CLI::App& program, const std::vector<std::string>& words,
+                          const std::vector<std::string>& behind) {
   if (words.size() <= 1) {
     Candidates found;
     for (const CLI::App* verb : verbs_of(program))
@@ -119,13 +167,18 @@ Candidates all_candidates(const CLI::App& program, const std::vector<std::string
   const CLI::App* verb = verb_named(program, words.front());
   if (verb == nullptr) return {};
   const std::string& before = words[words.size() - 2];
+  std::vector<std::string> line = words;
+  line.insert(line.end(), behind.begin(), behind.end());
   if (const CLI::Option* option = option_named(*verb, before)) {
     if (before == "--set" || takes_key(before)) {
-      const auto scene = file_among(words, {".yaml", ".yml"});
+      const std::size_t sign = words.back().find('=');
+      if (before == "--set" && sign != std::string::npos)
+        return settings_of(words.back().substr(0, sign));
+      const auto scene = file_among(line, {".yaml", ".yml"});
       return scene ? keys_of(*scene, before != "--set") : Candidates{};
     }
     if (before == "--channel") {
-      const auto run = file_among(words, {".h5", ".hdf5"});
+      const auto run = file_among(line, {".h5", ".hdf5"});
       return run ? channels_of(*run) : Candidates{};
     }
     if (option->get_items_expected_max() > 0) return values_of_type(*option);
@@ -135,13 +188,26 @@ Candidates all_candidates(const CLI::App& program, const std::vector<std::string
 
 }  // namespace
 
-std::vector<Candidate> candidates(const CLI::App& program, const std::vector<std::string>& words) {
-  Candidates found = all_candidates(program, words);
+std::vector<Candidate> candidates(const CLI::App& program, std::vector<std::string> words,
+                                  const std::vector<std::string>& behind) {
+  // "--option=value" is two words written as one.
+  std::string prefix;
+  if (!words.empty() && words.back().starts_with("--")) {
+    if (const std::size_t sign = words.back().find('='); sign != std::string::npos) {
+      prefix = words.back().substr(0, sign + 1);
+      const std::string value = words.back().substr(sign + 1);
+      words.back() = prefix.substr(0, sign);
+      words.push_back(value);
+    }
+  }
+  Candidates found = all_candidates(program, words, behind);
   const std::string begun = words.empty() ? "" : words.back();
   std::erase_if(found, [&](const Candidate& one) { return !one.word.starts_with(begun); });
-  for (Candidate& one : found)
+  for (Candidate& one : found) {
+    one.word.insert(0, prefix);
     std::replace_if(
         one.meaning.begin(), one.meaning.end(), [](char c) { return c == '\t' || c == '\n'; }, ' ');
+  }
   return found;
 }
 

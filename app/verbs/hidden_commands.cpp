@@ -63,9 +63,10 @@ void add_hidden_commands(CLI::App& program, Action& action) {
   });
 }
 
-void print_candidates(const CLI::App& program, const std::vector<std::string>& words) {
+void print_candidates(const CLI::App& program, const std::vector<std::string>& words,
+                      const std::vector<std::string>& behind) {
   try {
-    for (const Candidate& one : candidates(program, words))
+    for (const Candidate& one : candidates(program, words, behind))
       fmt::print("{}{}{}\n", one.word, one.meaning.empty() ? "" : "\t", one.meaning);
   } catch (const std::exception&) {
     // What cannot be read has no candidates: somebody is typing.

@@ -63,7 +63,9 @@ TEST(Completion, OfTheFirstWordIsAVerbWithWhatItDoes) {
 TEST(Completion, OfAKeyIsAKeyOfTheSceneWithItsUnit) {
   EXPECT_THAT(completed({"locus", beams(), "--parameter", "drive.sp"}), IsEmpty());
   EXPECT_THAT(completed({"locus", beams(), "--parameter", "contact.start"}),
-              ElementsAre("contact.start.along\tm"));
+              ElementsAre("contact.start\tm", "contact.start.along\tm"));
+  EXPECT_THAT(completed({"run", beams(), "--set", "contact.start"}),
+              ElementsAre("contact.start=\tm", "contact.start.along=\tm", "contact.start.at="));
   EXPECT_THAT(completed({"run", beams(), "--set", "contact.friction.coe"}),
               ElementsAre("contact.friction.coefficient="));
   EXPECT_THAT(completed({"run", beams(), "--set", "time.st"}), ElementsAre("time.step=\ts"));
@@ -71,6 +73,22 @@ TEST(Completion, OfAKeyIsAKeyOfTheSceneWithItsUnit) {
   EXPECT_THAT(completed({"locus", beams(), "--parameter", "contact.friction.law"}), IsEmpty());
   EXPECT_THAT(completed({"map", beams(), "--x", "contact.friction.coe"}),
               ElementsAre("contact.friction.coefficient"));
+}
+
+TEST(Completion, OfAValueIsOneOfTheChoicesOfItsKey) {
+  EXPECT_THAT(completed({"run", beams(), "--set", "contact.assumption="}),
+              ElementsAre("contact.assumption=subs_a", "contact.assumption=subs_b",
+                          "contact.assumption=subs_c", "contact.assumption=film"));
+  EXPECT_THAT(completed({"run", beams(), "--set=contact.assumption=f"}),
+              ElementsAre("--set=contact.assumption=film"));
+  EXPECT_THAT(completed({"locus", beams(), "--parameter=time.st"}),
+              ElementsAre("--parameter=time.step\ts"));
+}
+
+TEST(Completion, LooksForTheSceneBehindTheWordToo) {
+  const ProgramResult result =
+      Program({"complete", beams(), "--", "locus", "--parameter", "contact.friction.coe"}).run();
+  EXPECT_EQ(result.out, "contact.friction.coefficient\n");
 }
 
 class CompletionOfRuns : public Pictures {};
