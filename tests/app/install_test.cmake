@@ -11,7 +11,7 @@ endfunction()
 run_in_order("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${PREFIX}")
 run_in_order("${PREFIX}/bin/stridor" check "${PREFIX}/share/stridor/scenes/beam_on_beam.yaml")
 run_in_order("${PREFIX}/bin/stridor" eig "${PREFIX}/share/stridor/scenes/examples/from_calculix.yaml")
-foreach(file share/doc/stridor/README.md share/doc/stridor/docs/theory.md share/stridor/scene.schema.json
+foreach(file share/doc/stridor/README.md share/doc/stridor/CITATION.cff share/doc/stridor/docs/theory.md share/stridor/scene.schema.json
         lib/python3/dist-packages/stridor/py.typed
         share/man/man1/stridor-run.1 share/man/man5/stridor-scene.5 share/bash-completion/completions/stridor
         share/zsh/site-functions/_stridor share/fish/vendor_completions.d/stridor.fish)
