@@ -124,15 +124,18 @@ std::vector<std::size_t> vibrating(const FoundSpectrum& found, int most) {
   return chosen;
 }
 
-/// Spaced over the values of a range, both ends among them.
-std::vector<double> some_of(const std::vector<double>& values, int count) {
+/// Spaced over the values of a range, both ends among them, and as many of those wanted as leave a
+/// third of the number to these.
+std::vector<double> some_of(const FramedRange& range, int count) {
   std::vector<double> some;
-  const int steps = std::max(1, count - 1);
-  for (int i = 0; i <= steps && !values.empty(); ++i) {
-    const double value =
-        steps == 0 ? values.front() : std::lerp(values.front(), values.back(), 1.0 * i / steps);
-    if (some.empty() || value > some.back()) some.push_back(value);
-  }
+  if (range.values.empty()) return some;
+  const auto num_wanted = std::min<int>(static_cast<int>(range.wanted.size()), count - count / 3);
+  const int steps = std::max(1, count - num_wanted - 1);
+  for (int i = 0; i <= steps; ++i)
+    some.push_back(std::lerp(range.values.front(), range.values.back(), 1.0 * i / steps));
+  some.insert(some.end(), range.wanted.begin(), range.wanted.begin() + num_wanted);
+  std::ranges::sort(some);
+  some.erase(std::unique(some.begin(), some.end()), some.end());
   return some;
 }
 
@@ -276,7 +279,7 @@ void make_frames(const FramedScene& scene, const std::optional<FramedRange>& ran
   } else {
     // The first one tells how large a frame is.
     add_frame(frames, family, {values.front()}, time_of(values.front()), section["remarks"]);
-    const std::vector<double> some = some_of(values, frames.values_that_fit());
+    const std::vector<double> some = some_of(*range, frames.values_that_fit());
     for (std::size_t i = 1; i < some.size(); ++i)
       add_frame(frames, family, {some[i]}, time_of(some[i]), section["remarks"]);
   }

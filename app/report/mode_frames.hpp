@@ -22,6 +22,7 @@ struct FramedRange {
   std::string parameter;       ///< key of the scene
   std::vector<double> values;  ///< ascending
   std::string about;           ///< of StabilityOptions; empty: the default of the scene
+  std::vector<double> wanted{};  ///< values to be among those shown, the most wanted first
 };
 
 /// How much of a page they may take.
@@ -30,10 +31,10 @@ struct FrameBudget {
   int most_values = 1;
 };
 
-/// Computes the modes of a scene at equally spaced values of a key and adds them to a section as a
-/// view, with the places of all nodes there, and the times at which a run of the scene passes the
-/// values. What cannot be computed or drawn becomes a remark of the section: files that the scene
-/// names may be gone, the values may have no equilibrium.
+/// Computes the modes of a scene at equally spaced values of a key and those wanted and adds them
+/// to a section as a view, with the places of all nodes there, and the times at which a run of the
+/// scene passes the values. What cannot be computed or drawn becomes a remark of the section: files
+/// that the scene names may be gone, the values may have no equilibrium.
 ///
 /// @param range    nothing: the scene as it stands, or along the whole way of its drive
 void add_mode_frames(const FramedScene& scene, const std::optional<FramedRange>& range,

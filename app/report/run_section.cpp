@@ -106,26 +106,39 @@ struct Heard {
 void judge_modes(const Json& section, Heard& heard) {
   double fastest = -std::numeric_limits<double>::infinity();
   double frequency = 0.0;
-  std::size_t places = 0;
+  std::size_t places = 0, growing = 0;
   for (const Json& view : section["views"]) {
     if (view["type"] != "modes") continue;
     places += view["frames"].size();
-    for (const Json& frame : view["frames"])
+    for (const Json& frame : view["frames"]) {
+      bool grows = false;
       for (const Json& mode : frame["modes"]) {
         const auto growth = mode["growth"].get<double>();
+        grows |= growth > 0.0;
         if (growth <= fastest) continue;
         fastest = growth;
         frequency = mode["frequency"].get<double>();
       }
+      growing += grows ? 1 : 0;
+    }
   }
   if (!std::isfinite(fastest)) return;
   heard.grows = fastest > 0.0;
+  if (places > 1) {
+    // Some places alone along a path, between which there are windows.
+    heard.growth = fmt::format(
+        " Small vibrations about the sliding equilibrium grow at {} of the {} places whose modes "
+        "are "
+        "shown; `stridor locus` finds all unstable windows between them.",
+        growing == 0 ? "none" : std::to_string(growing), places);
+    return;
+  }
   heard.growth = heard.grows
-                     ? fmt::format(" Small vibrations about the sliding equilibrium grow, fastest at {} "
-                                   "with {:.3g} 1/s.",
-                                   shown(frequency, "Hz"), fastest)
-                     : fmt::format(" No mode grows at the {} {} looked at.", places,
-                                   places == 1 ? "place" : "places");
+                     ? fmt::format(
+                           " Small vibrations about the sliding equilibrium grow, fastest at {} "
+                           "with {:.3g} 1/s.",
+                           shown(frequency, "Hz"), fastest)
+                     : std::string(" No mode grows about the sliding equilibrium.");
 }
 
 /// The windows that `run --predict` set beside the bursts of a run.
@@ -266,6 +279,7 @@ Json run_section(const ResultFile& source, const ReportContext& context) {
   const RunFileHeader& header = run.file.header();
   Json section = section_head(source, "run");
   section["scene_resolved"] = header.scene_resolved;
+  section["mechanics"] = mechanics_hash(header.scene_resolved);
   section["scene_text"] = header.scene_text;
   section["samples"] = run.samples.size();
   section["remarks"] = Json::array();

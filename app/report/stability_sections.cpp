@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "app/report/mode_frames.hpp"
 #include "core/errors.hpp"
@@ -74,18 +75,38 @@ Json windows_of(const std::vector<TimedWindow>& windows) {
   return rows;
 }
 
-Json locus_verdict(const std::vector<TimedWindow>& windows, const std::string& parameter) {
+Json locus_verdict(const std::vector<TimedWindow>& windows, const std::string& parameter,
+                   const std::string& units) {
   if (windows.empty())
     return verdict("calm", fmt::format("Stable: no vibration grows anywhere along {}.", parameter));
   const auto worst = std::max_element(windows.begin(), windows.end(), [](const auto& a, const auto& b) {
     return a.window.growth_max < b.window.growth_max;
   });
-  return verdict("loud", fmt::format("{} unstable {} of {}; the fastest growth, {:.4g} 1/s at {}, is "
-                                     "between {:.6g} and {:.6g}.",
-                                     windows.size(), windows.size() == 1 ? "window" : "windows",
-                                     parameter, worst->window.growth_max,
-                                     shown(worst->window.frequency, "Hz"), worst->window.from,
-                                     worst->window.to));
+  return verdict("loud",
+                 fmt::format("{} unstable {} of {}; the fastest growth, {:.4g} 1/s at {}, is "
+                             "between {:.6g} and {:.6g}{}.",
+                             windows.size(), windows.size() == 1 ? "window" : "windows", parameter,
+                             worst->window.growth_max, shown(worst->window.frequency, "Hz"),
+                             worst->window.from, worst->window.to,
+                             units.empty() || units == "1" ? "" : " " + units));
+}
+
+/// Where each window grows fastest, the fastest first.
+std::vector<double> fastest_places(std::vector<TimedWindow> windows) {
+  std::ranges::sort(windows, std::ranges::greater{},
+                    [](const TimedWindow& one) { return one.window.growth_max; });
+  std::vector<double> places;
+  for (const TimedWindow& one : windows) places.push_back(one.window.value_max);
+  return places;
+}
+
+/// The command that gives the eigenvalues of one point, with @X@ and @Y@ for its values.
+std::string command_of_point(const ResultFile& file) {
+  if (std::string command = file.text("point_command"); !command.empty()) return command;
+  // Files of earlier versions say less.
+  const std::string about = file.text("about");
+  return fmt::format("stridor eig {}{} --set {}=@X@ --set {}=@Y@", file.text("scene"),
+                     about.empty() ? "" : " --about " + about, file.text("x"), file.text("y"));
 }
 
 /// The growth over two parameters as a field of the page.
@@ -100,15 +121,22 @@ Json map_view(const ResultFile& file, ReportPage& page) {
   Json lines = Json::array();
   for (const std::string& name : file.names_in("/boundary"))
     lines.push_back(page.add_numbers(file.read("/boundary/" + name, 2)));
-  return {{"type", "field"},
-          {"x", {{"name", file.text("x")}, {"units", file.array("/x").units}, {"values", page.add_numbers(x)}}},
-          {"y", {{"name", file.text("y")}, {"units", file.array("/y").units}, {"values", page.add_numbers(y)}}},
-          {"value", {{"name", "largest growth rate"}, {"units", "1/s"}, {"values", page.add_numbers(growth)}}},
-          {"missing", "no sliding equilibrium"},
-          {"scale", "signed"},
-          {"lines", lines},
-          {"reproduce", fmt::format("stridor eig {} --set {}=@X@ --set {}=@Y@", file.text("scene"),
-                                    file.text("x"), file.text("y"))}};
+  return {
+      {"type", "field"},
+      {"x",
+       {{"name", file.text("x")},
+        {"units", file.array("/x").units},
+        {"values", page.add_numbers(x)}}},
+      {"y",
+       {{"name", file.text("y")},
+        {"units", file.array("/y").units},
+        {"values", page.add_numbers(y)}}},
+      {"value",
+       {{"name", "largest growth rate"}, {"units", "1/s"}, {"values", page.add_numbers(growth)}}},
+      {"missing", "no sliding equilibrium"},
+      {"scale", "signed"},
+      {"lines", lines},
+      {"reproduce", command_of_point(file)}};
 }
 
 }  // namespace
@@ -118,7 +146,7 @@ Json locus_section(const ResultFile& file, const ReportContext& context) {
   section["remarks"] = Json::array();
   const std::vector<TimedWindow> windows = read_locus_windows(file.path());
   const std::string parameter = file.text("parameter");
-  section["verdict"] = locus_verdict(windows, parameter);
+  section["verdict"] = locus_verdict(windows, parameter, file.array("/values").units);
   section["views"].push_back({{"type", "windows"},
                               {"parameter", parameter},
                               {"units", file.array("/values").units},
@@ -132,7 +160,8 @@ Json locus_section(const ResultFile& file, const ReportContext& context) {
   section["views"].push_back(std::move(view));
   const std::string scene = file.text("scene_resolved");
   if (!context.options.without_shapes && !scene.empty()) {
-    const FramedRange range{parameter, file.read("/values"), file.text("about")};
+    const FramedRange range{parameter, file.read("/values"), file.text("about"),
+                            fastest_places(windows)};
     add_mode_frames({scene, file.path() + ":scene_resolved", file.text("scene"),
                      file.text("scene_hash")},
                     range,

@@ -111,6 +111,7 @@ Json prediction_json(const std::vector<PredictedBurst>& predictions) {
                 {"to", timed.to_time},
                 {"frequency", timed.window.frequency},
                 {"growth_max", timed.window.growth_max},
+                {"value_max", timed.window.value_max},
                 {"gain", number(timed.gain)},
                 {"burst", nullptr},
                 {"burst_start", nullptr},

@@ -279,6 +279,29 @@ void check_size(const std::array<Axis, 2>& axes) {
       memory_limit());
 }
 
+/// A word of a command as a shell takes it.
+std::string shell_word(const std::string& word) {
+  constexpr const char* plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=:,+-@";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+/// The command that gives the eigenvalues of one point of a map, with @X@ and @Y@ for its values.
+std::string point_command(const FoundMap& found) {
+  const StabilityOptions& stability = found.options.stability;
+  std::string command = fmt::format("stridor eig {} --about {} --method {}",
+                                    shell_word(stability.scene), stability.about, stability.method);
+  if (stability.count_option != nullptr && stability.count_option->count() > 0)
+    command += fmt::format(" --count {}", stability.count);
+  if (stability.below) command += " --below " + shell_word(*stability.below);
+  for (const std::string& set : stability.common.sets) command += " --set " + shell_word(set);
+  return command +
+         fmt::format(" --set {}=@X@ --set {}=@Y@", found.axes[0].key.path, found.axes[1].key.path);
+}
+
 void write_map(const FoundMap& found) {
   const StabilityOptions& stability = found.options.stability;
   write_map_file(*found.options.output, stability.common.overwrite(), found.map,
@@ -288,6 +311,7 @@ void write_map(const FoundMap& found) {
                   {"about", stability.about},
                   {"method", stability.method},
                   {"scene", stability.scene},
+                  {"point_command", point_command(found)},
                   {"scene_hash", found.scene.loaded().hash()},
                   {"scene_resolved", found.scene.loaded().resolved()},
                   {"command", found.options.command_line},

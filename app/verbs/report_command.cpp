@@ -1,7 +1,9 @@
 // stridor report: files of results as one page that needs nothing beside it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <numeric>
 
 #include "app/report/report_section.hpp"
 #include "app/results/pictures.hpp"
@@ -70,6 +72,18 @@ std::vector<WindowsOfScene> windows_of_files(const std::vector<ResultFile>& file
   return all;
 }
 
+/// The files whose sections take little first, runs last.
+std::vector<std::size_t> in_order_of_size(const std::vector<ResultFile>& files) {
+  const auto rank = [&](std::size_t i) {
+    const std::string kind = files[i].kind();
+    return kind == "run" ? 2 : kind == "locus" ? 1 : 0;
+  };
+  std::vector<std::size_t> order(files.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, rank);
+  return order;
+}
+
 std::string title_of(const std::vector<ResultFile>& files) {
   std::string title = fs::path(files.front().path()).filename().string();
   if (files.size() > 1) title += fmt::format(" and {} more", files.size() - 1);
@@ -89,11 +103,17 @@ ExitCode report(const ReportOptions& options) {
   reading.reset();
   ReportPage page(options.output, options.common.overwrite(), title_of(files));
   const double bytes_of_page = 3e5;  // of markup and scripts
-  const ReportContext context{options, page,
-                              std::max(1e5, budget - bytes_of_page) / static_cast<double>(files.size()),
-                              windows_of_files(files)};
+  ReportContext context{options, page, 0.0, windows_of_files(files)};
+  std::vector<std::size_t> left = in_order_of_size(files);
   Json sections = Json::array();
-  for (const ResultFile& file : files) sections.push_back(report_section(file, context));
+  for (std::size_t i = 0; i < files.size(); ++i) sections.push_back(nullptr);
+  // What the small ones do not need is left to the large ones.
+  for (std::size_t done = 0; done < left.size(); ++done) {
+    const double spent = std::max(bytes_of_page, static_cast<double>(page.size()));
+    context.bytes_per_file =
+        std::max(1e5, budget - spent) / static_cast<double>(left.size() - done);
+    sections[left[done]] = report_section(files[left[done]], context);
+  }
   page.finish({{"format", 1},
                {"title", title_of(files)},
                {"version", std::string(version)},

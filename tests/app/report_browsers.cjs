@@ -60,6 +60,15 @@ async function opened(browser, name, messages, requests, options = {}, hash = '#
   return page;
 }
 
+// Waits until the mode shown is the one that grows in a window.
+async function showsMode(page, window) {
+  await page.waitForFunction(({frequency, growth_max}) => {
+    const told = [...document.querySelectorAll('div.readout')].map(d => d.textContent).find(t => t.startsWith('Mode ')) || '';
+    const [, number, unit, growth] = told.match(/Mode \d+: ([\d.]+) (k?Hz), growth rate ([−-]?[\d.]+)/) || [];
+    return Math.abs(number * (unit === 'kHz' ? 1000 : 1) / frequency - 1) < 0.01 && Math.abs(growth / growth_max - 1) < 0.01;
+  }, window, {timeout: 10000});
+}
+
 async function inChromium() {
   const browser = await chromium.launch({executablePath: chromiumPath, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic', '--autoplay-policy=no-user-gesture-required']});
   const messages = [], requests = [];
@@ -155,6 +164,21 @@ print(json.dumps([t[keep].tolist(), f[name][()][keep].tolist()]))`;
   assert.ok(after.moment > before.moment + 1);
   assert.ok(after.middle - before.middle > 0.03, 'the sliding body moves with the slider');
 
+  // A click on a window shows the motion that grows there.
+  const windows = await page.evaluate(() => report.sections[1].views.find(v => v.type === 'windows').windows);
+  assert.ok(windows.length > 5);
+  for (let i = 0; i < windows.length; ++i) {
+    await page.evaluate(number => {
+      const table = [...document.querySelectorAll('h3')].find(h => h.textContent === 'Unstable windows').nextElementSibling;
+      table.querySelectorAll('tbody tr')[number].click();
+    }, i);
+    await showsMode(page, windows[i]);
+  }
+  // So does one on a burst that a window explains.
+  const explained = await page.evaluate(() => report.sections[0].run.predicted.find(row => row.burst === report.sections[0].run.bursts.length));
+  await page.evaluate(() => [...document.querySelectorAll('h3')].find(h => h.textContent === 'Bursts of vibration').nextElementSibling.querySelector('tbody tr:last-child').click());
+  await showsMode(page, explained);
+
   // The hover of the locus names the branch.
   const branch = await page.evaluate(() => {
     const plane = [...document.querySelectorAll('div')].find(d => d.locus).locus.plane;
@@ -193,7 +217,7 @@ print(json.dumps([t[keep].tolist(), f[name][()][keep].tolist()]))`;
   await disc.close();
   const map = await opened(browser, 'map.html', messages, requests);
   await map.evaluate(() => [...document.querySelectorAll('div')].find(d => d.field).field.chart.click(0.03, 0.03));
-  assert.match(await map.evaluate(() => document.body.textContent), /Repeat it with stridor eig .*viscoelastic_sphere.yaml --set parameters.v=0.03\d* --set parameters.tau0=0.03/);
+  assert.match(await map.evaluate(() => document.body.textContent), /Repeat it with stridor eig .*viscoelastic_sphere.yaml --about undeformed --method \w+ --set parameters.v=0.03\d* --set parameters.tau0=0.03/);
   await map.close();
 
   const study = await opened(browser, 'study.html', messages, requests);
@@ -204,9 +228,14 @@ print(json.dumps([t[keep].tolist(), f[name][()][keep].tolist()]))`;
   }), /^event_driven, tolerance .*: [\d.]+ m?s, error [\d.]+·10⁻/);
   await study.close();
 
-  // Not everything is unpacked at once.
+  // Not everything is unpacked at once, but before a page is printed that nobody has scrolled.
   const lazy = await opened(browser, 'beams.html', messages, requests, {}, '');
   assert.ok(await lazy.evaluate(() => waiting.size) > 0);
+  await lazy.waitForFunction(() => waiting.size === 0, null, {timeout: 60000});
+  await lazy.waitForTimeout(500);
+  await lazy.emulateMedia({media: 'print'});
+  for (const canvas of await lazy.$$('canvas'))
+    if (await canvas.isVisible()) assert.ok(await canvas.evaluate(eval(coloursOf)) > 2, 'a canvas is printed blank');
   await lazy.close();
   assert.deepEqual(messages, []);
   for (const one of requests) assert.match(one, /^(file|blob):/);

@@ -193,4 +193,17 @@ function whenSeen(place, make) {
 function makeAll() {
   return Promise.all([...waiting.keys()].map(makeNow));
 }
-addEventListener('beforeprint', makeAll);
+// A page is printed as it stands when the print begins: what has not been looked at is made while
+// nothing else is to be done, one piece after the other.
+function makeRestWhenIdle() {
+  const idle = window.requestIdleCallback || (act => setTimeout(act, 200));
+  const [next] = waiting.keys();
+  if (next) idle(() => makeNow(next).then(makeRestWhenIdle));
+}
+addEventListener('beforeprint', () => {
+  for (const fold of document.querySelectorAll('details:not([open])')) { fold.open = true; fold.dataset.opened = 'for print'; }
+  return makeAll();
+});
+addEventListener('afterprint', () => {
+  for (const fold of document.querySelectorAll('details[data-opened]')) { fold.open = false; delete fold.dataset.opened; }
+});

@@ -10,6 +10,12 @@ class Place {
     this.value = Math.min(this.values[this.values.length - 1], Math.max(this.values[0], value));
     this.listeners.forEach(listen => listen());
   }
+  // Goes to a value to show the motion of a frequency there.
+  follow(value, frequency) {
+    this.wish = {value, frequency};
+    if (this.choose) this.choose();
+    this.set(value);
+  }
   between(from, to, x) {
     for (let i = 1; i < from.length; ++i) {
       if (from[i - 1] === null || from[i] === null || to[i - 1] === null || to[i] === null) continue;
@@ -20,6 +26,11 @@ class Place {
   }
   get moment() { return this.between(this.values, this.times, this.value); }
   valueAt(moment) { return this.between(this.times, this.values, moment); }
+}
+
+// How far a motion is from the one wished for; one that decays is farther.
+function offOf(wish, motion) {
+  return Math.abs(motion.frequency - wish.frequency) / (wish.frequency + 1) + (motion.growth > 0 ? 0 : 0.05);
 }
 
 function branchAt(branch, value) {
@@ -127,6 +138,16 @@ async function makeLocus(place, view, section) {
     section.wanted = {frequency: best.branch.frequency[best.i], growth: best.branch.growth[best.i]};
     where.set(best.branch.values[best.i]);
   };
+  // The branch that a wish is about: of its frequency there, and growing if one is.
+  where.choose = () => {
+    let least = Infinity;
+    for (const branch of vibrating) {
+      const now = branchAt(branch, where.wish.value);
+      if (!now) continue;
+      const off = offOf(where.wish, now);
+      if (off < least) { least = off; section.branch = branch.number; }
+    }
+  };
   section.wantedNow = () => {
     const branch = branches[section.branch];
     return branch ? branchAt(branch, where.value) : null;
@@ -136,6 +157,7 @@ async function makeLocus(place, view, section) {
     const worst = vibrating.reduce((a, b) => most(b) > most(a) ? b : a, vibrating[0]);
     if (worst) section.branch = worst.number;
   }
+  if (where.wish) where.choose();
   place.append(element('figcaption', {}, `Colour on the left: position along the key, dark to light; shaded on the right: unstable windows. ${view.points ? 'Points in the order of their frequencies at each value.' : 'Click a branch to follow its mode.'}`));
   const draw = () => { plane.draw(); along.draw(); };
   where.listeners.add(draw);
@@ -179,7 +201,7 @@ async function makeModes(place, view, section) {
   const firsts = await Promise.all([view.frames[0], view.frames[view.frames.length - 1]].map(frame => numbersOf(frame.places)));
   mesh.fit(...firsts);
   const text = element('div', {class: 'readout'});
-  const choice = element('select', {'aria-label': 'Mode', onchange: () => { section.mode = Number(choice.value); section.branch = undefined; show(); }});
+  const choice = element('select', {'aria-label': 'Mode', onchange: () => { section.mode = Number(choice.value); section.branch = undefined; if (where) where.wish = undefined; show(); }});
   const play = element('button', {type: 'button', 'aria-pressed': 'true', onclick: () => run(!isRunning)}, 'Pause');
   const size = element('input', {type: 'range', min: 0, max: 3, step: 0.05, value: 1, 'aria-label': 'Amplitude', oninput: () => { mesh.amplitude = Number(size.value); mesh.draw(); }});
   const speed = element('input', {type: 'range', min: 0.1, max: 3, step: 0.1, value: 1, 'aria-label': 'Speed'});
@@ -208,7 +230,10 @@ async function makeModes(place, view, section) {
     if (where) for (const one of view.frames) if (Math.abs(one.value - where.value) < Math.abs(frame.value - where.value)) frame = one;
     let number = Math.min(section.mode ?? frame.modes.reduce((best, one, i) => one.growth > frame.modes[best].growth ? i : best, 0), frame.modes.length - 1);
     const wanted = section.branch !== undefined && section.wantedNow ? section.wantedNow() : null;
-    if (wanted) {
+    if (where && where.wish && where.value === where.wish.value) {
+      let least = Infinity;
+      frame.modes.forEach((one, i) => { const off = offOf(where.wish, one); if (off < least) [number, least] = [i, off]; });
+    } else if (wanted) {
       let least = Infinity;
       frame.modes.forEach((one, i) => {
         const off = Math.abs(one.frequency - wanted.frequency) / (wanted.frequency + 1) + 1e-3 * Math.abs(one.growth - wanted.growth) / (1 + Math.abs(wanted.growth));

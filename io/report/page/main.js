@@ -27,7 +27,7 @@ function prepare(sections) {
   for (const section of sections) {
     if (!section.place) continue;
     for (const other of runs) {
-      if (other.scene_hash !== section.scene_hash) continue;
+      if ((other.mechanics || other.scene_hash) !== (section.mechanics || section.scene_hash)) continue;
       other.run.places.push(section.place);
       section.place.listeners.add(() => { const moment = section.place.moment; if (moment !== null) other.run.view.mark(moment); });
     }
@@ -125,6 +125,7 @@ async function makePage() {
   while (location.hash === '#all' && waiting.size && ++rounds < 10) await makeAll();
   document.documentElement.dataset.check = JSON.stringify(selfCheck(sections));
   document.documentElement.dataset.ready = 'yes';
+  makeRestWhenIdle();
 }
 
 makePage().catch(error => {

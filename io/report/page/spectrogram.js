@@ -96,7 +96,7 @@ async function makeSpectrogram(place, view, run) {
   place.append(element('div', {class: 'tools'}, slider('Shift of levels', -40, 60, 'top'), slider('Range of levels (dB)', 20, 127, 'range'), element('label', {}, 'Colours', choice)),
   element('figcaption', {}, `${view.channel}; 0 dB is ${shown(view.reference, view.units)}, the highest level ${digits(view.top, 4)} dB. ${view.caption || ''} `,
     run.bursts.length ? 'Framed: bursts. ' : '', run.predicted.length ? 'Dotted: predicted windows. ' : '',
-      run.resolved > frequency.from && run.resolved < frequencyEnd ? `White line: ${shown(run.resolved, 'Hz', 4)}, up to which the bodies are resolved. ` : '',
+      run.resolved !== null && run.resolved > frequency.from && run.resolved < frequencyEnd ? `White line: ${shown(run.resolved, 'Hz', 4)}, up to which the bodies are resolved. ` : '',
     'Drag to zoom, double click to see all, Ctrl and wheel or + and − to scale.'));
   run.view.listeners.add(() => { chart.x.set(run.view.from, run.view.to); chart.draw(); });
   run.view.momentListeners.add(() => chart.draw());

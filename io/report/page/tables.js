@@ -19,8 +19,10 @@ function makeVerdict(verdict) {
 }
 
 // The window to which a burst belongs.
+function windowOf(view, burst) { return view.predicted.find(row => row.burst === burst.number); }
+
 function explanation(view, burst) {
-  const window = view.predicted.find(row => row.burst === burst.number);
+  const window = windowOf(view, burst);
   return window ? `window of ${shown(window.frequency, 'Hz', 5)} from ${shown(window.from, 's')}` : 'no window';
 }
 
@@ -28,22 +30,27 @@ function explanation(view, burst) {
 function isDoubtful(burst, resolved) { return resolved > 0 && burst.frequency > resolved; }
 
 function makeBursts(place, view, run, section) {
-  const act = (from, to) => () => {
+  // Shows a stretch of time and, where it is known, the motion that grows then.
+  const act = (from, to, window) => () => {
     run.view.show(from, to);
     const moment = 0.5 * (from + to);
     run.view.mark(moment);
-    for (const listen of run.places) { const value = listen.valueAt(moment); if (value !== null) listen.set(value); }
+    for (const place of run.places) {
+      const value = window && window.value_max !== undefined ? window.value_max : place.valueAt(moment);
+      if (value !== null && window) place.follow(value, window.frequency);
+      else if (value !== null) place.set(value);
+    }
   };
   if (view.bursts.length) {
     place.append(element('h3', {}, 'Bursts of vibration'), element('div', {class: 'scroll'}, element('table', {},
       headRow(['Burst', 'From', 'To', 'Frequency', 'Peak', 'Gain (ln)', ...(view.predicted.length ? ['Explained by'] : [])]),
-      element('tbody', {}, view.bursts.map(burst => rowThat(act(burst.start, burst.end),
+      element('tbody', {}, view.bursts.map(burst => rowThat(act(burst.start, burst.end, windowOf(view, burst) || {frequency: burst.frequency}),
         [cell(burst.number), cell(shown(burst.start, 's')), cell(shown(burst.end, 's')), cell(shown(burst.frequency, 'Hz', 5) + (isDoubtful(burst, view.resolved) ? ' ?' : '')), cell(shown(burst.peak, 'm/s^2')), cell(digits(burst.gain, 3)), ...(view.predicted.length ? [cell(explanation(view, burst))] : [])]))))));
   }
   if (view.predicted.length) {
     place.append(element('h3', {}, 'Unstable windows that the run passes'), element('div', {class: 'scroll'}, element('table', {},
       headRow(['From', 'To', 'Frequency', 'Fastest growth', 'Gain', 'Burst', 'its frequency', 'its gain']),
-      element('tbody', {}, view.predicted.map(row => rowThat(act(row.from, row.to),
+      element('tbody', {}, view.predicted.map(row => rowThat(act(row.from, row.to, row),
         [cell(shown(row.from, 's')), cell(shown(row.to, 's')), cell(shown(row.frequency, 'Hz', 5)), cell(digits(row.growth_max, 3) + ' 1/s'), cell(digits(row.gain, 3)),
           cell(row.burst ?? 'not heard'), cell(row.burst === null ? '' : shown(row.burst_frequency, 'Hz', 5)), cell(row.burst === null ? '' : digits(row.burst_gain, 3))]))))));
   }
@@ -59,7 +66,7 @@ function makeWindows(place, view, section) {
   const hasTimes = view.windows.some(window => window.from_time !== null);
   place.append(element('h3', {}, 'Unstable windows'), element('div', {class: 'scroll'}, element('table', {},
     headRow(['From', 'To', 'Frequency', 'Fastest growth', ...(hasTimes ? ['Gain', 'Passed'] : [])]),
-    element('tbody', {}, view.windows.map(window => rowThat(() => section.place && section.place.set(window.value_max),
+    element('tbody', {}, view.windows.map(window => rowThat(() => section.place && section.place.follow(window.value_max, window.frequency),
       [cell(shown(window.from, view.units, 6)), cell(shown(window.to, view.units, 6)), cell(shown(window.frequency, 'Hz', 6)), cell(digits(window.growth_max, 4) + ' 1/s'),
         ...(hasTimes ? [cell(digits(window.gain, 3)), cell(window.from_time === null ? 'not passed' : `${shown(window.from_time, 's')} to ${shown(window.to_time, 's')}`)] : [])]))))),
   element('p', {class: 'faint'}, `Of ${view.parameter}; a click moves the position to the fastest growth.`));
