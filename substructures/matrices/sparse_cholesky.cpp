@@ -221,4 +221,8 @@ Eigen::Index SparseCholesky::num_factorised() const {
   return static_cast<Eigen::Index>(factor_->decomposition.dofs().size());
 }
 
+std::size_t SparseCholesky::num_entries() const {
+  return factor_->decomposition.num_entries();
+}
+
 }  // namespace stridor

@@ -28,7 +28,7 @@ class SparseCholesky {
   /// @param left_out DoFs whose rows and columns are not of the part that is factorised
   /// @throws NumericalError if the part is not positive definite to working precision
   /// @throws std::bad_alloc if the factor has more than 2^31 entries or does not fit into memory
-  /// Memory: L, and while it is computed one triangle of the matrix.
+  /// Memory: L, and while it is computed a sixth of L and one triangle of the matrix besides.
   SparseCholesky(const SparseMatrix& matrix, const std::string& what,
                  std::span<const int> left_out = {});
   ~SparseCholesky();
@@ -50,6 +50,7 @@ class SparseCholesky {
 
   Eigen::Index size() const;            ///< rows of A
   Eigen::Index num_factorised() const;  ///< rows of the part that is factorised
+  std::size_t num_entries() const;      ///< numbers that L is stored in, some of them zeros
   std::span<const int> left_out() const;
   std::vector<int> factorised_dofs() const;  ///< the others, ascending
   /// Sets the rows of DoFs that are left out to zero: multiplied by A, vectors with such zeros give

@@ -1,6 +1,7 @@
 #include "substructures/matrices/supernodal_factor.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <new>
 
 namespace stridor {
@@ -111,8 +112,13 @@ std::vector<int> fill_reducing_order(const SparseMatrix& matrix, std::span<const
   LowerTriangle graph = groups.graph(matrix, dofs);
   Cholmod cholmod;
   cholmod->supernodal = CHOLMOD_SIMPLICIAL;
-  // Minimum degree, and nested dissection as well where that fills much.
+  // Minimum degree, and nested dissection as well where that fills much: down to so few groups as
+  // leave less fill than METIS, which stops at 200 and orders these by themselves.
+  constexpr std::size_t undivided = 40;
+  constexpr int dissection = 2;  // its place among the methods that CHOLMOD tries by itself
   cholmod->nmethods = 0;
+  cholmod->default_nesdis = 1;
+  cholmod->method[dissection].nd_small = undivided;
   cholmod_sparse view = graph.view();
   cholmod_factor* factor = cholmod_analyze(&view, cholmod.get());
   if (factor == nullptr) throw std::bad_alloc();
@@ -171,7 +177,30 @@ bool SupernodalFactor::factorise(const SparseMatrix& matrix, std::span<const int
   if (factor_ == nullptr) throw std::bad_alloc();
   cholmod_factorize(&view, factor_, cholmod_.get());
   if (cholmod_->status < CHOLMOD_OK) throw std::bad_alloc();
-  return factor_->minor == factor_->n;
+  if (factor_->minor < factor_->n) return false;
+  drop_upper_triangles();
+  return true;
+}
+
+/// Moves the columns of L together. CHOLMOD stores supernodes as rectangles, of which the part
+/// above the diagonal is a tenth to a sixth of the whole in bodies in space.
+void SupernodalFactor::drop_upper_triangles() {
+  auto* const begin = static_cast<double*>(factor_->x);
+  auto* const start = static_cast<int*>(factor_->px);
+  double* to = begin;
+  for (std::size_t k = 0; k < factor_->nsuper; ++k) {
+    const Supernode node = supernode(k);
+    start[k] = static_cast<int>(to - begin);
+    for (Eigen::Index column = 0; column < node.num_columns; ++column) {
+      const auto count = static_cast<std::size_t>(node.num_rows() - column);
+      std::memmove(to, node.entries + column * (node.num_rows() + 1), count * sizeof(double));
+      to += count;
+    }
+  }
+  const auto num_entries = static_cast<std::size_t>(to - begin);
+  start[factor_->nsuper] = static_cast<int>(num_entries);
+  factor_->x =
+      cholmod_realloc(num_entries, sizeof(double), factor_->x, &factor_->xsize, cholmod_.get());
 }
 
 Supernode SupernodalFactor::supernode(std::size_t k) const {

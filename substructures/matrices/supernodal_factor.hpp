@@ -12,12 +12,12 @@
 
 namespace stridor {
 
-/// Neighbouring columns of L that have their rows in common, stored dense: a lower triangle, and
-/// the rows below it.
+/// Neighbouring columns of L that have their rows in common: a lower triangle, and the rows below
+/// it.
 struct Supernode {
   std::span<const int> rows;  ///< of L, those of the triangle first
   Eigen::Index num_columns;
-  const double* entries;  ///< rows.size() x num_columns, by columns
+  const double* entries;  ///< column by column, each from its diagonal down
 
   Eigen::Index num_rows() const { return static_cast<Eigen::Index>(rows.size()); }
   Eigen::Index num_below() const { return num_rows() - num_columns; }
@@ -58,10 +58,14 @@ class SupernodalFactor {
 
   std::size_t num_supernodes() const { return factor_ == nullptr ? 0 : factor_->nsuper; }
   Supernode supernode(std::size_t k) const;
+  /// Numbers that L is stored in.
+  std::size_t num_entries() const { return factor_ == nullptr ? 0 : factor_->xsize; }
   /// The row of the matrix of each row of L.
   std::span<const int> dofs() const { return dofs_; }
 
  private:
+  void drop_upper_triangles();
+
   Cholmod cholmod_;
   cholmod_factor* factor_ = nullptr;
   std::vector<int> dofs_;

@@ -44,12 +44,12 @@ STRIDOR_INLINE void lower_part(const SupernodeView& node, ptrdiff_t first, doubl
   Lanes sums[count];
   unrolled<count>(STRIDOR_EACH { sums[index] = row(own, first + index).lanes; });
   for (ptrdiff_t c = 0; c < first; ++c) {
-    const double* entry = node.entries + c * node.stride + first;
+    const double* entry = node.column(c) + first;
     const Lanes x = row(own, c).lanes;
     unrolled<count>(STRIDOR_EACH { sums[index] -= entry[index] * x; });
   }
   for (int i = 0; i < count; ++i) {
-    const double* entry = node.entries + (first + i) * node.stride + first;
+    const double* entry = node.column(first + i) + first;
     const Lanes solved = sums[i] / entry[i];
     for (int k = i + 1; k < count; ++k) sums[k] -= entry[k] * solved;
     row(own, first + i).lanes = solved;
@@ -60,13 +60,14 @@ template <int count>
 STRIDOR_INLINE void upper_part(const SupernodeView& node, ptrdiff_t first, double* own) {
   Lanes sums[count];
   unrolled<count>(STRIDOR_EACH { sums[index] = row(own, first + index).lanes; });
-  const double* entries = node.entries + first * node.stride;
+  const double* columns[count];
+  unrolled<count>(STRIDOR_EACH { columns[index] = node.column(first + index); });
   for (ptrdiff_t r = first + count; r < node.num_columns; ++r) {
     const Lanes x = row(own, r).lanes;
-    unrolled<count>(STRIDOR_EACH { sums[index] -= entries[index * node.stride + r] * x; });
+    unrolled<count>(STRIDOR_EACH { sums[index] -= columns[index][r] * x; });
   }
   for (int i = count - 1; i >= 0; --i) {
-    const double* entry = entries + i * node.stride + first;
+    const double* entry = columns[i] + first;
     for (int k = i + 1; k < count; ++k) sums[i] -= entry[k] * sums[k];
     sums[i] /= entry[i];
     row(own, first + i).lanes = sums[i];
@@ -78,7 +79,7 @@ STRIDOR_INLINE void rows_part(const SupernodeView& node, ptrdiff_t first, const 
                               const double* own, double* strip) {
   Lanes sums[count] = {};
   for (ptrdiff_t c = 0; c < node.num_columns; ++c) {
-    const double* entry = node.entries + c * node.stride + first;
+    const double* entry = node.column(c) + first;
     const Lanes x = row(own, c).lanes;
     unrolled<count>(STRIDOR_EACH { sums[index] += entry[index] * x; });
   }
@@ -90,10 +91,11 @@ STRIDOR_INLINE void columns_part(const SupernodeView& node, ptrdiff_t offset, pt
                                  const int* rows, ptrdiff_t first, const double* strip,
                                  double* own) {
   Lanes sums[count] = {};
-  const double* entries = node.entries + first * node.stride + offset;
+  const double* columns[count];
+  unrolled<count>(STRIDOR_EACH { columns[index] = node.column(first + index) + offset; });
   for (ptrdiff_t r = 0; r < num_rows; ++r) {
     const Lanes y = row(strip, rows[r]).lanes;
-    unrolled<count>(STRIDOR_EACH { sums[index] += entries[index * node.stride + r] * y; });
+    unrolled<count>(STRIDOR_EACH { sums[index] += columns[index][r] * y; });
   }
   unrolled<count>(STRIDOR_EACH { row(own, first + index).lanes -= sums[index]; });
 }

@@ -9,11 +9,15 @@ namespace stridor {
 /// `strip[8 i + 7]`.
 inline constexpr std::ptrdiff_t strip_width = 8;
 
-/// Columns of L that have their rows in common, stored dense by columns.
+/// Columns of L that have their rows in common: one column after the other, each from its diagonal
+/// down.
 struct SupernodeView {
   const double* entries;  ///< of row 0 and column 0
-  std::ptrdiff_t stride;  ///< from column to column
+  std::ptrdiff_t num_rows;
   std::ptrdiff_t num_columns;
+
+  /// Where row 0 of a column would be; row r is r numbers further on.
+  const double* column(std::ptrdiff_t c) const { return entries + c * num_rows - c * (c + 1) / 2; }
 };
 
 /// X <- T⁻¹ X for the lower triangle T of the first rows. @param own strip of these rows

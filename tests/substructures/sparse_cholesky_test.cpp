@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/errors.hpp"
+#include "tests/support/box_mesh.hpp"
 #include "tests/support/full_model.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/paper_beams.hpp"
@@ -179,6 +181,38 @@ TEST(SparseCholesky, DofsOfANodeNeedNotFollowEachOther) {
     const Eigen::VectorXd force = Eigen::VectorXd::LinSpaced(5, 1.0, 5.0);
     EXPECT_LE((matrix * factor.solve(force) - force).norm(), 1e-14 * force.norm());
   }
+}
+
+TEST(SparseCholesky, StoresNothingAboveTheDiagonal) {
+  const int n = 100;
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Constant(n, n, 0.1);
+  dense.diagonal().setConstant(2.0);
+  const SparseCholesky factor(dense.sparseView(), "the matrix");
+  EXPECT_EQ(factor.num_entries(), n * (n + 1) / 2);
+  EXPECT_EQ(SparseCholesky(diagonal(Eigen::VectorXd::Ones(n)), "the matrix").num_entries(), n);
+}
+
+/// Unit springs between all nodes of each element of a mesh, and from each of them to the ground.
+SparseMatrix springs_in_elements(const Mesh& mesh) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t element = 0; element < mesh.num_elements(); ++element) {
+    const std::span<const int> nodes = mesh.nodes_of(element);
+    for (const int to : nodes) {
+      for (const int from : nodes) entries.emplace_back(to, from, -1.0);
+      entries.emplace_back(to, to, static_cast<double>(nodes.size() + 1));
+    }
+  }
+  SparseMatrix matrix(mesh.nodes.rows(), mesh.nodes.rows());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+TEST(SparseCholesky, FillsAPlateLessThanAnOrderByMetis) {
+  const Mesh plate =
+      test::brick_mesh({{0.044, 0.003, 0.044}, {44, 3, 44}, {}}, ElementShape::hex20);
+  const SparseCholesky factor(springs_in_elements(plate), "the plate");
+  // The default of CHOLMOD, METIS, leaves 6.09 million, nested dissection to small parts 5.87.
+  EXPECT_LE(factor.num_entries(), 5'980'000);
 }
 
 TEST(SparseCholesky, OfSizeZeroIsNothing) {
