@@ -131,16 +131,16 @@ Pressing pressing_at(const System& system, double time) {
     return Pressing::unknown;  // bodies that nothing holds
   }
   if (equilibrium.status != EquilibriumStatus::converged) return Pressing::unknown;
-  const auto has_any = [&](const auto& is_so) {
-    return std::any_of(equilibrium.contacts.begin(), equilibrium.contacts.end(), is_so);
+  const auto& contacts = equilibrium.contacts;
+  // A contact that is told to stay closed pulls instead of opening.
+  const auto presses = [](const ContactEquilibrium& one) {
+    return one.is_closed && one.force > 0.0;
   };
-  if (has_any([](const ContactEquilibrium& contact) {
-        return contact.is_closed && contact.force != 0.0;
-      }))
-    return Pressing::forces;
-  return has_any([](const ContactEquilibrium& contact) { return contact.is_closed; })
-             ? Pressing::none
-             : Pressing::apart;
+  const auto rests = [](const ContactEquilibrium& one) {
+    return one.is_closed && one.force == 0.0;
+  };
+  if (std::any_of(contacts.begin(), contacts.end(), presses)) return Pressing::forces;
+  return std::any_of(contacts.begin(), contacts.end(), rests) ? Pressing::none : Pressing::apart;
 }
 
 /// Loads that never press the bodies together, as one of the wrong sign.
@@ -160,7 +160,7 @@ void look_at_loads(const LoadedScene& loaded, const Model& model, std::vector<Pr
   warnings.push_back(
       {Refusal::wrong_value, key,
        is_apart
-           ? "the loads pull the bodies apart: no contact is closed in the equilibrium under them; "
+           ? "the loads pull the bodies apart: no contact presses in the equilibrium under them; "
              "loads act in +y, so a load of the other sign presses"
            : "nothing presses the bodies together: every contact force is 0 in equilibrium; give a "
              "load or, of a contact, normal.preload"});

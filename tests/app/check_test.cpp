@@ -283,7 +283,7 @@ TEST(Check, WarnsOfWhatIsHardlyMeantWithoutRefusing) {
        "measure.from: 3 s is not before time.end = 2.25 s: the window of the statistics is empty"},
       {"beam_on_beam.yaml",
        {"drive.load=0.2"},
-       "drive: the loads pull the bodies apart: no contact is closed in the equilibrium"},
+       "drive: the loads pull the bodies apart: no contact presses in the equilibrium"},
       {"beam_on_beam.yaml",
        {"drive.load=0"},
        "drive: nothing presses the bodies together: every contact force is 0 in equilibrium"},

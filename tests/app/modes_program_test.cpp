@@ -134,7 +134,7 @@ TEST(ModesProgram, ThePageRunsFromTheFirstLineToTheLast) {
       is_shell = line == "```sh";
       continue;
     }
-    if (!is_shell || !line.starts_with("build/release/stridor ")) continue;
+    if (!is_shell || !line.starts_with("stridor ")) continue;
     std::istringstream words(line);
     std::vector<std::string> arguments;
     std::string word;

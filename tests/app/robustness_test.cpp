@@ -232,7 +232,7 @@ TEST(Robustness, EveryFailureWithJsonIsOneObject) {
   } cases[] = {
       {{"eig", beams, "--set", "time.stepp=1"}, 2, "time.stepp", "did you mean 'step'"},
       {{"run", beams, "-o", missing + "/x.h5"}, 4, "", "missing"},
-      {{"run", beams}, 2, "", "--output is required: Run file to write"},
+      {{"run", beams}, 2, "", "--output is required"},
       {{"locus", beams, "--nope"}, 2, "", "locus has no option '--nope'"},
       {{"infoo", missing}, 2, "", "there is no verb 'infoo', did you mean 'info'"},
       {{"info", missing}, 4, "", "missing"},

@@ -380,7 +380,8 @@ TEST(UntouchedBodies, AMissingSectionIsAnErrorOfTheVerbThatNeedsIt) {
        "contact: missing: `compare` needs this section"},
       {{"check", flutter, "--stability"}, "time: missing: `check --stability` needs this section"},
       {{"eig", flutter, "--at", "0.1"}, "contact: missing: `eig --at` needs this section"},
-      {{"locus", flutter, "--from", "0", "--to", "1"}, "--parameter: the scene has no path"},
+      {{"locus", flutter, "--from", "0", "--to", "1"},
+       "--parameter: no place along a path can be varied in this scene"},
       {{"locus", flutter, "--parameter", "drive.displacement", "--from", "0", "--to", "1"},
        "--parameter: 'drive.displacement' moves contacts, and the scene has none"}};
   for (const auto& [command, message] : cases) {
