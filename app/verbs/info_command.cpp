@@ -4,6 +4,7 @@
 #include "app/results/burst_text.hpp"
 #include "app/results/pictures.hpp"
 #include "app/results/transient_results.hpp"
+#include "app/runs/run_keeping.hpp"
 #include "app/terminal/command.hpp"
 #include "io/figures/run_panels.hpp"
 #include "io/hdf5/damage_guard.hpp"
