@@ -16,21 +16,44 @@ namespace stridor::test {
 
 inline const std::filesystem::path source = STRIDOR_SOURCE_DIR;
 
-/// The texts of the fenced blocks of a language, in the order of the document.
-inline std::vector<std::string> blocks_in(std::istream& text, const std::string& language) {
-  std::vector<std::string> blocks;
+/// A fenced block, and where it stands.
+struct Block {
+  std::string language;
+  std::string text;
+  std::string before;  ///< what stands between it and the block or heading before
+  int section = 0;     ///< number of headings of the second level above it
+};
+
+/// The fenced blocks in the order of the document.
+inline std::vector<Block> blocks_in(std::istream& text) {
+  std::vector<Block> blocks;
+  Block next;
   bool is_inside = false;
   for (std::string line; std::getline(text, line);) {
     if (is_inside && line == "```") {
       is_inside = false;
+      blocks.push_back(next);
+      next = {"", "", "", next.section};
     } else if (is_inside) {
-      blocks.back() += line + "\n";
-    } else if (line == "```" + language) {
+      next.text += line + "\n";
+    } else if (line.starts_with("```")) {
       is_inside = true;
-      blocks.emplace_back();
+      next.language = line.substr(3);
+    } else if (line.starts_with("## ")) {
+      next = {"", "", line, next.section + 1};
+    } else {
+      next.before += line;
     }
   }
   return blocks;
+}
+
+/// The texts of those of a language.
+inline std::vector<std::string> blocks_in(std::istream& text, const std::string& language) {
+  std::vector<std::string> texts;
+  for (const Block& block : blocks_in(text))
+    if (block.language == language) texts.push_back(block.text);
+  return texts;
 }
 
 inline std::vector<std::string> blocks_of(const std::filesystem::path& document,

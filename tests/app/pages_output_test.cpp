@@ -13,37 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace test;
 
-/// A fenced block, and where it stands.
-struct Block {
-  std::string language;
-  std::string text;
-  std::string before;  ///< what stands between it and the block or heading before
-  int section = 0;     ///< number of headings of the second level above it
-};
-
-std::vector<Block> blocks_of_page(const fs::path& page) {
-  std::vector<Block> blocks;
-  Block next;
-  bool is_inside = false;
-  for (const std::string& line : lines_of(contents_of(page))) {
-    if (is_inside && line == "```") {
-      is_inside = false;
-      blocks.push_back(next);
-      next = {"", "", "", next.section};
-    } else if (is_inside) {
-      next.text += line + "\n";
-    } else if (line.starts_with("```")) {
-      is_inside = true;
-      next.language = line.substr(3);
-    } else if (line.starts_with("## ")) {
-      next = {"", "", line, next.section + 1};
-    } else {
-      next.before += line;
-    }
-  }
-  return blocks;
-}
-
 /// Whether a block is what the commands of the one before print: nothing stands between the two.
 bool is_output(const std::vector<Block>& blocks, std::size_t i) {
   return i > 0 && blocks[i].language == "text" && blocks[i - 1].language == "sh" &&
@@ -115,7 +84,8 @@ void write_scenes(const UserFolder& folder, const std::vector<Block>& blocks) {
 /// of what is printed the page has.
 int expect_shown_is_printed(const fs::path& page) {
   SCOPED_TRACE(page);
-  const auto blocks = blocks_of_page(page);
+  std::ifstream text(page);
+  const auto blocks = blocks_in(text);
   std::vector<int> sections;
   for (std::size_t i = 0; i < blocks.size(); ++i)
     if (is_output(blocks, i)) sections.push_back(blocks[i].section);
