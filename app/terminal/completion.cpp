@@ -60,21 +60,11 @@ void collect_keys(const SceneNode& node, const std::string& path, std::vector<st
 }
 
 bool is_section(const SceneNode& scene, const std::string& path) {
-  const SceneNode* node = &scene;
-  for (std::size_t begin = 0; begin < path.size();) {
-    const std::size_t end = std::min(path.find('.', begin), path.size());
-    const std::string part = path.substr(begin, end - begin);
-    const SceneNode* next = nullptr;
-    for (const SceneEntry& entry : node->entries)
-      if (entry.key == part) next = &entry.value;
-    if (next == nullptr) return false;
-    node = next;
-    begin = end + 1;
-  }
-  return node->kind == SceneNode::Kind::map;
+  const SceneNode* node = find(scene, path);
+  return node != nullptr && node->kind == SceneNode::Kind::map;
 }
 
-/// What a key may be set to, where that is one of a few words.
+/// The words that a key may be set to; none where it takes others.
 std::vector<std::string> choices_at(const Schema& schema, const std::string& path) {
   const std::size_t dot = path.find('.');
   const Key* key = schema.find(path.substr(0, dot));
@@ -155,7 +145,7 @@ Candidates options_of(const CLI::App& verb) {
   return found;
 }
 
-/// @param behind what stands on the line behind the word that is being typed
+/// @param behind words of the line behind the one that is being typed
 Candidates all_candidates(const CLI::App& program, const std::vector<std::string>& words,
                           const std::vector<std::string>& behind) {
   if (words.size() <= 1) {
