@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "core/errors.hpp"
 #include "io/scene/channels.hpp"
 #include "io/scene/scene_problems.hpp"
 #include "solvers/equilibrium/equilibrium.hpp"
@@ -120,14 +121,14 @@ void look_at_paths(const LoadedScene& loaded, const System& system,
 
 enum class Pressing { forces, none, apart, unknown };
 
-/// What presses the contacts in the sliding equilibrium under the loads at a time.
+/// Whether contacts are pressed in the sliding equilibrium under the loads at a time, s.
 Pressing pressing_at(const System& system, double time) {
   EquilibriumState state = sliding_state(system, 0.0);
   state.drives = drive_states(system, time);
   Equilibrium equilibrium;
   try {
     equilibrium = find_equilibrium(system, state);
-  } catch (const std::exception&) {
+  } catch (const NumericalError&) {
     return Pressing::unknown;  // bodies that nothing holds
   }
   if (equilibrium.status != EquilibriumStatus::converged) return Pressing::unknown;
