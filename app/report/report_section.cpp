@@ -40,10 +40,8 @@ Json section_head(const ResultFile& file, const std::string& kind) {
                            "method", "parameter"}) {
     if (const std::string text = file.text(name); !text.empty()) head[name] = text;
   }
-  if (const std::string scene = file.text("scene_resolved"); !scene.empty()) {
+  if (const std::string scene = file.text("scene_resolved"); !scene.empty())
     head["scene_resolved"] = scene;
-    head["mechanics"] = mechanics_hash(scene);
-  }
   head["views"] = Json::array();
   return head;
 }

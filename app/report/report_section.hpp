@@ -16,7 +16,7 @@
 
 namespace stridor {
 
-/// What a report is asked for.
+/// The options of a report.
 struct ReportOptions {
   CommonOptions common;
   std::vector<std::string> files;
@@ -35,18 +35,18 @@ struct WindowsOfScene {
   std::vector<TimedWindow> windows;
 };
 
-/// What all sections share.
+/// The page, its options and the windows of its loci, shared by all sections.
 struct ReportContext {
   const ReportOptions& options;
   ReportPage& page;
-  double bytes_per_file = 0.0;  ///< of the page, for each file
+  double bytes_per_file = 0.0;  ///< of the page, for the present file
   std::vector<WindowsOfScene> windows;
 };
 
 /// The section of a file. @throws FileError if it is no file of results, or damaged
 Json report_section(const ResultFile& file, const ReportContext& context);
 
-/// What every section begins with: file, kind, and where it comes from.
+/// The beginning of every section: file, kind, and where it comes from.
 Json section_head(const ResultFile& file, const std::string& kind);
 
 /// A verdict: the level ("calm", "loud", "failed" or "told") chooses a colour and a sign.

@@ -82,8 +82,7 @@ Json predictions_of(const RecordedStretch& run, const ReportContext& context,
   for (const WindowsOfScene& one : context.windows) {
     if (!has_same_mechanics(one.scene, scene_of(run.file.header()))) {
       section["remarks"].push_back(fmt::format(
-          "{} is of another scene ({} instead of {}): its windows are not set beside the "
-          "bursts.",
+          "{} is of another scene ({} instead of {}): its windows are not set beside the bursts.",
           std::filesystem::path(one.file).filename().string(), one.scene.hash,
           run.file.header().scene_hash));
       continue;
@@ -93,7 +92,7 @@ Json predictions_of(const RecordedStretch& run, const ReportContext& context,
   return rows;
 }
 
-/// What a run is judged by.
+/// Bursts, windows and growth, from which the verdict on a run is made.
 struct Heard {
   std::vector<NumberedBurst> bursts;
   Json predictions;
@@ -128,8 +127,7 @@ void judge_modes(const Json& section, Heard& heard) {
     // Some places alone along a path, between which there are windows.
     heard.growth = fmt::format(
         " Small vibrations about the sliding equilibrium grow at {} of the {} places whose modes "
-        "are "
-        "shown; `stridor locus` finds all unstable windows between them.",
+        "are shown; `stridor locus` finds all unstable windows between them.",
         growing == 0 ? "none" : std::to_string(growing), places);
     return;
   }
@@ -279,7 +277,6 @@ Json run_section(const ResultFile& source, const ReportContext& context) {
   const RunFileHeader& header = run.file.header();
   Json section = section_head(source, "run");
   section["scene_resolved"] = header.scene_resolved;
-  section["mechanics"] = mechanics_hash(header.scene_resolved);
   section["scene_text"] = header.scene_text;
   section["samples"] = run.samples.size();
   section["remarks"] = Json::array();

@@ -100,15 +100,6 @@ std::vector<double> fastest_places(std::vector<TimedWindow> windows) {
   return places;
 }
 
-/// The command that gives the eigenvalues of one point, with @X@ and @Y@ for its values.
-std::string command_of_point(const ResultFile& file) {
-  if (std::string command = file.text("point_command"); !command.empty()) return command;
-  // Files of earlier versions say less.
-  const std::string about = file.text("about");
-  return fmt::format("stridor eig {}{} --set {}=@X@ --set {}=@Y@", file.text("scene"),
-                     about.empty() ? "" : " --about " + about, file.text("x"), file.text("y"));
-}
-
 /// The growth over two parameters as a field of the page.
 Json map_view(const ResultFile& file, ReportPage& page) {
   const std::vector<double> x = file.read("/x");
@@ -136,7 +127,7 @@ Json map_view(const ResultFile& file, ReportPage& page) {
       {"missing", "no sliding equilibrium"},
       {"scale", "signed"},
       {"lines", lines},
-      {"reproduce", command_of_point(file)}};
+      {"reproduce", file.text("point_command")}};
 }
 
 }  // namespace

@@ -84,6 +84,22 @@ std::vector<std::size_t> in_order_of_size(const std::vector<ResultFile>& files) 
   return order;
 }
 
+/// Gives sections whose scenes have the same mechanics the same number, by which the page sets a
+/// locus beside its runs.
+void number_mechanics(Json& sections) {
+  const auto scene_of = [](const Json& section) {
+    return SceneInFile{section.value("scene_hash", ""), section["scene_resolved"]};
+  };
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    if (!sections[i].contains("scene_resolved")) continue;
+    std::size_t same = 0;
+    while (same < i && !(sections[same].contains("mechanics") &&
+                         has_same_mechanics(scene_of(sections[same]), scene_of(sections[i]))))
+      ++same;
+    sections[i]["mechanics"] = same < i ? sections[same]["mechanics"] : Json(i);
+  }
+}
+
 std::string title_of(const std::vector<ResultFile>& files) {
   std::string title = fs::path(files.front().path()).filename().string();
   if (files.size() > 1) title += fmt::format(" and {} more", files.size() - 1);
@@ -104,16 +120,15 @@ ExitCode report(const ReportOptions& options) {
   ReportPage page(options.output, options.common.overwrite(), title_of(files));
   const double bytes_of_page = 3e5;  // of markup and scripts
   ReportContext context{options, page, 0.0, windows_of_files(files)};
-  std::vector<std::size_t> left = in_order_of_size(files);
-  Json sections = Json::array();
-  for (std::size_t i = 0; i < files.size(); ++i) sections.push_back(nullptr);
-  // What the small ones do not need is left to the large ones.
-  for (std::size_t done = 0; done < left.size(); ++done) {
+  Json sections(files.size(), Json());
+  std::size_t num_left = files.size();
+  // The large ones get the bytes that the small ones do not need.
+  for (const std::size_t i : in_order_of_size(files)) {
     const double spent = std::max(bytes_of_page, static_cast<double>(page.size()));
-    context.bytes_per_file =
-        std::max(1e5, budget - spent) / static_cast<double>(left.size() - done);
-    sections[left[done]] = report_section(files[left[done]], context);
+    context.bytes_per_file = std::max(1e5, budget - spent) / static_cast<double>(num_left--);
+    sections[i] = report_section(files[i], context);
   }
+  number_mechanics(sections);
   page.finish({{"format", 1},
                {"title", title_of(files)},
                {"version", std::string(version)},

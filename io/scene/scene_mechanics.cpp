@@ -5,8 +5,6 @@
 #include <sstream>
 #include <string_view>
 
-#include "io/scene/scene.hpp"
-
 namespace stridor {
 namespace {
 
@@ -30,10 +28,6 @@ std::string mechanical_part(const std::string& resolved) {
 }
 
 }  // namespace
-
-std::string mechanics_hash(const std::string& resolved) {
-  return scene_hash(mechanical_part(resolved));
-}
 
 bool has_same_mechanics(const SceneInFile& one, const SceneInFile& other) {
   if (one.hash == other.hash) return true;

@@ -17,7 +17,4 @@ struct SceneInFile {
 /// changed; of others the files are not compared.
 bool has_same_mechanics(const SceneInFile& one, const SceneInFile& other);
 
-/// scene_hash() of what decides about the motion.
-std::string mechanics_hash(const std::string& resolved);
-
 }  // namespace stridor

@@ -8,6 +8,7 @@ class Place {
   }
   set(value) {
     this.value = Math.min(this.values[this.values.length - 1], Math.max(this.values[0], value));
+    if (this.wish && this.wish.value !== this.value) this.wish = null;
     this.listeners.forEach(listen => listen());
   }
   // Goes to a value to show the motion of a frequency there.
@@ -201,7 +202,7 @@ async function makeModes(place, view, section) {
   const firsts = await Promise.all([view.frames[0], view.frames[view.frames.length - 1]].map(frame => numbersOf(frame.places)));
   mesh.fit(...firsts);
   const text = element('div', {class: 'readout'});
-  const choice = element('select', {'aria-label': 'Mode', onchange: () => { section.mode = Number(choice.value); section.branch = undefined; if (where) where.wish = undefined; show(); }});
+  const choice = element('select', {'aria-label': 'Mode', onchange: () => { section.mode = Number(choice.value); section.branch = undefined; if (where) where.wish = null; show(); }});
   const play = element('button', {type: 'button', 'aria-pressed': 'true', onclick: () => run(!isRunning)}, 'Pause');
   const size = element('input', {type: 'range', min: 0, max: 3, step: 0.05, value: 1, 'aria-label': 'Amplitude', oninput: () => { mesh.amplitude = Number(size.value); mesh.draw(); }});
   const speed = element('input', {type: 'range', min: 0.1, max: 3, step: 0.1, value: 1, 'aria-label': 'Speed'});
@@ -230,15 +231,11 @@ async function makeModes(place, view, section) {
     if (where) for (const one of view.frames) if (Math.abs(one.value - where.value) < Math.abs(frame.value - where.value)) frame = one;
     let number = Math.min(section.mode ?? frame.modes.reduce((best, one, i) => one.growth > frame.modes[best].growth ? i : best, 0), frame.modes.length - 1);
     const wanted = section.branch !== undefined && section.wantedNow ? section.wantedNow() : null;
-    if (where && where.wish && where.value === where.wish.value) {
-      let least = Infinity;
-      frame.modes.forEach((one, i) => { const off = offOf(where.wish, one); if (off < least) [number, least] = [i, off]; });
-    } else if (wanted) {
-      let least = Infinity;
-      frame.modes.forEach((one, i) => {
-        const off = Math.abs(one.frequency - wanted.frequency) / (wanted.frequency + 1) + 1e-3 * Math.abs(one.growth - wanted.growth) / (1 + Math.abs(wanted.growth));
-        if (off < least) [number, least] = [i, off];
-      });
+    const wish = where && where.wish;
+    if (wish || wanted) {
+      const offs = frame.modes.map(one => wish ? offOf(wish, one)
+        : Math.abs(one.frequency - wanted.frequency) / (wanted.frequency + 1) + 1e-3 * Math.abs(one.growth - wanted.growth) / (1 + Math.abs(wanted.growth)));
+      number = offs.indexOf(Math.min(...offs));
     }
     choice.replaceChildren(...frame.modes.map((one, i) => element('option', {value: i, selected: i === number}, `${i + 1}: ${shown(one.frequency, 'Hz')}, ${digits(one.growth, 3)} 1/s`)));
     const [places, motions] = await Promise.all([numbersOf(frame.places), numbersOf(frame.displacements)]);

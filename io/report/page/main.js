@@ -27,7 +27,7 @@ function prepare(sections) {
   for (const section of sections) {
     if (!section.place) continue;
     for (const other of runs) {
-      if ((other.mechanics || other.scene_hash) !== (section.mechanics || section.scene_hash)) continue;
+      if (section.mechanics === undefined || other.mechanics !== section.mechanics) continue;
       other.run.places.push(section.place);
       section.place.listeners.add(() => { const moment = section.place.moment; if (moment !== null) other.run.view.mark(moment); });
     }
