@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/terminal/remark.hpp"
 #include "core/errors.hpp"
 #include "io/results/result_file.hpp"
 #include "io/scene/scene_family.hpp"
 
 namespace stridor {
 
-std::vector<TimedWindow> read_predictions(const std::string& file) {
+std::vector<TimedWindow> read_predictions(const std::string& file, const SceneInFile& of_run) {
   const std::string parameter = read_locus_parameter(file);
   if (!parameter.empty() && !parameter.ends_with(".start") &&
       parameter != drive_displacement_name) {
@@ -22,18 +21,16 @@ std::vector<TimedWindow> read_predictions(const std::string& file) {
                     "one over the contact position (`locus` without --parameter)",
                     file, parameter));
   }
-  return read_locus_windows(file);
-}
-
-void warn_of_other_scene(const std::string& locus_file, const SceneInFile& of_run) {
-  const ResultFile file(locus_file);
-  const SceneInFile of_locus{file.text("scene_hash"), file.text("scene_resolved")};
-  // A file of another program, or one of an earlier version, may not say.
-  if (of_locus.hash.empty() || has_same_mechanics(of_locus, of_run)) return;
-  print_remark(
-      "stridor: warning\n--predict: {} is of another scene ({} instead of {}): other bodies, "
-      "contacts, drives or terms, whose windows may be elsewhere\n",
-      locus_file, of_locus.hash, of_run.hash);
+  std::vector<TimedWindow> windows = read_locus_windows(file);
+  const ResultFile locus(file);
+  const SceneInFile of_locus{locus.text("scene_hash"), locus.text("scene_resolved")};
+  // Another program's file may not say of which scene it is.
+  if (!of_locus.hash.empty() && !has_same_mechanics(of_locus, of_run))
+    print_warnings({{Refusal::contradiction, "--predict",
+                     fmt::format("'{}' is of another scene ({} instead of {}): other bodies, "
+                                 "contacts, drives or terms, whose windows may be elsewhere",
+                                 file, of_locus.hash, of_run.hash)}});
+  return windows;
 }
 
 std::vector<PredictedBurst> match_bursts(const std::vector<TimedWindow>& windows,

@@ -19,15 +19,12 @@ struct PredictedBurst {
   std::optional<NumberedBurst> burst;
 };
 
-/// The unstable windows of a locus, to be set beside the bursts of a run.
+/// The unstable windows of a locus, to be set beside the bursts of a run; a warning where the locus
+/// is not of the scene of the run (has_same_mechanics()).
 /// @param file as given with --predict
 /// @throws ConfigError where the locus is over something that a run does not pass through,
 ///         FileError where the file cannot be read or is no locus
-std::vector<TimedWindow> read_predictions(const std::string& file);
-
-/// Warns on stderr where a locus is not of the scene of a run (has_same_mechanics()).
-/// @throws FileError where the file cannot be read
-void warn_of_other_scene(const std::string& locus_file, const SceneInFile& of_run);
+std::vector<TimedWindow> read_predictions(const std::string& file, const SceneInFile& of_run);
 
 /// Gives every window the burst of like frequency that overlaps it most in time, and every burst to
 /// no more than the one window that it overlaps most.

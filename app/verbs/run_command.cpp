@@ -264,9 +264,7 @@ std::optional<std::vector<TimedWindow>> predicted_windows(const RunOptions& opti
                       "sets windows beside bursts, but the scene seeks none; give it measure.band, "
                       "the frequencies in which they are sought");
   }
-  auto windows = read_predictions(*options.predict);
-  warn_of_other_scene(*options.predict, {loaded.hash(), loaded.resolved()});
-  return windows;
+  return read_predictions(*options.predict, {loaded.hash(), loaded.resolved()});
 }
 
 /// @param study of the scene, where the error is to be estimated

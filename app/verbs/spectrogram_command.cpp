@@ -197,9 +197,8 @@ ExitCode draw_spectrogram(const PictureOptions& options) {
   DrawnSpectrogram drawn;
   drawn.series = spectral_series(run.file, shown_series(options, run, scene.spectrogram));
   if (options.predict) {
-    drawn.windows = read_predictions(*options.predict);
     const RunFileHeader& header = run.file.header();
-    warn_of_other_scene(*options.predict, {header.scene_hash, header.scene_resolved});
+    drawn.windows = read_predictions(*options.predict, {header.scene_hash, header.scene_resolved});
   }
   check_band(options, run, drawn.series);
   drawn.pieces = settle_pieces(
