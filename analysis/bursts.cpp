@@ -164,7 +164,7 @@ void follow_growth(SignalBlocks& blocks, const Measured& measured, const Sound& 
 std::optional<Burst> burst_of(SignalBlocks& blocks, const Measured& measured, const Sound& sound,
                               VibrationBlocks& own, const Swell& swell, std::size_t limit) {
   const auto envelope = [&](std::size_t i) { return own.at(i).envelope(i); };
-  // What is in the band besides adds its power to that of the burst.
+  // Other vibration in the band adds its power to that of the burst.
   double beside = swell.before;
   const std::size_t lately =
       16 * half_width(measured.vibration.interval(), measured.parameters.smoothing);

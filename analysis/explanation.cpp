@@ -68,7 +68,7 @@ ModeEnergy mode_energy(const Pencil& pencil, Complex s, const Eigenvector& vecto
     port_force -= spring_force;
     stored += y.dot(spring_force).real();
   }
-  if (pencil.port_damping.size() > 0) port_force += pencil.port_damping * (pencil.ports * velocity);
+  if (pencil.port_damping.size() > 0) port_force += pencil.port_damping * (s * y);
   const auto growth_by = [&](Eigen::Index first, Eigen::Index count) {
     const Eigen::VectorXcd motion = pencil.ports.middleRows(first, count) * velocity;
     return -0.25 * motion.dot(port_force.segment(first, count)).real();

@@ -106,9 +106,10 @@ std::string option_problem(CLI::App& program, int argc, char** argv) {
   return "";
 }
 
-/// What a required option that is missing means: "--kind is required: history, phase, ...".
+/// The error of a required option that is missing, with its meaning: "--kind is required: history,
+/// ...".
 std::string required_problem(CLI::App& program, const CLI::ParseError& error,
-                             const char* verb_name) {
+                             const std::string& verb_name) {
   const std::string what = error.what();
   const auto verbs =
       program.get_subcommands([&](const CLI::App* verb) { return verb->get_name() == verb_name; });
@@ -158,7 +159,7 @@ int run_verb(int argc, char** argv) {
   }
   // Words that are being typed need not make a command yet.
   if (argc > 2 && std::string_view(argv[1]) == "complete") {
-    // What stands on the line behind the word, "--", and the words up to it.
+    // First the words behind the one that is being typed, then "--", then the words up to it.
     char** const sign = std::find(argv + 2, argv + argc, std::string_view("--"));
     if (sign != argv + argc) {
       print_candidates(program, {sign + 1, argv + argc}, {argv + 2, sign});
@@ -172,11 +173,12 @@ int run_verb(int argc, char** argv) {
     if (is_failure) {
       std::string problem = verb_problem(program, argc, argv);
       if (problem.empty()) problem = option_problem(program, argc, argv);
-      if (problem.empty()) problem = required_problem(program, error, argc > 1 ? argv[1] : "");
-      const bool has_verb = argc > 1 && verb_problem(program, argc, argv).empty();
+      const bool has_verb =
+          argc > 1 && argv[1][0] != '-' && verb_problem(program, argc, argv).empty();
+      const std::string verb = has_verb ? argv[1] : "";
+      if (problem.empty()) problem = required_problem(program, error, verb);
       print_remark("stridor: {}\nTry 'stridor {}--help'.\n",
-                   with_code(problem, Refusal::unknown_option),
-                   has_verb && argv[1][0] != '-' ? std::string(argv[1]) + " " : "");
+                   with_code(problem, Refusal::unknown_option), has_verb ? verb + " " : "");
       if (wants_json) finish_json({{Refusal::unknown_option, "", problem}});
       return static_cast<int>(ExitCode::bad_input);
     }

@@ -60,7 +60,7 @@ Json modes_json(const System& system, double highest) {
   return bodies;
 }
 
-/// What the contacts of a system follow, and what none of them needs.
+/// The rows that the contacts of a system follow, and the properties that none of them needs.
 struct ContactWork {
   /// Rows of the bodies that contacts follow at a time, and all on which they might be.
   std::vector<Eigen::Index> followed, touchable;

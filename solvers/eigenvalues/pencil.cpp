@@ -176,6 +176,7 @@ Pencil with_springs(const Pencil& pencil) {
 }
 
 void drop_contact_terms(Pencil& pencil) {
+  pencil.normal_stiffness.resize(0, 0);
   const Eigen::Index num_contact_ports = pencil.num_ports() - pencil.num_body_ports;
   for (Eigen::MatrixXd* terms : {&pencil.port_stiffness, &pencil.port_damping}) {
     if (pencil.num_body_ports == 0) {

@@ -37,7 +37,8 @@ struct Pencil {
   Eigen::MatrixXd port_stiffness;   ///< G, m x m, N/m; empty where there is none
   Eigen::MatrixXd port_damping;     ///< H, m x m, N s/m; empty where there is none
   /// The part of G that is left without friction: stiffness of contacts that give way, along their
-  /// normal, symmetric, m x m; empty where there is none. Only frictionless() uses it.
+  /// normal, symmetric, m x m; empty where there is none. Taken by frictionless() and
+  /// mode_energy() alone.
   Eigen::MatrixXd normal_stiffness;
   Eigen::Index num_body_ports = 0;  ///< of bodies with coupled terms
 
