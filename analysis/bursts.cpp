@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "analysis/burst_growth.hpp"
+#include "analysis/harmonics.hpp"
 #include "analysis/lasting_tone.hpp"
 #include "analysis/quiet_level.hpp"
 #include "analysis/ridges.hpp"
@@ -135,8 +136,7 @@ struct Measured {
 struct Sound {
   IndexRange range;
   Band band;
-  double start_frequency;
-  double end_frequency;
+  std::span<const RidgePoint> points;  ///< of the ridge
 };
 
 /// Frequency, growth and gain of a burst from its rise.
@@ -194,8 +194,11 @@ std::optional<Burst> burst_of(SignalBlocks& blocks, const Measured& measured, co
     }
   });
   burst.peak_time = measured.time_at(highest);
-  burst.start_frequency = sound.start_frequency;
-  burst.end_frequency = sound.end_frequency;
+  burst.start_frequency = sound.points.front().frequency;
+  burst.end_frequency = sound.points.back().frequency;
+  for (const RidgePoint& point : sound.points)
+    if (point.at >= start && point.at <= end)
+      burst.course.push_back({measured.time_at(point.at), point.frequency, point.level});
   follow_growth(blocks, measured, sound, own, swell, end, burst);
   return burst;
 }
@@ -253,11 +256,10 @@ std::vector<Sound> sounds_of(const Ridge& ridge, const Measured& measured, std::
     const std::size_t behind = is_last ? reach : 0;
     const std::size_t begin = ridge[first].at - std::min(before, ridge[first].at - measured.range.begin);
     const std::size_t end = std::min(measured.range.end, ridge[last].at + behind + 1);
-    sounds.push_back({{begin, end},
-                      own_band(lowest, highest, measured.vibration.interval(),
-                               measured.parameters.smoothing),
-                      ridge[first].frequency,
-                      ridge[last].frequency});
+    sounds.push_back(
+        {{begin, end},
+         own_band(lowest, highest, measured.vibration.interval(), measured.parameters.smoothing),
+         std::span(ridge).subspan(first, last - first + 1)});
   }
   return sounds;
 }
@@ -295,6 +297,7 @@ std::vector<Burst> bursts_of(SignalBlocks& blocks, const Measured& measured) {
   std::sort(bursts.begin(), bursts.end(), [](const Burst& a, const Burst& b) {
     return std::pair(a.start, a.frequency) < std::pair(b.start, b.frequency);
   });
+  name_harmonics(bursts, measured.parameters.smoothing);
   return bursts;
 }
 

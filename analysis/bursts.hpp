@@ -1,6 +1,7 @@
 // Bursts of vibration in a signal: when, at which frequency, how strong, grown by how much.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,6 +23,19 @@ struct BurstParameters {
   double minimum_duration = 10.0e-3;  ///< s, of a burst from start to end, ≥ 0
 };
 
+/// A burst at one moment.
+struct BurstPoint {
+  double time;       ///< s
+  double frequency;  ///< Hz
+  double level;      ///< r.m.s. value, of the sound alone
+};
+
+/// That a burst sounds at a whole multiple of the frequency of a louder one at the same time.
+struct Harmonic {
+  std::size_t of;  ///< index of the louder burst
+  int order;       ///< 2 and more
+};
+
 /// A stretch in which a sound grows, and dies out or is cut off.
 struct Burst {
   double start;      ///< s, where the envelope leaves √2 times the level before for good
@@ -33,6 +47,8 @@ struct Burst {
   double gain;       ///< ln of the rise of the envelope of its own frequency
   double start_frequency;  ///< Hz, where it was first heard: above the quiet level
   double end_frequency;    ///< Hz, where it was heard last
+  std::vector<BurstPoint> course{};  ///< from start to end, T/2 apart, where above the quiet level
+  std::optional<Harmonic> harmonic{};  ///< see name_harmonics()
 };
 
 /// Level that the envelope of a signal without bursts keeps to.

@@ -10,6 +10,7 @@
 #include "app/report/mode_frames.hpp"
 #include "app/results/expectations.hpp"
 #include "app/results/pictures.hpp"
+#include "app/results/transient_results.hpp"
 #include "app/stability/prediction.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
@@ -56,6 +57,17 @@ void add_spectrogram(const RecordedStretch& run, const ReportContext& context, J
   }
 }
 
+/// Times and frequencies of a burst, as text of few digits.
+Json course_json(const Burst& burst) {
+  Json times = Json::array();
+  Json frequencies = Json::array();
+  for (const BurstPoint& point : burst.course) {
+    times.push_back(std::round(1e5 * point.time) / 1e5);
+    frequencies.push_back(std::round(point.frequency));
+  }
+  return {{"times", times}, {"frequencies", frequencies}};
+}
+
 Json bursts_json_of(const std::vector<NumberedBurst>& bursts) {
   Json rows = Json::array();
   for (const auto& [count, burst] : bursts) {
@@ -66,7 +78,9 @@ Json bursts_json_of(const std::vector<NumberedBurst>& bursts) {
                     {"peak", number(burst.peak)},
                     {"gain", number(burst.gain)},
                     {"start_frequency", number(burst.start_frequency)},
-                    {"end_frequency", number(burst.end_frequency)}});
+                    {"end_frequency", number(burst.end_frequency)},
+                    {"harmonic", harmonic_json(burst)},
+                    {"course", course_json(burst)}});
   }
   return rows;
 }

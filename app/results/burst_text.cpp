@@ -11,9 +11,14 @@ std::string burst_text(const Json& burst) {
     const Json& number = burst.at(name);
     return number.is_null() ? std::numeric_limits<double>::quiet_NaN() : number.get<double>();
   };
-  return fmt::format("{:.3f} to {:.3f} s, {:.0f} Hz, peak {:.4g} m/s^2, gain {:.2f}",
-                     value("start"), value("end"), value("frequency"), value("peak"),
-                     value("gain"));
+  const Json harmonic = burst.value("harmonic", Json(nullptr));
+  return fmt::format("{:.3f} to {:.3f} s, {:.0f} Hz{}, peak {:.4g} m/s^2, gain {:.2f}",
+                     value("start"), value("end"), value("frequency"),
+                     harmonic.is_null()
+                         ? ""
+                         : fmt::format(" ({} times that of burst {})", harmonic["order"].get<int>(),
+                                       harmonic["of"].get<int>()),
+                     value("peak"), value("gain"));
 }
 
 std::string lasting_tone_text(const Json& tone) {

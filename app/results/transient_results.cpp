@@ -167,6 +167,11 @@ Json contact_gain_json(const EnergyLedger* energy) {
 
 }  // namespace
 
+Json harmonic_json(const Burst& burst) {
+  if (!burst.harmonic) return nullptr;
+  return {{"of", burst.harmonic->of + 1}, {"order", burst.harmonic->order}};
+}
+
 Json bursts_json(const std::vector<Burst>& bursts) {
   Json list = Json::array();
   for (const Burst& burst : bursts) {
@@ -176,7 +181,8 @@ Json bursts_json(const std::vector<Burst>& bursts) {
                     {"peak", burst.peak},
                     {"gain", burst.gain},
                     {"start_frequency", burst.start_frequency},
-                    {"end_frequency", burst.end_frequency}});
+                    {"end_frequency", burst.end_frequency},
+                    {"harmonic", harmonic_json(burst)}});
   }
   return list;
 }

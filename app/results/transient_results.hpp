@@ -14,6 +14,10 @@ namespace stridor {
 /// A plan up to a step whose window of statistics is that of `measure`.
 MarchPlan measured_plan(const Scene& scene, std::int64_t last_step);
 
+/// The number, from 1, of the burst of which this one is a harmonic, `of`, and its `order`; null
+/// where it is none.
+Json harmonic_json(const Burst& burst);
+
 /// A list with an object for every burst.
 Json bursts_json(const std::vector<Burst>& bursts);
 /// The largest stable step, s; null where there is none.

@@ -34,6 +34,34 @@ void store_windows(RunFileWriter& writer, const std::vector<PredictedBurst>& pre
   });
 }
 
+void store_harmonics(RunFileWriter& writer, const std::vector<Burst>& bursts) {
+  std::vector<double> of, orders;
+  for (const Burst& burst : bursts) {
+    of.push_back(index_or_none(burst.harmonic ? std::optional(burst.harmonic->of) : std::nullopt));
+    orders.push_back(burst.harmonic ? burst.harmonic->order : 1);
+  }
+  writer.write_static("/bursts/harmonic_of", of, "1");
+  writer.write_static("/bursts/order", orders, "1");
+}
+
+/// The courses one behind the other, every point with the index of its burst.
+void store_courses(RunFileWriter& writer, const std::vector<Burst>& bursts) {
+  std::vector<double> indices, times, frequencies, levels;
+  for (std::size_t i = 0; i < bursts.size(); ++i) {
+    for (const BurstPoint& point : bursts[i].course) {
+      indices.push_back(static_cast<double>(i));
+      times.push_back(point.time);
+      frequencies.push_back(point.frequency);
+      levels.push_back(point.level);
+    }
+  }
+  if (indices.empty()) return;
+  writer.write_static("/bursts/course/burst", indices, "1");
+  writer.write_static("/bursts/course/time", times, "s");
+  writer.write_static("/bursts/course/frequency", frequencies, "Hz");
+  writer.write_static("/bursts/course/level", levels, "m/s^2");
+}
+
 }  // namespace
 
 void store_bursts(RunFileWriter& writer, const std::vector<Burst>& bursts) {
@@ -52,6 +80,8 @@ void store_bursts(RunFileWriter& writer, const std::vector<Burst>& bursts) {
     for (const Burst& burst : bursts) values.push_back(burst.*member);
     writer.write_static(std::string("/bursts/") + name, values, units);
   }
+  store_harmonics(writer, bursts);
+  store_courses(writer, bursts);
 }
 
 void store_heard_windows(RunFileWriter& writer, const std::vector<TimedWindow>& windows,

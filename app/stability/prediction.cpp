@@ -84,7 +84,7 @@ std::vector<std::size_t> unexplained(const std::vector<PredictedBurst>& predicti
   const auto windows = windows_of(predictions, bursts);
   std::vector<std::size_t> numbers;
   for (std::size_t k = 0; k < bursts.size(); ++k)
-    if (!windows[k]) numbers.push_back(bursts[k].number);
+    if (!windows[k] && !bursts[k].burst.harmonic) numbers.push_back(bursts[k].number);
   return numbers;
 }
 

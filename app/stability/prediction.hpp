@@ -39,7 +39,7 @@ std::vector<PredictedBurst> match_bursts(const std::vector<TimedWindow>& windows
 /// For every burst the index of the window among the predictions that explains it, if one does.
 std::vector<std::optional<std::size_t>> windows_of(const std::vector<PredictedBurst>& predictions,
                                                    const std::vector<NumberedBurst>& bursts);
-/// Numbers of the bursts to which no window belongs.
+/// Numbers of the bursts to which no window belongs, and which are no harmonics of others.
 std::vector<std::size_t> unexplained(const std::vector<PredictedBurst>& predictions,
                                      const std::vector<NumberedBurst>& bursts);
 

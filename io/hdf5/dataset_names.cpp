@@ -50,7 +50,7 @@ std::string long_name_of(const std::string& path) {
   if (group == "contact") return name + " of the contact " + parts[1];
   if (group == "modal") return name + " of the modes of " + parts[1] + " by itself";
   if (group == "final") return name + (parts.size() > 2 ? " of " + parts[1] : "") + " at the end";
-  if (group == "bursts") return name + " of bursts";
+  if (group == "bursts") return name + (parts.size() > 2 ? " on the courses" : "") + " of bursts";
   if (group == "windows") return name + " of predicted unstable windows";
   if (group == "unstable") return name + " of unstable windows";
   if (group == "responses" && parts.size() == 4)

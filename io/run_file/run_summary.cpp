@@ -3,9 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <optional>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "analysis/bursts.hpp"
 #include "analysis/sample_source.hpp"
@@ -131,6 +137,55 @@ std::optional<AccelerationSummary> summarise_acceleration(const RunFileReader& f
                                 RecordedSamples(file, *channel), measure);
 }
 
+namespace {
+
+/// Index of a burst in a dataset; nothing for −1. @throws FileError where there is no such burst
+std::optional<std::size_t> burst_index(double value, std::size_t count, const std::string& path,
+                                       const std::string& name) {
+  if (value == -1.0) return std::nullopt;
+  if (!(value >= 0.0 && value < static_cast<double>(count) && value == std::floor(value)))
+    throw FileError(
+        Refusal::file_damaged, path, name,
+        fmt::format("is {:g} somewhere, expected an index below {} or -1", value, count));
+  return static_cast<std::size_t>(value);
+}
+
+/// Reads columns that belong together. @throws FileError where they are not of one length
+std::vector<std::vector<double>> columns_of(const RunFileReader& file, const std::string& path,
+                                            std::span<const std::string> names) {
+  std::vector<std::vector<double>> columns;
+  for (const std::string& name : names) {
+    columns.push_back(file.static_array(name));
+    if (columns.back().size() != columns.front().size())
+      throw FileError(Refusal::file_damaged, path, name,
+                      fmt::format("has {} entries, but {} has {}", columns.back().size(),
+                                  names.front(), columns.front().size()));
+  }
+  return columns;
+}
+
+/// Courses and harmonics, which files of earlier versions do not have.
+void read_courses(const RunFileReader& file, const std::string& path, std::vector<Burst>& bursts) {
+  if (file.has("/bursts/course")) {
+    const std::array<std::string, 4> names{"/bursts/course/burst", "/bursts/course/time",
+                                           "/bursts/course/frequency", "/bursts/course/level"};
+    const auto columns = columns_of(file, path, names);
+    for (std::size_t i = 0; i < columns[0].size(); ++i) {
+      const auto burst = burst_index(columns[0][i], bursts.size(), path, names[0]);
+      if (burst) bursts[*burst].course.push_back({columns[1][i], columns[2][i], columns[3][i]});
+    }
+  }
+  if (file.has("/bursts/harmonic_of")) {
+    const std::array<std::string, 3> names{"/bursts/start", "/bursts/harmonic_of", "/bursts/order"};
+    const auto columns = columns_of(file, path, names);
+    for (std::size_t i = 0; i < bursts.size(); ++i)
+      if (const auto of = burst_index(columns[1][i], bursts.size(), path, names[1]))
+        bursts[i].harmonic = {*of, static_cast<int>(columns[2][i])};
+  }
+}
+
+}  // namespace
+
 std::vector<Burst> recorded_bursts(const RunFileReader& file, const std::string& path) {
   if (!file.has("/bursts")) return {};
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -170,6 +225,7 @@ std::vector<Burst> recorded_bursts(const RunFileReader& file, const std::string&
     }
     for (std::size_t i = 0; i < values.size(); ++i) bursts[i].*member = values[i];
   }
+  read_courses(file, path, bursts);
   return bursts;
 }
 

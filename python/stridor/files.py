@@ -199,11 +199,19 @@ class Run(ResultFile):
     @property
     def bursts(self) -> np.ndarray:
         """Bursts as a structured array with start, end, frequency, peak and gain, the frequencies at
-        which each begins and ends (NaN in files of earlier versions), and the index of its window in
-        `windows`, -1 where none explains it or none were predicted."""
+        which each begins and ends (NaN in files of earlier versions), the index of its window in
+        `windows`, -1 where none explains it or none were predicted, and the index of the burst of
+        which it is a harmonic, `harmonic_of`, -1 where it is none, with its `order`."""
         return self._records("bursts", {"start": np.nan, "end": np.nan, "frequency": np.nan, "peak": np.nan,
                                         "gain": np.nan, "start_frequency": np.nan, "end_frequency": np.nan,
-                                        "window": -1})
+                                        "window": -1, "harmonic_of": -1, "order": 1})
+
+    @property
+    def burst_courses(self) -> np.ndarray:
+        """Frequencies and levels (r.m.s. values) of the bursts over time as a structured array with
+        burst (its index in `bursts`), time, frequency and level; empty in files of earlier versions."""
+        return self._records("bursts/course", {"burst": -1, "time": np.nan, "frequency": np.nan,
+                                               "level": np.nan})
 
     @property
     def windows(self) -> np.ndarray:
@@ -213,11 +221,11 @@ class Run(ResultFile):
                                          "growth_max": np.nan, "gain": np.nan, "burst": -1})
 
     def _records(self, name: str, missing: Mapping[str, float]) -> np.ndarray:
-        """The datasets of a group side by side; whole numbers are indices."""
+        """The datasets of a group side by side; of the types of what stands for missing ones."""
         group = self._file.get(name)
         found = {} if group is None else {key: group[key][:] for key in missing if key in group}
         length = len(next(iter(found.values()))) if found else 0
-        columns = [found.get(key, np.full(length, value)).astype(int if value == -1 else float)
+        columns = [found.get(key, np.full(length, value)).astype(type(value))
                    for key, value in missing.items()]
         return np.rec.fromarrays(columns, names=list(missing))
 

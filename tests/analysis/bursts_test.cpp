@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -354,6 +355,55 @@ TEST(Bursts, OneThatChangesItsFrequencyIsOneAndSaysFromWhereToWhere) {
   EXPECT_NEAR(found[0].peak_time, envelope.peak_time, 1.0e-3);
   EXPECT_GT(found[0].frequency, found[0].start_frequency);
   EXPECT_LT(found[0].frequency, frequency_at(envelope.peak_time) + 50.0);
+  // Its course, with the r.m.s. value where it is steady enough for pieces of 2 T.
+  ASSERT_GT(found[0].course.size(), 40U);
+  for (const BurstPoint& point : found[0].course) {
+    EXPECT_GE(point.time, found[0].start);
+    EXPECT_LE(point.time, found[0].end);
+    const bool is_loud = envelope.amplitude(point.time, level) > 20.0 * level;
+    if (!is_loud) continue;
+    EXPECT_NEAR(point.frequency, frequency_at(point.time), 15.0) << point.time;
+    EXPECT_NEAR(point.level * std::numbers::sqrt2 / envelope.amplitude(point.time, level), 1.0,
+                0.15)
+        << point.time;
+  }
+}
+
+TEST(Bursts, OvertonesAreNamedAndOthersAreNot) {
+  const double level = band_rms(wide.band);
+  std::vector<double> samples = white(120000, 44);
+  // A sound that is no sine, its frequency rising, and one of its own beside its second harmonic.
+  const Synthetic envelope{0.6, 0.68, 70.0, 50.0, 0.0};
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double t = static_cast<double>(i) * dt;
+    const double phase = two_pi * (2.5e3 * (t - 0.6) + 0.5 * 2.0e3 * (t - 0.6) * (t - 0.6));
+    if (t < 0.5 || t > 0.9) continue;
+    const double amplitude = envelope.amplitude(t, level);
+    samples[i] +=
+        amplitude * (std::sin(phase) + 0.3 * std::sin(2.0 * phase) + 0.15 * std::sin(3.0 * phase));
+  }
+  Synthetic{0.6, 0.66, 70.0, 50.0, 9.1e3}.add_to(samples, level);
+  const auto found = find_bursts(samples, dt, wide);
+  ASSERT_THAT(found, SizeIs(4));
+  std::map<int, double> frequencies;  // by order
+  std::size_t loudest = 0;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    if (found[i].peak > found[loudest].peak) loudest = i;
+  EXPECT_FALSE(found[loudest].harmonic);
+  EXPECT_NEAR(found[loudest].frequency, 2.6e3, 100.0);
+  int num_own = 0;
+  for (const Burst& burst : found) {
+    if (!burst.harmonic) {
+      ++num_own;
+      continue;
+    }
+    EXPECT_EQ(burst.harmonic->of, loudest);
+    EXPECT_NEAR(burst.frequency / found[loudest].frequency, burst.harmonic->order, 0.1);
+    EXPECT_TRUE(frequencies.emplace(burst.harmonic->order, burst.frequency).second);
+  }
+  EXPECT_EQ(num_own, 2);
+  EXPECT_EQ(frequencies.count(2), 1U);
+  EXPECT_EQ(frequencies.count(3), 1U);
 }
 
 TEST(Bursts, ADipOfLessThanSixDecibelsDoesNotDivideAndAReturnToQuietDoes) {

@@ -636,6 +636,17 @@ TEST_F(Pictures, DamagedDatasetsAreNamed) {
          H5LTmake_dataset_double(f, "/bursts/gain", 1, &two, values);
        },
        "dataset /bursts/gain: has 2 entries, but /bursts/start has 1", true, false},
+      {"course of no burst",
+       [](hid_t f) {
+         const double values[2] = {0.0, 1.0};
+         const hsize_t two = 2;
+         const hid_t group = H5Gcreate2(f, "/bursts/course", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+         for (const char* name : {"burst", "time", "frequency", "level"})
+           H5LTmake_dataset_double(group, name, 1, &two, values);
+         H5Gclose(group);
+       },
+       "dataset /bursts/course/burst: is 1 somewhere, expected an index below 1 or -1", true,
+       false},
   };
   for (const Damage& damage : damages) {
     const std::string run = make_run();

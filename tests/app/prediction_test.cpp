@@ -54,6 +54,9 @@ TEST(MatchBursts, ABurstBelongsToOneWindowAloneTheOneThatItOverlapsMost) {
   EXPECT_TRUE(unexplained(rows, {burst(1, 1.05, 1.5, 3500.0)}).empty());
   EXPECT_EQ(unexplained(rows, {burst(1, 1.05, 1.5, 3500.0), burst(2, 3.0, 3.1, 3500.0)}),
             std::vector<std::size_t>{2});
+  NumberedBurst overtone = burst(3, 1.2, 1.4, 7000.0);
+  overtone.burst.harmonic = {1, 2};
+  EXPECT_TRUE(unexplained(rows, {burst(1, 1.05, 1.5, 3500.0), overtone}).empty());
   const auto windows =
       windows_of(rows, {burst(2, 3.0, 3.1, 3500.0), burst(1, 1.05, 1.5, 3500.0)});
   ASSERT_EQ(windows.size(), 2u);

@@ -65,6 +65,30 @@ void expect_stored(const std::string& run, const Json& results) {
   }
 }
 
+/// That the courses in a run file are those of its bursts, which follow the frequencies of a locus:
+/// a mode of the sliding bodies changes its frequency as they slide.
+void expect_courses(const std::string& run, const Json& results) {
+  const std::vector<double> of = dataset(run, "/bursts/course/burst");
+  const std::vector<double> times = dataset(run, "/bursts/course/time");
+  const std::vector<double> frequencies = dataset(run, "/bursts/course/frequency");
+  ASSERT_EQ(times.size(), of.size());
+  ASSERT_EQ(frequencies.size(), of.size());
+  std::vector<std::size_t> points(results["bursts"].size());
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    const auto k = static_cast<std::size_t>(of[i]);
+    ASSERT_LT(k, points.size());
+    const Json& burst = results["bursts"][k];
+    ++points[k];
+    EXPECT_GE(times[i], burst["start"].get<double>());
+    EXPECT_LE(times[i], burst["end"].get<double>());
+    EXPECT_NEAR(frequencies[i], burst["frequency"].get<double>(),
+                0.1 * burst["frequency"].get<double>());
+  }
+  EXPECT_THAT(points, ::testing::Each(::testing::Gt(20u)));
+  // Of three times the frequency of the third, by chance, but not as that changes.
+  EXPECT_EQ(dataset(run, "/bursts/harmonic_of"), std::vector<double>(points.size(), -1.0));
+}
+
 class PredictionTest : public ::testing::TestWithParam<Case> {};
 
 TEST_P(PredictionTest, EveryBurstHasItsWindow) {
@@ -101,6 +125,7 @@ TEST_P(PredictionTest, EveryBurstHasItsWindow) {
   EXPECT_EQ(results["prediction"], picture["prediction"]);
   EXPECT_EQ(results["unexplained"], picture["unexplained"]);
   expect_stored(run, results);
+  expect_courses(run, results);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PredictionTest,

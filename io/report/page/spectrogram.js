@@ -67,6 +67,9 @@ async function makeSpectrogram(place, view, run) {
         const sounds = [burst.frequency, burst.start_frequency, burst.end_frequency].filter(isFinite).filter(Boolean);
         const y0 = chart.py(Math.max(...sounds) + half), y1 = chart.py(Math.min(...sounds) - half);
         c.strokeRect(chart.px(burst.start), y0, Math.max(2, chart.px(burst.end) - chart.px(burst.start)), y1 - y0);
+        c.beginPath();
+        burst.course.times.forEach((time, i) => c.lineTo(chart.px(time), chart.py(burst.course.frequencies[i])));
+        c.stroke();
         c.fillStyle = '#ffffff';
         c.fillText(String(burst.number), chart.px(burst.start) + 2, y0 - 1);
       }
@@ -77,11 +80,11 @@ async function makeSpectrogram(place, view, run) {
     },
     hover: (moment, hertz) => {
       const db = level(moment, hertz);
-      const burst = run.bursts.find(b => moment >= b.start && moment <= b.end && Math.abs(hertz - b.frequency) < 0.03 * (chart.y.to - chart.y.from));
+      const burst = run.bursts.find(b => moment >= b.start && moment <= b.end && Math.abs(hertz - frequencyAt(b, moment)) < 0.03 * (chart.y.to - chart.y.from));
       const words = [`${shown(moment, 's', 5)}, ${shown(hertz, 'Hz')}`];
       if (db !== null) words.push(`${db.toFixed(1)} dB, ${shown(view.reference * 10 ** (db / 20), view.units, 3)}`);
       else words.push('below all levels kept');
-      if (burst) words.push(`burst ${burst.number}: ${shown(burst.frequency, 'Hz')}, gain ${digits(burst.gain, 3)}${isDoubtful(burst, run.resolved) ? ', above what the bodies resolve' : ''}`);
+      if (burst) words.push(`burst ${burst.number}: ${shown(frequencyAt(burst, moment), 'Hz')}${harmonicOf(burst)}, gain ${digits(burst.gain, 3)}${isDoubtful(burst, run.resolved) ? ', above what the bodies resolve' : ''}`);
       return words.join(': ');
     },
     zoomed: () => run.view.set(chart.x.from, chart.x.to),
@@ -95,7 +98,7 @@ async function makeSpectrogram(place, view, run) {
     ['viridis', 'heat', 'grey'].map(name => element('option', {value: name}, name)));
   place.append(element('div', {class: 'tools'}, slider('Shift of levels', -40, 60, 'top'), slider('Range of levels (dB)', 20, 127, 'range'), element('label', {}, 'Colours', choice)),
   element('figcaption', {}, `${view.channel}; 0 dB is ${shown(view.reference, view.units)}, the highest level ${digits(view.top, 4)} dB. ${view.caption || ''} `,
-    run.bursts.length ? 'Framed: bursts. ' : '', run.predicted.length ? 'Dotted: predicted windows. ' : '',
+    run.bursts.length ? 'Framed: bursts, the line in the frame their frequency over time. ' : '', run.predicted.length ? 'Dotted: predicted windows. ' : '',
       run.resolved !== null && run.resolved > frequency.from && run.resolved < frequencyEnd ? `White line: ${shown(run.resolved, 'Hz', 4)}, up to which the bodies are resolved. ` : '',
     'Drag to zoom, double click to see all, Ctrl and wheel or + and − to scale.'));
   run.view.listeners.add(() => { chart.x.set(run.view.from, run.view.to); chart.draw(); });

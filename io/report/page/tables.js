@@ -27,6 +27,15 @@ function explanation(view, burst) {
 }
 
 // Above what the reduced bodies resolve.
+// "", or that a burst is a harmonic of another.
+function harmonicOf(burst) { return burst.harmonic ? `, ${burst.harmonic.order} times that of burst ${burst.harmonic.of}` : ''; }
+// The frequency of a burst at a moment, by its course.
+function frequencyAt(burst, moment) {
+  const {times, frequencies} = burst.course;
+  const i = times.findIndex(time => time >= moment);
+  if (!times.length) return burst.frequency;
+  return i < 0 ? frequencies[times.length - 1] : frequencies[i];
+}
 function isDoubtful(burst, resolved) { return resolved > 0 && burst.frequency > resolved; }
 
 function makeBursts(place, view, run, section) {
@@ -45,7 +54,7 @@ function makeBursts(place, view, run, section) {
     place.append(element('h3', {}, 'Bursts of vibration'), element('div', {class: 'scroll'}, element('table', {},
       headRow(['Burst', 'From', 'To', 'Frequency', 'Peak', 'Gain (ln)', ...(view.predicted.length ? ['Explained by'] : [])]),
       element('tbody', {}, view.bursts.map(burst => rowThat(act(burst.start, burst.end, windowOf(view, burst) || {frequency: burst.frequency}),
-        [cell(burst.number), cell(shown(burst.start, 's')), cell(shown(burst.end, 's')), cell(shown(burst.frequency, 'Hz', 5) + (isDoubtful(burst, view.resolved) ? ' ?' : '')), cell(shown(burst.peak, 'm/s^2')), cell(digits(burst.gain, 3)), ...(view.predicted.length ? [cell(explanation(view, burst))] : [])]))))));
+        [cell(burst.number), cell(shown(burst.start, 's')), cell(shown(burst.end, 's')), cell(shown(burst.frequency, 'Hz', 5) + harmonicOf(burst) + (isDoubtful(burst, view.resolved) ? ' ?' : '')), cell(shown(burst.peak, 'm/s^2')), cell(digits(burst.gain, 3)), ...(view.predicted.length ? [cell(explanation(view, burst))] : [])]))))));
   }
   if (view.predicted.length) {
     place.append(element('h3', {}, 'Unstable windows that the run passes'), element('div', {class: 'scroll'}, element('table', {},
