@@ -18,6 +18,7 @@
 #include "app/terminal/manual.hpp"
 #include "app/terminal/progress.hpp"
 #include "app/terminal/remark.hpp"
+#include "app/terminal/value_names.hpp"
 #include "core/blas_memory.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
@@ -157,6 +158,7 @@ int run_verb(int argc, char** argv) {
                      "Tell progress on stderr as JSON, a line each, for programs")
         ->check(CLI::IsMember({"json"}));
   }
+  name_values(program);
   // Words that are being typed need not make a command yet.
   if (argc > 2 && std::string_view(argv[1]) == "complete") {
     // First the words behind the one that is being typed, then "--", then the words up to it.

@@ -16,8 +16,8 @@ install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
 # Pages of the manual, which the program itself writes, and completion in shells.
 set(STRIDOR_MANUAL "${PROJECT_BINARY_DIR}/manual")
 add_custom_command(OUTPUT "${STRIDOR_MANUAL}/stridor.1"
-  COMMAND stridor manual "${STRIDOR_MANUAL}" "${PROJECT_SOURCE_DIR}/docs/files.md"
-  DEPENDS stridor "${PROJECT_SOURCE_DIR}/docs/files.md" VERBATIM)
+  COMMAND stridor manual "${STRIDOR_MANUAL}" "${PROJECT_SOURCE_DIR}/docs"
+  DEPENDS stridor "${PROJECT_SOURCE_DIR}/docs" VERBATIM)
 add_custom_target(manual ALL DEPENDS "${STRIDOR_MANUAL}/stridor.1")
 install(DIRECTORY "${STRIDOR_MANUAL}/" DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN "*.1")
 install(DIRECTORY "${STRIDOR_MANUAL}/" DESTINATION ${CMAKE_INSTALL_MANDIR}/man5 FILES_MATCHING PATTERN "*.5")

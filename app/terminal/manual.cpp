@@ -91,10 +91,18 @@ std::string entry_of(const CLI::Option& option) {
   text = ".TP\n" + text + "\n" + escaped(option.get_description());
   const std::string type = option.get_type_name();
   if (const std::size_t brace = type.find('{'); brace != std::string::npos)
-    text += ". One of " + escaped(type.substr(brace + 1, type.rfind('}') - brace - 1));
+    text += ". One of " +
+            escaped(std::regex_replace(type.substr(brace + 1, type.rfind('}') - brace - 1),
+                                       std::regex(","), ", "));
   if (!option.get_default_str().empty()) text += ". Default: " + escaped(option.get_default_str());
   if (option.get_required() && !option.get_positional()) text += ". Required";
   return text + ".\n";
+}
+
+/// With a capital at its start.
+std::string sentence_of(std::string text) {
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
 }
 
 constexpr const char* exit_codes =
@@ -266,7 +274,24 @@ std::vector<const CLI::App*> verbs_of(const CLI::App& program) {
   return verbs;
 }
 
-std::string manual_of_verb(const CLI::App& verb, const std::vector<std::string>& verbs) {
+std::vector<Example> examples_of(const std::string& verb, const std::string& markdown) {
+  const std::string start = "stridor " + verb + " ";
+  std::istringstream lines(markdown);
+  std::vector<Example> examples;
+  bool is_code = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("```")) is_code = !is_code;
+    if (!is_code || !line.starts_with(start)) continue;
+    const std::size_t sign = line.find(" # ");
+    Example one{line.substr(0, sign), sign == std::string::npos ? "" : line.substr(sign + 3)};
+    one.command.erase(one.command.find_last_not_of(' ') + 1);
+    examples.push_back(std::move(one));
+  }
+  return examples;
+}
+
+std::string manual_of_verb(const CLI::App& verb, const std::vector<std::string>& verbs,
+                           const std::vector<Example>& examples) {
   const std::string name = "stridor-" + verb.get_name();
   std::string page = head(name, "1", summary_of(verb));
   page += ".SH SYNOPSIS\n" + bold("stridor " + verb.get_name());
@@ -283,7 +308,14 @@ std::string manual_of_verb(const CLI::App& verb, const std::vector<std::string>&
   }
   page += " [\\fIoptions\\fR]\n";
   if (!positionals.empty()) page += ".SH ARGUMENTS\n" + positionals;
-  page += ".SH OPTIONS\n" + options + exit_codes;
+  page += ".SH OPTIONS\n" + options;
+  if (!examples.empty()) page += ".SH EXAMPLES\n";
+  for (const Example& one : examples) {
+    if (&one != &examples.front()) page += ".PP\n";
+    if (!one.says.empty()) page += inline_text(sentence_of(one.says)) + ":\n.PP\n";
+    page += ".nf\n" + escaped(one.command) + "\n.fi\n";
+  }
+  page += exit_codes;
   page += ".SH SEE ALSO\n" + bold("stridor") + "(1), " + bold("stridor-scene") + "(5), " +
           bold("stridor-files") + "(5)";
   for (const std::string& other : verbs)

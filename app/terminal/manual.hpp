@@ -7,9 +7,20 @@
 
 namespace stridor {
 
-/// A page of one verb: synopsis, what it does, every option, exit codes, other pages.
+/// A command that a document shows, and what is said of it behind.
+struct Example {
+  std::string command;
+  std::string says;
+};
+
+/// The commands of one verb in a document of Markdown: lines "stridor VERB ...   # what it does" of
+/// its blocks of code.
+std::vector<Example> examples_of(const std::string& verb, const std::string& markdown);
+
+/// A page of one verb: synopsis, what it does, every option, examples, exit codes, other pages.
 /// @param verbs names of all verbs, for references
-std::string manual_of_verb(const CLI::App& verb, const std::vector<std::string>& verbs);
+std::string manual_of_verb(const CLI::App& verb, const std::vector<std::string>& verbs,
+                           const std::vector<Example>& examples);
 
 /// The page of the program: its verbs.
 std::string manual_of_program(const CLI::App& program);

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 struct ManualOptions {
   std::string folder;
-  std::string files_page;  ///< docs/files.md
+  std::string documents;  ///< the folder with files.md and commands.md
 };
 
 std::string text_of_file(const std::string& path) {
@@ -29,7 +29,9 @@ std::string text_of_file(const std::string& path) {
 }
 
 ExitCode write_manual(const CLI::App& program, const ManualOptions& options) {
-  const std::string files = text_of_file(options.files_page);
+  const fs::path documents = options.documents;
+  const std::string files = text_of_file((documents / "files.md").string());
+  const std::string commands = text_of_file((documents / "commands.md").string());
   std::error_code error;
   fs::create_directories(options.folder, error);
   if (error)
@@ -41,7 +43,8 @@ ExitCode write_manual(const CLI::App& program, const ManualOptions& options) {
   std::vector<std::string> names;
   for (const CLI::App* verb : verbs_of(program)) names.push_back(verb->get_name());
   for (const CLI::App* verb : verbs_of(program))
-    write("stridor-" + verb->get_name() + ".1", manual_of_verb(*verb, names));
+    write("stridor-" + verb->get_name() + ".1",
+          manual_of_verb(*verb, names, examples_of(verb->get_name(), commands)));
   write("stridor.1", manual_of_program(program));
   write("stridor-scene.5", manual_of_document("stridor-scene", "5", "keys of the scenes of stridor",
                                               scene_reference(Scene::schema())));
@@ -57,7 +60,7 @@ void add_hidden_commands(CLI::App& program, Action& action) {
   auto manual = std::make_shared<ManualOptions>();
   CLI::App* man = program.add_subcommand("manual", "Pages of the manual")->group("");
   man->add_option("folder", manual->folder, "Where they are written")->required();
-  man->add_option("files", manual->files_page, "docs/files.md")->required();
+  man->add_option("documents", manual->documents, "Folder of files.md and commands.md")->required();
   man->callback([manual, &program, &action] {
     action = [manual, &program] { return write_manual(program, *manual); };
   });
