@@ -84,11 +84,20 @@ std::vector<std::string> choices_at(const Schema& schema, const std::string& pat
   return {};
 }
 
-/// "key=choice" for the key that is written in front of the sign.
-Candidates settings_of(const std::string& key) {
+/// "key=choice" for the key that is written in front of the sign; where there are no choices, its
+/// present value in the scene, SI.
+Candidates settings_of(const std::string& key, const std::optional<std::string>& file) {
   Candidates found;
   for (const std::string& choice : choices_at(Scene::schema(), key))
     found.push_back({key + "=" + choice, ""});
+  if (!found.empty() || !file) return found;
+  const LoadedScene loaded = load_scene(*file, {});
+  const SceneNode scene = read_scene_text(loaded.resolved(), *file);
+  const SceneNode* node = find(scene, key);
+  // Of several words each shell would make something else.
+  if (node != nullptr && node->kind == SceneNode::Kind::scalar &&
+      node->text.find_first_of(" \t") == std::string::npos)
+    found.push_back({key + "=" + node->text, "present value"});
   return found;
 }
 
@@ -162,9 +171,9 @@ Candidates all_candidates(const CLI::App& program, const std::vector<std::string
   if (const CLI::Option* option = option_named(*verb, before)) {
     if (before == "--set" || takes_key(before)) {
       const std::size_t sign = words.back().find('=');
-      if (before == "--set" && sign != std::string::npos)
-        return settings_of(words.back().substr(0, sign));
       const auto scene = file_among(line, {".yaml", ".yml"});
+      if (before == "--set" && sign != std::string::npos)
+        return settings_of(words.back().substr(0, sign), scene);
       return scene ? keys_of(*scene, before != "--set") : Candidates{};
     }
     if (before == "--channel") {

@@ -1,2 +1,21 @@
-# Completion of stridor in fish: verbs, options, keys of scenes with their units, channels of run files.
-complete -c stridor -a '(stridor complete -- (commandline -opc)[2..-1] (commandline -ct) 2>/dev/null)'
+# Completion of stridor in fish: verbs, options, keys of scenes with their units, channels of run files; else files.
+function __stridor_candidates
+  set -l before (commandline -opc)
+  set -l typed (commandline -ct)
+  # What stands behind the cursor tells the scene where that is written last.
+  set -l all (commandline -o)
+  set -l first (math (count $before) + 1)
+  if test -n "$typed"
+    set first (math $first + 1)
+  end
+  set -l behind
+  if test $first -le (count $all)
+    set behind $all[$first..-1]
+  end
+  set -l program $before[1]
+  set -e before[1]
+  command $program complete $behind -- $before "$typed" 2>/dev/null
+end
+complete -c stridor -n 'count (__stridor_candidates) >/dev/null' -f -a '(__stridor_candidates)'
+# No file can stand behind these.
+complete -c stridor -n 'string match -qr -- "^--(set|parameter|x|y|channel|input|output|about|kind)\$" (commandline -opc)[-1]' -f

@@ -81,6 +81,10 @@ TEST(Completion, OfAValueIsOneOfTheChoicesOfItsKey) {
                           "contact.assumption=subs_c", "contact.assumption=film"));
   EXPECT_THAT(completed({"run", beams(), "--set=contact.assumption=f"}),
               ElementsAre("--set=contact.assumption=film"));
+  EXPECT_THAT(completed({"run", beams(), "--set", "contact.friction.coefficient="}),
+              ElementsAre("contact.friction.coefficient=0.3\tpresent value"));
+  EXPECT_THAT(completed({"run", beams(), "--set", "contact.friction.coefficient=0.25"}), IsEmpty());
+  EXPECT_THAT(completed({"run", "--set", "contact.friction.coefficient="}), IsEmpty());
   EXPECT_THAT(completed({"locus", beams(), "--parameter=time.st"}),
               ElementsAre("--parameter=time.step\ts"));
 }
@@ -115,6 +119,41 @@ TEST(Completion, IsEmptyWhereAFileStandsOrNothingIsKnown) {
   const std::string broken = (folder / "broken.yaml").string();
   std::ofstream(broken) << "format: [";
   EXPECT_THAT(completed({"run", broken, "--set", ""}), IsEmpty());
+}
+
+// Both beside bash, where the machine has them: a word in the middle of the line, the scene behind
+// it.
+TEST(Completion, InFishAndZsh) {
+  const TemporaryFolder folder;
+  const std::string link = "mkdir -p '" + (folder / "bin").string() + "'; ln -s '" +
+                           STRIDOR_PROGRAM + "' '" + (folder / "bin/stridor").string() +
+                           "'; export PATH='" + (folder / "bin").string() + "':$PATH HOME='" +
+                           folder.path().string() + "'; ";
+  const std::string out = (folder / "out").string();
+  const std::string completions = std::string(STRIDOR_SOURCE_DIR) + "/cmake/completions/";
+  int num_tried = 0;
+  if (std::system("command -v fish >/dev/null") == 0) {
+    ++num_tried;
+    const std::string words = "stridor locus " + beams() + " --parameter contact.friction.c";
+    const std::string command = link + "fish --no-config -c \"source '" + completions +
+                                "stridor.fish'; complete -C '" + words + "'\" > '" + out + "' 2>&1";
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    EXPECT_EQ(contents_of(out), "contact.friction.coefficient\n");
+  }
+  if (std::system("command -v zsh >/dev/null") == 0) {
+    ++num_tried;
+    // The functions of its completion system, of which one is taken, print what they are given.
+    const std::string script =
+        "_describe() { shift; print -l -- ${(P)1} }; _files() { print files }; words=(stridor "
+        "locus --parameter "
+        "contact.friction.c '" +
+        beams() + "'); CURRENT=4; () { source '" + completions + "_stridor' }";
+    const std::string file = (folder / "script.zsh").string();
+    std::ofstream(file) << script;
+    ASSERT_EQ(std::system((link + "zsh -f '" + file + "' > '" + out + "' 2>&1").c_str()), 0);
+    EXPECT_EQ(contents_of(out), "contact.friction.coefficient\n");
+  }
+  if (num_tried == 0) GTEST_SKIP() << "neither fish nor zsh";
 }
 
 // bash itself, as far as its function goes.
