@@ -85,15 +85,16 @@ std::string key_of(const BodyCache::Wanted& wanted) {
                      fmt::join(wanted.watched, ","));
 }
 
-BodyCache::Reduction make_reduction(const BodyCache::Wanted& wanted) {
-  BodyCache::Reduction made;
+std::shared_ptr<const BodyCache::Reduction> make_reduction(const BodyCache::Wanted& wanted) {
+  auto kept = std::make_shared<BodyCache::Reduction>();
+  BodyCache::Reduction& made = *kept;
   made.reduced = wanted.is_whole ? make_whole(*wanted.body, wanted.watched)
                                  : make_craig_bampton(*wanted.body, wanted.interface,
                                                       wanted.num_modes, wanted.watched);
   if (wanted.interface_modes && !wanted.is_whole)
     made.reduced = with_interface_modes(made.reduced, *wanted.interface_modes);
   made.modal = make_modal(made.reduced);
-  return made;
+  return kept;
 }
 
 }  // namespace
@@ -103,30 +104,33 @@ BodyCache::BodyCache(std::size_t capacity) : capacity_(capacity) {
 }
 
 template <class Content>
-Content* BodyCache::find(Store<Content>& store, const std::string& key) {
+const Content* BodyCache::find(Store<Content>& store, const std::string& key) {
   for (Entry<Content>& entry : store) {
     if (entry.key != key) continue;
     entry.last_use = ++num_uses_;
-    return &entry.content;
+    return entry.content.get();
   }
   return nullptr;
 }
 
 template <class Content>
-Content& BodyCache::keep(Store<Content>& store, std::string key, Content content) {
+const Content& BodyCache::keep(Store<Content>& store, std::string key,
+                               std::shared_ptr<const Content> content) {
   if (store.size() >= capacity_) {
     store.erase(std::min_element(store.begin(), store.end(), [](const auto& a, const auto& b) {
       return a.last_use < b.last_use;
     }));
   }
   store.push_back({std::move(key), std::move(content), ++num_uses_});
-  return store.back().content;
+  return *store.back().content;
 }
 
 BodyMatrices BodyCache::matrices(const BodyParameters& parameters) {
   const std::string key = key_of(parameters);
   const BodyMatrices* found = find(bodies_, key);
-  if (found == nullptr) found = &keep(bodies_, key, parameters.make());
+  if (found == nullptr)
+    found = &keep(bodies_, key,
+                  std::shared_ptr<const BodyMatrices>(new BodyMatrices(parameters.make())));
   BodyMatrices body = *found;
   if (const RayleighDamping* damping = parameters.own_damping()) body.damping = *damping;
   if (const double* spin = parameters.own_spin(); spin != nullptr && body.spin)
@@ -162,7 +166,7 @@ void BodyCache::prepare(std::span<const Wanted> wanted) {
   }
   if (missing.size() < 2 || missing.size() > capacity_) return;
   const std::vector<std::pair<std::string, const Wanted*>> tasks(missing.begin(), missing.end());
-  std::vector<std::optional<Reduction>> made(tasks.size());
+  std::vector<std::shared_ptr<const Reduction>> made(tasks.size());
   run_tasks(
       tasks.size(), static_cast<int>(std::thread::hardware_concurrency()),
       [&](std::size_t task, std::size_t) {
@@ -175,7 +179,7 @@ void BodyCache::prepare(std::span<const Wanted> wanted) {
       [](std::size_t, std::size_t) {});
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     if (!made[i]) continue;
-    keep(reductions_, tasks[i].first, *std::move(made[i]));
+    keep(reductions_, tasks[i].first, std::move(made[i]));
     ++num_reductions_;
   }
 }

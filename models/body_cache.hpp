@@ -61,19 +61,21 @@ class BodyCache {
   std::int64_t num_reductions() const { return num_reductions_; }
 
  private:
+  /// Its content stays where it was made: sparse matrices are copied when they are moved.
   template <class Content>
   struct Entry {
     std::string key;
-    Content content;
+    std::shared_ptr<const Content> content;
     std::int64_t last_use = 0;
   };
   template <class Content>
   using Store = std::vector<Entry<Content>>;
 
   template <class Content>
-  Content* find(Store<Content>& store, const std::string& key);
+  const Content* find(Store<Content>& store, const std::string& key);
   template <class Content>
-  Content& keep(Store<Content>& store, std::string key, Content content);
+  const Content& keep(Store<Content>& store, std::string key,
+                      std::shared_ptr<const Content> content);
 
   std::size_t capacity_;
   std::int64_t num_uses_ = 0;

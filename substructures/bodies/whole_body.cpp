@@ -115,6 +115,8 @@ SparseSystem make_sparse(const ModalBody& body) {
 }
 
 SparseSystem block_diagonal(std::span<const SparseSystem> blocks) {
+  if (blocks.size() == 1)
+    return {blocks.front().mass, blocks.front().velocity, blocks.front().position};
   SparseSystem whole;
   for (SparseMatrix SparseSystem::*member :
        {&SparseSystem::mass, &SparseSystem::velocity, &SparseSystem::position}) {

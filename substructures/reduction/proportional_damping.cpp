@@ -17,6 +17,9 @@ std::optional<RayleighDamping> proportional_damping(const SparseMatrix& velocity
   constexpr double tolerance = 1e-12;
   const double size = velocity.norm();
   if (size == 0.0) return RayleighDamping{};
+  // What is skew is no part of either; most often that decides, at a fraction of what follows.
+  const SparseMatrix skew = velocity - SparseMatrix(velocity.transpose());
+  if (0.5 * skew.norm() > tolerance * size) return std::nullopt;
   // Of unit size, or the normal equations lose the mass beside the stiffness.
   const double mass_norm = mass.norm();
   const double stiffness_norm = stiffness.norm();
