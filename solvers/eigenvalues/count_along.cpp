@@ -1,11 +1,11 @@
 #include "solvers/eigenvalues/count_along.hpp"
 
 #include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "solvers/eigenvalues/complex_eigenpairs.hpp"
 #include "solvers/eigenvalues/eigenvalue_count.hpp"
 
 namespace stridor {
@@ -77,16 +77,15 @@ class LargestEigenvalues {
     constexpr double tolerance = 1e-3;
     values_.clear();
     if (num_applied_ == 0) return true;
-    const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver(
-        projection_.topLeftCorner(num_applied_, num_applied_));
+    const ComplexEigenpairs ritz =
+        complex_eigenpairs(projection_.topLeftCorner(num_applied_, num_applied_));
     const auto below = projection_.block(num_applied_, 0, dim_ - num_applied_, num_applied_).eval();
     bool have_converged = true;
     for (Eigen::Index i = 0; i < num_applied_; ++i) {
-      const Complex value = solver.eigenvalues()(i);
+      const Complex value = ritz.values(i);
       values_.push_back(value);
       if (std::abs(value) < least) continue;
-      have_converged &=
-          (below * solver.eigenvectors().col(i)).norm() <= tolerance * std::abs(value);
+      have_converged &= (below * ritz.vectors.col(i)).norm() <= tolerance * std::abs(value);
     }
     return have_converged && num_applied_ >= 6;
   }

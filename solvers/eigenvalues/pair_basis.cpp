@@ -1,11 +1,12 @@
 #include "solvers/eigenvalues/pair_basis.hpp"
 
 #include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "solvers/eigenvalues/complex_eigenpairs.hpp"
 
 namespace stridor {
 namespace {
@@ -190,10 +191,10 @@ PairBasis::Solution PairBasis::solve(const Group& group, const Eigen::VectorXd& 
   shifted += shift * slope;
   const Eigen::MatrixXcd inverse = shifted.partialPivLu().solve(slope);
   if (!inverse.allFinite()) return solution;
-  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver(inverse);
+  const ComplexEigenpairs ritz = complex_eigenpairs(inverse);
   std::vector<std::pair<Complex, Eigen::Index>> found;
   for (Eigen::Index i = 0; i < m; ++i) {
-    Complex s = shift - 1.0 / solver.eigenvalues()(i);
+    Complex s = shift - 1.0 / ritz.values(i);
     constexpr double real_enough = 1e-9;
     if (std::abs(s.imag()) <= real_enough * std::abs(s)) s.imag(0.0);
     const bool is_within = s.imag() >= std::max(group.low, 0.0) && s.imag() < group.high &&
@@ -205,8 +206,7 @@ PairBasis::Solution PairBasis::solve(const Group& group, const Eigen::VectorXd& 
   });
   solution.right.resize(m, static_cast<Eigen::Index>(found.size()));
   for (const auto& [s, i] : found) {
-    solution.right.col(static_cast<Eigen::Index>(solution.s.size())) =
-        solver.eigenvectors().col(i).normalized();
+    solution.right.col(static_cast<Eigen::Index>(solution.s.size())) = ritz.vectors.col(i);
     solution.s.push_back(s);
   }
   return solution;

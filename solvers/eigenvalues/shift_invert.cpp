@@ -1,11 +1,11 @@
 #include "solvers/eigenvalues/shift_invert.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "core/stop_token.hpp"
+#include "solvers/eigenvalues/complex_eigenpairs.hpp"
 
 namespace stridor {
 namespace {
@@ -89,23 +89,22 @@ class Arnoldi {
     NearestPairs found;
     const auto square = projection_.topLeftCorner(num_applied_, num_applied_);
     if (!square.allFinite()) return found;
-    const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver(square);
+    const ComplexEigenpairs ritz = complex_eigenpairs(square);
     const auto below = projection_.block(num_applied_, 0, dim_ - num_applied_, num_applied_).eval();
     std::vector<std::pair<double, Eigen::Index>> order;
     found.are_all = true;
     for (Eigen::Index i = 0; i < num_applied_; ++i) {
-      const Complex mu = solver.eigenvalues()(i);
+      const Complex mu = ritz.values(i);
       const bool is_near = std::abs(mu) * wanted_.radius >= 1.0;
       const bool has_converged =
-          (below * solver.eigenvectors().col(i)).norm() <= wanted_.tolerance * std::abs(mu);
+          (below * ritz.vectors.col(i)).norm() <= wanted_.tolerance * std::abs(mu);
       if (has_converged) order.emplace_back(-std::abs(mu), i);
       if (is_near && !has_converged) found.are_all = false;
     }
     std::sort(order.begin(), order.end());
     for (const auto& [unused, i] : order) {
-      const Eigen::VectorXcd x =
-          basis_.topLeftCorner(size(), num_applied_) * solver.eigenvectors().col(i);
-      found.pairs.push_back({wanted_.shift + 1.0 / solver.eigenvalues()(i), x.normalized()});
+      const Eigen::VectorXcd x = basis_.topLeftCorner(size(), num_applied_) * ritz.vectors.col(i);
+      found.pairs.push_back({wanted_.shift + 1.0 / ritz.values(i), x.normalized()});
     }
     return found;
   }
