@@ -50,6 +50,13 @@ Json verdict(const std::string& level, const std::string& text) {
   return {{"level", level}, {"text", text}};
 }
 
+std::vector<double> points_of(const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<double> points;
+  points.reserve(2 * x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) points.insert(points.end(), {x[i], y[i]});
+  return points;
+}
+
 std::string shown(double value, const std::string& units) {
   if (units.empty() || units == "1") return fmt::format("{:.4g}", value);
   return quantity_text(value, units);

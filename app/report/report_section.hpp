@@ -55,6 +55,9 @@ Json verdict(const std::string& level, const std::string& text);
 /// "0.123 m/s^2" for people, with a prefix where the unit has one.
 std::string shown(double value, const std::string& units);
 
+/// Points of a line as the page has them: x and y of one after the other.
+std::vector<double> points_of(const std::vector<double>& x, const std::vector<double>& y);
+
 /// Levels over time and frequency as a view of the page, in steps of half a decibel, the highest of
 /// neighbours where there are more than a picture shows.
 /// @param amplitude row per frequency, column per time

@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "app/report/mode_frames.hpp"
 #include "core/errors.hpp"
@@ -11,14 +15,46 @@
 namespace stridor {
 namespace {
 
+/// Rows of a rectangle, of which the first `sizes` entries each are of a list and the rest is NaN.
+using RowSizes = std::vector<std::size_t>;
+
+RowSizes row_sizes(const ResultFile& file, const std::string& path) {
+  const std::vector<double> numbers = file.read(path, 2);
+  const std::size_t width = file.array(path).shape.back();
+  RowSizes sizes(file.array(path).shape.front());
+  for (std::size_t row = 0; row < sizes.size(); ++row) {
+    const auto begin = numbers.begin() + static_cast<std::ptrdiff_t>(row * width);
+    const auto end = begin + static_cast<std::ptrdiff_t>(width);
+    sizes[row] = static_cast<std::size_t>(
+        std::find_if(begin, end, [](double one) { return std::isnan(one); }) - begin);
+  }
+  return sizes;
+}
+
+/// The lists that a rectangle holds.
+std::vector<std::vector<double>> lists_in(const ResultFile& file, const std::string& path,
+                                          const RowSizes& sizes) {
+  const std::vector<double> numbers = file.read(path, 2);
+  const ResultArray& array = file.array(path);
+  const std::size_t width = array.shape.back();
+  const auto is_too_long = [&](std::size_t size) { return size > width; };
+  if (array.shape.front() != sizes.size() || std::ranges::any_of(sizes, is_too_long))
+    throw FileError(Refusal::file_damaged, file.path(), path,
+                    "is unlike the others of its group in extent");
+  std::vector<std::vector<double>> lists;
+  for (std::size_t row = 0; row < sizes.size(); ++row) {
+    const auto begin = numbers.begin() + static_cast<std::ptrdiff_t>(row * width);
+    lists.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(sizes[row]));
+  }
+  return lists;
+}
+
 /// Numbers of one column of all branches, one after the other.
-std::vector<double> of_branches(const ResultFile& file, const std::vector<std::string>& branches,
+std::vector<double> of_branches(const ResultFile& file, const RowSizes& sizes,
                                 const std::string& column) {
   std::vector<double> all;
-  for (const std::string& branch : branches) {
-    const std::vector<double> values = file.read("/branches/" + branch + "/" + column);
-    all.insert(all.end(), values.begin(), values.end());
-  }
+  for (const std::vector<double>& list : lists_in(file, "/branches/" + column, sizes))
+    all.insert(all.end(), list.begin(), list.end());
   return all;
 }
 
@@ -26,14 +62,13 @@ std::vector<double> of_branches(const ResultFile& file, const std::vector<std::s
 /// each place in the order of their frequencies.
 Json curves_view(const ResultFile& file, ReportPage& page) {
   Json sizes = Json::array();
-  const std::vector<std::string> branches = file.names_in("/branches");
-  for (const std::string& branch : branches)
-    sizes.push_back(file.array("/branches/" + branch + "/value").shape.front());
-  if (!branches.empty()) {
-    return {{"sizes", sizes},
-            {"value", page.add_numbers(of_branches(file, branches, "value"))},
-            {"growth", page.add_numbers(of_branches(file, branches, "growth"))},
-            {"frequency", page.add_numbers(of_branches(file, branches, "frequency"))}};
+  const RowSizes of_each =
+      file.has("/branches/value") ? row_sizes(file, "/branches/value") : RowSizes{};
+  if (!of_each.empty()) {
+    return {{"sizes", of_each},
+            {"value", page.add_numbers(of_branches(file, of_each, "value"))},
+            {"growth", page.add_numbers(of_branches(file, of_each, "growth"))},
+            {"frequency", page.add_numbers(of_branches(file, of_each, "frequency"))}};
   }
   const std::vector<double> values = file.read("/values");
   const std::vector<double> growth = file.read("/eigenvalues/growth", 2);
@@ -110,8 +145,13 @@ Json map_view(const ResultFile& file, ReportPage& page) {
         Refusal::file_damaged, file.path(), "/growth",
         fmt::format("has {} entries, /x and /y {} and {}", growth.size(), x.size(), y.size()));
   Json lines = Json::array();
-  for (const std::string& name : file.names_in("/boundary"))
-    lines.push_back(page.add_numbers(file.read("/boundary/" + name, 2)));
+  const RowSizes sizes = file.has("/boundary/x") ? row_sizes(file, "/boundary/x") : RowSizes{};
+  if (!sizes.empty()) {
+    const auto of_x = lists_in(file, "/boundary/x", sizes);
+    const auto of_y = lists_in(file, "/boundary/y", sizes);
+    for (std::size_t line = 0; line < sizes.size(); ++line)
+      lines.push_back(page.add_numbers(points_of(of_x[line], of_y[line])));
+  }
   return {
       {"type", "field"},
       {"x",

@@ -50,7 +50,6 @@ Json sweep_section(const ResultFile& file, const ReportContext& context) {
   for (const std::string& group : groups) {
     Json view = curves_of_group(file, group, "value", context.page);
     view["x"]["name"] = file.text("parameter");
-    if (const std::string units = file.text("units_of_value"); !units.empty()) view["x"]["units"] = units;
     if (!group.empty()) view["title"] = group.substr(1);
     const std::vector<std::string> reasons = file.texts(group + "/reason");
     const std::vector<double> values = file.read(group + "/value");
@@ -200,8 +199,14 @@ Json contact_section(const ResultFile& file, const ReportContext& context) {
   for (const std::string& name : contacts) {
     const std::string group = "/contacts/" + name;
     Json lines = Json::array();
-    if (file.has(group + "/edge"))
-      lines.push_back(context.page.add_numbers(file.read(group + "/edge", 2)));
+    if (file.has(group + "/edge_x")) {
+      const std::vector<double> edge_x = file.read(group + "/edge_x");
+      const std::vector<double> edge_y = file.read(group + "/edge_y");
+      if (edge_x.size() != edge_y.size())
+        throw FileError(Refusal::file_damaged, file.path(), group + "/edge_y",
+                        "is unlike edge_x in length");
+      lines.push_back(context.page.add_numbers(points_of(edge_x, edge_y)));
+    }
     section["views"].push_back(
         {{"type", "field"},
          {"title", "contact " + name},

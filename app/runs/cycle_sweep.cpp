@@ -136,7 +136,7 @@ void write_file(const SweepOptions& options, const LoadedScene& loaded, const Nu
   for (const auto& branch : branches) {
     const auto& name = branch.first;
     const auto& points = branch.second;
-    const auto add = [&](const char* column, const char* units, auto&& of) {
+    const auto add = [&](const char* column, const std::string& units, auto&& of) {
       Column one{"/" + name + "/" + column, units, {}};
       for (const SweepPoint& point : points) one.values.push_back(static_cast<double>(of(point)));
       columns.push_back(std::move(one));
@@ -148,7 +148,7 @@ void write_file(const SweepOptions& options, const LoadedScene& loaded, const Nu
         return found.is_null() ? std::numeric_limits<double>::quiet_NaN() : found.get<double>();
       });
     };
-    add("value", "1", [](const SweepPoint& p) { return p.value; });
+    add("value", printed_units(key), [](const SweepPoint& p) { return p.value; });
     add_result("period", "s", "/period");
     add_result("x_rms", "m", "/x/rms");
     add_result("x_mean", "m", "/x/mean");
@@ -167,7 +167,6 @@ void write_file(const SweepOptions& options, const LoadedScene& loaded, const Nu
   }
   Attributes attributes = cycle_attributes(loaded, options.command_line);
   attributes.push_back({"parameter", key.path});
-  attributes.push_back({"units_of_value", printed_units(key)});
   std::string statuses;
   for (int status = 0; status <= static_cast<int>(CycleStatus::settling); ++status) {
     statuses += fmt::format("{}{} {}", status > 0 ? ", " : "", status,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "app/stability/prediction.hpp"
 
@@ -21,7 +22,7 @@ void store_windows(RunFileWriter& writer, const std::vector<PredictedBurst>& pre
     std::vector<double> values;
     values.reserve(predictions.size());
     for (const PredictedBurst& one : predictions) values.push_back(value_of(one));
-    writer.write_static("/windows/" + name, values, units);
+    writer.write_static({"/windows/" + name, std::move(values), units});
   };
   store("from", "s", [](const PredictedBurst& one) { return one.window.from_time; });
   store("to", "s", [](const PredictedBurst& one) { return one.window.to_time; });
@@ -40,8 +41,8 @@ void store_harmonics(RunFileWriter& writer, const std::vector<Burst>& bursts) {
     of.push_back(index_or_none(burst.harmonic ? std::optional(burst.harmonic->of) : std::nullopt));
     orders.push_back(burst.harmonic ? burst.harmonic->order : 1);
   }
-  writer.write_static("/bursts/harmonic_of", of, "1");
-  writer.write_static("/bursts/order", orders, "1");
+  writer.write_static({"/bursts/harmonic_of", std::move(of), "1"});
+  writer.write_static({"/bursts/order", std::move(orders), "1"});
 }
 
 /// The courses one behind the other, every point with the index of its burst.
@@ -56,10 +57,10 @@ void store_courses(RunFileWriter& writer, const std::vector<Burst>& bursts) {
     }
   }
   if (indices.empty()) return;
-  writer.write_static("/bursts/course/burst", indices, "1");
-  writer.write_static("/bursts/course/time", times, "s");
-  writer.write_static("/bursts/course/frequency", frequencies, "Hz");
-  writer.write_static("/bursts/course/level", levels, "m/s^2");
+  writer.write_static({"/bursts/course/burst", std::move(indices), "1"});
+  writer.write_static({"/bursts/course/time", std::move(times), "s"});
+  writer.write_static({"/bursts/course/frequency", std::move(frequencies), "Hz"});
+  writer.write_static({"/bursts/course/level", std::move(levels), "m/s^2"});
 }
 
 }  // namespace
@@ -78,7 +79,7 @@ void store_bursts(RunFileWriter& writer, const std::vector<Burst>& bursts) {
     std::vector<double> values;
     values.reserve(bursts.size());
     for (const Burst& burst : bursts) values.push_back(burst.*member);
-    writer.write_static(std::string("/bursts/") + name, values, units);
+    writer.write_static({std::string("/bursts/") + name, std::move(values), units});
   }
   store_harmonics(writer, bursts);
   store_courses(writer, bursts);
@@ -97,7 +98,7 @@ void store_heard_windows(RunFileWriter& writer, const std::vector<TimedWindow>& 
     std::vector<double> indices;
     indices.reserve(bursts.size());
     for (const auto& index : explained_by) indices.push_back(index_or_none(index));
-    writer.write_static("/bursts/window", indices, "1");
+    writer.write_static({"/bursts/window", std::move(indices), "1"});
   }
   results["prediction"] = prediction_json(predictions);
   results["unexplained"] = unexplained(predictions, numbered);

@@ -55,12 +55,12 @@ std::vector<Column> columns_of_settings(const Json& rows) {
     status.texts.push_back(row["status"].get<std::string>());
     on_front.values.push_back(row["on_front"].get<bool>() ? 1.0 : 0.0);
   }
-  std::vector<Column> columns{std::move(method), std::move(status)};
+  std::vector<Column> columns;
   for (const SettingNumber& number : setting_numbers) {
     columns.push_back({number.path, number.units, {}});
     for (const Json& row : rows) columns.back().values.push_back(number_in(row, number.pointer));
   }
-  columns.push_back(std::move(on_front));
+  for (Column* column : {&method, &status, &on_front}) columns.push_back(std::move(*column));
   return columns;
 }
 

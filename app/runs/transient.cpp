@@ -183,9 +183,11 @@ void Transient::write_final_motion() {
   driver_->keep_final_motion();
   const State motion = driver_->final_motion();
   for (const auto& [path, values] : motion.arrays()) {
+    const bool is_time = path == "time";
     const bool is_velocity = path.ends_with("/velocity");
-    writer_->write_static("/final/" + path, values,
-                          path == "time" ? "s" : (is_velocity ? "m/s" : "m"));
+    const bool is_of_drives = path == "drive_displacement";
+    writer_->write_static({"/final/" + path, values, is_time ? "s" : (is_velocity ? "m/s" : "m"),
+                           is_time ? "time" : (is_of_drives ? "drive" : "coordinate")});
   }
 }
 

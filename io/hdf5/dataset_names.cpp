@@ -1,6 +1,9 @@
 #include "io/hdf5/dataset_names.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
 #include <vector>
 
 namespace stridor {
@@ -38,26 +41,209 @@ std::string channel_text(const std::string& channel) {
   return quantity + " of " + place + along;
 }
 
+/// What a dataset is called; a name in the path is `*`, its place in the text `{}`.
+struct DatasetName {
+  const char* path;
+  const char* text;
+};
+
+constexpr std::array dataset_names{
+    // Runs.
+    DatasetName{"/time", "time since the start"},
+    DatasetName{"/contact/*/force", "contact force of {}"},
+    DatasetName{"/contact/*/friction_force", "friction force of {} along the first tangent"},
+    DatasetName{"/contact/*/friction_across", "friction force of {} along the second tangent"},
+    DatasetName{"/contact/*/gap", "gap of the contact {}"},
+    DatasetName{"/contact/*/slip_velocity",
+                "slip velocity of the contact {} along the first tangent"},
+    DatasetName{"/contact/*/slip_across",
+                "slip velocity of the contact {} along the second tangent"},
+    DatasetName{"/contact/*/position", "position of the contact {} along the master"},
+    DatasetName{"/contact/*/state", "state of the contact {}: open, stick or slip"},
+    DatasetName{"/contact/*/area", "area of the contact {}"},
+    DatasetName{"/energy/*", "{} in the balance of energy"},
+    DatasetName{"/bursts/number", "number of the burst"},
+    DatasetName{"/bursts/start", "time at which the burst begins"},
+    DatasetName{"/bursts/end", "time at which the burst ends"},
+    DatasetName{"/bursts/frequency", "frequency of the burst where it rises most steeply"},
+    DatasetName{"/bursts/peak", "largest amplitude of the acceleration in the burst"},
+    DatasetName{"/bursts/gain", "natural logarithm of the rise of the burst"},
+    DatasetName{"/bursts/start_frequency", "frequency at which the burst begins"},
+    DatasetName{"/bursts/end_frequency", "frequency at which the burst ends"},
+    DatasetName{"/bursts/harmonic_of",
+                "index, from 0, of the louder burst of which this one is a harmonic; -1: none"},
+    DatasetName{"/bursts/order", "multiple of the frequency of that louder burst; 1: none"},
+    DatasetName{"/bursts/course/number", "number of the point of the courses"},
+    DatasetName{"/bursts/course/burst", "index, from 0, of the burst to which the point belongs"},
+    DatasetName{"/bursts/course/time", "time at the point of the course of the burst"},
+    DatasetName{"/bursts/course/frequency", "frequency at the point of the course of the burst"},
+    DatasetName{"/bursts/course/level", "r.m.s. value of the burst at the point of its course"},
+    DatasetName{"/bursts/window",
+                "index, from 0, of the predicted window that explains the burst; -1: none"},
+    DatasetName{"/bursts/value", "value of the parameter in whose run the burst was"},
+    DatasetName{"/windows/number", "number of the predicted window"},
+    DatasetName{"/windows/from", "time at which the run comes into the unstable window"},
+    DatasetName{"/windows/to", "time at which the run leaves the unstable window"},
+    DatasetName{"/windows/frequency", "frequency of the mode that grows fastest in the window"},
+    DatasetName{"/windows/growth_max", "growth rate of the mode that grows fastest in the window"},
+    DatasetName{"/windows/gain", "integral of the growth rate over the time in the window"},
+    DatasetName{"/windows/burst", "index, from 0, of the burst that the window explains; -1: none"},
+    DatasetName{"/modal/*/number", "number of the mode of {}"},
+    DatasetName{"/modal/*/frequency", "natural frequency of {} by itself"},
+    DatasetName{"/modal/*/damping_ratio", "damping ratio of the mode of {} by itself"},
+    DatasetName{"/final/time", "time at the end of the run"},
+    DatasetName{"/final/drive", "number of the drive"},
+    DatasetName{"/final/drive_displacement", "displacement of the drive at the end of the run"},
+    DatasetName{"/final/*/coordinate", "number of the reduced coordinate of {}"},
+    DatasetName{"/final/*/displacement",
+                "displacement of {} at the end of the run, in reduced coordinates"},
+    DatasetName{"/final/*/velocity",
+                "velocity of {} at the end of the run, in reduced coordinates"},
+    DatasetName{"/checkpoint/*", "state from which the run can go on, as bytes ({} of two)"},
+    DatasetName{"/scene/text", "the scene as it was given"},
+    DatasetName{"/scene/resolved", "the scene with every key and default written out"},
+    DatasetName{"/scene/digests", "digests of the files that the scene names"},
+    // Loci and maps.
+    DatasetName{"/values", "value of the parameter"},
+    DatasetName{"/eigenvalues/number", "number of the eigenvalue in the order of frequencies"},
+    DatasetName{"/eigenvalues/growth", "growth rate of the eigenvalue"},
+    DatasetName{"/eigenvalues/frequency", "frequency of the eigenvalue"},
+    DatasetName{"/branches/number", "number of the branch: an eigenvalue that was followed"},
+    DatasetName{"/branches/point", "number of the point on its branch"},
+    DatasetName{"/branches/value", "value of the parameter at the point of the branch"},
+    DatasetName{"/branches/growth", "growth rate of the eigenvalue at the point of the branch"},
+    DatasetName{"/branches/frequency", "frequency of the eigenvalue at the point of the branch"},
+    DatasetName{"/unstable/number", "number of the unstable window"},
+    DatasetName{"/unstable/from", "value of the parameter where the unstable window begins"},
+    DatasetName{"/unstable/to", "value of the parameter where the unstable window ends"},
+    DatasetName{"/unstable/value_max",
+                "value of the parameter where the growth in the window is fastest"},
+    DatasetName{"/unstable/growth_max", "growth rate of the mode that grows fastest in the window"},
+    DatasetName{"/unstable/frequency", "frequency of the mode that grows fastest in the window"},
+    DatasetName{"/unstable/growth_integral",
+                "integral of the growth rate over the values in the window"},
+    DatasetName{"/unstable/from_time", "time at which a run comes into the window"},
+    DatasetName{"/unstable/to_time", "time at which a run leaves the window"},
+    DatasetName{"/unstable/gain", "integral of the growth rate over the time in the window"},
+    DatasetName{"/x", "value of the parameter along x"},
+    DatasetName{"/y", "value of the parameter along y"},
+    DatasetName{"/growth", "growth rate of the mode that grows fastest"},
+    DatasetName{"/boundary/number", "number of the line where stability changes"},
+    DatasetName{"/boundary/point", "number of the point on its line"},
+    DatasetName{"/boundary/x", "value of the parameter along x where stability changes"},
+    DatasetName{"/boundary/y", "value of the parameter along y where stability changes"},
+    // Sweeps of transients.
+    DatasetName{"/value", "value of the parameter"},
+    DatasetName{"/failed", "whether the run failed: 1 yes, 0 no"},
+    DatasetName{"/reason", "why the run failed; empty where it did not"},
+    DatasetName{"/acceleration_peak", "largest acceleration in the window of `measure`"},
+    DatasetName{"/acceleration_rms", "r.m.s. value of the acceleration in the window of `measure`"},
+    DatasetName{"/force_min", "least contact force in the window of `measure`"},
+    DatasetName{"/force_max", "largest contact force in the window of `measure`"},
+    DatasetName{"/stick_fraction", "share of the time in the window of `measure` in stick"},
+    DatasetName{"/free_fraction", "share of the time in the window of `measure` without contact"},
+    DatasetName{"/violations", "number of steps that violate persistent sliding"},
+    DatasetName{"/steps", "number of steps of the run"},
+    DatasetName{"/num_bursts", "number of bursts in the window of `measure`"},
+    // Responses and spectrograms.
+    DatasetName{"/frequency", "frequency of the force"},
+    DatasetName{"/responses/*/*/real", "real part of {} per force at {}"},
+    DatasetName{"/responses/*/*/imaginary", "imaginary part of {} per force at {}"},
+    DatasetName{"/times", "time at the middle of the piece"},
+    DatasetName{"/frequencies", "frequency of the line"},
+    DatasetName{"/amplitude", "peak amplitude of a sine of this frequency"},
+    // Contacts on rubber.
+    DatasetName{"/rows/speed", "dimensionless sliding speed"},
+    DatasetName{"/rows/indentation", "dimensionless indentation"},
+    DatasetName{"/rows/force", "dimensionless normal force"},
+    DatasetName{"/rows/area", "dimensionless area of contact"},
+    DatasetName{"/rows/friction", "coefficient of friction of the rubber's losses"},
+    DatasetName{"/rows/converged", "whether the solution converged: 1 yes, 0 no"},
+    DatasetName{"/rows/touches_window",
+                "whether the contact reaches the edge of the grid: 1 yes, 0 no"},
+    DatasetName{"/rows/has_resolved_edge",
+                "whether the grid resolves the edge of the contact: 1 yes, 0 no"},
+    DatasetName{"/rows/memory_in_cells",
+                "way slid in the shortest memory of the rubber, in cells of the grid"},
+    DatasetName{"/rows/rounds", "number of rounds of the solution"},
+    DatasetName{"/rows/products", "number of products with the matrix of influences"},
+    DatasetName{"/rows/residual", "residual of the solution"},
+    DatasetName{"/contacts/*/x", "place along the sliding, contact {}"},
+    DatasetName{"/contacts/*/y", "place across the sliding, contact {}"},
+    DatasetName{"/contacts/*/pressure", "contact pressure, contact {}"},
+    DatasetName{"/contacts/*/gap", "gap between the surfaces, contact {}"},
+    DatasetName{"/contacts/*/edge_point",
+                "number of the point on the edge of the area of contact {}"},
+    DatasetName{"/contacts/*/edge_x",
+                "place along the sliding of the edge of the area of contact {}"},
+    DatasetName{"/contacts/*/edge_y",
+                "place across the sliding of the edge of the area of contact {}"},
+    // Errors against run times.
+    DatasetName{"/settings/method", "integrator, modes and assumption of the setting"},
+    DatasetName{"/settings/status", "how the run ended"},
+    DatasetName{"/settings/step", "time step of the run"},
+    DatasetName{"/settings/tolerance", "tolerance of the event-driven integrator"},
+    DatasetName{"/settings/modes", "number of modes that move"},
+    DatasetName{"/settings/run_time", "time that the steps of the run take"},
+    DatasetName{"/settings/error", "relative error in the norm chosen"},
+    DatasetName{"/settings/error_of_force", "relative error of the contact force"},
+    DatasetName{"/settings/error_of_acceleration", "relative error of the acceleration"},
+    DatasetName{"/settings/error_of_envelope",
+                "relative error of the envelope of the acceleration"},
+    DatasetName{"/settings/on_front",
+                "whether no other setting has less time and a smaller error: 1 yes, 0 no"},
+    DatasetName{"/reduction/number",
+                "number of the comparison of a reduced body with the full one"},
+    DatasetName{"/reduction/body", "body that is reduced"},
+    DatasetName{"/reduction/frequency",
+                "frequency at which the reduced body is compared with the full one"},
+    DatasetName{
+        "/reduction/error",
+        "relative difference of displacements per force of the reduced body and the full one"},
+    // Sweeps of limit cycles, in a group for each way; last, since any group fits them.
+    DatasetName{"/*/value", "value of the parameter ({})"},
+    DatasetName{"/*/period", "period of the limit cycle ({})"},
+    DatasetName{"/*/x_rms", "r.m.s. value of the displacement over a period ({})"},
+    DatasetName{"/*/x_mean", "mean displacement over a period ({})"},
+    DatasetName{"/*/x_min", "least displacement over a period ({})"},
+    DatasetName{"/*/x_max", "largest displacement over a period ({})"},
+    DatasetName{"/*/stick_fraction", "share of the period in stick ({})"},
+    DatasetName{"/*/free_fraction", "share of the period without contact ({})"},
+    DatasetName{"/*/status",
+                "what was found, by the numbers of the attribute meaning_of_status ({})"},
+    DatasetName{"/*/reason", "why no limit cycle was found; empty where one was ({})"},
+    DatasetName{"/*/equilibrium_stable",
+                "whether the sliding equilibrium is stable: 1 yes, 0 no ({})"},
+};
+
+/// The text of a name for a path; empty where it is another one.
+std::string text_for(const DatasetName& name, const std::vector<std::string>& parts) {
+  const std::vector<std::string> pattern = parts_of(name.path, '/');
+  if (pattern.size() != parts.size()) return "";
+  std::string text = name.text;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (pattern[i] != "*") {
+      if (pattern[i] != parts[i]) return "";
+      continue;
+    }
+    const std::size_t place = text.find("{}");
+    if (place != std::string::npos) text.replace(place, 2, parts[i]);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string long_name_of(const std::string& path) {
   const std::vector<std::string> parts = parts_of(path, '/');
   if (parts.empty()) return "";
-  const std::string name = spaced(parts.back());
-  if (parts.size() == 1) return name;
-  const std::string& group = parts.front();
-  if (group == "channels") return channel_text(parts.back());
-  if (group == "contact") return name + " of the contact " + parts[1];
-  if (group == "modal") return name + " of the modes of " + parts[1] + " by itself";
-  if (group == "final") return name + (parts.size() > 2 ? " of " + parts[1] : "") + " at the end";
-  if (group == "bursts") return name + (parts.size() > 2 ? " on the courses" : "") + " of bursts";
-  if (group == "windows") return name + " of predicted unstable windows";
-  if (group == "unstable") return name + " of unstable windows";
-  if (group == "responses" && parts.size() == 4)
-    return name + " part of " + parts[1] + " per force at " + parts[2];
-  std::string rest;
-  for (std::size_t i = 0; i + 1 < parts.size(); ++i) rest += (i > 0 ? " " : "") + spaced(parts[i]);
-  return name + ", " + rest;
+  if (parts.front() == "channels") return channel_text(parts.back());
+  for (const DatasetName& name : dataset_names)
+    if (std::string text = text_for(name, parts); !text.empty()) return text;
+  std::string text = spaced(parts.back());
+  for (std::size_t i = 0; i + 1 < parts.size(); ++i)
+    text += (i > 0 ? " " : ", ") + spaced(parts[i]);
+  return text;
 }
 
 }  // namespace stridor

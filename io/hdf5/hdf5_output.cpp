@@ -4,12 +4,20 @@
 #include <hdf5_hl.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/errors.hpp"
 #include "io/hdf5/dataset_names.hpp"
 #include "io/hdf5/part_file.hpp"
 
 namespace stridor {
+
+Handle link_creation(const Checker& at) {
+  Handle links = at.own(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "", "cannot set up HDF5");
+  at.check(H5Pset_create_intermediate_group(links.id(), 1), "", "cannot set up HDF5");
+  at.check(H5Pset_char_encoding(links.id(), H5T_CSET_UTF8), "", "cannot set up HDF5");
+  return links;
+}
 
 Handle text_type(const Checker& at, std::size_t length, const std::string& dataset) {
   Handle type = at.own(H5Tcopy(H5T_C_S1), H5Tclose, dataset, "cannot make a text type");
@@ -35,17 +43,12 @@ void write_attribute(const Checker& at, hid_t object, const std::string& dataset
   at.check(status, dataset, what.c_str());
 }
 
-void Hdf5Writer::make_group(const std::string& path) const {
-  at_.own(H5Gcreate2(file_, path.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, path,
-          "cannot make the group");
-}
-
 Handle Hdf5Writer::write(const std::string& path, const std::vector<hsize_t>& shape,
                          const double* values, const std::string& units) const {
   const Handle space =
       at_.own(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose,
               path, "cannot make the dataset");
-  Handle dataset = at_.own(H5Dcreate2(file_, path.c_str(), H5T_IEEE_F64LE, space.id(), H5P_DEFAULT,
+  Handle dataset = at_.own(H5Dcreate2(file_, path.c_str(), H5T_IEEE_F64LE, space.id(), links_.id(),
                                       H5P_DEFAULT, H5P_DEFAULT),
                            H5Dclose, path, "cannot make the dataset");
   at_.check(H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), path,
@@ -55,7 +58,16 @@ Handle Hdf5Writer::write(const std::string& path, const std::vector<hsize_t>& sh
   return dataset;
 }
 
-void Hdf5Writer::write_texts(const std::string& path, const std::vector<std::string>& texts) const {
+Handle Hdf5Writer::write_numbers(const std::string& path, std::size_t count) const {
+  std::vector<double> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), 1.0);
+  Handle dataset = write(path, numbers, "1");
+  make_scale(dataset, path);
+  return dataset;
+}
+
+Handle Hdf5Writer::write_texts(const std::string& path,
+                               const std::vector<std::string>& texts) const {
   std::size_t longest = 0;
   for (const std::string& text : texts) longest = std::max(longest, text.size());
   const hsize_t count = texts.size();
@@ -64,9 +76,9 @@ void Hdf5Writer::write_texts(const std::string& path, const std::vector<std::str
   const Handle type = text_type(at_, longest, path);
   // Marked as ASCII though it may hold UTF-8: Octave stops at the first text of another kind.
   at_.check(H5Tset_cset(type.id(), H5T_CSET_ASCII), path, "cannot make a text type");
-  const Handle dataset = at_.own(H5Dcreate2(file_, path.c_str(), type.id(), space.id(), H5P_DEFAULT,
-                                            H5P_DEFAULT, H5P_DEFAULT),
-                                 H5Dclose, path, "cannot make the dataset");
+  Handle dataset = at_.own(
+      H5Dcreate2(file_, path.c_str(), type.id(), space.id(), links_.id(), H5P_DEFAULT, H5P_DEFAULT),
+      H5Dclose, path, "cannot make the dataset");
   std::string stored(texts.size() * (longest + 1), '\0');
   for (std::size_t i = 0; i < texts.size(); ++i) texts[i].copy(&stored[i * (longest + 1)], longest);
   if (!texts.empty()) {
@@ -74,7 +86,9 @@ void Hdf5Writer::write_texts(const std::string& path, const std::vector<std::str
               "cannot be written");
   }
   write_attribute(at_, dataset.id(), path, "encoding", std::string("UTF-8"));
+  write_attribute(at_, dataset.id(), path, "units", std::string("1"));
   write_attribute(at_, dataset.id(), path, "long_name", long_name_of(path));
+  return dataset;
 }
 
 void Hdf5Writer::make_scale(const Handle& dataset, const std::string& path) const {

@@ -12,6 +12,9 @@
 
 namespace stridor {
 
+/// Creation of links: groups as needed, names in UTF-8. @throws FileError if HDF5 refuses
+Handle link_creation(const Checker& at);
+
 /// The type of a text of fixed length in UTF-8. @throws FileError if HDF5 refuses
 Handle text_type(const Checker& at, std::size_t length, const std::string& dataset);
 
@@ -34,25 +37,25 @@ void write_introduction(const Checker& at, hid_t file, const Attributes& attribu
 void write_default_plot(const Checker& at, hid_t file, const std::string& signal,
                         const std::vector<std::string>& axes);
 
-/// Fills a file that is being made.
+/// Fills a file that is being made. Every dataset gets its unit ("1": none) and what it is, as
+/// long_name_of() says it, as attributes; the groups in its path are made.
 class Hdf5Writer {
  public:
   /// @param at, file must live longer
-  Hdf5Writer(const Checker& at, hid_t file) : at_(at), file_(file) {}
-
-  const Checker& checker() const { return at_; }
-
   /// @throws FileError if HDF5 refuses, like the next
-  void make_group(const std::string& path) const;
-  /// Writes a dataset of numbers with its unit, and what it is, as attributes.
+  Hdf5Writer(const Checker& at, hid_t file) : at_(at), file_(file), links_(link_creation(at)) {}
+
+  /// Writes a dataset of numbers.
   /// @param shape  extents, the last one contiguous in `values`
   /// @return the dataset
   Handle write(const std::string& path, const std::vector<hsize_t>& shape, const double* values,
                const std::string& units) const;
   Handle write(const std::string& path, const std::vector<double>& values,
                const std::string& units) const;
+  /// Writes 1, 2, …, `count` as the scale of what has no coordinate of its own.
+  Handle write_numbers(const std::string& path, std::size_t count) const;
   /// Writes texts of one fixed length.
-  void write_texts(const std::string& path, const std::vector<std::string>& texts) const;
+  Handle write_texts(const std::string& path, const std::vector<std::string>& texts) const;
   /// Makes a dataset the scale of an extent of others: their coordinate for readers like xarray.
   void make_scale(const Handle& dataset, const std::string& path) const;
   /// Ties an extent of a dataset to a scale.
@@ -64,6 +67,7 @@ class Hdf5Writer {
  private:
   const Checker& at_;
   hid_t file_;
+  Handle links_;
 };
 
 /// Makes a file with attributes at its root, lets it be filled, and gives it its name when it is

@@ -1,7 +1,10 @@
 #include "io/results/column_file.hpp"
 
+#include <fmt/format.h>
+
+#include <cstddef>
 #include <map>
-#include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "io/hdf5/hdf5_output.hpp"
@@ -18,11 +21,36 @@ bool is_scale(const std::string& path) {
   return path.ends_with("/time") || path.ends_with("/value") || path.ends_with("/run_time");
 }
 
-/// The path of the scale that stands in a group.
-std::string scale_path(const std::string& group, const std::vector<Column>& columns) {
-  for (const Column& column : columns)
-    if (is_scale(column.path) && group_of(column.path) == group) return column.path;
-  return "";
+/// A column of which others are functions, in the file.
+struct ColumnScale {
+  Handle dataset;
+  std::string path;
+  std::size_t length = 0;
+};
+
+/// Scales by their groups.
+using ColumnScales = std::map<std::string, ColumnScale>;
+
+/// The scale of a column: that of its own group, or of the nearest one about it; numbers where none
+/// is.
+const ColumnScale& column_scale(const Column& column, const Hdf5Writer& writer,
+                                ColumnScales& scales) {
+  const std::size_t length = column.length();
+  for (std::string group = group_of(column.path);; group = group_of(group)) {
+    const auto scale = scales.find(group);
+    if (scale != scales.end() && scale->second.length == length) return scale->second;
+    if (group.empty()) break;
+  }
+  const std::string group = group_of(column.path);
+  const std::string path = group + "/number";
+  const auto [scale, is_new] = scales.try_emplace(group);
+  if (!is_new) {
+    throw std::invalid_argument(fmt::format("write_column_file: '{}' has {} entries, '{}' {}",
+                                            column.path, length, scale->second.path,
+                                            scale->second.length));
+  }
+  scale->second = {writer.write_numbers(path, length), path, length};
+  return scale->second;
 }
 
 }  // namespace
@@ -32,39 +60,22 @@ void write_column_file(const std::string& path, Overwrite overwrite, const std::
   Attributes all{{"kind", kind}};
   all.insert(all.end(), attributes.begin(), attributes.end());
   write_hdf5_file(path, overwrite, all, [&](const Hdf5Writer& writer) {
-    std::set<std::string> groups;
-    std::map<std::string, std::pair<Handle, std::size_t>> scales;  // by group, with their length
+    ColumnScales scales;
     std::string signal;
     std::string axis;
     for (const Column& column : columns) {
-      for (std::size_t slash = column.path.find('/', 1); slash != std::string::npos;
-           slash = column.path.find('/', slash + 1)) {
-        const std::string group = column.path.substr(0, slash);
-        if (groups.insert(group).second) writer.make_group(group);
-      }
-      if (!column.texts.empty()) {
-        writer.write_texts(column.path, column.texts);
-        continue;
-      }
-      Handle written = writer.write(column.path, column.values, column.units);
+      Handle written = column.texts.empty() ? writer.write(column.path, column.values, column.units)
+                                            : writer.write_texts(column.path, column.texts);
       if (is_scale(column.path)) {
         writer.make_scale(written, column.path);
-        const std::size_t length = column.values.size();
-        scales.emplace(group_of(column.path), std::pair(std::move(written), length));
+        scales[group_of(column.path)] = {std::move(written), column.path, column.length()};
         continue;
       }
-      // That of its own group, or of the nearest one about it.
-      for (std::string group = group_of(column.path);; group = group_of(group)) {
-        const auto scale = scales.find(group);
-        if (scale != scales.end() && scale->second.second == column.values.size()) {
-          writer.tie(written, column.path, scale->second.first, 0);
-          if (signal.empty() && column.path.find("failed") == std::string::npos) {
-            signal = column.path;
-            axis = scale_path(group, columns);
-          }
-          break;
-        }
-        if (group.empty()) break;
+      const ColumnScale& scale = column_scale(column, writer, scales);
+      writer.tie(written, column.path, scale.dataset, 0);
+      if (signal.empty() && column.texts.empty() && !column.path.ends_with("/failed")) {
+        signal = column.path;
+        axis = scale.path;
       }
     }
     if (!signal.empty()) writer.make_default_plot(signal, {axis});

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "io/hdf5/hdf5_output.hpp"
 
@@ -11,7 +12,6 @@ namespace stridor {
 namespace {
 
 void write_fields(const Hdf5Writer& writer, const std::string& group, const ContactFields& fields) {
-  writer.make_group(group);
   const std::vector<hsize_t> plane{fields.y.size(), fields.x.size()};
   const Handle x = writer.write(group + "/x", fields.x, "m");
   const Handle y = writer.write(group + "/y", fields.y, "m");
@@ -23,8 +23,13 @@ void write_fields(const Hdf5Writer& writer, const std::string& group, const Cont
     writer.tie(field, group + name, y, 0);
     writer.tie(field, group + name, x, 1);
   }
-  if (!fields.edge.empty())
-    writer.write(group + "/edge", {fields.edge.size(), 2}, fields.edge.front().data(), "m");
+  if (fields.edge.empty()) return;
+  const Handle point = writer.write_numbers(group + "/edge_point", fields.edge.size());
+  for (const auto& [name, along] : {std::pair{"/edge_x", 0U}, std::pair{"/edge_y", 1U}}) {
+    std::vector<double> places;
+    for (const auto& at : fields.edge) places.push_back(at[along]);
+    writer.tie(writer.write(group + name, places, "m"), group + name, point, 0);
+  }
 }
 
 }  // namespace
@@ -35,7 +40,6 @@ void write_contact_file(const std::string& path, Overwrite overwrite,
   Attributes all{{"kind", std::string("sliding contacts")}};
   all.insert(all.end(), attributes.begin(), attributes.end());
   write_hdf5_file(path, overwrite, all, [&](const Hdf5Writer& writer) {
-    writer.make_group("/rows");
     std::optional<Handle> speed;
     for (const ContactColumn& column : columns) {
       const std::string dataset = "/rows/" + column.name;
@@ -47,7 +51,6 @@ void write_contact_file(const std::string& path, Overwrite overwrite,
         writer.tie(written, dataset, *speed, 0);
       }
     }
-    writer.make_group("/contacts");
     for (std::size_t k = 0; k < fields.size(); ++k)
       write_fields(writer, fmt::format("/contacts/{:03}", k), fields[k]);
     if (!fields.empty()) {

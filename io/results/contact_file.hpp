@@ -7,7 +7,8 @@
 //     /contacts/<k>/x, y          middles of the cells, m
 //     /contacts/<k>/pressure      Pa, [y][x], the half y > 0
 //     /contacts/<k>/gap           m, likewise
-//     /contacts/<k>/edge          [point][x, y], m; absent where the edge was not resolved
+//     /contacts/<k>/edge_x, edge_y, edge_point  m, m, 1, 2, …; absent where the edge was not
+//     resolved
 #pragma once
 
 #include <array>

@@ -7,8 +7,8 @@
 #include <array>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "core/errors.hpp"
 #include "io/hdf5/damage_guard.hpp"
@@ -59,11 +59,7 @@ void write_eigenvalues(const Hdf5Writer& writer, const Locus& locus, const Handl
       frequency.push_back(i < list.size() ? list[i].imag() / (2.0 * std::numbers::pi) : none);
     }
   }
-  writer.make_group("/eigenvalues");
-  std::vector<double> numbers_of_modes(most);
-  std::iota(numbers_of_modes.begin(), numbers_of_modes.end(), 1.0);
-  const Handle number = writer.write("/eigenvalues/number", numbers_of_modes, "1");
-  writer.make_scale(number, "/eigenvalues/number");
+  const Handle number = writer.write_numbers("/eigenvalues/number", most);
   for (const auto& [path, numbers, units] :
        {std::tuple{"/eigenvalues/growth", &growth, "1/s"},
         std::tuple{"/eigenvalues/frequency", &frequency, "Hz"}}) {
@@ -74,24 +70,68 @@ void write_eigenvalues(const Hdf5Writer& writer, const Locus& locus, const Handl
   }
 }
 
-void write_branches(const Hdf5Writer& writer, const Locus& locus, const std::string& units) {
-  writer.make_group("/branches");
-  for (std::size_t k = 0; k < locus.branches.size(); ++k) {
-    const Branch& branch = locus.branches[k];
-    std::vector<double> growth;
-    std::vector<double> frequency;
-    for (const std::complex<double>& s : branch.s) {
-      growth.push_back(s.real());
-      frequency.push_back(s.imag() / (2.0 * std::numbers::pi));
+/// Lists of one quantity, as a dataset of a group.
+struct QuantityLists {
+  const char* name;
+  std::string units;
+  std::vector<std::vector<double>> lists{};
+};
+
+/// Writes lists of unlike length as rectangles, a row for each list, NaN behind its end: so all of
+/// them are read at once.
+/// @param quantities as many lists each, of the same lengths
+void write_lists(const Hdf5Writer& writer, const std::string& group,
+                 const std::vector<QuantityLists>& quantities) {
+  const std::size_t num_lists = quantities.front().lists.size();
+  std::size_t longest = 0;
+  for (const auto& list : quantities.front().lists) longest = std::max(longest, list.size());
+  const Handle number = writer.write_numbers(group + "/number", num_lists);
+  const Handle point = writer.write_numbers(group + "/point", longest);
+  for (const QuantityLists& quantity : quantities) {
+    std::vector<double> rectangle;
+    rectangle.reserve(num_lists * longest);
+    for (const auto& list : quantity.lists) {
+      rectangle.insert(rectangle.end(), list.begin(), list.end());
+      rectangle.resize(rectangle.size() + longest - list.size(),
+                       std::numeric_limits<double>::quiet_NaN());
     }
-    const std::string group = fmt::format("/branches/{:03}", k);
-    writer.make_group(group);
-    const Handle value = writer.write(group + "/value", branch.values, units);
-    writer.make_scale(value, group + "/value");
-    for (const auto& [name, numbers, unit] : {std::tuple{"/growth", &growth, "1/s"},
-                                              std::tuple{"/frequency", &frequency, "Hz"}})
-      writer.tie(writer.write(group + name, *numbers, unit), group + name, value, 0);
+    const std::string path = group + "/" + quantity.name;
+    const Handle written =
+        writer.write(path, {num_lists, longest}, rectangle.data(), quantity.units);
+    writer.tie(written, path, number, 0);
+    writer.tie(written, path, point, 1);
   }
+}
+
+void write_branches(const Hdf5Writer& writer, const Locus& locus, const std::string& units) {
+  QuantityLists value{"value", units};
+  QuantityLists growth{"growth", "1/s"};
+  QuantityLists frequency{"frequency", "Hz"};
+  for (const Branch& branch : locus.branches) {
+    value.lists.push_back(branch.values);
+    growth.lists.emplace_back();
+    frequency.lists.emplace_back();
+    for (const std::complex<double>& s : branch.s) {
+      growth.lists.back().push_back(s.real());
+      frequency.lists.back().push_back(s.imag() / (2.0 * std::numbers::pi));
+    }
+  }
+  write_lists(writer, "/branches", {std::move(value), std::move(growth), std::move(frequency)});
+}
+
+void write_boundary(const Hdf5Writer& writer, const std::vector<BoundaryLine>& boundary,
+                    const std::string& x_units, const std::string& y_units) {
+  QuantityLists x{"x", x_units};
+  QuantityLists y{"y", y_units};
+  for (const BoundaryLine& line : boundary) {
+    x.lists.emplace_back();
+    y.lists.emplace_back();
+    for (const auto& point : line) {
+      x.lists.back().push_back(point[0]);
+      y.lists.back().push_back(point[1]);
+    }
+  }
+  write_lists(writer, "/boundary", {std::move(x), std::move(y)});
 }
 
 /// The attributes of a file of a kind.
@@ -111,11 +151,12 @@ void write_locus_file(const std::string& path, Overwrite overwrite, const Locus&
     writer.make_scale(values, "/values");
     write_eigenvalues(writer, locus, values);
     write_branches(writer, locus, units);
-    writer.make_group("/unstable");
+    const Handle number = writer.write_numbers("/unstable/number", windows.size());
     for (const WindowColumn& column : columns) {
       std::vector<double> numbers;
       for (TimedWindow window : windows) numbers.push_back(column.of(window));
-      writer.write(std::string("/unstable/") + column.name, numbers, units_of(column, units));
+      const std::string dataset = std::string("/unstable/") + column.name;
+      writer.tie(writer.write(dataset, numbers, units_of(column, units)), dataset, number, 0);
     }
     writer.make_default_plot("/eigenvalues/growth", {"/values", "/eigenvalues/number"});
   });
@@ -138,14 +179,7 @@ void write_map_file(const std::string& path, Overwrite overwrite, const Stabilit
                     writer.tie(field, "/growth", y, 0);
                     writer.tie(field, "/growth", x, 1);
                     writer.make_default_plot("/growth", {"/y", "/x"});
-                    writer.make_group("/boundary");
-                    for (std::size_t k = 0; k < map.boundary.size(); ++k) {
-                      std::vector<double> points;
-                      for (const auto& point : map.boundary[k])
-                        points.insert(points.end(), point.begin(), point.end());
-                      writer.write(fmt::format("/boundary/{:03}", k), {map.boundary[k].size(), 2},
-                                   points.data(), x_units == y_units ? x_units : "1");
-                    }
+                    write_boundary(writer, map.boundary, x_units, y_units);
                   });
 }
 

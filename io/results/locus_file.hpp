@@ -5,7 +5,8 @@
 //     /eigenvalues/number     1, 2, …
 //     /eigenvalues/growth     1/s, [value][eigenvalue], ascending frequency; NaN where fewer
 //     /eigenvalues/frequency  Hz, likewise
-//     /branches/<k>/          value, growth, frequency of one eigenvalue that was followed
+//     /branches/              value, growth, frequency of every eigenvalue that was followed,
+//                             [number][point]; NaN behind the end of a branch
 //     /unstable/              one entry per window: from, to, frequency, growth_max,
 //                             growth_integral, value_max, from_time, to_time, gain
 #pragma once
@@ -57,7 +58,8 @@ struct StabilityMap {
   double highest_frequency = std::numeric_limits<double>::infinity();
 };
 
-/// Writes a map to a file of its own: /x, /y, /growth [y][x], /boundary/<k> [point][x, y].
+/// Writes a map to a file of its own: /x, /y, /growth [y][x], /boundary/x and y [number][point],
+/// NaN behind the end of a line.
 /// Parameters and throws as write_locus_file().
 void write_map_file(const std::string& path, Overwrite overwrite, const StabilityMap& map,
                     const std::string& x_units, const std::string& y_units,

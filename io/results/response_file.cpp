@@ -1,7 +1,5 @@
 #include "io/results/response_file.hpp"
 
-#include <set>
-
 #include "io/hdf5/hdf5_output.hpp"
 
 namespace stridor {
@@ -14,13 +12,8 @@ void write_response_file(const std::string& path, Overwrite overwrite,
   write_hdf5_file(path, overwrite, all, [&](const Hdf5Writer& writer) {
     const Handle frequency = writer.write("/frequency", frequencies, "Hz");
     writer.make_scale(frequency, "/frequency");
-    writer.make_group("/responses");
-    std::set<std::string> groups;
     for (const ResponseCurve& curve : curves) {
-      const std::string of_output = "/responses/" + curve.output;
-      if (groups.insert(of_output).second) writer.make_group(of_output);
-      const std::string group = of_output + "/" + curve.input;
-      writer.make_group(group);
+      const std::string group = "/responses/" + curve.output + "/" + curve.input;
       for (const bool is_real : {true, false}) {
         std::vector<double> part;
         for (const std::complex<double>& value : curve.values)

@@ -162,7 +162,8 @@ std::vector<SeriesSpec> Recorder::series(const Model& model, const std::vector<C
         "/channels/" + channel.name, channel.units(), SeriesKind::real, {{"filter", filter}}};
     if (channel.energy != nullptr) {
       spec.path = std::string("/energy/") + channel.energy->name;
-      spec.attributes.emplace_back("definition", channel.energy->definition);
+      for (const char* name : {"definition", "long_name"})
+        spec.attributes.emplace_back(name, std::string(channel.energy->definition));
       series.push_back(spec);
       continue;
     }

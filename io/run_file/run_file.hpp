@@ -66,6 +66,9 @@ struct StaticArray {
   std::string path;  ///< e.g. "/modal/plate/frequency"
   std::vector<double> values;
   std::string units;
+  /// What numbers its entries: a dimension scale in the same group, 1, 2, … where it is not there
+  /// yet; or the array itself.
+  std::string along = "number";
 };
 
 /// Options of a RunFileWriter.
@@ -152,9 +155,9 @@ class RunFileWriter : public RowSink {
 
   /// Writes an array that does not depend on time, e.g. "/modal/plate/frequency", units "Hz". Rows
   /// in memory are written before, like for results.
-  /// @throws FileError, std::invalid_argument as the constructor
-  void write_static(const std::string& path, std::span<const double> values,
-                    const std::string& units);
+  /// @throws FileError, std::invalid_argument as the constructor; the latter also if its scale has
+  ///         another length
+  void write_static(const StaticArray& array);
   /// Writes a result as an attribute of /results; a result of the same name is replaced.
   /// @throws FileError if it cannot be written
   void write_result(const std::string& name, double value);

@@ -36,6 +36,8 @@ void write_text(const Checker& at, hid_t file, const Handle& links, const std::s
   at.check(H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()), path,
            "cannot write");
   write_attribute(at, dataset.id(), path, "encoding", std::string("UTF-8"));
+  write_attribute(at, dataset.id(), path, "units", std::string("1"));
+  write_attribute(at, dataset.id(), path, "long_name", long_name_of(path));
 }
 
 // ---------------------------------------------------------------- the temporary file
@@ -90,13 +92,6 @@ void remove_results(const Checker& at) {
 }
 
 }  // namespace
-
-Handle link_creation(const Checker& at) {
-  Handle links = at.own(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "", "cannot set up HDF5");
-  at.check(H5Pset_create_intermediate_group(links.id(), 1), "", "cannot set up HDF5");
-  at.check(H5Pset_char_encoding(links.id(), H5T_CSET_UTF8), "", "cannot set up HDF5");
-  return links;
-}
 
 void check_object_path(const std::string& path) {
   if (!is_object_path(path)) {
@@ -217,7 +212,7 @@ void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& heade
 
     time_dataset = create_series("/time", SeriesKind::real, "s");
     at.check(H5DSset_scale(time_dataset.id(), "time"), "/time", "cannot be made a dimension scale");
-    write_attribute(at, time_dataset.id(), "/time", "long_name", std::string("time"));
+    write_attribute(at, time_dataset.id(), "/time", "long_name", long_name_of("/time"));
     for (Column& column : columns) {
       const SeriesSpec& spec = column.spec;
       column.dataset = create_series(spec.path, spec.kind, spec.units);
@@ -234,7 +229,7 @@ void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& heade
     }
     if (const auto series = default_series()) write_default_plot(at, file.id(), *series, {"/time"});
     create_checkpoints();
-    for (const StaticArray& array : statics) write_array(array.path, array.values, array.units);
+    for (const StaticArray& array : statics) write_array(array);
     commit("");
     part.move_to_final(overwrite);
     staged.renamed(at.path());
@@ -261,8 +256,9 @@ void RunFileWriter::Impl::create_checkpoints() {
                                        creation.id(), H5P_DEFAULT),
                             H5Dclose, path, "cannot make the dataset");
     write_attribute(at, checkpoints[i].id(), path, "units", "1");
-    write_attribute(at, checkpoints[i].id(), path, "long_name",
-                    std::string("state from which the run can go on, as bytes"));
+    write_attribute(at, checkpoints[i].id(), path, "long_name", long_name_of(path));
+    // Its length changes with every checkpoint: a name for its extent, no scale.
+    at.check(H5DSset_label(checkpoints[i].id(), 0, "byte"), path, "cannot be labelled");
   }
 }
 

@@ -112,7 +112,10 @@ std::vector<std::string> RunFileReader::Impl::arrays(bool series) const {
     if (path == "/time" || path.starts_with("/checkpoint/") ||
         H5Sget_simple_extent_ndims(space.id()) != 1)
       continue;
-    if ((H5Aexists(dataset.id(), "DIMENSION_LIST") > 0) == series) found.push_back(path);
+    // Series, and nothing else but checkpoints, were made to grow.
+    hsize_t most = 0;
+    at.check(H5Sget_simple_extent_dims(space.id(), nullptr, &most), path, "cannot be read");
+    if ((most == H5S_UNLIMITED) == series) found.push_back(path);
   }
   std::sort(found.begin(), found.end());
   return found;

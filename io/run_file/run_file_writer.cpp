@@ -9,7 +9,7 @@
 #include <exception>
 #include <stdexcept>
 
-#include "io/hdf5/dataset_names.hpp"
+#include "io/hdf5/hdf5_input.hpp"
 #include "io/run_file/run_file_writer_impl.hpp"
 
 namespace stridor {
@@ -241,32 +241,55 @@ void RunFileWriter::write_checkpoint(const State& state) {
   impl_->write_checkpoint(state);
 }
 
-void RunFileWriter::Impl::write_array(const std::string& path, std::span<const double> values,
-                                      const std::string& units) {
-  const hsize_t count = values.size();
-  const Handle space =
-      at.own(H5Screate_simple(1, &count, nullptr), H5Sclose, path, "cannot make the dataset");
-  const Handle dataset =
-      at.own(H5Dcreate2(file.id(), path.c_str(), H5T_IEEE_F64LE, space.id(), links.id(),
-                        H5P_DEFAULT, H5P_DEFAULT),
-             H5Dclose, path, "cannot make the dataset");
-  at.check(H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
-           path, "cannot be written");
-  write_attribute(at, dataset.id(), path, "units", units);
-  write_attribute(at, dataset.id(), path, "long_name", long_name_of(path));
+namespace {
+
+/// "/modal/plate/number", beside an array.
+std::string numbers_path(const StaticArray& array) {
+  return array.path.substr(0, array.path.rfind('/') + 1) + array.along;
 }
 
-void RunFileWriter::write_static(const std::string& path, std::span<const double> values,
-                                 const std::string& units) {
+}  // namespace
+
+void RunFileWriter::Impl::check_array(const StaticArray& array) const {
+  check_object_path(array.path);
+  const auto is_there = [&](const std::string& path) {
+    return H5LTpath_valid(file.id(), path.c_str(), true) > 0;
+  };
+  if (is_there(array.path)) {
+    throw std::invalid_argument(
+        fmt::format("run file: there is a dataset '{}' already", array.path));
+  }
+  const std::string scale = numbers_path(array);
+  if (scale == array.path || !is_there(scale)) return;
+  const Hdf5Array numbers = open_array(at, file.id(), scale, 1);
+  if (numbers.shape.front() != array.values.size()) {
+    throw std::invalid_argument(fmt::format("run file: '{}' has {} entries, its scale '{}' {}",
+                                            array.path, array.values.size(), scale,
+                                            numbers.shape.front()));
+  }
+}
+
+void RunFileWriter::Impl::write_array(const StaticArray& array) {
+  const Hdf5Writer writer(at, file.id());
+  const Handle dataset = writer.write(array.path, array.values, array.units);
+  const std::string scale = numbers_path(array);
+  if (scale == array.path) {
+    writer.make_scale(dataset, array.path);
+    return;
+  }
+  const Handle numbers = H5Lexists(file.id(), scale.c_str(), H5P_DEFAULT) > 0
+                             ? open_array(at, file.id(), scale, 1).dataset
+                             : writer.write_numbers(scale, array.values.size());
+  writer.tie(dataset, array.path, numbers, 0);
+}
+
+void RunFileWriter::write_static(const StaticArray& array) {
   Impl& impl = *impl_;
   impl.settle();
-  check_object_path(path);
   const QuietErrors quiet;
-  if (H5LTpath_valid(impl.file.id(), path.c_str(), true) > 0) {
-    throw std::invalid_argument(fmt::format("run file: there is a dataset '{}' already", path));
-  }
+  impl.check_array(array);
   impl.modify([&] {
-    impl.write_array(path, values, units);
+    impl.write_array(array);
     impl.restructured = true;
   });
 }

@@ -17,9 +17,6 @@
 
 namespace stridor {
 
-/// Creation of links: groups as needed, names in UTF-8. @throws FileError if HDF5 refuses
-Handle link_creation(const Checker& at);
-
 /// @throws std::invalid_argument unless this is the path of a dataset that users may make
 void check_object_path(const std::string& path);
 
@@ -50,8 +47,8 @@ struct RunFileWriter::Impl {
   void write_checkpoint(const State& state);
   Handle create_series(const std::string& path, SeriesKind kind, const std::string& units);
   std::optional<std::string> default_series() const;
-  void write_array(const std::string& path, std::span<const double> values,
-                   const std::string& units);
+  void check_array(const StaticArray& array) const;
+  void write_array(const StaticArray& array);
   void reserve(std::uint64_t rows) const;
   void write_block(const Handle& dataset, const std::string& path, hsize_t offset, hid_t type,
                    const void* entries, hsize_t count);

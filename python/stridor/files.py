@@ -274,8 +274,9 @@ class Locus(ResultFile):
     @property
     def branches(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Values and s of every eigenvalue that was followed."""
-        return [(branch["value"][:], branch["growth"][:] + 2j * np.pi * branch["frequency"][:])
-                for branch in self._file["branches"].values()]
+        value, growth, frequency = (self._file["branches"][name][:] for name in ("value", "growth", "frequency"))
+        return [(row[kept], s[kept]) for row, s in zip(value, growth + 2j * np.pi * frequency)
+                for kept in [~np.isnan(row)]]
 
 
 class StabilityMap(ResultFile):
@@ -293,6 +294,12 @@ class StabilityMap(ResultFile):
     def growth(self) -> np.ndarray:
         """1/s, [y][x]; NaN where there is no equilibrium."""
         return self._file["growth"][:]
+
+    @property
+    def boundary(self) -> list[np.ndarray]:
+        """Lines where stability changes, [point][x, y] each, the longest first."""
+        x, y = (self._file["boundary"][name][:] for name in ("x", "y"))
+        return [np.column_stack([of_x, of_y])[~np.isnan(of_x)] for of_x, of_y in zip(x, y)]
 
 
 class FrequencyResponses(ResultFile):

@@ -76,7 +76,7 @@ class Pictures : public ::testing::Test {
            {std::tuple{"start", 0.2, "s"}, std::tuple{"end", 0.3, "s"},
             std::tuple{"frequency", tone, "Hz"}, std::tuple{"peak", 2.0, "m/s^2"},
             std::tuple{"gain", 5.0, "1"}})
-        writer.write_static(std::string("/bursts/") + property, {&value, 1}, units);
+        writer.write_static({std::string("/bursts/") + property, {value}, units});
       writer.write_result("free_end_acceleration.channel", "beam.tip.y.acceleration");
     }
     if (contents.trusted_frequency > 0.0)

@@ -14,6 +14,7 @@ import time
 import unittest
 
 try:
+    import h5py
     import numpy as np
     import stridor
 except ImportError as error:
@@ -136,10 +137,11 @@ class Files(unittest.TestCase):
     def expect_listed(self, path):
         rows = self.rows_of_page()
         self.assertGreater(len(rows), 60)
-        with stridor.open(path) as file:
-            for name in file.datasets():
-                found = file["/" + name]
-                units = found.units if isinstance(found, stridor.Series) else ""
+        with h5py.File(path, "r") as file:
+            datasets = []
+            file.visititems(lambda name, item: datasets.append(name) if isinstance(item, h5py.Dataset) else None)
+            for name in datasets:
+                units = file[name].attrs["units"].decode()
                 listed = [unit for row, unit in rows if row.fullmatch("/" + name)]
                 self.assertTrue(listed, f"/{name} of {path} is not in docs/files.md")
                 fits = any(unit in ("", units) or unit.startswith("of the") for unit in listed)
@@ -177,6 +179,9 @@ class Files(unittest.TestCase):
                 made("sweep.h5", "sweep", example("mass_on_belt"), "--parameter", "parameters.mu_d", "--from", "0.1",
                      "--to", "0.3", "--points", "2", "--set", "time.end=1", "--set", "measure.from=0.5"),
                 made("cycle.h5", "cycle", example("mass_on_belt")),
+                made("cycles.h5", "sweep", example("viscoelastic_sphere"), "--set", "parameters.v=0.03", "--parameter",
+                     "parameters.tau0", "--from", "0.01", "--to", "0.1", "--points", "2"),
+                os.path.join(made("study", "precision", example("viscoelastic_sphere"), "--points", "2"), "precision.h5"),
                 made("frf.h5", "frf", example("reed"), "--input", "reed.middle.y", "--from", "100", "--to", "3000",
                      "--points", "5"),
                 made("amplitudes.h5", "spectrogram", run, "--channel", "cantilever.free_end.y.displacement"),
@@ -184,6 +189,19 @@ class Files(unittest.TestCase):
             ]
             for file in files:
                 self.expect_listed(file)
+
+
+class Results(unittest.TestCase):
+    """What the classes of files make of their datasets."""
+
+    def test_branches_end_where_they_were_followed_to(self):
+        with stridor.locus(stridor.example("beam_on_beam"), from_="70 mm", to="98 mm", points=5) as found:
+            branches = found.branches
+            self.assertGreaterEqual(len(branches), 20)
+            self.assertEqual(max(len(values) for values, _ in branches), found["/branches/value"].shape[1])
+            for values, s in branches:
+                self.assertEqual(len(values), len(s))
+                self.assertTrue(np.all(np.isfinite(s)) and np.all(np.diff(values) > 0))
 
 
 class KilledRun(unittest.TestCase):

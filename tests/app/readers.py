@@ -53,6 +53,19 @@ def killed_run(file):
     return file
 
 
+def all_datasets(opened):
+    """Paths and datasets of a file, those that links of /plot name once."""
+    datasets = []
+    opened.visititems(lambda place, item: datasets.append((place, item)) if isinstance(item, h5py.Dataset) else None)
+    return datasets
+
+
+def all_groups(path):
+    """Groups that hold datasets of their own."""
+    with h5py.File(path, "r") as opened:
+        return sorted({"/" + place.rpartition("/")[0] for place, _ in all_datasets(opened)})
+
+
 class Readers(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -62,6 +75,7 @@ class Readers(unittest.TestCase):
         verb("run", scene("examples/frozen_growth"), "-o", run, "--set", "time.end=0.1", "--set", "record.energy=true",
              "--set", "measure.from=0.05")
         verb("locus", scene("beam_on_beam"), "--from", "70mm", "--to", "98mm", "--points", "5", "-o", at("locus.h5"))
+        verb("run", scene("beam_on_beam"), "-o", at("heard.h5"), "--set", "time.end=2.3", "--predict", at("locus.h5"))
         verb("map", scene("disc_and_pads"), "--x", "parameters.mu", "0.2", "0.5", "3", "--y",
              "substructures.disc.spin", "5", "10", "2", "-o", at("map.h5"))
         verb("sweep", scene("beam_on_beam"), "--parameter", "contact.friction.coefficient", "--from", "0.3", "--to", "6",
@@ -79,7 +93,7 @@ class Readers(unittest.TestCase):
         verb("precision", scene("viscoelastic_sphere"), "--points", "2", "-o", at("study"))
         os.rename(os.path.join(at("study"), "precision.h5"), at("precision.h5"))
         killed_run(at("killed.h5"))
-        cls.kinds = {"run": "run", "killed": "run", "locus": "locus", "map": "stability map",
+        cls.kinds = {"run": "run", "heard": "run", "killed": "run", "locus": "locus", "map": "stability map",
                      "sweep": "sweep of transients", "cycle": "limit cycle", "cycles": "sweep of limit cycles",
                      "responses": "frequency responses", "spectrogram": "spectrogram", "contact": "sliding contacts",
                      "precision": "study of precision"}
@@ -100,24 +114,38 @@ class Readers(unittest.TestCase):
         known = {}
         for name, _, path in self.files():
             with h5py.File(path, "r") as opened:
-                datasets = []
-                opened.visititems(lambda place, item: datasets.append((place, item))
-                                  if isinstance(item, h5py.Dataset) else None)
+                datasets = all_datasets(opened)
                 self.assertGreater(len(datasets), 2)
                 for place, dataset in datasets:
-                    if place.startswith("scene/"):
-                        continue
-                    self.assertTrue(dataset.attrs.get("long_name", b""), f"{name}: {place} has no long_name")
-                    if dataset.dtype.kind == "S":
-                        continue
-                    units = dataset.attrs["units"]
-                    known.setdefault(units.decode() if isinstance(units, bytes) else str(units), place)
+                    said = {key: value.decode() if isinstance(value, bytes) else str(value)
+                            for key, value in dataset.attrs.items() if key in ("long_name", "units")}
+                    self.assertIn(" ", said.get("long_name", ""), f"{name}: /{place} has no long_name in words")
+                    *groups, last = place.replace("_", " ").split("/")
+                    self.assertNotEqual(f"{last}, {' '.join(groups)}", said["long_name"],
+                                        f"{name}: /{place} is not among the names of io/hdf5/dataset_names.cpp")
+                    self.assertTrue(said.get("units"), f"{name}: /{place} has no units")
+                    known.setdefault(said["units"], place)
         if shutil.which("udunits2") is None:
             self.skipTest("no udunits2")
         for units, place in known.items():
             answer = subprocess.run(["udunits2", "-H", f"({units})", "-W", ""], capture_output=True, text=True, check=False)
             self.assertNotIn("don't recognize", answer.stderr.lower().replace("’", "'"), f"{units} of {place}")
             self.assertEqual(answer.returncode, 0, f"{units} of {place}: {answer.stderr}")
+
+    def test_every_extent_has_a_scale_of_its_length(self):
+        for name, _, path in self.files():
+            with h5py.File(path, "r") as opened:
+                for place, dataset in all_datasets(opened):
+                    for axis, extent in enumerate(dataset.shape):
+                        what = f"{name}: extent {axis} of /{place}"
+                        if place.startswith("checkpoint/"):
+                            self.assertEqual(dataset.dims[axis].label, "byte", what)
+                            continue
+                        if h5py.h5ds.is_scale(dataset.id):
+                            continue
+                        self.assertEqual(len(dataset.dims[axis]), 1, f"{what} has no scale")
+                        if name != "killed":
+                            self.assertEqual(len(dataset.dims[axis][0]), extent, what)
 
     def test_every_file_introduces_itself(self):
         for _, kind, path in self.files():
@@ -153,13 +181,37 @@ class Readers(unittest.TestCase):
     # ------------------------------------------------------------------ xarray
 
     @unittest.skipIf(xarray is None, "no xarray with h5netcdf")
+    def test_xarray_knows_every_dimension_of_every_group(self):
+        self.assertIn("/bursts", all_groups(self.file("heard")))
+        for name, _, path in self.files():
+            for group in all_groups(path):
+                if group == "/checkpoint":  # bytes
+                    continue
+                with xarray.open_dataset(path, engine="h5netcdf", group=group, phony_dims="access") as dataset:
+                    for variable in (*dataset.data_vars.values(), *dataset.coords.values()):
+                        for dimension in variable.dims:
+                            self.assertNotIn("phony", dimension, f"{name}: {group}/{variable.name}")
+
+    @unittest.skipIf(xarray is None, "no xarray with h5netcdf")
+    def test_branches_and_boundaries_are_read_at_once(self):
+        with xarray.open_dataset(self.file("locus"), engine="h5netcdf", group="/branches") as branches:
+            self.assertEqual(branches["growth"].dims, ("number", "point"))
+            self.assertGreaterEqual(branches.sizes["number"], 20)
+            first = branches["value"].sel(number=1).dropna("point")
+            self.assertEqual((float(first[0]), float(first[-1])), (0.07, 0.098))
+        with xarray.open_dataset(self.file("map"), engine="h5netcdf", group="/boundary") as boundary:
+            self.assertEqual(boundary["x"].dims, ("number", "point"))
+            self.assertEqual((boundary["x"].attrs["units"], boundary["y"].attrs["units"]), ("1", "rad/s"))
+
+    @unittest.skipIf(xarray is None, "no xarray with h5netcdf")
     def test_xarray_labels_what_depends_on_coordinates(self):
         coordinates = {"locus": ("/eigenvalues", None), "map": ("/", ("growth", ("y", "x"))),
                        "sweep": ("/", ("steps", ("value",))), "responses": ("/", None),
                        "spectrogram": ("/", ("amplitude", ("times", "frequencies"))),
                        "contact": ("/contacts/000", ("pressure", ("y", "x"))), "cycle": ("/channels", None),
                        "cycles": ("/up", ("period", ("value",))),
-                       "precision": ("/settings", ("error", ("run_time",))), "run": ("/channels", None), "killed": ("/channels", None)}
+                       "precision": ("/settings", ("error", ("run_time",))), "run": ("/channels", None),
+                       "heard": ("/windows", ("gain", ("number",))), "killed": ("/channels", None)}
         for name, _, path in self.files():
             if name == "cycles":
                 with h5py.File(path, "r") as opened:
@@ -182,7 +234,7 @@ class Readers(unittest.TestCase):
     @unittest.skipIf(shutil.which("ncdump") is None, "no ncdump")
     def test_ncdump_lists_variables_with_their_dimensions(self):
         expected = {"map": "growth(y, x)", "spectrogram": "amplitude(times, frequencies)", "sweep": "steps(value)",
-                    "run": "force(time)", "killed": "force(time)", "contact": "pressure(y, x)", "cycle": "force(time)",
+                    "run": "force(time)", "heard": "growth_max(number)", "killed": "force(time)", "contact": "pressure(y, x)", "cycle": "force(time)",
                     "responses": "real(frequency)", "locus": "growth(values", "cycles": "period(value)",
                     "precision": "error(run_time)"}
         for name, _, path in self.files():
@@ -193,7 +245,7 @@ class Readers(unittest.TestCase):
     @unittest.skipIf(shutil.which("octave-cli") is None, "no Octave")
     def test_octave_loads_them(self):
         script = "x = load('{path}'); disp(fieldnames(x)); disp(size(x.{field}))"
-        fields = {"run": "time", "killed": "time", "locus": "eigenvalues.growth", "map": "growth", "sweep": "steps",
+        fields = {"run": "time", "heard": "windows.gain", "killed": "time", "locus": "eigenvalues.growth", "map": "growth", "sweep": "steps",
                   "cycle": "time", "responses": "frequency", "spectrogram": "amplitude", "contact": "rows.force",
                   "cycles": None, "precision": "settings.error"}
         for name, _, path in self.files():

@@ -6,9 +6,12 @@
 #include <hdf5_hl.h>
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <vector>
 
 #include "core/errors.hpp"
+#include "io/results/result_file.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/program.hpp"
 
@@ -77,6 +80,21 @@ TEST(LocusFile, OtherFilesAreRefused) {
   write_file(folder / "text.h5", "no HDF5");
   EXPECT_THAT(message_of<FileError>([&] { read_locus_windows((folder / "text.h5").string()); }),
               HasSubstr("is not an HDF5 file"));
+}
+
+TEST(LocusFile, BranchesAreARectangleWithNothingBehindTheirEnds) {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "locus.h5").string();
+  Locus locus = small_locus();
+  locus.branches.push_back({{0.03, 0.04}, {{2.0, 20.0}, {2.5, 21.0}}});
+  write_locus_file(path, Overwrite::no, locus, {}, "m", {});
+  const ResultFile file(path);
+  EXPECT_EQ(file.array("/branches/value").shape, (std::vector<std::size_t>{2, 3}));
+  const std::vector<double> growth = file.read("/branches/growth", 2);
+  EXPECT_EQ(growth[2], -1.0);
+  EXPECT_EQ(growth[4], 2.5);
+  EXPECT_TRUE(std::isnan(growth[5]));
+  EXPECT_EQ(file.read("/branches/number"), (std::vector<double>{1.0, 2.0}));
 }
 
 TEST(LocusFile, ColumnsOfDifferentLengthsAreRefused) {

@@ -96,12 +96,12 @@ inline void check_after_every_write(const std::string& path, std::uint64_t num_r
   };
   RunFileWriter writer(path, Overwrite::no, header, two_series(), options);
   const std::vector<double> values{1.0, 2.0, 3.0};
-  writer.write_static("/modal/plate/frequency", values, "Hz");
+  writer.write_static({"/modal/plate/frequency", values, "Hz"});
   for (std::uint64_t row = 0; row < num_rows; row += 20) {
     append_rows(writer, row, 20);
     ASSERT_FALSE(::testing::Test::HasFailure()) << "after " << num_checks << " writes";
   }
-  writer.write_static("/final/plate/displacement", values, "m");
+  writer.write_static({"/final/plate/displacement", values, "m", "coordinate"});
   writer.write_result("status", "done");
   writer.write_result("steps", 3.0);
   writer.close();

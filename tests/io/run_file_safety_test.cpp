@@ -286,13 +286,22 @@ TEST_F(RunFile, WrongRowsAreRejectedAndNotAdded) {
     rejected([&] { writer.append(0.0, row); },
              "states of '/contact/main/state' must be integers 0 to 255");
   }
-  writer.write_static("/modal/beam/frequency", one, "Hz");
-  rejected([&] { writer.write_static("/modal/beam/frequency", one, "Hz"); }, "there is a dataset");
-  rejected([&] { writer.write_static("modal", one, "Hz"); }, "is not a path of the form");
+  writer.write_static({"/modal/beam/frequency", one, "Hz"});
+  rejected(
+      [&] {
+        writer.write_static({"/modal/beam/frequency", one, "Hz"});
+      },
+      "there is a dataset");
+  rejected([&] { writer.write_static({"modal", one, "Hz"}); }, "is not a path of the form");
+  rejected(
+      [&] {
+        writer.write_static({"/modal/beam/damping_ratio", {1.0, 2.0}, "1"});
+      },
+      "'/modal/beam/damping_ratio' has 2 entries, its scale '/modal/beam/number' 1");
   writer.close();
   rejected([&] { writer.append(0.0, two); }, "written to after close()");
   rejected([&] { writer.write_result("x", 1.0); }, "written to after close()");
-  rejected([&] { writer.write_static("/a/b", one, "1"); }, "written to after close()");
+  rejected([&] { writer.write_static({"/a/b", one, "1"}); }, "written to after close()");
   rejected([&] { writer.flush(); }, "written to after close()");
   EXPECT_EQ(check_rows(path()), 0U);
 }

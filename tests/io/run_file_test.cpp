@@ -33,7 +33,7 @@ TEST_F(RunFile, EverythingWrittenIsReadBack) {
   {
     RunFileWriter writer(path(), Overwrite::no, header, two_series());
     append_rows(writer, 0, 40000);  // over several chunks and blocks
-    writer.write_static("/modal/beam/frequency", frequencies, "Hz");
+    writer.write_static({"/modal/beam/frequency", frequencies, "Hz"});
     writer.write_result("contact_force.min", 0.5);
     writer.write_result("contact_force.min", 0.19751);
     writer.write_result("status", "completed");
@@ -54,7 +54,7 @@ TEST_F(RunFile, EverythingWrittenIsReadBack) {
   EXPECT_EQ(reader.header().scene_resolved, header.scene_resolved);
   EXPECT_THAT(reader.series_names(),
               ElementsAre("/channels/tip.y.acceleration", "/contact/main/state"));
-  EXPECT_THAT(reader.static_names(), ElementsAre("/modal/beam/frequency"));
+  EXPECT_THAT(reader.static_names(), ElementsAre("/modal/beam/frequency", "/modal/beam/number"));
   EXPECT_EQ(reader.static_array("/modal/beam/frequency"), frequencies);
   EXPECT_EQ(reader.units("/modal/beam/frequency"), "Hz");
   EXPECT_EQ(reader.units("/channels/tip.y.acceleration"), "m/s2");
@@ -122,7 +122,7 @@ TEST_F(RunFile, PathsWithSpacesAndUnicodeWork) {
 
 TEST_F(RunFile, EmptyTextAndNoSeriesAndNoRowsAreAllowed) {
   RunFileWriter writer(path(), Overwrite::no, {}, {});
-  writer.write_static("/modal/none", {}, "Hz");
+  writer.write_static({"/modal/none", {}, "Hz"});
   writer.close();
   const RunFileReader reader(path());
   EXPECT_EQ(reader.header().scene_text, "");
