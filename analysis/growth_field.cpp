@@ -114,6 +114,7 @@ GrowthMap make_growth_map(const std::function<std::unique_ptr<GrowthField>()>& m
                           int num_threads, const std::function<void(double)>& report) {
   GrowthMap map;
   map.growth.resize(y.size());
+  map.failures.resize(y.size());
   GridCrossings crossings{x, y, {}, {}};
   crossings.along_x.resize(y.size());
   crossings.along_y.resize(x.size());
@@ -127,7 +128,12 @@ GrowthMap make_growth_map(const std::function<std::unique_ptr<GrowthField>()>& m
     field->restart();
     if (line < y.size()) {
       const double at = y[line];
-      for (const double value : x) map.growth[line].push_back(field->leading(value, at).real());
+      for (const double value : x) {
+        const double growth = field->leading(value, at).real();
+        if (std::isnan(growth))
+          map.failures[line].emplace(map.growth[line].size(), field->failure());
+        map.growth[line].push_back(growth);
+      }
       crossings.along_x[line] =
           sign_changes([&](double value) { return field->margin(value, at); }, x);
     } else {

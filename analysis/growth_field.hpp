@@ -2,8 +2,11 @@
 #pragma once
 
 #include <complex>
+#include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "analysis/stability_map.hpp"
@@ -34,12 +37,18 @@ class GrowthField {
   virtual std::complex<double> leading(double x, double y) = 0;
   /// Positive where unstable; changes sign at the boundary.
   virtual double margin(double x, double y) = 0;
+  /// Why the last call of leading() gave NaN.
+  virtual std::string failure() const { return "no sliding equilibrium"; }
 };
+
+/// Why points of a line of a grid have no growth rate, by their indices.
+using PointFailures = std::map<std::size_t, std::string>;
 
 /// Growth over a grid, and the boundary of stability.
 struct GrowthMap {
   std::vector<std::vector<double>> growth;  ///< Re s, a row per y
   std::vector<BoundaryLine> boundary;       ///< its points solved for on the lines of the grid
+  std::vector<PointFailures> failures{};    ///< of each row
 };
 
 /// @param make_field makes the field of a thread; called by several threads

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/report/mode_frames.hpp"
+#include "app/stability/map_study.hpp"
 #include "core/errors.hpp"
 
 namespace stridor {
@@ -152,7 +153,7 @@ Json map_view(const ResultFile& file, ReportPage& page) {
     for (std::size_t line = 0; line < sizes.size(); ++line)
       lines.push_back(page.add_numbers(points_of(of_x[line], of_y[line])));
   }
-  return {
+  Json view = {
       {"type", "field"},
       {"x",
        {{"name", file.text("x")},
@@ -164,10 +165,34 @@ Json map_view(const ResultFile& file, ReportPage& page) {
         {"values", page.add_numbers(y)}}},
       {"value",
        {{"name", "largest growth rate"}, {"units", "1/s"}, {"values", page.add_numbers(growth)}}},
-      {"missing", "no sliding equilibrium"},
+      {"missing", "no growth rate was found"},
       {"scale", "signed"},
       {"lines", lines},
       {"reproduce", file.text("point_command")}};
+  if (file.has("/failure")) {
+    const std::vector<double> failure = file.read("/failure", 2);
+    if (failure.size() != growth.size())
+      throw FileError(Refusal::file_damaged, file.path(), "/failure",
+                      "is unlike /growth in extent");
+    view["failure"] = page.add_numbers(failure);
+    view["reasons"] = file.texts("/failures/reason");
+  }
+  return view;
+}
+
+/// Why points of a map failed, what most of them share first.
+Json failure_remarks(const ResultFile& file) {
+  constexpr std::size_t most_remarks = 5;
+  Json remarks = Json::array();
+  if (!file.has("/failure")) return remarks;
+  const std::vector<FailedPoints> all =
+      failed_points(file.texts("/failures/reason"), file.read("/failure", 2));
+  for (std::size_t k = 0; k < std::min(most_remarks, all.size()); ++k)
+    remarks.push_back(fmt::format("{} points failed: {}", all[k].num_points, all[k].reason));
+  if (all.size() > most_remarks)
+    remarks.push_back(
+        fmt::format("There are {} other reasons (/failures)", all.size() - most_remarks));
+  return remarks;
 }
 
 }  // namespace
@@ -209,8 +234,7 @@ Json map_section(const ResultFile& file, const ReportContext& context) {
   const auto unstable = std::count_if(growth.begin(), growth.end(), is_unstable);
   const auto known = std::count_if(growth.begin(), growth.end(), is_known);
   std::string text = fmt::format("Of {} points {} are unstable", growth.size(), unstable);
-  if (known < std::ssize(growth))
-    text += fmt::format(", {} have no sliding equilibrium", std::ssize(growth) - known);
+  if (known < std::ssize(growth)) text += fmt::format(", {} failed", std::ssize(growth) - known);
   if (unstable > 0) {
     double most = 0.0;
     for (const double value : growth)
@@ -218,6 +242,7 @@ Json map_section(const ResultFile& file, const ReportContext& context) {
     text += fmt::format("; the fastest growth is {:.4g} 1/s", most);
   }
   section["verdict"] = verdict(unstable > 0 ? "loud" : "calm", text + ".");
+  section["remarks"] = failure_remarks(file);
   section["views"].push_back(map_view(file, context.page));
   return section;
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <limits>
+#include <string>
 
 #include "io/scene/oscillator_family.hpp"
 
@@ -24,16 +25,23 @@ class GrowthOfMass : public GrowthField {
   double margin(double x, double y) override {
     return solve(x, y) ? stability_margin(motion_) : not_a_number;
   }
+  std::string failure() const override { return failure_; }
 
  private:
   bool solve(double x, double y) {
     const SlidingOscillator* of = family_->at(std::array{x, y});
-    if (of == nullptr) return false;
+    if (of == nullptr) {
+      failure_ = "the scene is no mass on a half-space with these values";
+      return false;
+    }
     // The indentation over R changes less from point to point than that in units of length.
     const SubstrateOscillator& oscillator = of->oscillator;
     const double unit = oscillator.contact.indentation_unit;
     const SubstrateEquilibrium found = find_equilibrium(oscillator, last_ * unit);
-    if (!found.converged) return false;
+    if (!found.converged) {
+      failure_ = "no sliding equilibrium: the search for the indentation did not converge";
+      return false;
+    }
     last_ = found.displacement.y() / unit;
     motion_ = small_motion(oscillator, found);
     if (!terms_.friction_damping) motion_.damping = oscillator.damping;
@@ -46,6 +54,7 @@ class GrowthOfMass : public GrowthField {
   std::unique_ptr<OscillatorFamily> family_;
   KeptTerms terms_;
   SmallMotion motion_;
+  std::string failure_;  ///< of the last call that failed
   double time_ = 1.0;   ///< unit, s
   double last_ = first_guess;  ///< ŷ
 };

@@ -2,22 +2,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
-#include <limits>
-#include <memory>
 #include <thread>
 
-#include "analysis/boundary_continuation.hpp"
 #include "app/stability/axis_units.hpp"
-#include "app/stability/family_locus.hpp"
+#include "app/stability/map_study.hpp"
 #include "app/stability/stability.hpp"
 #include "app/stability/verdict.hpp"
-#include "app/terminal/progress.hpp"
-#include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "core/memory.hpp"
-#include "core/tasks.hpp"
 #include "core/version.hpp"
 #include "io/figures/gnuplot.hpp"
 #include "io/figures/stability_map_plot.hpp"
@@ -39,15 +34,9 @@ struct MapOptions {
   std::string command_line;
 };
 
-struct Axis {
-  NumericKey key;
-  std::vector<double> values;
-  bool is_logarithmic = false;
-};
-
-Axis make_axis(const StabilityScene& scene, const std::vector<std::string>& written,
-               const char* option, const std::string& scale) {
-  Axis axis{scene.find_key(written[0], option), {}, scale == "log"};
+KeyAxis make_axis(const StabilityScene& scene, const std::vector<std::string>& written,
+                  const char* option, const std::string& scale) {
+  KeyAxis axis{scene.find_key(written[0], option), {}, scale == "log"};
   const double from = parse_value(axis.key, written[1], option);
   const double to = parse_value(axis.key, written[2], option);
   if (!(from < to)) {
@@ -61,185 +50,13 @@ Axis make_axis(const StabilityScene& scene, const std::vector<std::string>& writ
   return axis;
 }
 
-/// Results along one line of the grid.
-struct LineResult {
-  std::vector<double> growth;                                ///< at every value, 1/s
-  std::vector<double> changes;                               ///< of stability, ascending
-  double highest = std::numeric_limits<double>::infinity();  ///< up to where all were looked at, Hz
-  Locus resolution;  ///< only its unresolved and unverified, of all parts of the line
-};
-
-/// Adds what may have been missed of one locus to that of others.
-void add_resolution(Locus& all, const Locus& one) {
-  all.unresolved = std::max(all.unresolved, one.unresolved);
-  all.unverified.insert(all.unverified.end(), one.unverified.begin(), one.unverified.end());
-}
-
-double largest_growth(const std::vector<std::complex<double>>& eigenvalues) {
-  double largest = -std::numeric_limits<double>::infinity();
-  for (const std::complex<double>& s : eigenvalues) largest = std::max(largest, s.real());
-  return largest;
-}
-
-std::vector<std::complex<double>> eigenvalues_at(StabilityFamily& family,
-                                                 const std::vector<double>& values,
-                                                 const LocusOptions& options) {
-  const SpectrumMethod how = family.method(values);
-  if (how == SpectrumMethod::counted)
-    return family.spectra(0, values, options).at(values[0]).eigenvalues;
-  const bool is_dense = options.method == LocusMethod::dense || how == SpectrumMethod::sampled;
-  const EigenvalueMethod method = is_dense ? EigenvalueMethod::dense : EigenvalueMethod::secular;
-  std::vector<std::complex<double>> found;
-  for (const Eigenvalue& one :
-       lowest_eigenvalues(family.pencil(values), method, {options.count, options.frequency}))
-    found.push_back(one.s);
-  return found;
-}
-
-/// Appends the values at which the stability changes along one line.
-void add_changes(LineResult& result, const Axis& axis, const Locus& locus) {
-  for (const StabilityChange& change : stability_changes(locus)) {
-    double value = change.value;
-    if (axis.key.is_integer) {
-      const auto after = std::find(axis.values.begin(), axis.values.end(), value);
-      value = 0.5 * (*(after - 1) + value);
-    }
-    if (result.changes.empty() || value > result.changes.back()) result.changes.push_back(value);
-  }
-}
-
-/// A line on which there is no equilibrium somewhere: what there is at the single values, and the
-/// changes between neighbours where there is one.
-LineResult trace_broken_line(StabilityFamily& family, const Axis& axis, std::size_t varied,
-                             std::vector<double> values, const LocusOptions& options) {
-  LineResult result;
-  for (const double value : axis.values) {
-    values[varied] = value;
-    double growth = std::numeric_limits<double>::quiet_NaN();
-    try {
-      const std::vector<std::complex<double>> found = eigenvalues_at(family, values, options);
-      result.highest =
-          std::min(result.highest, verdict_limit(found, {options.count, options.frequency},
-                                                 family.trusted_frequency(values)));
-      growth = largest_growth(found);
-    } catch (const NumericalError&) {
-    }
-    result.growth.push_back(growth);
-  }
-  const auto is_known = [](double growth) { return !std::isnan(growth); };
-  auto begin = std::find_if(result.growth.begin(), result.growth.end(), is_known);
-  while (begin != result.growth.end()) {
-    const auto end = std::find_if_not(begin, result.growth.end(), is_known);
-    const std::vector<double> part(axis.values.begin() + (begin - result.growth.begin()),
-                                   axis.values.begin() + (end - result.growth.begin()));
-    values[varied] = part.front();
-    try {
-      if (part.size() > 1) {
-        const Locus locus =
-            locus_along(family, axis.key, varied, values, part, options, SearchFor::stability);
-        add_changes(result, axis, locus);
-        add_resolution(result.resolution, locus);
-      }
-    } catch (const NumericalError&) {
-      // Between two values there may be none either.
-    }
-    begin = std::find_if(end, result.growth.end(), is_known);
-  }
-  return result;
-}
-
-/// @param varied index of the key along the line: 0 for x
-LineResult trace_line(StabilityFamily& family, const std::array<Axis, 2>& axes, std::size_t varied,
-                      double other, const LocusOptions& options) {
-  const Axis& axis = axes[varied];
-  std::vector<double> values(2, other);
-  values[varied] = axis.values.front();
-  try {
-    const Locus locus =
-        locus_along(family, axis.key, varied, values, axis.values, options, SearchFor::stability);
-    LineResult result;
-    result.highest =
-        verdict_limit(locus, {options.count, options.frequency}, family.trusted_frequency(values));
-    for (const auto& eigenvalues : locus.eigenvalues)
-      result.growth.push_back(largest_growth(eigenvalues));
-    add_changes(result, axis, locus);
-    add_resolution(result.resolution, locus);
-    return result;
-  } catch (const NumericalError&) {
-    return trace_broken_line(family, axis, varied, values, options);
-  }
-}
-
-/// Traces all rows, then all columns. Every line is a task of its own and begins from nothing, so
-/// that the results do not depend on which thread takes it.
-std::vector<LineResult> trace_lines(const StabilityScene& loaded, const std::array<Axis, 2>& axes,
-                                    const StabilityOptions& stability) {
-  const std::size_t num_rows = axes[1].values.size();
-  const std::size_t num_lines = num_rows + axes[0].values.size();
-  // The dense method lives in LAPACK, which two threads must not enter at once (core/tasks.hpp).
-  const bool is_dense = stability.locus_options().method == LocusMethod::dense;
-  const int num_threads = is_dense || loaded.needs_one_thread() ? 1 : stability.common.threads;
-  std::vector<std::unique_ptr<StabilityFamily>> families(
-      static_cast<std::size_t>(std::max(num_threads, 1)));
-  std::vector<LineResult> results(num_lines);
-  const auto trace = [&](std::size_t line, std::size_t thread) {
-    std::unique_ptr<StabilityFamily>& family = families[thread];
-    if (!family) family = loaded.family({axes[0].key, axes[1].key}, stability.geometry());
-    const bool is_row = line < num_rows;
-    results[line] = trace_line(*family, axes, is_row ? 0 : 1,
-                               is_row ? axes[1].values[line] : axes[0].values[line - num_rows],
-                               stability.locus_options());
-  };
-  Progress progress("map");
-  run_tasks(num_lines, num_threads, trace, [&](std::size_t num_done, std::size_t) {
-    progress.report(static_cast<double>(num_done) / static_cast<double>(num_lines),
-                    fmt::format("line {} of {}", num_done, num_lines));
-  });
-  progress.finish();
-  return results;
-}
-
-/// @param resolution what may have been missed along x and along y
-StabilityMap make_map(const StabilityScene& loaded, const std::array<Axis, 2>& axes,
-                      const StabilityOptions& stability, std::array<Locus, 2>& resolution) {
-  StabilityMap map;
-  map.x = axes[0].values;
-  map.y = axes[1].values;
-  const auto make_field = [&] { return loaded.growth_field({axes[0].key, axes[1].key}); };
-  if (make_field() != nullptr) {
-    const Activity tracing("growth at every point, then the boundary");
-    GrowthMap found = make_growth_map(make_field, map.x, map.y, stability.common.threads);
-    map.growth = std::move(found.growth);
-    // Between the lines of the grid, on which it is known, the boundary is followed.
-    const auto field = make_field();
-    const auto spacing = [](const Axis& axis) {
-      return axis.is_logarithmic ? GridSpacing::logarithmic : GridSpacing::linear;
-    };
-    map.boundary =
-        trace_boundary([&](double x, double y) { return field->margin(x, y); },
-                       {map.x, map.y, {spacing(axes[0]), spacing(axes[1])}}, found.boundary);
-    return map;
-  }
-  const std::vector<LineResult> lines = trace_lines(loaded, axes, stability);
-  GridCrossings crossings{map.x, map.y, {}, {}};
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const bool is_row = i < map.y.size();
-    if (is_row) map.growth.push_back(lines[i].growth);
-    map.highest_frequency = std::min(map.highest_frequency, lines[i].highest);
-    add_resolution(resolution[is_row ? 0 : 1], lines[i].resolution);
-    (is_row ? crossings.along_x : crossings.along_y).push_back(lines[i].changes);
-  }
-  map.boundary = boundary_lines(crossings);
-  return map;
-}
-
-void draw(const MapOptions& options, const std::array<Axis, 2>& axes, const StabilityMap& map,
+void draw(const MapOptions& options, const std::array<KeyAxis, 2>& axes, const StabilityMap& map,
           const StabilityScene& loaded) {
   StabilityMapPicture picture;
   const SceneNode* tree = &loaded.loaded().tree;
   const AxisUnit x_unit = axis_unit(axes[0].key, {options.x[1], options.x[2]}, tree);
   const AxisUnit y_unit = axis_unit(axes[1].key, {options.y[1], options.y[2]}, tree);
-  const auto axis_of = [](const Axis& axis, const AxisUnit& unit) {
+  const auto axis_of = [](const KeyAxis& axis, const AxisUnit& unit) {
     return MapAxis{axis.key.path, unit.name, unit.numbers(axis.values), axis.is_logarithmic};
   };
   picture.x = axis_of(axes[0], x_unit);
@@ -262,13 +79,13 @@ void draw(const MapOptions& options, const std::array<Axis, 2>& axes, const Stab
 struct FoundMap {
   const MapOptions& options;
   const StabilityScene& scene;
-  const std::array<Axis, 2>& axes;
+  const std::array<KeyAxis, 2>& axes;
   StabilityMap map;
   std::array<Locus, 2> resolution;
 };
 
 /// @throws ConfigError if the numbers of so many points do not fit into memory
-void check_size(const std::array<Axis, 2>& axes) {
+void check_size(const std::array<KeyAxis, 2>& axes) {
   constexpr double bytes_per_point = 125.0;  // measured, with JSON
   require_memory_for(
       {"--x",
@@ -338,7 +155,27 @@ Json map_json(const FoundMap& found) {
     for (const double value : row) numbers.push_back(number(value));
     object["growth"].push_back(std::move(numbers));
   }
+  object["failure"] = found.map.failure;
+  object["failures"] = Json::array();
+  for (const FailedPoints& one : failed_points(found.map))
+    object["failures"].push_back(
+        {{"number", one.number}, {"points", one.num_points}, {"reason", one.reason}});
   return object;
+}
+
+/// Why points have no growth rate, what most of them share first.
+void print_failures(const StabilityMap& map) {
+  constexpr std::size_t most_lines = 5;
+  const std::vector<FailedPoints> all = failed_points(map);
+  std::size_t num_points = 0;
+  for (const FailedPoints& one : all) num_points += one.num_points;
+  if (all.empty()) return;
+  fmt::print("{} of {} points failed:\n", num_points, map.x.size() * map.y.size());
+  for (std::size_t i = 0; i < std::min(most_lines, all.size()); ++i)
+    fmt::print("  {:>6}  {}\n", all[i].num_points, all[i].reason);
+  if (all.size() > most_lines)
+    fmt::print("  and {} other reasons (-o FILE.h5 keeps all, in /failures)\n",
+               all.size() - most_lines);
 }
 
 void print_map(const FoundMap& found) {
@@ -348,6 +185,7 @@ void print_map(const FoundMap& found) {
         std::count_if(row.begin(), row.end(), [](double growth) { return growth > 0.0; }));
   fmt::print("{} of {} points are unstable; the boundary has {} line(s)\n", num_unstable,
              found.map.x.size() * found.map.y.size(), found.map.boundary.size());
+  print_failures(found.map);
   fmt::print("{}\n", window_text(found.map.highest_frequency));
   for (std::size_t i = 0; i < 2; ++i) print_resolution(found.resolution[i], found.axes[i].key);
   for (const auto& file : {found.options.output, found.options.figure})
@@ -359,7 +197,7 @@ ExitCode map(MapOptions options) {
   if (options.output) check_output(*options.output, stability.common.overwrite());
   if (options.figure) check_figure(*options.figure, stability.common);
   const StabilityScene loaded = load_stability_scene(stability);
-  const std::array<Axis, 2> axes{
+  const std::array<KeyAxis, 2> axes{
       make_axis(loaded, options.x, "--x", options.x_scale.value_or(options.scale)),
       make_axis(loaded, options.y, "--y", options.y_scale.value_or(options.scale))};
   if (axes[0].key.path == axes[1].key.path)
@@ -367,7 +205,7 @@ ExitCode map(MapOptions options) {
                       fmt::format("'{}' is the key of --x already", axes[1].key.path));
   check_size(axes);
   FoundMap found{options, loaded, axes, {}, {}};
-  found.map = make_map(loaded, axes, stability, found.resolution);
+  found.map = make_stability_map(loaded, axes, stability, found.resolution);
   if (options.output) write_map(found);
   if (options.figure) draw(options, axes, found.map, loaded);
   if (stability.common.json) {

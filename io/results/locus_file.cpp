@@ -134,6 +134,19 @@ void write_boundary(const Hdf5Writer& writer, const std::vector<BoundaryLine>& b
   write_lists(writer, "/boundary", {std::move(x), std::move(y)});
 }
 
+/// Numbers of reasons at the points of a map, and the reasons.
+void write_failures(const Hdf5Writer& writer, const StabilityMap& map, const Handle& x,
+                    const Handle& y) {
+  if (map.reasons.empty()) return;
+  std::vector<double> numbers;
+  for (const auto& row : map.failure) numbers.insert(numbers.end(), row.begin(), row.end());
+  const Handle field = writer.write("/failure", {map.y.size(), map.x.size()}, numbers.data(), "1");
+  writer.tie(field, "/failure", y, 0);
+  writer.tie(field, "/failure", x, 1);
+  const Handle number = writer.write_numbers("/failures/number", map.reasons.size());
+  writer.tie(writer.write_texts("/failures/reason", map.reasons), "/failures/reason", number, 0);
+}
+
 /// The attributes of a file of a kind.
 Attributes of_kind(const char* kind, const Attributes& attributes) {
   Attributes all{{"kind", std::string(kind)}};
@@ -180,6 +193,7 @@ void write_map_file(const std::string& path, Overwrite overwrite, const Stabilit
                     writer.tie(field, "/growth", x, 1);
                     writer.make_default_plot("/growth", {"/y", "/x"});
                     write_boundary(writer, map.boundary, x_units, y_units);
+                    write_failures(writer, map, x, y);
                   });
 }
 

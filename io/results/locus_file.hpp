@@ -11,6 +11,7 @@
 //                             growth_integral, value_max, from_time, to_time, gain
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -56,10 +57,14 @@ struct StabilityMap {
   std::vector<BoundaryLine> boundary;
   /// The eigenvalues looked at are all up to this frequency, Hz.
   double highest_frequency = std::numeric_limits<double>::infinity();
+  /// Why a point has no growth rate, a row per y: 0 where it has one, else the number, from 1, of
+  /// one of `reasons`. Both are empty where nothing failed.
+  std::vector<std::vector<std::size_t>> failure{};
+  std::vector<std::string> reasons{};
 };
 
 /// Writes a map to a file of its own: /x, /y, /growth [y][x], /boundary/x and y [number][point],
-/// NaN behind the end of a line.
+/// NaN behind the end of a line; where points failed /failure [y][x] and /failures/reason.
 /// Parameters and throws as write_locus_file().
 void write_map_file(const std::string& path, Overwrite overwrite, const StabilityMap& map,
                     const std::string& x_units, const std::string& y_units,

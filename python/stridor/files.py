@@ -292,8 +292,16 @@ class StabilityMap(ResultFile):
 
     @property
     def growth(self) -> np.ndarray:
-        """1/s, [y][x]; NaN where there is no equilibrium."""
+        """1/s, [y][x]; NaN where the point failed (`reasons`)."""
         return self._file["growth"][:]
+
+    @property
+    def reasons(self) -> np.ndarray:
+        """Why a point has no growth rate, texts [y][x]; "" where it has one."""
+        if "failure" not in self._file:
+            return np.full(self._file["growth"].shape, "", dtype=object)
+        texts = ["", *(text.decode("utf-8") for text in self._file["failures/reason"][:])]
+        return np.array(texts, dtype=object)[self._file["failure"][:].astype(int)]
 
     @property
     def boundary(self) -> list[np.ndarray]:

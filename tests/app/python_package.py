@@ -182,6 +182,9 @@ class Files(unittest.TestCase):
                 made("cycles.h5", "sweep", example("viscoelastic_sphere"), "--set", "parameters.v=0.03", "--parameter",
                      "parameters.tau0", "--from", "0.01", "--to", "0.1", "--points", "2"),
                 os.path.join(made("study", "precision", example("viscoelastic_sphere"), "--points", "2"), "precision.h5"),
+                made("failed.h5", "map", example("beam_on_beam"), "--about", "deformed", "--x", "drive.load", "-0.1", "0.05",
+                     "4", "--y", "contact.friction.coefficient", "0.29", "0.3", "2", "--set", "contact.assumption=film",
+                     "--set", "contact.start=75.2 mm"),
                 made("frf.h5", "frf", example("reed"), "--input", "reed.middle.y", "--from", "100", "--to", "3000",
                      "--points", "5"),
                 made("amplitudes.h5", "spectrogram", run, "--channel", "cantilever.free_end.y.displacement"),
@@ -202,6 +205,19 @@ class Results(unittest.TestCase):
             for values, s in branches:
                 self.assertEqual(len(values), len(s))
                 self.assertTrue(np.all(np.isfinite(s)) and np.all(np.diff(values) > 0))
+
+    def test_points_of_a_map_say_why_they_failed(self):
+        with stridor.map(stridor.example("beam_on_beam"), x=("drive.load", -0.1, 0.05, 4),
+                         y=("contact.friction.coefficient", 0.29, 0.3, 2), about="deformed",
+                         set={"contact.assumption": "film", "contact.start": "75.2 mm"}) as found:
+            failed = np.isnan(found.growth)
+            self.assertTrue(failed.any() and not failed.all())
+            self.assertTrue(np.array_equal(found.reasons != "", failed))
+            self.assertIn("equilibrium", found.reasons[failed][0])
+            for line in found.boundary:
+                self.assertEqual(line.shape[1], 2)
+                self.assertTrue(np.all(np.isfinite(line)))
+            self.assertGreater(len(found.boundary), 0)
 
 
 class KilledRun(unittest.TestCase):

@@ -76,6 +76,9 @@ class Readers(unittest.TestCase):
              "--set", "measure.from=0.05")
         verb("locus", scene("beam_on_beam"), "--from", "70mm", "--to", "98mm", "--points", "5", "-o", at("locus.h5"))
         verb("run", scene("beam_on_beam"), "-o", at("heard.h5"), "--set", "time.end=2.3", "--predict", at("locus.h5"))
+        verb("map", scene("beam_on_beam"), "--about", "deformed", "--x", "drive.load", "-0.1", "0.05", "4", "--y",
+             "contact.friction.coefficient", "0.29", "0.3", "2", "--set", "contact.assumption=film", "--set",
+             "contact.start=75.2 mm", "-o", at("failed.h5"))
         verb("map", scene("disc_and_pads"), "--x", "parameters.mu", "0.2", "0.5", "3", "--y",
              "substructures.disc.spin", "5", "10", "2", "-o", at("map.h5"))
         verb("sweep", scene("beam_on_beam"), "--parameter", "contact.friction.coefficient", "--from", "0.3", "--to", "6",
@@ -93,7 +96,7 @@ class Readers(unittest.TestCase):
         verb("precision", scene("viscoelastic_sphere"), "--points", "2", "-o", at("study"))
         os.rename(os.path.join(at("study"), "precision.h5"), at("precision.h5"))
         killed_run(at("killed.h5"))
-        cls.kinds = {"run": "run", "heard": "run", "killed": "run", "locus": "locus", "map": "stability map",
+        cls.kinds = {"run": "run", "heard": "run", "killed": "run", "locus": "locus", "map": "stability map", "failed": "stability map",
                      "sweep": "sweep of transients", "cycle": "limit cycle", "cycles": "sweep of limit cycles",
                      "responses": "frequency responses", "spectrogram": "spectrogram", "contact": "sliding contacts",
                      "precision": "study of precision"}
@@ -171,6 +174,14 @@ class Readers(unittest.TestCase):
                     if axis != "." and name != "killed":
                         self.assertEqual(plot[axis].shape, (extent,))
 
+    def test_why_points_of_a_map_failed_stands_in_the_file(self):
+        with h5py.File(self.file("failed"), "r") as opened:
+            failure = opened["failure"][:]
+            self.assertTrue(np.array_equal(failure > 0, np.isnan(opened["growth"][:])))
+            self.assertGreater(failure.max(), 0)
+            for number in failure[failure > 0]:
+                self.assertIn(b"equilibrium", opened["failures/reason"][int(number) - 1])
+
     def test_why_a_point_of_a_sweep_failed_stands_in_the_file(self):
         with h5py.File(self.file("sweep"), "r") as opened:
             self.assertEqual(list(opened["failed"][:]), [0.0, 1.0])
@@ -205,7 +216,7 @@ class Readers(unittest.TestCase):
 
     @unittest.skipIf(xarray is None, "no xarray with h5netcdf")
     def test_xarray_labels_what_depends_on_coordinates(self):
-        coordinates = {"locus": ("/eigenvalues", None), "map": ("/", ("growth", ("y", "x"))),
+        coordinates = {"locus": ("/eigenvalues", None), "map": ("/", ("growth", ("y", "x"))), "failed": ("/", ("failure", ("y", "x"))),
                        "sweep": ("/", ("steps", ("value",))), "responses": ("/", None),
                        "spectrogram": ("/", ("amplitude", ("times", "frequencies"))),
                        "contact": ("/contacts/000", ("pressure", ("y", "x"))), "cycle": ("/channels", None),
@@ -233,7 +244,7 @@ class Readers(unittest.TestCase):
 
     @unittest.skipIf(shutil.which("ncdump") is None, "no ncdump")
     def test_ncdump_lists_variables_with_their_dimensions(self):
-        expected = {"map": "growth(y, x)", "spectrogram": "amplitude(times, frequencies)", "sweep": "steps(value)",
+        expected = {"map": "growth(y, x)", "failed": "failure(y, x)", "spectrogram": "amplitude(times, frequencies)", "sweep": "steps(value)",
                     "run": "force(time)", "heard": "growth_max(number)", "killed": "force(time)", "contact": "pressure(y, x)", "cycle": "force(time)",
                     "responses": "real(frequency)", "locus": "growth(values", "cycles": "period(value)",
                     "precision": "error(run_time)"}
@@ -245,7 +256,7 @@ class Readers(unittest.TestCase):
     @unittest.skipIf(shutil.which("octave-cli") is None, "no Octave")
     def test_octave_loads_them(self):
         script = "x = load('{path}'); disp(fieldnames(x)); disp(size(x.{field}))"
-        fields = {"run": "time", "heard": "windows.gain", "killed": "time", "locus": "eigenvalues.growth", "map": "growth", "sweep": "steps",
+        fields = {"run": "time", "heard": "windows.gain", "killed": "time", "locus": "eigenvalues.growth", "map": "growth", "failed": "failure", "sweep": "steps",
                   "cycle": "time", "responses": "frequency", "spectrogram": "amplitude", "contact": "rows.force",
                   "cycles": None, "precision": "settings.error"}
         for name, _, path in self.files():

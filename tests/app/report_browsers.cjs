@@ -30,6 +30,10 @@ stridor('run', path.join(source, 'scenes/examples/meshed_disc.yaml'), '-o', at('
 stridor('report', at('disc.h5'), '-o', at('disc.html'));
 stridor('map', path.join(source, 'scenes/viscoelastic_sphere.yaml'), '--x', 'parameters.v', '1e-3', '1', '9', '--y', 'parameters.tau0', '1e-3', '1', '7', '--scale', 'log', '-o', at('map.h5'));
 stridor('report', at('map.h5'), '-o', at('map.html'));
+// Where the load pulls the beams apart nothing slides.
+stridor('map', path.join(source, 'scenes/beam_on_beam.yaml'), '--about', 'deformed', '--x', 'drive.load', '-0.1', '0.05', '4', '--y',
+  'contact.friction.coefficient', '0.29', '0.3', '2', '--set', 'contact.assumption=film', '--set', 'contact.start=75.2 mm', '-o', at('failed.h5'));
+stridor('report', at('failed.h5'), '-o', at('failed.html'));
 stridor('precision', path.join(source, 'scenes/viscoelastic_sphere.yaml'), '--points', '4', '--tune', '1e-3', '-o', at('study'));
 stridor('report', at('study/precision.h5'), '-o', at('study.html'));
 const info = JSON.parse(stridor('info', at('run.h5'), '--json'));
@@ -219,6 +223,15 @@ print(json.dumps([t[keep].tolist(), f[name][()][keep].tolist()]))`;
   await map.evaluate(() => [...document.querySelectorAll('div')].find(d => d.field).field.chart.click(0.03, 0.03));
   assert.match(await map.evaluate(() => document.body.textContent), /Repeat it with stridor eig .*viscoelastic_sphere.yaml --about undeformed --method \w+ --set parameters.v=0.03\d* --set parameters.tau0=0.03/);
   await map.close();
+  const failed = await opened(browser, 'failed.html', messages, requests);
+  const [known, unknown] = await failed.evaluate(() => {
+    const field = [...document.querySelectorAll('div')].find(d => d.field).field;
+    return [field.describe(-0.1, 0.3).text, field.describe(0.05, 0.3).text];
+  });
+  assert.match(known, /largest growth rate/);
+  assert.match(unknown, /failed: no sliding equilibrium: .*free to move/);
+  assert.match(await failed.evaluate(() => document.body.textContent), /points failed: no sliding equilibrium/);
+  await failed.close();
 
   const study = await opened(browser, 'study.html', messages, requests);
   assert.match(await study.evaluate(() => {

@@ -20,6 +20,7 @@ namespace stridor {
 namespace {
 
 using namespace test;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -410,6 +411,22 @@ TEST(MapProgram, HasItsBoundaryUpToWhereThereIsNoEquilibrium) {
       sets);
   EXPECT_FALSE(map["growth"][1][9].is_null());  // -0.01 N
   EXPECT_TRUE(map["growth"][1][12].is_null());  // 0.02 N
+  // Why there is none: points that fail alike share a text without their place.
+  EXPECT_EQ(map["failure"][1][9], 0);
+  const std::size_t number = map["failure"][1][12].get<std::size_t>();
+  ASSERT_GE(number, 1u);
+  std::size_t num_failed = 0;
+  for (const Json& one : map["failures"]) {
+    num_failed += one["points"].get<std::size_t>();
+    if (one["number"] == number) {
+      EXPECT_THAT(one["reason"].get<std::string>(),
+                  AllOf(HasSubstr("equilibrium"), Not(HasSubstr("drive.load"))));
+    }
+  }
+  std::size_t num_missing = 0;
+  for (const Json& row : map["growth"])
+    for (const Json& growth : row) num_missing += growth.is_null() ? 1 : 0;
+  EXPECT_EQ(num_failed, num_missing);
   const Json threshold =
       scene_json({"threshold", scene_path("beam_on_beam.yaml"), "--about", "deformed",
                   "--parameter", "drive.load", "--from", "-0.1", "--to", "-0.01"},

@@ -97,6 +97,25 @@ TEST(LocusFile, BranchesAreARectangleWithNothingBehindTheirEnds) {
   EXPECT_EQ(file.read("/branches/number"), (std::vector<double>{1.0, 2.0}));
 }
 
+TEST(LocusFile, MapsSayWhyTheirPointsFailed) {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "map.h5").string();
+  StabilityMap map{{0, 1}, {0, 2}, {{1, std::nan("")}, {3, 4}}, {{{0, 0.5}, {1, 2}}, {{0, 2}}}};
+  map.failure = {{0, 1}, {0, 0}};
+  map.reasons = {"every contact is open"};
+  write_map_file(path, Overwrite::no, map, "m", "1", {});
+  const ResultFile file(path);
+  EXPECT_EQ(file.read("/failure", 2), (std::vector<double>{0.0, 1.0, 0.0, 0.0}));
+  EXPECT_EQ(file.texts("/failures/reason"), map.reasons);
+  EXPECT_EQ(file.array("/boundary/x").units, "m");
+  EXPECT_EQ(file.array("/boundary/y").units, "1");
+  EXPECT_EQ(file.read("/boundary/y", 2)[1], 2.0);
+  map.failure.clear();
+  map.reasons.clear();
+  write_map_file(path, Overwrite::yes, map, "m", "1", {});
+  EXPECT_FALSE(ResultFile(path).has("/failure"));
+}
+
 TEST(LocusFile, ColumnsOfDifferentLengthsAreRefused) {
   const TemporaryFolder folder;
   const std::string path = (folder / "locus.h5").string();

@@ -29,6 +29,7 @@ function nearestIndex(values, value, isLog) {
 async function makeField(place, view, section) {
   const [xs, ys, values] = await Promise.all([view.x, view.y, view.value].map(one => numbersOf(one.values)));
   const lines = await Promise.all(view.lines.map(numbersOf));
+  const failure = view.failure ? await numbersOf(view.failure) : null;
   const isLogX = isGeometric(xs), isLogY = isGeometric(ys);
   const edgesX = edgesOf(xs, isLogX), edgesY = edgesOf(ys, isLogY);
   let low = Infinity, high = -Infinity;
@@ -79,7 +80,9 @@ async function makeField(place, view, section) {
   const describe = (x, y) => {
     const i = nearestIndex(xs, x, isLogX), j = nearestIndex(ys, y, isLogY);
     const value = values[j * xs.length + i];
-    const what = isFinite(value) ? `${view.value.name} ${shown(value, view.value.units)}` : view.missing || 'none';
+    const reason = failure && view.reasons[failure[j * xs.length + i] - 1];
+    const what = isFinite(value) ? `${view.value.name} ${shown(value, view.value.units)}`
+      : reason ? `failed: ${reason}` : view.missing || 'none';
     return {i, j, text: `${view.x.name} = ${shown(xs[i], view.x.units, 6)}, ${view.y.name} = ${shown(ys[j], view.y.units, 6)}: ${what}`};
   };
   const bar = element('canvas', {'aria-hidden': 'true'});
