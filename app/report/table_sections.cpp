@@ -117,6 +117,7 @@ Json cycle_section(const ResultFile& file, const ReportContext& context) {
 
 Json response_section(const ResultFile& file, const ReportContext& context) {
   Json section = section_head(file, "frequency responses");
+  section["remarks"] = Json::array();
   const std::vector<double> frequencies = file.read("/frequency");
   Json magnitude = {{"title", "magnitude"}, {"log", true}, {"curves", Json::array()}};
   Json phase = {{"title", "phase"}, {"curves", Json::array()}};
@@ -144,6 +145,10 @@ Json response_section(const ResultFile& file, const ReportContext& context) {
         }
       }
       const std::string name = output + " per force at " + input;
+      if (const auto truncation = file.number(group + "/truncation")) {
+        section["remarks"].push_back(fmt::format(
+            "{}: off by {:.2g} with the modes that a run keeps (time.retain)", name, *truncation));
+      }
       magnitude["curves"].push_back({{"name", name},
                                      {"units", file.array(group + "/real").units},
                                      {"values", context.page.add_numbers(size)}});

@@ -14,6 +14,7 @@
 #include "core/version.hpp"
 #include "io/figures/axes.hpp"
 #include "io/figures/panel_plot.hpp"
+#include "io/hdf5/part_file.hpp"
 
 namespace stridor {
 namespace {
@@ -135,7 +136,6 @@ struct FoundResponses {
   const ResponseStudy& study;
   std::vector<double> frequencies;
   std::vector<ResponseCurve> curves;
-  std::vector<double> truncation;  ///< of a run, one per curve; or empty
   std::vector<ComparedResponse> compared;
   std::vector<std::string> remarks;
 };
@@ -199,8 +199,10 @@ Json responses_json(const FoundResponses& found) {
         {{"output", curve.output},
          {"input", curve.input},
          {"units", curve.units},
-         {"peak", {{"frequency", found.frequencies[peak]}, {"magnitude", number(std::abs(curve.values[peak]))}}},
-         {"truncation", found.truncation.empty() ? Json(nullptr) : number(found.truncation[i])},
+         {"peak",
+          {{"frequency", found.frequencies[peak]},
+           {"magnitude", number(std::abs(curve.values[peak]))}}},
+         {"truncation", curve.truncation ? number(*curve.truncation) : Json(nullptr)},
          {"real", numbers_json(curve.values, true)},
          {"imaginary", numbers_json(curve.values, false)}});
   }
@@ -227,9 +229,9 @@ void print_responses(const FoundResponses& found) {
     const std::size_t peak = peak_of(curve);
     fmt::print("{} per {}: largest {:.4g} {} at {:.6g} Hz\n", curve.output, curve.input,
                std::abs(curve.values[peak]), curve.units, found.frequencies[peak]);
-    if (!found.truncation.empty())
+    if (curve.truncation)
       fmt::print("  with the modes that a run keeps (time.retain): off by {:.2g}\n",
-                 found.truncation[i]);
+                 *curve.truncation);
   }
   fmt::print("{} frequencies from {:g} to {:g} Hz about the {} geometry\n", found.frequencies.size(),
              found.frequencies.front(), found.frequencies.back(), found.options.stability.about);
@@ -265,8 +267,9 @@ ExitCode frf(FrfOptions options) {
   const std::vector<double> frequencies = frequencies_of(options);
   ResponsePlaces places = response_places(options.inputs, options.outputs, loaded.scene.model);
   const ResponseStudy study(std::move(loaded), stability.geometry(), std::move(places));
-  FoundResponses found{options, study, frequencies, study.curves(frequencies), {}, {}, {}};
-  found.truncation = study.truncation_errors(frequencies, found.curves);
+  FoundResponses found{options, study, frequencies, study.curves(frequencies), {}, {}};
+  const std::vector<double> truncation = study.truncation_errors(frequencies, found.curves);
+  for (std::size_t i = 0; i < truncation.size(); ++i) found.curves[i].truncation = truncation[i];
   if (options.measured) {
     found.remarks = measured.remarks;
     found.compared = compared_responses(study, measured, names, frequencies.front(),

@@ -153,6 +153,10 @@ constexpr std::array dataset_names{
     DatasetName{"/frequency", "frequency of the force"},
     DatasetName{"/responses/*/*/real", "real part of {} per force at {}"},
     DatasetName{"/responses/*/*/imaginary", "imaginary part of {} per force at {}"},
+    DatasetName{"/responses/*/*/truncation",
+                "relative difference of {} per force at {} with the modes that a run keeps and the "
+                "residual "
+                "flexibility of the others"},
     DatasetName{"/times", "time at the middle of the piece"},
     DatasetName{"/frequencies", "frequency of the line"},
     DatasetName{"/amplitude", "peak amplitude of a sine of this frequency"},

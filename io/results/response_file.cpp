@@ -22,6 +22,7 @@ void write_response_file(const std::string& path, Overwrite overwrite,
         const Handle written = writer.write(dataset, part, curve.units);
         writer.tie(written, dataset, frequency, 0);
       }
+      if (curve.truncation) writer.write(group + "/truncation", {}, &*curve.truncation, "1");
     }
     if (curves.empty()) return;
     writer.make_default_plot("/responses/" + curves[0].output + "/" + curves[0].input + "/real",

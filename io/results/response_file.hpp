@@ -4,9 +4,12 @@
 //     /frequency                             Hz
 //     /responses/<output>/<input>/real       of the motion per force, [frequency]
 //     /responses/<output>/<input>/imaginary  likewise
+//     /responses/<output>/<input>/truncation how far it is off with the modes that a run keeps; one
+//     number
 #pragma once
 
 #include <complex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +23,9 @@ struct ResponseCurve {
   std::string input;   ///< "<body>.<point>.<x|y|z>"
   std::string units;   ///< "m/s^2/N"
   std::vector<std::complex<double>> values;  ///< one per frequency
+  /// ‖h_kept − h‖/‖h‖ with the modes that a run keeps and the residual flexibility of the others;
+  /// nothing where a run keeps all.
+  std::optional<double> truncation{};
 };
 
 /// @param frequencies Hz

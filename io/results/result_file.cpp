@@ -1,6 +1,7 @@
 #include "io/results/result_file.hpp"
 
 #include <hdf5.h>
+#include <hdf5_hl.h>
 
 #include <algorithm>
 #include <set>
@@ -107,6 +108,12 @@ const ResultArray& ResultFile::array(const std::string& path) const {
 std::vector<double> ResultFile::read(const std::string& path, std::size_t rank) const {
   const QuietErrors quiet;
   return read_array(impl_->at, open_array(impl_->at, impl_->file.id(), path, rank), path);
+}
+
+std::optional<double> ResultFile::number(const std::string& path) const {
+  const QuietErrors quiet;
+  if (H5LTpath_valid(impl_->file.id(), path.c_str(), true) <= 0) return std::nullopt;
+  return read(path, 0).front();
 }
 
 std::vector<std::string> ResultFile::texts(const std::string& path) const {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -45,6 +46,9 @@ class ResultFile {
   /// @param rank how many extents are expected
   /// @throws FileError naming the dataset if it is missing, of another rank, or cannot be read
   std::vector<double> read(const std::string& path, std::size_t rank = 1) const;
+  /// A number that stands alone; nothing where there is no such dataset.
+  /// @throws FileError naming the dataset if it is an array, no number, or cannot be read
+  std::optional<double> number(const std::string& path) const;
   /// The texts of a dataset, in order; none where there is no such dataset.
   /// @throws FileError if it holds anything else, or cannot be read
   std::vector<std::string> texts(const std::string& path) const;

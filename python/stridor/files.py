@@ -329,6 +329,12 @@ class FrequencyResponses(ResultFile):
         """Hz."""
         return self._file["frequency"][:]
 
+    @property
+    def truncation(self) -> dict[tuple[str, str], float]:
+        """How far each response is off with the modes that a run keeps; empty where it keeps all."""
+        return {(output, name): float(self._file["responses"][output][name]["truncation"][()])
+                for output, name in self if "truncation" in self._file["responses"][output][name]}
+
     def __iter__(self) -> Iterator[tuple[str, str]]:
         for output, inputs in self._file["responses"].items():
             for name in inputs:

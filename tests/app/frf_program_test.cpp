@@ -11,10 +11,12 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "io/imports/uff_functions.hpp"
+#include "io/results/result_file.hpp"
 #include "tests/support/constants.hpp"
 #include "tests/support/program.hpp"
 
@@ -149,16 +151,29 @@ TEST_F(FrfProgram, BeamsInSlidingContactAreAskedAboutTheirEquilibrium) {
 TEST_F(FrfProgram, TellsWhatTheModesOfARunLeaveOut) {
   const std::string scene = scene_path("beam_on_beam.yaml");
   const auto truncation = [&](const std::string& kept) {
-    const Json object = json_of({scene, "--input", "cantilever.free_end.y", "--from", "20", "--to",
-                                 "5kHz", "--points", "50", "--set", "time.integrator=exact", "--set",
-                                 "time.step=5e-6", "--set", "time.retain.frequency=" + kept});
-    return object["responses"][0]["truncation"].get<double>();
+    const Json object =
+        json_of({scene, "--input", "cantilever.free_end.y", "--from", "20", "--to", "5kHz",
+                 "--points", "50", "--set", "time.integrator=exact", "--set", "time.step=5e-6",
+                 "--set", "time.retain.frequency=" + kept, "-o", path(kept + ".h5")});
+    const double printed = object["responses"][0]["truncation"].get<double>();
+    const ResultFile file(path(kept + ".h5"));
+    EXPECT_EQ(file.number(
+                  "/responses/cantilever.free_end.y.acceleration/cantilever.free_end.y/truncation"),
+              printed);
+    return printed;
   };
   const double few = truncation("12kHz");
   const double many = truncation("40kHz");
   EXPECT_LT(few, 0.1);
   EXPECT_LT(many, 0.2 * few);
   EXPECT_GT(many, 0.0);
+  // A run that keeps all modes leaves nothing out.
+  json_of({scene, "--input", "cantilever.free_end.y", "--from", "20", "--to", "5kHz", "--points",
+           "5", "-o", path("all.h5")});
+  EXPECT_EQ(
+      ResultFile(path("all.h5"))
+          .number("/responses/cantilever.free_end.y.acceleration/cantilever.free_end.y/truncation"),
+      std::nullopt);
 }
 
 TEST_F(FrfProgram, WritesFilesThatItComparesWithItselfAndAPicture) {

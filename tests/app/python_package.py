@@ -187,6 +187,9 @@ class Files(unittest.TestCase):
                      "--set", "contact.start=75.2 mm"),
                 made("frf.h5", "frf", example("reed"), "--input", "reed.middle.y", "--from", "100", "--to", "3000",
                      "--points", "5"),
+                made("kept.h5", "frf", example("beam_on_beam"), "--input", "cantilever.free_end.y", "--from", "100", "--to",
+                     "3000", "--points", "5", "--set", "time.integrator=exact", "--set", "time.step=5e-6", "--set",
+                     "time.retain.frequency=12kHz"),
                 made("amplitudes.h5", "spectrogram", run, "--channel", "cantilever.free_end.y.displacement"),
                 made("contact.h5", "contact", example("viscoelastic_contact"), "--speed", "0.1", "--indentation", "0.01"),
             ]
@@ -218,6 +221,17 @@ class Results(unittest.TestCase):
                 self.assertEqual(line.shape[1], 2)
                 self.assertTrue(np.all(np.isfinite(line)))
             self.assertGreater(len(found.boundary), 0)
+
+    def test_responses_say_how_far_a_run_is_off(self):
+        def found(**settings):
+            with stridor.frf(stridor.example("beam_on_beam"), input="cantilever.free_end.y", from_=100, to=3000, points=5,
+                             set={"time.integrator": "exact", "time.step": 5e-6, **settings}) as responses:
+                return responses.truncation
+
+        kept = found(**{"time.retain.frequency": "12kHz"})
+        self.assertEqual(list(kept), [("cantilever.free_end.y.acceleration", "cantilever.free_end.y")])
+        self.assertTrue(0.0 < next(iter(kept.values())) < 0.1)
+        self.assertEqual(found(), {})
 
 
 class KilledRun(unittest.TestCase):

@@ -87,8 +87,9 @@ class Readers(unittest.TestCase):
         verb("cycle", scene("examples/mass_on_belt"), "-o", at("cycle.h5"))
         verb("sweep", scene("viscoelastic_sphere"), "--set", "parameters.v=0.03", "--parameter", "parameters.tau0",
              "--from", "0.01", "--to", "0.1", "--points", "2", "-o", at("cycles.h5"))
-        verb("frf", scene("examples/reed"), "--input", "reed.middle.y", "--from", "100", "--to", "3000", "--points", "5",
-             "-o", at("responses.h5"))
+        verb("frf", scene("beam_on_beam"), "--input", "cantilever.free_end.y", "--from", "100", "--to", "3000", "--points",
+             "5", "--set", "time.integrator=exact", "--set", "time.step=5e-6", "--set", "time.retain.frequency=12kHz", "-o",
+             at("responses.h5"))
         verb("spectrogram", run, "--channel", "cantilever.free_end.y.displacement", "-o", at("a.png"), "--data",
              at("spectrogram.h5"))
         verb("contact", scene("viscoelastic_contact"), "--speed", "0.1,1", "--indentation", "0.01", "--set",
