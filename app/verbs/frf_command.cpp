@@ -33,6 +33,7 @@ struct FrfOptions {
   std::optional<std::string> figure;
   std::optional<std::string> measured;
   std::vector<std::string> nodes;
+  bool is_binary = false;  ///< universal files
   std::string command_line;
 };
 
@@ -51,6 +52,9 @@ void check_files(const FrfOptions& options) {
     check_output(file, options.stability.common.overwrite());
   }
   if (options.figure) check_figure(*options.figure, options.stability.common);
+  if (options.is_binary && std::ranges::none_of(options.files, is_universal))
+    throw ConfigError(Refusal::wrong_value, "--binary",
+                      "is the form of universal files; name one with -o FILE.uff");
   if (!options.nodes.empty() && !options.measured)
     throw ConfigError(Refusal::wrong_value, "--node",
                       "names nodes of a measurement; give it with --compare");
@@ -73,7 +77,8 @@ void write_files(const FrfOptions& options, const ResponseStudy& study,
   const StabilityOptions& stability = options.stability;
   for (const std::string& file : options.files) {
     if (is_universal(file)) {
-      write_text_file(file, uff_text(uff_contents(study, frequencies, curves), "-o"));
+      const UffForm form = options.is_binary ? UffForm::binary : UffForm::text;
+      write_text_file(file, uff_text(uff_contents(study, frequencies, curves), "-o", form));
       continue;
     }
     write_response_file(file, stability.common.overwrite(), frequencies, curves,
@@ -321,6 +326,9 @@ void add_frf_command(CLI::App& program, Action& action, const std::string& comma
                    "File to write: .h5 (HDF5), or .uff, .unv (universal file); may be repeated")
       ->take_all()
       ->allow_extra_args(false);
+  verb->add_flag(
+      "--binary", options->is_binary,
+      "Universal files with their numbers in binary (58b), at any frequencies to the last digit");
   verb->add_option("--figure", options->figure,
                    "Picture of magnitude, phase and locus of the responses: .png, .svg or .pdf");
   verb->add_option("--compare", options->measured,

@@ -1,12 +1,14 @@
-// stridor import: what files of meshes and matrices hold.
+// stridor import: what files of meshes, matrices and modal tests hold.
 #include <fmt/format.h>
 
 #include "app/results/import_report.hpp"
+#include "app/results/universal_report.hpp"
 #include "app/terminal/command.hpp"
 #include "core/units.hpp"
 #include "io/figures/mesh_plot.hpp"
 #include "io/imports/mesh_file.hpp"
 #include "io/imports/named_files.hpp"
+#include "io/imports/uff_contents.hpp"
 #include "substructures/bodies/matrix_body.hpp"
 
 namespace stridor {
@@ -88,9 +90,29 @@ void print_summary(const MeshSummary& summary) {
   if (!skipped.empty()) fmt::print("{:<26} {}\n", "passed over", skipped);
 }
 
+/// A file of a test stands alone: it belongs to no mesh or matrices.
+ExitCode import_universal(const ImportOptions& options, const std::string& file) {
+  if (options.files.size() > 1) {
+    throw ConfigError(Refusal::wrong_value, "files",
+                      fmt::format("'{}' is a universal file, which is given alone", file));
+  }
+  if (!options.figure.empty())
+    throw ConfigError(
+        Refusal::wrong_value, "--output",
+        "a universal file has no mesh to draw; `stridor draw` shows a scene with its nodes");
+  const UffHoldings held = read_uff_holdings_file(file);
+  if (options.common.json) {
+    print_json({{"universal", universal_json(held)}});
+  } else {
+    print_universal(held, file);
+  }
+  return ExitCode::done;
+}
+
 ExitCode import_files(const ImportOptions& options) {
   if (!options.figure.empty()) check_figure(options.figure, options.common);
   const ImportedFiles files = sort_out_files(options.files);
+  if (!files.universal.empty()) return import_universal(options, files.universal);
   MatrixNodesParameters nodes = options.nodes;
   ImportFacts facts;
   Mesh mesh;
@@ -141,11 +163,13 @@ ExitCode import_files(const ImportOptions& options) {
 void add_import_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<ImportOptions>();
   CLI::App* verb = program.add_subcommand(
-      "import", "What files of meshes and matrices hold, before they are used in a scene");
-  verb->add_option("files", options->files,
-                   "A mesh (.msh, .inp), or the matrices of a body with what belongs to them; "
-                   "KEY=FILE where the name does not tell: mass, damping, stiffness, unknowns, "
-                   "mesh, nodes")
+      "import",
+      "What files of meshes, matrices and modal tests hold, before they are used in a scene");
+  verb->add_option(
+          "files", options->files,
+          "A mesh (.msh, .inp), a universal file (.uff, .unv), or the matrices of a body with "
+          "what belongs to them; KEY=FILE where the name does not tell: mass, damping, "
+          "stiffness, unknowns, mesh, nodes, universal")
       ->required();
   verb->add_option("--unknowns", options->nodes.unknowns,
                    "all_of_mesh: the rows are all displacements of all nodes of the mesh");

@@ -50,13 +50,14 @@ SparseMatrix NamedFiles::matrix(const std::vector<std::string>& rows) const {
 namespace {
 
 using Member = std::string ImportedFiles::*;
-constexpr std::array<std::pair<const char*, Member>, 6> kinds{
+constexpr std::array<std::pair<const char*, Member>, 7> kinds{
     {{"mass", &ImportedFiles::mass},
      {"damping", &ImportedFiles::damping},
      {"stiffness", &ImportedFiles::stiffness},
      {"unknowns", &ImportedFiles::unknowns},
      {"mesh", &ImportedFiles::mesh},
-     {"nodes", &ImportedFiles::nodes}}};
+     {"nodes", &ImportedFiles::nodes},
+     {"universal", &ImportedFiles::universal}}};
 
 void set(ImportedFiles& all, Member member, const std::string& file) {
   std::string& slot = all.*member;
@@ -98,7 +99,8 @@ void sort_out_matrix(ImportedFiles& all, const std::string& file, const std::str
   }
   throw ConfigError(Refusal::wrong_value, "files",
                     fmt::format("cannot tell what '{}' is; say it: mass=FILE, stiffness=FILE, "
-                                "damping=FILE, unknowns=FILE, mesh=FILE or nodes=FILE",
+                                "damping=FILE, unknowns=FILE, mesh=FILE, nodes=FILE or "
+                                "universal=FILE",
                                 file));
 }
 
@@ -120,6 +122,8 @@ ImportedFiles sort_out_files(const std::vector<std::string>& files) {
     const std::string name = lower_case_of(path.stem().string());
     if (ending == ".msh" || ending == ".inp") {
       set(all, &ImportedFiles::mesh, given);
+    } else if (ending == ".uff" || ending == ".unv" || ending == ".uf") {
+      set(all, &ImportedFiles::universal, given);
     } else if (ending == ".dof" || ending == ".mapping") {
       set(all, &ImportedFiles::unknowns, given);
     } else if (ending == ".csv" || ending == ".txt" || ending == ".tsv") {

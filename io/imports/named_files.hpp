@@ -34,14 +34,15 @@ class NamedFiles : public BodyFiles {
 
 /// Files that are given together, by what they are.
 struct ImportedFiles {
-  std::string mass, damping, stiffness, unknowns, mesh, nodes;  ///< paths; may be empty
+  std::string mass, damping, stiffness, unknowns, mesh, nodes, universal;  ///< paths; may be empty
   bool has_matrices() const { return !mass.empty() || !stiffness.empty(); }
 };
 
-/// Tells what files are by their names and first lines: meshes (.msh, .inp), matrices (.sti and .mas
-/// of CalculiX, .mtx with STIF or MASS in the name as Abaqus has them, .pch of Nastran, which holds
-/// both), tables of unknowns (.dof, .mapping, .csv) and of nodes (.csv, .txt). "mass=FILE" and the like
-/// say it.
+/// Tells what files are by their names and first lines: meshes (.msh, .inp), matrices (.sti and
+/// .mas of CalculiX, .mtx with STIF or MASS in the name as Abaqus has them, .pch of Nastran, which
+/// holds both), tables of unknowns (.dof, .mapping, .csv) and of nodes (.csv, .txt), universal
+/// files of tests
+/// (.uff, .unv, .uf). "mass=FILE" and the like say it.
 /// @throws ConfigError where it cannot be told, or two files would be the same; FileError
 ImportedFiles sort_out_files(const std::vector<std::string>& files);
 

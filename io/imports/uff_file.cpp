@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -142,25 +143,34 @@ void read_mode(const UffDataset& dataset, const UffUnits& units, ModalTest& test
 
 }  // namespace
 
-ModalTest read_uff(const SourceText& source) {
-  const std::vector<UffDataset> datasets = uff_datasets(source);
-  UffUnits units;
-  for (const UffDataset& dataset : datasets)
-    if (dataset.type == 164) units = read_uff_units(dataset);
+ModalTest modal_test_in(const std::vector<UffDataset>& datasets) {
+  const UffUnits units = units_in(datasets);
   ModalTest test;
   for (const UffDataset& dataset : datasets) {
     if (dataset.data) continue;  // functions
     if (dataset.type == 15 || dataset.type == 2411) read_nodes(dataset, units, test);
     if (dataset.type == 55) read_mode(dataset, units, test);
   }
-  if (test.modes.empty()) {
-    refuse_at({&source, 0}, fmt::format("expected mode shapes (dataset 55, analysis 2, 3 or 7); there are "
-                                        "{} datasets and none of these",
-                                        datasets.size()));
-  }
-  if (!units.is_given)
-    test.remarks.emplace_back("has no units (dataset 164); they are taken to be SI");
+  if (!units.is_given) test.remarks.emplace_back(no_units);
   return test;
+}
+
+ModalTest read_uff(const SourceText& source) {
+  const std::vector<UffDataset> datasets = uff_datasets(source);
+  ModalTest test = modal_test_in(datasets);
+  if (!test.modes.empty()) return test;
+  const auto num_functions =
+      std::ranges::count(datasets, 58, [](const UffDataset& dataset) { return dataset.type; });
+  refuse_at(
+      {&source, 0},
+      fmt::format(
+          "expected mode shapes (dataset 55, analysis 2, 3 or 7); there are {} datasets and "
+          "none of these{}",
+          datasets.size(),
+          num_functions > 0 ? fmt::format(", but {} with functions (58), which `stridor frf "
+                                          "SCENE --compare FILE` sets beside those of a scene",
+                                          num_functions)
+                            : ""));
 }
 
 ModalTest read_uff_file(const std::string& path) {

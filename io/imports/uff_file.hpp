@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "io/imports/source_text.hpp"
+#include "io/imports/uff_lines.hpp"
 #include "substructures/bodies/modal_test.hpp"
 
 namespace stridor {
@@ -16,6 +18,10 @@ namespace stridor {
 /// texts in any encoding.
 /// @throws ConfigError with the place in the file and what was expected
 ModalTest read_uff(const SourceText& source);
+
+/// Nodes and modes of the datasets of a file, with remarks; may be none.
+/// @throws ConfigError with the place in the file and what was expected
+ModalTest modal_test_in(const std::vector<UffDataset>& datasets);
 
 /// @throws ConfigError as read_uff(); FileError
 ModalTest read_uff_file(const std::string& path);

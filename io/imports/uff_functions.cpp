@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -21,7 +22,7 @@ struct FunctionForm {
   bool is_double = false;
   bool is_complex = false;
   bool is_even = true;
-  std::size_t count = 0;
+  std::size_t count = 0;  ///< of values
   double first = 0.0;
   double increment = 0.0;
 
@@ -86,7 +87,7 @@ int read_quantity(const UffLine& line) {
   return static_cast<int>(*number);
 }
 
-/// Numbers of the lines of a function in text.
+/// Numbers of the lines of a function in text, as far as they are there.
 std::vector<double> text_numbers(UffReader& reader, const FunctionForm& form) {
   constexpr std::array<std::size_t, 1> single{13};
   constexpr std::array<std::size_t, 1> twice{20};
@@ -97,15 +98,15 @@ std::vector<double> text_numbers(UffReader& reader, const FunctionForm& form) {
       : form.is_even    ? std::span<const std::size_t>(twice)
       : form.is_complex ? std::span<const std::size_t>(complex_pairs)
                         : std::span<const std::size_t>(real_pairs);
+  constexpr const char* expected = "values of the function";
   const std::size_t wanted = form.count * form.per_point();
   std::vector<double> numbers;
-  while (numbers.size() < wanted) {
-    const UffLine& line = reader.line("values of the function");
-    const std::vector<double> more = uff_columns(line, widths, "values of the function");
+  while (numbers.size() < wanted && (numbers.empty() || !reader.is_at_end())) {
+    const std::vector<double> more = uff_columns(reader.line(expected), widths, expected);
     numbers.insert(numbers.end(), more.begin(), more.end());
   }
   // The last line may be padded.
-  numbers.resize(wanted);
+  if (numbers.size() > wanted) numbers.resize(wanted);
   return numbers;
 }
 
@@ -118,7 +119,7 @@ double number_of(const char* bytes, bool is_big_endian) {
   return std::bit_cast<Real>(ordered);
 }
 
-/// Numbers of binary data.
+/// Numbers of binary data, as far as they are there.
 std::vector<double> binary_numbers(const UffDataset& dataset, const FunctionForm& form) {
   const UffBytes& data = *dataset.data;
   constexpr std::int64_t ieee = 2;
@@ -130,22 +131,19 @@ std::vector<double> binary_numbers(const UffDataset& dataset, const FunctionForm
   const std::size_t of_values = of_value * form.parts();
   // Programs differ in how they write the abscissas beside numbers of 8 bytes.
   std::size_t of_abscissa = form.is_even ? 0 : of_value;
-  if (form.is_double && !form.is_even && data.bytes.size() < form.count * (of_values + 8))
+  if (form.is_double && !form.is_even && data.bytes.size() < form.count * (of_values + 8) &&
+      data.bytes.size() >= form.count * (of_values + 4))
     of_abscissa = 4;
-  if (data.bytes.size() < form.count * (of_values + of_abscissa)) {
-    refuse_at(dataset.place, fmt::format("expected {} bytes for {} values, got {}",
-                                         form.count * (of_values + of_abscissa), form.count,
-                                         data.bytes.size()));
-  }
+  const std::size_t count = std::min(form.count, data.bytes.size() / (of_values + of_abscissa));
   std::vector<double> numbers;
-  numbers.reserve(form.count * form.per_point());
+  numbers.reserve(count * form.per_point());
   const char* at = data.bytes.data();
   const auto take = [&](std::size_t size) {
     numbers.push_back(size == 4 ? number_of<std::uint32_t, float>(at, data.is_big_endian)
                                 : number_of<std::uint64_t, double>(at, data.is_big_endian));
     at += size;
   };
-  for (std::size_t i = 0; i < form.count; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     if (of_abscissa > 0) take(of_abscissa);
     for (std::size_t part = 0; part < form.parts(); ++part) take(of_value);
   }
@@ -173,7 +171,8 @@ void fill(UffFunction& function, const FunctionForm& form, const std::vector<dou
           double factor) {
   const std::size_t step = form.per_point();
   const std::size_t first = form.is_even ? 0 : 1;
-  for (std::size_t i = 0; i < form.count; ++i) {
+  const std::size_t count = numbers.size() / step;
+  for (std::size_t i = 0; i < count; ++i) {
     const double* point = numbers.data() + i * step;
     function.abscissa.push_back(
         form.is_even ? form.first + form.increment * static_cast<double>(i) : point[0]);
@@ -199,27 +198,46 @@ UffFunction read_function(const UffDataset& dataset, const UffUnits& units) {
   fill(function, form,
        dataset.data ? binary_numbers(dataset, form) : text_numbers(reader, form),
        factor_of(function, units));
+  if (form.count > 0 && function.values.empty())
+    refuse_at(dataset.place,
+              fmt::format("expected {} values of the function, got none", form.count));
+  function.num_missing = form.count - function.values.size();
   return function;
 }
 
 }  // namespace
 
+UffFunctions functions_in(const std::vector<UffDataset>& datasets) {
+  const UffUnits units = units_in(datasets);
+  UffFunctions all;
+  for (const UffDataset& dataset : datasets) {
+    if (dataset.type != 58) continue;
+    all.functions.push_back(read_function(dataset, units));
+    const UffFunction& one = all.functions.back();
+    if (one.num_missing == 0) continue;
+    all.remarks.push_back(fmt::format(
+        "{}: {} of {} values are missing at the end of the function; the {} that are there are "
+        "used",
+        one.source, one.num_missing, one.values.size() + one.num_missing, one.values.size()));
+  }
+  if (!units.is_given) all.remarks.emplace_back(no_units);
+  return all;
+}
+
 UffFunctions read_uff_functions(const SourceText& source) {
   const std::vector<UffDataset> datasets = uff_datasets(source);
-  UffUnits units;
-  for (const UffDataset& dataset : datasets)
-    if (dataset.type == 164) units = read_uff_units(dataset);
-  UffFunctions all;
-  for (const UffDataset& dataset : datasets)
-    if (dataset.type == 58) all.functions.push_back(read_function(dataset, units));
-  if (all.functions.empty()) {
-    refuse_at({&source, 0}, fmt::format("expected functions (dataset 58); there are {} datasets and "
-                                        "none of these",
-                                        datasets.size()));
-  }
-  if (!units.is_given)
-    all.remarks.emplace_back("has no units (dataset 164); they are taken to be SI");
-  return all;
+  UffFunctions all = functions_in(datasets);
+  if (!all.functions.empty()) return all;
+  const auto num_shapes =
+      std::ranges::count(datasets, 55, [](const UffDataset& dataset) { return dataset.type; });
+  refuse_at(
+      {&source, 0},
+      fmt::format("expected functions (dataset 58); there are {} datasets and none of these{}",
+                  datasets.size(),
+                  num_shapes > 0 ? fmt::format(", but {} with shapes (55), which `stridor eig "
+                                               "SCENE --compare FILE` sets beside those of a scene",
+                                               num_shapes)
+                                 : ""));
 }
 
 UffFunctions read_uff_functions_file(const std::string& path) {

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <complex>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "io/imports/source_text.hpp"
+#include "io/imports/uff_lines.hpp"
 
 namespace stridor {
 
@@ -41,6 +43,7 @@ struct UffFunction {
   bool is_complex = false;
   std::vector<double> abscissa;
   std::vector<std::complex<double>> values;  ///< as many
+  std::size_t num_missing = 0;  ///< values that the file announces and lacks at the end
   std::string source;                        ///< "file:line", for messages
 };
 
@@ -50,13 +53,19 @@ struct UffFunctions {
   std::vector<std::string> remarks;
 };
 
-/// Reads datasets 58, in text or binary (58b, IEEE 754): real or complex, single or double, at even or
-/// uneven abscissas. Units are those of dataset 164; SI where there is none.
+/// Reads datasets 58, in text or binary (58b, IEEE 754): real or complex, single or double, at even
+/// or uneven abscissas. Units are those of dataset 164; SI where there is none.
 ///
-/// Tolerated, besides what read_uff() does: an unfinished or padded last line, numbers without blanks
-/// between them in their columns, abscissas of 4 or 8 bytes beside numbers of 8.
+/// Tolerated, besides what read_uff() does: an unfinished or padded last line, numbers without
+/// blanks between them in their columns, abscissas of 4 or 8 bytes beside numbers of 8, a wrong
+/// number of bytes in the head of binary data, and values that are missing at the end, of which a
+/// remark tells.
 /// @throws ConfigError with the place in the file and what was expected; if there is no function
 UffFunctions read_uff_functions(const SourceText& source);
+
+/// The functions of the datasets of a file, with remarks; may be none.
+/// @throws ConfigError with the place in the file and what was expected
+UffFunctions functions_in(const std::vector<UffDataset>& datasets);
 
 /// @throws ConfigError as read_uff_functions(); FileError
 UffFunctions read_uff_functions_file(const std::string& path);

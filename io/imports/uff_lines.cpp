@@ -47,6 +47,28 @@ bool is_delimiter(const UffLine& line) {
   return trimmed(line.text) == "-1";
 }
 
+/// Whether a delimiter, or the end of the file, stands at a place or behind the blanks there.
+bool ends_at(const std::string& text, std::size_t at) {
+  const std::size_t word = text.find_first_not_of(" \t\r\n", at);
+  if (word == std::string::npos) return true;
+  const std::size_t behind = word + 2;
+  return text.compare(word, 2, "-1") == 0 &&
+         (behind >= text.size() || uff_blanks.find(text[behind]) != std::string_view::npos ||
+          text[behind] == '\n');
+}
+
+/// Where binary data end. Programs announce no bytes, or half of them where the values are complex:
+/// unless the dataset ends there, the next delimiter is looked for, in its six columns.
+std::size_t end_of_bytes(const std::string& text, std::size_t begin, std::int64_t announced) {
+  const auto rest = static_cast<std::int64_t>(text.size() - begin);
+  if (announced <= rest && ends_at(text, begin + static_cast<std::size_t>(announced)))
+    return begin + static_cast<std::size_t>(announced);
+  constexpr std::string_view delimiter = "    -1";
+  for (std::size_t at = begin; (at = text.find(delimiter, at)) != std::string::npos; ++at)
+    if (ends_at(text, at)) return at;
+  return text.size();
+}
+
 /// Takes the lines and the data of a dataset 58b: its head says how many of either follow.
 void take_binary(const SourceText& source, const UffLine& head, Lines& lines,
                  UffDataset& dataset) {
@@ -66,15 +88,11 @@ void take_binary(const SourceText& source, const UffLine& head, Lines& lines,
     dataset.lines.push_back(lines.next());
   // Behind a last line without an end there is nothing.
   const std::size_t begin = std::min(lines.offset(), source.text.size());
-  if (*num_bytes > size - static_cast<std::int64_t>(begin)) {
-    refuse_at(head.place,
-              fmt::format("{} bytes of data are announced, the file ends before", *num_bytes));
-  }
-  const auto size_of_data = static_cast<std::size_t>(*num_bytes);
+  const std::size_t end = end_of_bytes(source.text, begin, *num_bytes);
   constexpr std::int64_t big_endian = 2;
   dataset.data = UffBytes{count(1) == big_endian, count(2).value_or(2),
-                          std::string_view(source.text).substr(begin, size_of_data)};
-  lines.go_to(begin + size_of_data);
+                          std::string_view(source.text).substr(begin, end - begin)};
+  lines.go_to(end);
 }
 
 }  // namespace

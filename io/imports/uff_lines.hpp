@@ -32,7 +32,10 @@ struct UffDataset {
 };
 
 /// Divides a file into datasets.
-/// @throws ConfigError where no dataset begins, or binary data end before they should
+///
+/// Binary data end where their head says, if the dataset ends there; else at the next delimiter, or
+/// with the file.
+/// @throws ConfigError where no dataset begins
 std::vector<UffDataset> uff_datasets(const SourceText& source);
 
 /// Reads the lines of a dataset one after the other.

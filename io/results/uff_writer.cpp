@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
-#include <iterator>
+#include <optional>
 #include <stdexcept>
 
 #include "core/errors.hpp"
@@ -123,19 +125,27 @@ double of_six_digits(double value) {
   return std::stod(fmt::format("{:.5E}", value));
 }
 
-EvenAbscissas even_abscissas(const std::vector<double>& abscissa, const std::string& key) {
+/// Nothing where the abscissas are not those that the first and the increment give in six digits.
+std::optional<EvenAbscissas> even_abscissas(const std::vector<double>& abscissa) {
   EvenAbscissas even{of_six_digits(abscissa.front()), 0.0};
   if (abscissa.size() > 1) even.increment = of_six_digits(abscissa[1] - abscissa[0]);
   for (std::size_t i = 0; i < abscissa.size(); ++i) {
     const double there = even.first + even.increment * static_cast<double>(i);
-    if (std::abs(there - abscissa[i]) <= 1e-9 * std::abs(abscissa.back())) continue;
-    throw ConfigError(Refusal::wrong_value, key,
-                      fmt::format("universal files hold the first frequency and the increment in "
-                                  "six digits, and {:.9g} with {:.9g} have more; choose the number "
-                                  "of points so that the increment is round",
-                                  abscissa.front(), abscissa[1] - abscissa[0]));
+    if (!(std::abs(there - abscissa[i]) <= 1e-9 * std::abs(abscissa.back()))) return std::nullopt;
   }
   return even;
+}
+
+/// @throws ConfigError if abscissas are the same in the six digits that a text holds
+void require_six_digits(const std::vector<double>& abscissa, const std::string& key) {
+  for (std::size_t i = 1; i < abscissa.size(); ++i) {
+    if (of_six_digits(abscissa[i]) > of_six_digits(abscissa[i - 1])) continue;
+    throw ConfigError(
+        Refusal::wrong_value, key,
+        fmt::format("universal files in text hold uneven frequencies in six digits, in which "
+                    "{:.9g} and {:.9g} are the same; choose --binary, or fewer points",
+                    abscissa[i - 1], abscissa[i]));
+  }
 }
 
 std::string quantity_record(int quantity, const char* label, const char* unit) {
@@ -162,32 +172,66 @@ std::string record_of(int quantity) {
   return quantity_record(quantity, "NONE", "NONE");
 }
 
-void add_function(const UffFunction& function, std::size_t number, const UffContents& contents,
-                  const std::string& key, std::string& text) {
-  if (function.abscissa.empty() || function.abscissa.size() != function.values.size())
-    throw std::invalid_argument("uff_text: abscissas and values are not as many");
-  const EvenAbscissas even = even_abscissas(function.abscissa, key);
-  text += fmt::format("    -1\n    58\n{}\n{}\n{:<10}{:<10}\nNONE\nNONE\n", record_text(function.id),
-                      record_text(contents.program), contents.date, contents.time);
+/// Records 6 to 11: of what the function is, and how its numbers stand.
+void add_records(const UffFunction& function, std::size_t number,
+                 const std::optional<EvenAbscissas>& even, std::string& text) {
   text += fmt::format("{:5}{:10}{:5}{:10} {:<10}{:10}{:4} {:<10}{:10}{:4}\n", function.type, number, 0,
                       0, "NONE", function.response.node, function.response.direction, "NONE",
                       function.reference.node, function.reference.direction);
-  constexpr int real_double = 4, complex_double = 6, even_spacing = 1;
+  constexpr int real_double = 4, complex_double = 6;
   text += fmt::format("{:10}{:10}{:10}{:13.5E}{:13.5E}{:13.5E}\n",
                       function.is_complex ? complex_double : real_double, function.values.size(),
-                      even_spacing, even.first, even.increment, 0.0);
+                      even ? 1 : 0, even ? even->first : 0.0, even ? even->increment : 0.0, 0.0);
   text += record_of(function.abscissa_quantity) + record_of(function.ordinate_quantity) +
           record_of(function.denominator_quantity) + record_of(0);
-  std::size_t in_line = 0;
-  const auto add_number = [&](double value) {
-    fmt::format_to(std::back_inserter(text), "{:20.12E}", value);
-    if (++in_line % 4 == 0) text += '\n';
-  };
-  for (const std::complex<double>& value : function.values) {
-    add_number(value.real());
-    if (function.is_complex) add_number(value.imag());
+}
+
+void add_text_numbers(const UffFunction& function, bool is_even, std::string& text) {
+  // 4E20.12; at uneven abscissas 2(E13.5, E20.12), or E13.5, 2E20.12 of complex values.
+  const std::size_t points_in_line = function.is_complex ? (is_even ? 2 : 1) : (is_even ? 4 : 2);
+  for (std::size_t i = 0; i < function.values.size(); ++i) {
+    if (!is_even) text += fmt::format("{:13.5E}", function.abscissa[i]);
+    text += fmt::format("{:20.12E}", function.values[i].real());
+    if (function.is_complex) text += fmt::format("{:20.12E}", function.values[i].imag());
+    if ((i + 1) % points_in_line == 0 || i + 1 == function.values.size()) text += '\n';
   }
-  if (in_line % 4 != 0) text += '\n';
+}
+
+/// Numbers of IEEE 754 in 8 bytes, the lowest first.
+void add_binary_numbers(const UffFunction& function, bool is_even, std::string& text) {
+  const auto add_number = [&](double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    for (unsigned byte = 0; byte < 8; ++byte)
+      text += static_cast<char>(static_cast<unsigned char>((bits >> (8 * byte)) & 0xff));
+  };
+  for (std::size_t i = 0; i < function.values.size(); ++i) {
+    if (!is_even) add_number(function.abscissa[i]);
+    add_number(function.values[i].real());
+    if (function.is_complex) add_number(function.values[i].imag());
+  }
+}
+
+void add_function(const UffFunction& function, std::size_t number, const UffContents& contents,
+                  const std::string& key, UffForm form, std::string& text) {
+  if (function.abscissa.empty() || function.abscissa.size() != function.values.size())
+    throw std::invalid_argument("uff_text: abscissas and values are not as many");
+  const std::optional<EvenAbscissas> even = even_abscissas(function.abscissa);
+  const std::size_t per_point = (even ? 0 : 1) + (function.is_complex ? 2 : 1);
+  text += "    -1\n    58";
+  if (form == UffForm::binary) {
+    constexpr int lowest_first = 1, ieee_754 = 2, num_lines = 11;
+    text += fmt::format("b{:6}{:6}{:12}{:12}{:6}{:6}{:12}{:12}", lowest_first, ieee_754, num_lines,
+                        8 * per_point * function.values.size(), 0, 0, 0, 0);
+  }
+  text += fmt::format("\n{}\n{}\n{:<10}{:<10}\nNONE\nNONE\n", record_text(function.id),
+                      record_text(contents.program), contents.date, contents.time);
+  add_records(function, number, even, text);
+  if (form == UffForm::binary) {
+    add_binary_numbers(function, even.has_value(), text);
+  } else {
+    if (!even) require_six_digits(function.abscissa, key);
+    add_text_numbers(function, even.has_value(), text);
+  }
   text += "    -1\n";
 }
 
@@ -201,7 +245,7 @@ void UffContents::stamp(const std::string& utc) {
   time = utc.substr(11, 8);
 }
 
-std::string uff_text(const UffContents& contents, const std::string& key) {
+std::string uff_text(const UffContents& contents, const std::string& key, UffForm form) {
   std::string text;
   add_head(contents, text);
   add_nodes(contents.nodes, text);
@@ -209,7 +253,7 @@ std::string uff_text(const UffContents& contents, const std::string& key) {
   add_lines(contents.lines, text);
   for (const UffMode& mode : contents.modes) add_mode(mode, contents, text);
   for (std::size_t i = 0; i < contents.functions.size(); ++i)
-    add_function(contents.functions[i], i + 1, contents, key, text);
+    add_function(contents.functions[i], i + 1, contents, key, form, text);
   return text;
 }
 

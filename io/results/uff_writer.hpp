@@ -43,21 +43,28 @@ struct UffContents {
   std::vector<std::vector<std::int64_t>> lines{};  ///< labels of nodes in order
   std::vector<UffElement> elements{};
   std::vector<UffMode> modes{};
-  std::vector<UffFunction> functions;  ///< at even abscissas, in SI units
+  std::vector<UffFunction> functions;  ///< in SI units, abscissas ascending
 
   /// Date and time from "2024-05-17T08:30:00Z".
   void stamp(const std::string& utc);
 };
 
-/// The text of a file: dataset 151 (head), 164 (SI), 2411 (nodes), 2412 (elements), 82 (lines), a 55 for
-/// each mode (complex displacements, modal a and b unknown and 0), and a 58 for each function, in double
-/// precision at even abscissas.
+/// How the numbers of functions are written: datasets 58 or 58b.
+enum class UffForm { text, binary };
+
+/// The text of a file: dataset 151 (head), 164 (SI), 2411 (nodes), 2412 (elements), 82 (lines), a
+/// 55 for each mode (complex displacements, modal a and b unknown and 0), and a 58 for each
+/// function, in double precision.
 ///
-/// Elements are there to be drawn: planar ones are called plane stress, all have property and material 1.
-/// First abscissa and increment of a function have six digits (E13.5).
-/// @throws std::invalid_argument if abscissas and values of a function are not as many, a mode has not a
+/// Elements are there to be drawn: planar ones are called plane stress, all have property and
+/// material 1. Functions are written at even abscissas where first one and increment, which have
+/// six digits (E13.5), give them to 1e-9; else at uneven ones, which have six digits in text and
+/// are whole in binary.
+/// @throws std::invalid_argument if abscissas and values of a function are not as many, a mode has
+/// not a
 ///         value for each node, or an element not the nodes of its shape
-/// @throws ConfigError at `key` if the abscissas are not those that six digits give, to 1e-9
-std::string uff_text(const UffContents& contents, const std::string& key);
+/// @throws ConfigError at `key` if neighbouring abscissas are the same in six digits
+std::string uff_text(const UffContents& contents, const std::string& key,
+                     UffForm form = UffForm::text);
 
 }  // namespace stridor

@@ -13,6 +13,7 @@ namespace {
 
 using namespace test;
 using nlohmann::json;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 const std::string data = std::string(STRIDOR_SOURCE_DIR) + "/tests/data/calculix/";
@@ -100,6 +101,41 @@ TEST(Import, DrawsAMesh) {
   EXPECT_EQ(Program({"import", data + "c3d4_free.inp", "-o", figure}).run().exit_code, 4);
 }
 
+TEST(Import, SaysWhatAUniversalFileHolds) {
+  const std::string reed = scene_path("examples/reed.uff");
+  const json held = report({"import", reed, "--json"})["universal"];
+  EXPECT_EQ(held["nodes"], 4);
+  EXPECT_EQ(held["units"]["length"], 1e-3);  // the file is in mm
+  ASSERT_GE(held["modes"].size(), 2u);
+  EXPECT_GT(held["modes"][0]["frequency"].get<double>(), 0.0);
+  EXPECT_EQ(held["modes"][0]["nodes"], 4);
+  const ProgramResult said = Program({"import", reed}).run();
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  for (const char* text : {"dataset 2411", "nodes", "mode 1", "Hz, damping ratio", "type: modes",
+                           "stridor eig SCENE.yaml --compare"})
+    EXPECT_THAT(said.out, HasSubstr(text));
+
+  const TemporaryFolder folder;
+  const std::string hit = (folder / "hit.uff").string();
+  ASSERT_EQ(Program({"frf", scene_path("examples/reed.yaml"), "--input", "reed.middle.y", "--from",
+                     "100", "--to", "500", "--points", "5", "-o", hit})
+                .run()
+                .exit_code,
+            0);
+  const json functions = report({"import", hit, "--json"})["universal"]["functions"];
+  ASSERT_EQ(functions.size(), 1u);
+  EXPECT_EQ(functions[0]["type"], "frequency response");
+  EXPECT_EQ(functions[0]["quantity"], "acceleration");
+  EXPECT_EQ(functions[0]["per"], "force");
+  EXPECT_EQ(functions[0]["values"], 5);
+  EXPECT_EQ(functions[0]["from"], 100.0);
+  EXPECT_EQ(functions[0]["to"], 500.0);
+  EXPECT_THAT(
+      Program({"import", hit}).run().out,
+      AllOf(HasSubstr("1 y per 1 y"), HasSubstr("5 complex values at a frequency of 100 to 500"),
+            HasSubstr("stridor frf SCENE.yaml")));
+}
+
 TEST(Import, RefusesWhatItCannotTell) {
   const auto refused = [](std::vector<std::string> files) {
     files.insert(files.begin(), "import");
@@ -118,6 +154,10 @@ TEST(Import, RefusesWhatItCannotTell) {
   EXPECT_THAT(refused({data + "c3d4.sti", data + "c3d4.mas", data + "c3d10.dof", data + "c3d10.inp"}),
               HasSubstr("stiffness: is 24 x 24, expected 54 x 54 as `unknowns` says"));
   EXPECT_THAT(refused({data + "c3d4.inp", "--length-unit", "kg"}), HasSubstr("--length-unit"));
+  const std::string reed = scene_path("examples/reed.uff");
+  EXPECT_THAT(refused({reed, data + "c3d4.inp"}),
+              HasSubstr("is a universal file, which is given alone"));
+  EXPECT_THAT(refused({reed, "-o", "a.png"}), HasSubstr("has no mesh to draw"));
 }
 
 TEST(Check, SaysWhatTheFilesOfBodiesHold) {

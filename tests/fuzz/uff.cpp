@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/errors.hpp"
+#include "io/imports/uff_contents.hpp"
 #include "io/imports/uff_file.hpp"
 #include "io/imports/uff_functions.hpp"
 #include "tests/fuzz/mesh_checks.hpp"
@@ -22,6 +23,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     for (const stridor::UffFunction& one : stridor::read_uff_functions(source).functions)
       expect_that(one.abscissa.size() == one.values.size());
+  } catch (const stridor::ConfigError& error) {
+    stridor::fuzz::expect_placed(error, "fuzz.uff");
+  }
+  try {
+    (void)stridor::read_uff_holdings(source);
   } catch (const stridor::ConfigError& error) {
     stridor::fuzz::expect_placed(error, "fuzz.uff");
   }

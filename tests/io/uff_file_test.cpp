@@ -133,8 +133,10 @@ TEST(Uff, WrongFilesAreAnsweredWithPlaceAndWhatWasExpected) {
   std::string scalar = real_mode();
   scalar.replace(scalar.find("2         8"), 11, "1         8");
   EXPECT_THAT(message(scalar), HasSubstr("expected three translations at each node"));
-  EXPECT_THAT(message("    -1\n    58b     1     2           2         999\none\ntwo\n"),
-              HasSubstr("999 bytes of data are announced"));
+  EXPECT_THAT(
+      message("    -1\n    58b     1     2           2         999\none\ntwo\n"),
+      HasSubstr(
+          "none of these, but 1 with functions (58), which `stridor frf SCENE --compare FILE`"));
   EXPECT_THAT(message_of<FileError>([] { read_uff_file("/nowhere/a.uff"); }),
               HasSubstr("expected a universal file"));
 }

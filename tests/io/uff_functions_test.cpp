@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -74,7 +75,9 @@ std::string text_of(int kind, bool is_even) {
   return uff_dataset(records(kind, values.size(), is_even) + text);
 }
 
-std::string binary_of(int kind, bool is_even, bool is_big_endian, bool has_double_abscissa) {
+/// @param announced bytes that the head says; those that there are where nothing is given
+std::string binary_of(int kind, bool is_even, bool is_big_endian, bool has_double_abscissa,
+                      std::optional<std::size_t> announced = std::nullopt) {
   std::string bytes;
   const auto add = [&](const auto& number) {
     std::string raw(sizeof(number), '\0');
@@ -92,7 +95,7 @@ std::string binary_of(int kind, bool is_even, bool is_big_endian, bool has_doubl
   }
   const std::string head =
       fmt::format("    58b{:6}{:6}{:12}{:12}{:6}{:6}{:12}{:12}", is_big_endian ? 2 : 1, 2, 11,
-                  bytes.size(), 0, 0, 0, 0);
+                  announced.value_or(bytes.size()), 0, 0, 0, 0);
   const std::string text = records(kind, values.size(), is_even, head);
   return "    -1\n" + text + bytes + "    -1\n";  // the delimiter right behind the bytes
 }
@@ -200,9 +203,90 @@ TEST(UffFunctions, WhatIsWrittenIsReadBack) {
   for (std::size_t i = 0; i < function.values.size(); ++i)
     EXPECT_LE(std::abs(read.values[i] - function.values[i]), 1e-12 * std::abs(function.values[i]));
 
-  contents.functions[0].abscissa[1] += 1e-4;
-  EXPECT_THAT(message_of<ConfigError>([&] { uff_text(contents, "--output"); }),
-              AllOf(HasSubstr("--output"), HasSubstr("six digits")));
+  const std::string binary = uff_text(contents, "--output", UffForm::binary);
+  const UffFunction whole = read_uff_functions({"a.uff", binary}).functions.at(0);
+  EXPECT_EQ(whole.abscissa, function.abscissa);
+  EXPECT_EQ(whole.values, function.values);
+}
+
+TEST(UffFunctions, UnevenAbscissasHaveSixDigitsInTextAndAllInBinary) {
+  for (const bool is_complex : {false, true}) {
+    UffContents contents{.title = "brake",
+                         .program = "stridor",
+                         .date = "26-NOV-26",
+                         .time = "17:24:09",
+                         .nodes = {},
+                         .functions = {}};
+    UffFunction function;
+    function.type = 4;
+    function.is_complex = is_complex;
+    for (int i = 0; i < 7; ++i) {
+      function.abscissa.push_back(20.0 * std::pow(10.0, i / 3.0));
+      function.values.emplace_back(0.1 + i, is_complex ? -0.3 * i : 0.0);
+    }
+    contents.functions = {function, function};
+    const std::string text = uff_text(contents, "-o");
+    const UffFunctions read = read_uff_functions({"a.uff", text});
+    const UffFunctions whole =
+        read_uff_functions({"a.uff", uff_text(contents, "-o", UffForm::binary)});
+    ASSERT_THAT(read.functions, SizeIs(2));
+    ASSERT_THAT(whole.functions, SizeIs(2));
+    for (const std::size_t k : {0u, 1u}) {
+      EXPECT_TRUE(whole.remarks.empty());
+      EXPECT_EQ(whole.functions[k].abscissa, function.abscissa);
+      EXPECT_EQ(whole.functions[k].values, function.values);
+      ASSERT_THAT(read.functions[k].abscissa, SizeIs(7));
+      for (std::size_t i = 0; i < 7; ++i) {
+        // Half a unit of the sixth digit.
+        EXPECT_NEAR(read.functions[k].abscissa[i] / function.abscissa[i], 1.0, 5e-6);
+        EXPECT_LE(std::abs(read.functions[k].values[i] - function.values[i]),
+                  1e-12 * std::abs(function.values[i]));
+      }
+    }
+    contents.functions[0].abscissa[1] = 20.00001;
+    EXPECT_THAT(
+        message_of<ConfigError>([&] { uff_text(contents, "-o"); }),
+        AllOf(HasSubstr("-o"), HasSubstr("20 and 20.00001 are the same"), HasSubstr("--binary")));
+    EXPECT_NO_THROW(uff_text(contents, "-o", UffForm::binary));
+  }
+}
+
+TEST(UffFunctions, BinaryDataEndAtTheNextDelimiterWhereTheHeadIsWrong) {
+  // pyuff announces half of the bytes of complex values, other programs none, or more than there
+  // are.
+  for (const std::size_t announced : {0u, 24u, 7u, 4711u}) {
+    const std::string what = fmt::format("{} bytes announced", announced);
+    expect_function(binary_of(6, true, false, false, announced), 6, 1e-12, what);
+    const UffFunctions two =
+        read_uff_functions({"a.uff", binary_of(6, true, false, false, announced) +
+                                         binary_of(5, false, true, false, announced)});
+    EXPECT_THAT(two.functions, SizeIs(2)) << what;
+  }
+}
+
+TEST(UffFunctions, ValuesThatAreMissingAtTheEndAreCounted) {
+  const auto short_of = [](const std::string& text, std::size_t kept, std::size_t announced) {
+    SCOPED_TRACE(text);
+    const UffFunctions all = read_uff_functions({"a.uff", text});
+    ASSERT_THAT(all.functions, SizeIs(1));
+    ASSERT_THAT(all.functions[0].values, SizeIs(kept));
+    EXPECT_THAT(all.functions[0].abscissa, SizeIs(kept));
+    EXPECT_EQ(all.functions[0].values[0], values[0]);
+    EXPECT_EQ(all.functions[0].num_missing, announced - kept);
+    EXPECT_THAT(all.remarks.front(),
+                HasSubstr(fmt::format("a.uff:2: {} of {} values are missing at the end",
+                                      announced - kept, announced)));
+  };
+  // A complex value of which the imaginary part is missing is missing.
+  short_of(uff_dataset(records(5, 4, true) + "  1.25 -0.5  3.0\n"), 1, 4);
+  short_of(uff_dataset(records(6, 3, false) + "  100.0  1.25 -0.5\n  100.5  3.0  0.0\n"), 2, 3);
+  std::string cut = binary_of(6, true, false, false);
+  cut.resize(cut.size() - 20);
+  short_of(cut, 2, 3);
+  // Both parts counted as values.
+  std::string doubled = text_of(6, true);
+  doubled.replace(doubled.find("         6         3"), 20, "         6         6");
+  short_of(doubled, 3, 6);
 }
 
 TEST(UffFunctions, RefusesWithThePlaceAndWhatWasExpected) {
@@ -212,19 +296,23 @@ TEST(UffFunctions, RefusesWithThePlaceAndWhatWasExpected) {
   EXPECT_THAT(refusal(uff_dataset("   151\nhead\n")), HasSubstr("expected functions (dataset 58)"));
   EXPECT_THAT(refusal(uff_dataset(records(3, 2, true))),
               AllOf(HasSubstr("a.uff:9:"), HasSubstr("expected values of type 2")));
-  EXPECT_THAT(refusal(uff_dataset(records(5, 4, true) + "  1.0  2.0\n")),
-              HasSubstr("expected values of the function"));
   EXPECT_THAT(refusal(uff_dataset(records(5, 1, true) + "  1.0  two\n")),
               AllOf(HasSubstr("a.uff:14:"), HasSubstr("two")));
   std::string still = records(2, 2, true);
   still.replace(still.find("5.00000E-01"), 11, "0.00000E+00");
   EXPECT_THAT(refusal(uff_dataset(still + "  1.0  2.0\n")), HasSubstr("positive increment"));
-  std::string cut = binary_of(6, true, false, false);
-  cut.resize(cut.size() - 20);
-  EXPECT_THAT(refusal(cut), HasSubstr("the file ends before"));
+  EXPECT_THAT(refusal(uff_dataset(records(5, 4, true))),
+              HasSubstr("expected values of the function"));
+  EXPECT_THAT(refusal(uff_dataset(records(5, 4, true) + "  1.0\n")),
+              HasSubstr("expected 4 values of the function, got none"));
+  EXPECT_THAT(
+      refusal(uff_dataset("    55\nshape\n")),
+      HasSubstr("none of these, but 1 with shapes (55), which `stridor eig SCENE --compare FILE`"));
   // The head of binary data ends the file.
-  EXPECT_THAT(refusal("    -1\n   58b     1     2           0          24     0     0           0           0"),
-              HasSubstr("the file ends before"));
+  EXPECT_THAT(
+      refusal(
+          "    -1\n   58b     1     2           0          24     0     0           0           0"),
+      HasSubstr("five lines of text"));
   EXPECT_THAT(refusal("    -1\n   58b     1     2           0           0     0     0           0           0"),
               HasSubstr("five lines of text"));
   std::string vax = binary_of(6, true, false, false);
