@@ -229,6 +229,7 @@ StabilityMap make_stability_map(const StabilityScene& loaded, const std::array<K
 std::vector<FailedPoints> failed_points(const std::vector<std::string>& reasons,
                                         const std::vector<double>& failure) {
   std::vector<FailedPoints> all;
+  all.reserve(reasons.size());
   for (const std::string& reason : reasons) all.push_back({all.size() + 1, 0, reason});
   for (const double number : failure) {
     if (number >= 1.0 && number <= static_cast<double>(all.size()))

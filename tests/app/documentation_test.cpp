@@ -22,15 +22,17 @@ std::string python_with(const std::string& modules, const UserFolder& folder) {
   return "";
 }
 
-/// A run file of every name that a snippet opens.
+/// A file of every name that a snippet opens: a locus of that name, or the run of a scene.
 void make_files(const UserFolder& folder, const std::string& snippet) {
   const std::regex name("\"([a-z_]+)\\.h5\"");
   for (std::sregex_iterator it(snippet.begin(), snippet.end(), name), end; it != end; ++it) {
     const std::string stem = (*it)[1];
     if (fs::exists(folder / (stem + ".h5"))) continue;
     const std::string scene = stem == "beam" ? "beam_on_beam" : "examples/" + stem;
-    const auto made = folder.run("stridor run scenes/" + scene + ".yaml -o " + stem +
-                                 ".h5 --set time.end=0.02");
+    const auto made = folder.run(
+        stem == "locus"
+            ? "stridor locus scenes/beam_on_beam.yaml --from 70mm --to 98mm --points 5 -o locus.h5"
+            : "stridor run scenes/" + scene + ".yaml -o " + stem + ".h5 --set time.end=0.02");
     ASSERT_EQ(made.exit_code, 0) << made.output;
   }
 }
@@ -210,13 +212,16 @@ TEST(Pages, OfRefusalsShowWhatIsPrinted) {
 TEST(Snippets, OfPythonRun) {
   const UserFolder folder;
   const std::string python = python_with("h5py", folder);
+  const std::string with_xarray = python_with("xarray, h5netcdf", folder);
   if (python.empty()) GTEST_SKIP() << "needs python3 with h5py";
   int num_run = 0;
   for (const fs::path& document : documents()) {
     for (const std::string& snippet : blocks_of(document, "python")) {
+      const bool needs_xarray = snippet.find("import xarray") != std::string::npos;
+      if (needs_xarray && with_xarray.empty()) continue;
       make_files(folder, snippet);
       write_file(folder / "snippet.py", snippet);
-      const auto outcome = folder.run(python + " snippet.py");
+      const auto outcome = folder.run((needs_xarray ? with_xarray : python) + " snippet.py");
       EXPECT_EQ(outcome.exit_code, 0) << document << "\n" << snippet << outcome.output;
       ++num_run;
     }
