@@ -98,9 +98,10 @@ std::vector<Participation> participations(const Pencil& pencil,
                                           const std::vector<Eigenvalue>& eigenvalues,
                                           const Eigen::VectorXcd& right) {
   const Pencil without = frictionless(pencil);
+  const ModalRows rows = modal_rows(without);
   std::vector<Participation> shares;
   for (const Eigenvalue& one : eigenvalues) {
-    const Eigenvector mode = eigenvector(without, one.s);
+    const Eigenvector mode = eigenvector(without, rows, one.s);
     shares.push_back({one.frequency(), modal_assurance(mode.right, right)});
   }
   std::sort(shares.begin(), shares.end(),

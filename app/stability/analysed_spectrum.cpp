@@ -4,6 +4,7 @@
 #include <complex>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include "analysis/explanation.hpp"
 #include "app/stability/eigenvalue_report.hpp"
@@ -50,8 +51,10 @@ FoundSpectrum find_on_ports(const Pencil& of, const Pencil& whole, const Stabili
   found.explain = [pencil, all = found.eigenvalues](std::size_t chosen) {
     return explanation_json(*pencil, all[chosen]);
   };
-  found.shape = [whole, all = found.eigenvalues](std::size_t chosen) {
-    return eigenvector(whole, all[chosen].s).right;
+  found.shape = [whole, rows = std::optional<ModalRows>(),
+                 all = found.eigenvalues](std::size_t chosen) mutable {
+    if (!rows) rows = modal_rows(whole);
+    return eigenvector(whole, *rows, all[chosen].s).right;
   };
   if (!lowest.remark.empty()) found.more["remark"] = lowest.remark;
   return found;

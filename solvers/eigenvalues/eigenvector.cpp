@@ -80,7 +80,10 @@ std::optional<Eigenvector> eigenvector_of_all_modes(const Pencil& pencil, const 
 
 Eigenvector eigenvector(const Pencil& pencil, Complex s) {
   check_pencil(pencil);
-  const ModalRows rows = modal_rows(pencil);
+  return eigenvector(pencil, modal_rows(pencil), s);
+}
+
+Eigenvector eigenvector(const Pencil& pencil, const ModalRows& rows, Complex s) {
   const Eigen::Index n = pencil.num_modes();
   const Eigen::Index k = rows.num_constraints;
   const Eigen::Index size = k + rows.rank;

@@ -24,6 +24,10 @@ struct Eigenvector {
 /// Cost: n (k + rank of G and H). Where s is a multiple eigenvalue, one vector of its space.
 Eigenvector eigenvector(const Pencil& pencil, std::complex<double> s);
 
+/// The same with the modal_rows() of the pencil at hand, which all its eigenvalues share: with some
+/// hundred ports they cost more than an eigenvector.
+Eigenvector eigenvector(const Pencil& pencil, const ModalRows& rows, std::complex<double> s);
+
 /// What is left of the equations of motion, in proportion to their terms.
 ///
 ///   ‖W⁻¹ (P(s) q + Sᵀ B_Eᵀ δλ)‖ / Σ ‖W⁻¹ term‖ + ‖B_C S q‖/‖ |B_C S| |q| ‖,

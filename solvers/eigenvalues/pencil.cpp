@@ -31,11 +31,12 @@ void check_size(const char* name, const Eigen::MatrixXd& matrix, Eigen::Index ro
 /// contiguous, where Eigen would set up a blocked product.
 void multiply(const Eigen::Ref<const Eigen::MatrixXd>& rows, const Eigen::MatrixXd& ports,
               Eigen::Ref<Eigen::MatrixXd> product) {
+  const Eigen::MatrixXd columns = rows.transpose();
   for (Eigen::Index i = 0; i < ports.cols(); ++i) {
-    for (Eigen::Index a = 0; a < rows.rows(); ++a) {
+    for (Eigen::Index a = 0; a < columns.cols(); ++a) {
       double sum = 0.0;
       for (Eigen::Index port = 0; port < ports.rows(); ++port)
-        sum += rows(a, port) * ports(port, i);
+        sum += columns(port, a) * ports(port, i);
       product(a, i) = sum;
     }
   }
@@ -45,31 +46,33 @@ void multiply(const Eigen::Ref<const Eigen::MatrixXd>& rows, const Eigen::Matrix
 ///
 /// By the modified Gram-Schmidt process, the longest row that is left first, each direction taken
 /// out twice. By hand, since loci call it in several threads, and BLAS may serve one at a time
-/// (core/blas.hpp).
+/// (core/blas.hpp). Rows are kept as columns, which are contiguous: bodies of meshes that spin have
+/// some hundred ports.
 Eigen::MatrixXd common_row_space(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second) {
   constexpr double negligible = 1e-14;
   const Eigen::Index m = std::max(first.cols(), second.cols());
-  Eigen::MatrixXd rest(0, m);
+  Eigen::MatrixXd rest(m, 0);
   for (const Eigen::MatrixXd* matrix : {&first, &second}) {
     const double size = matrix->size() > 0 ? matrix->norm() : 0.0;
     if (size == 0.0) continue;
-    rest.conservativeResize(rest.rows() + matrix->rows(), m);
-    rest.bottomRows(matrix->rows()) = *matrix / size;
+    rest.conservativeResize(m, rest.cols() + matrix->rows());
+    rest.rightCols(matrix->rows()) = matrix->transpose() / size;
   }
-  Eigen::MatrixXd basis(0, m);
-  while (basis.rows() < std::min(rest.rows(), m)) {
+  Eigen::MatrixXd basis(m, std::min(rest.cols(), m));
+  Eigen::Index rank = 0;
+  while (rank < basis.cols()) {
     Eigen::Index longest = 0;
-    const double length = rest.rowwise().norm().maxCoeff(&longest);
+    const double length = rest.colwise().norm().maxCoeff(&longest);
     if (length <= negligible) break;
-    const Eigen::RowVectorXd direction = rest.row(longest) / length;
-    for (Eigen::Index i = 0; i < rest.rows(); ++i) {
-      for (int pass = 0; pass < 2; ++pass) rest.row(i) -= direction.dot(rest.row(i)) * direction;
+    basis.col(rank) = rest.col(longest) / length;
+    const auto direction = basis.col(rank);
+    for (Eigen::Index i = 0; i < rest.cols(); ++i) {
+      for (int pass = 0; pass < 2; ++pass) rest.col(i) -= direction.dot(rest.col(i)) * direction;
     }
-    rest.row(longest).setZero();
-    basis.conservativeResize(basis.rows() + 1, m);
-    basis.bottomRows(1) = direction;
+    rest.col(longest).setZero();
+    ++rank;
   }
-  return basis;
+  return basis.leftCols(rank).transpose();
 }
 
 /// Segment under a point of the undeformed master and the projection on it.

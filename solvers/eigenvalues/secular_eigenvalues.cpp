@@ -323,9 +323,10 @@ std::vector<Eigenvalue> secular_eigenvalues(const Pencil& pencil, const Spectrum
                                     "converge; use the dense method",
                                     spectrum.num_counted));
   }
+  const ModalRows rows = modal_rows(pencil);
   for (Eigenvalue& eigenvalue : spectrum.eigenvalues) {
     eigenvalue.residual =
-        relative_residual(pencil, eigenvalue.s, eigenvector(pencil, eigenvalue.s).right);
+        relative_residual(pencil, eigenvalue.s, eigenvector(pencil, rows, eigenvalue.s).right);
   }
   return spectrum.eigenvalues;
 }

@@ -92,6 +92,7 @@ TEST(Pencil, EigenvectorsSolveTheRightAndTheLeftProblem) {
     const Eigen::MatrixXd allowed = Eigen::FullPivLU<Eigen::MatrixXd>(gap_rows).kernel();
     for (const Eigenvalue& eigenvalue : secular_eigenvalues(pencil, SpectrumWindow::all())) {
       const Eigenvector vector = eigenvector(pencil, eigenvalue.s);
+      EXPECT_EQ(eigenvector(pencil, modal_rows(pencil), eigenvalue.s).right, vector.right);
       const Eigen::MatrixXcd P = test::dynamic_stiffness(pencil, eigenvalue.s);
       // Entries of P reach 1e6 and the eigenvalue is known to 1e-15 or so; the condition of the
       // problem takes a few digits.
