@@ -15,6 +15,17 @@ void mirror(bool is_mirrored, Vectors& vectors) {
   if (is_mirrored) vectors.col(1) *= -1.0;
 }
 
+/// From the unrolled frame of a plate into space.
+void roll(const FaceSeat& seat, BodyShape& shape) {
+  for (Eigen::Index node = 0; node < shape.nodes.rows(); ++node) {
+    const Eigen::Vector3d unrolled = shape.nodes.row(node).transpose();
+    const Eigen::Vector3cd displacement = shape.displacement.row(node).transpose();
+    shape.displacement.row(node) =
+        (seat.directions(unrolled).cast<std::complex<double>>() * displacement).transpose();
+    shape.nodes.row(node) = seat.place(unrolled).transpose();
+  }
+}
+
 }  // namespace
 
 ShapeRecovery::ShapeRecovery(const Model& model, BodyCache& cache) : model_(&model) {
@@ -37,6 +48,10 @@ ShapeRecovery::ShapeRecovery(const Model& model, BodyCache& cache) : model_(&mod
       part.rest.outlines.push_back(nodes);
     part.rest.elements = parameters->second->elements();
   }
+  std::vector<double> outer_radii(model.system.bodies.size(), 0.0);
+  for (const Part& part : parts_) outer_radii[part.body] = outer_radius_of_faces(part.matrices);
+  const std::vector<std::optional<FaceSeat>> seats = face_seats(model.system.contacts, outer_radii);
+  for (Part& part : parts_) part.seat = seats[part.body];
 }
 
 std::vector<BodyShape> ShapeRecovery::shapes(const std::vector<double>& displaced,
@@ -58,6 +73,7 @@ std::vector<BodyShape> ShapeRecovery::shapes(const std::vector<double>& displace
     const bool is_mirrored = model_->placements[part.body].is_mirrored;
     mirror(is_mirrored, shape.nodes);
     mirror(is_mirrored, shape.displacement);
+    if (part.seat) roll(*part.seat, shape);
   }
   return shapes;
 }

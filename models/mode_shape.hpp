@@ -2,9 +2,11 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 #include <vector>
 
 #include "models/body_cache.hpp"
+#include "models/face_seats.hpp"
 #include "models/model.hpp"
 #include "solvers/equilibrium/equilibrium.hpp"
 #include "substructures/reduction/recovery.hpp"
@@ -12,7 +14,8 @@
 namespace stridor {
 
 /// The bodies of a model with the matrices that give every node of them from their reduced
-/// coordinates. A rigid master has no nodes and is left out.
+/// coordinates. A rigid master has no nodes and is left out. Plates and the bodies on their faces
+/// are rolled into space, with the axis along z (FaceSeat).
 class ShapeRecovery {
  public:
   /// @param model must outlive this
@@ -36,7 +39,8 @@ class ShapeRecovery {
     std::size_t body = 0;  ///< of the system
     BodyMatrices matrices;
     Eigen::MatrixXd recovery;
-    BodyShape rest;  ///< without displacement
+    BodyShape rest;                ///< without displacement, on a plate in the unrolled frame
+    std::optional<FaceSeat> seat;  ///< of plates and of what stands on their faces
   };
   const Model* model_;
   std::vector<Part> parts_;

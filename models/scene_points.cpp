@@ -15,10 +15,12 @@ namespace {
 
 constexpr double share_of_extent = 1e-6;
 
-/// The elements of a body with its nodes, for places within them.
+/// The elements of a body with its nodes, for places within them. Those of a plate are for figures
+/// alone: its points have their rows from its modes.
 Mesh mesh_of(const ModelBody& body) {
   Mesh mesh;
   mesh.nodes = node_places(body.matrices);
+  if (!body.matrices.faces.empty()) return mesh;
   int label = 0;
   for (const DrawnElement& element : body.parameters->elements())
     mesh.add_element(element.shape, element.nodes, ++label);

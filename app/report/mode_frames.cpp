@@ -189,15 +189,12 @@ class Frames {
   void begin(const std::vector<BodyShape>& shapes) {
     drawn_ = drawn_nodes(shapes);
     if (drawn_.count == 0) throw ConfigError(Refusal::wrong_value, "", "no body has nodes to draw");
-    bool is_planar = true;
-    for (const BodyShape& shape : shapes)
-      is_planar = is_planar && (shape.nodes.size() == 0 || shape.nodes.col(2).cwiseAbs().maxCoeff() == 0.0);
     while (num_modes_ > 1 && bytes_of_frame() > budget_.bytes) --num_modes_;
     if (bytes_of_frame() > 4.0 * budget_.bytes)
       throw ConfigError(Refusal::too_large, "",
                         fmt::format("{} nodes do not fit into the page (--budget)", drawn_.count));
     view_ = {{"type", "modes"},
-             {"planar", is_planar},
+             {"planar", !is_spatial(shapes)},
              {"nodes", drawn_.count},
              {"parts", parts_json(drawn_, shapes, page_)},
              {"frames", Json::array()}};

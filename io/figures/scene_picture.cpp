@@ -7,10 +7,10 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <set>
 
+#include "models/face_seats.hpp"
 #include "substructures/reduction/recovery.hpp"
 
 namespace stridor {
@@ -21,21 +21,6 @@ Eigen::Vector3d in_space(const Place& place) {
   Eigen::Vector3d result = Eigen::Vector3d::Zero();
   result.head(place.size()) = place;
   return result;
-}
-
-/// The face on which a body stands, of a body that spins.
-struct Seat {
-  double outer_radius = 0.0;
-  double radius = 0.0;  ///< of the middle of the body
-  double angle = 0.0;
-};
-
-/// From the frame in which faces are unrolled, x along the outer edge and y along the axis, into space
-/// with the axis along z.
-Eigen::Vector3d rolled(const Seat& seat, const Eigen::Vector3d& place) {
-  const double angle = seat.angle + (place.x() - seat.outer_radius * seat.angle) / seat.radius;
-  const double radius = seat.radius + place.z();
-  return {radius * std::cos(angle), radius * std::sin(angle), place.y()};
 }
 
 class ScenePicture {
@@ -75,21 +60,12 @@ class ScenePicture {
 
  private:
   void find_seats() {
-    seats_.resize(model_.bodies.size());
-    for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
-      const auto& faces = model_.bodies[b].matrices.faces;
-      if (faces.empty()) continue;
-      has_faces_ = true;
-      const double outer = faces.begin()->second.outer_radius;
-      seats_[b] = Seat{outer, outer, 0.0};
+    std::vector<double> outer_radii;
+    for (const ModelBody& body : model_.bodies) {
+      outer_radii.push_back(outer_radius_of_faces(body.matrices));
+      has_faces_ = has_faces_ || !body.matrices.faces.empty();
     }
-    for (const ContactPoint& contact : model_.system.contacts) {
-      if (!contact.face) continue;
-      const FacePlace& face = *contact.face;
-      const Seat& master = *seats_[static_cast<std::size_t>(face.body)];
-      seats_[static_cast<std::size_t>(contact.slave_body)] =
-          Seat{master.outer_radius, face.radius, face.angle - face.turned};
-    }
+    seats_ = face_seats(model_.system.contacts, outer_radii);
   }
 
   /// Of the frame of a body.
@@ -98,7 +74,7 @@ class ScenePicture {
     Eigen::Vector3d place = in_body;
     place.head(body.place.size()) += body.place;
     if (body.is_mirrored) place.y() *= -1.0;
-    return seats_[b] ? rolled(*seats_[b], place) : place;
+    return seats_[b] ? seats_[b]->place(place) : place;
   }
 
   void place_nodes(std::size_t b) {
@@ -127,33 +103,8 @@ class ScenePicture {
         for (const auto& [name, nodes] : body.matrices.surfaces) part.lines.push_back(nodes);
     }
     if (elements.empty() && part.lines.empty()) add_joined(b, part);
-    for (const auto& [name, face] : body.matrices.faces) add_face(face, part);
     if (part.nodes.rows() == 0) part.name += " (has no places)";
     picture_.parts.push_back(std::move(part));
-  }
-
-  /// An annulus at the height of a face.
-  static void add_face(const BodyFace& face, PicturePart& part) {
-    constexpr int sectors = 72;
-    constexpr int rings = 3;
-    const auto first = static_cast<int>(part.nodes.rows());
-    part.nodes.conservativeResize(first + sectors * (rings + 1), Eigen::NoChange);
-    const auto node = [&](int ring, int sector) {
-      return first + ring * sectors + (sector + sectors) % sectors;
-    };
-    for (int ring = 0; ring <= rings; ++ring) {
-      for (int sector = 0; sector < sectors; ++sector) {
-        const double angle = 2.0 * std::numbers::pi * sector / sectors;
-        const double radius =
-            face.inner_radius + (face.outer_radius - face.inner_radius) * ring / rings;
-        part.nodes.row(node(ring, sector)) << radius * std::cos(angle), radius * std::sin(angle),
-            face.side * face.half_thickness;
-      }
-    }
-    for (int ring = 0; ring < rings; ++ring)
-      for (int sector = 0; sector < sectors; ++sector)
-        part.faces.push_back({node(ring, sector), node(ring + 1, sector),
-                              node(ring + 1, sector + 1), node(ring, sector + 1)});
   }
 
   /// Nodes, and lines between those that the stiffness joins.
@@ -369,7 +320,7 @@ class ScenePicture {
 
   const PlacedModel& model_;
   std::set<std::string> recorded_;
-  std::vector<std::optional<Seat>> seats_;
+  std::vector<std::optional<FaceSeat>> seats_;
   bool has_faces_ = false;
   bool names_masters_ = false;
   std::vector<Eigen::MatrixX3d> places_;  ///< of the nodes of all bodies

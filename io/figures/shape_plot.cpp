@@ -20,13 +20,9 @@ namespace {
 
 constexpr std::array<const char*, 4> shape_colours{"#0b5394", "#c0392b", "#38761d", "#741b47"};
 
-/// How bodies are seen: in their plane, or from above where one of them has volumes.
+/// How bodies are seen: in their plane, or from above where they are in space.
 PictureView view_of(const std::vector<BodyShape>& bodies) {
-  for (const BodyShape& body : bodies) {
-    if (!body.elements.empty() && facts_of(body.elements.front().shape).dimension == 3)
-      return PictureView::isometric();
-  }
-  return PictureView::plane();
+  return is_spatial(bodies) ? PictureView::isometric() : PictureView::plane();
 }
 
 Eigen::MatrixX2d seen(const Eigen::MatrixX3d& places, const PictureView& view) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numbers>
 
@@ -20,24 +21,41 @@ DofSum sum_of_row(const Eigen::VectorXd& row) {
 }
 
 /// Adds a node that moves along y only.
-int add_plate_node(BodyMatrices& body, double x, const AnnularPlate& plate, double radius,
-                   double angle) {
+int add_plate_node(BodyMatrices& body, const AnnularPlate& plate,
+                   const AnnularPlateParameters& keys, double radius, double angle) {
   const auto node = static_cast<int>(body.node_dofs.size());
   body.nodes.conservativeResize(node + 1, Eigen::NoChange);
-  body.nodes.row(node) << x, 0.0, 0.0;
+  body.nodes.row(node) << keys.outer_radius * angle, 0.0, radius - keys.outer_radius;
   body.node_dofs.push_back({BodyMatrices::held, BodyMatrices::held});
   body.dependent[node] = {DofSum{}, sum_of_row(plate.rows(radius, angle).w), DofSum{}};
   return node;
 }
 
-/// The outer edge, for figures.
-void add_edge(BodyMatrices& body, const AnnularPlate& plate, const AnnularPlateParameters& keys) {
-  const int num_sides = std::clamp(16 * keys.nodal_diameters, 48, 512);
-  std::vector<int>& edge = body.outlines.emplace_back();
-  for (int k = 0; k <= num_sides; ++k) {
-    const double angle = 2.0 * std::numbers::pi * k / num_sides;
-    edge.push_back(
-        add_plate_node(body, keys.outer_radius * angle, plate, keys.outer_radius, angle));
+/// Circles of nodes from the inner edge to the outer one, close enough to show the waves of all
+/// modes.
+struct PlateGrid {
+  int num_rings = 0;  ///< between circles
+  int num_sectors = 0;
+
+  explicit PlateGrid(const AnnularPlateParameters& keys)
+      : num_rings(std::clamp(3 * keys.radial_modes, 4, 16)),
+        num_sectors(std::clamp(12 * keys.nodal_diameters, 48, 384)) {}
+  int node(int ring, int sector) const { return ring * num_sectors + sector % num_sectors; }
+};
+
+/// What figures show: nodes of the grid, and both edges as lines.
+void add_grid(BodyMatrices& body, const AnnularPlate& plate, const AnnularPlateParameters& keys) {
+  const PlateGrid grid(keys);
+  for (int ring = 0; ring <= grid.num_rings; ++ring) {
+    const double radius =
+        std::lerp(keys.inner_radius, keys.outer_radius, 1.0 * ring / grid.num_rings);
+    for (int sector = 0; sector < grid.num_sectors; ++sector)
+      add_plate_node(body, plate, keys, radius, 2.0 * std::numbers::pi * sector / grid.num_sectors);
+  }
+  for (const int ring : {grid.num_rings, 0}) {
+    std::vector<int>& edge = body.outlines.emplace_back();
+    for (int sector = 0; sector <= grid.num_sectors; ++sector)
+      edge.push_back(grid.node(ring, sector));
   }
 }
 
@@ -153,13 +171,22 @@ BodyMatrices PlateBodyParameters::make() const {
   body.stiffness = stiffness.sparseView();
 
   body.nodes.resize(0, 3);
-  add_edge(body, *modes, plate);
-  for (const auto& [name, point] : points) {
-    body.points[name] =
-        add_plate_node(body, plate.outer_radius * point.angle, *modes, point.radius, point.angle);
-  }
+  add_grid(body, *modes, plate);
+  for (const auto& [name, point] : points)
+    body.points[name] = add_plate_node(body, *modes, plate, point.radius, point.angle);
   add_faces(body, modes, *this);
   return body;
+}
+
+std::vector<DrawnElement> PlateBodyParameters::elements() const {
+  const PlateGrid grid(plate);
+  std::vector<DrawnElement> all;
+  for (int ring = 0; ring < grid.num_rings; ++ring)
+    for (int sector = 0; sector < grid.num_sectors; ++sector)
+      all.push_back({ElementShape::quad4,
+                     {grid.node(ring, sector), grid.node(ring + 1, sector),
+                      grid.node(ring + 1, sector + 1), grid.node(ring, sector + 1)}});
+  return all;
 }
 
 ReductionSize PlateBodyParameters::reduction_size(double /*interface_nodes*/) const {

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "substructures/bodies/annular_plate.hpp"
 #include "substructures/bodies/body_parameters.hpp"
@@ -24,14 +25,15 @@ struct PlateDampingParameters {
   static const Schema& schema();
 };
 
-/// An annular plate in the coordinates of its modes, as seen from space (AnnularPlate; docs/theory.md,
-/// 10.1):
+/// An annular plate in the coordinates of its modes, as seen from space (AnnularPlate;
+/// docs/theory.md, 10.1):
 ///
 ///   q̈ + (C + 2Ω S) q̇ + (diag(ω²) − Ω² SᵀS + Ω C S) q = f,  C = α + β diag(ω²)
 ///
-/// Its damping acts on what a particle sees, q̇ + Ω S q. In the body's frame y is the axis of the
-/// plate, which is drawn as its outer edge, unrolled: x is the outer radius times the angle. Points
-/// move along y only. Faces: `top`, of larger y, and `bottom`.
+/// Its damping acts on what a particle sees, q̇ + Ω S q. The body's frame is unrolled: y is the axis
+/// of the plate, x the outer radius times the angle, z the radius beyond the outer one; FaceSeat
+/// (models/face_seats.hpp) rolls it into space. Nodes on circles, for figures, and points move
+/// along y only. Faces: `top`, of larger y, and `bottom`.
 struct PlateBodyParameters : BodyParametersOf<PlateBodyParameters> {
   static constexpr const char* type_name = "annular_plate";
 
@@ -46,6 +48,7 @@ struct PlateBodyParameters : BodyParametersOf<PlateBodyParameters> {
   bool has_face(const std::string& name) const override {
     return name == "top" || name == "bottom";
   }
+  std::vector<DrawnElement> elements() const override;
   double num_slave_nodes(const std::string& /*name*/) const override { return 0.0; }
   ReductionSize reduction_size(double interface_nodes) const override;
   SizeKey size_key() const override;

@@ -1,5 +1,6 @@
 #include "substructures/reduction/recovery.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 #include "substructures/reduction/craig_bampton.hpp"
@@ -29,6 +30,14 @@ Eigen::MatrixX3cd node_displacements(const BodyMatrices& body, const Eigen::Vect
     }
   }
   return displacements;
+}
+
+bool is_spatial(std::span<const BodyShape> bodies) {
+  return std::any_of(bodies.begin(), bodies.end(), [](const BodyShape& body) {
+    return (!body.elements.empty() && facts_of(body.elements.front().shape).dimension == 3) ||
+           (body.nodes.col(2).array() != 0.0).any() ||
+           (body.displacement.col(2).array() != 0.0).any();
+  });
 }
 
 }  // namespace stridor

@@ -35,4 +35,7 @@ struct BodyShape {
   std::vector<DrawnElement> elements;      ///< empty where it is made of none
 };
 
+/// Whether any of the bodies has a volume, stands beside the plane z = 0 or moves out of it.
+bool is_spatial(std::span<const BodyShape> bodies);
+
 }  // namespace stridor

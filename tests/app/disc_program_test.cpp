@@ -458,7 +458,7 @@ TEST(DiscProgram, HasWhatOtherScenesHave) {
   const Json run = with({"run", squeal, "-o", (folder / "run.h5").string(), "--error"});
   EXPECT_TRUE(run["error"]["failure"].is_null()) << run["error"];
   EXPECT_LT(run["error"]["force"].get<double>(), 0.05);
-  // The outer edge of the plate, unrolled.
+  // The plate bends out of its plane, seen from above.
   const std::string shapes = (folder / "shapes").string();
   EXPECT_EQ(json_of({"eig", brake, "--shapes", shapes})["files"].size(), 27U);  // two of each of 13 modes, and their list
   const Json sweep = with({"sweep", squeal, "--parameter", friction, "--from", "0.3", "--to", "0.5",

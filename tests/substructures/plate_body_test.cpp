@@ -143,19 +143,49 @@ TEST(PlateBody, PointsAndFacesHaveTheRowsOfThePlate) {
     EXPECT_EQ(dense(sums[3]), rows.w_r_phi);
     EXPECT_EQ(dense(sums[4]), rows.w_phi_phi);
   }
-  // The outer edge is drawn once around, its ends alike.
+  // Both edges are drawn once around, the outer one first; its ends are one node.
+  ASSERT_EQ(made.outlines.size(), 2U);
   const std::vector<int>& edge = made.outlines.at(0);
   EXPECT_EQ(edge.size(), 49U);
-  EXPECT_NEAR(made.nodes(edge.back(), 0), 2.0 * std::numbers::pi * 0.16, 1e-12);
-  EXPECT_LT((dense(made.displacement(edge.front(), 1)) - dense(made.displacement(edge.back(), 1)))
-                .cwiseAbs()
-                .maxCoeff(),
-            1e-12);
+  EXPECT_EQ(edge.front(), edge.back());
+  // A quarter of the way around; z is the radius beyond the outer one.
+  EXPECT_NEAR(made.nodes(edge[12], 0), 0.5 * std::numbers::pi * 0.16, 1e-12);
+  EXPECT_NEAR(made.nodes(edge[12], 2), 0.0, 1e-15);
+  EXPECT_NEAR(made.nodes(made.outlines[1][12], 2), -0.08, 1e-15);
+  EXPECT_NEAR(made.nodes(node, 2), -0.01, 1e-15);
   body.points["probe"].radius = 0.17;
   std::vector<Problem> problems;
   for (const auto& check : PlateBodyParameters::schema().checks) check(&body, problems);
   ASSERT_EQ(problems.size(), 1U);
   EXPECT_EQ(problems[0].key, "points.probe.radius");
+}
+
+// Its elements fill the ring: their areas, rolled into space, are that of the polygons of both
+// edges.
+TEST(PlateBody, ElementsFillTheRingBetweenItsEdges) {
+  const PlateBodyParameters body = spinning_plate(10.0);
+  const BodyMatrices made = body.make();
+  const std::vector<DrawnElement> elements = body.elements();
+  ASSERT_EQ(elements.size(), 48U * 6U);
+  double area = 0.0;
+  for (const DrawnElement& element : elements) {
+    std::vector<Eigen::Vector2d> corners;
+    for (const int corner : element.nodes) {
+      const double radius = 0.16 + made.nodes(corner, 2);
+      const double angle = made.nodes(corner, 0) / 0.16;
+      corners.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+      const PlateRows rows = AnnularPlate(body.plate).rows(radius, angle);
+      const DofSum sum = made.displacement(corner, 1);
+      for (const DofWeight& dof : sum) EXPECT_NEAR(dof.weight, rows.w(dof.dof), 1e-12);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Eigen::Vector2d& a = corners[k];
+      const Eigen::Vector2d& b = corners[(k + 1) % 4];
+      area += 0.5 * (a.x() * b.y() - a.y() * b.x());
+    }
+  }
+  const double polygon = 24.0 * std::sin(2.0 * std::numbers::pi / 48.0);
+  EXPECT_NEAR(area, polygon * (0.16 * 0.16 - 0.08 * 0.08), 1e-12);
 }
 
 }  // namespace

@@ -143,12 +143,12 @@ class MeshView {
     const program = gl.createProgram();
     gl.attachShader(program, shader(gl.VERTEX_SHADER, `#version 300 es
       in vec3 place; in vec3 re; in vec3 im; in vec3 tint;
-      uniform mat3 turn; uniform vec3 middle; uniform vec2 factor; uniform vec2 motion; uniform float depth;
+      uniform mat3 turn; uniform vec3 middle; uniform vec2 factor; uniform vec2 motion; uniform float depth; uniform float nearer;
       out vec3 seen; out vec3 dye;
       void main() {
         vec3 p = turn * (place + motion.x * re + motion.y * im - middle);
         seen = p; dye = tint;
-        gl_Position = vec4(p.x * factor.x, p.y * factor.y, -p.z * depth, 1.0);
+        gl_Position = vec4(p.x * factor.x, p.y * factor.y, -p.z * depth - nearer, 1.0);
       }`));
     gl.attachShader(program, shader(gl.FRAGMENT_SHADER, `#version 300 es
       precision highp float;
@@ -218,11 +218,10 @@ class MeshView {
     gl.uniform2f(at('factor'), scale * Math.min(1, height / width), scale * Math.min(1, width / height));
     gl.uniform1f(at('depth'), 0.9 / this.box.extent);
     gl.uniform2f(at('motion'), this.scale * Math.cos(this.phase), -this.scale * Math.sin(this.phase));
-    gl.enable(gl.POLYGON_OFFSET_FILL);
-    gl.polygonOffset(2, 4);
     for (const [name, kind, flat] of [['triangles', gl.TRIANGLES, 0], ['edges', gl.LINES, 1]]) {
       if (!this.counts[name] || (name === 'edges' && this.counts.edges > 60000)) continue;
       gl.uniform1f(at('flat_'), flat);
+      gl.uniform1f(at('nearer'), 0.003 * flat);  // edges before the faces that they bound
       gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffers[name]);
       gl.drawElements(kind, this.counts[name], gl.UNSIGNED_INT, 0);
     }
