@@ -4,16 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
 #include "app/results/pictures.hpp"
 #include "app/stability/measured_responses.hpp"
+#include "app/stability/response_picture.hpp"
 #include "app/stability/response_study.hpp"
 #include "app/stability/stability.hpp"
 #include "core/errors.hpp"
 #include "core/version.hpp"
 #include "io/figures/axes.hpp"
-#include "io/figures/panel_plot.hpp"
 #include "io/hdf5/part_file.hpp"
 
 namespace stridor {
@@ -94,47 +93,6 @@ void write_files(const FrfOptions& options, const ResponseStudy& study,
   }
 }
 
-/// Diagrams of Bode and Nyquist.
-class ResponsePicture {
- public:
-  explicit ResponsePicture(bool is_log) {
-    panels_[0] = {"frequency (Hz)", "magnitude", AxisKind::linear, AxisKind::logarithmic, false, {}};
-    panels_[1] = {"frequency (Hz)", "phase (deg)", AxisKind::linear, AxisKind::linear, false, {}};
-    panels_[2] = {"real part", "imaginary part", AxisKind::linear, AxisKind::linear, true, {}};
-    if (is_log) panels_[0].x_kind = panels_[1].x_kind = AxisKind::logarithmic;
-  }
-
-  void add(const std::vector<double>& frequencies, const ResponseCurve& curve,
-           const std::string& label, Mark mark, int colour) {
-    PanelCurve magnitude{label, frequencies, {}, mark, colour};
-    PanelCurve phase{"", frequencies, {}, mark, colour};
-    PanelCurve nyquist{"", {}, {}, mark, colour};
-    for (const std::complex<double>& value : curve.values) {
-      magnitude.y.push_back(std::abs(value));
-      phase.y.push_back(std::arg(value) * 180.0 / std::numbers::pi);
-      nyquist.x.push_back(value.real());
-      nyquist.y.push_back(value.imag());
-    }
-    if (units_.empty()) units_ = curve.units;
-    if (units_ != curve.units) units_ = "SI";
-    panels_[0].curves.push_back(std::move(magnitude));
-    panels_[1].curves.push_back(std::move(phase));
-    panels_[2].curves.push_back(std::move(nyquist));
-  }
-
-  void draw(const std::string& caption, const fs::path& figure) {
-    const std::string units = typeset_units(units_);
-    panels_[0].y_label = fmt::format("magnitude ({})", units);
-    panels_[2].x_label = fmt::format("real part ({})", units);
-    panels_[2].y_label = fmt::format("imaginary part ({})", units);
-    plot_panels({panels_[0], panels_[1], panels_[2]}, caption, figure);
-  }
-
- private:
-  std::array<DiagramPanel, 3> panels_;
-  std::string units_;
-};
-
 /// What was found.
 struct FoundResponses {
   const FrfOptions& options;
@@ -156,9 +114,12 @@ void draw_responses(const FoundResponses& found) {
     return std::to_string(colour + 1);
   };
   if (found.compared.empty()) {
-    for (const ResponseCurve& curve : found.curves) {
+    const auto [frequencies, curves] = resolved_curves(
+        found.frequencies, found.curves,
+        [&](const std::vector<double>& between) { return found.study.curves(between); });
+    for (const ResponseCurve& curve : curves) {
       const std::string label = next_label(curve);
-      picture.add(found.frequencies, curve, label, Mark::line, colour++);
+      picture.add(frequencies, curve, label, Mark::line, colour++);
     }
   }
   for (const ComparedResponse& one : found.compared) {

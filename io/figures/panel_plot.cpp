@@ -65,7 +65,7 @@ struct PanelAxis {
 };
 
 PanelAxis make_axis(const DiagramPanel& panel, std::vector<double> PanelCurve::*values,
-                    AxisKind kind) {
+                    AxisKind kind, double least = 0.0) {
   PanelAxis axis;
   axis.kind = kind;
   for (const PanelCurve& curve : panel.curves) {
@@ -76,6 +76,7 @@ PanelAxis make_axis(const DiagramPanel& panel, std::vector<double> PanelCurve::*
   }
   if (kind == AxisKind::logarithmic) {
     if (axis.range.is_empty()) axis.range = {1.0, 10.0};
+    axis.range.lower = std::max(axis.range.lower, std::min(least, axis.range.upper));
     axis.range.lower = std::pow(10.0, std::floor(std::log10(axis.range.lower) + 1e-6));
     axis.range.upper = std::pow(10.0, std::ceil(std::log10(axis.range.upper) - 1e-6));
     if (axis.range.lower == axis.range.upper) axis.range.upper *= 10.0;
@@ -130,10 +131,29 @@ struct PanelPlane {
   PanelAxis x, y;
 };
 
+/// Gives both axes of a diagram to scale one power of ten, and the narrower one at least half of
+/// the extent of the other.
+void keep_to_scale(PanelAxis& a, PanelAxis& b) {
+  const double extent = std::max(a.range.upper - a.range.lower, b.range.upper - b.range.lower);
+  const int exponent = std::max(a.scale.exponent, b.scale.exponent);
+  for (PanelAxis* axis : {&a, &b}) {
+    const double missing = 0.5 * extent - (axis->range.upper - axis->range.lower);
+    if (missing > 0.0) {
+      axis->range = {axis->range.lower - 0.5 * missing, axis->range.upper + 0.5 * missing};
+      axis->scale = axis_scale(axis->range.lower, axis->range.upper, 5);
+    }
+    axis->scale.step *= std::pow(10.0, axis->scale.exponent - exponent);
+    axis->scale.exponent = exponent;
+    axis->scale.decimals =
+        std::max(0, -static_cast<int>(std::floor(std::log10(axis->scale.step) + 1e-9)));
+  }
+}
+
 /// Writes the points of a diagram as gnuplot reads them.
 PanelPlane add_panel_data(FigureScript& script, const DiagramPanel& panel, std::size_t number) {
-  const PanelPlane plane{make_axis(panel, &PanelCurve::x, panel.x_kind),
-                         make_axis(panel, &PanelCurve::y, panel.y_kind)};
+  PanelPlane plane{make_axis(panel, &PanelCurve::x, panel.x_kind),
+                   make_axis(panel, &PanelCurve::y, panel.y_kind, panel.y_least)};
+  if (panel.is_to_scale) keep_to_scale(plane.x, plane.y);
   for (std::size_t c = 0; c < panel.curves.size(); ++c) {
     const PanelCurve& curve = panel.curves[c];
     std::string data;

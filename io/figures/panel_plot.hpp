@@ -28,6 +28,7 @@ struct DiagramPanel {
   AxisKind y_kind = AxisKind::linear;
   bool is_to_scale = false;  ///< the same length for the same number along both axes
   std::vector<PanelCurve> curves;
+  double y_least = 0.0;  ///< of a logarithmic axis: what lies below is cut off; 0: nothing
 };
 
 /// Draws diagrams side by side, at most three in a row, with a caption below.

@@ -4,6 +4,13 @@
 
 namespace stridor {
 
+std::string response_quantity(const std::string& units) {
+  if (units == "m/N") return "receptance";
+  if (units == "m/s/N") return "mobility";
+  if (units == "m/s^2/N") return "accelerance";
+  return "response";
+}
+
 void write_response_file(const std::string& path, Overwrite overwrite,
                          const std::vector<double>& frequencies,
                          const std::vector<ResponseCurve>& curves, const Attributes& attributes) {

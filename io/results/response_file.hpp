@@ -28,6 +28,9 @@ struct ResponseCurve {
   std::optional<double> truncation{};
 };
 
+/// "receptance", "mobility" or "accelerance" by the unit of a response; "response" of another unit.
+std::string response_quantity(const std::string& units);
+
 /// @param frequencies Hz
 /// @throws FileError if the file exists, its folder is not writable, or anything cannot be written
 void write_response_file(const std::string& path, Overwrite overwrite,

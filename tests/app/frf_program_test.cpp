@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "app/stability/response_picture.hpp"
 #include "io/imports/uff_functions.hpp"
 #include "io/results/result_file.hpp"
 #include "tests/support/constants.hpp"
@@ -187,7 +188,7 @@ TEST_F(FrfProgram, WritesFilesThatItComparesWithItselfAndAPicture) {
   json_of(with_range({"--input", "slider.mass.x", "--output", "slider.mass.x.velocity", "-o",
                       path("frf.h5"), "-o", path("frf.uff"), "--figure", path("frf.svg")}));
   EXPECT_THAT(contents_of(path("frf.svg")),
-              AllOf(HasSubstr("magnitude (m/s/N)"), HasSubstr("phase (deg)"),
+              AllOf(HasSubstr("mobility (m/s/N)"), HasSubstr("phase (deg)"),
                     HasSubstr("slider.mass.x.velocity per slider.mass.x")));
   const UffFunctions written = read_uff_functions_file(path("frf.uff"));
   ASSERT_EQ(written.functions.size(), 1u);
@@ -212,6 +213,42 @@ TEST_F(FrfProgram, WritesFilesThatItComparesWithItselfAndAPicture) {
                                          "--node", "1=slider.mass", "--set",
                                          "substructures.slider.masses.mass.mass=1"}));
   EXPECT_LT(other["compared"][0]["frac"].get<double>(), 0.9);
+}
+
+// Receptance and accelerance have axes of their own.
+TEST_F(FrfProgram, APictureHasARowOfDiagramsForEachUnit) {
+  const std::string scene = write("mass.yaml", one_mass);
+  json_of({scene, "--input", "slider.mass.x", "--output", "slider.mass.x.displacement", "--output",
+           "slider.mass.x.acceleration", "--from", "1", "--to", "30", "--points", "30", "--figure",
+           path("frf.svg")});
+  EXPECT_THAT(contents_of(path("frf.svg")),
+              AllOf(HasSubstr("receptance ("), HasSubstr("accelerance ("), Not(HasSubstr("SI"))));
+}
+
+// One mass with 1/s² = 1 - x² + 2 i D x: its circle is as wide as 1/2D, which six points do not
+// show.
+TEST(ResolvedCurves, LeaveNoChordsOfAResonance) {
+  const auto at = [](const std::vector<double>& frequencies) {
+    std::vector<ResponseCurve> curves{{"a.b.x.displacement", "a.b.x", "m/N", {}}};
+    for (const double x : frequencies)
+      curves[0].values.push_back(1.0 / std::complex<double>(1.0 - x * x, 2e-3 * x));
+    return curves;
+  };
+  const std::vector<double> few{0.5, 0.7, 0.9, 1.1, 1.3, 1.5};
+  const auto [frequencies, curves] = resolved_curves(few, at(few), at);
+  ASSERT_EQ(frequencies.size(), curves[0].values.size());
+  EXPECT_TRUE(std::is_sorted(frequencies.begin(), frequencies.end()));
+  for (const double one : few)
+    EXPECT_TRUE(std::binary_search(frequencies.begin(), frequencies.end(), one));
+  double most = 0.0, longest = 0.0;
+  for (std::size_t i = 0; i < frequencies.size(); ++i) {
+    EXPECT_EQ(curves[0].values[i], at({frequencies[i]})[0].values[0]);
+    most = std::max(most, std::abs(curves[0].values[i]));
+    if (i > 0) longest = std::max(longest, std::abs(curves[0].values[i] - curves[0].values[i - 1]));
+  }
+  EXPECT_NEAR(most, 500.0, 5.0);
+  EXPECT_LT(longest, 0.03 * most);
+  EXPECT_LT(frequencies.size(), 400U);
 }
 
 TEST_F(FrfProgram, MeasuredDirectionsMayBeNegativeAndTheRestIsNamed) {

@@ -15,6 +15,7 @@ namespace {
 
 using namespace test;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 DiagramPanel small_panel() {
   constexpr double gap = std::numeric_limits<double>::quiet_NaN();
@@ -33,6 +34,33 @@ TEST(PanelPlot, DrawsOneToSixDiagrams) {
     EXPECT_THAT(text, HasSubstr("A caption."));
     EXPECT_THAT(text, HasSubstr("label’s"));
   }
+}
+
+// A trough may be as deep as it likes: the axis ends where it is told to.
+TEST(PanelPlot, CutsOffWhatLiesBelowTheLeastOfALogarithmicAxis) {
+  const TemporaryFolder folder;
+  DiagramPanel panel{"frequency", "size", AxisKind::linear, AxisKind::logarithmic, false, {}};
+  panel.curves.push_back({"", {0.0, 1.0, 2.0}, {1.0, 1e-12, 1.0}, Mark::line, 0});
+  plot_panels({panel}, "", folder / "whole.svg");
+  EXPECT_THAT(contents_of(folder / "whole.svg"), HasSubstr("10⁻¹²"));
+  panel.y_least = 1e-3;
+  plot_panels({panel}, "", folder / "cut.svg");
+  EXPECT_THAT(contents_of(folder / "cut.svg"), HasSubstr("10⁻³"));
+  EXPECT_THAT(contents_of(folder / "cut.svg"), Not(HasSubstr("10⁻¹²")));
+}
+
+// Equal lengths are equal numbers only in one unit.
+TEST(PanelPlot, BothAxesToScaleHaveOnePowerOfTen) {
+  const TemporaryFolder folder;
+  DiagramPanel panel{"real (m)", "imaginary (m)", AxisKind::linear, AxisKind::linear, true, {}};
+  panel.curves.push_back({"", {-2e-7, 2e-7}, {0.0, 3e-5}, Mark::line, 0});
+  plot_panels({panel}, "", folder / "scale.svg");
+  const std::string text = contents_of(folder / "scale.svg");
+  const auto unit_behind = [&](const std::string& label) {
+    const std::size_t begin = text.find(label + " (") + label.size();
+    return text.substr(begin, text.find(')', begin) - begin);
+  };
+  EXPECT_EQ(unit_behind("real"), unit_behind("imaginary"));
 }
 
 TEST(PanelPlot, DrawsAFieldWithACurve) {

@@ -1,0 +1,54 @@
+// Pictures of frequency responses: diagrams of Bode and Nyquist.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/figures/panel_plot.hpp"
+#include "io/results/response_file.hpp"
+
+namespace stridor {
+
+/// Responses at more frequencies, where they turn so far from one to the next that a line between
+/// the two would be a chord of their curve. Where a resonance is narrower than a millionth of the
+/// distance of two frequencies it stays as it is.
+/// @param frequencies Hz, ascending
+/// @param curves      at these
+/// @param at          responses at other frequencies, in the order of `curves`
+/// @return all frequencies, ascending, and the responses there
+std::pair<std::vector<double>, std::vector<ResponseCurve>> resolved_curves(
+    std::vector<double> frequencies, std::vector<ResponseCurve> curves,
+    const std::function<std::vector<ResponseCurve>(const std::vector<double>&)>& at);
+
+/// Magnitude, phase and locus in the complex plane, a row of diagrams for each unit. Lines end
+/// where they would be chords: of the phase where it jumps by a turn, of the locus between distant
+/// points.
+class ResponsePicture {
+ public:
+  /// @param is_log whether frequencies stand at equal ratios
+  explicit ResponsePicture(bool is_log) : is_log_(is_log) {}
+
+  /// @param frequencies Hz, as many as values of the curve
+  void add(const std::vector<double>& frequencies, const ResponseCurve& curve,
+           const std::string& label, Mark mark, int colour);
+  /// @throws as plot_panels()
+  void draw(const std::string& caption, const std::filesystem::path& figure) const;
+
+ private:
+  struct Added {
+    std::vector<double> frequencies;
+    ResponseCurve curve;
+    std::string label;
+    Mark mark = Mark::line;
+    int colour = 0;
+  };
+  std::vector<DiagramPanel> panels_of(const std::vector<const Added*>& row) const;
+
+  bool is_log_ = false;
+  std::vector<Added> added_;
+};
+
+}  // namespace stridor
