@@ -97,7 +97,8 @@ class Readers(unittest.TestCase):
         verb("precision", scene("viscoelastic_sphere"), "--points", "2", "-o", at("study"))
         os.rename(os.path.join(at("study"), "precision.h5"), at("precision.h5"))
         killed_run(at("killed.h5"))
-        cls.kinds = {"run": "run", "heard": "run", "killed": "run", "locus": "locus", "map": "stability map", "failed": "stability map",
+        cls.kinds = {"run": "run", "heard": "run", "killed": "run", "locus": "locus", "map": "stability map",
+                     "failed": "stability map",
                      "sweep": "sweep of transients", "cycle": "limit cycle", "cycles": "sweep of limit cycles",
                      "responses": "frequency responses", "spectrogram": "spectrogram", "contact": "sliding contacts",
                      "precision": "study of precision"}
@@ -217,7 +218,8 @@ class Readers(unittest.TestCase):
 
     @unittest.skipIf(xarray is None, "no xarray with h5netcdf")
     def test_xarray_labels_what_depends_on_coordinates(self):
-        coordinates = {"locus": ("/eigenvalues", None), "map": ("/", ("growth", ("y", "x"))), "failed": ("/", ("failure", ("y", "x"))),
+        coordinates = {"locus": ("/eigenvalues", None), "map": ("/", ("growth", ("y", "x"))),
+                       "failed": ("/", ("failure", ("y", "x"))),
                        "sweep": ("/", ("steps", ("value",))), "responses": ("/", None),
                        "spectrogram": ("/", ("amplitude", ("times", "frequencies"))),
                        "contact": ("/contacts/000", ("pressure", ("y", "x"))), "cycle": ("/channels", None),
@@ -245,8 +247,10 @@ class Readers(unittest.TestCase):
 
     @unittest.skipIf(shutil.which("ncdump") is None, "no ncdump")
     def test_ncdump_lists_variables_with_their_dimensions(self):
-        expected = {"map": "growth(y, x)", "failed": "failure(y, x)", "spectrogram": "amplitude(times, frequencies)", "sweep": "steps(value)",
-                    "run": "force(time)", "heard": "growth_max(number)", "killed": "force(time)", "contact": "pressure(y, x)", "cycle": "force(time)",
+        expected = {"map": "growth(y, x)", "failed": "failure(y, x)",
+                    "spectrogram": "amplitude(times, frequencies)", "sweep": "steps(value)",
+                    "run": "force(time)", "heard": "growth_max(number)", "killed": "force(time)",
+                    "contact": "pressure(y, x)", "cycle": "force(time)",
                     "responses": "real(frequency)", "locus": "growth(values", "cycles": "period(value)",
                     "precision": "error(run_time)"}
         for name, _, path in self.files():
@@ -257,7 +261,8 @@ class Readers(unittest.TestCase):
     @unittest.skipIf(shutil.which("octave-cli") is None, "no Octave")
     def test_octave_loads_them(self):
         script = "x = load('{path}'); disp(fieldnames(x)); disp(size(x.{field}))"
-        fields = {"run": "time", "heard": "windows.gain", "killed": "time", "locus": "eigenvalues.growth", "map": "growth", "failed": "failure", "sweep": "steps",
+        fields = {"run": "time", "heard": "windows.gain", "killed": "time", "locus": "eigenvalues.growth",
+                  "map": "growth", "failed": "failure", "sweep": "steps",
                   "cycle": "time", "responses": "frequency", "spectrogram": "amplitude", "contact": "rows.force",
                   "cycles": None, "precision": "settings.error"}
         for name, _, path in self.files():
