@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <sstream>
 
 #include "core/errors.hpp"
 #include "io/hdf5/dataset_names.hpp"
@@ -106,6 +107,13 @@ void Hdf5Writer::make_default_plot(const std::string& signal,
   write_default_plot(at_, file_, signal, axes);
 }
 
+std::string scene_of_command(const std::string& command) {
+  std::istringstream words(command);
+  for (std::string word; words >> word;)
+    if (word.ends_with(".yaml") || word.ends_with(".yml")) return word;
+  return "";
+}
+
 void write_introduction(const Checker& at, hid_t file, const Attributes& attributes) {
   const auto text = [&](const std::string& name) -> std::string {
     for (const auto& [known, value] : attributes) {
@@ -114,7 +122,8 @@ void write_introduction(const Checker& at, hid_t file, const Attributes& attribu
     }
     return "";
   };
-  const std::string scene = text("scene");
+  const std::string scene =
+      text("scene").empty() ? scene_of_command(text("command")) : text("scene");
   const std::string title =
       text("kind") + (scene.empty() ? "" : " of " + scene.substr(scene.rfind('/') + 1));
   const std::string source =

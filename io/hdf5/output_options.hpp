@@ -21,6 +21,9 @@ void check_output(const std::string& path, Overwrite overwrite);
 /// @throws FileError if it exists and `overwrite` is no, or if another process is writing it
 void check_replaceable(const std::string& path, Overwrite overwrite);
 
+/// The scene that a command line names, its first word that ends in .yaml or .yml; empty without.
+std::string scene_of_command(const std::string& command);
+
 /// The present time as "2024-05-17T08:30:00Z".
 std::string utc_now();
 
