@@ -207,7 +207,7 @@ async function makeModes(place, view, section) {
   const size = element('input', {type: 'range', min: 0, max: 3, step: 0.05, value: 1, 'aria-label': 'Amplitude', oninput: () => { mesh.amplitude = Number(size.value); mesh.draw(); }});
   const speed = element('input', {type: 'range', min: 0.1, max: 3, step: 0.1, value: 1, 'aria-label': 'Speed'});
   place.append(element('div', {class: 'tools'}, element('label', {}, 'Mode', choice), play, element('label', {}, 'Amplitude', size), element('label', {}, 'Speed', speed)), text,
-    element('figcaption', {}, `Displacements enlarged, as of Re(φ e^{iθ}); grey: at rest. Modes about the ${view.about} geometry. `,
+    element('figcaption', {}, `Displacements enlarged, as of Re(φ e^{iθ})${mesh.gl ? '' : '; grey: at rest'}. Modes about the ${view.about} geometry. `,
       view.planar ? 'Drag to move, ' : 'Drag to turn, ', 'Ctrl and wheel or + and − to scale, double click to begin anew.'));
 
   let isRunning = false, former = 0;

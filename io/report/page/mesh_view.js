@@ -149,12 +149,13 @@ class MeshView {
         vec3 p = turn * (place + motion.x * re + motion.y * im - middle);
         seen = p; dye = tint;
         gl_Position = vec4(p.x * factor.x, p.y * factor.y, -p.z * depth - nearer, 1.0);
+        gl_PointSize = 9.0;
       }`));
     gl.attachShader(program, shader(gl.FRAGMENT_SHADER, `#version 300 es
       precision highp float;
-      in vec3 seen; in vec3 dye; uniform float flat_; out vec4 colour;
+      in vec3 seen; in vec3 dye; uniform float flat_; uniform float flat_shade; out vec4 colour;
       void main() {
-        if (flat_ > 0.5) { colour = vec4(dye * 0.45, 1.0); return; }
+        if (flat_ > 0.5) { colour = vec4(dye * flat_shade, 1.0); return; }
         vec3 n = normalize(cross(dFdx(seen), dFdy(seen)));
         float light = 0.35 + 0.65 * abs(dot(n, normalize(vec3(0.3, 0.5, 0.8))));
         colour = vec4(mix(vec3(1.0), dye, 0.75) * light, 1.0);
@@ -223,7 +224,13 @@ class MeshView {
       gl.uniform1f(at('flat_'), flat);
       gl.uniform1f(at('nearer'), 0.003 * flat);  // edges before the faces that they bound
       gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffers[name]);
+      gl.uniform1f(at('flat_shade'), 0.45);
       gl.drawElements(kind, this.counts[name], gl.UNSIGNED_INT, 0);
     }
+    // Points alone, as of lumped masses.
+    gl.uniform1f(at('flat_'), 1);
+    gl.uniform1f(at('flat_shade'), 1);
+    gl.uniform1f(at('nearer'), 0);
+    this.parts.forEach((part, number) => { if (!this.edges[number].length) gl.drawArrays(gl.POINTS, part.first, part.count); });
   }
 }
