@@ -63,7 +63,7 @@ Json reductions_of(const ResultFile& file) {
 }  // namespace
 
 Json precision_section(const ResultFile& file, const ReportContext&) {
-  Json section = section_head(file, file.kind());
+  Json section = section_head(file, file.kind(), "errors against run time");
   // The file has the same name in every folder of a study.
   const std::filesystem::path path = std::filesystem::absolute(file.path());
   section["file"] = (path.parent_path().filename() / path.filename()).string();

@@ -6,6 +6,7 @@
 
 #include "core/errors.hpp"
 #include "io/figures/axes.hpp"
+#include "io/hdf5/output_options.hpp"
 
 namespace stridor {
 
@@ -34,14 +35,23 @@ Json report_section(const ResultFile& file, const ReportContext& context) {
                                              fmt::join(names, ", ")));
 }
 
-Json section_head(const ResultFile& file, const std::string& kind) {
-  Json head = {{"kind", kind}, {"file", std::filesystem::path(file.path()).filename().string()}};
+std::string scene_name(const ResultFile& file) {
+  std::string scene = file.text("scene");
+  if (scene.empty()) scene = scene_of_command(file.text("command"));
+  return std::filesystem::path(scene).stem().string();
+}
+
+Json section_head(const ResultFile& file, const std::string& kind, const std::string& what) {
+  const std::string scene = scene_name(file);
+  Json head = {{"kind", kind},
+               {"title", scene.empty() ? what : scene + ": " + what},
+               {"file", std::filesystem::path(file.path()).filename().string()}};
   for (const char* name : {"command", "date", "version", "commit", "scene", "scene_hash", "about",
                            "method", "parameter"}) {
     if (const std::string text = file.text(name); !text.empty()) head[name] = text;
   }
-  if (const std::string scene = file.text("scene_resolved"); !scene.empty())
-    head["scene_resolved"] = scene;
+  if (const std::string resolved = file.text("scene_resolved"); !resolved.empty())
+    head["scene_resolved"] = resolved;
   head["views"] = Json::array();
   return head;
 }

@@ -46,10 +46,16 @@ struct ReportContext {
 /// The section of a file. @throws FileError if it is no file of results, or damaged
 Json report_section(const ResultFile& file, const ReportContext& context);
 
-/// The beginning of every section: file, kind, and where it comes from.
-Json section_head(const ResultFile& file, const std::string& kind);
+/// The scene that a file is of, without folder and ending; empty where the file does not say.
+std::string scene_name(const ResultFile& file);
 
-/// A verdict: the level ("calm", "loud", "failed" or "told") chooses a colour and a sign.
+/// The beginning of every section: title, file, kind, and where it comes from.
+/// @param what was computed, which with the name of the scene is the title: "run to 2 s"
+Json section_head(const ResultFile& file, const std::string& kind, const std::string& what);
+
+/// A verdict: the level chooses a colour and a sign. "calm" or "loud" says what was heard of a run,
+/// "stable" or "unstable" what small vibrations do, "failed" that something did not come to its
+/// end, "told" nothing of these.
 Json verdict(const std::string& level, const std::string& text);
 
 /// "0.123 m/s^2" for people, with a prefix where the unit has one.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <sstream>
 
 #include "app/report/histories.hpp"
 #include "app/report/mode_frames.hpp"
@@ -191,9 +192,10 @@ Json run_verdict(const Json& results, const RecordedStretch& run, const Heard& h
   const Json& predictions = heard.predictions;
   std::string text;
   const bool has_tone = results.contains("lasting_tone.frequency");
-  std::string level = !bursts.empty() || has_tone || heard.grows ? "loud"
-                      : heard.is_searched                        ? "calm"
-                                                                 : "told";
+  std::string level = !bursts.empty() || has_tone ? "loud"
+                      : heard.grows               ? "unstable"
+                      : heard.is_searched         ? "calm"
+                                                  : "told";
   if (status == "done") {
     text = fmt::format("Ran to its end at {}. ", shown(run.last_time(), "s"));
   } else if (status.empty()) {
@@ -228,6 +230,20 @@ Json run_verdict(const Json& results, const RecordedStretch& run, const Heard& h
                         predictions.size(), num_heard, num_heard == 1 ? "was" : "were");
   }
   return verdict(level, text + heard.growth);
+}
+
+/// The first sentence of the comment at the head of a scene; empty without.
+std::string purpose_of(const std::string& scene_text) {
+  std::string comment;
+  std::istringstream lines(scene_text);
+  for (std::string line; std::getline(lines, line) && line.starts_with('#');) {
+    line.erase(0, line.find_first_not_of("# "));
+    if (line.starts_with("yaml-language-server")) continue;
+    if (line.empty() || line.starts_with("stridor ")) break;
+    comment += (comment.empty() ? "" : " ") + line;
+  }
+  const std::size_t end = comment.find(". ");
+  return end == std::string::npos ? comment : comment.substr(0, end + 1);
 }
 
 /// Along how far the drive has moved the bodies; nothing where it has not.
@@ -289,7 +305,8 @@ Json run_section(const ResultFile& source, const ReportContext& context) {
   options.file = source.path();
   const RecordedStretch run = open_stretch(options);
   const RunFileHeader& header = run.file.header();
-  Json section = section_head(source, "run");
+  Json section = section_head(source, "run", "run to " + shown(run.last_time(), "s"));
+  section["purpose"] = purpose_of(header.scene_text);
   section["scene_resolved"] = header.scene_resolved;
   section["scene_text"] = header.scene_text;
   section["samples"] = run.samples.size();

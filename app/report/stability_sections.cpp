@@ -114,11 +114,11 @@ Json windows_of(const std::vector<TimedWindow>& windows) {
 Json locus_verdict(const std::vector<TimedWindow>& windows, const std::string& parameter,
                    const std::string& units) {
   if (windows.empty())
-    return verdict("calm", fmt::format("Stable: no vibration grows anywhere along {}.", parameter));
+    return verdict("stable", fmt::format("No vibration grows anywhere along {}.", parameter));
   const auto worst = std::max_element(windows.begin(), windows.end(), [](const auto& a, const auto& b) {
     return a.window.growth_max < b.window.growth_max;
   });
-  return verdict("loud",
+  return verdict("unstable",
                  fmt::format("{} unstable {} of {}; the fastest growth, {:.4g} 1/s at {}, is "
                              "between {:.6g} and {:.6g}{}.",
                              windows.size(), windows.size() == 1 ? "window" : "windows", parameter,
@@ -198,10 +198,17 @@ Json failure_remarks(const ResultFile& file) {
 }  // namespace
 
 Json locus_section(const ResultFile& file, const ReportContext& context) {
-  Json section = section_head(file, "locus");
+  const std::string parameter = file.text("parameter");
+  const std::vector<double> values = file.read("/values");
+  std::string what = "eigenvalues along " + parameter;
+  if (!values.empty()) {
+    const std::string units = file.array("/values").units;
+    what +=
+        fmt::format(" from {} to {}", shown(values.front(), units), shown(values.back(), units));
+  }
+  Json section = section_head(file, "locus", what);
   section["remarks"] = Json::array();
   const std::vector<TimedWindow> windows = read_locus_windows(file.path());
-  const std::string parameter = file.text("parameter");
   section["verdict"] = locus_verdict(windows, parameter, file.array("/values").units);
   section["views"].push_back({{"type", "windows"},
                               {"parameter", parameter},
@@ -216,8 +223,7 @@ Json locus_section(const ResultFile& file, const ReportContext& context) {
   section["views"].push_back(std::move(view));
   const std::string scene = file.text("scene_resolved");
   if (!context.options.without_shapes && !scene.empty()) {
-    const FramedRange range{parameter, file.read("/values"), file.text("about"),
-                            fastest_places(windows)};
+    const FramedRange range{parameter, values, file.text("about"), fastest_places(windows)};
     add_mode_frames({scene, file.path() + ":scene_resolved", file.text("scene"),
                      file.text("scene_hash")},
                     range,
@@ -227,7 +233,9 @@ Json locus_section(const ResultFile& file, const ReportContext& context) {
 }
 
 Json map_section(const ResultFile& file, const ReportContext& context) {
-  Json section = section_head(file, "stability map");
+  Json section =
+      section_head(file, "stability map",
+                   fmt::format("stability over {} and {}", file.text("x"), file.text("y")));
   const std::vector<double> growth = file.read("/growth", 2);
   const auto is_unstable = [](double value) { return value > 0.0; };
   const auto is_known = [](double value) { return std::isfinite(value); };
@@ -241,7 +249,7 @@ Json map_section(const ResultFile& file, const ReportContext& context) {
       if (value > most) most = value;
     text += fmt::format("; the fastest growth is {:.4g} 1/s", most);
   }
-  section["verdict"] = verdict(unstable > 0 ? "loud" : "calm", text + ".");
+  section["verdict"] = verdict(unstable > 0 ? "unstable" : "stable", text + ".");
   section["remarks"] = failure_remarks(file);
   section["views"].push_back(map_view(file, context.page));
   return section;

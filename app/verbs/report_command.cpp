@@ -100,10 +100,24 @@ void number_mechanics(Json& sections) {
   }
 }
 
+/// The scenes, and what was computed of them.
 std::string title_of(const std::vector<ResultFile>& files) {
-  std::string title = fs::path(files.front().path()).filename().string();
-  if (files.size() > 1) title += fmt::format(" and {} more", files.size() - 1);
-  return title + " – stridor";
+  std::vector<std::string> scenes;
+  std::vector<std::string> kinds;
+  const auto add = [](const std::string& text, std::vector<std::string>& list) {
+    if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
+  };
+  for (const ResultFile& file : files) {
+    const std::string scene = scene_name(file);
+    add(scene.empty() ? fs::path(file.path()).filename().string() : scene, scenes);
+    add(file.kind(), kinds);
+  }
+  constexpr std::size_t most = 3;
+  const std::size_t num_more = scenes.size() > most ? scenes.size() - most : 0;
+  scenes.resize(scenes.size() - num_more);
+  std::string title = fmt::format("{}", fmt::join(scenes, ", "));
+  if (num_more > 0) title += fmt::format(" and {} more", num_more);
+  return fmt::format("{}: {} – stridor", title, fmt::join(kinds, ", "));
 }
 
 ExitCode report(const ReportOptions& options) {

@@ -36,6 +36,10 @@ stridor('map', path.join(source, 'scenes/beam_on_beam.yaml'), '--about', 'deform
 stridor('report', at('failed.h5'), '-o', at('failed.html'));
 stridor('precision', path.join(source, 'scenes/viscoelastic_sphere.yaml'), '--points', '4', '--tune', '1e-3', '-o', at('study'));
 stridor('report', at('study/precision.h5'), '-o', at('study.html'));
+stridor('frf', beams, '--input', 'cantilever.free_end.y', '--output', 'cantilever.free_end.y.acceleration', '--output', 'cantilever.free_end.y.displacement', '--from', '10Hz', '--to', '12kHz', '-o', at('frf.h5'));
+stridor('report', at('frf.h5'), '-o', at('frf.html'));
+stridor('sweep', path.join(source, 'scenes/viscoelastic_sphere.yaml'), '--set', 'parameters.v=0.03', '--parameter', 'parameters.tau0', '--from', '0.01', '--to', '0.1', '--points', '4', '--up-down', '-o', at('cycles.h5'));
+stridor('report', at('cycles.h5'), '-o', at('cycles.html'));
 const info = JSON.parse(stridor('info', at('run.h5'), '--json'));
 
 // How many colours a canvas shows: a blank one has one.
@@ -209,10 +213,15 @@ print(json.dumps([t[keep].tolist(), f[name][()][keep].tolist()]))`;
   await page.close();
 
   // Narrow, dark, in space, a map.
-  for (const name of ['beams.html', 'disc.html', 'map.html', 'study.html']) {
+  for (const name of ['beams.html', 'disc.html', 'map.html', 'study.html', 'frf.html', 'cycles.html']) {
     const narrow = await opened(browser, name, messages, requests, {viewport: {width: 400, height: 800}, colorScheme: 'dark'});
     assert.ok(await narrow.evaluate(() => document.documentElement.scrollWidth) <= 400, `${name} is wider than 400 px`);
     assert.equal(await narrow.evaluate(() => getComputedStyle(document.body).backgroundColor), 'rgb(20, 23, 28)');
+    // With all that is folded open, tables scroll inside themselves.
+    await narrow.evaluate(() => document.querySelectorAll('details').forEach(one => { one.open = true; }));
+    assert.ok(await narrow.evaluate(() => document.documentElement.scrollWidth) <= 400, `${name}, all open, is wider than 400 px`);
+    // Every column has one unit, which stands in its head.
+    assert.deepEqual(await narrow.evaluate(() => [...document.querySelectorAll('tbody td:not(.text)')].map(cell => cell.textContent).filter(text => /\d (k?Hz|[mµ]?s|[mµk]?m|1\/s)$/.test(text))), [], name);
     await narrow.close();
   }
   const disc = await opened(browser, 'disc.html', messages, requests);
@@ -232,6 +241,41 @@ print(json.dumps([t[keep].tolist(), f[name][()][keep].tolist()]))`;
   assert.match(unknown, /failed: no sliding equilibrium: .*free to move/);
   assert.match(await failed.evaluate(() => document.body.textContent), /points failed: no sliding equilibrium/);
   await failed.close();
+
+  // Small vibrations are stable or not; nothing of a locus is loud. The verdict is said once.
+  const verdicts = await opened(browser, 'map.html', messages, requests);
+  assert.equal(await verdicts.evaluate(() => [...document.querySelectorAll('.verdict')].map(one => one.querySelector('b').textContent).join()), '! Unstable.');
+  await verdicts.close();
+
+  // A response in the complex plane has one length for one number, units of its own, and no chords.
+  const frf = await opened(browser, 'frf.html', messages, requests);
+  const planes = await frf.evaluate(() => [...document.querySelectorAll('div')].find(d => d.responses).responses.map(({plane, magnitude}) => {
+    const f = plane.inner;
+    return {across: f.width / (plane.x.to - plane.x.from), up: f.height / (plane.y.to - plane.y.from), units: magnitude.y.units,
+      units_of_plane: [plane.x.text.label, plane.y.text.label].map(label => label.split('(')[1]), decades: Math.log10(magnitude.y.to / magnitude.y.from)};
+  }));
+  assert.deepEqual(planes.map(one => one.units).sort(), ['m/N', 'm/s^2/N']);
+  for (const one of planes) {
+    near(one.across, one.up, 1e-6);
+    assert.equal(one.units_of_plane[0], one.units_of_plane[1]);
+    assert.ok(one.decades <= 6.2, `${one.decades} decades`);
+  }
+  const chords = await frf.evaluate(() => report.sections[0].views.find(v => v.type === 'responses').groups.flatMap(group => group.curves.map(curve => {
+    let longest = 0;
+    const [xs, ys] = curve.plane;
+    for (let i = 1; i < xs.length; ++i) { const step = Math.hypot(xs[i] - xs[i - 1], ys[i] - ys[i - 1]); if (step > longest) longest = step; }
+    return longest / group.most;
+  })));
+  for (const one of chords) assert.ok(one > 0 && one <= 0.1, `a chord of ${one}`);
+  await frf.close();
+
+  // Up and down are one picture, whose hover says the state in words.
+  const cycles = await opened(browser, 'cycles.html', messages, requests);
+  assert.match(await cycles.evaluate(() => {
+    const [chart] = [...document.querySelectorAll('div')].find(d => d.curves).curves;
+    return chart.name + ': ' + chart.hover(0.01);
+  }), /^amplitude: up, .*at rest; equilibrium \w+ – down, /);
+  await cycles.close();
 
   const study = await opened(browser, 'study.html', messages, requests);
   assert.match(await study.evaluate(() => {
@@ -258,7 +302,7 @@ print(json.dumps([t[keep].tolist(), f[name][()][keep].tolist()]))`;
 async function inFirefox() {
   const browser = await puppeteer.launch({browser: 'firefox', executablePath: firefoxPath, headless: true});
   const errors = [];
-  for (const name of ['beams.html', 'disc.html', 'map.html', 'study.html']) {
+  for (const name of ['beams.html', 'disc.html', 'map.html', 'study.html', 'frf.html', 'cycles.html']) {
     const page = await browser.newPage();
     page.on('pageerror', error => errors.push(String(error)));
     await page.goto(url(name));

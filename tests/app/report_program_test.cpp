@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "io/results/result_file.hpp"
 #include "tests/app/pictures_fixture.hpp"
 #include "tests/support/report_blocks.hpp"
 
@@ -136,6 +137,13 @@ TEST_F(ReportProgram, ALocusIsSetBesideTheRunOfItsScene) {
   const std::string page = page_of({run, locus});
   const Json contents = contents_of_report(page);
   ASSERT_EQ(contents["sections"].size(), 2u);
+  EXPECT_EQ(ResultFile(run).text("title"), "run of beam_on_beam.yaml");
+  EXPECT_THAT(page, HasSubstr("<title>beam_on_beam: run, locus – stridor</title>"));
+  EXPECT_THAT(contents["sections"][0]["title"].get<std::string>(), ::testing::StartsWith("beam_on_beam: run to "));
+  EXPECT_EQ(contents["sections"][0]["verdict"]["level"], "loud");
+  EXPECT_THAT(contents["sections"][0]["purpose"].get<std::string>(), ::testing::EndsWith("."));
+  EXPECT_EQ(contents["sections"][1]["title"], "beam_on_beam: eigenvalues along contact.start from 88 mm to 95 mm");
+  EXPECT_EQ(contents["sections"][1]["verdict"]["level"], "unstable");
   const Json predicted = view_of(contents["sections"][0], "bursts")["predicted"];
   ASSERT_GE(predicted.size(), 2u);
   EXPECT_TRUE(std::any_of(predicted.begin(), predicted.end(), [](const Json& row) { return !row["burst"].is_null(); }));
@@ -213,11 +221,23 @@ TEST_F(ReportProgram, EveryKindOfFileHasASection) {
   const std::string sphere = scene("viscoelastic_sphere.yaml");
   const std::string reed = scene("examples/reed.yaml");
   const std::vector<std::pair<std::string, std::string>> files{
-      {made({"map", sphere, "--x", "parameters.v", "1e-3", "1", "4", "--y", "parameters.tau0", "1e-3", "1", "3"}, "map.h5"), "field"},
-      {made({"sweep", sphere, "--set", "parameters.v=0.03", "--parameter", "parameters.tau0", "--from", "0.01", "--to", "0.1", "--points", "3"}, "sweep.h5"), "curves"},
+      {made({"map", sphere, "--x", "parameters.v", "1e-3", "1", "4", "--y", "parameters.tau0",
+             "1e-3", "1", "3"},
+            "map.h5"),
+       "field"},
+      {made({"sweep", sphere, "--set", "parameters.v=0.03", "--parameter", "parameters.tau0",
+             "--from", "0.01", "--to", "0.1", "--points", "3"},
+            "sweep.h5"),
+       "curves"},
       {made({"cycle", sphere}, "cycle.h5"), "histories"},
-      {made({"frf", reed, "--input", "reed.middle.y", "--output", "reed.tip.y.displacement", "--from", "100Hz", "--to", "2kHz", "--points", "50"}, "frf.h5"), "curves"},
-      {made({"contact", scene("viscoelastic_contact.yaml"), "--speed", "0.1,1", "--indentation", "0.01", "--set", "contacts.tip.normal.solver.grid=32"}, "contact.h5"), "field"}};
+      {made({"frf", reed, "--input", "reed.middle.y", "--output", "reed.tip.y.displacement",
+             "--from", "100Hz", "--to", "2kHz", "--points", "50"},
+            "frf.h5"),
+       "responses"},
+      {made({"contact", scene("viscoelastic_contact.yaml"), "--speed", "0.1,1", "--indentation",
+             "0.01", "--set", "contacts.tip.normal.solver.grid=32"},
+            "contact.h5"),
+       "field"}};
   std::vector<std::string> arguments;
   for (const auto& file : files) arguments.push_back(file.first);
   const std::string page = page_of(arguments);
@@ -227,11 +247,104 @@ TEST_F(ReportProgram, EveryKindOfFileHasASection) {
     const Json& section = contents["sections"][i];
     EXPECT_FALSE(view_of(section, files[i].second).is_null()) << section["kind"];
     EXPECT_FALSE(section["verdict"]["text"].get<std::string>().empty());
+    EXPECT_NE(section["verdict"]["level"], "loud") << section["kind"];  // nothing was heard
     EXPECT_THAT(section["command"].get<std::string>(), HasSubstr("stridor"));
   }
   const Json map = view_of(contents["sections"][0], "field");
   EXPECT_EQ(numbers_of(page, map["value"]["values"]).size(), 12u);
   EXPECT_THAT(map["reproduce"].get<std::string>(), HasSubstr("--set parameters.v=@X@"));
+}
+
+TEST_F(ReportProgram, ResponsesOfOneUnitStandTogether) {
+  const std::string mass =
+      made({"frf", scene("examples/reed.yaml"), "--input", "reed.middle.y", "--output",
+            "reed.middle.y.displacement", "--output", "reed.middle.y.acceleration", "--output",
+            "reed.tip.x.acceleration", "--from", "100Hz", "--to", "2kHz", "--points", "20"},
+           "frf.h5");
+  const std::string page = page_of({mass});
+  const Json contents = contents_of_report(page);
+  const Json& section = contents["sections"][0];
+  EXPECT_EQ(section["title"], "reed: frequency responses from 100 Hz to 2 kHz");
+  EXPECT_THAT(page, HasSubstr("<title>reed: frequency responses – stridor</title>"));
+  const Json groups = view_of(section, "responses")["groups"];
+  ASSERT_EQ(groups.size(), 2u);
+  for (const Json& group : groups) {
+    const bool is_receptance = group["units"] == "m/N";
+    EXPECT_EQ(group["quantity"], is_receptance ? "receptance" : "accelerance");
+    EXPECT_EQ(group["curves"].size(), is_receptance ? 1u : 2u);
+    for (const Json& curve : group["curves"])
+      EXPECT_EQ(numbers_of(page, curve["imaginary"]).size(), 20u);
+  }
+}
+
+// Up and down in one picture, amplitudes first, states in words.
+TEST_F(ReportProgram, CyclesSweptUpAndDownShareTheirPictures) {
+  const std::string swept =
+      made({"sweep", scene("viscoelastic_sphere.yaml"), "--set", "parameters.v=0.03", "--parameter",
+            "parameters.tau0", "--from", "0.01", "--to", "0.1", "--points", "4", "--up-down"},
+           "cycles.h5");
+  const std::string page = page_of({swept});
+  const Json section = contents_of_report(page)["sections"][0];
+  EXPECT_EQ(section["title"], "viscoelastic_sphere: limit cycles along parameters.tau0");
+  EXPECT_THAT(section["verdict"]["text"].get<std::string>(), HasSubstr("at rest"));
+  const Json view = view_of(section, "curves");
+  ASSERT_EQ(view["sets"].size(), 2u);
+  EXPECT_EQ(view["sets"][0]["name"], "up");
+  EXPECT_EQ(view["sets"][1]["name"], "down");
+  EXPECT_EQ(numbers_of(page, view["sets"][1]["values"]).front(), 0.1);
+  EXPECT_EQ(view["sets"][0]["states"][0]["texts"].size(), 4u);
+  EXPECT_EQ(view["sets"][0]["states"][0]["texts"][0], "at rest");
+  std::vector<std::string> names;
+  for (const Json& panel : view["panels"]) {
+    names.push_back(panel["curves"][0]["name"]);
+    ASSERT_EQ(panel["curves"].size(), 2u) << names.back();
+    EXPECT_EQ(panel["curves"][1]["set"], 1);
+  }
+  ASSERT_GE(names.size(), 3u);
+  EXPECT_EQ((std::vector<std::string>{names.begin(), names.begin() + 3}),
+            (std::vector<std::string>{"amplitude", "x_rms", "frequency"}));
+  for (const char* no_curve : {"status", "equilibrium_stable", "period"})
+    EXPECT_EQ(std::count(names.begin(), names.end(), no_curve), 0) << no_curve;
+}
+
+// The plate is a ring in space that bends along its axis, z; pads stand on it, below and above.
+TEST_F(ReportProgram, APlateBendsOutOfItsPlane) {
+  const std::string locus = made({"locus", scene("examples/elastic_pads.yaml"), "--parameter",
+                                  "parameters.mu", "--from", "0.3", "--to", "0.5", "--points", "3"},
+                                 "locus.h5");
+  const std::string page = page_of({locus});
+  const Json section = contents_of_report(page)["sections"][0];
+  EXPECT_EQ(section["verdict"]["level"], "unstable");
+  const Json modes = view_of(section, "modes");
+  ASSERT_FALSE(modes.is_null());
+  EXPECT_FALSE(modes["planar"].get<bool>());
+  const Json& frame = modes["frames"][0];
+  const std::vector<double> places = numbers_of(page, frame["places"]);
+  const std::vector<double> moved = numbers_of(page, frame["displacements"]);
+  for (const Json& part : modes["parts"]) {
+    const bool is_disc = part["name"] == "disc";
+    EXPECT_TRUE(part.contains("faces")) << part["name"];
+    const auto first = part["first"].get<std::size_t>();
+    double most = 0.0, inner = 1.0, outer = 0.0;
+    for (std::size_t node = first; node < first + part["count"].get<std::size_t>(); ++node) {
+      const double radius = std::hypot(places[3 * node], places[3 * node + 1]);
+      inner = std::min(inner, radius);
+      outer = std::max(outer, radius);
+      most = std::max(most, std::abs(moved[3 * node + 2]));
+      if (is_disc) {
+        EXPECT_NEAR(moved[3 * node], 0.0, 1e-4);
+        EXPECT_NEAR(moved[3 * node + 1], 0.0, 1e-4);
+        EXPECT_LT(std::abs(places[3 * node + 2]), 1e-4);
+      } else {
+        EXPECT_EQ(places[3 * node + 2] > 0.0, part["name"] == "upper");
+      }
+    }
+    EXPECT_NEAR(inner, is_disc ? 0.08 : outer, 1e-6);
+    if (is_disc) {
+      EXPECT_NEAR(outer, 0.16, 1e-6);
+      EXPECT_GT(most, 0.1);
+    }
+  }
 }
 
 TEST_F(ReportProgram, HasTheFrequencyThatTheBodiesResolve) {

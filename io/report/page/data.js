@@ -76,7 +76,7 @@ function element(tag, attributes = {}, ...children) {
 
 const prefixes = [[1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, 'µ'], [1e-9, 'n'],
   [1e-12, 'p']];
-const prefixed = new Set(['m', 'm/s', 'm/s^2', 'N', 's', 'Hz', 'J', 'W', 'Pa', 'm/N']);
+const prefixed = new Set(['m', 'm/s', 'm/s^2', 'N', 's', 'Hz', 'J', 'W', 'Pa', 'm/N', 'm/s/N', 'm/s^2/N']);
 
 function prettyUnits(units) {
   return units === '1' || !units ? '' : units.replace(/\^2/g, '²').replace(/\^3/g, '³');

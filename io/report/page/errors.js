@@ -7,17 +7,15 @@ function makeErrors(place, view) {
   const useful = view.settings.filter(row => row.error > 0 && row.run_time > 0);
   const methods = [...new Set(useful.map(row => row.method))];
   if (useful.length) drawErrors(place, view, useful, methods);
-  const cells = row => [cell(row.method, true), cell(row.tolerance === null ? shown(row.step, 's', 4) : `tolerance ${digits(row.tolerance, 2)}`),
-    cell(digits(row.modes, 6)), cell(row.error === null ? '' : shown(row.run_time, 's', 4)),
-    ...(row.error === null ? [cell(row.status, true)] : [cell(digits(row.error, 3) + (row.on_front ? ' *' : ''))])];
-  place.append(element('details', {open: view.settings.length <= 12 || !useful.length}, element('summary', {}, 'Every setting'),
-    element('div', {class: 'scroll'}, element('table', {}, headRow(['Method', 'Step', 'Modes', 'Run time', 'Error']),
-      element('tbody', {}, view.settings.map(row => element('tr', {}, cells(row)))))),
+  place.append(element('details', {open: view.settings.length <= 12 || !useful.length}, element('summary', {}, 'Every setting'), unitTable([
+    {name: 'Method', of: row => row.method, text: true}, {name: 'Step', units: 's', of: row => row.tolerance === null ? row.step : ''},
+    {name: 'Tolerance', digits: 2, of: row => row.tolerance ?? ''}, {name: 'Modes', digits: 6, of: row => row.modes},
+    {name: 'Run time', units: 's', of: row => row.error === null ? '' : row.run_time},
+    {name: 'Error', digits: 3, of: row => row.error ?? row.status, mark: row => row.on_front ? ' *' : ''}], view.settings),
     element('p', {class: 'faint'}, '* No other setting has both less time and a smaller error.')));
   if (!view.reductions.length) return;
-  place.append(element('h3', {}, 'Reduced bodies against full ones'), element('div', {class: 'scroll'}, element('table', {},
-    headRow(['Body', 'Frequency', 'Error']), element('tbody', {}, view.reductions.map(row =>
-      element('tr', {}, cell(row.body, true), cell(shown(row.frequency, 'Hz')), cell(digits(row.error, 3))))))));
+  place.append(element('h3', {}, 'Reduced bodies against full ones'), unitTable([{name: 'Body', of: row => row.body, text: true},
+    {name: 'Frequency', units: 'Hz', of: row => row.frequency}, {name: 'Error', digits: 3, of: row => row.error}], view.reductions));
 }
 
 function drawErrors(place, view, useful, methods) {

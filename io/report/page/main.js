@@ -1,10 +1,5 @@
 // The page as a whole.
 
-const kindNames = {run: 'Run', locus: 'Eigenvalues along a key', 'stability map': 'Stability map', 'sweep of transients': 'Sweep of runs',
-  'sweep of limit cycles': 'Sweep of limit cycles', 'limit cycle': 'Limit cycle', 'frequency responses': 'Frequency responses',
-  spectrogram: 'Spectrogram', 'sliding contacts': 'Sliding contacts',
-  'study of precision': 'Errors against run time'};
-
 function viewOf(section, type) { return section.views.find(view => view.type === type); }
 
 // What is shared by the views of each section: the stretch of time of a run, the value of a key.
@@ -86,12 +81,16 @@ function makeView(parent, view, section) {
     case 'field': framed(parent, null, 480, place => makeField(place, view, section)); break;
     case 'errors': framed(parent, null, 400, place => makeErrors(place, view)); break;
     case 'curves': framed(parent, null, 260, place => makeCurves(place, view)); break;
+    case 'responses': framed(parent, null, 480, place => makeResponses(place, view)); break;
   }
 }
 
 function makeSection(section, number) {
-  const title = `${kindNames[section.kind] || section.kind}: ${section.file}`;
-  const place = element('section', {id: `section-${number}`, 'aria-label': title}, element('h2', {}, title), makeVerdict(section.verdict));
+  const place = element('section', {id: `section-${number}`, 'aria-label': section.title});
+  if (report.sections.length > 1) place.append(element('h2', {}, section.title));
+  if (section.purpose) place.append(element('p', {class: 'faint'}, section.purpose));
+  // Of several files the verdicts stand at the head of the page, each with the way to its section.
+  if (report.sections.length === 1) place.append(makeVerdict(section.verdict));
   for (const remark of section.remarks || []) place.append(element('p', {class: 'faint'}, remark));
   if (section.run && section.run.view && section.kind === 'run') place.append(timeTools(section.run.view));
   for (const view of section.views) makeView(place, view, section);
@@ -110,11 +109,13 @@ function selfCheck(sections) {
 async function makePage() {
   const {sections} = report;
   prepare(sections);
-  document.getElementById('head').append(element('h1', {}, report.title.replace(/ – stridor$/, '')),
-    ...(sections.length > 1 ? sections.map(section => makeVerdict({level: section.verdict.level, text: `${section.file}: ${section.verdict.text}`})) : []));
+  document.getElementById('head').append(element('h1', {}, sections.length === 1 ? sections[0].title : report.title.replace(/ – stridor$/, '')));
   if (sections.length > 1) {
-    document.getElementById('contents').append(element('ul', {}, sections.map((section, number) =>
-      element('li', {}, element('a', {href: `#section-${number}`}, `${kindNames[section.kind] || section.kind}: ${section.file}`)))));
+    document.getElementById('contents').append(...sections.map((section, number) => {
+      const place = makeVerdict(section.verdict);
+      place.querySelector('b').after(element('a', {href: `#section-${number}`}, section.title), '. ');
+      return place;
+    }));
   }
   const main = document.getElementById('sections');
   sections.forEach((section, number) => main.append(makeSection(section, number)));

@@ -9,6 +9,12 @@ function niceSteps(from, to, most) {
   return ticks;
 }
 
+function multiplesOf(step, from, to) {
+  const ticks = [];
+  for (let i = Math.ceil(from / step); i * step <= to; ++i) ticks.push(i * step);
+  return ticks;
+}
+
 function tickText(value, step) {
   if (value === 0) return '0';
   const size = Math.abs(value);
@@ -40,7 +46,8 @@ class Axis {
     this.set(...(this.isLog ? next.map(x => 10 ** x) : next));
   }
   get text() {
-    const unit = scaleFor(Math.max(Math.abs(this.from), Math.abs(this.to)), this.units);
+    // Axes of one quantity share a unit by their `size`.
+    const unit = scaleFor(Math.max(Math.abs(this.from), Math.abs(this.to), this.size || 0), this.units);
     return {factor: unit[0], label: this.label + (unit[1] ? ` (${unit[1]})` : '')};
   }
   ticks(most) {
@@ -53,7 +60,8 @@ class Axis {
       if (ticks.length >= 2) return ticks;
       return niceSteps(this.from, this.to, most).map(v => [v, digits(v / factor, 3)]);
     }
-    const scaled = niceSteps(this.from / factor, this.to / factor, most);
+    const scaled = this.every && this.to - this.from > 2 * this.every ? multiplesOf(this.every, this.from, this.to)
+      : niceSteps(this.from / factor, this.to / factor, most);
     const step = scaled.length > 1 ? scaled[1] - scaled[0] : 1;
     return scaled.map(v => [v * factor, tickText(v, step)]);
   }
@@ -77,7 +85,7 @@ function rangeOf(arrays, isLog) {
 
 class Chart {
   // options: x, y (Axis), height, paint(chart) draws within the frame, hover(x, y) gives a text,
-  // click(x, y), zoomed()
+  // click(x, y), zoomed(), isToScale: one length for one number along both axes
   constructor(place, options) {
     Object.assign(this, options);
     this.place = place;
@@ -169,6 +177,7 @@ class Chart {
     if (!this.canvas.isConnected) return;
     [this.context, this.width, this.total] = sharp(this.canvas, this.height || 300);
     const c = this.context, f = this.inner;
+    if (this.isToScale) this.equalise(f);
     c.save();
     c.beginPath();
     c.rect(f.x, f.y, f.width, f.height);
@@ -184,6 +193,13 @@ class Chart {
     }
     c.restore();
     this.frame(c, f);
+  }
+  // Widens one axis about its middle.
+  equalise(f) {
+    const x = (this.x.to - this.x.from) / f.width, y = (this.y.to - this.y.from) / f.height;
+    const [axis, extent] = x < y ? [this.x, y * f.width] : [this.y, x * f.height];
+    const middle = 0.5 * (axis.from + axis.to);
+    axis.set(middle - 0.5 * extent, middle + 0.5 * extent);
   }
   grid(c, f) {
     if (this.isPicture) return;

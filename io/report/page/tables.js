@@ -11,7 +11,27 @@ function headRow(names) {
   return element('thead', {}, element('tr', {}, names.map(name => element('th', {scope: 'col'}, name))));
 }
 
-const verdictSigns = {calm: ['✓', 'Calm.'], loud: ['!', 'Loud.'], failed: ['✗', 'Failed.'], told: ['·', '']};
+// A table with one unit for each column, that of its largest number; it scrolls inside itself.
+// columns: [{name, units, of(row): a number, words or null, digits, text, as, mark(row)}]; columns of the same
+// `as` share their unit. act(row): what a click does
+function unitTable(columns, rows, act = null) {
+  const values = columns.map(column => rows.map(column.of));
+  const largest = k => values[k].reduce((most, value) => typeof value === 'number' && isFinite(value) ? Math.max(most, Math.abs(value)) : most, 0);
+  const scales = columns.map((column, k) => scaleFor(Math.max(...columns.map((other, j) =>
+    j === k || (column.as && other.as === column.as) ? largest(j) : 0)), column.units));
+  const text = (value, k, row) => typeof value !== 'number' ? String(value ?? '–')
+    : digits(value / scales[k][0], columns[k].digits || 4) + (columns[k].mark ? columns[k].mark(row) : '');
+  return element('div', {class: 'scroll'}, element('table', {},
+    element('thead', {}, element('tr', {}, columns.map((column, k) => element('th', column.text ? {scope: 'col', class: 'text'} : {scope: 'col'},
+      column.name + (scales[k][1] ? ` (${scales[k][1]})` : ''))))),
+    element('tbody', {}, rows.map((row, i) => {
+      const cells = columns.map((column, k) => cell(text(values[k][i], k, row), column.text));
+      return act ? rowThat(act(row), cells) : element('tr', {}, cells);
+    }))));
+}
+
+const verdictSigns = {calm: ['✓', 'Calm.'], loud: ['!', 'Loud.'], stable: ['✓', 'Stable.'], unstable: ['!', 'Unstable.'],
+  failed: ['✗', 'Failed.'], told: ['·', '']};
 
 function makeVerdict(verdict) {
   const [sign, word] = verdictSigns[verdict.level] || verdictSigns.told;
@@ -20,11 +40,6 @@ function makeVerdict(verdict) {
 
 // The window to which a burst belongs.
 function windowOf(view, burst) { return view.predicted.find(row => row.burst === burst.number); }
-
-function explanation(view, burst) {
-  const window = windowOf(view, burst);
-  return window ? `window of ${shown(window.frequency, 'Hz', 5)} from ${shown(window.from, 's')}` : 'no window';
-}
 
 // Above what the reduced bodies resolve.
 // "", or that a burst is a harmonic of another.
@@ -51,17 +66,23 @@ function makeBursts(place, view, run, section) {
     }
   };
   if (view.bursts.length) {
-    place.append(element('h3', {}, 'Bursts of vibration'), element('div', {class: 'scroll'}, element('table', {},
-      headRow(['Burst', 'From', 'To', 'Frequency', 'Peak', 'Gain (ln)', ...(view.predicted.length ? ['Explained by'] : [])]),
-      element('tbody', {}, view.bursts.map(burst => rowThat(act(burst.start, burst.end, windowOf(view, burst) || {frequency: burst.frequency}),
-        [cell(burst.number), cell(shown(burst.start, 's')), cell(shown(burst.end, 's')), cell(shown(burst.frequency, 'Hz', 5) + harmonicOf(burst) + (isDoubtful(burst, view.resolved) ? ' ?' : '')), cell(shown(burst.peak, 'm/s^2')), cell(digits(burst.gain, 3)), ...(view.predicted.length ? [cell(explanation(view, burst))] : [])]))))));
+    place.append(element('h3', {}, 'Bursts of vibration'), unitTable([
+      {name: 'Burst', of: burst => burst.number}, {name: 'From', units: 's', as: 'time', of: burst => burst.start},
+      {name: 'To', units: 's', as: 'time', of: burst => burst.end},
+      {name: 'Frequency', units: 'Hz', digits: 5, of: burst => burst.frequency, mark: burst => harmonicOf(burst) + (isDoubtful(burst, view.resolved) ? ' ?' : '')},
+      {name: 'Peak', units: 'm/s^2', of: burst => burst.peak}, {name: 'Gain (ln)', digits: 3, of: burst => burst.gain},
+      ...(view.predicted.length ? [{name: 'Explained by', of: burst => windowOf(view, burst) ? 'a window' : 'no window', text: true},
+        {name: 'which is of', units: 'Hz', digits: 5, of: burst => windowOf(view, burst)?.frequency},
+        {name: 'and begins', units: 's', as: 'time', of: burst => windowOf(view, burst)?.from}] : [])],
+    view.bursts, burst => act(burst.start, burst.end, windowOf(view, burst) || {frequency: burst.frequency})));
   }
   if (view.predicted.length) {
-    place.append(element('h3', {}, 'Unstable windows that the run passes'), element('div', {class: 'scroll'}, element('table', {},
-      headRow(['From', 'To', 'Frequency', 'Fastest growth', 'Gain', 'Burst', 'its frequency', 'its gain']),
-      element('tbody', {}, view.predicted.map(row => rowThat(act(row.from, row.to, row),
-        [cell(shown(row.from, 's')), cell(shown(row.to, 's')), cell(shown(row.frequency, 'Hz', 5)), cell(digits(row.growth_max, 3) + ' 1/s'), cell(digits(row.gain, 3)),
-          cell(row.burst ?? 'not heard'), cell(row.burst === null ? '' : shown(row.burst_frequency, 'Hz', 5)), cell(row.burst === null ? '' : digits(row.burst_gain, 3))]))))));
+    place.append(element('h3', {}, 'Unstable windows that the run passes'), unitTable([
+      {name: 'From', units: 's', as: 'time', of: row => row.from}, {name: 'To', units: 's', as: 'time', of: row => row.to},
+      {name: 'Frequency', units: 'Hz', as: 'frequency', digits: 5, of: row => row.frequency}, {name: 'Fastest growth', units: '1/s', digits: 3, of: row => row.growth_max},
+      {name: 'Gain', digits: 3, of: row => row.gain}, {name: 'Burst', of: row => row.burst ?? 'not heard'},
+      {name: 'its frequency', units: 'Hz', as: 'frequency', digits: 5, of: row => row.burst === null ? '' : row.burst_frequency},
+      {name: 'its gain', digits: 3, of: row => row.burst === null ? '' : row.burst_gain}], view.predicted, row => act(row.from, row.to, row)));
   }
   const doubtful = view.bursts.filter(burst => isDoubtful(burst, view.resolved)).length;
   if (doubtful)
@@ -73,11 +94,13 @@ function makeBursts(place, view, run, section) {
 function makeWindows(place, view, section) {
   if (!view.windows.length) return;
   const hasTimes = view.windows.some(window => window.from_time !== null);
-  place.append(element('h3', {}, 'Unstable windows'), element('div', {class: 'scroll'}, element('table', {},
-    headRow(['From', 'To', 'Frequency', 'Fastest growth', ...(hasTimes ? ['Gain', 'Passed'] : [])]),
-    element('tbody', {}, view.windows.map(window => rowThat(() => section.place && section.place.follow(window.value_max, window.frequency),
-      [cell(shown(window.from, view.units, 6)), cell(shown(window.to, view.units, 6)), cell(shown(window.frequency, 'Hz', 6)), cell(digits(window.growth_max, 4) + ' 1/s'),
-        ...(hasTimes ? [cell(digits(window.gain, 3)), cell(window.from_time === null ? 'not passed' : `${shown(window.from_time, 's')} to ${shown(window.to_time, 's')}`)] : [])]))))),
+  place.append(element('h3', {}, 'Unstable windows'), unitTable([
+    {name: 'From', units: view.units, as: 'value', digits: 6, of: window => window.from}, {name: 'To', units: view.units, as: 'value', digits: 6, of: window => window.to},
+    {name: 'Frequency', units: 'Hz', digits: 6, of: window => window.frequency}, {name: 'Fastest growth', units: '1/s', of: window => window.growth_max},
+    ...(hasTimes ? [{name: 'Gain', digits: 3, of: window => window.gain},
+      {name: 'Passed from', units: 's', as: 'time', of: window => window.from_time ?? 'not passed'},
+      {name: 'to', units: 's', as: 'time', of: window => window.to_time ?? ''}] : [])],
+  view.windows, window => () => section.place && section.place.follow(window.value_max, window.frequency)),
   element('p', {class: 'faint'}, `Of ${view.parameter}; a click moves the position to the fastest growth.`));
 }
 
@@ -95,10 +118,10 @@ function makeExpectations(rows) {
 }
 
 function makeSource(section) {
-  const lines = [['Command', section.command], ['Made', section.date], ['By', section.version ? `stridor ${section.version} (${section.commit})` : null],
+  const lines = [['File', section.file], ['Command', section.command], ['Made', section.date], ['By', section.version ? `stridor ${section.version} (${section.commit})` : null],
     ['Scene', section.scene], ['Scene hash', section.scene_hash], ['About', section.about ? `the ${section.about} geometry` : null], ['Method', section.method]];
-  const place = element('details', {}, element('summary', {}, 'How to repeat this'), element('table', {}, element('tbody', {}, lines.filter(([, value]) => value)
-    .map(([name, value]) => element('tr', {}, cell(name, true), element('td', {class: 'text'}, element('code', {}, value)))))));
+  const place = element('details', {}, element('summary', {}, 'How to repeat this'), element('div', {class: 'scroll'}, element('table', {}, element('tbody', {}, lines.filter(([, value]) => value)
+    .map(([name, value]) => element('tr', {}, cell(name, true), element('td', {class: 'text'}, element('code', {}, value))))))));
   if (section.scene_text) place.append(element('h3', {}, 'The scene as written'), element('pre', {tabindex: '0'}, section.scene_text));
   if (section.scene_resolved) place.append(element('h3', {}, 'The scene with all defaults and settings'), element('pre', {tabindex: '0'}, section.scene_resolved));
   return place;

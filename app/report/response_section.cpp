@@ -1,0 +1,91 @@
+// Of frequency responses: those of one unit together.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/report/report_section.hpp"
+#include "core/errors.hpp"
+#include "io/results/response_file.hpp"
+
+namespace stridor {
+namespace {
+
+/// A response as the page draws it, and where it is largest.
+struct PagedResponse {
+  std::string units;
+  Json curve;
+  double peak = 0.0;
+  double at = 0.0;  ///< Hz
+};
+
+PagedResponse paged_response(const ResultFile& file, const std::string& output,
+                             const std::string& input, const std::vector<double>& frequencies,
+                             ReportPage& page) {
+  const std::string group = "/responses/" + output + "/" + input;
+  const std::vector<double> real = file.read(group + "/real");
+  const std::vector<double> imaginary = file.read(group + "/imaginary");
+  if (real.size() != frequencies.size() || imaginary.size() != frequencies.size())
+    throw FileError(Refusal::file_damaged, file.path(), group, "is unlike /frequency in length");
+  PagedResponse response{file.array(group + "/real").units, {}, 0.0, 0.0};
+  for (std::size_t i = 0; i < real.size(); ++i) {
+    const double size = std::hypot(real[i], imaginary[i]);
+    if (!(size > response.peak)) continue;
+    response.peak = size;
+    response.at = frequencies[i];
+  }
+  response.curve = {{"name", output + " per force at " + input},
+                    {"real", page.add_numbers(real)},
+                    {"imaginary", page.add_numbers(imaginary)}};
+  return response;
+}
+
+}  // namespace
+
+Json response_section(const ResultFile& file, const ReportContext& context) {
+  const std::vector<double> frequencies = file.read("/frequency");
+  std::string what = "frequency responses";
+  if (!frequencies.empty())
+    what += fmt::format(" from {} to {}", shown(frequencies.front(), "Hz"),
+                        shown(frequencies.back(), "Hz"));
+  Json section = section_head(file, "frequency responses", what);
+  std::vector<PagedResponse> responses;
+  section["remarks"] = Json::array();
+  for (const std::string& output : file.names_in("/responses")) {
+    for (const std::string& input : file.names_in("/responses/" + output)) {
+      responses.push_back(paged_response(file, output, input, frequencies, context.page));
+      if (const auto truncation = file.number("/responses/" + output + "/" + input + "/truncation"))
+        section["remarks"].push_back(fmt::format(
+            "{}: off by {:.2g} with the modes that a run keeps (time.retain)",
+            responses.back().curve["name"].get<std::string>(), *truncation));
+    }
+  }
+  Json groups = Json::array();
+  std::string text =
+      fmt::format("{} {}", responses.size(), responses.size() == 1 ? "response" : "responses");
+  for (const PagedResponse& response : responses) {
+    const auto known = std::find_if(groups.begin(), groups.end(), [&](const Json& group) {
+      return group["units"] == response.units;
+    });
+    if (known != groups.end()) {
+      (*known)["curves"].push_back(response.curve);
+      continue;
+    }
+    groups.push_back({{"quantity", response_quantity(response.units)},
+                      {"units", response.units},
+                      {"curves", Json::array({response.curve})}});
+    const PagedResponse* largest = &response;
+    for (const PagedResponse& other : responses)
+      if (other.units == response.units && other.peak > largest->peak) largest = &other;
+    text += fmt::format("{} the largest {} is {:.4g} {} at {}", groups.size() == 1 ? ":" : ",",
+                        response_quantity(response.units), largest->peak, largest->units,
+                        shown(largest->at, "Hz"));
+  }
+  section["verdict"] = verdict("told", responses.empty() ? "No responses." : text + ".");
+  section["views"].push_back({{"type", "responses"},
+                              {"frequency", context.page.add_numbers(frequencies)},
+                              {"groups", groups}});
+  return section;
+}
+
+}  // namespace stridor
