@@ -3,12 +3,64 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "app/report/curves.hpp"
 #include "app/report/histories.hpp"
 #include "core/errors.hpp"
 
 namespace stridor {
+
+namespace {
+
+/// A number among the attributes of the root.
+std::optional<double> root_number(const ResultFile& file, const std::string& name) {
+  const auto found = file.attributes().find(name);
+  if (found == file.attributes().end()) return std::nullopt;
+  const double* value = std::get_if<double>(&found->second);
+  return value != nullptr ? std::optional(*value) : std::nullopt;
+}
+
+/// Size of the largest multiplier; nothing where there are none.
+std::optional<double> largest_multiplier(const ResultFile& file) {
+  if (!file.has("/multipliers/real")) return std::nullopt;
+  const std::vector<double> real = file.read("/multipliers/real");
+  const std::vector<double> imaginary = file.read("/multipliers/imaginary");
+  if (real.size() != imaginary.size())
+    throw FileError(Refusal::file_damaged, file.path(), "/multipliers/imaginary",
+                    "is unlike /multipliers/real in length");
+  double largest = 0.0;
+  for (std::size_t i = 0; i < real.size(); ++i)
+    largest = std::max(largest, std::hypot(real[i], imaginary[i]));
+  return largest;
+}
+
+/// Whether the motion repeats itself, how often, how large it is, and whether it is stable.
+Json cycle_verdict(const ResultFile& file) {
+  const std::optional<double> period = root_number(file, "period");
+  std::string status = file.text("status");
+  std::replace(status.begin(), status.end(), '_', ' ');
+  std::string text =
+      period ? fmt::format("A period of {}, {}", shown(*period, "s"), shown(1.0 / *period, "Hz"))
+             : "No period was found" + (status.empty() ? "" : ": " + status);
+  if (const auto rms = root_number(file, "x.rms"))
+    text += fmt::format("; r.m.s. displacement {}", shown(*rms, "m"));
+  for (const auto& [name, verb] :
+       {std::pair{"stick_fraction", "sticks"}, std::pair{"free_fraction", "is lifted off"}})
+    if (const auto part = root_number(file, name); part && *part > 0.0)
+      text += fmt::format("; {} {:.3g} % of the time", verb, 100.0 * *part);
+  const std::optional<double> multiplier = largest_multiplier(file);
+  if (!period || !multiplier) return verdict("told", text + ".");
+  return verdict(
+      *multiplier < 1.0 ? "stable" : "unstable",
+      text + fmt::format("; a disturbance is multiplied by {:.3g} in a period.", *multiplier));
+}
+
+}  // namespace
 
 Json cycle_section(const ResultFile& file, const ReportContext& context) {
   Json section = section_head(file, "limit cycle", "limit cycle");
@@ -18,11 +70,7 @@ Json cycle_section(const ResultFile& file, const ReportContext& context) {
     if (array.path != "/time" && array.shape.size() == 1 && array.shape.front() == times.size())
       columns.push_back(array.path);
   }
-  const double period = times.empty() ? 0.0 : times.back() - times.front();
-  section["verdict"] = verdict(
-      "told", period > 0.0 ? fmt::format("One period of {}, {}.", shown(period, "s"),
-                                         shown(1.0 / period, "Hz"))
-                           : "One period.");
+  section["verdict"] = cycle_verdict(file);
   section["views"].push_back(column_histories(file, columns, times, context.page));
   const auto of = [&](const char* end) {
     return std::find_if(columns.begin(), columns.end(),

@@ -169,4 +169,28 @@ Attributes cycle_attributes(const LoadedScene& loaded, const std::string& comman
           {"date", utc_now()}};
 }
 
+void append_results(const Json& results, Attributes& attributes) {
+  for (const auto& [name, value] : results.items()) {
+    if (value.is_string()) attributes.emplace_back(name, value.get<std::string>());
+    if (value.is_number()) attributes.emplace_back(name, value.get<double>());
+    if (!value.is_object()) continue;
+    Attributes inner;
+    append_results(value, inner);
+    for (auto& [last, content] : inner)
+      attributes.emplace_back(name + "." + last, std::move(content));
+  }
+}
+
+std::vector<Column> multiplier_columns(const Json& results) {
+  const Json& multipliers = results["multipliers"];
+  if (multipliers.empty()) return {};
+  Column real{"/multipliers/real", "1", {}};
+  Column imaginary{"/multipliers/imaginary", "1", {}};
+  for (const Json& m : multipliers) {
+    real.values.push_back(m[0].get<double>());
+    imaginary.values.push_back(m[1].get<double>());
+  }
+  return {std::move(real), std::move(imaginary)};
+}
+
 }  // namespace stridor

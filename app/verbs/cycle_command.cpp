@@ -84,6 +84,16 @@ std::string caption_of(const CycleCommandOptions& options, const LoadedScene& lo
                      std::filesystem::path(options.scene).filename().string(), loaded.hash());
 }
 
+/// One period with what is said of it.
+void write_cycle(const CycleCommandOptions& options, const LoadedScene& loaded,
+                 std::vector<Column> columns, const Json& results) {
+  for (Column& column : multiplier_columns(results)) columns.push_back(std::move(column));
+  Attributes attributes = cycle_attributes(loaded, options.command_line);
+  append_results(results, attributes);
+  write_column_file(*options.output, options.common.overwrite(), "limit cycle", columns,
+                    attributes);
+}
+
 /// One mass on a half-space, from event to event.
 Json follow_events(const CycleCommandOptions& options, const LoadedScene& loaded, Model& model) {
   const CycleScene scene = make_cycle_scene(loaded, model);
@@ -96,10 +106,7 @@ Json follow_events(const CycleCommandOptions& options, const LoadedScene& loaded
   const Json results = cycle_json(found, scene.oscillator);
   if (!options.output && !options.figure) return results;
   const CycleHistory history = history_of(scene, found);
-  if (options.output) {
-    write_column_file(*options.output, options.common.overwrite(), "limit cycle", history.columns(),
-                      cycle_attributes(loaded, options.command_line));
-  }
+  if (options.output) write_cycle(options, loaded, history.columns(), results);
   if (options.figure)
     plot_history(history, caption_of(options, loaded, results, "Motion of the mass"),
                  *options.figure);
@@ -116,10 +123,7 @@ Json follow_steps(const CycleCommandOptions& options, const LoadedScene& loaded,
   if (!options.output && !options.figure) return results;
   const TimeParameters& time = *loaded.scene.time;
   const std::vector<Column> columns = step_cycle_columns(found, time);
-  if (options.output) {
-    write_column_file(*options.output, options.common.overwrite(), "limit cycle", columns,
-                      cycle_attributes(loaded, options.command_line));
-  }
+  if (options.output) write_cycle(options, loaded, columns, results);
   if (options.figure)
     plot_step_cycle(found, columns, caption_of(options, loaded, results, "Motion of the slave"),
                     *options.figure);

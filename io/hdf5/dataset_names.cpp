@@ -103,6 +103,10 @@ constexpr std::array dataset_names{
     DatasetName{"/scene/text", "the scene as it was given"},
     DatasetName{"/scene/resolved", "the scene with every key and default written out"},
     DatasetName{"/scene/digests", "digests of the files that the scene names"},
+    // Limit cycles.
+    DatasetName{"/multipliers/number", "number of the multiplier, largest first"},
+    DatasetName{"/multipliers/real", "real part of the multiplier of the limit cycle"},
+    DatasetName{"/multipliers/imaginary", "imaginary part of the multiplier of the limit cycle"},
     // Loci and maps.
     DatasetName{"/values", "value of the parameter"},
     DatasetName{"/eigenvalues/number", "number of the eigenvalue in the order of frequencies"},

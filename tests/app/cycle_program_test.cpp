@@ -1,6 +1,8 @@
 // `stridor cycle` on systems that are not one mass on a half-space.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
+#include <hdf5_hl.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -57,6 +59,19 @@ TEST(CycleProgram, StickSlipOfABeamConvergesWithTheStep) {
   const auto sticking = static_cast<double>(std::count(state.begin(), state.end(), 1.0));
   EXPECT_NEAR(sticking / static_cast<double>(state.size()), fine["stick_fraction"].get<double>(),
               3e-3);
+
+  // The file says by itself what was printed.
+  const std::vector<double> real = dataset(file, "/multipliers/real");
+  ASSERT_EQ(real.size(), fine["multipliers"].size());
+  EXPECT_EQ(real[0], largest[0].get<double>());
+  EXPECT_EQ(dataset(file, "/multipliers/imaginary").at(0), largest[1].get<double>());
+  const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  double stored = 0.0;
+  EXPECT_GE(H5LTget_attribute_double(opened, "/", "period", &stored), 0);
+  EXPECT_EQ(stored, period);
+  EXPECT_GE(H5LTget_attribute_double(opened, "/", "x.rms", &stored), 0);
+  EXPECT_EQ(stored, fine["x"]["rms"].get<double>());
+  H5Fclose(opened);
 }
 
 TEST(CycleProgram, PrintsAndDraws) {

@@ -250,6 +250,10 @@ TEST_F(ReportProgram, EveryKindOfFileHasASection) {
     EXPECT_NE(section["verdict"]["level"], "loud") << section["kind"];  // nothing was heard
     EXPECT_THAT(section["command"].get<std::string>(), HasSubstr("stridor"));
   }
+  EXPECT_EQ(contents["sections"][2]["verdict"]["level"], "stable");
+  EXPECT_THAT(contents["sections"][2]["verdict"]["text"].get<std::string>(),
+              AllOf(HasSubstr("A period of 154 ms, 6.5 Hz; r.m.s. displacement 132"),
+                    HasSubstr("; sticks 40.3 % of the time; a disturbance is multiplied by ")));
   const Json map = view_of(contents["sections"][0], "field");
   EXPECT_EQ(numbers_of(page, map["value"]["values"]).size(), 12u);
   EXPECT_THAT(map["reproduce"].get<std::string>(), HasSubstr("--set parameters.v=@X@"));
