@@ -92,15 +92,15 @@ void InpLines::include(const std::string& file, const TextPlace& place) {
   }
   SourceText source;
   try {
-    source = reader_(levels_.back().source->name, file);
+    // Behind a comma too many at its end, the file that includes is left already.
+    source = reader_(place.source->name, file);
   } catch (const FileError& error) {
     refuse_at(place, fmt::format("cannot include a file: {}", error.what()));
   }
   std::string path = one_path(source.name);
-  for (const Level& level : levels_) {
-    if (level.path == path)
-      refuse_at(place, fmt::format("'{}' includes itself", shown(source.name)));
-  }
+  bool includes_itself = one_path(place.source->name) == path;
+  for (const Level& level : levels_) includes_itself |= level.path == path;
+  if (includes_itself) refuse_at(place, fmt::format("'{}' includes itself", shown(source.name)));
   open(std::move(source), std::move(path));
 }
 

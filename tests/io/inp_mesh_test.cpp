@@ -186,5 +186,22 @@ TEST(InpMesh, IncludedFilesAreReadInTheirPlace) {
   EXPECT_EQ(includers, (std::vector<std::string>{"m.inp", "m.inp", "more.inc"}));
 }
 
+// The comma asks for another line, behind which the file has ended.
+TEST(InpMesh, AFileIsIncludedFromTheLastLineWithACommaTooMany) {
+  const auto reader = [](const std::string& including, const std::string& file) {
+    EXPECT_EQ(including, "m.inp");
+    return SourceText{
+        file, "*NODE, NSET=all\n1, 0, 0\n2, 1, 0\n3, 0, 1\n*ELEMENT, TYPE=CPS3\n1, 1, 2, 3\n"};
+  };
+  for (const char* text :
+       {"*INCLUDE, INPUT=a.inc,", "*INCLUDE, INPUT=a.inc,\n", "*INCLUDE, INPUT=a.inc, \n**\n"})
+    EXPECT_EQ(read_inp_mesh({"m.inp", text}, reader).mesh.node_sets, (NodeSets{{"all", {0, 1, 2}}}))
+        << text;
+  const std::string itself = message_of<ConfigError>([&] {
+    (void)read_inp_mesh({"m.inp", "*INCLUDE, INPUT=m.inp,\n"}, reader);
+  });
+  EXPECT_NE(itself.find("'m.inp' includes itself"), std::string::npos) << itself;
+}
+
 }  // namespace
 }  // namespace stridor
