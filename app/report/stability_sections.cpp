@@ -61,7 +61,7 @@ std::vector<double> of_branches(const ResultFile& file, const RowSizes& sizes,
 
 /// Eigenvalues that were followed as curves; where none was, those of every value as points, a row for
 /// each place in the order of their frequencies.
-Json curves_view(const ResultFile& file, ReportPage& page) {
+Json branches_view(const ResultFile& file, ReportPage& page) {
   Json sizes = Json::array();
   const RowSizes of_each =
       file.has("/branches/value") ? row_sizes(file, "/branches/value") : RowSizes{};
@@ -219,7 +219,7 @@ Json locus_section(const ResultFile& file, const ReportContext& context) {
                {"parameter", parameter},
                {"units", file.array("/values").units},
                {"windows", windows_of(windows)}};
-  view.update(curves_view(file, page));
+  view.update(branches_view(file, page));
   section["views"].push_back(std::move(view));
   const std::string scene = file.text("scene_resolved");
   if (!context.options.without_shapes && !scene.empty()) {

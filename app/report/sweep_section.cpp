@@ -30,7 +30,7 @@ std::map<int, std::string> meanings_of(const std::string& text) {
   return meanings;
 }
 
-/// What is a number in the file and a state in truth becomes words.
+/// States, which are numbers in the file, become words.
 void put_states_in_words(const ResultFile& file, CurveSet& set) {
   const std::map<int, std::string> meanings = meanings_of(file.text("meaning_of_status"));
   WordColumn motion{"motion", {}};

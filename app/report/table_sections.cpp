@@ -14,7 +14,6 @@
 #include "core/errors.hpp"
 
 namespace stridor {
-
 namespace {
 
 /// A number among the attributes of the root.
@@ -44,9 +43,11 @@ Json cycle_verdict(const ResultFile& file) {
   const std::optional<double> period = root_number(file, "period");
   std::string status = file.text("status");
   std::replace(status.begin(), status.end(), '_', ' ');
+  // Files of earlier versions do not say.
+  if (status.empty()) return verdict("told", "One period.");
   std::string text =
       period ? fmt::format("A period of {}, {}", shown(*period, "s"), shown(1.0 / *period, "Hz"))
-             : "No period was found" + (status.empty() ? "" : ": " + status);
+             : "No period was found: " + status;
   if (const auto rms = root_number(file, "x.rms"))
     text += fmt::format("; r.m.s. displacement {}", shown(*rms, "m"));
   for (const auto& [name, verb] :

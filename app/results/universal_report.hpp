@@ -1,4 +1,4 @@
-// What a universal file turned out to hold, as text and JSON.
+// Contents of a universal file, as text and JSON.
 #pragma once
 
 #include <string>

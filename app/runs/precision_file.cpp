@@ -35,7 +35,7 @@ struct SettingNumber {
   const char* units;
   const char* pointer;  ///< into the row
 };
-/// What the others are seen over stands first.
+/// The column over which the others are drawn stands first.
 constexpr std::array setting_numbers{
     SettingNumber{"/settings/run_time", "s", "/least_wall_s"},
     SettingNumber{"/settings/error", "1", "/error"},

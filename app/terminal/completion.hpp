@@ -1,4 +1,4 @@
-// What a word of the command line may go on to, for completion in shells.
+// Candidates for a word of the command line, for completion in shells.
 #pragma once
 
 #include <CLI/CLI.hpp>

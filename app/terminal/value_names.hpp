@@ -1,4 +1,4 @@
-// What the values of options are called in help and manual.
+// Names of the values of options in help and manual.
 #pragma once
 
 #include <CLI/CLI.hpp>

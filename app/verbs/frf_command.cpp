@@ -93,7 +93,7 @@ void write_files(const FrfOptions& options, const ResponseStudy& study,
   }
 }
 
-/// What was found.
+/// The responses, and those measured that were set beside them.
 struct FoundResponses {
   const FrfOptions& options;
   const ResponseStudy& study;

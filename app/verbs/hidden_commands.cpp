@@ -72,7 +72,7 @@ void print_candidates(const CLI::App& program, const std::vector<std::string>& w
     for (const Candidate& one : candidates(program, words, behind))
       fmt::print("{}{}{}\n", one.word, one.meaning.empty() ? "" : "\t", one.meaning);
   } catch (const std::exception&) {
-    // What cannot be read has no candidates: somebody is typing.
+    // A file that cannot be read gives no candidates: somebody is typing.
   }
 }
 

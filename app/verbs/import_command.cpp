@@ -49,7 +49,7 @@ NamedMatrices read_matrices_of(const ImportedFiles& files, MatrixBodyParameters&
   return read_matrices(body, nodes, paths);
 }
 
-/// What a scene would say of the same files.
+/// The same files as a scene would name them.
 std::string scene_lines(const ImportedFiles& files, const MatrixNodesParameters& nodes) {
   std::string text = "substructures:\n  part:\n";
   const auto line = [&](const char* key, const std::string& value) {
