@@ -99,6 +99,18 @@ struct ContactRecord {
     if (state == ContactState::slip) return;
     ++(state == ContactState::stick ? statistics.sticking : statistics.open);
   }
+  /// Counts a violation of persistent sliding.
+  void note(std::int64_t& counter, double now) {
+    ++counter;
+    violations.last_time = now;
+  }
+  /// The same. @returns false where the contact is armed
+  bool tolerate(std::int64_t& counter, double now, double armed_from) {
+    note(counter, now);
+    if (now >= armed_from) return false;
+    ++violations.before_armed;
+    return true;
+  }
   void forget() {
     statistics = earlier = open_interval = interval = {};
     violations = {};

@@ -118,7 +118,7 @@ struct LaneAccess {
 
   static void copy_constants(const Into& copy, const Lanes& lanes, Run& run) {
     const ContactLanes& to = lanes.contact;
-    RunningContact& contact = run.contacts.front();
+    RunningLine& contact = run.lines.front();
     const SlidingPoint& point = contact.sliding;
     const auto set = [&](double* entries, std::size_t i, double number) {
       copy(entries, i, number);
@@ -136,13 +136,13 @@ struct LaneAccess {
     set(to.driven_rate, 0, contact.driven.end_rate());
     set(to.driven_from, 0, contact.driven.constant_from());
     set(to.sliding_velocity, 0, contact.driven.end_velocity());
-    set(lanes.step, 0, run.step);
+    set(lanes.step, 0, run.clock.step);
   }
 
   template <bool is_out>
   static void copy_state(const Copy<is_out>& copy, const Lanes& lanes, Run& run) {
     const ContactLanes& to = lanes.contact;
-    RunningContact& contact = run.contacts.front();
+    RunningLine& contact = run.lines.front();
     Projection& projection = contact.sliding.projection_;
     copy(to.xi, 0, projection.xi);
     copy(to.found_tangent, 0, projection.tangent.x());
@@ -156,14 +156,13 @@ struct LaneAccess {
     projection.normal = turned_left(projection.tangent);
     projection.weights = {1.0 - projection.xi, projection.xi, 0.0, 0.0};
     // The guess that a step by itself starts from.
-    run.local.front().normal = contact.force;
-    run.local.front().tangential = contact.friction_force;
-    run.local.front().state = contact.state;
+    run.lines.problems().front().normal = contact.force;
+    run.lines.problems().front().tangential = contact.friction_force;
+    run.lines.problems().front().state = contact.state;
   }
-  static void set_rows(Run& run) { run.contacts.front().sliding.set_rows(); }
+  static void set_rows(Run& run) { run.lines.front().sliding.set_rows(); }
   template <bool is_out>
-  static void copy_statistics(const Copy<is_out>& copy, const Lanes& lanes,
-                              RunningContact& contact) {
+  static void copy_statistics(const Copy<is_out>& copy, const Lanes& lanes, RunningLine& contact) {
     copy(lanes.contact.force_min, 0, contact.statistics.force_min);
     copy(lanes.contact.force_max, 0, contact.statistics.force_max);
     copy(lanes.contact.friction_min, 0, contact.statistics.friction_min);
@@ -185,8 +184,8 @@ struct Shape {
 };
 
 std::optional<Shape> shape_of(Run& run) {
-  if (run.contacts.size() != 1 || run.bodies.size() != 2 || run.ledger) return std::nullopt;
-  const RunningContact& contact = run.contacts.front();
+  if (run.lines.size() != 1 || run.bodies.size() != 2 || run.ledger) return std::nullopt;
+  const RunningLine& contact = run.lines.front();
   const ContactPoint& point = contact.point();
   const MasterSurface& surface = contact.sliding.surface();
   if (!run.slides_only || point.substrate || point.penalty ||
@@ -197,25 +196,21 @@ std::optional<Shape> shape_of(Run& run) {
   const ModalRecurrence* const slave = LaneAccess::modal(run, point.slave_body);
   const ModalRecurrence* const master = LaneAccess::modal(run, surface.body);
   if (slave == nullptr || master == nullptr) return std::nullopt;
-  return Shape{run.has_feedthrough,
-               point.assumption,
-               LaneAccess::num_modes(*slave),
-               LaneAccess::num_modes(*master),
-               LaneAccess::has_residual(*slave),
-               LaneAccess::has_residual(*master)};
+  return Shape{run.clock.has_feedthrough,        point.assumption,
+               LaneAccess::num_modes(*slave),    LaneAccess::num_modes(*master),
+               LaneAccess::has_residual(*slave), LaneAccess::has_residual(*master)};
 }
 
 /// Steps from `index` on in which load, drive, friction and damping do not change: the number of
 /// the first one that does, `index` itself where they change in the step from there.
 std::int64_t quiet_until(const Run& run, std::int64_t index) {
-  const double now = run.time(index);
-  if (now < run.loads_constant_from || now < run.contacts.front().constant_from)
-    return index;
+  const double now = run.clock.time(index);
+  if (now < run.loads_constant_from || now < run.lines.front().constant_from) return index;
   std::int64_t last = std::numeric_limits<std::int64_t>::max();
   for (const RayleighDamping& damping : run.damping) {
     if (now >= damping.constant_from()) continue;
-    auto until = static_cast<std::int64_t>(damping.hold / run.step) + 1;
-    while (until > index && run.time(until) > damping.hold) --until;
+    auto until = static_cast<std::int64_t>(damping.hold / run.clock.step) + 1;
+    while (until > index && run.clock.time(until) > damping.hold) --until;
     last = std::min(last, std::max(until, index));
   }
   return last;
@@ -240,7 +235,7 @@ class LaneGroup {
   bool is_full() const { return members_.size() == width_; }
   void add(Simulation& simulation) {
     Run& run = simulation.implementation();
-    const RunningContact& contact = run.contacts.front();
+    const RunningLine& contact = run.lines.front();
     const int slave = contact.point().slave_body;
     const int master = contact.sliding.surface().body;
     members_.push_back({&simulation, &run, LaneAccess::modal(run, slave),
@@ -252,11 +247,11 @@ class LaneGroup {
 
   void watch(std::size_t lane, DisplacementSink& sink, DisplacementSink::Row row) {
     Member& member = members_[lane];
-    if (sink.next_step() <= member.run->index)
+    if (sink.next_step() <= member.run->clock.index)
       throw std::invalid_argument("Batch: a sample is due before the next step");
     put_back(lane);
     member.is_resident = false;
-    const RunningContact& contact = member.run->contacts.front();
+    const RunningLine& contact = member.run->lines.front();
     const bool is_slave = row.body == contact.point().slave_body;
     (is_slave ? member.slave_row : member.master_row) = row.row;
     (is_slave ? lanes_.slave : lanes_.master).is_watched = true;
@@ -268,7 +263,7 @@ class LaneGroup {
   void step_until(std::int64_t target) {
     for (std::size_t lane = 0; lane < members_.size(); ++lane) {
       if (members_[lane].is_resident)
-        LaneAccess::copy_statistics(into(lane), lanes_, members_[lane].run->contacts.front());
+        LaneAccess::copy_statistics(into(lane), lanes_, members_[lane].run->lines.front());
     }
     while (true) {
       std::int64_t num_steps = std::numeric_limits<std::int64_t>::max();
@@ -277,8 +272,9 @@ class LaneGroup {
         Member& member = members_[lane];
         step_until_quiet(lane, target);
         if (!member.is_running(target)) continue;
-        const std::int64_t until = std::min(target, quiet_until(*member.run, member.run->index));
-        num_steps = std::min(num_steps, until - member.run->index);
+        const std::int64_t until =
+            std::min(target, quiet_until(*member.run, member.run->clock.index));
+        num_steps = std::min(num_steps, until - member.run->clock.index);
         lanes_.is_used[lane] = 1.0;
       }
       if (num_steps == std::numeric_limits<std::int64_t>::max()) break;
@@ -297,7 +293,7 @@ class LaneGroup {
       Member& member = members_[lane];
       if (member.is_resident) copy_place(out_of(lane), member);
       if (member.outcome == StepOutcome::done &&
-          member.run->index >= member.run->next_health_check) {
+          member.run->clock.index >= member.run->next_health_check) {
         put_back(lane);
         member.outcome = member.run->check_health();
       }
@@ -331,12 +327,12 @@ class LaneGroup {
     }
     /// For simulations whose last step was done outside the lanes.
     void sample_where_due() {
-      if (outcome == StepOutcome::done && run->index == next_sample)
+      if (outcome == StepOutcome::done && run->clock.index == next_sample)
         sample(simulation->displacement(row.body, row.row));
     }
 
     bool is_running(std::int64_t target) const {
-      return outcome == StepOutcome::done && run->index < target;
+      return outcome == StepOutcome::done && run->clock.index < target;
     }
   };
 
@@ -383,8 +379,9 @@ class LaneGroup {
   void step_until_quiet(std::size_t lane, std::int64_t target) {
     Member& member = members_[lane];
     while (member.is_running(target)) {
-      const bool is_settled = quiet_until(*member.run, member.run->index) > member.run->index &&
-                              member.run->contacts.front().state == ContactState::slip;
+      const bool is_settled =
+          quiet_until(*member.run, member.run->clock.index) > member.run->clock.index &&
+          member.run->lines.front().state == ContactState::slip;
       if (is_settled) return;
       put_back(lane);
       member.is_resident = false;
@@ -417,7 +414,7 @@ class LaneGroup {
       LaneAccess::copy_watched(copy, lanes_.master, *member.master, member.master_row);
     copy_place(copy, member);
     copy_rest(copy, member);
-    lanes_.index[lane] = static_cast<double>(member.run->index);
+    lanes_.index[lane] = static_cast<double>(member.run->clock.index);
     member.is_resident = true;
   }
 
@@ -442,8 +439,8 @@ class LaneGroup {
       Run& run = *member.run;
       const bool is_flagged = flagged_[lane] != 0.0;
       hand_out(lane, is_flagged ? done - 1 : done);
-      run.index += done;
-      run.contacts.front().statistics.steps += is_flagged ? done - 1 : done;
+      run.clock.index += done;
+      run.lines.front().statistics.steps += is_flagged ? done - 1 : done;
       if (!is_flagged) continue;
       put_back(lane);
       member.is_resident = false;
@@ -455,7 +452,7 @@ class LaneGroup {
   /// The samples that are due in the next steps, which the kernel has done.
   void hand_out(std::size_t lane, std::int64_t num_steps) {
     Member& member = members_[lane];
-    const std::int64_t first = member.run->index + 1;
+    const std::int64_t first = member.run->clock.index + 1;
     while (member.next_sample < first + num_steps) {
       const auto entry = static_cast<std::size_t>(member.next_sample - first);
       member.sample(lanes_.trace[entry * width_ + lane]);

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "core/refusals.hpp"
 #include "core/state.hpp"
 #include "coupling/system/system.hpp"
 #include "solvers/contact/contact_record.hpp"
@@ -18,25 +17,9 @@
 #include "solvers/integrators/propagator.hpp"
 #include "solvers/integrators/time_parameters.hpp"
 #include "solvers/transient/energy_ledger.hpp"
+#include "solvers/transient/step_outcome.hpp"
 
 namespace stridor {
-
-/// Outcome of a step. Anything but `done` ends the run: bodies and channels are at the time of the
-/// failure, contact forces may be those of the step before.
-enum class StepOutcome {
-  done,
-  master_lost,       ///< a slave point has left the end of its master surface
-  pulling,           ///< λ < 0 at an armed contact: the assumption of persistent sliding is lost
-  sliding_reversed,  ///< an armed contact slides against the drive: likewise
-  jammed,            ///< b_C W b_Eᵀ of a contact is not positive: no contact force closes its gap
-  not_converged,     ///< the forces of several contacts have not settled
-  diverged,          ///< a contact force is not finite or beyond any use
-  sunk,              ///< a slave point is deeper in its substrate than its radius, or has gone through a plate
-  overshot,          ///< a substrate is so stiff for the step that indentations grow with each
-};
-
-/// The kind of a failure.
-Refusal refusal_of(StepOutcome outcome);
 
 /// Quantities that a simulation keeps account of from its start.
 enum class Accounts {
