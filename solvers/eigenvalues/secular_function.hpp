@@ -9,9 +9,10 @@
 #include <vector>
 
 #include "solvers/algebra/aligned_array.hpp"
-#include "solvers/eigenvalues/coupled_modes.hpp"
 #include "solvers/eigenvalues/pencil.hpp"
 #include "solvers/eigenvalues/secular_kernel.hpp"
+#include "solvers/eigenvalues/secular_poles.hpp"
+#include "solvers/eigenvalues/secular_weights.hpp"
 
 namespace stridor {
 
@@ -40,25 +41,23 @@ class SecularFunction {
   /// @throws std::invalid_argument as check_pencil(); the function is then unchanged
   void assign(const Pencil& pencil);
 
-  Eigen::Index num_modes() const { return num_modes_; }
-  Eigen::Index num_constraints() const { return rows_.num_constraints; }
+  Eigen::Index num_modes() const { return poles_.num_modes(); }
+  Eigen::Index num_constraints() const { return weights_.num_constraints(); }
   /// Zeros of P, 2 (n − k).
-  Eigen::Index num_zeros() const { return 2 * (num_modes_ - rows_.num_constraints); }
-  /// Height of a number over the sides of the wedge |Im s| < |Re s| in which growth or decay is
-  /// faster than vibration: |Im s| − |Re s|, 1/s.
-  static double height_of(std::complex<double> s) {
-    return std::abs(s.imag()) - std::abs(s.real());
-  }
+  Eigen::Index num_zeros() const { return 2 * (num_modes() - num_constraints()); }
+  /// SecularPoles::height_of().
+  static double height_of(std::complex<double> s) { return SecularPoles::height_of(s); }
   /// Heights of the poles, 0 for those within the wedge, ascending; one per mode.
-  const std::vector<double>& pole_heights() const { return heights_; }
-  /// The poles of mode i, in ascending ω: that with the larger imaginary part, or the right one of
-  /// two real ones, first.
-  std::array<std::complex<double>, 2> poles(Eigen::Index i) const;
+  const std::vector<double>& pole_heights() const { return poles_.sorted_heights(); }
+  /// The poles of mode i, in ascending ω, as SecularPoles::of().
+  std::array<std::complex<double>, 2> poles(Eigen::Index i) const {
+    return poles_.of(static_cast<std::size_t>(i));
+  }
   /// A length beyond every pole and, unless B_C S Sᵀ B_Eᵀ is almost singular, every zero, 1/s.
-  double extent() const { return extent_; }
+  double extent() const { return poles_.extent(); }
   /// A zero this much smaller than the smallest pole that is not zero is no different from zero, as
   /// one of this relative error is exact: the size of numbers whose rounding steps are measured by.
-  double size_of(std::complex<double> s) const { return std::max(std::abs(s), smallest_pole_); }
+  double size_of(std::complex<double> s) const { return std::max(std::abs(s), poles_.smallest()); }
 
   /// F'/F at a number, and the poles multiplied out.
   struct LogSlope {
@@ -111,35 +110,6 @@ class SecularFunction {
     bool meets_pole = false;
   };
 
-  /// Coupled terms of bodies as in a pencil, to see whether they change.
-  struct BodyTerms {
-    Eigen::MatrixXd ports, stiffness, damping;
-    bool operator==(const BodyTerms& other) const;
-  };
-  static BodyTerms body_terms(const Pencil& pencil);
-  void assign_modes(const Pencil& pencil);
-  void sort_modes(const Eigen::VectorXd& omega, const Eigen::VectorXd& damping);
-  void assign_rows(const Pencil& pencil);
-  void add_weights(std::size_t i);
-  void add_coupled_weights(std::size_t i);
-  bool has_coupled() const { return coupled_.num_pairs() > 0; }
-  bool is_scalar() const {
-    return rows_.num_constraints == 1 && rows_.rank == 0 && !has_coupled();
-  }
-  Eigen::Index num_rows() const { return rows_.num_constraints + rows_.rank; }
-  /// Powers of s in the weights of an input, from 0.
-  Eigen::Index num_powers(Eigen::Index input) const {
-    return (input < rows_.num_constraints ? 1 : 2) + (has_coupled() ? 1 : 0);
-  }
-  AlignedArray& weights_of(Eigen::Index output, Eigen::Index input, Eigen::Index power) {
-    return weights_[static_cast<std::size_t>(output + num_rows() * (input + num_rows() * power))];
-  }
-  void border_mode(Complex s, Eigen::Index mode, std::size_t i, Eigen::Index border);
-  void border_pole(Complex s, Eigen::Index pole, Eigen::Index border);
-  Complex denominator(std::size_t i, Complex s) const;
-  Complex denominator_slope(std::size_t i, Complex s) const;
-  /// Mode with the smallest |d|.
-  int nearest_mode(Complex s) const;
   /// Sets near_ to the modes whose poles are multiplied out of F(s), and hint to the nearest.
   void find_near(Complex s, double least, int& hint);
   LogSlope scalar_log_slope(Complex s, int& hint);
@@ -151,30 +121,15 @@ class SecularFunction {
   Complex determinant_at(Complex s);
   Line& line_at(double height);
 
-  Eigen::VectorXd given_omega_, given_damping_;  ///< as in the pencil, to see whether they change
-  BodyTerms given_terms_;
-  CoupledModes coupled_;  ///< of the bodies with coupled terms
-  /// In ascending ω: modes of the pencil, and n + j for pair j of the coupled modes.
-  std::vector<Eigen::Index> order_;
-  Eigen::Index num_modes_ = 0;
-  std::size_t padded_ = 0;
-  AlignedArray omega_, damping_;
-  std::vector<std::vector<int>> clusters_;  ///< of every mode: others whose poles nearly coincide
-  std::vector<double> heights_;
-  std::vector<double> height_of_;  ///< by mode
-  double extent_ = 0.0;
-  double smallest_pole_ = 0.0;  ///< of those that are not zero; extent_ where all are
+  SecularPoles poles_;
+  SecularWeights weights_;
   std::map<double, Line> lines_;
-
-  ModalRows rows_;  ///< of the contacts, and of coupled terms that could not be diagonalised
-  Eigen::MatrixXcd coupled_outputs_, coupled_inputs_;  ///< rows_ on the coupled modes
-  std::vector<AlignedArray> weights_;                  ///< weights_of(); empty where there is none
 
   AlignedArray mask_;
   double mask_height_ = -1.0;
   AlignedArray value_re_, value_im_, slope_re_, slope_im_, norm_;  ///< scratch
   std::vector<int> near_;
-  Eigen::MatrixXcd bordered_, bordered_slope_;
+  BorderedMatrix bordered_;
 };
 
 }  // namespace stridor
