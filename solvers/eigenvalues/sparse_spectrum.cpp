@@ -15,8 +15,9 @@
 #include "solvers/eigenvalues/dense_eigenvalues.hpp"
 #include "solvers/eigenvalues/eigenvalue_count.hpp"
 #include "solvers/eigenvalues/linear_pencil.hpp"
+#include "solvers/eigenvalues/mass_basis.hpp"
 #include "solvers/eigenvalues/shift_invert.hpp"
-#include "substructures/reduction/lowest_modes.hpp"
+#include "solvers/eigenvalues/symmetric_part.hpp"
 
 namespace stridor {
 namespace {
@@ -24,47 +25,12 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr Eigen::Index most_modes = 1000;  ///< of the symmetric part in the first space
-constexpr double tolerance = 1e-9;         ///< of directions
 constexpr double largest_residual = 1e-6;  ///< of a pair
 constexpr double refined_tolerance = 1e-9;  ///< of a pair that serves as a basis
 
-/// The lowest modes of the symmetric part of Q with M. It need not be definite: it is shifted until
-/// it is.
-Modes symmetric_modes(const SparseSystem& system, Eigen::Index count) {
-  const SparseMatrix transposed = system.position.transpose();
-  const SparseMatrix stiffness = 0.5 * (system.position + transposed);
-  const double scale =
-      stiffness.diagonal().cwiseAbs().maxCoeff() / system.mass.diagonal().cwiseAbs().maxCoeff();
-  if (!(scale > 0.0))
-    throw NumericalError(Refusal::eigenvalues_incomplete,
-                         "sparse eigenvalues: there is no stiffness");
-  for (double shift = 1e-12 * scale;; shift *= 10.0) {
-    const SparseMatrix shifted = stiffness + shift * system.mass;
-    try {
-      const SparseCholesky factor(shifted, "the stiffness");
-      Modes modes = lowest_modes(factor, shifted, system.mass, count);
-      modes.omega_squared.array() -= shift;
-      return modes;
-    } catch (const NumericalError&) {
-      if (shift > 1e3 * scale) throw;
-    }
-  }
-}
-
 using Pair = SparsePair;
 
-/// M with a trace of mass everywhere: positive definite unless M is indefinite. A body without mass
-/// at some DoFs is none the worse.
-SparseMatrix with_little_mass(const SparseMatrix& mass) {
-  constexpr double little = 1e-9;
-  const double mean = mass.diagonal().cwiseAbs().mean();
-  SparseMatrix more = mass;
-  for (Eigen::Index i = 0; i < mass.rows(); ++i)
-    more.coeffRef(i, i) += little * std::max(std::abs(mass.coeff(i, i)), 1e-6 * mean);
-  more.makeCompressed();
-  return more;
-}
-
+/// The search of sparse_spectrum() and pairs_near().
 class SparseSearch {
  public:
   SparseSearch(const SparseSystem& system, const SpectrumWindow& window, const SpectrumWork& work)
@@ -77,8 +43,6 @@ class SparseSearch {
  private:
   Eigen::Index size() const { return pencil_.size(); }
   void start();
-  void add(const Eigen::VectorXd& vector);
-  double add_complex(const Eigen::VectorXcd& vector);
   void project();
   void search(std::size_t most_at_once);
   void search_group(std::size_t first, std::size_t last, double low, double high);
@@ -98,10 +62,9 @@ class SparseSearch {
   double height_ = 0.0;          ///< up to where pairs are searched
   bool starts_at_pairs_ = false;  ///< whether pairs_ are good enough to begin with
   Modes modes_;
-  Eigen::MatrixXd basis_;    ///< V with Vᵀ M V = 1
-  Eigen::MatrixXd momenta_;  ///< M V
-  Eigen::Index dim_ = 0;
-  double represented_ = std::numeric_limits<double>::infinity();  ///< ω up to which V has modes
+  MassBasis basis_{pencil_.system().mass};
+  double represented_ =
+      std::numeric_limits<double>::infinity();  ///< ω up to which basis_ has modes
   std::vector<Pair> pairs_;                                       ///< near the window
   std::vector<Complex> far_;                                      ///< approximations above
   std::vector<Pair> rights_, lefts_;                              ///< of both sides, as found
@@ -128,8 +91,7 @@ void SparseSearch::start() {
     const double ratio = std::clamp(1.5 * wanted / std::max(highest, 0.1 * wanted), 1.1, 4.0);
     count = static_cast<Eigen::Index>(std::pow(ratio, 1.3) * static_cast<double>(count)) + 10;
   }
-  basis_.resize(size(), 2 * count);
-  momenta_.resize(size(), 2 * count);
+  basis_.reserve(2 * count);
   height_ = wanted;
   add_modes_below(window_.count ? std::numeric_limits<double>::infinity() : 1.2 * wanted);
   project();
@@ -141,10 +103,10 @@ void SparseSearch::start() {
 
 /// Begins the basis with the modes of the symmetric part up to a frequency, rad/s.
 void SparseSearch::add_modes_below(double omega) {
-  dim_ = 0;
+  basis_.clear();
   represented_ = omega;
   for (Eigen::Index i = 0; i < modes_.omega_squared.size(); ++i)
-    if (modes_.omega_squared(i) <= omega * omega) add(modes_.shapes.col(i));
+    if (modes_.omega_squared(i) <= omega * omega) basis_.add(modes_.shapes.col(i));
 }
 
 /// A height with as many pairs below as are wanted, in the middle of a gap; that of the highest
@@ -169,51 +131,6 @@ bool SparseSearch::is_near(Complex s) const {
   return s.imag() <= 1.1 * height_ && s.real() >= -0.6 * height_ && s.real() <= 1.4 * height_;
 }
 
-/// Adds the new component of a vector to the basis.
-void SparseSearch::add(const Eigen::VectorXd& vector) {
-  constexpr double negligible = 1e-11;
-  const SparseMatrix& mass = pencil_.system().mass;
-  Eigen::VectorXd rest = vector;
-  const double length = std::sqrt(std::max(0.0, rest.dot(mass * rest)));
-  if (!(length > 0.0)) return;
-  for (int round = 0; round < 2; ++round)
-    rest -= basis_.leftCols(dim_) * (momenta_.leftCols(dim_).transpose() * rest);
-  Eigen::VectorXd momentum = mass * rest;
-  double rest_length = std::sqrt(std::max(0.0, rest.dot(momentum)));
-  if (rest_length <= negligible * length || dim_ == size()) return;
-  rest /= rest_length;
-  // A stretched vector is no longer orthogonal.
-  rest -= basis_.leftCols(dim_) * (momenta_.leftCols(dim_).transpose() * rest);
-  momentum = mass * rest;
-  rest_length = std::sqrt(rest.dot(momentum));
-  if (dim_ == basis_.cols()) {
-    basis_.conservativeResize(size(), std::max<Eigen::Index>(64, 2 * dim_));
-    momenta_.conservativeResize(size(), basis_.cols());
-  }
-  basis_.col(dim_) = rest / rest_length;
-  momenta_.col(dim_) = momentum / rest_length;
-  ++dim_;
-}
-
-/// The same of a complex vector. @return the share of it that is new
-double SparseSearch::add_complex(const Eigen::VectorXcd& vector) {
-  const SparseMatrix& mass = pencil_.system().mass;
-  const auto length_of = [&](const Eigen::VectorXcd& x) {
-    return std::sqrt(std::max(0.0, x.dot(mass * x).real()));
-  };
-  const Eigen::VectorXcd unit = vector / length_of(vector);
-  Eigen::VectorXcd rest = unit;
-  for (int round = 0; round < 2; ++round)
-    rest -= basis_.leftCols(dim_) * (momenta_.leftCols(dim_).transpose() * rest);
-  const double share = length_of(rest);
-  // Less is mostly rounding, and gives the projections eigenvalues that were not asked for.
-  if (share > tolerance) {
-    add(unit.real());
-    add(unit.imag());
-  }
-  return share;
-}
-
 /// Galerkin's projection on the basis.
 void SparseSearch::project() {
   pairs_.clear();
@@ -221,14 +138,15 @@ void SparseSearch::project() {
   // About where those are for which the basis has nothing.
   for (const double square : modes_.omega_squared)
     if (square > represented_ * represented_) far_.emplace_back(0.0, std::sqrt(square));
-  if (dim_ == 0) return;
-  const auto basis = basis_.leftCols(dim_);
+  const Eigen::Index dim = basis_.dim();
+  if (dim == 0) return;
+  const auto basis = basis_.vectors();
   const SparseSystem& system = pencil_.system();
   LinearSystem reduced;
-  reduced.mass = Eigen::MatrixXd::Identity(dim_, dim_);
+  reduced.mass = Eigen::MatrixXd::Identity(dim, dim);
   reduced.velocity = basis.transpose() * (system.velocity * basis).eval();
   reduced.position = basis.transpose() * (system.position * basis).eval();
-  reduced.gaps = reduced.forces = Eigen::MatrixXd(0, dim_);
+  reduced.gaps = reduced.forces = Eigen::MatrixXd(0, dim);
   const Pencil pencil = make_pencil(reduced);
   const DenseSpectrum spectrum = dense_spectrum(pencil);
   for (std::size_t i = 0; i < spectrum.eigenvalues.size(); ++i) {
@@ -300,7 +218,7 @@ void SparseSearch::search_group(std::size_t first, std::size_t last, double low,
     if (pair.s.imag() < -1e-3 * height_ || !is_near(pair.s) || starts_at_pairs_) continue;
     // Turned so that most of it is real.
     const Complex square = (pair.x.transpose() * pair.x)(0);
-    add_complex(pair.x * std::polar(1.0, -0.5 * std::arg(square)));
+    basis_.add_complex(pair.x * std::polar(1.0, -0.5 * std::arg(square)));
   }
   if (work_.sides == SpectrumWork::Sides::both)
     keep_sides(found, wanted.shift, factor, begin, high);
@@ -395,12 +313,12 @@ SparseSpectrum SparseSearch::run() {
   start();
   for (int attempt = 1;; ++attempt) {
     if (attempt == 1) {
-      dim_ = 0;
+      basis_.clear();
       represented_ = 1.1 * height_;
     } else {
       // Approximations of what has not been found, beside what has.
       add_modes_below(std::numeric_limits<double>::infinity());
-      for (const Pair& pair : pairs_) add_complex(pair.x);
+      for (const Pair& pair : pairs_) basis_.add_complex(pair.x);
       project();
     }
     search(most_at_once);
