@@ -8,6 +8,7 @@
 
 #include "core/errors.hpp"
 #include "substructures/bodies/modes_body.hpp"
+#include "substructures/bodies/realised_shape.hpp"
 
 namespace stridor {
 namespace {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/errors.hpp"
+#include "substructures/bodies/realised_shape.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace stridor {
