@@ -81,6 +81,7 @@ class SubstrateMotion {
 
  private:
   using Step = RungeKuttaStep<6, 4>;
+  enum : std::size_t { X, Y, VX, VY, SUM, SQUARES };  ///< of State
 
   /// Event that ends a step.
   enum class Event { slip_ends, strength_reached, lift_off, touch_down, turn };
@@ -98,6 +99,13 @@ class SubstrateMotion {
   void settle_at_rest_of_slip();
   void apply(Event event);
   void renew();
+  /// What the events possible say of a step that is accurate enough.
+  struct Scan {
+    double first;    ///< length to the first event in it; infinite where there is none
+    Event event{};   ///< that one
+    double shorter;  ///< length of a step that shows what this one may hide; its own where nothing
+  };
+  Scan scan_events(double length, bool stops_at_turns);
   bool take_step(double end, bool stops_at_turns, Event& event, bool& has_event);
   bool check_motion();
   double locate(Event event, double length, const Value& at_start, const Value& at_end);
