@@ -103,14 +103,21 @@ STRIDOR_INLINE void settle_body(const BodyLanes& body, const V* increment, const
   }
 }
 
-/// Simulation::Implementation::solve() of one contact that slides.
+/// Where the slave is on its segment: the projection, with the tangent and the normal there.
+template <class V>
+struct LaneProjection {
+  V xi, tx, ty, nx, ny;
+  V gap;     ///< with the displacements predicted
+  V w0, w1;  ///< −w of the two nodes of the master
+};
+
+/// SlidingPoint::find() and predicted_gap().
 template <class V, bool has_feedthrough>
-STRIDOR_INLINE V solve_contact(const Lanes& lanes) {
+STRIDOR_INLINE LaneProjection<V> project_contact(const Lanes& lanes) {
   const ContactLanes& c = lanes.contact;
   const BodyLanes& slave = lanes.slave;
   const BodyLanes& master = lanes.master;
-  const V zero = {};
-  const V one = zero + 1.0;
+  const V one = V{} + 1.0;
   const V h = at<V>(lanes.step, 0);
   const V sought = (has_feedthrough ? at<V>(lanes.index, 0) : at<V>(lanes.index, 0) + 1.0) * h;
   const V driven = at<V>(c.driven_displacement, 0) +
@@ -126,60 +133,113 @@ STRIDOR_INLINE V solve_contact(const Lanes& lanes) {
   const V from_y = origin_y + at<V>(slave_seen, 1) - at<V>(master_seen, 1);
   const V along_x = end_x + at<V>(master_seen, 2) - at<V>(master_seen, 0);
   const V along_y = end_y + at<V>(master_seen, 3) - at<V>(master_seen, 1);
-  V tx = at<V>(c.tangent, 0);
-  V ty = at<V>(c.tangent, 1);
-  V xi;
+  LaneProjection<V> on;
+  on.tx = at<V>(c.tangent, 0);
+  on.ty = at<V>(c.tangent, 1);
   if (lanes.assumption == ContactAssumption::subs_b) {
     const V inverse_length = one / root_of<V>(along_x * along_x + along_y * along_y);
-    tx = along_x * inverse_length;
-    ty = along_y * inverse_length;
-    xi = (tx * from_x + ty * from_y) * inverse_length;
+    on.tx = along_x * inverse_length;
+    on.ty = along_y * inverse_length;
+    on.xi = (on.tx * from_x + on.ty * from_y) * inverse_length;
   } else if (lanes.assumption == ContactAssumption::subs_c) {
-    xi = (tx * from_x + ty * from_y) / (tx * along_x + ty * along_y);
+    on.xi = (on.tx * from_x + on.ty * from_y) / (on.tx * along_x + on.ty * along_y);
   } else {
-    xi = (tx * origin_x + ty * origin_y) / at<V>(c.length, 0);
+    on.xi = (on.tx * origin_x + on.ty * origin_y) / at<V>(c.length, 0);
   }
-  const V nx = -ty;
-  const V ny = tx;
-
+  on.nx = -on.ty;
+  on.ny = on.tx;
   // Entries n (or t) on the slave, −w n on the two nodes of the master.
-  const V w0 = xi - one;
-  const V w1 = -xi;
-  const V gap = nx * (origin_x + w1 * end_x) + ny * (origin_y + w1 * end_y) +
-                nx * (at<V>(slave.predicted, 0) + w0 * at<V>(master.predicted, 0) +
-                      w1 * at<V>(master.predicted, 2)) +
-                ny * (at<V>(slave.predicted, 1) + w0 * at<V>(master.predicted, 1) +
-                      w1 * at<V>(master.predicted, 3));
-  const V last_slip = at<V>(c.slip_velocity, 0);
-  const V friction = last_slip < zero ? -at<V>(c.friction, 0) : at<V>(c.friction, 0);
-  const V pull_x = nx - friction * tx;
-  const V pull_y = ny - friction * ty;
+  on.w0 = on.xi - one;
+  on.w1 = -on.xi;
+  on.gap = on.nx * (origin_x + on.w1 * end_x) + on.ny * (origin_y + on.w1 * end_y) +
+           on.nx * (at<V>(slave.predicted, 0) + on.w0 * at<V>(master.predicted, 0) +
+                    on.w1 * at<V>(master.predicted, 2)) +
+           on.ny * (at<V>(slave.predicted, 1) + on.w0 * at<V>(master.predicted, 1) +
+                    on.w1 * at<V>(master.predicted, 3));
+  return on;
+}
 
-  // Response of the ports to unit λ_n.
-  V slave_answer[2];
-  V master_answer[4];
-  const V master_pull[4] = {w0 * pull_x, w0 * pull_y, w1 * pull_x, w1 * pull_y};
+/// Forces of a contact on the ports and the response of these, per λ_n or for the whole of it.
+template <class V>
+struct LaneForces {
+  V slave[2], master[4];
+  V slave_answer[2], master_answer[4];
+};
+
+/// Of a unit λ_n with its friction.
+template <class V>
+STRIDOR_INLINE LaneForces<V> respond(const Lanes& lanes, const LaneProjection<V>& on,
+                                     const V& friction) {
+  const BodyLanes& slave = lanes.slave;
+  const BodyLanes& master = lanes.master;
+  const V pull_x = on.nx - friction * on.tx;
+  const V pull_y = on.ny - friction * on.ty;
+  LaneForces<V> unit{
+      {pull_x, pull_y}, {on.w0 * pull_x, on.w0 * pull_y, on.w1 * pull_x, on.w1 * pull_y}, {}, {}};
   for (std::size_t s = 0; s < 2; ++s) {
-    slave_answer[s] = at<V>(slave.compliance, s) * pull_x + at<V>(slave.compliance, 2 + s) * pull_y;
+    unit.slave_answer[s] =
+        at<V>(slave.compliance, s) * pull_x + at<V>(slave.compliance, 2 + s) * pull_y;
   }
   for (std::size_t s = 0; s < 4; ++s) {
-    master_answer[s] = at<V>(master.compliance, s) * master_pull[0];
+    unit.master_answer[s] = at<V>(master.compliance, s) * unit.master[0];
     for (std::size_t t = 1; t < 4; ++t)
-      master_answer[s] += at<V>(master.compliance, 4 * t + s) * master_pull[t];
+      unit.master_answer[s] += at<V>(master.compliance, 4 * t + s) * unit.master[t];
   }
-  const V compliance = nx * slave_answer[0] + ny * slave_answer[1] +
-                       w0 * (nx * master_answer[0] + ny * master_answer[1]) +
-                       w1 * (nx * master_answer[2] + ny * master_answer[3]);
-  const V force = -gap / compliance;
+  return unit;
+}
+
+/// Enters place and forces of the contact, and counts these, where `is_taken`.
+template <class V, class Mask>
+STRIDOR_INLINE void take_forces(const Lanes& lanes, const LaneProjection<V>& on, const V& force,
+                                const V& friction_force, const LaneForces<V>& forces,
+                                const Mask& is_taken) {
+  const ContactLanes& c = lanes.contact;
+  const auto take = [&](double* entries, std::size_t i, const V& value) STRIDOR_INLINE_LAMBDA {
+    V& entry = at<V>(entries, i);
+    entry = is_taken ? value : entry;
+  };
+  take(c.xi, 0, on.xi);
+  take(c.found_tangent, 0, on.tx);
+  take(c.found_tangent, 1, on.ty);
+  const auto extend = [&](double* lowest, double* highest, const V& value) STRIDOR_INLINE_LAMBDA {
+    take(lowest, 0, value < at<V>(lowest, 0) ? value : at<V>(lowest, 0));
+    take(highest, 0, value > at<V>(highest, 0) ? value : at<V>(highest, 0));
+  };
+  take(c.force, 0, force);
+  take(c.friction_force, 0, friction_force);
+  extend(c.force_min, c.force_max, force);
+  extend(c.friction_min, c.friction_max, friction_force);
+  for (std::size_t s = 0; s < 2; ++s) take(lanes.slave.forces, s, forces.slave[s]);
+  for (std::size_t s = 0; s < 4; ++s) take(lanes.master.forces, s, forces.master[s]);
+}
+
+/// Simulation::Implementation::solve() of one contact that slides. 1 where it needs another
+/// treatment.
+template <class V, bool has_feedthrough>
+STRIDOR_INLINE V solve_contact(const Lanes& lanes) {
+  const ContactLanes& c = lanes.contact;
+  const BodyLanes& slave = lanes.slave;
+  const BodyLanes& master = lanes.master;
+  const V zero = {};
+  const V one = zero + 1.0;
+  const LaneProjection<V> on = project_contact<V, has_feedthrough>(lanes);
+  const V last_slip = at<V>(c.slip_velocity, 0);
+  const V friction = last_slip < zero ? -at<V>(c.friction, 0) : at<V>(c.friction, 0);
+  LaneForces<V> forces = respond<V>(lanes, on, friction);
+  V* const slave_answer = forces.slave_answer;
+  V* const master_answer = forces.master_answer;
+  const V compliance = on.nx * slave_answer[0] + on.ny * slave_answer[1] +
+                       on.w0 * (on.nx * master_answer[0] + on.ny * master_answer[1]) +
+                       on.w1 * (on.nx * master_answer[2] + on.ny * master_answer[3]);
+  const V force = -on.gap / compliance;
 
   constexpr double largest = 1e30;
-  auto is_allowed =
-      (xi >= zero) & (xi <= one) & (compliance > zero) & (force >= zero) & (force < zero + largest);
+  auto is_allowed = (on.xi >= zero) & (on.xi <= one) & (compliance > zero) & (force >= zero) &
+                    (force < zero + largest);
   V slip = last_slip;
-  const V driven_velocity = at<V>(c.sliding_velocity, 0) * tx;
-  V slave_force[2] = {force * pull_x, force * pull_y};
-  V master_force[4];
-  for (std::size_t s = 0; s < 4; ++s) master_force[s] = force * master_pull[s];
+  const V driven_velocity = at<V>(c.sliding_velocity, 0) * on.tx;
+  for (V& of_port : forces.slave) of_port = force * of_port;
+  for (V& of_port : forces.master) of_port = force * of_port;
   V slave_increment[2];
   V master_increment[4];
   if constexpr (has_feedthrough) {
@@ -193,34 +253,18 @@ STRIDOR_INLINE V solve_contact(const Lanes& lanes) {
           at<V>(master.predicted, s) + master_answer[s] - at<V>(master.current, s);
     }
     const V moved =
-        tx * (slave_increment[0] + w0 * master_increment[0] + w1 * master_increment[2]) +
-        ty * (slave_increment[1] + w0 * master_increment[1] + w1 * master_increment[3]);
-    slip = moved / h + driven_velocity;
+        on.tx * (slave_increment[0] + on.w0 * master_increment[0] + on.w1 * master_increment[2]) +
+        on.ty * (slave_increment[1] + on.w0 * master_increment[1] + on.w1 * master_increment[3]);
+    slip = moved / at<V>(lanes.step, 0) + driven_velocity;
     is_allowed &= slip * driven_velocity >= zero;
   }
   const auto is_taken = is_allowed & (at<V>(lanes.is_used, 0) > zero);
-  const auto take = [&](double* entries, std::size_t i, const V& value) STRIDOR_INLINE_LAMBDA {
-    V& entry = at<V>(entries, i);
-    entry = is_taken ? value : entry;
-  };
-  take(c.xi, 0, xi);
-  take(c.found_tangent, 0, tx);
-  take(c.found_tangent, 1, ty);
-  const auto extend = [&](double* lowest, double* highest, const V& value) STRIDOR_INLINE_LAMBDA {
-    take(lowest, 0, value < at<V>(lowest, 0) ? value : at<V>(lowest, 0));
-    take(highest, 0, value > at<V>(highest, 0) ? value : at<V>(highest, 0));
-  };
-  const V friction_force = friction * force;
-  take(c.force, 0, force);
-  take(c.friction_force, 0, friction_force);
-  extend(c.force_min, c.force_max, force);
-  extend(c.friction_min, c.friction_max, friction_force);
-  for (std::size_t s = 0; s < 2; ++s) take(slave.forces, s, slave_force[s]);
-  for (std::size_t s = 0; s < 4; ++s) take(master.forces, s, master_force[s]);
+  take_forces<V>(lanes, on, force, friction * force, forces, is_taken);
   if constexpr (has_feedthrough) {
-    settle_body<V, 2>(slave, slave_increment, slave_answer, slave_force, is_taken);
-    settle_body<V, 4>(master, master_increment, master_answer, master_force, is_taken);
-    take(c.slip_velocity, 0, slip);
+    settle_body<V, 2>(slave, slave_increment, slave_answer, forces.slave, is_taken);
+    settle_body<V, 4>(master, master_increment, master_answer, forces.master, is_taken);
+    V& of_lane = at<V>(c.slip_velocity, 0);
+    of_lane = is_taken ? slip : of_lane;
   }
   return is_taken | (at<V>(lanes.is_used, 0) == zero) ? zero : one;
 }
