@@ -245,9 +245,7 @@ std::optional<Line> line_above(SecularFunction& function, double height) {
   return std::nullopt;
 }
 
-}  // namespace
-
-SecularSpectrum secular_spectrum(SecularFunction& function, const SpectrumWindow& window) {
+void check_window(const SpectrumWindow& window) {
   if (window.count && *window.count < 1) {
     throw std::invalid_argument(
         fmt::format("secular eigenvalues: {} eigenvalues are none", *window.count));
@@ -256,6 +254,27 @@ SecularSpectrum secular_spectrum(SecularFunction& function, const SpectrumWindow
     throw std::invalid_argument(
         fmt::format("secular eigenvalues: no eigenvalues below {:g} Hz", window.frequency));
   }
+}
+
+/// Those of the zeros that are in the window.
+/// @param zeros in the order of the eigenvalues
+std::vector<Eigenvalue> eigenvalues_in(const SpectrumWindow& window,
+                                       const std::vector<Complex>& zeros) {
+  const double top = 2.0 * std::numbers::pi * window.frequency;
+  std::vector<Eigenvalue> eigenvalues;
+  int num_pairs = 0;
+  for (const Complex& s : zeros) {
+    if (s.imag() > top || (window.count && num_pairs == *window.count)) break;
+    if (s.imag() > 0.0) ++num_pairs;
+    eigenvalues.push_back({s, 0.0});
+  }
+  return eigenvalues;
+}
+
+}  // namespace
+
+SecularSpectrum secular_spectrum(SecularFunction& function, const SpectrumWindow& window) {
+  check_window(window);
   constexpr double inf = std::numeric_limits<double>::infinity();
   const double top = 2.0 * std::numbers::pi * window.frequency;
   const std::vector<double>& heights = function.pole_heights();
@@ -305,12 +324,7 @@ SecularSpectrum secular_spectrum(SecularFunction& function, const SpectrumWindow
     }
   }
   sort_zeros(zeros);
-  int num_pairs = 0;
-  for (const Complex& s : zeros) {
-    if (s.imag() > top || (window.count && num_pairs == *window.count)) break;
-    if (s.imag() > 0.0) ++num_pairs;
-    spectrum.eigenvalues.push_back({s, 0.0});
-  }
+  spectrum.eigenvalues = eigenvalues_in(window, zeros);
   return spectrum;
 }
 

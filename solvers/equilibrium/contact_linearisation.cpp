@@ -23,28 +23,64 @@ PortVector relative(const Stencil& stencil, const NodeWeights& weights,
   return ports;
 }
 
+Projection projection_of(const ContactPositions& positions) {
+  const double guess = positions.prescribed.xi;
+  switch (positions.assumption) {
+    case ContactAssumption::subs_a:
+      return positions.prescribed;
+    case ContactAssumption::subs_c:
+      return project_along(positions.master, positions.slave, positions.undeformed, guess);
+    case ContactAssumption::subs_b:
+    case ContactAssumption::film:
+      break;
+  }
+  return project(positions.master, positions.slave, guess);
+}
+
+/// How ξ and the angle of the normal change with the displacements.
+struct ProjectionRows {
+  PortVector shift;
+  PortVector turn;
+};
+
+/// @param arm of the slave from its projection
+ProjectionRows projection_rows(const ContactPositions& positions, const Projection& on,
+                               const NodeWeights& weights, const Eigen::Vector2d& arm) {
+  const SurfacePiece& master = positions.master;
+  const PortVector along_tangent = relative(master.stencil, weights, on.tangent);
+  const Eigen::Vector2d along = master.combine(weights.slope);
+  const double height = on.normal.dot(arm);
+  ProjectionRows rows{PortVector::Zero(along_tangent.size()),
+                      PortVector::Zero(along_tangent.size())};
+  if (positions.assumption == ContactAssumption::subs_a) return rows;
+  if (positions.assumption == ContactAssumption::subs_c) {
+    // Curvature of the undeformed surface, by ξ.
+    const double turning = on.normal.dot(positions.undeformed.combine(weights.curvature)) /
+                           positions.undeformed.combine(weights.slope).norm();
+    rows.shift = along_tangent / (on.tangent.dot(along) - height * turning);
+    rows.turn = turning * rows.shift;
+    return rows;
+  }
+  const double length = along.norm();
+  const double turning = on.normal.dot(master.combine(weights.curvature)) / length;
+  rows.turn = on_nodes(master.stencil, weights.slope, on.normal / length);
+  rows.shift = (along_tangent + height * rows.turn) / (length - height * turning);
+  rows.turn += turning * rows.shift;
+  return rows;
+}
+
 }  // namespace
 
 ContactLinearisation linearise_contact(const ContactPositions& positions, const FrictionLaw& law,
                                        double friction_factor, const LinearisationTerms& terms) {
   const SurfacePiece& master = positions.master;
-  const bool is_prescribed = positions.assumption == ContactAssumption::subs_a;
-  const bool has_fixed_normal = positions.assumption == ContactAssumption::subs_c;
-
   ContactLinearisation contact;
-  const double guess = positions.prescribed.xi;
-  contact.projection = is_prescribed ? positions.prescribed
-                       : has_fixed_normal
-                           ? project_along(master, positions.slave, positions.undeformed, guess)
-                           : project(master, positions.slave, guess);
-  const double xi = contact.projection.xi;
+  contact.projection = projection_of(positions);
   const Eigen::Vector2d& tangent = contact.projection.tangent;
   const Eigen::Vector2d& normal = contact.projection.normal;
-  const NodeWeights weights = weights_at(master.stencil, xi);
+  const NodeWeights weights = weights_at(master.stencil, contact.projection.xi);
   const Eigen::Vector2d arm = positions.slave - master.combine(weights.value);
-  const Eigen::Vector2d along = master.combine(weights.slope);
-  const double height = normal.dot(arm);
-  contact.gap = height;
+  contact.gap = normal.dot(arm);
   contact.slip_velocity = positions.driven_velocity * tangent.x();
   contact.direction = contact.slip_velocity < 0.0 ? -1.0 : 1.0;
   contact.friction = friction_factor * sliding_friction(law, contact.slip_velocity);
@@ -62,23 +98,12 @@ ContactLinearisation linearise_contact(const ContactPositions& positions, const 
   contact.force_by_position.setZero(size, size);
   contact.force_by_velocity.setZero(size, size);
 
-  // How ξ, the angle of the normal and v_r change with the displacements.
-  PortVector& shift = contact.shift_row.setZero(size);
-  PortVector turn = PortVector::Zero(size);
-  if (has_fixed_normal) {
-    // Curvature of the undeformed surface, by ξ.
-    const double turning = normal.dot(positions.undeformed.combine(weights.curvature)) /
-                           positions.undeformed.combine(weights.slope).norm();
-    shift = along_tangent / (tangent.dot(along) - height * turning);
-    turn = turning * shift;
-    if (terms.slope) contact.gap_row += normal.dot(along) * shift;
-  } else if (!is_prescribed) {
-    const double length = along.norm();
-    const double turning = normal.dot(master.combine(weights.curvature)) / length;
-    turn = on_nodes(master.stencil, weights.slope, normal / length);
-    shift = (along_tangent + height * turn) / (length - height * turning);
-    turn += turning * shift;
-  }
+  const auto [shift, turn] = projection_rows(positions, contact.projection, weights, arm);
+  contact.shift_row = shift;
+  // The gap changes with ξ only where the projection is not along the normal of the deformed
+  // surface.
+  if (positions.assumption == ContactAssumption::subs_c && terms.slope)
+    contact.gap_row += normal.dot(master.combine(weights.slope)) * shift;
   if (positions.roughness != nullptr) {
     const auto arc = [&](const std::array<double, max_stencil>& of) {
       return std::inner_product(of.begin(), of.end(), positions.arc_length.begin(), 0.0);

@@ -10,6 +10,21 @@
 #include "core/errors.hpp"
 
 namespace stridor {
+namespace {
+
+void note_result(ContactEquilibrium& result, const ContactLinearisation& local, double force) {
+  result.projection = local.projection;
+  result.gap = local.gap;
+  result.force = force;
+  result.friction = local.friction;
+  result.direction = local.direction;
+  result.friction_force = local.direction * local.friction * force * local.sliding_direction.x();
+  result.friction_across = local.friction * force * local.sliding_direction.y();
+  result.slip_velocity = local.slip_velocity;
+  result.velocity = local.velocity;
+}
+
+}  // namespace
 
 EquilibriumEquations::EquilibriumEquations(const System& system, EquilibriumState& state,
                                            std::optional<Target> target)
@@ -83,16 +98,7 @@ double EquilibriumEquations::add_contact(Values& equations, Eigen::Index index,
       contact.has_two_tangents() ? linearised_face(system_, state_, contact)
       : has_law ? linearise_contact(positions, constant_friction(law.friction), 1.0)
                 : linearise_contact(positions, contact.point->friction, state_.friction_factor);
-  ContactEquilibrium& result = contact.result;
-  result.projection = local.projection;
-  result.gap = local.gap;
-  result.force = force;
-  result.friction = local.friction;
-  result.direction = local.direction;
-  result.friction_force = local.direction * local.friction * force * local.sliding_direction.x();
-  result.friction_across = local.friction * force * local.sliding_direction.y();
-  result.slip_velocity = local.slip_velocity;
-  result.velocity = local.velocity;
+  note_result(contact.result, local, force);
 
   auto& [values, scale, derivative, residual] = equations;
   const PortMatrix by_position = force * local.force_by_position;
@@ -115,7 +121,27 @@ double EquilibriumEquations::add_contact(Values& equations, Eigen::Index index,
   derivative.col(row).segment(first_rigid, ports_.num_rigid) = rigid * by_force;
   if (target_) derivative.col(last).segment(first_rigid, ports_.num_rigid) += rigid * by_drive;
 
-  if (result.is_closed) {
+  add_conditions(equations, index, local, law, force);
+  if (contact.has_two_tangents())
+    return std::max({contact.point->overlap, std::abs(law.indentation),
+                     ports_.loaded.segment(first, width).cwiseAbs().maxCoeff(),
+                     length_of(contact)});
+  const double segment_length = positions.master.chord().norm();
+  const Eigen::Vector2d& T1 =
+      positions.master.nodes[static_cast<std::size_t>(positions.master.stencil.before)];
+  return std::max(segment_length, (positions.slave - T1).norm());
+}
+
+void EquilibriumEquations::add_conditions(Values& equations, Eigen::Index index,
+                                          const ContactLinearisation& local, const LawState& law,
+                                          double force) {
+  auto& [values, scale, derivative, residual] = equations;
+  const SoughtContact& contact = contacts[static_cast<std::size_t>(index)];
+  const Eigen::Index row = ports_.num_ports + index;
+  const Eigen::Index last = values.size() - 1;
+  const Eigen::Index first = contact.first_port;
+  const Eigen::Index width = contact.num_ports;
+  if (contact.result.is_closed) {
     values(row) = local.gap + law.indentation;
     derivative.block(row, first, 1, width) = -local.gap_row.transpose();
     derivative(row, row) = law.compliance;
@@ -124,19 +150,12 @@ double EquilibriumEquations::add_contact(Values& equations, Eigen::Index index,
     values(row) = force;
     derivative(row, row) = 1.0;
   }
-  if (contact.has_two_tangents())
-    return std::max({contact.point->overlap, std::abs(law.indentation),
-                     ports_.loaded.segment(first, width).cwiseAbs().maxCoeff(),
-                     length_of(contact)});
-  const double segment_length = positions.master.chord().norm();
-  if (is_target(contact)) {
+  if (!contact.has_two_tangents() && is_target(contact)) {
+    const double segment_length = contact.result.positions.master.chord().norm();
     values(last) = segment_length * (local.projection.xi - target_->xi);
     derivative.block(last, first, 1, width) = segment_length * local.shift_row.transpose();
     derivative(last, last) = segment_length * local.shift_row[0] * contact.path_share;
   }
-  const Eigen::Vector2d& T1 =
-      positions.master.nodes[static_cast<std::size_t>(positions.master.stencil.before)];
-  return std::max(segment_length, (positions.slave - T1).norm());
 }
 
 Eigen::VectorXd EquilibriumEquations::newton_step(const Values& equations) const {

@@ -72,6 +72,9 @@ class EquilibriumEquations {
   Eigen::Index num_contacts() const { return static_cast<Eigen::Index>(contacts.size()); }
   /// Adds what a contact contributes and notes its state. @returns the largest length in it, m
   double add_contact(Values& equations, Eigen::Index index, const Eigen::VectorXd& unknowns);
+  /// The conditions that a contact obeys: that of its gap or force, and that it is on its target.
+  void add_conditions(Values& equations, Eigen::Index index, const ContactLinearisation& local,
+                      const LawState& law, double force);
   [[noreturn]] void refuse_singular(const Eigen::MatrixXd& matrix) const;
 
   const System& system_;

@@ -132,9 +132,9 @@ void ContactComplementarity::approach(std::span<double> pressure, double wanted_
   }
 }
 
-ComplementarityOutcome ContactComplementarity::solve(std::span<const double> target,
-                                                     const ComplementarityLimits& limits,
-                                                     std::span<double> pressure) {
+void ContactComplementarity::check(std::span<const double> target,
+                                   const ComplementarityLimits& limits,
+                                   std::span<const double> pressure) const {
   const std::size_t size = half_space_.num_values();
   if (target.size() != size || pressure.size() != size) {
     throw std::invalid_argument(fmt::format(
@@ -143,7 +143,29 @@ ComplementarityOutcome ContactComplementarity::solve(std::span<const double> tar
   }
   if (!(limits.tolerance > 0.0) || limits.max_rounds == 0 || limits.max_directions == 0)
     throw std::invalid_argument("ContactComplementarity: a limit is not > 0");
+}
 
+ContactComplementarity::Exchange ContactComplementarity::exchange_cells(
+    std::span<const double> target, double sinking, std::span<double> pressure) {
+  Exchange exchange;
+  for (std::size_t i = 0; i < pressure.size(); ++i) {
+    if (in_contact_[i]) {
+      if (pressure[i] >= 0.0) continue;
+      in_contact_[i] = 0;
+      pressure[i] = 0.0;
+      ++exchange.num_left;
+    } else if (displacement_[i] < target[i] - sinking) {
+      in_contact_[i] = 1;
+      ++exchange.num_joined;
+    }
+  }
+  return exchange;
+}
+
+ComplementarityOutcome ContactComplementarity::solve(std::span<const double> target,
+                                                     const ComplementarityLimits& limits,
+                                                     std::span<double> pressure) {
+  check(target, limits, pressure);
   ComplementarityOutcome outcome;
   products_ = 0;
   const double largest = *std::max_element(target.begin(), target.end());
@@ -153,7 +175,7 @@ ComplementarityOutcome ContactComplementarity::solve(std::span<const double> tar
     outcome.converged = true;
     return outcome;
   }
-  for (std::size_t i = 0; i < size; ++i) {
+  for (std::size_t i = 0; i < pressure.size(); ++i) {
     in_contact_[i] = pressure[i] > 0.0 && std::isfinite(target[i]);
     if (!in_contact_[i]) pressure[i] = 0.0;
   }
@@ -181,19 +203,7 @@ ComplementarityOutcome ContactComplementarity::solve(std::span<const double> tar
       update_residual(target);
       reached = norm(residual_);
     }
-    std::size_t num_left = 0;
-    std::size_t num_joined = 0;
-    for (std::size_t i = 0; i < size; ++i) {
-      if (in_contact_[i]) {
-        if (pressure[i] >= 0.0) continue;
-        in_contact_[i] = 0;
-        pressure[i] = 0.0;
-        ++num_left;
-      } else if (displacement_[i] < target[i] - sinking) {
-        in_contact_[i] = 1;
-        ++num_joined;
-      }
-    }
+    const auto [num_left, num_joined] = exchange_cells(target, sinking, pressure);
     outcome.residual = reached / residual_scale();
     if (!(outcome.residual < hopeless)) break;
     if (num_left == 0 && num_joined == 0 && reached <= wanted) {

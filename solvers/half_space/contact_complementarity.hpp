@@ -54,6 +54,16 @@ class ContactComplementarity {
                 const ComplementarityLimits& limits);
   void restrict_to_contact(std::span<double> field) const;
   void update_residual(std::span<const double> target);
+  /// Cells that have changed sides.
+  struct Exchange {
+    std::size_t num_left = 0;    ///< pulled
+    std::size_t num_joined = 0;  ///< would overlap
+  };
+  /// @param sinking depth below the target from which on a cell overlaps
+  Exchange exchange_cells(std::span<const double> target, double sinking,
+                          std::span<double> pressure);
+  void check(std::span<const double> target, const ComplementarityLimits& limits,
+             std::span<const double> pressure) const;
 
   HalfSpaceConvolution& half_space_;
   std::vector<unsigned char> in_contact_;

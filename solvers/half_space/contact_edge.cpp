@@ -88,6 +88,61 @@ bool is_one_piece(const StraightField& p2) {
   return true;
 }
 
+/// Where the edge crosses the lines of cells, seen from both sides.
+std::vector<std::array<double, 2>> edge_points(const StraightField& p2,
+                                               const StraightField& opening) {
+  const int n = p2.num_cells();
+  std::vector<std::array<double, 2>> points;
+  for (int j = 0; j < n / 2; ++j) {
+    for (int i = 0; i < n; ++i) {
+      if (p2.at(i, j) == 0.0) continue;
+      for (const auto& [di, dj] : {std::array{1, 0}, std::array{-1, 0}, std::array{0, 1}}) {
+        if (p2.at(i + di, j + dj) > 0.0) continue;
+        const std::optional<EdgeGuess> inside = guess(p2, i, j, -di, -dj);
+        const std::optional<EdgeGuess> outside = guess(opening, i + di, j + dj, di, dj);
+        if (!inside && !outside) continue;
+        const double trust_inside = inside ? 1.0 / (inside->doubt * inside->doubt) : 0.0;
+        const double trust_outside = outside ? 1.0 / (outside->doubt * outside->doubt) : 0.0;
+        const double place = ((inside ? -inside->place : 0.0) * trust_inside +
+                              (outside ? 1.0 + outside->place : 0.0) * trust_outside) /
+                             (trust_inside + trust_outside);
+        points.push_back({i + 0.5 - 0.5 * n + di * place, j + 0.5 + dj * place});
+      }
+    }
+  }
+  return points;
+}
+
+/// Sorts the points by their angle about the centre. @returns the area within, nothing where a
+/// piece of the edge is unseen
+std::optional<double> area_within(ContactEdge& edge) {
+  const auto angle = [&](const std::array<double, 2>& point) {
+    return std::atan2(point[1], point[0] - edge.centre);
+  };
+  std::sort(edge.points.begin(), edge.points.end(),
+            [&](const auto& a, const auto& b) { return angle(a) < angle(b); });
+  // Steps of more than a few cells along the edge would leave a piece of it unseen.
+  double seen = 0.0;
+  double widest = edge.points.empty() ? std::numbers::pi : 0.0;
+  double sum = 0.0;
+  for (std::size_t k = 0; k <= edge.points.size() && !edge.points.empty(); ++k) {
+    const double to = k < edge.points.size() ? angle(edge.points[k]) : std::numbers::pi;
+    const auto squared = [&](std::size_t m) {
+      const auto& point = edge.points[std::min(m, edge.points.size() - 1)];
+      const double dx = point[0] - edge.centre;
+      return dx * dx + point[1] * point[1];
+    };
+    // The first and the last point have their mirror images beyond the axis.
+    const double before = squared(k == 0 ? 0 : k - 1);
+    sum += 0.5 * (before + squared(k)) * (to - seen);
+    widest = std::max(widest, to - seen);
+    seen = to;
+  }
+  const double radius = std::sqrt(edge.area / std::numbers::pi);
+  if (edge.points.size() < 8 || widest * radius > 5.0) return std::nullopt;
+  return sum;
+}
+
 }  // namespace
 
 ContactEdge find_contact_edge(std::span<const double> pressure, std::span<const double> gap,
@@ -123,51 +178,13 @@ ContactEdge find_contact_edge(std::span<const double> pressure, std::span<const 
   edge.centre = 0.5 * (first + last + 1 - n);
   if (!is_one_piece(p2)) return edge;
 
-  for (int j = 0; j < n / 2; ++j) {
-    for (int i = 0; i < n; ++i) {
-      if (p2.at(i, j) == 0.0) continue;
-      for (const auto& [di, dj] : {std::array{1, 0}, std::array{-1, 0}, std::array{0, 1}}) {
-        if (p2.at(i + di, j + dj) > 0.0) continue;
-        const std::optional<EdgeGuess> inside = guess(p2, i, j, -di, -dj);
-        const std::optional<EdgeGuess> outside = guess(opening, i + di, j + dj, di, dj);
-        if (!inside && !outside) continue;
-        const double trust_inside = inside ? 1.0 / (inside->doubt * inside->doubt) : 0.0;
-        const double trust_outside = outside ? 1.0 / (outside->doubt * outside->doubt) : 0.0;
-        const double place = ((inside ? -inside->place : 0.0) * trust_inside +
-                              (outside ? 1.0 + outside->place : 0.0) * trust_outside) /
-                             (trust_inside + trust_outside);
-        edge.points.push_back({i + 0.5 - 0.5 * n + di * place, j + 0.5 + dj * place});
-      }
-    }
-  }
-  const auto angle = [&](const std::array<double, 2>& point) {
-    return std::atan2(point[1], point[0] - edge.centre);
-  };
-  std::sort(edge.points.begin(), edge.points.end(),
-            [&](const auto& a, const auto& b) { return angle(a) < angle(b); });
-  // Steps of more than a few cells along the edge would leave a piece of it unseen.
-  double seen = 0.0;
-  double widest = edge.points.empty() ? std::numbers::pi : 0.0;
-  double sum = 0.0;
-  for (std::size_t k = 0; k <= edge.points.size() && !edge.points.empty(); ++k) {
-    const double to = k < edge.points.size() ? angle(edge.points[k]) : std::numbers::pi;
-    const auto squared = [&](std::size_t m) {
-      const auto& point = edge.points[std::min(m, edge.points.size() - 1)];
-      const double dx = point[0] - edge.centre;
-      return dx * dx + point[1] * point[1];
-    };
-    // The first and the last point have their mirror images beyond the axis.
-    const double before = squared(k == 0 ? 0 : k - 1);
-    sum += 0.5 * (before + squared(k)) * (to - seen);
-    widest = std::max(widest, to - seen);
-    seen = to;
-  }
-  const double radius = std::sqrt(edge.area / std::numbers::pi);
-  if (edge.points.size() < 8 || widest * radius > 5.0) {
+  edge.points = edge_points(p2, opening);
+  const std::optional<double> area = area_within(edge);
+  if (!area) {
     edge.points.clear();
     return edge;
   }
-  edge.area = sum;
+  edge.area = *area;
   edge.is_resolved = true;
   return edge;
 }
