@@ -139,6 +139,7 @@ const Schema& StartParameters::schema() {
   return keys;
 }
 
+// Long because it is a table: one entry for each key.
 const Schema& ContactParameters::schema() {
   static const Schema keys =
       SchemaOf<ContactParameters>("contact")

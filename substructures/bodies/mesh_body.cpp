@@ -20,6 +20,7 @@ std::size_t count_nodes(const Mesh& mesh, const std::string& name) {
 
 }  // namespace
 
+// Long because it is a table: one entry for each key.
 const Schema& MeshBodyParameters::schema() {
   using P = MeshBodyParameters;
   static const Schema keys =

@@ -93,6 +93,7 @@ const Schema& ResidualParameters::schema() {
   return keys;
 }
 
+// Long because it is a table: one entry for each key.
 const Schema& ModesBodyParameters::schema() {
   using P = ModesBodyParameters;
   static const Schema keys =

@@ -5,6 +5,7 @@
 namespace stridor {
 namespace {
 
+// Long because it is a table: one entry for each shape.
 std::vector<ShapeFacts> make_facts() {
   return {
       {"tri3", 2, 3, 3, {{2, 2, {0, 1}}, {2, 2, {1, 2}}, {2, 2, {2, 0}}}},
