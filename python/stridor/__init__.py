@@ -16,16 +16,20 @@ unknown key 'contct', did you mean 'contact'?
 """
 
 from .errors import ConfigError, Error, FileError, NumericalError, Problem, Stopped
-from .files import FrequencyResponses, Locus, ResultFile, Run, Series, StabilityMap, open
+from .files import ResultFile
 from .invocation import program
+from .opening import open
+from .pictures import plot, report, sound, spectrogram
+from .results import FrequencyResponses, Locus, StabilityMap, Sweep
+from .runs import Cycle, Run
 from .scene import Scene, example, load
-from .verbs import (Eigenvalues, call, compare, cycle, eig, frf, locus, map, plot, precision, report, run,
-                    sound, spectrogram, sweep, threshold)
+from .series import Series
+from .verbs import Eigenvalues, call, compare, cycle, eig, frf, locus, map, precision, run, sweep, threshold
 
 __version__ = "0.1.0"
 __all__ = [
-    "ConfigError", "Eigenvalues", "Error", "FileError", "FrequencyResponses", "Locus",
-    "NumericalError", "Problem", "ResultFile", "Run", "Scene", "Series", "StabilityMap", "Stopped",
+    "ConfigError", "Cycle", "Eigenvalues", "Error", "FileError", "FrequencyResponses", "Locus",
+    "NumericalError", "Problem", "ResultFile", "Run", "Scene", "Series", "StabilityMap", "Stopped", "Sweep",
     "call", "compare", "cycle", "eig", "example", "frf", "load", "locus", "map", "open",
     "plot", "precision", "program", "report", "run", "sound", "spectrogram", "sweep", "threshold"
 ]

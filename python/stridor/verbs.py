@@ -1,4 +1,4 @@
-"""The verbs of the program. Keyword arguments are named as the options of the command line; where a name
+"""The verbs of the program that compute. Keyword arguments are named as the options of the command line; where a name
 is a word of Python, an underscore follows: ``from_``. Every verb takes ``progress``, a function that is
 called a few times a second with the fraction done, the time left in s or None, and a text."""
 
@@ -8,17 +8,19 @@ import os
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Mapping, Sequence
+from typing import Any, Mapping
 
 import numpy as np
 
-from . import errors, files, invocation
+from . import errors, invocation, opening
+from .results import FrequencyResponses, Locus, StabilityMap, Sweep
+from .runs import Run
 from .scene import Place, Scene, as_scene
 
 Settings = Mapping[str, Any]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Eigenvalues:
     """What `eig` finds.
 
@@ -52,6 +54,14 @@ class Eigenvalues:
         """1/s."""
         return self.values.real
 
+    def __repr__(self) -> str:
+        if len(self.values) == 0:
+            return "<Eigenvalues: none>"
+        worst = int(self.growth.argmax())
+        return (f"<Eigenvalues: {len(self.values)}, {self.frequencies[0]:.6g} to {self.frequencies[-1]:.6g} Hz, "
+                f"{'stable' if self.stable else 'unstable'};\n "
+                f"largest growth {self.growth[worst]:.4g} 1/s at {self.frequencies[worst]:.6g} Hz>")
+
 
 def call(verb: str, scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> dict[str, Any]:  # noqa: A002
     """Any verb that takes a scene.
@@ -72,13 +82,13 @@ def call(verb: str, scene: Scene | Place, *, set: Settings | None = None, **opti
     return invocation.call(words, progress)
 
 
-def _output(output: Place | None, name: str) -> str:
+def output_of(output: Place | None, name: str) -> str:
     """The file to write; without a name one in a new folder of its own."""
     return os.fspath(output) if output is not None else str(Path(tempfile.mkdtemp(prefix="stridor-")) / name)
 
 
 def run(scene: Scene | Place | None = None, *, output: Place | None = None, set: Settings | None = None,  # noqa: A002
-        resume: Place | None = None, **options: Any) -> files.Run:
+        resume: Place | None = None, **options: Any) -> Run:
     """A transient.
 
     Parameters
@@ -103,7 +113,7 @@ def run(scene: Scene | Place | None = None, *, output: Place | None = None, set:
     Stopped
         By Ctrl-C or `max_wall`; its `file` can be resumed.
     """
-    file = os.fspath(resume) if resume is not None else _output(output, "run.h5")
+    file = os.fspath(resume) if resume is not None else output_of(output, "run.h5")
     if resume is not None:
         words = ["run", "--resume", file]
     else:
@@ -112,12 +122,10 @@ def run(scene: Scene | Place | None = None, *, output: Place | None = None, set:
         words = ["run", *as_scene(scene, set).words(), "--output", file]
     progress = options.pop("progress", None)
     try:
-        invocation.call([*words, *invocation.arguments_of(options)], progress)
+        answer = invocation.call([*words, *invocation.arguments_of(options)], progress)
     except errors.Stopped as stopped:
         raise errors.Stopped(stopped.problems, file) from None
-    opened = files.open(file)
-    assert isinstance(opened, files.Run)
-    return opened
+    return _opened(file, answer)
 
 
 def eig(scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> Eigenvalues:  # noqa: A002
@@ -145,7 +153,7 @@ def eig(scene: Scene | Place, *, set: Settings | None = None, **options: Any) ->
 
 
 def locus(scene: Scene | Place, *, output: Place | None = None, set: Settings | None = None,  # noqa: A002
-          **options: Any) -> files.Locus:
+          **options: Any) -> Locus:
     """Eigenvalues along a key.
 
     Parameters
@@ -159,7 +167,7 @@ def locus(scene: Scene | Place, *, output: Place | None = None, set: Settings | 
 
 
 def map(scene: Scene | Place, *, x: tuple[str, Any, Any, int], y: tuple[str, Any, Any, int],  # noqa: A001
-        output: Place | None = None, set: Settings | None = None, **options: Any) -> files.StabilityMap:  # noqa: A002
+        output: Place | None = None, set: Settings | None = None, **options: Any) -> StabilityMap:  # noqa: A002
     """Stability over two keys, each (key, first value, last value, number of values).
 
     Examples
@@ -169,18 +177,15 @@ def map(scene: Scene | Place, *, x: tuple[str, Any, Any, int], y: tuple[str, Any
     >>> found.growth.shape
     (2, 4)
     """
-    file = _output(output, "map.h5")
+    file = output_of(output, "map.h5")
     axes = ["--x", *[str(part) for part in x], "--y", *[str(part) for part in y]]
     progress = options.pop("progress", None)
-    invocation.call(["map", *as_scene(scene, set).words(), *axes, "--output", file,
-                     *invocation.arguments_of(options)], progress)
-    opened = files.open(file)
-    assert isinstance(opened, files.StabilityMap)
-    return opened
+    words = ["map", *as_scene(scene, set).words(), *axes, "--output", file, *invocation.arguments_of(options)]
+    return _opened(file, invocation.call(words, progress))
 
 
 def frf(scene: Scene | Place, *, output: Place | None = None, set: Settings | None = None,  # noqa: A002
-        motions: Any = None, **options: Any) -> files.FrequencyResponses:
+        motions: Any = None, **options: Any) -> FrequencyResponses:
     """Frequency responses.
 
     Parameters
@@ -192,21 +197,24 @@ def frf(scene: Scene | Place, *, output: Place | None = None, set: Settings | No
     **options
         ``input``, ``from_``, ``to``, ``points``, ``scale``, ``about``, ``figure``, ``compare``, ``node``.
     """
-    file = _output(output, "frf.h5")
+    file = output_of(output, "frf.h5")
     progress = options.pop("progress", None)
     words = ["frf", *as_scene(scene, set).words(), "-o", file, *invocation.arguments_of({"output": motions}),
              *invocation.arguments_of(options)]
-    invocation.call(words, progress)
-    opened = files.open(file)
-    assert isinstance(opened, files.FrequencyResponses)
-    return opened
+    return _opened(file, invocation.call(words, progress))
 
 
 def _written(verb: str, scene: Scene | Place, output: Place | None, set: Settings | None,  # noqa: A002
              options: Mapping[str, Any]) -> Any:
-    file = _output(output, verb + ".h5")
-    call(verb, scene, set=set, output=file, **options)
-    return files.open(file)
+    file = output_of(output, verb + ".h5")
+    return _opened(file, call(verb, scene, set=set, output=file, **options))
+
+
+def _opened(file: str, answer: dict[str, Any]) -> Any:
+    """A file that a verb has written, with what it said."""
+    opened = opening.open(file)
+    opened.raw = answer
+    return opened
 
 
 def threshold(scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> list[dict[str, Any]]:  # noqa: A002
@@ -215,12 +223,12 @@ def threshold(scene: Scene | Place, *, set: Settings | None = None, **options: A
 
 
 def cycle(scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> dict[str, Any]:  # noqa: A002
-    """A periodic motion and its multipliers."""
+    """A periodic motion and its multipliers; with ``output=FILE`` also a file of one period, which `open` reads."""
     return call("cycle", scene, set=set, **options)
 
 
 def sweep(scene: Scene | Place, *, output: Place | None = None, set: Settings | None = None,  # noqa: A002
-          **options: Any) -> files.ResultFile:
+          **options: Any) -> Sweep:
     """Transients or cycles along a key: ``parameter``, ``from_``, ``to``, ``points``, ``threads``."""
     return _written("sweep", scene, output, set, options)
 
@@ -233,66 +241,3 @@ def compare(scene: Scene | Place, *, set: Settings | None = None, **options: Any
 def precision(scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> dict[str, Any]:  # noqa: A002
     """Error against run time; with ``reduction=True`` that of the reduced bodies alone."""
     return call("precision", scene, set=set, **options)
-
-
-def _path_of(file: Place | files.ResultFile) -> str:
-    return os.fspath(file.path if isinstance(file, files.ResultFile) else file)
-
-
-def _made_from(verb: str, of: Sequence[Place | files.ResultFile], output: Place | None, name: str,
-               options: dict[str, Any]) -> Path:
-    made = _output(output, name)
-    progress = options.pop("progress", None)
-    invocation.call([verb, *(_path_of(file) for file in of), "--output", made, *invocation.arguments_of(options)], progress)
-    return Path(made)
-
-
-def spectrogram(run: files.Run | Place, *, output: Place | None = None, **options: Any) -> Path:
-    """The picture of a channel's level over time and frequency.
-
-    Parameters
-    ----------
-    run : Run or path
-        A run that has ended or goes on.
-    output : path, optional
-        ``.png``, ``.svg`` or ``.pdf``; default: a PNG in a new folder of its own.
-    **options
-        ``channel``, ``predict``, ``max_frequency``, ``range``, ``data``, ...: as of ``stridor spectrogram``.
-
-    Returns
-    -------
-    Path
-        Of the picture; in a notebook ``IPython.display.Image(path)`` shows it.
-
-    Examples
-    --------
-    >>> with run(example("frozen_growth")) as grown:
-    ...     picture = spectrogram(grown, max_frequency="8 kHz")
-    >>> picture.name
-    'spectrogram.png'
-    """
-    return _made_from("spectrogram", [run], output, "spectrogram.png", options)
-
-
-def plot(file: files.ResultFile | Place, *, kind: str, output: Place | None = None, **options: Any) -> Path:
-    """A picture of a result: `kind` is ``history``, ``phase``, ``spectrogram`` or ``spectrum``."""
-    return _made_from("plot", [file], output, kind + ".png", {"kind": kind, **options})
-
-
-def sound(run: files.Run | Place, *, output: Place | None = None, **options: Any) -> Path:
-    """A channel as a WAV file: ``channel``, ``from_``, ``to``, ``slow``, ...: as of ``stridor sound``."""
-    return _made_from("sound", [run], output, "sound.wav", options)
-
-
-def report(*results: files.ResultFile | Place, output: Place | None = None, **options: Any) -> Path:
-    """One page with all that result files hold, which any browser opens.
-
-    Examples
-    --------
-    >>> grown = run(example("frozen_growth"))
-    >>> windows = locus(example("frozen_growth"), from_="70 mm", to="80 mm", points=11, about="deformed")
-    >>> page = report(grown, windows)
-    >>> page.suffix
-    '.html'
-    """
-    return _made_from("report", results, output, "report.html", options)

@@ -17,11 +17,12 @@ try:
     import h5py
     import numpy as np
     import stridor
+    import xarray  # noqa: F401, of examples
 except ImportError as error:
     print(f"not run: {error}")
     sys.exit(77)  # skipped
 
-MODULES = ["stridor", "stridor.errors", "stridor.files", "stridor.invocation", "stridor.scene", "stridor.verbs"]
+MODULES = ["stridor", *(f"stridor.{path.stem}" for path in pathlib.Path(stridor.__file__).parent.glob("[a-z]*.py"))]
 
 
 def load_tests(_loader, tests, _pattern):

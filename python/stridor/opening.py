@@ -1,0 +1,39 @@
+"""Opens a result file as what it is."""
+
+from __future__ import annotations
+
+import os
+
+import h5py
+
+from . import errors
+from .files import ResultFile
+from .results import FrequencyResponses, Locus, StabilityMap, Sweep
+from .runs import Cycle, Run
+from .scene import Place
+from .series import plain
+
+_KINDS = {"run": Run, "locus": Locus, "map": StabilityMap, "stability map": StabilityMap,
+          "frequency responses": FrequencyResponses, "limit cycle": Cycle, "sweep of transients": Sweep,
+          "sweep of limit cycles": Sweep}
+
+
+def open(path: Place) -> ResultFile:  # noqa: A001, as in h5py and xarray
+    """A result file: `Run`, `Locus`, `StabilityMap`, `FrequencyResponses`, `Sweep`, `Cycle`, or else
+    `ResultFile`.
+
+    Raises
+    ------
+    FileError
+        If it is not there, or no HDF5 file.
+    """
+    try:
+        file = h5py.File(path, "r", locking=False)
+    except TypeError:  # h5py before 3.5 knows no locking
+        file = h5py.File(path, "r")
+    except OSError as error:
+        raise errors.FileError([errors.Problem(str(error), file=os.fspath(path))]) from error
+    kind = plain(file.attrs.get("kind", b""))
+    if not kind and "time" in file and "scene" in file:  # runs of earlier versions
+        return Run(path, file)
+    return _KINDS.get(kind, ResultFile)(path, file)
