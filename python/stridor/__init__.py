@@ -15,21 +15,26 @@ Errors are `ConfigError`, `NumericalError`, `FileError` and `Stopped`, with ever
 unknown key 'contct', did you mean 'contact'?
 """
 
-from .errors import ConfigError, Error, FileError, NumericalError, Problem, Stopped
+from .errors import ConfigError, Error, FileError, NumericalError, Problem, SceneWarning, Stopped
 from .files import ResultFile
+from .inspection import Findings, check, import_, info, schema
 from .invocation import program
 from .opening import open
-from .pictures import plot, report, sound, spectrogram
+from .pictures import draw, plot, report, sound, spectrogram
 from .results import FrequencyResponses, Locus, StabilityMap, Sweep
+from .rubber import ContactLaw, SlidingContacts
 from .runs import Cycle, Run
 from .scene import Scene, example, load
 from .series import Series
-from .verbs import Eigenvalues, call, compare, cycle, eig, frf, locus, map, precision, run, sweep, threshold
+from .verbs import (Eigenvalues, call, compare, contact, contact_table, cycle, eig, fit, frf, locus, map, precision,
+                    run, sweep, threshold)
 
 __version__ = "0.1.0"
 __all__ = [
-    "ConfigError", "Cycle", "Eigenvalues", "Error", "FileError", "FrequencyResponses", "Locus",
-    "NumericalError", "Problem", "ResultFile", "Run", "Scene", "Series", "StabilityMap", "Stopped", "Sweep",
-    "call", "compare", "cycle", "eig", "example", "frf", "load", "locus", "map", "open",
-    "plot", "precision", "program", "report", "run", "sound", "spectrogram", "sweep", "threshold"
+    "ConfigError", "ContactLaw", "Cycle", "Eigenvalues", "Error", "FileError", "Findings", "FrequencyResponses",
+    "Locus", "NumericalError", "Problem", "ResultFile", "Run", "Scene", "SceneWarning", "Series", "SlidingContacts",
+    "StabilityMap", "Stopped", "Sweep",
+    "call", "check", "compare", "contact", "contact_table", "cycle", "draw", "eig", "example", "fit", "frf",
+    "import_", "info", "load", "locus", "map", "open", "plot", "precision", "program", "report", "run", "schema",
+    "sound", "spectrogram", "sweep", "threshold"
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, Iterable, Mapping
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,12 @@ class Problem:
         return f"{place}: {named}" if place else named
 
 
+def problems_of(told: Iterable[Mapping[str, Any]]) -> list[Problem]:
+    """Problems of those of the JSON object of a verb."""
+    return [Problem(one.get("message", ""), one.get("file", ""), one.get("line", 0), one.get("column", 0),
+                    one.get("key", ""), one.get("code", "")) for one in told]
+
+
 class Error(Exception):
     """Any failure of the program.
 
@@ -42,13 +49,17 @@ class Error(Exception):
     ----------
     problems : list of Problem
     exit_code : int
+    answer : dict
+        The JSON object that the program printed all the same: the results of a run that missed what its scene
+        expects (``verify=True``), contacts of which some did not converge.
     """
 
     exit_code = 1
 
-    def __init__(self, problems: list[Problem]):
+    def __init__(self, problems: list[Problem], answer: Mapping[str, Any] | None = None):
         super().__init__("\n".join(str(problem) for problem in problems))
         self.problems = problems
+        self.answer: dict[str, Any] = dict(answer or {})
 
 
 class ConfigError(Error):
@@ -80,14 +91,18 @@ class Stopped(Error):
 
     exit_code = 5
 
-    def __init__(self, problems: list[Problem], file: str | None = None):
-        super().__init__(problems)
+    def __init__(self, problems: list[Problem], file: str | None = None, answer: Mapping[str, Any] | None = None):
+        super().__init__(problems, answer)
         self.file = file
 
 
 _BY_EXIT_CODE = {kind.exit_code: kind for kind in (ConfigError, NumericalError, FileError, Stopped)}
 
 
-def of_exit_code(code: int, problems: list[Problem]) -> Error:
+def of_exit_code(code: int, problems: list[Problem], answer: Mapping[str, Any]) -> Error:
     """The error of an exit code of the program."""
-    return _BY_EXIT_CODE.get(code, Error)(problems)
+    return _BY_EXIT_CODE.get(code, Error)(problems, answer=answer)
+
+
+class SceneWarning(UserWarning):
+    """What the program warns of: a scene that is hardly meant, a locus of other bodies. See `warnings` of Python."""

@@ -9,8 +9,8 @@ from typing import Any, Sequence
 from . import invocation
 from .files import ResultFile
 from .runs import Run
-from .scene import Place
-from .verbs import output_of
+from .scene import Place, Scene, as_scene
+from .verbs import Settings, output_of
 
 
 def _path_of(file: Place | ResultFile) -> str:
@@ -74,3 +74,23 @@ def report(*results: ResultFile | Place, output: Place | None = None, **options:
     '.html'
     """
     return _made_from("report", results, output, "report.html", options)
+
+
+def draw(scene: Scene | Place, *, output: Place | None = None, set: Settings | None = None,  # noqa: A002
+         **options: Any) -> Path:
+    """A picture of a scene before anything is run: bodies, supports, contacts, drives, points.
+
+    Parameters
+    ----------
+    output : path, optional
+        ``.png``, ``.svg`` or ``.pdf``; default: a PNG in a new folder of its own.
+
+    Examples
+    --------
+    >>> draw(example("beam_on_beam"), set={"contact.start": "80 mm"}).name
+    'scene.png'
+    """
+    made = output_of(output, "scene.png")
+    progress = options.pop("progress", None)
+    invocation.call(["draw", *as_scene(scene, set).words(), "--output", made, *invocation.arguments_of(options)], progress)
+    return Path(made)

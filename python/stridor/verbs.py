@@ -14,6 +14,7 @@ import numpy as np
 
 from . import errors, invocation, opening
 from .results import FrequencyResponses, Locus, StabilityMap, Sweep
+from .rubber import ContactLaw, SlidingContacts
 from .runs import Run
 from .scene import Place, Scene, as_scene
 
@@ -124,7 +125,7 @@ def run(scene: Scene | Place | None = None, *, output: Place | None = None, set:
     try:
         answer = invocation.call([*words, *invocation.arguments_of(options)], progress)
     except errors.Stopped as stopped:
-        raise errors.Stopped(stopped.problems, file) from None
+        raise errors.Stopped(stopped.problems, file, stopped.answer) from None
     return _opened(file, answer)
 
 
@@ -241,3 +242,74 @@ def compare(scene: Scene | Place, *, set: Settings | None = None, **options: Any
 def precision(scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> dict[str, Any]:  # noqa: A002
     """Error against run time; with ``reduction=True`` that of the reduced bodies alone."""
     return call("precision", scene, set=set, **options)
+
+
+def contact(scene: Scene | Place, *, output: Place | None = None, set: Settings | None = None,  # noqa: A002
+            **options: Any) -> SlidingContacts:
+    """Viscoelastic normal laws of a scene in steady sliding: force, area, friction, pressures.
+
+    Parameters
+    ----------
+    output : path, optional
+        File; default: one in a new folder of its own.
+    **options
+        ``speed``, ``indentation`` or ``load``, a number or several (default: those of the scene); ``contact``, where
+        the scene has several; ``pressure`` and ``edges``, pictures; ``verify``, ``threads``, ``force``: as of
+        ``stridor contact``.
+
+    Returns
+    -------
+    SlidingContacts
+        With ``raw["rows"]``, where remarks on each row stand.
+
+    Raises
+    ------
+    ConfigError
+        If the scene has no such law, or several and `contact` names none.
+    NumericalError
+        If a contact did not converge; its `answer` has all rows.
+    """
+    return _written("contact", scene, output, set, options)
+
+
+def contact_table(scene: Scene | Place, *, output: Place | None = None, set: Settings | None = None,  # noqa: A002
+                  **options: Any) -> ContactLaw:
+    """The law of a contact as a table, which the key ``normal.form`` of a contact takes (``stridor contact --table``).
+
+    Parameters
+    ----------
+    output : path, optional
+        File; default: one in a new folder of its own.
+    **options
+        ``speeds`` and ``indentations``, each (first, last, number of values); ``contact``, ``threads``, ``force``.
+    """
+    file = output_of(output, "law.h5")
+    return _opened(file, call("contact", scene, set=set, table=file, **options))
+
+
+def fit(*, speeds: tuple[float, float, int] | None = None, indentations: tuple[float, float, int] | None = None,
+        figures: Place | None = None, **options: Any) -> dict[str, Any]:
+    """Refit of the published contact laws to the boundary elements. It takes no scene.
+
+    Parameters
+    ----------
+    speeds, indentations : tuple, optional
+        First and last value and their number, v tau/R and y/R; default: (1e-3, 1e3, 49), (1e-4, 0.3, 15).
+    figures : path, optional
+        Folder for the pictures modulus, cuts and scatter.
+
+    Returns
+    -------
+    dict
+        Coefficients ``published`` and ``refit``, the ``shift`` of the speed, and what each explains, ``r2``.
+
+    Examples
+    --------
+    >>> found = fit(speeds=(0.1, 1.0, 4), indentations=(1e-3, 1e-2, 4))
+    >>> found["samples"], found["r2"]["refit"]["force"] > 0.9999
+    (16, True)
+    """
+    progress = options.pop("progress", None)
+    folder = None if figures is None else os.fspath(figures)
+    asked = {"speeds": speeds, "indentations": indentations, "figures": folder, **options}
+    return invocation.call(["fit", *invocation.arguments_of(asked)], progress)
