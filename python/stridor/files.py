@@ -58,7 +58,7 @@ class ResultFile:
         The JSON object of the verb that wrote it; empty where the file was opened.
     """
 
-    _group_of_arrays = "/"
+    _group_of_arrays: str | None = None
 
     def __init__(self, path: Place, file: h5py.File):
         self.path = os.fspath(path)
@@ -96,7 +96,8 @@ class ResultFile:
         Parameters
         ----------
         group : str, optional
-            Path of the group, "bursts" or "contact/pad"; default: what the kind of file is about.
+            Path of the group, "bursts" or "contact/pad"; default: what the kind of file is about, else the root or the first
+            group that holds series.
 
         Raises
         ------
@@ -106,6 +107,8 @@ class ResultFile:
             Where xarray is not installed.
         """
         path = self._group_of_arrays if group is None else group
+        if path is None:
+            path = "/" if self._group("/") else next(iter(self._groups()), "/")
         if not isinstance(self._file.get(path), h5py.Group):
             raise KeyError(f"{self.path} has no group {path!r}; it has {listed(self._groups(), 20)}")
         series = self._group(path)

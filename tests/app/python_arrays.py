@@ -202,6 +202,15 @@ class Others(unittest.TestCase):
             self.assertGreater(len(reasons[1]), 10)
             self.assertIn("1 value failed", repr(found))
 
+    def test_files_without_a_class_give_their_first_group(self):
+        with tempfile.TemporaryDirectory() as folder:
+            stridor.precision(stridor.example("viscoelastic_sphere"), points=2, output=folder)
+            with stridor.open(os.path.join(folder, "precision.h5")) as found:
+                labelled = found.to_xarray()
+                self.assertEqual(labelled.error.dims, ("run_time",))
+                self.assertTrue(all(isinstance(method, str) for method in labelled.method.values))
+                self.assertIn("settings", repr(found))
+
     def test_every_series_of_a_cycle_has_its_coordinate(self):
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "cycle.h5")
