@@ -132,10 +132,10 @@ void add_verbs(CLI::App& program, Action& action, const std::string& command) {
   add_spectrogram_command(program, action);
   add_sound_command(program, action);
   add_report_command(program, action, command);
-  add_eig_command(program, action);
+  add_eig_command(program, action, command);
   add_locus_command(program, action, command);
   add_frf_command(program, action, command);
-  add_threshold_command(program, action);
+  add_threshold_command(program, action, command);
   add_map_command(program, action, command);
   add_contact_command(program, action, command);
   add_fit_command(program, action);

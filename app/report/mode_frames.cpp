@@ -114,13 +114,16 @@ std::vector<double> displacements_of(const DrawnNodes& drawn, const std::vector<
   return values;
 }
 
-/// The modes that vibrate, lowest first.
+/// The modes that vibrate, lowest first; where not all can be shown, those that grow and the
+/// lowest.
 std::vector<std::size_t> vibrating(const FoundSpectrum& found, int most) {
   std::vector<std::size_t> chosen;
-  for (std::size_t i = 0; i < found.eigenvalues.size(); ++i) {
-    if (found.eigenvalues[i].s.imag() > 0.0 && static_cast<int>(chosen.size()) < most)
-      chosen.push_back(i);
-  }
+  for (std::size_t i = 0; i < found.eigenvalues.size(); ++i)
+    if (found.eigenvalues[i].s.imag() > 0.0) chosen.push_back(i);
+  std::ranges::stable_partition(chosen,
+                                [&](std::size_t i) { return found.eigenvalues[i].growth() > 0.0; });
+  chosen.resize(std::min(chosen.size(), static_cast<std::size_t>(std::max(most, 0))));
+  std::ranges::sort(chosen);
   return chosen;
 }
 
@@ -252,6 +255,8 @@ void make_frames(const FramedScene& scene, const std::optional<FramedRange>& ran
   options.scene = scene.source;
   options.count = most_modes;
   if (range) options.about = range->about;
+  if (range && range->highest)
+    options.below = fmt::format("{:.17g} Hz", *range->highest * (1.0 + 1e-9));
   make_choices(options, loaded.scene);
   std::vector<NumericKey> keys;
   std::vector<double> values;

@@ -23,6 +23,9 @@ struct FramedRange {
   std::vector<double> values;  ///< ascending
   std::string about;           ///< of StabilityOptions; empty: the default of the scene
   std::vector<double> wanted{};  ///< values to be among those shown, the most wanted first
+  /// Modes up to this frequency are looked at, Hz, and those that grow are shown first; else the
+  /// lowest ones.
+  std::optional<double> highest{};
 };
 
 /// How much of a page they may take.

@@ -22,7 +22,10 @@ Json report_section(const ResultFile& file, const ReportContext& context) {
       {"frequency responses", response_section},
       {"spectrogram", spectrogram_section},
       {"sliding contacts", contact_section},
-      {"study of precision", precision_section}};
+      {"study of precision", precision_section},
+      {"eigenvalues", eigenvalue_section},
+      {"comparison of assumptions", comparison_section},
+      {"contact law", contact_law_section}};
   const std::string kind = file.kind();
   std::vector<std::string> names;
   for (const auto& [name, make] : kinds) {

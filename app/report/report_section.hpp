@@ -82,5 +82,8 @@ Json response_section(const ResultFile& file, const ReportContext& context);
 Json spectrogram_section(const ResultFile& file, const ReportContext& context);
 Json contact_section(const ResultFile& file, const ReportContext& context);
 Json precision_section(const ResultFile& file, const ReportContext& context);
+Json eigenvalue_section(const ResultFile& file, const ReportContext& context);
+Json comparison_section(const ResultFile& file, const ReportContext& context);
+Json contact_law_section(const ResultFile& file, const ReportContext& context);
 
 }  // namespace stridor

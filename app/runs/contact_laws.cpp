@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "app/results/file_attributes.hpp"
 #include "app/runs/contact_results.hpp"
 #include "app/terminal/progress.hpp"
 #include "core/errors.hpp"
@@ -138,7 +139,7 @@ ExitCode make_table(const ContactOptions& options, const LoadedScene& loaded,
   for (const SlidingContactResult& result : computed.results)
     memory_in_cells.push_back(result.memory_in_cells);
   write_law_table(path, overwrite, computed.table, memory_in_cells,
-                  contact_attributes(options, loaded));
+                  source_attributes(loaded, options.command_line));
   const auto num_unresolved = count_contacts(computed, [](const SlidingContactResult& result) {
     return !result.has_resolved_memory();
   });

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/version.hpp"
+#include "app/results/file_attributes.hpp"
 #include "io/figures/gnuplot.hpp"
 #include "io/figures/panel_plot.hpp"
 #include "io/hdf5/part_file.hpp"
@@ -21,16 +21,6 @@ std::string source_text(const ContactOptions& options, const LoadedScene& loaded
 }
 
 }  // namespace
-
-Attributes contact_attributes(const ContactOptions& options, const LoadedScene& loaded) {
-  return {{"scene", options.scene},
-          {"scene_hash", loaded.hash()},
-          {"scene_resolved", loaded.resolved()},
-          {"command", options.command_line},
-          {"version", std::string(version)},
-          {"commit", std::string(commit)},
-          {"date", utc_now()}};
-}
 
 void write_rows(const ContactOptions& options, const LoadedScene& loaded,
                 const std::vector<LawRow>& rows) {
@@ -57,7 +47,7 @@ void write_rows(const ContactOptions& options, const LoadedScene& loaded,
   for (const LawRow& row : rows)
     if (!row.fields.x.empty()) fields.push_back(row.fields);
   write_contact_file(*options.output, options.common.overwrite(), columns, fields,
-                     contact_attributes(options, loaded));
+                     source_attributes(loaded, options.command_line));
 }
 
 void draw_pressure(const ContactOptions& options, const LoadedScene& loaded,

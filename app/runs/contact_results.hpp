@@ -8,9 +8,6 @@
 
 namespace stridor {
 
-/// Attributes of the files that `contact` writes.
-Attributes contact_attributes(const ContactOptions& options, const LoadedScene& loaded);
-
 /// Writes the rows, and of boundary elements the fields, to options.output.
 /// @throws FileError
 void write_rows(const ContactOptions& options, const LoadedScene& loaded,

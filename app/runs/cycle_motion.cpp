@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "core/errors.hpp"
-#include "core/version.hpp"
 #include "io/figures/panel_plot.hpp"
 #include "io/run_file/initial_state.hpp"
 
@@ -157,28 +156,6 @@ void plot_history(const CycleHistory& history, const std::string& caption,
                panel("slip velocity (mm/s)", history.slip, 1e-3),
                panel("contact area (mm²)", history.area, 1e-6)},
               caption, figure);
-}
-
-Attributes cycle_attributes(const LoadedScene& loaded, const std::string& command_line) {
-  return {{"scene", loaded.path},
-          {"scene_hash", loaded.hash()},
-          {"scene_resolved", loaded.resolved()},
-          {"command", command_line},
-          {"version", std::string(version)},
-          {"commit", std::string(commit)},
-          {"date", utc_now()}};
-}
-
-void append_results(const Json& results, Attributes& attributes) {
-  for (const auto& [name, value] : results.items()) {
-    if (value.is_string()) attributes.emplace_back(name, value.get<std::string>());
-    if (value.is_number()) attributes.emplace_back(name, value.get<double>());
-    if (!value.is_object()) continue;
-    Attributes inner;
-    append_results(value, inner);
-    for (auto& [last, content] : inner)
-      attributes.emplace_back(name + "." + last, std::move(content));
-  }
 }
 
 std::vector<Column> multiplier_columns(const Json& results) {

@@ -63,12 +63,6 @@ struct CycleHistory {
 void plot_history(const CycleHistory& history, const std::string& caption,
                   const std::string& figure);
 
-/// Attributes of every file of such a verb.
-Attributes cycle_attributes(const LoadedScene& loaded, const std::string& command_line);
-
-/// Results as attributes, the names of those within others joined by dots: "x.rms".
-void append_results(const Json& results, Attributes& attributes);
-
 /// The multipliers among the results of a cycle, as columns; none where there are none.
 std::vector<Column> multiplier_columns(const Json& results);
 

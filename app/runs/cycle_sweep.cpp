@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "app/results/file_attributes.hpp"
 #include "app/runs/cycle_motion.hpp"
 #include "app/terminal/progress.hpp"
 #include "core/errors.hpp"
@@ -165,7 +166,7 @@ void write_file(const SweepOptions& options, const LoadedScene& loaded, const Nu
     columns.push_back(std::move(reason));
     add("equilibrium_stable", "1", [](const SweepPoint& p) { return p.is_stable; });
   }
-  Attributes attributes = cycle_attributes(loaded, options.command_line);
+  Attributes attributes = source_attributes(loaded, options.command_line);
   attributes.push_back({"parameter", key.path});
   std::string statuses;
   for (int status = 0; status <= static_cast<int>(CycleStatus::settling); ++status) {

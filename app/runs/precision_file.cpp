@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/version.hpp"
+#include "app/results/file_attributes.hpp"
 #include "io/figures/axes.hpp"
 #include "io/results/column_file.hpp"
 
@@ -89,18 +89,14 @@ void write_precision_file(const std::filesystem::path& path, const Json& object,
                           const PrecisionOptions& options, const LoadedScene& loaded) {
   std::vector<Column> columns = columns_of_settings(object.value("rows", Json::array()));
   add_reductions(object.value("reduction", Json::array()), columns);
-  Attributes attributes{{"version", std::string(version)},
-                        {"commit", std::string(commit)},
-                        {"command", options.command_line},
-                        {"scene", options.scene},
-                        {"scene_hash", loaded.hash()},
-                        {"scene_resolved", loaded.resolved()},
-                        {"date", utc_now()},
-                        {"norm", object.value("norm", std::string("displacement"))},
-                        {"channel", object.value("channel", std::string())},
-                        {"reference_error", number_in(object, "/reference/error")},
-                        {"wanted_error", number_in(object, "/tune/wanted")},
-                        {"tuned", std::string()}};
+  Attributes attributes = source_attributes(loaded, options.command_line);
+  for (const auto& [name, value] :
+       Attributes{{"norm", object.value("norm", std::string("displacement"))},
+                  {"channel", object.value("channel", std::string())},
+                  {"reference_error", number_in(object, "/reference/error")},
+                  {"wanted_error", number_in(object, "/tune/wanted")},
+                  {"tuned", std::string()}})
+    attributes.emplace_back(name, value);
   if (object.contains("tune") && object["tune"].is_object())
     std::get<std::string>(attributes.back().second) = setting_text(object["tune"]);
   write_column_file(path.string(), options.common.overwrite(), "study of precision", columns,

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/results/file_attributes.hpp"
 #include "app/stability/axis_units.hpp"
-#include "core/version.hpp"
 #include "io/figures/panel_plot.hpp"
 #include "io/results/column_file.hpp"
 
@@ -87,13 +87,8 @@ void write_swept(const SweepOptions& options, const LoadedScene& loaded, const N
   }
   const std::vector<Column> bursts = columns_of_bursts(key, points);
   columns.insert(columns.end(), bursts.begin(), bursts.end());
-  const Attributes attributes{{"version", std::string(version)},
-                              {"commit", std::string(commit)},
-                              {"command", options.command_line},
-                              {"scene_hash", loaded.hash()},
-                              {"scene_resolved", loaded.resolved()},
-                              {"parameter", key.path},
-                              {"date", utc_now()}};
+  Attributes attributes = source_attributes(loaded, options.command_line);
+  attributes.emplace_back("parameter", key.path);
   write_column_file(*options.output, options.common.overwrite(), "sweep of transients", columns,
                     attributes);
 }

@@ -1,6 +1,10 @@
 #include "app/stability/equilibrium_report.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <optional>
+#include <string>
 
 namespace stridor {
 namespace {
@@ -120,6 +124,40 @@ Json equilibrium_json(const Model& model, const Equilibrium& equilibrium) {
         displacement_json(system, equilibrium, point.body, point.rows);
   }
   return object;
+}
+
+void print_equilibrium(const System& system, const Equilibrium& equilibrium) {
+  for (std::size_t i = 0; i < system.contacts.size(); ++i) {
+    const ContactEquilibrium& contact = equilibrium.contacts[i];
+    if (!contact.is_closed) {
+      fmt::print("{:<20}open, gap {:.4g} m\n", system.contacts[i].name, contact.gap);
+      continue;
+    }
+    const std::optional<FacePlace>& face = system.contacts[i].face;
+    const std::string place =
+        face ? fmt::format("at radius {:.6g} m and {:.4g} rad of {}", face->radius, face->angle,
+                           face->name)
+        : system.contacts[i].space
+            ? fmt::format("{:.6g} m along {}", contact.position, system.contacts[i].space->name)
+            : fmt::format("{:.6g} m along the master", contact.position);
+    fmt::print("{:<20}{}, force {:.6g} N, friction {:.6g} N, sliding at {:.4g} m/s{}\n",
+               system.contacts[i].name, place, contact.force,
+               std::hypot(contact.friction_force, contact.friction_across), contact.slip_velocity,
+               contact.force < 0.0    ? " (pulls: no equilibrium of real bodies)"
+               : contact.force == 0.0 ? " (nothing presses: give a load, or normal.preload)"
+                                      : "");
+  }
+}
+
+/// Where a contact law is used beyond its range.
+void print_law_ranges(const Json& equilibrium) {
+  const auto print = [](const Json& contact) {
+    if (!contact.contains("law_range") || contact["law_range"] == "inside") return;
+    fmt::print("{:<20}is {}\n", "", contact["law_range"].get<std::string>());
+  };
+  print(equilibrium);
+  if (!equilibrium.contains("contacts")) return;
+  for (const Json& contact : equilibrium["contacts"]) print(contact);
 }
 
 }  // namespace stridor

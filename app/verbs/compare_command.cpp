@@ -8,7 +8,9 @@
 #include <memory>
 
 #include "analysis/band_pass.hpp"
+#include "app/results/file_attributes.hpp"
 #include "app/results/output_folder.hpp"
+#include "app/runs/comparison_file.hpp"
 #include "app/runs/transient.hpp"
 #include "app/runs/turns.hpp"
 #include "app/terminal/command.hpp"
@@ -256,8 +258,8 @@ ExitCode compare(const CompareOptions& options) {
   fs::path folder = options.folder;
   if (is_kept) {
     prepare_folder(folder,
-                   {"comparison.json", "accelerations.png", "sliding_velocities.png",
-                    "contact_forces.png", "spectrograms.png"},
+                   {"comparison.json", "comparison.h5", "accelerations.png",
+                    "sliding_velocities.png", "contact_forces.png", "spectrograms.png"},
                    options.common.overwrite());
   } else {
     scratch.emplace();
@@ -280,13 +282,17 @@ ExitCode compare(const CompareOptions& options) {
       runs.push_back(drawn(modal[i], assumptions[i].title));
     plot_comparison(runs, folder, loaded.scene);
     write_json(folder / "comparison.json", comparison);
+    write_comparison_file(folder / "comparison.h5", options.common.overwrite(), comparison["rows"],
+                          source_attributes(loaded, options.command_line));
   }
 
   if (options.common.json) {
     print_json(comparison);
   } else {
     print_rows(comparison["rows"]);
-    if (is_kept) fmt::print("\nrun files, figures and comparison.json in {}\n", folder.string());
+    if (is_kept)
+      fmt::print("\nrun files, figures, comparison.json and comparison.h5 in {}\n",
+                 folder.string());
   }
   return ExitCode::done;
 }
@@ -299,8 +305,9 @@ void add_compare_command(CLI::App& program, Action& action, const std::string& c
   CLI::App* verb = program.add_subcommand(
       "compare", "Subs-a, Subs-b, Subs-c and FiLM on the same scene: time, results, bursts");
   verb->add_option("scene", options->scene, "Scene file (YAML)")->required();
-  verb->add_option("-o,--output", options->folder,
-                   "Folder for run files, figures and comparison.json; without it none is kept");
+  verb->add_option(
+      "-o,--output", options->folder,
+      "Folder for run files, figures, comparison.json and comparison.h5; without it none is kept");
   verb->add_option("--published-window", options->window,
                    "Time the published dense form as well, over this many seconds of the run")
       ->check(CLI::NonNegativeNumber);

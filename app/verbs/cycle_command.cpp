@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/results/expectations.hpp"
+#include "app/results/file_attributes.hpp"
 #include "app/runs/cycle_motion.hpp"
 #include "app/runs/step_cycle.hpp"
 #include "core/activity.hpp"
@@ -88,7 +89,7 @@ std::string caption_of(const CycleCommandOptions& options, const LoadedScene& lo
 void write_cycle(const CycleCommandOptions& options, const LoadedScene& loaded,
                  std::vector<Column> columns, const Json& results) {
   for (Column& column : multiplier_columns(results)) columns.push_back(std::move(column));
-  Attributes attributes = cycle_attributes(loaded, options.command_line);
+  Attributes attributes = source_attributes(loaded, options.command_line);
   append_results(results, attributes);
   write_column_file(*options.output, options.common.overwrite(), "limit cycle", columns,
                     attributes);

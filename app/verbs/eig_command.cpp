@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <string>
 
+#include "app/results/file_attributes.hpp"
 #include "app/stability/analysed_spectrum.hpp"
+#include "app/stability/eigenvalue_file.hpp"
 #include "app/stability/eigenvalue_report.hpp"
 #include "app/stability/equilibrium_report.hpp"
 #include "app/stability/shape_files.hpp"
@@ -31,6 +33,8 @@ struct EigOptions {
   std::optional<std::string> compared;   ///< universal file of measured shapes
   std::vector<std::string> nodes;        ///< of it, "NUMBER=BODY.POINT"
   std::optional<std::string> figure;     ///< of the assurance criteria
+  std::optional<std::string> output;
+  std::string command_line;
 };
 
 constexpr int num_frames = 24;
@@ -121,40 +125,6 @@ std::vector<std::string> write_shapes(const EigOptions& options, const LoadedSce
   return files;
 }
 
-void print_equilibrium(const System& system, const Equilibrium& equilibrium) {
-  for (std::size_t i = 0; i < system.contacts.size(); ++i) {
-    const ContactEquilibrium& contact = equilibrium.contacts[i];
-    if (!contact.is_closed) {
-      fmt::print("{:<20}open, gap {:.4g} m\n", system.contacts[i].name, contact.gap);
-      continue;
-    }
-    const std::optional<FacePlace>& face = system.contacts[i].face;
-    const std::string place =
-        face ? fmt::format("at radius {:.6g} m and {:.4g} rad of {}", face->radius, face->angle,
-                           face->name)
-        : system.contacts[i].space
-            ? fmt::format("{:.6g} m along {}", contact.position, system.contacts[i].space->name)
-            : fmt::format("{:.6g} m along the master", contact.position);
-    fmt::print("{:<20}{}, force {:.6g} N, friction {:.6g} N, sliding at {:.4g} m/s{}\n",
-               system.contacts[i].name, place, contact.force,
-               std::hypot(contact.friction_force, contact.friction_across), contact.slip_velocity,
-               contact.force < 0.0    ? " (pulls: no equilibrium of real bodies)"
-               : contact.force == 0.0 ? " (nothing presses: give a load, or normal.preload)"
-                                      : "");
-  }
-}
-
-/// Where a contact law is used beyond its range.
-void print_law_ranges(const Json& equilibrium) {
-  const auto print = [](const Json& contact) {
-    if (!contact.contains("law_range") || contact["law_range"] == "inside") return;
-    fmt::print("{:<20}is {}\n", "", contact["law_range"].get<std::string>());
-  };
-  print(equilibrium);
-  if (!equilibrium.contains("contacts")) return;
-  for (const Json& contact : equilibrium["contacts"]) print(contact);
-}
-
 void print_explanation(const Json& explanation) {
   // No "-0": nothing is neither fed nor taken.
   const auto value = [](const Json& object, const char* key) {
@@ -242,6 +212,22 @@ void print_comparison(const Json& comparison) {
   }
 }
 
+void write_output(const EigOptions& options, const LoadedScene& loaded, const Analysis& analysis,
+                  const Json& object) {
+  Attributes attributes = source_attributes(loaded, options.command_line);
+  attributes.emplace_back("about", options.stability.about);
+  attributes.emplace_back("method", analysis.found.method);
+  attributes.emplace_back("stable", object["stable"].get<bool>() ? 1.0 : 0.0);
+  if (options.at) {
+    const std::string path = *start_key(loaded.scene.model);
+    attributes.emplace_back("parameter", path);
+    attributes.emplace_back(
+        "value", parse_value(find_stability_key(loaded.scene, path, "--at"), *options.at, "--at"));
+  }
+  write_eigenvalue_file(*options.output, options.stability.common.overwrite(), analysis,
+                        object.value("explanation", Json()), std::move(attributes));
+}
+
 void print_report(const EigOptions& options, const Analysis& analysis, const Json& object) {
   const FoundSpectrum& found = analysis.found;
   if (!analysis.is_sparse())
@@ -272,7 +258,8 @@ void print_report(const EigOptions& options, const Analysis& analysis, const Jso
   }
   if (options.compared) print_comparison(object["comparison"]);
   if (options.figure) fmt::print("{}\n", *options.figure);
-  if (options.universal) fmt::print("{}\n", *options.universal);
+  for (const auto& file : {options.universal, options.output})
+    if (file) fmt::print("{}\n", *file);
 }
 
 ExitCode report(const EigOptions& options, const LoadedScene& loaded, const Analysis& analysis) {
@@ -314,6 +301,10 @@ ExitCode report(const EigOptions& options, const LoadedScene& loaded, const Anal
     }
   }
   add_shape_files(options, loaded, analysis, object);
+  if (options.output) {
+    write_output(options, loaded, analysis, object);
+    object["file"] = *options.output;
+  }
   if (options.stability.common.json) {
     print_json(object);
   } else {
@@ -326,7 +317,8 @@ ExitCode eig(EigOptions options) {
   if (options.mode && !options.explain && !options.shapes)
     throw ConfigError(Refusal::missing, "--mode",
                       "names the mode to explain or draw; add --explain or --shapes");
-  if (options.universal) check_output(*options.universal, options.stability.common.overwrite());
+  for (const auto& file : {options.universal, options.output})
+    if (file) check_output(*file, options.stability.common.overwrite());
   if (!options.compared && (options.figure || !options.nodes.empty())) {
     throw ConfigError(Refusal::contradiction, options.figure ? "--figure" : "--node",
                       "is of the comparison with measured shapes; give it with --compare");
@@ -341,8 +333,9 @@ ExitCode eig(EigOptions options) {
 
 }  // namespace
 
-void add_eig_command(CLI::App& program, Action& action) {
+void add_eig_command(CLI::App& program, Action& action, const std::string& command_line) {
   auto options = std::make_shared<EigOptions>();
+  options->command_line = command_line;
   CLI::App* verb =
       program.add_subcommand("eig", "Sliding equilibrium and its eigenvalues at one position");
   add_stability_options(*verb, options->stability);
@@ -350,6 +343,8 @@ void add_eig_command(CLI::App& program, Action& action) {
                    "Position of the contact along the master, about the deformed geometry on the "
                    "deformed one, m "
                    "or with a unit; default: contact.start");
+  verb->add_option("-o,--output", options->output,
+                   "File to write (HDF5): eigenvalues, equilibrium and explanation");
   verb->add_flag("--explain", options->explain,
                  "Say why a mode grows: what it sees of damping, stiffness and friction, where its "
                  "energy comes from, which modes without friction it is made of");

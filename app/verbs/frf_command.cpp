@@ -5,13 +5,13 @@
 #include <cmath>
 #include <filesystem>
 
+#include "app/results/file_attributes.hpp"
 #include "app/results/pictures.hpp"
 #include "app/stability/measured_responses.hpp"
 #include "app/stability/response_picture.hpp"
 #include "app/stability/response_study.hpp"
 #include "app/stability/stability.hpp"
 #include "core/errors.hpp"
-#include "core/version.hpp"
 #include "io/figures/axes.hpp"
 #include "io/hdf5/part_file.hpp"
 
@@ -80,16 +80,10 @@ void write_files(const FrfOptions& options, const ResponseStudy& study,
       write_text_file(file, uff_text(uff_contents(study, frequencies, curves), "-o", form));
       continue;
     }
-    write_response_file(file, stability.common.overwrite(), frequencies, curves,
-                        {{"about", stability.about},
-                         {"trusted_frequency", study.trusted_frequency()},
-                         {"scene", stability.scene},
-                         {"scene_hash", study.loaded().hash()},
-                         {"scene_resolved", study.loaded().resolved()},
-                         {"command", options.command_line},
-                         {"version", std::string(version)},
-                         {"commit", std::string(commit)},
-                         {"date", utc_now()}});
+    Attributes attributes = source_attributes(study.loaded(), options.command_line);
+    attributes.emplace_back("about", stability.about);
+    attributes.emplace_back("trusted_frequency", study.trusted_frequency());
+    write_response_file(file, stability.common.overwrite(), frequencies, curves, attributes);
   }
 }
 

@@ -12,16 +12,14 @@
 #include "app/stability/axis_units.hpp"
 #include "app/stability/eigenvalue_report.hpp"
 #include "app/stability/family_locus.hpp"
+#include "app/stability/kept_locus.hpp"
 #include "app/stability/locus_curves.hpp"
 #include "app/stability/locus_progress.hpp"
-#include "app/stability/passing_times.hpp"
 #include "app/stability/stability.hpp"
 #include "app/stability/verdict.hpp"
 #include "core/errors.hpp"
-#include "core/version.hpp"
 #include "io/figures/gnuplot.hpp"
 #include "io/figures/locus_plot.hpp"
-#include "io/results/locus_file.hpp"
 
 namespace stridor {
 namespace {
@@ -119,25 +117,6 @@ struct FoundLocus {
   double highest = 0.0;  ///< up to where the verdict holds, Hz
 };
 
-void write_output(const FoundLocus& found) {
-  const StabilityOptions& stability = found.options.stability;
-  const LoadedScene& loaded = found.scene.loaded();
-  const std::string units = printed_units(found.range.key);
-  write_locus_file(*found.options.output, stability.common.overwrite(), found.locus, found.windows,
-                   units,
-                   {{"parameter", found.range.key.path},
-                    {"units", units},
-                    {"about", stability.about},
-                    {"method", stability.method},
-                    {"scene", stability.scene},
-                    {"scene_hash", loaded.hash()},
-                    {"scene_resolved", loaded.resolved()},
-                    {"command", found.options.command_line},
-                    {"version", std::string(version)},
-                    {"commit", std::string(commit)},
-                    {"date", utc_now()}});
-}
-
 LocusPicture picture_of(const FoundLocus& found) {
   const StabilityOptions& stability = found.options.stability;
   const KeyRange& range = found.range;
@@ -197,13 +176,10 @@ ExitCode locus(LocusCommandOptions options) {
                            family->trusted_frequency(std::array{range.values.back()}));
   found.highest = verdict_limit(found.locus, stability.locus_window(), found.trusted);
 
-  std::optional<PassingTimes> times;
-  const bool is_path =
-      range.key.path == drive_displacement_name || scene.default_key() == range.key.path;
-  if (scene.loaded().scene.time && is_path)
-    times.emplace(scene.loaded().scene, dynamic_cast<BodyStabilityFamily&>(*family));
-  found.windows = timed_windows(found.locus, times);
-  if (options.output) write_output(found);
+  found.windows = timed_windows(found.locus, range.key, scene, *family);
+  if (options.output)
+    write_locus(*options.output, found.locus, found.windows,
+                {scene, stability, range.key, options.command_line});
   if (options.figure || options.history) {
     const LocusPicture picture = picture_of(found);
     if (options.figure) plot_locus(picture, *options.figure);

@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <thread>
 
+#include "app/results/file_attributes.hpp"
 #include "app/stability/axis_units.hpp"
 #include "app/stability/map_study.hpp"
 #include "app/stability/stability.hpp"
 #include "app/stability/verdict.hpp"
 #include "core/errors.hpp"
 #include "core/memory.hpp"
-#include "core/version.hpp"
 #include "io/figures/gnuplot.hpp"
 #include "io/figures/stability_map_plot.hpp"
 #include "io/results/locus_file.hpp"
@@ -121,20 +121,15 @@ std::string point_command(const FoundMap& found) {
 
 void write_map(const FoundMap& found) {
   const StabilityOptions& stability = found.options.stability;
+  Attributes attributes = source_attributes(found.scene.loaded(), found.options.command_line);
+  for (const auto& [name, text] : {std::pair{"x", found.axes[0].key.path},
+                                   {"y", found.axes[1].key.path},
+                                   {"about", stability.about},
+                                   {"method", stability.method},
+                                   {"point_command", point_command(found)}})
+    attributes.emplace_back(name, text);
   write_map_file(*found.options.output, stability.common.overwrite(), found.map,
-                 printed_units(found.axes[0].key), printed_units(found.axes[1].key),
-                 {{"x", found.axes[0].key.path},
-                  {"y", found.axes[1].key.path},
-                  {"about", stability.about},
-                  {"method", stability.method},
-                  {"scene", stability.scene},
-                  {"point_command", point_command(found)},
-                  {"scene_hash", found.scene.loaded().hash()},
-                  {"scene_resolved", found.scene.loaded().resolved()},
-                  {"command", found.options.command_line},
-                  {"version", std::string(version)},
-                  {"commit", std::string(commit)},
-                  {"date", utc_now()}});
+                 printed_units(found.axes[0].key), printed_units(found.axes[1].key), attributes);
 }
 
 Json map_json(const FoundMap& found) {

@@ -8,10 +8,12 @@
 #include <optional>
 
 #include "app/stability/family_locus.hpp"
+#include "app/stability/kept_locus.hpp"
 #include "app/stability/locus_progress.hpp"
 #include "app/stability/stability.hpp"
 #include "app/stability/verdict.hpp"
 #include "core/activity.hpp"
+#include "io/hdf5/part_file.hpp"
 
 namespace stridor {
 namespace {
@@ -19,6 +21,8 @@ namespace {
 struct ThresholdOptions {
   StabilityOptions stability;
   RangeOptions range;
+  std::optional<std::string> output;
+  std::string command_line;
 };
 
 /// Values of the scan for roots, besides the values asked for.
@@ -52,7 +56,8 @@ ExitCode threshold(const ThresholdOptions& options, const KeyRange& range, Growt
                  {"from", range.values.front()},
                  {"to", range.values.back()},
                  {"window", {0.0, nullptr}},
-                 {"roots", Json::array()}};
+                 {"roots", Json::array()},
+                 {"file", options.output ? Json(*options.output) : Json(nullptr)}};
   bool is_unstable = starts_unstable;
   for (const double root : roots) {
     is_unstable = !is_unstable;
@@ -70,30 +75,51 @@ ExitCode threshold(const ThresholdOptions& options, const KeyRange& range, Growt
                starts_unstable ? "unstable" : "stable", value_text(range.key, range.values.front()),
                value_text(range.key, range.values.back()), values.size());
   }
+  if (options.output && !options.stability.common.json) fmt::print("{}\n", *options.output);
   return ExitCode::done;
+}
+
+/// Along the values asked for, into the file where one is.
+Locus followed_locus(const ThresholdOptions& options, const StabilityScene& scene,
+                     const KeyRange& range, StabilityFamily& family) {
+  std::optional<LocusProgress> progress(std::in_place, "threshold", family, range);
+  Locus locus = locus_along(family, range.key, 0, {range.values.front()}, range.values,
+                            options.stability.locus_options());
+  progress.reset();
+  if (options.output)
+    write_locus(*options.output, locus, timed_windows(locus, range.key, scene, family),
+                {scene, options.stability, range.key, options.command_line});
+  return locus;
 }
 
 ExitCode threshold(ThresholdOptions options) {
   StabilityOptions& stability = options.stability;
+  if (options.output) check_output(*options.output, stability.common.overwrite());
   const StabilityScene scene = load_stability_scene(stability);
   const KeyRange range = make_range(scene, options.range);
-  if (const auto field = scene.growth_field({range.key})) return threshold(options, range, *field);
   const auto family = scene.family({range.key}, stability.geometry());
-  std::optional<LocusProgress> progress(std::in_place, "threshold", *family, range);
-  const Locus locus = locus_along(*family, range.key, 0, {range.values.front()}, range.values,
-                                  stability.locus_options());
-  progress.reset();
+  if (const auto field = scene.growth_field({range.key})) {
+    if (options.output) followed_locus(options, scene, range, *family);
+    return threshold(options, range, *field);
+  }
+  const Locus locus = followed_locus(options, scene, range, *family);
   const std::vector<StabilityChange> changes = stability_changes(locus);
   const double trusted = std::min(family->trusted_frequency(std::array{range.values.front()}),
                                   family->trusted_frequency(std::array{range.values.back()}));
   const double highest = verdict_limit(locus, stability.locus_window(), trusted);
 
   if (stability.common.json) {
-    Json object = {{"parameter", range.key.path},    {"about", stability.about},
-                   {"method", stability.method},     {"from", range.values.front()},
-                   {"to", range.values.back()},      {"roots", Json::array()},
-                   {"crossings", Json::array()},     {"window", {0.0, number(highest)}},
-                   {"unverified", locus.unverified}, {"unresolved", locus.unresolved}};
+    Json object = {{"parameter", range.key.path},
+                   {"about", stability.about},
+                   {"method", stability.method},
+                   {"from", range.values.front()},
+                   {"to", range.values.back()},
+                   {"roots", Json::array()},
+                   {"crossings", Json::array()},
+                   {"window", {0.0, number(highest)}},
+                   {"unverified", locus.unverified},
+                   {"unresolved", locus.unresolved},
+                   {"file", options.output ? Json(*options.output) : Json(nullptr)}};
     for (const StabilityChange& change : changes) {
       object["roots"].push_back({{"value", change.value},
                                  {"frequency", change.frequency},
@@ -118,17 +144,22 @@ ExitCode threshold(ThresholdOptions options) {
   }
   fmt::print("{}{}\n", window_text(highest), limit_text(highest, trusted));
   print_resolution(locus, range.key);
+  if (options.output) fmt::print("{}\n", *options.output);
   return ExitCode::done;
 }
 
 }  // namespace
 
-void add_threshold_command(CLI::App& program, Action& action) {
+void add_threshold_command(CLI::App& program, Action& action, const std::string& command_line) {
   auto options = std::make_shared<ThresholdOptions>();
+  options->command_line = command_line;
   CLI::App* verb = program.add_subcommand(
       "threshold", "Values of a key at which the sliding state becomes stable or unstable");
   add_stability_options(*verb, options->stability);
   add_range_options(*verb, options->range);
+  verb->add_option("-o,--output", options->output,
+                   "File to write (HDF5): the locus along the key, as `locus` writes it");
+  add_force_option(*verb, options->stability.common);
   verb->callback([options, &action] { action = [options] { return threshold(*options); }; });
 }
 

@@ -27,12 +27,19 @@ void write_law_table(const std::string& path, Overwrite overwrite, const Contact
   Attributes all{{"kind", std::string("contact law")}};
   all.insert(all.end(), attributes.begin(), attributes.end());
   write_hdf5_file(path, overwrite, all, [&](const Hdf5Writer& writer) {
-    writer.write("/speed", table.speeds, "1");
-    writer.write("/indentation", table.indentations, "1");
+    const Handle speed = writer.write("/speed", table.speeds, "1");
+    const Handle indentation = writer.write("/indentation", table.indentations, "1");
+    writer.make_scale(speed, "/speed");
+    writer.make_scale(indentation, "/indentation");
     const std::vector<hsize_t> shape{table.indentations.size(), table.speeds.size()};
-    for (const auto& [dataset, values] : table_datasets)
-      writer.write(dataset, shape, (table.*values).data(), "1");
-    writer.write("/memory_in_cells", shape, memory_in_cells.data(), "1");
+    const auto add = [&](const char* dataset, const std::vector<double>& values) {
+      const Handle written = writer.write(dataset, shape, values.data(), "1");
+      writer.tie(written, dataset, indentation, 0);
+      writer.tie(written, dataset, speed, 1);
+    };
+    for (const auto& [dataset, values] : table_datasets) add(dataset, table.*values);
+    add("/memory_in_cells", memory_in_cells);
+    writer.make_default_plot("/friction", {"/indentation", "/speed"});
   });
 }
 

@@ -94,6 +94,13 @@ class Readers(unittest.TestCase):
              at("spectrogram.h5"))
         verb("contact", scene("viscoelastic_contact"), "--speed", "0.1,1", "--indentation", "0.01", "--set",
              "contacts.tip.normal.solver.grid=32", "-o", at("contact.h5"))
+        verb("contact", scene("viscoelastic_contact"), "--table", at("law.h5"), "--speeds", "0.1", "1", "4", "--indentations",
+             "0.01", "0.1", "4", "--set", "contacts.tip.normal.solver.grid=32")
+        verb("eig", scene("disc_and_pads"), "--explain", "-o", at("eig.h5"))
+        verb("threshold", scene("disc_and_pads"), "--parameter", "parameters.mu", "--from", "0.2", "--to", "0.5", "--points",
+             "4", "-o", at("threshold.h5"))
+        verb("compare", scene("beam_on_beam"), "--set", "time.end=0.01", "--set", "measure.from=0.005", "-o", at("compared"))
+        os.rename(os.path.join(at("compared"), "comparison.h5"), at("comparison.h5"))
         verb("precision", scene("viscoelastic_sphere"), "--points", "2", "-o", at("study"))
         os.rename(os.path.join(at("study"), "precision.h5"), at("precision.h5"))
         killed_run(at("killed.h5"))
@@ -101,7 +108,8 @@ class Readers(unittest.TestCase):
                      "failed": "stability map",
                      "sweep": "sweep of transients", "cycle": "limit cycle", "cycles": "sweep of limit cycles",
                      "responses": "frequency responses", "spectrogram": "spectrogram", "contact": "sliding contacts",
-                     "precision": "study of precision"}
+                     "precision": "study of precision", "law": "contact law", "eig": "eigenvalues", "threshold": "locus",
+                     "comparison": "comparison of assumptions"}
 
     @classmethod
     def tearDownClass(cls):
@@ -225,7 +233,10 @@ class Readers(unittest.TestCase):
                        "contact": ("/contacts/000", ("pressure", ("y", "x"))), "cycle": ("/channels", None),
                        "cycles": ("/up", ("period", ("value",))),
                        "precision": ("/settings", ("error", ("run_time",))), "run": ("/channels", None),
-                       "heard": ("/windows", ("gain", ("number",))), "killed": ("/channels", None)}
+                       "heard": ("/windows", ("gain", ("number",))), "killed": ("/channels", None),
+                       "law": ("/", ("friction", ("indentation", "speed"))),
+                       "eig": ("/eigenvalues", ("growth", ("number",))), "threshold": ("/unstable", ("from", ("number",))),
+                       "comparison": ("/runs", ("ratio", ("number",)))}
         for name, _, path in self.files():
             if name == "cycles":
                 with h5py.File(path, "r") as opened:
@@ -252,7 +263,8 @@ class Readers(unittest.TestCase):
                     "run": "force(time)", "heard": "growth_max(number)", "killed": "force(time)",
                     "contact": "pressure(y, x)", "cycle": "force(time)",
                     "responses": "real(frequency)", "locus": "growth(values", "cycles": "period(value)",
-                    "precision": "error(run_time)"}
+                    "precision": "error(run_time)", "law": "friction(indentation, speed)",
+                    "eig": "damping_ratio(number)", "threshold": "growth(values", "comparison": "ratio(number)"}
         for name, _, path in self.files():
             answer = subprocess.run(["ncdump", "-h", path], capture_output=True, text=True, check=False)
             self.assertEqual(answer.returncode, 0, answer.stderr)
@@ -264,7 +276,8 @@ class Readers(unittest.TestCase):
         fields = {"run": "time", "heard": "windows.gain", "killed": "time", "locus": "eigenvalues.growth",
                   "map": "growth", "failed": "failure", "sweep": "steps",
                   "cycle": "time", "responses": "frequency", "spectrogram": "amplitude", "contact": "rows.force",
-                  "cycles": None, "precision": "settings.error"}
+                  "cycles": None, "precision": "settings.error", "law": "friction", "eig": "equilibrium.force",
+                  "threshold": "values", "comparison": "runs.step_time"}
         for name, _, path in self.files():
             with h5py.File(path, "r") as opened:
                 field = fields[name] or f"{next(place for place in opened if place != 'plot')}.period"

@@ -40,6 +40,10 @@ stridor('frf', beams, '--input', 'cantilever.free_end.y', '--output', 'cantileve
 stridor('report', at('frf.h5'), '-o', at('frf.html'));
 stridor('sweep', path.join(source, 'scenes/viscoelastic_sphere.yaml'), '--set', 'parameters.v=0.03', '--parameter', 'parameters.tau0', '--from', '0.01', '--to', '0.1', '--points', '4', '--up-down', '-o', at('cycles.h5'));
 stridor('report', at('cycles.h5'), '-o', at('cycles.html'));
+stridor('eig', beams, '--at', '82mm', '--about', 'deformed', '--explain', '-o', at('eig.h5'));
+stridor('report', at('eig.h5'), '-o', at('eig.html'));
+stridor('contact', path.join(source, 'scenes/viscoelastic_contact.yaml'), '--table', at('law.h5'), '--speeds', '0.1', '10', '5', '--indentations', '0.01', '0.1', '5', '--set', 'contacts.tip.normal.solver.grid=32');
+stridor('report', at('law.h5'), '-o', at('law.html'));
 const info = JSON.parse(stridor('info', at('run.h5'), '--json'));
 
 // How many colours a canvas shows: a blank one has one.
@@ -213,7 +217,7 @@ print(json.dumps([t[keep].tolist(), f[name][()][keep].tolist()]))`;
   await page.close();
 
   // Narrow, dark, in space, a map.
-  for (const name of ['beams.html', 'disc.html', 'map.html', 'study.html', 'frf.html', 'cycles.html']) {
+  for (const name of ['beams.html', 'disc.html', 'map.html', 'study.html', 'frf.html', 'cycles.html', 'eig.html', 'law.html']) {
     const narrow = await opened(browser, name, messages, requests, {viewport: {width: 400, height: 800}, colorScheme: 'dark'});
     assert.ok(await narrow.evaluate(() => document.documentElement.scrollWidth) <= 400, `${name} is wider than 400 px`);
     assert.equal(await narrow.evaluate(() => getComputedStyle(document.body).backgroundColor), 'rgb(20, 23, 28)');
@@ -277,6 +281,13 @@ print(json.dumps([t[keep].tolist(), f[name][()][keep].tolist()]))`;
   }), /^amplitude: up, .*at rest; equilibrium \w+ – down, /);
   await cycles.close();
 
+  // A row of eigenvalues shows its mode.
+  const eig = await opened(browser, 'eig.html', messages, requests);
+  await showsMode(eig, {frequency: 3515.52, growth_max: 76.54});
+  await eig.locator('tbody tr').nth(4).click();
+  await showsMode(eig, {frequency: 1139.06, growth_max: -7.228});
+  await eig.close();
+
   const study = await opened(browser, 'study.html', messages, requests);
   assert.match(await study.evaluate(() => {
     const chart = [...document.querySelectorAll('div')].find(d => d.errors).errors;
@@ -302,7 +313,7 @@ print(json.dumps([t[keep].tolist(), f[name][()][keep].tolist()]))`;
 async function inFirefox() {
   const browser = await puppeteer.launch({browser: 'firefox', executablePath: firefoxPath, headless: true});
   const errors = [];
-  for (const name of ['beams.html', 'disc.html', 'map.html', 'study.html', 'frf.html', 'cycles.html']) {
+  for (const name of ['beams.html', 'disc.html', 'map.html', 'study.html', 'frf.html', 'cycles.html', 'eig.html', 'law.html']) {
     const page = await browser.newPage();
     page.on('pageerror', error => errors.push(String(error)));
     await page.goto(url(name));

@@ -34,11 +34,12 @@ async function makeField(place, view, section) {
   const edgesX = edgesOf(xs, isLogX), edgesY = edgesOf(ys, isLogY);
   let low = Infinity, high = -Infinity;
   for (const value of values) if (isFinite(value)) { low = Math.min(low, value); high = Math.max(high, value); }
-  const isSigned = view.scale === 'signed';
+  const isSigned = view.scale === 'signed', isLog = view.scale === 'log' && low > 0;
+  const inner = value => isLog ? Math.log(value) : value;
   const size = Math.max(Math.abs(low), Math.abs(high)) || 1;
   // Growth rates span decades: the root of their size keeps small ones visible.
   const shareOf = value => isSigned ? 0.5 + 0.5 * Math.sign(value) * Math.sqrt(Math.abs(value) / size)
-    : high > low ? (value - low) / (high - low) : 0.5;
+    : high > low ? (inner(value) - inner(low)) / (inner(high) - inner(low)) : 0.5;
   const stops = isSigned ? palettes.signed : palettes.viridis;
   let chosen = null;
   if (view.title) place.append(element('h3', {}, view.title));
@@ -90,16 +91,17 @@ async function makeField(place, view, section) {
   place.append(note, bar, element('figcaption', {}, `${view.value.name} from ${shown(low, view.value.units)} to ${shown(high, view.value.units)}`,
     isSigned ? ' (colours by the root of its size); lines: where stability changes. ' : '. ',
     view.reproduce ? 'Click for the nearest point and its command.' : ''));
+  const between = share => isLog ? low * (high / low) ** share : low + (high - low) * share;
   const paintBar = () => {
     const [c, width] = sharp(bar, 34);
     for (let px = 0; px < width; ++px) {
-      const value = isSigned ? size * (2 * px / width - 1) : low + (high - low) * px / width;
+      const value = isSigned ? size * (2 * px / width - 1) : between(px / width);
       c.fillStyle = `rgb(${paletteColour(stops, shareOf(value))})`;
       c.fillRect(px, 0, 1.5, 14);
     }
     c.fillStyle = colour('text');
     c.textBaseline = 'top';
-    const ends = isSigned ? [-size, 0, size] : [low, 0.5 * (low + high), high];
+    const ends = isSigned ? [-size, 0, size] : [low, between(0.5), high];
     ends.forEach((value, k) => {
       c.textAlign = ['left', 'center', 'right'][k];
       c.fillText(shown(value, view.value.units, 3), [0, width / 2, width][k], 17);

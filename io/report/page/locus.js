@@ -202,7 +202,7 @@ async function makeModes(place, view, section) {
   const firsts = await Promise.all([view.frames[0], view.frames[view.frames.length - 1]].map(frame => numbersOf(frame.places)));
   mesh.fit(...firsts);
   const text = element('div', {class: 'readout'});
-  const choice = element('select', {'aria-label': 'Mode', onchange: () => { section.mode = Number(choice.value); section.branch = undefined; if (where) where.wish = null; show(); }});
+  const choice = element('select', {'aria-label': 'Mode', onchange: () => { section.mode = Number(choice.value); section.branch = section.shownMode = undefined; if (where) where.wish = null; show(); }});
   const play = element('button', {type: 'button', 'aria-pressed': 'true', onclick: () => run(!isRunning)}, 'Pause');
   const size = element('input', {type: 'range', min: 0, max: 3, step: 0.05, value: 1, 'aria-label': 'Amplitude', oninput: () => { mesh.amplitude = Number(size.value); mesh.draw(); }});
   const speed = element('input', {type: 'range', min: 0.1, max: 3, step: 0.1, value: 1, 'aria-label': 'Speed'});
@@ -230,7 +230,7 @@ async function makeModes(place, view, section) {
     let frame = view.frames[0];
     if (where) for (const one of view.frames) if (Math.abs(one.value - where.value) < Math.abs(frame.value - where.value)) frame = one;
     let number = Math.min(section.mode ?? frame.modes.reduce((best, one, i) => one.growth > frame.modes[best].growth ? i : best, 0), frame.modes.length - 1);
-    const wanted = section.branch !== undefined && section.wantedNow ? section.wantedNow() : null;
+    const wanted = section.shownMode || (section.branch !== undefined && section.wantedNow ? section.wantedNow() : null);
     const wish = where && where.wish;
     if (wish || wanted) {
       const offs = frame.modes.map(one => wish ? offOf(wish, one)
@@ -248,6 +248,7 @@ async function makeModes(place, view, section) {
     place.dataset.mode = String(number + 1);
   };
   if (where) where.listeners.add(show);
+  section.showMode = () => { place.scrollIntoView({block: 'nearest'}); show(); };
   await show();
   run(!matchMedia('(prefers-reduced-motion: reduce)').matches);
   place.mesh = mesh;  // for those who test the page

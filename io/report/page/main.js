@@ -13,7 +13,7 @@ function prepare(sections) {
         resolved: bursts ? bursts.resolved : null, predicted: bursts ? bursts.predicted : [], places: []};
     }
     const modes = viewOf(section, 'modes');
-    if (modes && modes.parameter) section.place = new Place(modes.frames.map(frame => frame.value), modes.frames.map(frame => frame.time));
+    if (modes && modes.parameter && modes.frames.length > 1) section.place = new Place(modes.frames.map(frame => frame.value), modes.frames.map(frame => frame.time));
     const locus = viewOf(section, 'locus');
     if (section.place && locus && locus.windows.length)
       section.place.set(locus.windows.reduce((a, b) => b.growth_max > a.growth_max ? b : a).value_max);
@@ -50,6 +50,7 @@ function makeView(parent, view, section) {
   const run = section.run;
   switch (view.type) {
     case 'bursts': makeBursts(parent, view, run, section); break;
+    case 'table': makeTable(parent, view, section); break;
     case 'windows': makeWindows(parent, view, section); break;
     case 'spectrogram': framed(parent, 'Spectrogram', 430, place => makeSpectrogram(place, view, run)); break;
     case 'histories':

@@ -30,6 +30,20 @@ function unitTable(columns, rows, act = null) {
     }))));
 }
 
+// Of a row of numbers and words for each entry; a click on one shows the mode of its frequency.
+function makeTable(place, view, section) {
+  const indices = Array.from({length: (view.columns[0].texts || view.columns[0].values).length}, (_, i) => i);
+  const columns = view.columns.map(column => ({name: column.name, units: column.units, digits: column.digits, text: !!column.texts,
+    of: column.texts ? i => column.texts[i] : i => column.values[i]}));
+  const column = name => view.columns.find(one => one.name === name);
+  const act = view.follows ? i => () => {
+    section.shownMode = {frequency: column('Frequency').values[i], growth: column('Growth rate').values[i]};
+    if (section.showMode) section.showMode();
+  } : null;
+  place.append(element('h3', {}, view.title), unitTable(view.follows ? [{name: 'Number', of: i => i + 1}, ...columns] : columns, indices, act));
+  if (view.follows && viewOf(section, 'modes')) place.append(element('p', {class: 'faint'}, 'A click on a row shows its mode below.'));
+}
+
 const verdictSigns = {calm: ['✓', 'Calm.'], loud: ['!', 'Loud.'], stable: ['✓', 'Stable.'], unstable: ['!', 'Unstable.'],
   failed: ['✗', 'Failed.'], told: ['·', '']};
 
@@ -106,12 +120,12 @@ function makeWindows(place, view, section) {
 
 function makeResults(results) {
   const rows = Object.entries(results).map(([name, value]) => element('tr', {}, cell(name, true), cell(typeof value === 'number' ? digits(value, 6) : String(value ?? '–'))));
-  return element('details', {open: rows.length < 12}, element('summary', {}, 'Checks and results of the run'), element('div', {class: 'scroll'}, element('table', {}, element('tbody', {}, rows))));
+  return element('details', {open: rows.length < 12}, element('summary', {}, 'Checks and results of the run, in SI units'), element('div', {class: 'scroll'}, element('table', {}, element('tbody', {}, rows))));
 }
 
 function makeExpectations(rows) {
   const met = rows.filter(row => row.is_met).length;
-  return element('details', {open: met < rows.length}, element('summary', {}, `${met} of ${rows.length} expectations of the scene are met`),
+  return element('details', {open: met < rows.length}, element('summary', {}, `${met} of ${rows.length} expectations of the scene are met (in SI units)`),
     element('div', {class: 'scroll'}, element('table', {}, headRow(['Result', 'Expected', 'Within', 'Got', '']),
       element('tbody', {}, rows.map(row => element('tr', {}, cell(row.result, true), cell(digits(row.expected, 6)), cell(digits(row.tolerance, 3)),
         cell(digits(row.value, 6)), cell(row.is_met ? '✓' : '✗ not met')))))));

@@ -1,0 +1,29 @@
+// A locus as a file, with the times at which a run of its scene passes its windows.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/stability/stability.hpp"
+#include "io/results/locus_file.hpp"
+
+namespace stridor {
+
+/// Windows of a locus; where its key moves the bodies along their way, with the times at which a run
+/// of the scene passes them and the growth in them.
+std::vector<TimedWindow> timed_windows(const Locus& locus, const NumericKey& key,
+                                       const StabilityScene& scene, StabilityFamily& family);
+
+/// What a file of a locus says of it.
+struct LocusSource {
+  const StabilityScene& scene;
+  const StabilityOptions& options;
+  const NumericKey& key;
+  const std::string& command_line;
+};
+
+/// Writes a file of the kind `locus`. @throws FileError as write_locus_file()
+void write_locus(const std::string& path, const Locus& locus,
+                 const std::vector<TimedWindow>& windows, const LocusSource& source);
+
+}  // namespace stridor
