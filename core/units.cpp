@@ -56,7 +56,11 @@ std::string expected_text(const std::string& unit) {
 }
 
 [[noreturn]] void refuse(const std::string& message) {
-  throw std::invalid_argument(message);
+  throw QuantityError(Refusal::wrong_value, message);
+}
+
+[[noreturn]] void refuse_unit(const std::string& message) {
+  throw QuantityError(Refusal::wrong_unit, message);
 }
 
 [[noreturn]] void refuse_number(const std::string& text, const std::string& expected) {
@@ -166,8 +170,8 @@ UnitMeaning read_unit(const SplitQuantity& split, const std::string& expected) {
   }
   const auto meaning = meaning_of(is_inverse ? "1/" + std::string(after_one) : unit);
   if (!meaning) {
-    refuse(fmt::format("'{}' has the unknown unit '{}', expected {}{}", split.written, unit,
-                       expected, suggest_unit(unit)));
+    refuse_unit(fmt::format("'{}' has the unknown unit '{}', expected {}{}", split.written, unit,
+                            expected, suggest_unit(unit)));
   }
   return *meaning;
 }
@@ -198,8 +202,9 @@ double parse_quantity(const std::string& text, const std::string& unit) {
     expected = *declared;
   }
   if (unit.empty() || !meaning.is_scale || meaning.powers != expected.powers) {
-    refuse(fmt::format("'{}' has unit {}, expected {}{}", split.written, split.unit, wanted,
-                       unit.empty() ? " (only '%' may follow)" : angle_hint(meaning, expected)));
+    refuse_unit(
+        fmt::format("'{}' has unit {}, expected {}{}", split.written, split.unit, wanted,
+                    unit.empty() ? " (only '%' may follow)" : angle_hint(meaning, expected)));
   }
   const double value = convert(split.number, meaning, expected);
   if (!std::isfinite(value)) refuse_magnitude(split.written);
@@ -212,8 +217,8 @@ Quantity parse_any_quantity(const std::string& text) {
   if (split.unit.empty() || is_dimensionless_sign(split.unit)) return {with_sign(split), ""};
   const UnitMeaning meaning = read_unit(split, wanted);
   if (!meaning.is_scale) {
-    refuse(fmt::format("'{}' has unit {}, which is no multiple of an SI unit", split.written,
-                       split.unit));
+    refuse_unit(fmt::format("'{}' has unit {}, which is no multiple of an SI unit", split.written,
+                            split.unit));
   }
   UnitMeaning basic;
   basic.powers = meaning.powers;

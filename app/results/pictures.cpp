@@ -110,8 +110,8 @@ double option_value(const char* option, const std::string& text, const std::stri
   double value = 0.0;
   try {
     value = parse_quantity(text, unit);
-  } catch (const std::invalid_argument& error) {
-    throw ConfigError(Refusal::wrong_value, option, error.what());
+  } catch (const QuantityError& error) {
+    throw ConfigError(error.refusal(), option, error.what());
   }
   if (!allowed.contains(value)) {
     throw ConfigError(Refusal::wrong_value, option,

@@ -206,8 +206,8 @@ double parse_value(const NumericKey& key, const std::string& text, const std::st
   double value = 0.0;
   try {
     value = parse_quantity(text, key.unit);
-  } catch (const std::invalid_argument& error) {
-    throw ConfigError(Refusal::wrong_value, option, fmt::format("{} ({})", error.what(), key.path));
+  } catch (const QuantityError& error) {
+    throw ConfigError(error.refusal(), option, fmt::format("{} ({})", error.what(), key.path));
   }
   if (key.is_integer && value != std::round(value)) {
     throw ConfigError(Refusal::wrong_value, option,

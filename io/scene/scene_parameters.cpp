@@ -138,6 +138,10 @@ void SceneParameters::evaluate_parameter(Parameter& parameter, std::vector<Probl
       parameter.number.value = quantity.value;
       parameter.number.unit = quantity.unit;
     }
+  } catch (const QuantityError& error) {
+    problems.push_back(
+        problem_at(error.refusal(), parameter.node->place, parameter.path, error.what()));
+    return;
   } catch (const std::invalid_argument& error) {
     problems.push_back(
         problem_at(Refusal::expression, parameter.node->place, parameter.path, error.what()));

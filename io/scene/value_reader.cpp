@@ -161,8 +161,8 @@ class ValueReader {
     }
     try {
       return parse_quantity(node.text, unit);
-    } catch (const std::invalid_argument& error) {
-      report_.add(Refusal::wrong_unit, node.place, path, error.what());
+    } catch (const QuantityError& error) {
+      report_.add(error.refusal(), node.place, path, error.what());
       return std::nullopt;
     }
   }

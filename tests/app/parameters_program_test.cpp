@@ -113,6 +113,27 @@ TEST(ParametersProgram, WhatCannotBeVariedIsRefusedWithAdvice) {
               HasSubstr("no expression of the scene uses 'parameters.mu'"));
 }
 
+TEST(ParametersProgram, AWordIsAWrongValueAndAStrangeUnitAWrongUnit) {
+  const auto code_of = [](const std::vector<std::string>& arguments) {
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 2);
+    return Json::parse(result.out)["errors"][0]["code"];
+  };
+  const std::string scene = scene_path("beam_on_beam.yaml");
+  for (const char* key : {"parameters.mu=", "contact.start=", "time.step="}) {
+    const auto checked = [&](const char* value) {
+      return code_of({"check", scene, "--json", "--set", std::string(key) + value});
+    };
+    EXPECT_EQ(checked("abc"), "wrong-value") << key;
+    EXPECT_EQ(checked("3 furble"), "wrong-unit") << key;
+  }
+  const auto located = [&](const char* from) {
+    return code_of({"locus", scene, "--from", from, "--to", "0.09", "--points", "3", "--json"});
+  };
+  EXPECT_EQ(located("abc"), "wrong-value");
+  EXPECT_EQ(located("30 kg"), "wrong-unit");
+}
+
 TEST(ParametersProgram, ThresholdOfTheSphereIsThatOfTheKey) {
   const std::string scene = scene_path("viscoelastic_sphere.yaml");
   const Json parameter = json_of(

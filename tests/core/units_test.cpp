@@ -105,6 +105,22 @@ TEST(ParseQuantity, WrongDimensionNamesBothUnits) {
   EXPECT_EQ(refusal("30 %", "m"), "'30 %' has unit %, expected a length in m");
 }
 
+TEST(ParseQuantity, OnlyANumberHasAWrongUnit) {
+  const auto kind = [](const std::string& text, const std::string& unit) {
+    try {
+      parse_quantity(text, unit);
+    } catch (const QuantityError& error) {
+      return error.refusal();
+    }
+    return Refusal::internal_error;
+  };
+  for (const char* text : {"abc", "", "mm", "nan", "0x10", "1e999", "5 5", "3 m 10"})
+    EXPECT_EQ(kind(text, "m"), Refusal::wrong_value) << text;
+  for (const char* text : {"3 kg", "3 furble", "3 %", "-.5 m/s"})
+    EXPECT_EQ(kind(text, "m"), Refusal::wrong_unit) << text;
+  EXPECT_EQ(kind("3 mm", ""), Refusal::wrong_unit);
+}
+
 TEST(ParseQuantity, ReciprocalIsNotConverted) {
   // UDUNITS would turn 2 s into 0.5 Hz.
   EXPECT_THAT(refusal("2 s", "Hz"), HasSubstr("has unit s, expected a frequency in Hz"));
