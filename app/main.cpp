@@ -212,7 +212,8 @@ int run_program(int argc, char** argv) {
   } catch (const ConfigError& error) {
     return report("the input is wrong", error.report(), ExitCode::bad_input, error.problems());
   } catch (const FileError& error) {
-    return report("I/O error", error.what(), ExitCode::file_trouble, error.refusal());
+    return report("I/O error", with_code(error.what(), error.refusal()), ExitCode::file_trouble,
+                  {error.problem()});
   } catch (const NumericalError& error) {
     return report("the computation failed", error.what(), ExitCode::numbers_failed,
                   error.refusal());

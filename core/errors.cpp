@@ -43,8 +43,14 @@ std::string ConfigError::report() const {
 
 FileError::FileError(Refusal refusal, const std::string& path, const std::string& dataset,
                      const std::string& cause)
-    : std::runtime_error(dataset.empty() ? fmt::format("{}: {}", path, cause)
-                                         : fmt::format("{}: dataset {}: {}", path, dataset, cause)),
-      refusal_(refusal) {}
+    : FileError(Problem{
+          .refusal = refusal,
+          .key = "",
+          .message = dataset.empty() ? cause : fmt::format("dataset {}: {}", dataset, cause),
+          .source = path,
+          .dataset = dataset}) {}
+
+FileError::FileError(Problem problem)
+    : std::runtime_error(problem.text()), problem_(std::move(problem)) {}
 
 }  // namespace stridor

@@ -25,6 +25,7 @@ struct Problem {
   int line = 0;    ///< 1-based; 0 where there is none
   int column = 0;  ///< 1-based; 0 where there is none
   std::string excerpt{};  ///< text written there, with a caret (core/excerpt.hpp); may be empty
+  std::string dataset{};  ///< dataset or attribute of the file that is meant; may be empty
 
   /// "source:line:column: key: message", omitting unknown parts.
   std::string text() const;
@@ -55,10 +56,14 @@ class FileError : public std::runtime_error {
   FileError(Refusal refusal, const std::string& path, const std::string& dataset,
             const std::string& cause);
 
-  Refusal refusal() const { return refusal_; }
+  Refusal refusal() const { return problem_.refusal; }
+  /// Path, dataset and cause apart; its text is `what()`.
+  const Problem& problem() const { return problem_; }
 
  private:
-  Refusal refusal_;
+  explicit FileError(Problem problem);
+
+  Problem problem_;
 };
 
 /// The computation failed: singular, diverged, or left its range of validity.

@@ -25,11 +25,13 @@ std::vector<TimedWindow> read_predictions(const std::string& file, const SceneIn
   const ResultFile locus(file);
   const SceneInFile of_locus{locus.text("scene_hash"), locus.text("scene_resolved")};
   // Another program's file may not say of which scene it is.
+  std::vector<Problem> warnings;
   if (!of_locus.hash.empty() && !has_same_mechanics(of_locus, of_run))
-    print_warnings({{Refusal::contradiction, "--predict",
-                     fmt::format("'{}' is of another scene ({} instead of {}): other bodies, "
-                                 "contacts, drives or terms, whose windows may be elsewhere",
-                                 file, of_locus.hash, of_run.hash)}});
+    warnings.push_back({Refusal::contradiction, "--predict",
+                        fmt::format("'{}' is of another scene ({} instead of {}): other bodies, "
+                                    "contacts, drives or terms, whose windows may be elsewhere",
+                                    file, of_locus.hash, of_run.hash)});
+  print_warnings(warnings);
   return windows;
 }
 

@@ -14,6 +14,7 @@ namespace stridor {
 namespace {
 
 std::optional<Json> json_to_print;
+std::optional<Json> told_warnings;  ///< a list, of a verb that looks for warnings
 
 }  // namespace
 
@@ -40,16 +41,30 @@ void check_figure(const std::filesystem::path& figure, const CommonOptions& opti
   check_replaceable(figure.string(), options.overwrite());
 }
 
+namespace {
+
 Json problem_json(const Problem& problem) {
-  return {
+  Json object = {
       {"code", code_of(problem.refusal)}, {"file", problem.source}, {"line", problem.line},
       {"column", problem.column},         {"key", problem.key},     {"message", problem.message}};
+  if (!problem.dataset.empty()) object["dataset"] = problem.dataset;
+  return object;
+}
+
+}  // namespace
+
+Json problems_json(const std::vector<Problem>& problems) {
+  Json list = Json::array();
+  for (const Problem& problem : problems) list.push_back(problem_json(problem));
+  return list;
 }
 
 void print_warnings(const std::vector<Problem>& warnings) {
   for (const Problem& warning : warnings)
     fmt::print(stderr, "stridor: warning\n{}\n{}", warning.text(),
                warning.excerpt.empty() ? "" : warning.excerpt + "\n");
+  if (!told_warnings) told_warnings.emplace(Json::array());
+  for (Json& one : problems_json(warnings)) told_warnings->push_back(std::move(one));
 }
 
 void print_json(Json object) {
@@ -58,12 +73,12 @@ void print_json(Json object) {
 
 void finish_json(const std::vector<Problem>& errors) {
   if (!errors.empty()) {
-    Json list = Json::array();
-    for (const Problem& error : errors) list.push_back(problem_json(error));
     if (!json_to_print) json_to_print.emplace(Json::object());
-    (*json_to_print)["errors"] = std::move(list);
+    (*json_to_print)["errors"] = problems_json(errors);
   }
   if (!json_to_print) return;
+  if (told_warnings) (*json_to_print)["warnings"] = std::move(*told_warnings);
+  told_warnings.reset();
   // Names of files need not be UTF-8.
   const std::string text = json_to_print->dump(2, ' ', false, Json::error_handler_t::replace);
   // If nothing can be printed this does not throw; main() looks at stdout at the end.

@@ -45,10 +45,12 @@ void add_force_option(CLI::App& verb, CommonOptions& options);
 /// @throws FileError   for one that exists and may not be overwritten
 void check_figure(const std::filesystem::path& figure, const CommonOptions& options);
 
-/// Place, key and message of a problem; of a failure without a place the message alone.
-Json problem_json(const Problem& problem);
+/// Code, place, key and message of each problem; of a failure without a place code and message
+/// alone. `dataset` where one of a file is meant.
+Json problems_json(const std::vector<Problem>& problems);
 
-/// Warns on stderr of input that is probably not intended but does not stop a verb.
+/// Warns on stderr of input that is probably not intended but does not stop a verb. The JSON object
+/// of the verb then has a list `warnings`, empty where there are none.
 void print_warnings(const std::vector<Problem>& warnings);
 
 /// Takes the one JSON object that a verb prints. It is printed when the verb has ended, since a

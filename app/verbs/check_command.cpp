@@ -113,9 +113,8 @@ ExitCode check(const CheckOptions& options) {
   }
   const std::size_t num_warnings = report.warnings.size();
   if (options.common.json) {
-    Json object = {{"errors", Json::array()}, {"warnings", Json::array()}};
-    for (const Problem& problem : problems) object["errors"].push_back(problem_json(problem));
-    for (const Problem& one : report.warnings) object["warnings"].push_back(problem_json(one));
+    Json object = {{"errors", problems_json(problems)},
+                   {"warnings", problems_json(report.warnings)}};
     if (!report.bodies.empty()) object["matrix_bodies"] = report.bodies;
     for (const auto& [name, facts] : report.imports) object["imports"][name] = import_json(facts);
     if (report.stability) object["stability"] = step_stability_json(*report.stability);

@@ -312,6 +312,7 @@ ExitCode report_done(const RunOptions& options, const RunFileReader& reader) {
   }
   const Json results = stored_results(reader);
   if (options.common.json) {
+    print_warnings({});
     print_json(results);
   } else {
     fmt::print("{:<24}done; {} holds the whole run, there is nothing left to do\n", "status",
@@ -342,6 +343,7 @@ ExitCode resume(const RunOptions& options) {
   Transient transient(loaded, interrupted);
   if (frames) transient.write_frames(*options.vtu, *frames);
   if (windows) transient.compare_with(std::move(*windows));
+  print_warnings({});  // those of the scene were told when the run began
   return run_to_end(transient, loaded, options.resumed, study, ending);
 }
 

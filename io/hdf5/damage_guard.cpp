@@ -6,6 +6,8 @@
 #include <atomic>
 #include <nlohmann/json.hpp>
 
+#include "core/refusals.hpp"
+
 namespace stridor {
 namespace {
 
@@ -39,19 +41,17 @@ void leave(int) {
   _exit(DamageGuard::exit_code);
 }
 
-std::string crash_message(const std::string& path) {
-  return fmt::format("{}: is damaged, as it seems: the program crashed while it had this file open",
-                     path);
-}
+constexpr const char* crash_message =
+    "is damaged, as it seems: the program crashed while it had this file open";
 
 std::string crash_json(const std::string& path) {
   using Json = nlohmann::json;
   const Json error = {{"code", code_of(Refusal::file_damaged)},
-                      {"file", ""},
+                      {"file", path},
                       {"line", 0},
                       {"column", 0},
                       {"key", ""},
-                      {"message", crash_message(path)}};
+                      {"message", crash_message}};
   const Json object = {{"errors", Json::array({error})}};
   // Names of files need not be UTF-8.
   return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -64,8 +64,9 @@ void DamageGuard::tell_as_json() {
 }
 
 DamageGuard::DamageGuard(const std::string& path)
-    : last_words_(fmt::format("stridor: I/O error\n{}\n",
-                              with_code(crash_message(path), Refusal::file_damaged))),
+    : last_words_(fmt::format(
+          "stridor: I/O error\n{}\n",
+          with_code(fmt::format("{}: {}", path, crash_message), Refusal::file_damaged))),
       json_(crash_json(path)),
       outer_(innermost) {
   innermost = this;

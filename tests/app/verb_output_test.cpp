@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -153,6 +154,54 @@ TEST(VerbOutput, ThresholdSaysWhereAndWhichWay) {
   EXPECT_THAT(output_of({"threshold", beams, "--parameter", "contact.friction.coefficient",
                          "--from", "0", "--to", "0.01"}),
               HasSubstr("stable everywhere between contact.friction.coefficient = 0 and "));
+}
+
+TEST(VerbOutput, ProblemsWithFilesNameTheFileApart) {
+  const TemporaryFolder folder;
+  const std::string missing = folder / "none.msh";
+  const auto error_of = [](const std::vector<std::string>& arguments) {
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 4) << result.out;
+    const auto error = nlohmann::json::parse(result.out)["errors"][0];
+    // In words both stand together.
+    EXPECT_THAT(result.err, HasSubstr(error["file"].get<std::string>() + ": " +
+                                      error["message"].get<std::string>()));
+    return error;
+  };
+  auto error = error_of({"import", missing, "--json"});
+  EXPECT_EQ(error["file"], missing);
+  EXPECT_EQ(error["message"],
+            "cannot be opened; expected a mesh of Gmsh (.msh) or of Abaqus or CalculiX (.inp)");
+  EXPECT_EQ(error.size(), 6U);  // no dataset
+  error = error_of({"info", beams, "--json"});
+  EXPECT_EQ(error["file"], beams);
+  EXPECT_EQ(error["message"], "is not an HDF5 file");
+  EXPECT_EQ(error["code"], "other-kind-of-file");
+}
+
+TEST(VerbOutput, JsonHoldsTheWarningsOfARun) {
+  const TemporaryFolder folder;
+  const auto run = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run",     scene_path("examples/mass_on_belt.yaml"),
+                                       "-o",      folder / "run.h5",
+                                       "--force", "--json",
+                                       "--set",   "time.end=0.01"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = Program(arguments).run();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(result.out)["warnings"];
+  };
+  const auto checked = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"check", scene_path("examples/mass_on_belt.yaml"), "--json",
+                                       "--set", "time.end=0.01"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return nlohmann::json::parse(Program(arguments).run().out)["warnings"];
+  };
+  EXPECT_EQ(run({"--set", "measure.from=0"}), nlohmann::json::array());
+  const nlohmann::json warned = run({"--set", "measure.from=1"});
+  ASSERT_GE(warned.size(), 1U);
+  EXPECT_EQ(warned, checked({"--set", "measure.from=1"}));
+  EXPECT_EQ(warned[0]["key"], "measure.from");
 }
 
 TEST(VerbOutput, FitPrintsItsCoefficients) {

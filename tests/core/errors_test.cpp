@@ -76,6 +76,15 @@ TEST(FileError, NamesFileDatasetAndCause) {
                "run.h5: dataset /time: has 3 entries");
 }
 
+TEST(FileError, KeepsFileDatasetAndCauseApart) {
+  const FileError error(Refusal::file_damaged, "run.h5", "/time", "has 3 entries");
+  EXPECT_EQ(error.problem().refusal, Refusal::file_damaged);
+  EXPECT_EQ(error.problem().source, "run.h5");
+  EXPECT_EQ(error.problem().dataset, "/time");
+  EXPECT_EQ(error.problem().message, "dataset /time: has 3 entries");
+  EXPECT_EQ(error.problem().text(), error.what());
+}
+
 TEST(FileError, LeavesOutAnEmptyDataset) {
   EXPECT_STREQ(FileError(Refusal::cannot_read, "run.h5", "", "cannot be opened").what(),
                "run.h5: cannot be opened");
