@@ -1,4 +1,4 @@
-// Of eigenvalues at one position, and of runs that were compared.
+// Of eigenvalues at one position, of runs that were compared, and of contact laws.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/report/curves.hpp"
 #include "app/report/mode_frames.hpp"
 #include "app/report/tables.hpp"
 #include "core/errors.hpp"
@@ -195,6 +196,27 @@ Json contact_law_section(const ResultFile& file, const ReportContext& context) {
   section["verdict"] = verdict("told", fmt::format("Force, area and friction at {} speeds and {} "
                                                    "indentations.",
                                                    speeds.size(), indentations.size()));
+  return section;
+}
+
+Json master_curve_section(const ResultFile& file, const ReportContext& context) {
+  Json section = section_head(file, file.kind(), "master curve of sliding paraboloids");
+  if (!file.has("/beta"))
+    throw FileError(Refusal::file_damaged, file.path(), "/beta", "is missing");
+  CurveSet points = curve_set(file, "", "beta");
+  for (CurveColumn& column : points.columns) {
+    for (const auto& [name, of] : {std::pair{"f", "force"}, {"g", "area"}, {"m", "friction"}})
+      if (column.name == name) column.name += fmt::format(", of the {}", of);
+  }
+  Json view = curves_view("β", file.array("/beta").units, {points}, context.page);
+  view["x_log"] = true;
+  view["table"] = true;
+  section["views"].push_back(std::move(view));
+  section["verdict"] = verdict(
+      "told",
+      fmt::format("Force, area and friction of paraboloids at {} speeds: β is v τ/R over the "
+                  "root of the indentation y/R.",
+                  points.over.size()));
   return section;
 }
 

@@ -25,7 +25,8 @@ Json report_section(const ResultFile& file, const ReportContext& context) {
       {"study of precision", precision_section},
       {"eigenvalues", eigenvalue_section},
       {"comparison of assumptions", comparison_section},
-      {"contact law", contact_law_section}};
+      {"contact law", contact_law_section},
+      {"master curve", master_curve_section}};
   const std::string kind = file.kind();
   std::vector<std::string> names;
   for (const auto& [name, make] : kinds) {

@@ -85,5 +85,6 @@ Json precision_section(const ResultFile& file, const ReportContext& context);
 Json eigenvalue_section(const ResultFile& file, const ReportContext& context);
 Json comparison_section(const ResultFile& file, const ReportContext& context);
 Json contact_law_section(const ResultFile& file, const ReportContext& context);
+Json master_curve_section(const ResultFile& file, const ReportContext& context);
 
 }  // namespace stridor

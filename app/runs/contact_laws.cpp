@@ -11,10 +11,58 @@
 #include "core/stop_token.hpp"
 #include "io/hdf5/part_file.hpp"
 #include "io/imports/law_table_file.hpp"
+#include "io/results/column_file.hpp"
 #include "solvers/contact/contact_table.hpp"
 #include "solvers/half_space/master_curve.hpp"
 
 namespace stridor {
+namespace {
+
+/// Refuses a name whose ending promises what is not written.
+void check_curve_name(const std::string& path) {
+  for (const char* ending : {".h5", ".inc", ".txt", ".hpp"})
+    if (path.ends_with(ending)) return;
+  throw ConfigError(
+      Refusal::wrong_value, "--master-curve",
+      fmt::format("'{}' ends neither in .h5 (HDF5) nor in .inc, .txt or .hpp (rows of "
+                  "C++)",
+                  path));
+}
+
+/// The rows with which the program itself is compiled.
+std::string curve_text(const MasterCurve& curve, const SlidingContactParameters& solver) {
+  std::string text = fmt::format(
+      "// beta, f, g, m, v tau in cells: a paraboloid with E_0/E_inf = {:g} on {} cells a side, "
+      "tolerance\n// {:g}. Made by `stridor contact --master-curve`; do not edit.\n",
+      curve.modulus_ratio, solver.grid, solver.tolerance);
+  for (const MasterPoint& point : curve.points)
+    text += fmt::format("{{{}, {:.8g}, {:.6g}, {:.7g}, {:.6g}}},\n", point.beta, point.force,
+                        point.area, point.friction, point.memory_in_cells);
+  return text;
+}
+
+void write_curve_file(const ContactOptions& options, const LoadedScene& loaded,
+                      const MasterCurve& curve, const SlidingContactParameters& solver) {
+  std::vector<Column> columns;
+  const auto add = [&](const char* path, double MasterPoint::*member) {
+    Column column{path, "1", {}};
+    for (const MasterPoint& point : curve.points) column.values.push_back(point.*member);
+    columns.push_back(std::move(column));
+  };
+  add("/beta", &MasterPoint::beta);
+  add("/f", &MasterPoint::force);
+  add("/g", &MasterPoint::area);
+  add("/m", &MasterPoint::friction);
+  add("/memory_in_cells", &MasterPoint::memory_in_cells);
+  Attributes attributes = source_attributes(loaded, options.command_line);
+  attributes.emplace_back("modulus_ratio", curve.modulus_ratio);
+  attributes.emplace_back("grid", static_cast<double>(solver.grid));
+  attributes.emplace_back("tolerance", solver.tolerance);
+  write_column_file(*options.master_curve, options.common.overwrite(), "master curve", columns,
+                    attributes);
+}
+
+}  // namespace
 
 ExitCode make_master_curve(const ContactOptions& options, const LoadedScene& loaded,
                            const StudiedContact& contact) {
@@ -30,6 +78,7 @@ ExitCode make_master_curve(const ContactOptions& options, const LoadedScene& loa
   if (material.creep_times.size() != 1)
     refuse(".material.creep_times", "must be one: only then do contacts lie on one curve");
   const std::string& path = *options.master_curve;
+  check_curve_name(path);
   check_output(path, options.common.overwrite());
   const std::vector<double> betas = master_curve_betas();
   Progress progress("master curve");
@@ -40,15 +89,9 @@ ExitCode make_master_curve(const ContactOptions& options, const LoadedScene& loa
                         fmt::format("point {} of {}", done, betas.size()));
       });
   progress.finish();
-  std::string text = fmt::format(
-      "// beta, f, g, m, v tau in cells: a paraboloid with E_0/E_inf = {:g} on {} cells a side, "
-      "tolerance\n// {:g}. Made by `stridor contact --master-curve`; do not edit.\n",
-      computed.curve.modulus_ratio, solver.grid, solver.tolerance);
   Json points = Json::array();
   for (std::size_t k = 0; k < computed.results.size(); ++k) {
     const MasterPoint& point = computed.curve.points[k];
-    text += fmt::format("{{{}, {:.8g}, {:.6g}, {:.7g}, {:.6g}}},\n", point.beta, point.force,
-                        point.area, point.friction, point.memory_in_cells);
     points.push_back({{"beta", point.beta},
                       {"force", number(point.force)},
                       {"area", number(point.area)},
@@ -59,7 +102,11 @@ ExitCode make_master_curve(const ContactOptions& options, const LoadedScene& loa
   if (!computed.converged())
     throw NumericalError(Refusal::no_convergence,
                          "a point of the master curve did not converge; nothing has been written");
-  write_text_file(path, text);
+  if (path.ends_with(".h5")) {
+    write_curve_file(options, loaded, computed.curve, solver);
+  } else {
+    write_text_file(path, curve_text(computed.curve, solver));
+  }
   if (options.common.json) {
     print_json(Json{{"modulus_ratio", computed.curve.modulus_ratio}, {"points", points}});
   } else {

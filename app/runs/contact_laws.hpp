@@ -7,9 +7,10 @@
 
 namespace stridor {
 
-/// Computes the master curve of a contact's material and writes it as rows of C++ to
-/// options.master_curve.
-/// @throws ConfigError if contacts of its indenter and material do not lie on one curve
+/// Computes the master curve of a contact's material and writes it to options.master_curve: as HDF5
+/// (.h5) or as rows of C++, with which the program is compiled.
+/// @throws ConfigError if contacts of its indenter and material do not lie on one curve, or for a
+///         name with another ending
 /// @throws NumericalError if a point does not converge
 ExitCode make_master_curve(const ContactOptions& options, const LoadedScene& loaded,
                            const StudiedContact& contact);

@@ -89,9 +89,8 @@ std::vector<StudiedContact> asked_contacts(const ContactOptions& options,
   for (const auto& [option, is_given] : of_one) {
     if (!is_given || contacts.size() == 1) continue;
     throw ConfigError(Refusal::missing, "--contact",
-                      fmt::format("is needed, since {} is of one contact (there are: "
-                                  "{})",
-                                  option, fmt::join(names, ", ")));
+                      fmt::format("is needed: {} is of one contact, and the scene has {}: {}",
+                                  option, names.size(), fmt::join(names, ", ")));
   }
   return contacts;
 }
@@ -196,7 +195,8 @@ void add_contact_command(CLI::App& program, Action& action, const std::string& c
   verb->add_option("--edges", options->edges_figure, "Picture of the edges of all contacts");
   verb->add_option("--master-curve", options->master_curve,
                    "Compute the curve on which all paraboloids on this material lie instead, and "
-                   "write it to this file");
+                   "write it to this file: .h5 (HDF5, which report shows), or .inc, .txt or .hpp "
+                   "(rows of C++, as stridor itself is compiled with)");
   verb->add_option("--table", options->table,
                    "Compute a table over speeds and indentations instead and write it to this file "
                    "(HDF5), which the key normal.form of a contact takes");

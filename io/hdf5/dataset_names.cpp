@@ -215,6 +215,10 @@ constexpr std::array dataset_names{
     DatasetName{"/friction", "coefficient of friction of the rubber's losses"},
     DatasetName{"/memory_in_cells",
                 "way slid in the shortest memory of the rubber, in cells of the grid"},
+    DatasetName{"/beta", "sliding speed over the root of the indentation, both dimensionless"},
+    DatasetName{"/f", "normal force over the indentation to the power 3/2, both dimensionless"},
+    DatasetName{"/g", "area of contact over the indentation, both dimensionless"},
+    DatasetName{"/m", "coefficient of friction over the root of the dimensionless indentation"},
     // Comparisons of assumptions, errors against run times.
     DatasetName{"/runs/number", "number of the run"},
     DatasetName{"/runs/assumption", "contact assumption of the run"},

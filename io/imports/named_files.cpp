@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
+#include <system_error>
 
 #include "core/errors.hpp"
+#include "core/suggestion.hpp"
 #include "io/imports/gmsh_program.hpp"
 #include "io/imports/matrix_file.hpp"
 #include "io/imports/matrix_market.hpp"
@@ -73,6 +76,21 @@ void set(ImportedFiles& all, Member member, const std::string& file) {
   slot = file;
 }
 
+/// Refuses "mas=FILE", unless it is the name of a file.
+void refuse_unknown_kind(const std::string& given) {
+  const std::string written = given.substr(0, given.find('='));
+  const bool is_word = !written.empty() && std::ranges::all_of(written, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+  });
+  std::error_code unreadable;
+  if (written == given || !is_word || std::filesystem::exists(given, unreadable)) return;
+  std::vector<std::string> names;
+  for (const auto& [name, member] : kinds) names.emplace_back(name);
+  throw ConfigError(Refusal::unknown_key, "files",
+                    fmt::format("'{}' has the unknown key '{}'{} (there are: {})", given, written,
+                                did_you_mean(written, names), fmt::join(names, ", ")));
+}
+
 /// Whether a table has a row of a matrix in each line, not a node alone.
 bool is_of_unknowns(const std::string& file) {
   const SourceText source = read_source_text(file, "a table of nodes or of unknowns");
@@ -117,6 +135,7 @@ ImportedFiles sort_out_files(const std::vector<std::string>& files) {
       is_said = true;
     }
     if (is_said) continue;
+    refuse_unknown_kind(given);
     const std::filesystem::path path(given);
     const std::string ending = lower_case_of(path.extension().string());
     const std::string name = lower_case_of(path.stem().string());

@@ -43,7 +43,8 @@ struct ImportedFiles {
 /// holds both), tables of unknowns (.dof, .mapping, .csv) and of nodes (.csv, .txt), universal
 /// files of tests
 /// (.uff, .unv, .uf). "mass=FILE" and the like say it.
-/// @throws ConfigError where it cannot be told, or two files would be the same; FileError
+/// @throws ConfigError where it cannot be told, two files would be the same, or "KEY=FILE" has
+///         another KEY; FileError
 ImportedFiles sort_out_files(const std::vector<std::string>& files);
 
 }  // namespace stridor

@@ -18,7 +18,8 @@ std::string group_of(const std::string& path) {
 
 /// Columns of which others are functions.
 bool is_scale(const std::string& path) {
-  return path.ends_with("/time") || path.ends_with("/value") || path.ends_with("/run_time");
+  return path.ends_with("/time") || path.ends_with("/value") || path.ends_with("/run_time") ||
+         path.ends_with("/beta");
 }
 
 /// A column of which others are functions, in the file.

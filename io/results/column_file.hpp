@@ -19,10 +19,10 @@ struct Column {
   std::size_t length() const { return texts.empty() ? values.size() : texts.size(); }
 };
 
-/// Writes columns to a file of their own. Columns `time`, `value` and `run_time`, which stand
-/// before those that depend on them, are the scales of all of their length in their groups and
-/// below; where there is none, `number` of their group is, 1, 2, …. The file takes its name when it
-/// is whole.
+/// Writes columns to a file of their own. Columns `time`, `value`, `run_time` and `beta`, which
+/// stand before those that depend on them, are the scales of all of their length in their groups
+/// and below; where there is none, `number` of their group is, 1, 2, …. The file takes its name
+/// when it is whole.
 /// @param kind       kind of the file, an attribute of the root
 /// @param attributes of the root besides
 /// @throws FileError if the file exists, its folder is not writable, or anything cannot be written

@@ -193,7 +193,9 @@ TEST(ContactProgram, SeveralContactsAreEvaluatedByName) {
   EXPECT_EQ(Json::parse(shipped.out)["rows"], contacts["soft"]["rows"]);
   const ProgramResult table = Program({"contact", scene, "--table", folder / "law.h5"}).run();
   EXPECT_EQ(table.exit_code, 2);
-  EXPECT_THAT(table.err, HasSubstr("--contact: is needed, since --table is of one contact"));
+  EXPECT_THAT(table.err,
+              HasSubstr("--contact: is needed: --table is of one contact, and the scene has 2: "
+                        "hard, soft"));
 }
 
 TEST(ContactProgram, BodiesInMotionNeedATableOfWhatIsSolved) {

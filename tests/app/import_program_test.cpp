@@ -160,6 +160,19 @@ TEST(Import, RefusesWhatItCannotTell) {
   EXPECT_THAT(refused({reed, "-o", "a.png"}), HasSubstr("has no mesh to draw"));
 }
 
+TEST(Import, NamesTheKeysWhereOneIsUnknown) {
+  const ProgramResult result = Program({"import", "mas=body.mtx", "--json"}).run();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(
+      result.err,
+      HasSubstr("files: 'mas=body.mtx' has the unknown key 'mas', did you mean 'mass'? (there "
+                "are: mass, damping, stiffness, unknowns, mesh, nodes, universal)"));
+  EXPECT_EQ(json::parse(result.out)["errors"][0]["code"], "unknown-key");
+  // A name may hold the sign.
+  const TemporaryFolder folder;
+  EXPECT_EQ(Program({"import", folder / "a=b.msh"}).run().exit_code, 4);
+}
+
 TEST(Check, SaysWhatTheFilesOfBodiesHold) {
   const json checked = report({"check", scene_path("examples/from_calculix.yaml"), "--json"});
   EXPECT_EQ(checked["errors"].size(), 0U);

@@ -99,7 +99,7 @@ class Import(unittest.TestCase):
             stridor.import_()
         with self.assertRaises(stridor.ConfigError):
             stridor.import_(folder / "reed.uff", folder / "rail.inp")
-        with self.assertRaises(stridor.FileError):
+        with self.assertRaisesRegex(stridor.ConfigError, "unknown key 'mas', did you mean 'mass'"):
             stridor.import_({"mas": folder / "rail.inp"})
         with self.assertRaises(TypeError):
             stridor.import_(None)

@@ -96,6 +96,8 @@ class Readers(unittest.TestCase):
              "contacts.tip.normal.solver.grid=32", "-o", at("contact.h5"))
         verb("contact", scene("viscoelastic_contact"), "--table", at("law.h5"), "--speeds", "0.1", "1", "4", "--indentations",
              "0.01", "0.1", "4", "--set", "contacts.tip.normal.solver.grid=32")
+        verb("contact", scene("viscoelastic_contact"), "--master-curve", at("curve.h5"), "--set",
+             "contacts.tip.normal.solver.grid=32")
         verb("eig", scene("disc_and_pads"), "--explain", "-o", at("eig.h5"))
         verb("threshold", scene("disc_and_pads"), "--parameter", "parameters.mu", "--from", "0.2", "--to", "0.5", "--points",
              "4", "-o", at("threshold.h5"))
@@ -109,7 +111,7 @@ class Readers(unittest.TestCase):
                      "sweep": "sweep of transients", "cycle": "limit cycle", "cycles": "sweep of limit cycles",
                      "responses": "frequency responses", "spectrogram": "spectrogram", "contact": "sliding contacts",
                      "precision": "study of precision", "law": "contact law", "eig": "eigenvalues", "threshold": "locus",
-                     "comparison": "comparison of assumptions"}
+                     "comparison": "comparison of assumptions", "curve": "master curve"}
 
     @classmethod
     def tearDownClass(cls):
@@ -236,7 +238,7 @@ class Readers(unittest.TestCase):
                        "heard": ("/windows", ("gain", ("number",))), "killed": ("/channels", None),
                        "law": ("/", ("friction", ("indentation", "speed"))),
                        "eig": ("/eigenvalues", ("growth", ("number",))), "threshold": ("/unstable", ("from", ("number",))),
-                       "comparison": ("/runs", ("ratio", ("number",)))}
+                       "comparison": ("/runs", ("ratio", ("number",))), "curve": ("/", ("f", ("beta",)))}
         for name, _, path in self.files():
             if name == "cycles":
                 with h5py.File(path, "r") as opened:
@@ -264,7 +266,7 @@ class Readers(unittest.TestCase):
                     "contact": "pressure(y, x)", "cycle": "force(time)",
                     "responses": "real(frequency)", "locus": "growth(values", "cycles": "period(value)",
                     "precision": "error(run_time)", "law": "friction(indentation, speed)",
-                    "eig": "damping_ratio(number)", "threshold": "growth(values", "comparison": "ratio(number)"}
+                    "eig": "damping_ratio(number)", "threshold": "growth(values", "comparison": "ratio(number)", "curve": "f(beta)"}
         for name, _, path in self.files():
             answer = subprocess.run(["ncdump", "-h", path], capture_output=True, text=True, check=False)
             self.assertEqual(answer.returncode, 0, answer.stderr)
@@ -277,7 +279,7 @@ class Readers(unittest.TestCase):
                   "map": "growth", "failed": "failure", "sweep": "steps",
                   "cycle": "time", "responses": "frequency", "spectrogram": "amplitude", "contact": "rows.force",
                   "cycles": None, "precision": "settings.error", "law": "friction", "eig": "equilibrium.force",
-                  "threshold": "values", "comparison": "runs.step_time"}
+                  "threshold": "values", "comparison": "runs.step_time", "curve": "f"}
         for name, _, path in self.files():
             with h5py.File(path, "r") as opened:
                 field = fields[name] or f"{next(place for place in opened if place != 'plot')}.period"

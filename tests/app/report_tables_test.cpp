@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "io/results/column_file.hpp"
 #include "io/results/result_file.hpp"
 #include "tests/app/pictures_fixture.hpp"
 #include "tests/support/report_blocks.hpp"
@@ -162,6 +163,45 @@ TEST_F(ReportTables, AContactLawIsShownOverSpeedAndIndentation) {
   EXPECT_EQ(numbers_of(page, friction["y"]["values"]).size(), 5u);
   EXPECT_EQ(numbers_of(page, friction["value"]["values"]),
             told["friction"].get<std::vector<double>>());
+}
+
+TEST_F(ReportTables, AMasterCurveIsShownOverBeta) {
+  const auto contact = [&](const std::string& file) {
+    return Program({"contact", scene_path("viscoelastic_contact.yaml"), "--master-curve", file,
+                    "--set", "contacts.tip.normal.solver.grid=32", "--json"})
+        .run();
+  };
+  const std::string file = path("curve.h5");
+  const ProgramResult made = contact(file);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const Json points = Json::parse(made.out)["points"];
+  const ResultFile kept(file);
+  EXPECT_EQ(kept.kind(), "master curve");
+  const std::vector<double> beta = kept.read("/beta");
+  ASSERT_EQ(beta.size(), points.size());
+  for (std::size_t k = 0; k < beta.size(); ++k) {
+    EXPECT_EQ(beta[k], points[k]["beta"]);
+    EXPECT_EQ(kept.read("/f")[k], points[k]["force"]);
+    EXPECT_EQ(kept.read("/m")[k], points[k]["friction"]);
+  }
+  const Json section = section_of(file);
+  EXPECT_EQ(section["title"], "viscoelastic_contact: master curve of sliding paraboloids");
+  EXPECT_EQ(section["views"][0]["panels"].size(), 4u);
+  // A file of another program; what is wrong with it is told apart.
+  const std::string odd = path("odd.h5");
+  write_column_file(odd, Overwrite::no, "master curve", {{"/f", "1", {1.0}}}, {});
+  const ProgramResult report = Program({"report", odd, "-o", path("odd.html"), "--json"}).run();
+  EXPECT_EQ(report.exit_code, 4);
+  EXPECT_THAT(report.err, HasSubstr(odd + ": dataset /beta: is missing"));
+  const Json error = Json::parse(report.out)["errors"][0];
+  EXPECT_EQ(error["file"], odd);
+  EXPECT_EQ(error["dataset"], "/beta");
+  // The rows for compilers have endings of their own, and no other form is made.
+  for (const char* name : {"curve.csv", "curve.png", "curve"}) {
+    const ProgramResult refused = contact(path(name));
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("--master-curve: '" + path(name) + "' ends neither in .h5"));
+  }
 }
 
 }  // namespace
