@@ -10,6 +10,7 @@
 #include "io/run_file/run_file.hpp"
 #include "io/scene/numeric_key.hpp"
 #include "io/scene/scene.hpp"
+#include "models/model_body.hpp"
 
 namespace stridor {
 namespace {
@@ -123,6 +124,48 @@ Candidates keys_of(const std::string& file, bool varied) {
   return found;
 }
 
+/// Directions in which points of the bodies of a scene move, "<body>.<point>.<x|y|z>".
+std::vector<std::string> motions_of(const std::string& file) {
+  const LoadedScene loaded = load_scene(file, {});
+  BodyCache cache;
+  const ModelParameters parameters = parameters_with_files(loaded, cache);
+  const std::vector<ModelBody> bodies = make_bodies(parameters.substructures, cache);
+  std::vector<std::string> found;
+  const auto add = [&](const std::string& point, auto&& moves) {
+    for (const std::size_t direction : {0U, 1U, 2U})
+      if (moves(direction)) found.push_back(point + "." + "xyz"[direction]);
+  };
+  for (const ModelBody& body : bodies) {
+    const BodyMatrices& matrices = body.matrices;
+    for (const auto& [point, node] : matrices.points)
+      add(body.name + "." + point,
+          [&, at = node](std::size_t direction) { return matrices.moves(at, direction); });
+    for (const auto& [point, place] : parameters.points)
+      if (place.of == body.name)
+        add(body.name + "." + point,
+            [&](std::size_t direction) { return direction < 2 || !matrices.across.empty(); });
+  }
+  return found;
+}
+
+/// Where a force may act.
+Candidates inputs_of(const std::string& file) {
+  Candidates found;
+  for (const std::string& motion : motions_of(file)) found.push_back({motion, "N"});
+  return found;
+}
+
+/// Channels of all motions.
+Candidates outputs_of(const std::string& file) {
+  Candidates found;
+  for (const std::string& motion : motions_of(file)) {
+    found.push_back({motion + ".displacement", "m"});
+    found.push_back({motion + ".velocity", "m/s"});
+    found.push_back({motion + ".acceleration", "m/s^2"});
+  }
+  return found;
+}
+
 Candidates channels_of(const std::string& file) {
   const RunFileReader run(file);
   Candidates found;
@@ -175,6 +218,12 @@ Candidates all_candidates(const CLI::App& program, const std::vector<std::string
       if (before == "--set" && sign != std::string::npos)
         return settings_of(words.back().substr(0, sign), scene);
       return scene ? keys_of(*scene, before != "--set") : Candidates{};
+    }
+    // Elsewhere --output is a file.
+    if (words.front() == "frf" && (before == "--input" || before == "--output")) {
+      const auto scene = file_among(line, {".yaml", ".yml"});
+      if (!scene) return {};
+      return before == "--input" ? inputs_of(*scene) : outputs_of(*scene);
     }
     if (before == "--channel") {
       const auto run = file_among(line, {".h5", ".hdf5"});

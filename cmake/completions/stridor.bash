@@ -19,10 +19,12 @@ _stridor() {
   COMPREPLY=("${found[@]}")
   if ((${#COMPREPLY[@]} == 1)) && [[ ${COMPREPLY[0]} == *= ]]; then compopt -o nospace 2>/dev/null; fi
   if ((${#COMPREPLY[@]} > 0 || ${#words[@]} < 2)); then return; fi
-  case ${current%%=*} in --set | --parameter | --x | --y | --channel | --input | --output | --about | --kind) before=${current%%=*} ;; esac
+  case ${current%%=*} in --set | --parameter | --x | --y | --channel | --input | --about | --kind) before=${current%%=*} ;; esac
   local ending=
+  if [[ ${words[0]} == frf && ${current%%=*} == --output ]]; then before=--output; fi
+  if [[ ${words[0]} == frf && $before == --output ]]; then before=--input; fi # a motion, else a file
   case $before in
-    --set | --parameter | --x | --y | --channel | --input | --output | --about | --kind)
+    --set | --parameter | --x | --y | --channel | --input | --about | --kind)
       compopt +o default +o bashdefault 2>/dev/null # no file can stand there
       return ;;
     -*) return ;;

@@ -2,8 +2,8 @@
 function __stridor_candidates
   set -l before (commandline -opc)
   set -l typed (commandline -ct)
-  # What stands behind the cursor tells the scene where that is written last.
-  set -l all (commandline -o)
+  # What stands behind the word tells the scene where that is written last and fish gives it.
+  set -l all (commandline -op)
   set -l first (math (count $before) + 1)
   if test -n "$typed"
     set first (math $first + 1)
@@ -17,5 +17,9 @@ function __stridor_candidates
   command $program complete $behind -- $before "$typed" 2>/dev/null
 end
 complete -c stridor -n 'count (__stridor_candidates) >/dev/null' -f -a '(__stridor_candidates)'
-# No file can stand behind these.
-complete -c stridor -n 'string match -qr -- "^--(set|parameter|x|y|channel|input|output|about|kind)\$" (commandline -opc)[-1]' -f
+function __stridor_takes_no_file
+  set -l before (commandline -opc)
+  string match -qr -- '^--(set|parameter|x|y|channel|input|about|kind)$' "$before[-1]"
+  or test "$before[2]" = frf -a "$before[-1]" = --output
+end
+complete -c stridor -n __stridor_takes_no_file -f
