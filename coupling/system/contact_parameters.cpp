@@ -158,10 +158,11 @@ const Schema& ContactParameters::schema() {
                    {"subs_b", ContactAssumption::subs_b},
                    {"subs_c", ContactAssumption::subs_c},
                    {"film", ContactAssumption::film}},
-                  {.doc = "subs_a: prescribed sliding on the undeformed master; subs_b: deformed "
-                          "positions and normal; subs_c: deformed positions, undeformed normal; "
-                          "all three slide persistently. film: as subs_b, with stick, slip and "
-                          "lift-off; what a viscoelastic normal law has where nothing is said.",
+                  {.doc = "Required, but with a viscoelastic normal law, which has film; on the face "
+                          "of a plate and in space subs_b or film. subs_a: prescribed sliding on "
+                          "the undeformed master; subs_b: deformed positions and normal; subs_c: "
+                          "deformed positions, undeformed normal; all three slide persistently. "
+                          "film: as subs_b, with stick, slip and lift-off.",
                    .optional = true})
           .choice(
               "on_violation", &ContactParameters::on_violation,
