@@ -64,7 +64,7 @@ struct Crossing {
   double value = 0.0;
   double frequency = 0.0;  ///< Hz
   int direction = 0;       ///< +1: unstable beyond the value, −1: stable beyond
-  int branch = 0;          ///< index into Locus::branches
+  int branch = 0;          ///< index into Locus::branches; −1: none is there
 };
 
 /// An interval of values in which one eigenvalue has a positive real part.
@@ -75,7 +75,7 @@ struct UnstableWindow {
   double growth_max = 0.0;       ///< largest real part, 1/s
   double growth_integral = 0.0;  ///< ∫ Re s over the window, 1/s times the unit of the parameter
   double value_max = 0.0;        ///< where the growth is largest
-  int branch = 0;                ///< index into Locus::branches
+  int branch = 0;                ///< index into Locus::branches; −1: none is there
 };
 
 struct Locus {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "analysis/interval_search.hpp"
+#include "analysis/sampled_branches.hpp"
 
 namespace stridor {
 namespace {
@@ -71,14 +72,15 @@ Locus sample_locus(const SpectrumFamily& family, const std::vector<double>& valu
     locus.eigenvalues.push_back(sample.eigenvalues);
     ++wanted;
   }
-  for (std::vector<Sample>* more : {&whole, &search.between})
-    std::move(more->begin(), more->end(), std::back_inserter(samples));
+  samples = whole;
+  std::move(search.between.begin(), search.between.end(), std::back_inserter(samples));
   std::stable_sort(samples.begin(), samples.end(),
                    [](const Sample& a, const Sample& b) { return a.value < b.value; });
   if (effort.wanted == SearchFor::stability) {
     find_unstable_stretches(sampler, effort.windows, std::move(samples), locus);
   } else {
     find_sampled_windows(sampler, effort.windows, std::move(samples), locus);
+    add_branches(whole, locus);
   }
   return locus;
 }

@@ -37,7 +37,8 @@ inline constexpr SamplingEffort stability_effort{
 /// a square root, and the error of the end is of order ε all the same. Besides the values asked for
 /// at least 64 are computed; search_intervals() searches for windows between two of them.
 ///
-/// @return no branches; `branch` of windows and crossings is 0
+/// @return where every window is searched for, with branches from sample to sample (add_branches());
+///         else without them, and `branch` of windows and crossings is 0
 /// @throws as trace_locus()
 Locus sample_locus(const PencilFamily& family, const std::vector<double>& values,
                    const LocusOptions& options = {});

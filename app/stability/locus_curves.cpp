@@ -53,6 +53,12 @@ std::vector<std::vector<std::pair<double, std::complex<double>>>> connected(cons
   return curves;
 }
 
+/// Rounding on the imaginary axis is no growth; pictures show zero as the edge of growth.
+std::complex<double> without_rounding(std::complex<double> s) {
+  const bool is_on_axis = std::abs(s.real()) <= 1e-7 * std::abs(s);
+  return is_on_axis ? std::complex<double>(-std::numeric_limits<double>::min(), s.imag()) : s;
+}
+
 }  // namespace
 
 std::vector<LocusCurve> curves_of(const Locus& locus, double highest) {
@@ -71,13 +77,14 @@ std::vector<LocusCurve> curves_of(const Locus& locus, double highest) {
       points[value] = {growth, 2.0 * std::numbers::pi * frequency};
     };
     const Branch& branch = locus.branches[k];
-    for (std::size_t i = 0; i < branch.values.size(); ++i) points[branch.values[i]] = branch.s[i];
+    for (std::size_t i = 0; i < branch.values.size(); ++i)
+      points[branch.values[i]] = without_rounding(branch.s[i]);
     for (const UnstableWindow& window : locus.unstable) {
-      if (static_cast<std::size_t>(window.branch) == k)
+      if (window.branch == static_cast<int>(k))
         add_point(window.value_max, window.growth_max, window.frequency);
     }
     for (const Crossing& crossing : locus.crossings)
-      if (static_cast<std::size_t>(crossing.branch) == k)
+      if (crossing.branch == static_cast<int>(k))
         add_point(crossing.value, 0.0, crossing.frequency);
     curves.emplace_back();
     for (const auto& [value, s] : points) add(curves.back(), value, s);
@@ -85,12 +92,7 @@ std::vector<LocusCurve> curves_of(const Locus& locus, double highest) {
   if (!locus.branches.empty()) return curves;
   for (const auto& points : connected(locus)) {
     curves.emplace_back();
-    for (const auto& [value, s] : points) {
-      // Rounding on the imaginary axis is no growth; pictures show zero as the edge of growth.
-      const bool is_on_axis = std::abs(s.real()) <= 1e-7 * std::abs(s);
-      add(curves.back(), value,
-          is_on_axis ? std::complex<double>(-std::numeric_limits<double>::min(), s.imag()) : s);
-    }
+    for (const auto& [value, s] : points) add(curves.back(), value, without_rounding(s));
   }
   return curves;
 }

@@ -76,10 +76,12 @@ TimedWindow timed(const Locus& locus, const UnstableWindow& window, const Passin
   one.from_time = std::min(at_from, at_to);
   one.to_time = std::max(at_from, at_to);
   const bool is_whole = from == window.from && to == window.to;
-  // A whole window is passed at nearly constant speed.
-  one.gain = is_whole ? window.growth_integral * (one.to_time - one.from_time) / (to - from)
-                      : gain_between(locus.branches[static_cast<std::size_t>(window.branch)], from,
-                                     to, times);
+  if (is_whole) {  // at nearly constant speed
+    one.gain = window.growth_integral * (one.to_time - one.from_time) / (to - from);
+  } else if (window.branch >= 0 && window.branch < std::ssize(locus.branches)) {
+    const Branch& branch = locus.branches[static_cast<std::size_t>(window.branch)];
+    if (branch.values.size() > 1) one.gain = gain_between(branch, from, to, times);
+  }
   return one;
 }
 

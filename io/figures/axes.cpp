@@ -177,6 +177,18 @@ AxisScale axis_scale(double lower, double upper, int num_ticks) {
   return scale;
 }
 
+AxisScale spaced_scale(const ValueRange& range, int num_ticks, double length, double character) {
+  AxisScale scale = axis_scale(range.lower, range.upper, num_ticks);
+  for (; num_ticks > 2; --num_ticks) {
+    scale = axis_scale(range.lower, range.upper, num_ticks);
+    const double step = scale.step * std::pow(10.0, scale.exponent);
+    const double between = length * step / (range.upper - range.lower);
+    // A minus sign and the space between two numbers.
+    if ((static_cast<double>(tick_characters(range, scale)) + 1.0) * character <= between) break;
+  }
+  return scale;
+}
+
 AxisScale frequency_scale(double highest, int num_ticks) {
   AxisScale scale = axis_scale(0.0, highest, num_ticks);
   if (scale.exponent != 0 || highest < 2000.0) return scale;

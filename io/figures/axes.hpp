@@ -28,6 +28,13 @@ struct AxisScale {
 /// @param lower, upper finite, lower < upper
 AxisScale axis_scale(double lower, double upper, int num_ticks);
 
+struct ValueRange;
+
+/// The same with fewer marks where their numbers would run into each other.
+/// @param length    of the axis, cm
+/// @param character width of one, cm
+AxisScale spaced_scale(const ValueRange& range, int num_ticks, double length, double character);
+
 /// The values along an axis; empty at first.
 struct ValueRange {
   double lower = std::numeric_limits<double>::infinity();

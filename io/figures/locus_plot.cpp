@@ -231,8 +231,9 @@ double room_beside(std::size_t num_characters, double character) {
 void plot_locus(const LocusPicture& picture, const std::filesystem::path& figure) {
   check_figure_name(figure);
   const Ranges ranges = ranges_of(picture);
-  const auto [parameter_range, growth_range, frequency_range, parameter, growth, frequency] =
-      locus_axes(ranges, {.margin = 0.05, .growth = 7, .frequency = 8, .parameter = 6});
+  constexpr LocusMarks marks{.margin = 0.05, .growth = 7, .frequency = 8, .parameter = 6};
+  auto [parameter_range, growth_range, frequency_range, parameter, growth, frequency] =
+      locus_axes(ranges, marks);
 
   // All lengths in cm.
   FigureSize size;
@@ -254,6 +255,7 @@ void plot_locus(const LocusPicture& picture, const std::filesystem::path& figure
     label_width = std::max(label_width, text_width(label.text, label_font) + leader_length + 0.2);
   const double bar_left = size.width - (bar_width + (bar_digits + 1.9) * character + 1.2 * line);
   const double right = bar_left - 0.5 - label_width;
+  growth = spaced_scale(growth_range, marks.growth, right - left, character);
   const std::vector<std::string> caption =
       wrapped(picture.caption + ranges.beyond + unlabelled_text(unlabelled), caption_font,
               size.width - left - 1.2);

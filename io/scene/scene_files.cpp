@@ -98,6 +98,26 @@ std::vector<SceneFile> read_digests(const std::string& digests) {
   return files;
 }
 
+/// A resolved scene without the paths of the files that it names: what they hold counts, not where
+/// they are.
+std::string without_paths(std::string resolved, const std::vector<SceneFile>& files) {
+  for (const SceneFile& file : files) {
+    if (file.path.empty()) continue;
+    const std::string quoted = '"' + file.path + '"';
+    for (std::size_t at = resolved.find(quoted); at != std::string::npos;
+         at = resolved.find(quoted, at))
+      resolved.replace(at, quoted.size(), "\"\"");
+  }
+  return resolved;
+}
+
+/// As versions up to November 2026 computed it, with the paths.
+std::string hash_with_paths(const std::string& resolved, const std::vector<SceneFile>& files) {
+  std::uint64_t sum = fnv1a(resolved);
+  for (const SceneFile& file : files) sum = fnv1a(digest_line({file.key, "", file.digest}), sum);
+  return digits(sum);
+}
+
 }  // namespace
 
 std::vector<SceneFile> scene_files(const LoadedScene& loaded) {
@@ -119,7 +139,7 @@ std::vector<SceneFile> scene_files(const LoadedScene& loaded) {
 }
 
 std::string scene_hash(const std::string& resolved, const std::vector<SceneFile>& files) {
-  std::uint64_t sum = fnv1a(resolved);
+  std::uint64_t sum = fnv1a(without_paths(resolved, files));
   for (const SceneFile& file : files) sum = fnv1a(digest_line({file.key, "", file.digest}), sum);
   return digits(sum);
 }
@@ -139,7 +159,8 @@ void check_unchanged(const KeptScene& scene, const std::string& run_file) {
                     "(/scene/digests) has been changed or damaged since; run the scene anew");
   }
   files.erase(files.begin());
-  if (scene_hash(scene.resolved, files) != scene.hash) {
+  if (scene_hash(scene.resolved, files) != scene.hash &&
+      hash_with_paths(scene.resolved, files) != scene.hash) {
     throw FileError(Refusal::file_damaged, run_file, "/scene/resolved",
                     "is not the scene with which the run began: it, the digests of the files that "
                     "it names (/scene/digests) or the attribute scene_hash has been changed or "

@@ -37,7 +37,7 @@ files hold the values that expressions had.
 
 The path of a file is from the folder of the scene where it is written in the scene, and from the
 working directory where it comes from `--set`. The scene hash that results carry covers every key
-with its value, the paths of such files among them, but not what the files hold.
+with its value and what such files hold, but not where they are.
 )";
 
 /// The anchor that Markdown renderers give to a heading.

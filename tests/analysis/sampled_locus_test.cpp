@@ -220,6 +220,51 @@ TEST(SampledLocus, WindowsHoldTheIntegralOfTheGrowth) {
   EXPECT_EQ(locus.eigenvalues.size(), 2U);
 }
 
+TEST(SampledLocus, EigenvaluesAreConnectedToBranches) {
+  PencilFamily family;
+  family.place = [](double x, Pencil& pencil) {
+    LinearSystem system;
+    system.mass = system.position = Eigen::MatrixXd::Identity(1, 1);
+    system.velocity = Eigen::MatrixXd::Constant(1, 1, x * x - 1.0);
+    system.gaps = system.forces = Eigen::MatrixXd(0, 1);
+    pencil = make_pencil(system);
+  };
+  const Locus locus = sample_locus(family, {-1.5, 0.1, 1.5});
+  ASSERT_EQ(locus.branches.size(), 1U);
+  const Branch& branch = locus.branches[0];
+  EXPECT_GT(branch.values.size(), 60U);
+  EXPECT_EQ(branch.values.front(), -1.5);
+  EXPECT_EQ(branch.values.back(), 1.5);
+  for (std::size_t i = 0; i < branch.values.size(); ++i) {
+    const double growth = 0.5 * (1.0 - branch.values[i] * branch.values[i]);
+    EXPECT_NEAR(branch.s[i].real(), growth, 1e-13);
+    EXPECT_NEAR(branch.s[i].imag(), std::sqrt(1.0 - growth * growth), 1e-13);
+  }
+  ASSERT_EQ(locus.unstable.size(), 1U);
+  EXPECT_EQ(locus.unstable[0].branch, 0);
+  // Where stability alone is looked for there are none.
+  EXPECT_TRUE(sample_locus(family, {-1.5, 0.1, 1.5}, {}, stability_effort).branches.empty());
+}
+
+TEST(SampledLocus, AWindowKnowsItsBranchWhereTwoEigenvaluesMeet) {
+  const Locus locus =
+      sample_locus(sampled_flutter(Eigen::Matrix2d::Zero()), hundred_values(0.0, 0.4));
+  ASSERT_EQ(locus.branches.size(), 2U);
+  ASSERT_EQ(locus.unstable.size(), 1U);
+  const auto& growing = locus.branches[static_cast<std::size_t>(locus.unstable[0].branch)];
+  const auto& decaying = locus.branches[static_cast<std::size_t>(1 - locus.unstable[0].branch)];
+  EXPECT_NEAR(growing.s.back().real(), locus.unstable[0].growth_max, 1e-12);
+  EXPECT_NEAR(decaying.s.back().real(), -locus.unstable[0].growth_max, 1e-12);
+  // Before they meet the squares of the frequencies are 1.2 -+ sqrt(0.04 - p^2).
+  for (std::size_t i = 0; i < growing.values.size(); ++i) {
+    if (growing.values[i] > 0.199) break;
+    const double apart = std::sqrt(0.04 - growing.values[i] * growing.values[i]);
+    const double sum = std::norm(growing.s[i]) + std::norm(decaying.s[i]);
+    EXPECT_NEAR(sum, 2.4, 1e-12);
+    EXPECT_NEAR(std::abs(std::norm(growing.s[i]) - std::norm(decaying.s[i])), 2.0 * apart, 1e-9);
+  }
+}
+
 TEST(SampledLocus, ANarrowWindowBetweenTwoValuesIsFound) {
   // Growth 1e-4 − x² around 0, with 0 far from every value looked at.
   PencilFamily family;

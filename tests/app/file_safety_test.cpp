@@ -314,5 +314,17 @@ TEST_F(ResumedScene, ItsHashChangesWithTheFilesThatItNames) {
   EXPECT_EQ(hash(), before);
 }
 
+TEST_F(ResumedScene, ItsHashDoesNotDependOnTheFolder) {
+  write_mass(0.02);
+  fs::create_directory(path("elsewhere"));
+  fs::copy_file(path("mass.mtx"), path("elsewhere/mass.mtx"));
+  const auto hash = [&](const std::string& file) {
+    return load_scene(scene_path("examples/rotating_support.yaml"),
+                      {"substructures.support.mass=" + path(file)})
+        .hash();
+  };
+  EXPECT_EQ(hash("elsewhere/mass.mtx"), hash("mass.mtx"));
+}
+
 }  // namespace
 }  // namespace stridor
