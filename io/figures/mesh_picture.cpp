@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -13,45 +12,12 @@
 #include "io/figures/gnuplot.hpp"
 #include "io/figures/picture_canvas.hpp"
 #include "io/figures/picture_flags.hpp"
+#include "io/figures/picture_styles.hpp"
 
 namespace stridor {
 namespace {
 
 constexpr int most_rows_of_labels = 14;
-
-struct MarkStyle {
-  const char* name;
-  int type;
-  double size;
-  const char* colour;
-};
-MarkStyle style_of(PictureMark mark) {
-  switch (mark) {
-    case PictureMark::mass: return {"node", 7, 0.9, "#606060"};
-    case PictureMark::contact: return {"slave point", 6, 1.5, "#e07b00"};
-    case PictureMark::held: return {"held", 9, 1.2, "#202020"};
-    case PictureMark::held_partly: return {"held in some directions", 8, 1.2, "#202020"};
-    case PictureMark::guided: return {"guided", 5, 0.9, "#741b47"};
-    case PictureMark::point: break;
-  }
-  return {"point", 2, 1.1, "#c0392b"};
-}
-constexpr std::array<PictureMark, 6> all_marks{PictureMark::held,   PictureMark::held_partly,
-                                               PictureMark::guided, PictureMark::mass,
-                                               PictureMark::point,  PictureMark::contact};
-
-struct ArrowStyle {
-  const char* name;
-  const char* colour;
-};
-ArrowStyle style_of(PictureArrow::Kind kind) {
-  switch (kind) {
-    case PictureArrow::Kind::motion: return {"prescribed motion", "#741b47"};
-    case PictureArrow::Kind::load: return {"load", "#b02318"};
-    case PictureArrow::Kind::normal: break;
-  }
-  return {"normal of the master", "#e07b00"};
-}
 
 /// Everything about one figure while it is laid out, cm.
 class MeshFigure {
@@ -84,6 +50,9 @@ class MeshFigure {
     add_axes(script);
     add_labels(script);
     add_arrows(script);
+    for (const PictureSpring& spring : picture_.springs)
+      add_spring(script, canvas_.on_page(canvas_.flat(spring.at)),
+                 canvas_.on_page(canvas_.flat(canvas_.end_of(spring))), spring.is_grounded);
     add_legend(script);
     script.add_caption(caption_, 0.4, caption_top_);
     add_places(script);
@@ -187,8 +156,9 @@ class MeshFigure {
 
   struct LegendEntry {
     std::string text;
-    std::optional<MarkStyle> mark;
+    std::optional<PictureMarkStyle> mark;
     const char* arrow = nullptr;  ///< its colour
+    bool is_spring = false;
     int row = 0;
     double left = 0.0;
   };
@@ -198,7 +168,7 @@ class MeshFigure {
       if (part.name.empty()) continue;
       colours_.push_back(fmt::format("#{:06x}", part.colour));
       const bool is_body = !part.faces.empty() || !part.lines.empty();
-      legend_.push_back({part.name, MarkStyle{"", is_body ? 5 : 7, 1.3, nullptr}});
+      legend_.push_back({part.name, PictureMarkStyle{"", is_body ? 5 : 7, 1.3, nullptr}});
       legend_.back().mark->colour = nullptr;
     }
     for (const PictureMark mark : all_marks) {
@@ -211,6 +181,10 @@ class MeshFigure {
       if (std::any_of(picture_.arrows.begin(), picture_.arrows.end(),
                       [&](const PictureArrow& arrow) { return arrow.kind == kind; }))
         legend_.push_back({style_of(kind).name, std::nullopt, style_of(kind).colour});
+    }
+    if (!picture_.springs.empty()) {
+      legend_.push_back({"spring", std::nullopt});
+      legend_.back().is_spring = true;
     }
     double at = 0.4;
     int row = 0;
@@ -327,12 +301,20 @@ class MeshFigure {
     }
   }
 
+  static void add_spring(FigureScript& script, const Eigen::Vector2d& from,
+                         const Eigen::Vector2d& to, bool is_grounded) {
+    for (const auto& [begin, end] : spring_lines(from, to, is_grounded))
+      add_arrow(script, begin, end, "#404040", "nohead", 1.2);
+  }
+
   void add_legend(FigureScript& script) const {
     std::size_t part = 0;
     int tag = 1000;  // beyond those of texts
     for (const LegendEntry& entry : legend_) {
       const double y = legend_top_ - (entry.row + 0.5) * 1.25 * line_height(caption_font);
-      if (entry.arrow != nullptr) {
+      if (entry.is_spring) {
+        add_spring(script, {entry.left, y}, {entry.left + 0.7, y}, false);
+      } else if (entry.arrow != nullptr) {
         add_arrow(script, {entry.left, y}, {entry.left + 0.7, y}, entry.arrow,
                   "head filled size screen 0.012,20", 1.8);
       } else {
@@ -353,7 +335,7 @@ class MeshFigure {
       if (std::none_of(picture_.places.begin(), picture_.places.end(),
                        [&](const PicturePlace& place) { return place.mark == mark; }))
         continue;
-      const MarkStyle style = style_of(mark);
+      const PictureMarkStyle style = style_of(mark);
       plot += fmt::format(", $mark_{} using 1:2 with points pointtype {} pointsize {} linewidth 1.6 "
                           "linecolor rgb '{}'",
                           static_cast<int>(mark), style.type, style.size, style.colour);

@@ -61,6 +61,13 @@ struct PictureArrow {
   Kind kind = Kind::motion;
 };
 
+/// A spring between two places, or from one to the ground.
+struct PictureSpring {
+  Eigen::Vector3d at;        ///< m
+  Eigen::Vector3d to;        ///< m; of one to the ground the direction in which it is
+  bool is_grounded = false;  ///< then as long as two arrows
+};
+
 /// A name of a place. Those that come to stand on one spot are written together, `of` once and the
 /// weightier ones first.
 struct PictureLabel {
@@ -75,6 +82,7 @@ struct MeshPicture {
   std::vector<PicturePart> parts;
   std::vector<PicturePlace> places;
   std::vector<PictureArrow> arrows;
+  std::vector<PictureSpring> springs;
   std::vector<PictureLabel> labels;  ///< written above the picture, each with a line to its place
   std::string unit = "m";            ///< of the lengths in the picture
   double metres_per_unit = 1.0;      ///< > 0

@@ -102,6 +102,7 @@ PictureCanvas::PictureCanvas(const MeshPicture& picture) : view_(picture.view) {
   const double size = diagonal();
   arrow_length_ = arrow_share * (size > 0.0 ? size : picture.metres_per_unit);
   for (const PictureArrow& arrow : picture.arrows) include(head_of(arrow));
+  for (const PictureSpring& spring : picture.springs) include(end_of(spring));
   const double margin = size > 0.0 ? 0.03 * diagonal() : 0.5 * picture.metres_per_unit;
   x = {x.lower - margin, x.upper + margin};
   y = {y.lower - margin, y.upper + margin};

@@ -24,6 +24,11 @@ class PictureCanvas {
     const double length = arrow.direction.norm();
     return arrow.at + (length > 0.0 ? arrow_length_ / length : 0.0) * arrow.direction;
   }
+  Eigen::Vector3d end_of(const PictureSpring& spring) const {
+    if (!spring.is_grounded) return spring.to;
+    const double length = spring.to.norm();
+    return spring.at + (length > 0.0 ? 2.0 * arrow_length_ / length : 0.0) * spring.to;
+  }
   Eigen::Vector2d on_page(const Eigen::Vector2d& place) const {
     return {left + (place.x() - x.lower) * cm_per_metre,
             bottom + (place.y() - y.lower) * cm_per_metre};

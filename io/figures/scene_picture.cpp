@@ -49,6 +49,7 @@ class ScenePicture {
       add_supports(b);
     }
     add_contacts();
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b) add_springs(b);
     add_drives();
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) add_points(b);
     const bool knows_places = std::any_of(
@@ -70,11 +71,22 @@ class ScenePicture {
 
   /// Of the frame of a body.
   Eigen::Vector3d global(std::size_t b, const Eigen::Vector3d& in_body) const {
+    const Eigen::Vector3d place = unrolled(b, in_body);
+    return seats_[b] ? seats_[b]->place(place) : place;
+  }
+  /// The same before a body on a face stands about its axis.
+  Eigen::Vector3d unrolled(std::size_t b, const Eigen::Vector3d& in_body) const {
     const ModelBody& body = model_.bodies[b];
     Eigen::Vector3d place = in_body;
     place.head(body.place.size()) += body.place;
     if (body.is_mirrored) place.y() *= -1.0;
-    return seats_[b] ? seats_[b]->place(place) : place;
+    return place;
+  }
+  /// A direction of the frame of a body at a place of it.
+  Eigen::Vector3d global_direction(std::size_t b, const Eigen::Vector3d& in_body,
+                                   Eigen::Vector3d direction) const {
+    if (model_.bodies[b].is_mirrored) direction.y() *= -1.0;
+    return seats_[b] ? seats_[b]->directions(unrolled(b, in_body)) * direction : direction;
   }
 
   void place_nodes(std::size_t b) {
@@ -175,6 +187,24 @@ class ScenePicture {
     constexpr std::size_t most = 300;
     for (std::size_t i = 0; i < marked.size(); i += 1 + marked.size() / most)
       picture_.places.push_back(marked[i]);
+  }
+
+  /// Springs; the ground is where no master is: on the side to which the master's normal points.
+  void add_springs(std::size_t b) {
+    std::optional<Eigen::Vector3d> away;
+    for (const ContactPoint& contact : model_.system.contacts)
+      if (contact.slave_body == static_cast<int>(b) && !away) away = normal_of(contact);
+    for (const BodySpring& spring : model_.bodies[b].matrices.springs) {
+      const Eigen::Vector3d at = global(b, spring.at);
+      if (spring.other) {
+        picture_.springs.push_back({at, global(b, *spring.other), false});
+        continue;
+      }
+      Eigen::Vector3d behind = -global_direction(b, spring.at, spring.along);
+      constexpr double along_the_normal = 0.5;
+      if (away && away->dot(behind) < -along_the_normal) behind *= -1.0;
+      picture_.springs.push_back({at, behind, true});
+    }
   }
 
   void add_contacts() {

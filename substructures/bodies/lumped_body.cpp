@@ -67,7 +67,14 @@ class SpringAssembly {
     const Eigen::Matrix3d stiffness = spring_matrix(spring.stiffness, along);
     add_to(stiffness_, nodes, stiffness);
     if (spring.damping) add_to(damping_, nodes, spring_matrix(*spring.damping, along));
-    if (nodes.size() == 1) add_ground_end(name, nodes.front(), stiffness);
+    const Eigen::Vector3d place = body_.nodes.row(nodes.front());
+    if (nodes.size() == 2) {
+      body_.springs.push_back({place, Eigen::Vector3d(body_.nodes.row(nodes[1])), along});
+      return;
+    }
+    add_ground_end(name, nodes.front(), stiffness);
+    for (const Eigen::Vector3d& seen : spring_directions(spring.stiffness, along))
+      body_.springs.push_back({place, std::nullopt, seen});
   }
 
   SparseMatrix stiffness() const { return assembled(stiffness_); }

@@ -117,4 +117,14 @@ Eigen::Matrix3d spring_matrix(const SpringMatrixParameters& given, const Eigen::
   return matrix;
 }
 
+std::vector<Eigen::Vector3d> spring_directions(const SpringMatrixParameters& given,
+                                               const Eigen::Vector3d& along) {
+  if (given.along) return {along};
+  const Eigen::Matrix3d matrix = spring_matrix(given, along);
+  std::vector<Eigen::Vector3d> directions;
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    if (matrix(axis, axis) != 0.0) directions.emplace_back(Eigen::Vector3d::Unit(axis));
+  return directions;
+}
+
 }  // namespace stridor

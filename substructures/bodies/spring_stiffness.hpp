@@ -47,4 +47,9 @@ struct SpringDirectionParameters {
 /// The symmetric matrix K of f = −K u: k d dᵀ of a number k along d, else as given.
 Eigen::Matrix3d spring_matrix(const SpringMatrixParameters& given, const Eigen::Vector3d& along);
 
+/// The directions along which a matrix of spring_matrix() is seen: d of a number, else those of x, y
+/// and z in which it is stiff.
+std::vector<Eigen::Vector3d> spring_directions(const SpringMatrixParameters& given,
+                                               const Eigen::Vector3d& along);
+
 }  // namespace stridor

@@ -45,6 +45,17 @@ DofSum ground_end(const Eigen::Matrix3d& stiffness, const NodeShares& shares,
   return load;
 }
 
+/// Mean place of the nodes that share a spring, in the body's frame.
+Eigen::Vector3d middle_of(const NodeShares& shares, const BodyMatrices& body) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double total = 0.0;
+  for (const auto& [node, share] : shares) {
+    sum += share * body.nodes.row(node).transpose();
+    total += share;
+  }
+  return total != 0.0 ? Eigen::Vector3d(sum / total) : sum;
+}
+
 }  // namespace
 
 const Schema& SurfaceSpringParameters::schema() {
@@ -153,6 +164,8 @@ void add_surface_springs(const std::map<std::string, SurfaceSpringParameters>& s
       add_spring(spring_matrix(*spring.damping, along), shares, body, damping_entries);
     for (std::size_t axis = 0; axis < 3; ++axis)
       body.loads[name + "." + axis_names[axis]] = ground_end(stiffness, shares, body, axis);
+    for (const Eigen::Vector3d& direction : spring_directions(spring.stiffness, along))
+      body.springs.push_back({middle_of(shares, body), std::nullopt, direction});
   }
   const Eigen::Index n = body.num_dofs();
   if (!entries.empty()) {

@@ -39,6 +39,13 @@ struct BodyFace {
   std::function<std::array<DofSum, 5>(double radius, double angle)> rows;
 };
 
+/// A spring as pictures show it, in the body's frame.
+struct BodySpring {
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();      ///< one end, m
+  std::optional<Eigen::Vector3d> other;              ///< the other end, m; else it is on the ground
+  Eigen::Vector3d along = Eigen::Vector3d::UnitX();  ///< of one to the ground, of length 1
+};
+
 /// Terms of the spin of a body of revolution about its axis, seen from space (docs/theory.md, 10.9).
 struct SpinTerms {
   double speed = 0.0;  ///< Ω about the direction of the axis, rad/s
@@ -81,6 +88,7 @@ struct BodyMatrices {
   std::map<std::string, std::vector<Facet>> facets;  ///< named surfaces in space
   std::map<std::string, BodyFace> faces;   ///< named faces of a plate
   std::vector<std::vector<int>> outlines;  ///< nodes in order that are drawn besides the surfaces
+  std::vector<BodySpring> springs;         ///< those in `stiffness`
   /// Whether modes are its DoFs already, of which a reduction would make none better.
   bool is_modal = false;
   /// Lowest ω among modes that are not among its DoFs, rad/s; infinite where none is left out.

@@ -41,6 +41,19 @@ TEST(Draw, EveryScene) {
   EXPECT_GT(number, 25);
 }
 
+TEST(Draw, SpringsAreSeen) {
+  const TemporaryFolder folder;
+  const fs::path figure = folder / "a.svg";
+  const auto names_spring = [&](const char* scene) {
+    const ProgramResult result =
+        Program({"draw", (scenes() / scene).string(), "-o", figure.string(), "--force"}).run();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return contents_of(figure).find("spring") != std::string::npos;
+  };
+  EXPECT_TRUE(names_spring("examples/mass_on_belt.yaml"));
+  EXPECT_FALSE(names_spring("beam_on_beam.yaml"));
+}
+
 TEST(Draw, TellsPlacesInTheUnitOfTheScene) {
   const TemporaryFolder folder;
   for (const char* name : {"a.png", "a.pdf"}) {

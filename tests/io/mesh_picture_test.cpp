@@ -10,6 +10,7 @@
 #include "core/errors.hpp"
 #include "io/figures/picture_canvas.hpp"
 #include "io/figures/picture_flags.hpp"
+#include "io/figures/picture_styles.hpp"
 #include "tests/support/element_meshes.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/program.hpp"
@@ -162,6 +163,22 @@ TEST(MeshPicture, DrawsBodiesPlacesArrowsAndLabelsInEveryFormat) {
                              "A block.", "mm"})
       EXPECT_THAT(text, HasSubstr(word));
   }
+}
+
+TEST(MeshPicture, ASpringGoesFromEndToEndAndShowsTheGround) {
+  const Eigen::Vector2d from(1.0, 2.0);
+  const Eigen::Vector2d to(4.0, 6.0);
+  const auto lines = spring_lines(from, to, false);
+  ASSERT_GT(lines.size(), 6U);
+  EXPECT_EQ(lines.front().first, from);
+  EXPECT_EQ(lines.back().second, to);
+  for (std::size_t i = 0; i + 1 < lines.size(); ++i) EXPECT_EQ(lines[i].second, lines[i + 1].first);
+  const auto grounded = spring_lines(from, to, true);
+  ASSERT_EQ(grounded.size(), lines.size() + 5);  // a bar and four hatches
+  const auto& bar = grounded[lines.size()];
+  EXPECT_NEAR((bar.second - bar.first).dot(to - from), 0.0, 1e-12);
+  EXPECT_NEAR((0.5 * (bar.first + bar.second) - to).norm(), 0.0, 1e-12);
+  EXPECT_TRUE(spring_lines(from, from, true).empty());
 }
 
 TEST(MeshPicture, RefusesNothingToDrawAndOtherNames) {

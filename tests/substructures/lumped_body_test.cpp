@@ -90,6 +90,21 @@ TEST(LumpedBody, SpringBetweenMassesPointsFromOneToTheOther) {
   EXPECT_TRUE(Eigen::MatrixXd(body.make().stiffness).isApprox(expected, 1e-14));
 }
 
+TEST(LumpedBody, TellsWhereItsSpringsAre) {
+  LumpedParameters body;
+  body.masses["a"] = {1.0, {0.0, 0.0}};
+  body.masses["b"] = {1.0, {3.0, 4.0}};
+  body.springs["down"] = {{"b"}, 25.0, 0.0, SpringDirectionParameters(-0.5 * std::numbers::pi)};
+  body.springs["rod"] = {{"a", "b"}, 25.0, 0.0, {}};
+  const std::vector<BodySpring> springs = body.make().springs;
+  ASSERT_EQ(springs.size(), 2U);
+  EXPECT_EQ(springs[0].at, Eigen::Vector3d(3.0, 4.0, 0.0));
+  EXPECT_FALSE(springs[0].other);
+  EXPECT_TRUE(springs[0].along.isApprox(Eigen::Vector3d(0.0, -1.0, 0.0), 1e-15));
+  EXPECT_EQ(springs[1].at, Eigen::Vector3d(0.0, 0.0, 0.0));
+  EXPECT_EQ(springs[1].other, Eigen::Vector3d(3.0, 4.0, 0.0));
+}
+
 TEST(LumpedBody, GuidedOneFollowsTheDriveWithAllItsMasses) {
   LumpedParameters body = oscillator(0.0, 0.0);
   body.masses["rider"].mass = 3.0;
