@@ -15,20 +15,12 @@
 namespace stridor {
 namespace {
 
-/// A number among the attributes of the root.
-std::optional<double> told_number(const ResultFile& file, const std::string& name) {
-  const auto found = file.attributes().find(name);
-  if (found == file.attributes().end()) return std::nullopt;
-  const double* value = std::get_if<double>(&found->second);
-  return value != nullptr ? std::optional(*value) : std::nullopt;
-}
-
 Json eigenvalue_verdict(const ResultFile& file, const std::vector<double>& growth,
                         const std::vector<double>& frequency) {
-  const std::optional<double> highest = told_number(file, "highest_frequency");
+  const std::optional<double> highest = file.told("highest_frequency");
   const std::string reach =
       highest ? fmt::format(" up to {}", shown(*highest, "Hz")) : std::string();
-  if (told_number(file, "stable").value_or(0.0) != 0.0)
+  if (file.told("stable").value_or(0.0) != 0.0)
     return verdict("stable", fmt::format("All vibrations{} decay.", reach));
   std::optional<std::size_t> fastest;
   std::size_t num_growing = 0;
@@ -49,9 +41,9 @@ Json eigenvalue_verdict(const ResultFile& file, const std::vector<double>& growt
 /// Why the mode explained grows, and of what it is made.
 void add_explanation(const ResultFile& file, Json& section) {
   const auto told = [&](const std::string& name) {
-    return told_number(file, "explanation." + name).value_or(std::nan(""));
+    return file.told("explanation." + name).value_or(std::nan(""));
   };
-  if (!told_number(file, "explanation.frequency")) return;
+  if (!file.told("explanation.frequency")) return;
   TableColumn what{"Comes from", "", {}, {"the contacts", "damping"}};
   TableColumn growth{"Growth rate",
                      "1/s",
@@ -102,7 +94,7 @@ Json eigenvalue_section(const ResultFile& file, const ReportContext& context) {
     throw FileError(Refusal::file_damaged, file.path(), "/eigenvalues/frequency",
                     "is unlike /eigenvalues/growth in length");
   const std::string parameter = file.text("parameter");
-  const std::optional<double> value = told_number(file, "value");
+  const std::optional<double> value = file.told("value");
   std::string what = "eigenvalues";
   if (!parameter.empty() && value) what += fmt::format(" at {} = {:.6g}", parameter, *value);
   Json section = section_head(file, "eigenvalues", what);

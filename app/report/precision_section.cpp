@@ -11,14 +11,6 @@
 namespace stridor {
 namespace {
 
-/// A number that is an attribute of the file; nothing where it is missing or not finite.
-Json attribute_number(const ResultFile& file, const std::string& name) {
-  const auto found = file.attributes().find(name);
-  if (found == file.attributes().end()) return nullptr;
-  const double* value = std::get_if<double>(&found->second);
-  return value != nullptr ? number(*value) : Json(nullptr);
-}
-
 /// A column of settings. @throws FileError if it is unlike the methods in length
 template <typename Values>
 Values of_length(const ResultFile& file, const std::string& path, Values values, std::size_t length) {
@@ -67,11 +59,14 @@ Json precision_section(const ResultFile& file, const ReportContext&) {
   // The file has the same name in every folder of a study.
   const std::filesystem::path path = std::filesystem::absolute(file.path());
   section["file"] = (path.parent_path().filename() / path.filename()).string();
+  const auto told_json = [&](const char* name) {
+    return number(file.told(name).value_or(std::nan("")));
+  };
   Json view = {{"type", "errors"},
                {"norm", file.text("norm")},
                {"channel", file.text("channel")},
-               {"reference_error", attribute_number(file, "reference_error")},
-               {"wanted_error", attribute_number(file, "wanted_error")},
+               {"reference_error", told_json("reference_error")},
+               {"wanted_error", told_json("wanted_error")},
                {"settings", settings_of(file)},
                {"reductions", reductions_of(file)}};
   const Json& settings = view["settings"];

@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "app/report/curves.hpp"
@@ -15,14 +14,6 @@
 
 namespace stridor {
 namespace {
-
-/// A number among the attributes of the root.
-std::optional<double> root_number(const ResultFile& file, const std::string& name) {
-  const auto found = file.attributes().find(name);
-  if (found == file.attributes().end()) return std::nullopt;
-  const double* value = std::get_if<double>(&found->second);
-  return value != nullptr ? std::optional(*value) : std::nullopt;
-}
 
 /// Size of the largest multiplier; nothing where there are none.
 std::optional<double> largest_multiplier(const ResultFile& file) {
@@ -40,7 +31,7 @@ std::optional<double> largest_multiplier(const ResultFile& file) {
 
 /// Whether the motion repeats itself, how often, how large it is, and whether it is stable.
 Json cycle_verdict(const ResultFile& file) {
-  const std::optional<double> period = root_number(file, "period");
+  const std::optional<double> period = file.told("period");
   std::string status = file.text("status");
   std::replace(status.begin(), status.end(), '_', ' ');
   // Files of earlier versions do not say.
@@ -48,11 +39,11 @@ Json cycle_verdict(const ResultFile& file) {
   std::string text =
       period ? fmt::format("A period of {}, {}", shown(*period, "s"), shown(1.0 / *period, "Hz"))
              : "No period was found: " + status;
-  if (const auto rms = root_number(file, "x.rms"))
+  if (const auto rms = file.told("x.rms"))
     text += fmt::format("; r.m.s. displacement {}", shown(*rms, "m"));
   for (const auto& [name, verb] :
        {std::pair{"stick_fraction", "sticks"}, std::pair{"free_fraction", "is lifted off"}})
-    if (const auto part = root_number(file, name); part && *part > 0.0)
+    if (const auto part = file.told(name); part && *part > 0.0)
       text += fmt::format("; {} {:.3g} % of the time", verb, 100.0 * *part);
   const std::optional<double> multiplier = largest_multiplier(file);
   if (!period || !multiplier) return verdict("told", text + ".");

@@ -9,13 +9,6 @@
 namespace stridor {
 namespace {
 
-/// A number of a run that was compared; NaN where there is none.
-double compared_number(const Json& row, const char* pointer) {
-  const Json::json_pointer at(pointer);
-  return row.contains(at) && row[at].is_number() ? row[at].get<double>()
-                                                 : std::numeric_limits<double>::quiet_NaN();
-}
-
 struct ComparedQuantity {
   const char* path;
   const char* units;
@@ -51,7 +44,7 @@ void write_comparison_file(const std::filesystem::path& path, Overwrite overwrit
   for (const ComparedQuantity& quantity : compared_quantities) {
     Column column{quantity.path, quantity.units, {}};
     for (const Json& row : rows)
-      column.values.push_back(quantity.factor * compared_number(row, quantity.pointer));
+      column.values.push_back(quantity.factor * pointed_number(row, quantity.pointer));
     columns.push_back(std::move(column));
   }
   Column bursts{"/runs/num_bursts", "1", {}};

@@ -15,19 +15,12 @@
 namespace stridor {
 namespace {
 
-/// A number of a row; NaN where there is none.
-double number_in(const Json& row, const char* pointer) {
-  const Json::json_pointer at(pointer);
-  return row.contains(at) && row[at].is_number() ? row[at].get<double>()
-                                                 : std::numeric_limits<double>::quiet_NaN();
-}
-
 /// "exact, to 50 kHz, step 5 us".
 std::string setting_text(const Json& row) {
   const auto method = row["method"].get<std::string>();
   return row.contains("step") && row["step"].is_number()
              ? fmt::format("{}, step {}", method, quantity_text(row["step"].get<double>(), "s"))
-             : fmt::format("{}, tolerance {:.2g}", method, number_in(row, "/tolerance"));
+             : fmt::format("{}, tolerance {:.2g}", method, pointed_number(row, "/tolerance"));
 }
 
 struct SettingNumber {
@@ -58,7 +51,8 @@ std::vector<Column> columns_of_settings(const Json& rows) {
   std::vector<Column> columns;
   for (const SettingNumber& number : setting_numbers) {
     columns.push_back({number.path, number.units, {}});
-    for (const Json& row : rows) columns.back().values.push_back(number_in(row, number.pointer));
+    for (const Json& row : rows)
+      columns.back().values.push_back(pointed_number(row, number.pointer));
   }
   for (Column* column : {&method, &status, &on_front}) columns.push_back(std::move(*column));
   return columns;
@@ -93,8 +87,8 @@ void write_precision_file(const std::filesystem::path& path, const Json& object,
   for (const auto& [name, value] :
        Attributes{{"norm", object.value("norm", std::string("displacement"))},
                   {"channel", object.value("channel", std::string())},
-                  {"reference_error", number_in(object, "/reference/error")},
-                  {"wanted_error", number_in(object, "/tune/wanted")},
+                  {"reference_error", pointed_number(object, "/reference/error")},
+                  {"wanted_error", pointed_number(object, "/tune/wanted")},
                   {"tuned", std::string()}})
     attributes.emplace_back(name, value);
   if (object.contains("tune") && object["tune"].is_object())

@@ -1,7 +1,6 @@
 // What a sweep of transients has found, as file, picture and text.
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -21,12 +20,7 @@ struct SweptTransient {
   Refusal refusal = Refusal::diverged;  ///< its kind
 
   /// A number among the results; NaN where there is none.
-  double number_at(const char* pointer) const {
-    const Json::json_pointer at(pointer);
-    return results.contains(at) && results[at].is_number()
-               ? results[at].get<double>()
-               : std::numeric_limits<double>::quiet_NaN();
-  }
+  double number_at(const char* pointer) const { return pointed_number(results, pointer); }
   /// Whether bursts were searched for in it.
   bool has_bursts() const { return results.contains("bursts") && results["bursts"].is_array(); }
   /// The burst of the highest peak; null where there is none.

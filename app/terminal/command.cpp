@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -88,6 +89,12 @@ void finish_json(const std::vector<Problem>& errors) {
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+double pointed_number(const Json& object, const char* pointer) {
+  const Json::json_pointer at(pointer);
+  return object.contains(at) && object[at].is_number() ? object[at].get<double>()
+                                                       : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<double> spaced_values(const char* option, const std::vector<double>& range) {

@@ -64,6 +64,9 @@ void finish_json(const std::vector<Problem>& errors);
 /// A number for JSON; null where it is not finite.
 Json number(double value);
 
+/// The number to which a pointer into an object leads; NaN where there is none.
+double pointed_number(const Json& object, const char* pointer);
+
 /// Values at equal ratios from {first, last, number of them}.
 /// @throws ConfigError naming the option if they are not 0 < first < last and 4 to 1000 of them
 std::vector<double> spaced_values(const char* option, const std::vector<double>& range);

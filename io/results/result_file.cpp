@@ -82,6 +82,13 @@ std::string ResultFile::text(const std::string& name) const {
   return text == nullptr ? "" : *text;
 }
 
+std::optional<double> ResultFile::told(const std::string& name) const {
+  const auto found = impl_->attributes.find(name);
+  if (found == impl_->attributes.end()) return std::nullopt;
+  const auto* value = std::get_if<double>(&found->second);
+  return value != nullptr ? std::optional(*value) : std::nullopt;
+}
+
 std::string ResultFile::kind() const {
   const std::string kind = text("kind");
   if (!kind.empty()) return kind;

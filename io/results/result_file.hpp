@@ -36,6 +36,8 @@ class ResultFile {
   const Values& attributes() const;
   /// One of them that is a text; empty where there is none.
   std::string text(const std::string& name) const;
+  /// One of them that is a number; nothing where there is none.
+  std::optional<double> told(const std::string& name) const;
 
   /// All arrays of numbers, by path.
   const std::vector<ResultArray>& arrays() const;
