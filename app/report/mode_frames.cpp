@@ -120,8 +120,9 @@ std::vector<std::size_t> vibrating(const FoundSpectrum& found, int most) {
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < found.eigenvalues.size(); ++i)
     if (found.eigenvalues[i].s.imag() > 0.0) chosen.push_back(i);
-  std::ranges::stable_partition(chosen,
-                                [&](std::size_t i) { return found.eigenvalues[i].growth() > 0.0; });
+  std::stable_partition(chosen.begin(), chosen.end(), [&](std::size_t i) {
+    return found.eigenvalues[i].growth() > 0.0;
+  });
   chosen.resize(std::min(chosen.size(), static_cast<std::size_t>(std::max(most, 0))));
   std::ranges::sort(chosen);
   return chosen;
