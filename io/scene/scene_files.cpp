@@ -111,8 +111,9 @@ std::string without_paths(std::string resolved, const std::vector<SceneFile>& fi
   return resolved;
 }
 
-/// As versions up to November 2026 computed it, with the paths.
-std::string hash_with_paths(const std::string& resolved, const std::vector<SceneFile>& files) {
+/// Of a text and the contents of files. Of a resolved scene with its paths it is what the hash of
+/// scenes was before these were left out.
+std::string hash_of(const std::string& resolved, const std::vector<SceneFile>& files) {
   std::uint64_t sum = fnv1a(resolved);
   for (const SceneFile& file : files) sum = fnv1a(digest_line({file.key, "", file.digest}), sum);
   return digits(sum);
@@ -139,9 +140,7 @@ std::vector<SceneFile> scene_files(const LoadedScene& loaded) {
 }
 
 std::string scene_hash(const std::string& resolved, const std::vector<SceneFile>& files) {
-  std::uint64_t sum = fnv1a(without_paths(resolved, files));
-  for (const SceneFile& file : files) sum = fnv1a(digest_line({file.key, "", file.digest}), sum);
-  return digits(sum);
+  return hash_of(without_paths(resolved, files), files);
 }
 
 std::string scene_digests(const std::string& text, const std::vector<SceneFile>& files) {
@@ -160,7 +159,7 @@ void check_unchanged(const KeptScene& scene, const std::string& run_file) {
   }
   files.erase(files.begin());
   if (scene_hash(scene.resolved, files) != scene.hash &&
-      hash_with_paths(scene.resolved, files) != scene.hash) {
+      hash_of(scene.resolved, files) != scene.hash) {
     throw FileError(Refusal::file_damaged, run_file, "/scene/resolved",
                     "is not the scene with which the run began: it, the digests of the files that "
                     "it names (/scene/digests) or the attribute scene_hash has been changed or "
