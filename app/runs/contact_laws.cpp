@@ -50,6 +50,7 @@ void write_curve_file(const ContactOptions& options, const LoadedScene& loaded,
     columns.push_back(std::move(column));
   };
   add("/beta", &MasterPoint::beta);
+  columns.back().is_scale = true;
   add("/f", &MasterPoint::force);
   add("/g", &MasterPoint::area);
   add("/m", &MasterPoint::friction);

@@ -130,7 +130,7 @@ void CycleHistory::add(const SlidingOscillator& oscillator, const SubstrateMotio
 }
 
 std::vector<Column> CycleHistory::columns() const {
-  return {{"/time", "s", time},
+  return {{"/time", "s", time, {}, true},
           {"/channels/x.displacement", "m", x},
           {"/channels/y.displacement", "m", y},
           {"/channels/x.velocity", "m/s", vx},

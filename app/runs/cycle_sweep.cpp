@@ -150,6 +150,7 @@ void write_file(const SweepOptions& options, const LoadedScene& loaded, const Nu
       });
     };
     add("value", printed_units(key), [](const SweepPoint& p) { return p.value; });
+    columns.back().is_scale = true;
     add_result("period", "s", "/period");
     add_result("x_rms", "m", "/x/rms");
     add_result("x_mean", "m", "/x/mean");

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "app/results/file_attributes.hpp"
+#include "app/results/row_columns.hpp"
 #include "io/figures/axes.hpp"
-#include "io/results/column_file.hpp"
 
 namespace stridor {
 namespace {
@@ -23,21 +23,16 @@ std::string setting_text(const Json& row) {
              : fmt::format("{}, tolerance {:.2g}", method, pointed_number(row, "/tolerance"));
 }
 
-struct SettingNumber {
-  const char* path;
-  const char* units;
-  const char* pointer;  ///< into the row
-};
 /// The column over which the others are drawn stands first.
 constexpr std::array setting_numbers{
-    SettingNumber{"/settings/run_time", "s", "/least_wall_s"},
-    SettingNumber{"/settings/error", "1", "/error"},
-    SettingNumber{"/settings/step", "s", "/step"},
-    SettingNumber{"/settings/tolerance", "1", "/tolerance"},
-    SettingNumber{"/settings/modes", "1", "/modes"},
-    SettingNumber{"/settings/error_of_force", "1", "/errors/force"},
-    SettingNumber{"/settings/error_of_acceleration", "1", "/errors/acceleration"},
-    SettingNumber{"/settings/error_of_envelope", "1", "/errors/envelope"}};
+    RowNumber{"/settings/run_time", "s", "/least_wall_s"},
+    RowNumber{"/settings/error", "1", "/error"},
+    RowNumber{"/settings/step", "s", "/step"},
+    RowNumber{"/settings/tolerance", "1", "/tolerance"},
+    RowNumber{"/settings/modes", "1", "/modes"},
+    RowNumber{"/settings/error_of_force", "1", "/errors/force"},
+    RowNumber{"/settings/error_of_acceleration", "1", "/errors/acceleration"},
+    RowNumber{"/settings/error_of_envelope", "1", "/errors/envelope"}};
 
 std::vector<Column> columns_of_settings(const Json& rows) {
   Column method{"/settings/method", "", {}};
@@ -49,11 +44,9 @@ std::vector<Column> columns_of_settings(const Json& rows) {
     on_front.values.push_back(row["on_front"].get<bool>() ? 1.0 : 0.0);
   }
   std::vector<Column> columns;
-  for (const SettingNumber& number : setting_numbers) {
-    columns.push_back({number.path, number.units, {}});
-    for (const Json& row : rows)
-      columns.back().values.push_back(pointed_number(row, number.pointer));
-  }
+  append_numbers(
+      setting_numbers, rows, [](const Json& row) -> const Json& { return row; }, columns);
+  columns.front().is_scale = true;
   for (Column* column : {&method, &status, &on_front}) columns.push_back(std::move(*column));
   return columns;
 }

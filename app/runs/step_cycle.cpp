@@ -67,7 +67,8 @@ Json step_cycle_json(const PeriodicMotion& cycle) {
 }
 
 std::vector<Column> step_cycle_columns(const PeriodicMotion& cycle, const TimeParameters& time) {
-  std::vector<Column> columns{{"/time", "s", {}}, {"/channels/observed.displacement", "m", {}}};
+  std::vector<Column> columns{{"/time", "s", {}, {}, true},
+                              {"/channels/observed.displacement", "m", {}}};
   for (const ContactPoint& contact : cycle.at_turn.contacts) {
     const std::string group = "/contact/" + contact.name + "/";
     columns.push_back({group + "force", "N", {}});

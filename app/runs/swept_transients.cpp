@@ -3,34 +3,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <utility>
 
 #include "app/results/file_attributes.hpp"
+#include "app/results/row_columns.hpp"
 #include "app/stability/axis_units.hpp"
 #include "io/figures/panel_plot.hpp"
-#include "io/results/column_file.hpp"
 
 namespace stridor {
 namespace {
 
-/// What is written and drawn of every transient.
-struct SweptNumber {
-  const char* name;
-  const char* units;
-  const char* pointer;  ///< into the results
-};
-constexpr SweptNumber swept_numbers[] = {
-    {"acceleration_peak", "m/s^2", "/free_end_acceleration/peak"},
-    {"acceleration_rms", "m/s^2", "/free_end_acceleration/rms"},
-    {"force_min", "N", "/contact_force/min"},
-    {"force_max", "N", "/contact_force/max"},
-    {"stick_fraction", "1", "/stick_fraction"},
-    {"free_fraction", "1", "/free_fraction"},
-    {"violations", "1", "/violations"},
-    {"steps", "1", "/steps"}};
+/// The results of every transient that are written.
+constexpr std::array swept_numbers{
+    RowNumber{"/acceleration_peak", "m/s^2", "/free_end_acceleration/peak"},
+    RowNumber{"/acceleration_rms", "m/s^2", "/free_end_acceleration/rms"},
+    RowNumber{"/force_min", "N", "/contact_force/min"},
+    RowNumber{"/force_max", "N", "/contact_force/max"},
+    RowNumber{"/stick_fraction", "1", "/stick_fraction"},
+    RowNumber{"/free_fraction", "1", "/free_fraction"},
+    RowNumber{"/violations", "1", "/violations"},
+    RowNumber{"/steps", "1", "/steps"}};
 
 std::vector<double> column(const SweptTransients& points, const char* pointer) {
   std::vector<double> values;
@@ -48,7 +44,7 @@ std::vector<double> values_of(const SweptTransients& points) {
 std::vector<Column> columns_of_bursts(const NumericKey& key, const SweptTransients& points) {
   const std::pair<const char*, const char*> properties[] = {
       {"start", "s"}, {"end", "s"}, {"frequency", "Hz"}, {"peak", "m/s^2"}, {"gain", "1"}};
-  Column burst_value{"/bursts/value", printed_units(key), {}};
+  Column burst_value{"/bursts/value", printed_units(key), {}, {}, true};
   std::vector<Column> bursts;
   for (const auto& [name, units] : properties)
     bursts.push_back({std::string("/bursts/") + name, units, {}});
@@ -68,7 +64,7 @@ std::vector<Column> columns_of_bursts(const NumericKey& key, const SweptTransien
 
 void write_swept(const SweepOptions& options, const LoadedScene& loaded, const NumericKey& key,
                  const SweptTransients& points) {
-  std::vector<Column> columns{{"/value", printed_units(key), values_of(points)}};
+  std::vector<Column> columns{{"/value", printed_units(key), values_of(points), {}, true}};
   Column failed{"/failed", "1", {}};
   Column reason{"/reason", "", {}};
   Column num_bursts{"/num_bursts", "1", {}};
@@ -82,10 +78,9 @@ void write_swept(const SweepOptions& options, const LoadedScene& loaded, const N
   columns.push_back(failed);
   columns.push_back(reason);
   columns.push_back(num_bursts);
-  for (const SweptNumber& number : swept_numbers) {
-    columns.push_back(
-        {std::string("/") + number.name, number.units, column(points, number.pointer)});
-  }
+  append_numbers(
+      swept_numbers, points,
+      [](const SweptTransient& point) -> const Json& { return point.results; }, columns);
   const std::vector<Column> bursts = columns_of_bursts(key, points);
   columns.insert(columns.end(), bursts.begin(), bursts.end());
   Attributes attributes = source_attributes(loaded, options.command_line);

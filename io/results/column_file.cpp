@@ -16,12 +16,6 @@ std::string group_of(const std::string& path) {
   return path.substr(0, path.rfind('/'));
 }
 
-/// Columns of which others are functions.
-bool is_scale(const std::string& path) {
-  return path.ends_with("/time") || path.ends_with("/value") || path.ends_with("/run_time") ||
-         path.ends_with("/beta");
-}
-
 /// A column of which others are functions, in the file.
 struct ColumnScale {
   Handle dataset;
@@ -67,7 +61,7 @@ void write_column_file(const std::string& path, Overwrite overwrite, const std::
     for (const Column& column : columns) {
       Handle written = column.texts.empty() ? writer.write(column.path, column.values, column.units)
                                             : writer.write_texts(column.path, column.texts);
-      if (is_scale(column.path)) {
+      if (column.is_scale) {
         writer.make_scale(written, column.path);
         scales[group_of(column.path)] = {std::move(written), column.path, column.length()};
         continue;

@@ -15,14 +15,14 @@ struct Column {
   std::string units;  ///< "1" where dimensionless
   std::vector<double> values;
   std::vector<std::string> texts{};  ///< instead of values
+  bool is_scale = false;             ///< others of its group and below are functions of it
 
   std::size_t length() const { return texts.empty() ? values.size() : texts.size(); }
 };
 
-/// Writes columns to a file of their own. Columns `time`, `value`, `run_time` and `beta`, which
-/// stand before those that depend on them, are the scales of all of their length in their groups
-/// and below; where there is none, `number` of their group is, 1, 2, …. The file takes its name
-/// when it is whole.
+/// Writes columns to a file of their own. Scales stand before the columns that depend on them: they
+/// are those of all of their length in their groups and below; where there is none, `number` of
+/// their group is, 1, 2, …. The file takes its name when it is whole.
 /// @param kind       kind of the file, an attribute of the root
 /// @param attributes of the root besides
 /// @throws FileError if the file exists, its folder is not writable, or anything cannot be written
