@@ -1,13 +1,10 @@
-// Of eigenvalues at one position, of runs that were compared, and of contact laws.
+// Of eigenvalues at one position.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <optional>
-#include <utility>
 
-#include "app/report/curves.hpp"
 #include "app/report/mode_frames.hpp"
 #include "app/report/tables.hpp"
 #include "core/errors.hpp"
@@ -18,24 +15,27 @@ namespace {
 Json eigenvalue_verdict(const ResultFile& file, const std::vector<double>& growth,
                         const std::vector<double>& frequency) {
   const std::optional<double> highest = file.told("highest_frequency");
-  const std::string reach =
-      highest ? fmt::format(" up to {}", shown(*highest, "Hz")) : std::string();
+  const std::string limit = highest ? shown(*highest, "Hz") : std::string();
   if (file.told("stable").value_or(0.0) != 0.0)
-    return verdict("stable", fmt::format("All vibrations{} decay.", reach));
+    return verdict("stable", limit.empty() ? "All vibrations decay."
+                                           : fmt::format("All vibrations up to {} decay.", limit));
+  const std::vector<double> growing = file.read("/eigenvalues/growing");
   std::optional<std::size_t> fastest;
   std::size_t num_growing = 0;
   for (std::size_t i = 0; i < growth.size(); ++i) {
-    if (!(growth[i] > 0.0) || (highest && frequency[i] > *highest)) continue;
-    if (frequency[i] >= 0.0) ++num_growing;
+    if (growing[i] == 0.0 || (highest && frequency[i] > *highest)) continue;
+    ++num_growing;
     if (!fastest || growth[i] > growth[*fastest]) fastest = i;
   }
-  if (!fastest) return verdict("unstable", fmt::format("A motion{} grows.", reach));
+  if (!fastest) return verdict("unstable", "A motion grows.");
   const std::string of = frequency[*fastest] > 0.0
                              ? fmt::format("at {}", shown(frequency[*fastest], "Hz"))
                              : "without oscillation";
-  return verdict("unstable", fmt::format("{} {}{}; the fastest, {}, by {:.4g} 1/s.", num_growing,
-                                         num_growing == 1 ? "motion grows" : "motions grow", reach,
-                                         of, growth[*fastest]));
+  return verdict(
+      "unstable",
+      fmt::format("{}{} {}; the fastest, {}, by {:.4g} 1/s.",
+                  limit.empty() ? "" : fmt::format("Up to {} ", limit), num_growing,
+                  num_growing == 1 ? "motion grows" : "motions grow", of, growth[*fastest]));
 }
 
 /// Why the mode explained grows, and of what it is made.
@@ -90,13 +90,15 @@ void add_contacts(const ResultFile& file, Json& section) {
 Json eigenvalue_section(const ResultFile& file, const ReportContext& context) {
   const std::vector<double> growth = file.read("/eigenvalues/growth");
   const std::vector<double> frequency = file.read("/eigenvalues/frequency");
-  if (growth.size() != frequency.size())
-    throw FileError(Refusal::file_damaged, file.path(), "/eigenvalues/frequency",
-                    "is unlike /eigenvalues/growth in length");
+  for (const char* other : {"/eigenvalues/frequency", "/eigenvalues/growing"})
+    if (file.read(other).size() != growth.size())
+      throw FileError(Refusal::file_damaged, file.path(), other,
+                      "is unlike /eigenvalues/growth in length");
   const std::string parameter = file.text("parameter");
   const std::optional<double> value = file.told("value");
   std::string what = "eigenvalues";
-  if (!parameter.empty() && value) what += fmt::format(" at {} = {:.6g}", parameter, *value);
+  if (!parameter.empty() && value)
+    what += fmt::format(" at {} = {}", parameter, shown(*value, file.text("units")));
   Json section = section_head(file, "eigenvalues", what);
   section["remarks"] = Json::array();
   section["verdict"] = eigenvalue_verdict(file, growth, frequency);
@@ -120,95 +122,11 @@ Json eigenvalue_section(const ResultFile& file, const ReportContext& context) {
   if (!context.options.without_shapes && !scene.empty()) {
     FramedRange range{parameter, {}, file.text("about")};
     if (!parameter.empty() && value) range.values = {*value};
-    if (const auto fastest = std::ranges::max_element(frequency); fastest != frequency.end())
-      range.highest = *fastest;
+    if (!frequency.empty()) range.highest = std::ranges::max(frequency);
     add_mode_frames(
         {scene, file.path() + ":scene_resolved", file.text("scene"), file.text("scene_hash")},
         range, {0.8 * context.bytes_per_file, 1}, context.page, section);
   }
-  return section;
-}
-
-Json comparison_section(const ResultFile& file, const ReportContext&) {
-  Json section = section_head(file, file.kind(), "contact assumptions side by side");
-  // The file has the same name in every folder of a comparison.
-  const std::filesystem::path path = std::filesystem::absolute(file.path());
-  section["file"] = (path.parent_path().filename() / path.filename()).string();
-  const std::vector<TableColumn> columns =
-      columns_in(file, {{"/runs/assumption", "Assumption"},
-                        {"/runs/coordinates", "Coordinates"},
-                        {"/runs/step_time", "Time per step", 4},
-                        {"/runs/ratio", "Of FiLM's", 4},
-                        {"/runs/acceleration_peak", "Peak", 5},
-                        {"/runs/acceleration_rms", "R.m.s.", 5},
-                        {"/runs/difference", "Difference", 3},
-                        {"/runs/force_min", "Least force", 4},
-                        {"/runs/force_max", "Largest force", 4},
-                        {"/runs/num_bursts", "Bursts"},
-                        {"/runs/status", "Status"}});
-  if (columns.empty())
-    throw FileError(Refusal::file_damaged, file.path(), "/runs", "holds no run");
-  const std::vector<std::string> status = file.texts("/runs/status");
-  const auto num_done = std::ranges::count(status, "done");
-  section["verdict"] =
-      verdict(num_done < std::ssize(status) ? "failed" : "told",
-              fmt::format("{} runs, of which {} came to their end.", status.size(), num_done));
-  section["views"].push_back(table_view("Runs; differences are from FiLM", columns));
-  return section;
-}
-
-Json contact_law_section(const ResultFile& file, const ReportContext& context) {
-  Json section = section_head(file, file.kind(), "contact law over speed and indentation");
-  const std::vector<double> speeds = file.read("/speed");
-  const std::vector<double> indentations = file.read("/indentation");
-  struct Quantity {
-    const char* path;
-    const char* name;
-    const char* scale;
-  };
-  for (const auto& [path, name, scale] :
-       {Quantity{"/force", "normal force F/(E₀* R²)", "log"},
-        Quantity{"/area", "area of contact A/R²", "log"},
-        Quantity{"/friction", "friction coefficient", "linear"}}) {
-    const std::vector<double> values = file.read(path, 2);
-    if (values.size() != speeds.size() * indentations.size())
-      throw FileError(Refusal::file_damaged, file.path(), path,
-                      "is unlike /speed and /indentation in extent");
-    const auto axis = [&](const char* title, const std::vector<double>& numbers) {
-      return Json{{"name", title}, {"units", "1"}, {"values", context.page.add_numbers(numbers)}};
-    };
-    section["views"].push_back({{"type", "field"},
-                                {"title", name},
-                                {"x", axis("speed v τ/R", speeds)},
-                                {"y", axis("indentation y/R", indentations)},
-                                {"value", axis(name, values)},
-                                {"scale", scale},
-                                {"lines", Json::array()}});
-  }
-  section["verdict"] = verdict("told", fmt::format("Force, area and friction at {} speeds and {} "
-                                                   "indentations.",
-                                                   speeds.size(), indentations.size()));
-  return section;
-}
-
-Json master_curve_section(const ResultFile& file, const ReportContext& context) {
-  Json section = section_head(file, file.kind(), "master curve of sliding paraboloids");
-  if (!file.has("/beta"))
-    throw FileError(Refusal::file_damaged, file.path(), "/beta", "is missing");
-  CurveSet points = curve_set(file, "", "beta");
-  for (CurveColumn& column : points.columns) {
-    for (const auto& [name, of] : {std::pair{"f", "force"}, {"g", "area"}, {"m", "friction"}})
-      if (column.name == name) column.name += fmt::format(", of the {}", of);
-  }
-  Json view = curves_view("β", file.array("/beta").units, {points}, context.page);
-  view["x_log"] = true;
-  view["table"] = true;
-  section["views"].push_back(std::move(view));
-  section["verdict"] = verdict(
-      "told",
-      fmt::format("Force, area and friction of paraboloids at {} speeds: β is v τ/R over the "
-                  "root of the indentation y/R.",
-                  points.over.size()));
   return section;
 }
 

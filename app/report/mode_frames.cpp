@@ -152,10 +152,10 @@ class Frames {
 
   /// Adds the modes at the present member of a family.
   void add(const SceneFamily::Member& member, std::optional<double> value, double time) {
-    const Analysis analysis = analyse(options_, loaded_, member);
-    if (!analysis.found.shape)
+    if (member.model->sparse)
       throw ConfigError(Refusal::cannot_reduce, "",
                         "the bodies are not reduced, and too many unknowns to show at once");
+    const Analysis analysis = analyse(options_, loaded_, member);
     if (model_ != member.model || !recovery_) {
       model_ = member.model;
       recovery_.emplace(*member.model, cache_);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "app/report/report_section.hpp"
 #include "core/errors.hpp"
@@ -56,9 +55,7 @@ Json reductions_of(const ResultFile& file) {
 
 Json precision_section(const ResultFile& file, const ReportContext&) {
   Json section = section_head(file, file.kind(), "errors against run time");
-  // The file has the same name in every folder of a study.
-  const std::filesystem::path path = std::filesystem::absolute(file.path());
-  section["file"] = (path.parent_path().filename() / path.filename()).string();
+  section["file"] = name_with_folder(file);
   const auto told_json = [&](const char* name) {
     return number(file.told(name).value_or(std::nan("")));
   };

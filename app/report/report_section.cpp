@@ -45,6 +45,11 @@ std::string scene_name(const ResultFile& file) {
   return std::filesystem::path(scene).stem().string();
 }
 
+std::string name_with_folder(const ResultFile& file) {
+  const std::filesystem::path path = std::filesystem::absolute(file.path());
+  return (path.parent_path().filename() / path.filename()).string();
+}
+
 Json section_head(const ResultFile& file, const std::string& kind, const std::string& what) {
   const std::string scene = scene_name(file);
   Json head = {{"kind", kind},

@@ -49,6 +49,9 @@ Json report_section(const ResultFile& file, const ReportContext& context);
 /// The scene that a file is of, without folder and ending; empty where the file does not say.
 std::string scene_name(const ResultFile& file);
 
+/// Of a file that has the same name in every folder of results: "study/precision.h5".
+std::string name_with_folder(const ResultFile& file);
+
 /// The beginning of every section: title, file, kind, and where it comes from.
 /// @param what was computed, which with the name of the scene is the title: "run to 2 s"
 Json section_head(const ResultFile& file, const std::string& kind, const std::string& what);

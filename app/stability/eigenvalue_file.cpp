@@ -5,6 +5,7 @@
 
 #include "app/results/file_attributes.hpp"
 #include "app/stability/eigenvalue_report.hpp"
+#include "app/stability/lowest_eigenvalues.hpp"
 #include "io/results/column_file.hpp"
 
 namespace stridor {
@@ -28,6 +29,8 @@ void add_eigenvalues(const std::vector<Eigenvalue>& found, std::vector<Column>& 
     const double size = std::abs(one.s);
     return size > 0.0 ? -one.growth() / size : 0.0;
   });
+  add("/eigenvalues/growing", "1",
+      [](const Eigenvalue& one) { return is_growing(one) ? 1.0 : 0.0; });
   add("/eigenvalues/residual", "1", [](const Eigenvalue& one) { return one.residual; });
   add("/eigenvalues/doubtful", "1",
       [](const Eigenvalue& one) { return is_doubtful(one) ? 1.0 : 0.0; });

@@ -1,7 +1,6 @@
-// What `eig` found, as a file.
+// The file of eigenvalues at one position.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "app/stability/analysed_spectrum.hpp"

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "app/results/file_attributes.hpp"
-#include "app/stability/axis_units.hpp"
 #include "app/stability/passing_times.hpp"
 
 namespace stridor {

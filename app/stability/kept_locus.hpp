@@ -14,7 +14,7 @@ namespace stridor {
 std::vector<TimedWindow> timed_windows(const Locus& locus, const NumericKey& key,
                                        const StabilityScene& scene, StabilityFamily& family);
 
-/// What a file of a locus says of it.
+/// Scene, options, key and command of a locus, which its file holds.
 struct LocusSource {
   const StabilityScene& scene;
   const StabilityOptions& options;

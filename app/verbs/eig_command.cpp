@@ -39,10 +39,13 @@ struct EigOptions {
 
 constexpr int num_frames = 24;
 
-/// The scene at the position asked for.
-SceneFamily make_family(const LoadedScene& loaded, const EigOptions& options,
-                        std::vector<double>& values) {
-  if (!options.at) return SceneFamily(loaded, {});
+/// A key of the scene and its value at the position asked for.
+struct AskedPosition {
+  NumericKey key;
+  double value = 0.0;
+};
+std::optional<AskedPosition> asked_position(const LoadedScene& loaded, const EigOptions& options) {
+  if (!options.at) return std::nullopt;
   loaded.require_section("contact", "eig --at");
   const auto path = start_key(loaded.scene.model);
   if (!path) {
@@ -51,8 +54,7 @@ SceneFamily make_family(const LoadedScene& loaded, const EigOptions& options,
                       "with --set");
   }
   const NumericKey key = find_stability_key(loaded.scene, *path, "--at");
-  values.push_back(parse_value(key, *options.at, "--at"));
-  return SceneFamily(loaded, {key});
+  return AskedPosition{key, parse_value(key, *options.at, "--at")};
 }
 
 /// The largest displacement of any node, 0 where nothing moves.
@@ -213,16 +215,15 @@ void print_comparison(const Json& comparison) {
 }
 
 void write_output(const EigOptions& options, const LoadedScene& loaded, const Analysis& analysis,
-                  const Json& object) {
+                  const std::optional<AskedPosition>& position, const Json& object) {
   Attributes attributes = source_attributes(loaded, options.command_line);
   attributes.emplace_back("about", options.stability.about);
   attributes.emplace_back("method", analysis.found.method);
   attributes.emplace_back("stable", object["stable"].get<bool>() ? 1.0 : 0.0);
-  if (options.at) {
-    const std::string path = *start_key(loaded.scene.model);
-    attributes.emplace_back("parameter", path);
-    attributes.emplace_back(
-        "value", parse_value(find_stability_key(loaded.scene, path, "--at"), *options.at, "--at"));
+  if (position) {
+    attributes.emplace_back("parameter", position->key.path);
+    attributes.emplace_back("value", position->value);
+    attributes.emplace_back("units", printed_units(position->key));
   }
   write_eigenvalue_file(*options.output, options.stability.common.overwrite(), analysis,
                         object.value("explanation", Json()), std::move(attributes));
@@ -262,7 +263,8 @@ void print_report(const EigOptions& options, const Analysis& analysis, const Jso
     if (file) fmt::print("{}\n", *file);
 }
 
-ExitCode report(const EigOptions& options, const LoadedScene& loaded, const Analysis& analysis) {
+ExitCode report(const EigOptions& options, const LoadedScene& loaded, const Analysis& analysis,
+                const std::optional<AskedPosition>& position) {
   const FoundSpectrum& found = analysis.found;
   const std::vector<Eigenvalue>& eigenvalues = found.eigenvalues;
   const bool is_stable = std::none_of(
@@ -302,7 +304,7 @@ ExitCode report(const EigOptions& options, const LoadedScene& loaded, const Anal
   }
   add_shape_files(options, loaded, analysis, object);
   if (options.output) {
-    write_output(options, loaded, analysis, object);
+    write_output(options, loaded, analysis, position, object);
     object["file"] = *options.output;
   }
   if (options.stability.common.json) {
@@ -326,9 +328,11 @@ ExitCode eig(EigOptions options) {
   if (options.figure) check_figure(*options.figure, options.stability.common);
   const LoadedScene loaded = load_scene(options.stability.scene, options.stability.common.sets);
   make_choices(options.stability, loaded.scene);
-  std::vector<double> values;
-  SceneFamily family = make_family(loaded, options, values);
-  return report(options, loaded, analyse(options.stability, loaded, family.at(values)));
+  const std::optional<AskedPosition> position = asked_position(loaded, options);
+  SceneFamily family(loaded, position ? std::vector{position->key} : std::vector<NumericKey>{});
+  const std::vector<double> values =
+      position ? std::vector{position->value} : std::vector<double>{};
+  return report(options, loaded, analyse(options.stability, loaded, family.at(values)), position);
 }
 
 }  // namespace

@@ -113,6 +113,8 @@ constexpr std::array dataset_names{
     DatasetName{"/eigenvalues/growth", "growth rate of the eigenvalue"},
     DatasetName{"/eigenvalues/frequency", "frequency of the eigenvalue"},
     DatasetName{"/eigenvalues/damping_ratio", "damping ratio of the eigenvalue"},
+    DatasetName{"/eigenvalues/growing",
+                "whether the motion grows, beyond rounding: 1 yes, 0 no"},
     DatasetName{"/eigenvalues/residual", "what is left of the equations of motion, of their terms"},
     DatasetName{"/eigenvalues/doubtful",
                 "whether rounding may have made the eigenvalue up: 1 yes, 0 no"},

@@ -1,4 +1,4 @@
-// Of results that are curves and fields: cycles, spectrograms, contacts.
+// Of limit cycles and spectrograms.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -96,52 +96,9 @@ Json spectrogram_section(const ResultFile& file, const ReportContext& context) {
                           file.array("/amplitude").units, context.page);
   view["channel"] = file.text("channel");
   view["caption"] = "";
-  section["verdict"] = verdict(
-      "told", fmt::format("Levels of {} over time and frequency.", file.text("channel")));
+  section["verdict"] =
+      verdict("told", fmt::format("Levels of {} over time and frequency.", file.text("channel")));
   section["views"].push_back(std::move(view));
-  return section;
-}
-
-Json contact_section(const ResultFile& file, const ReportContext& context) {
-  Json section = section_head(file, "sliding contacts", "sliding contacts");
-  const bool has_speed = file.has("/rows/speed");
-  if (has_speed) {
-    CurveSet rows = curve_set(file, "/rows", "speed");
-    WordColumn solution{"solution", {}};
-    for (const double converged : rows.take("converged"))
-      solution.texts.emplace_back(converged != 0.0 ? "converged" : "not converged");
-    if (!solution.texts.empty()) rows.words.push_back(std::move(solution));
-    Json view = curves_view("speed", file.array("/rows/speed").units, {rows}, context.page);
-    view["x_log"] = true;
-    view["table"] = true;
-    section["views"].push_back(std::move(view));
-  }
-  const std::vector<std::string> contacts = file.names_in("/contacts");
-  for (const std::string& name : contacts) {
-    const std::string group = "/contacts/" + name;
-    Json lines = Json::array();
-    if (file.has(group + "/edge_x")) {
-      const std::vector<double> edge_x = file.read(group + "/edge_x");
-      const std::vector<double> edge_y = file.read(group + "/edge_y");
-      if (edge_x.size() != edge_y.size())
-        throw FileError(Refusal::file_damaged, file.path(), group + "/edge_y",
-                        "is unlike edge_x in length");
-      lines.push_back(context.page.add_numbers(points_of(edge_x, edge_y)));
-    }
-    section["views"].push_back(
-        {{"type", "field"},
-         {"title", "contact " + name},
-         {"x", {{"name", "x"}, {"units", "m"}, {"values", context.page.add_numbers(file.read(group + "/x"))}}},
-         {"y", {{"name", "y"}, {"units", "m"}, {"values", context.page.add_numbers(file.read(group + "/y"))}}},
-         {"value", {{"name", "pressure"},
-                    {"units", "Pa"},
-                    {"values", context.page.add_numbers(file.read(group + "/pressure", 2))}}},
-         {"scale", "linear"},
-         {"lines", lines}});
-  }
-  section["verdict"] = verdict(
-      "told", fmt::format("{} sliding {} on a viscoelastic half-space.", contacts.size(),
-                          contacts.size() == 1 ? "contact" : "contacts"));
   return section;
 }
 
