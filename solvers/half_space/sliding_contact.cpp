@@ -50,7 +50,7 @@ std::vector<std::string> SlidingContactResult::remarks() const {
     list.push_back(fmt::format("not converged: residual {:.1e} after {} sets of contact cells",
                                residual, rounds));
   }
-  if (touches_window) list.push_back("the contact reaches the border of the window: enlarge it");
+  if (touches_window) list.emplace_back("the contact reaches the border of the window: enlarge it");
   if (!has_resolved_memory()) {
     list.push_back(
         fmt::format("the layer of length v tau at the edge is {:.2g} cells wide and not "
@@ -58,7 +58,7 @@ std::vector<std::string> SlidingContactResult::remarks() const {
                     memory_in_cells));
   }
   if (!has_resolved_edge)
-    list.push_back("the edge is not one smooth curve on this grid: the area is counted in cells");
+    list.emplace_back("the edge is not one smooth curve on this grid: the area is counted in cells");
   return list;
 }
 
