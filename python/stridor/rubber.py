@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from . import labelled
 from .files import ResultFile, counted, listed, span
 from .series import Series
 
@@ -67,18 +64,6 @@ class ContactLaw(ResultFile):
     >>> law.to_xarray().force.dims
     ('indentation', 'speed')
     """
-
-    def to_xarray(self, group: str | None = None) -> Any:
-        """The table as an `xarray.Dataset` over speed and indentation."""
-        if group is not None:
-            return super().to_xarray(group)
-        of = {name: labelled.of_series(one) for name, one in self._group("/").items()}
-        coordinates = {}
-        for name in ("indentation", "speed"):
-            one = of.pop(name)
-            coordinates[name] = one.renamed({one.dims[0]: name})
-        variables = {name: one.renamed(dict(zip(one.dims, ("indentation", "speed")))) for name, one in of.items()}
-        return labelled.dataset(variables, coordinates, self._introduction())
 
     def _lines(self) -> list[str]:
         extents = [f"{len(self._file[name])} {name}s, {span(self._file[name][:], '')}" for name in ("speed", "indentation")]

@@ -199,8 +199,8 @@ TEST(SampledLocus, EigenvaluesOfTwoDegreesOfFreedom) {
   EXPECT_NEAR(falling, -0.0111662740, 1e-10);
 }
 
-TEST(SampledLocus, WindowsHoldTheIntegralOfTheGrowth) {
-  // s² + s (x² − 1) + 1 = 0 grows with (1 − x²)/2 between −1 and 1.
+/// s² + s (x² − 1) + 1 = 0, which grows with (1 − x²)/2 between −1 and 1.
+PencilFamily parabola() {
   PencilFamily family;
   family.place = [](double x, Pencil& pencil) {
     LinearSystem system;
@@ -209,6 +209,11 @@ TEST(SampledLocus, WindowsHoldTheIntegralOfTheGrowth) {
     system.gaps = system.forces = Eigen::MatrixXd(0, 1);
     pencil = make_pencil(system);
   };
+  return family;
+}
+
+TEST(SampledLocus, WindowsHoldTheIntegralOfTheGrowth) {
+  const PencilFamily family = parabola();
   const Locus locus = sample_locus(family, {-3.0, 2.0});
   ASSERT_EQ(locus.unstable.size(), 1U);
   EXPECT_NEAR(locus.unstable[0].from, -1.0, 1e-12);
@@ -221,14 +226,7 @@ TEST(SampledLocus, WindowsHoldTheIntegralOfTheGrowth) {
 }
 
 TEST(SampledLocus, EigenvaluesAreConnectedToBranches) {
-  PencilFamily family;
-  family.place = [](double x, Pencil& pencil) {
-    LinearSystem system;
-    system.mass = system.position = Eigen::MatrixXd::Identity(1, 1);
-    system.velocity = Eigen::MatrixXd::Constant(1, 1, x * x - 1.0);
-    system.gaps = system.forces = Eigen::MatrixXd(0, 1);
-    pencil = make_pencil(system);
-  };
+  const PencilFamily family = parabola();
   const Locus locus = sample_locus(family, {-1.5, 0.1, 1.5});
   ASSERT_EQ(locus.branches.size(), 1U);
   const Branch& branch = locus.branches[0];
