@@ -1,4 +1,4 @@
-// What every file of results says of where it comes from.
+// Attributes of files of results: their origin, and single numbers.
 #pragma once
 
 #include <string>

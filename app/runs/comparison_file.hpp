@@ -1,4 +1,4 @@
-// What `compare` measured, as a file.
+// The file of a comparison of contact assumptions.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What a sweep of transients has found, as file, picture and text.
+// Results of a sweep of transients, as file, picture and text.
 #pragma once
 
 #include <string>

@@ -93,7 +93,7 @@ void add_threshold_command(CLI::App& program, Action& action, const std::string&
 void add_spectrogram_command(CLI::App& program, Action& action);
 void add_sound_command(CLI::App& program, Action& action);
 void add_report_command(CLI::App& program, Action& action, const std::string& command_line);
-/// What people do not call: pages of the manual.
+/// Verbs that no user calls: pages of the manual.
 void add_hidden_commands(CLI::App& program, Action& action);
 /// For shells: what the last word may go on to, a line each, what it is behind a tab.
 void print_candidates(const CLI::App& program, const std::vector<std::string>& words,

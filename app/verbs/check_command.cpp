@@ -39,7 +39,7 @@ struct Report {
   std::map<std::string, ImportFacts> imports{};  ///< by body
 };
 
-/// What the files of bodies hold.
+/// Contents of the files of bodies.
 std::map<std::string, ImportFacts> imports_of(const Model& model) {
   std::map<std::string, ImportFacts> imports;
   for (const auto& [name, body] : model.substructures) {

@@ -312,7 +312,7 @@ ExitCode report_done(const RunOptions& options, const RunFileReader& reader) {
   }
   const Json results = stored_results(reader);
   if (options.common.json) {
-    print_warnings({});
+    print_warnings({});  // those of the scene were told when the run began
     print_json(results);
   } else {
     fmt::print("{:<24}done; {} holds the whole run, there is nothing left to do\n", "status",

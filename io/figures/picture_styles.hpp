@@ -19,18 +19,24 @@ struct PictureMarkStyle {
 };
 inline PictureMarkStyle style_of(PictureMark mark) {
   switch (mark) {
-    case PictureMark::mass: return {"node", 7, 0.9, "#606060"};
-    case PictureMark::contact: return {"slave point", 6, 1.5, "#e07b00"};
-    case PictureMark::held: return {"held", 9, 1.2, "#202020"};
-    case PictureMark::held_partly: return {"held in some directions", 8, 1.2, "#202020"};
-    case PictureMark::guided: return {"guided", 5, 0.9, "#741b47"};
-    case PictureMark::point: break;
+    case PictureMark::mass:
+      return {"node", 7, 0.9, "#606060"};
+    case PictureMark::contact:
+      return {"slave point", 6, 1.5, "#e07b00"};
+    case PictureMark::held:
+      return {"held", 9, 1.2, "#202020"};
+    case PictureMark::held_partly:
+      return {"held in some directions", 8, 1.2, "#202020"};
+    case PictureMark::guided:
+      return {"guided", 5, 0.9, "#741b47"};
+    case PictureMark::point:
+      break;
   }
   return {"point", 2, 1.1, "#c0392b"};
 }
 inline constexpr std::array<PictureMark, 6> all_marks{PictureMark::held,   PictureMark::held_partly,
-                                               PictureMark::guided, PictureMark::mass,
-                                               PictureMark::point,  PictureMark::contact};
+                                                      PictureMark::guided, PictureMark::mass,
+                                                      PictureMark::point,  PictureMark::contact};
 
 struct PictureArrowStyle {
   const char* name;
@@ -38,9 +44,12 @@ struct PictureArrowStyle {
 };
 inline PictureArrowStyle style_of(PictureArrow::Kind kind) {
   switch (kind) {
-    case PictureArrow::Kind::motion: return {"prescribed motion", "#741b47"};
-    case PictureArrow::Kind::load: return {"load", "#b02318"};
-    case PictureArrow::Kind::normal: break;
+    case PictureArrow::Kind::motion:
+      return {"prescribed motion", "#741b47"};
+    case PictureArrow::Kind::load:
+      return {"load", "#b02318"};
+    case PictureArrow::Kind::normal:
+      break;
   }
   return {"normal of the master", "#e07b00"};
 }

@@ -1,4 +1,4 @@
-// What the symmetric part of a sparse system says of its eigenvalues.
+// The symmetric part of a sparse system: its lowest modes, and a mass that can be factored.
 #pragma once
 
 #include <Eigen/Core>

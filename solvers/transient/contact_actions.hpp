@@ -1,4 +1,4 @@
-// What contacts do to their bodies in a step, as the energy ledger and pictures take it.
+// Actions of contacts on their bodies in a step, for the energy ledger and pictures.
 #pragma once
 
 #include "solvers/contact/face_contacts.hpp"

@@ -1,4 +1,4 @@
-// What contacts take in a step besides those that slide for good: stick and lift-off, force laws,
+// The part of a step that contacts take which do not slide for good: stick and lift-off, force laws,
 // two tangents, and the look ahead of unsteady ones.
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-// What a simulation needs to go on, in a checkpoint.
+// The state of a simulation in a checkpoint, from which it goes on.
 #include <fmt/format.h>
 
 #include <array>

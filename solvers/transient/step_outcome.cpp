@@ -15,13 +15,13 @@ constexpr const char* persistent_sliding_remedy =
     "lift off (contact.assumption: film, or contact.on_violation: unilateral), lower the friction "
     "coefficient, or raise contact.armed_from if this is start-up";
 
-/// What has happened to a contact, and what helps.
+/// The failure of a contact in words, and a remedy.
 struct Diagnosis {
   std::string what;
   std::string remedy;
 };
 
-/// What can go wrong with a contact of any kinematics.
+/// Of a contact of any kinematics.
 Diagnosis diagnosis_of(const ContactRecord& contact, StepOutcome outcome) {
   switch (outcome) {
     case StepOutcome::pulling:
