@@ -56,7 +56,7 @@ MemoryLimit memory_limit(const fs::path& root, double address_space) {
     const std::size_t first = line.find(':');
     const std::size_t second = line.find(':', first + 1);
     if (first == std::string::npos || second == std::string::npos) continue;
-    const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",";
+    const std::string controllers = fmt::format(",{},", line.substr(first + 1, second - first - 1));
     const std::string group = line.substr(second + 1);
     if (controllers == ",,") lower_by_groups(limit, mount, group, "memory.max");
     if (controllers.find(",memory,") != std::string::npos)
