@@ -36,7 +36,7 @@ GROUPS = {
                   "examples/flutter_gyroscopic", "examples/gyroscopic",
                   "examples/rotating_support"],
     "Discs and pads": ["disc_and_pads", "examples/disc_squeal", "examples/elastic_pads",
-                       "examples/meshed_disc"],
+                       "examples/meshed_disc", "examples/brake/brake"],
     "Rubber": ["viscoelastic_contact", "viscoelastic_sphere", "examples/sphere_on_rubber",
                "examples/beam_on_substrate"],
     "Meshes, matrices and measured parts": [
@@ -182,6 +182,10 @@ RESULTS = {
         "Mode shape",
         "The mode that grows fastest, at 3121 Hz, a quarter of a period apart.",
         ["stridor eig {path} --count 12 --shapes {stem}_mode"]),
+    "examples/brake/brake": (
+        "Mode shape",
+        "The mode that grows, at 6329 Hz, a quarter of a period apart: nine nodal diameters of the disc.",
+        ["stridor eig {path} --below 9kHz --shapes {stem}_mode"]),
     "viscoelastic_contact": (
         "Pressure",
         "Pressure at a speed of 0.1: the contact is cut off behind, and the pressure is highest in front.",
@@ -296,8 +300,8 @@ class Card:
 def cards():
     listed = [name for names in GROUPS.values() for name in names]
     found = [str(path.relative_to(SOURCE / "scenes"))[:-5]
-             for folder in ("scenes", "scenes/examples")
-             for path in (SOURCE / folder).glob("*.yaml")]
+             for pattern in ("*.yaml", "examples/*.yaml", "examples/brake/brake.yaml")
+             for path in (SOURCE / "scenes").glob(pattern)]
     if sorted(listed) != sorted(found):
         sys.exit(f"GROUPS and scenes differ: {sorted(set(listed) ^ set(found))}")
     if sorted(listed) != sorted(RESULTS):
@@ -404,7 +408,7 @@ def index(all_cards, times):
         lines += [f"## {group}", "", "| scene | what it is | command | processor time |", "|---|---|---|---|"]
         for name in names:
             card = all_cards[name]
-            link = f"{card.stem}.yaml" if name.startswith("examples/") else f"../{card.stem}.yaml"
+            link = f"{name.removeprefix('examples/')}.yaml" if "/" in name else f"../{card.stem}.yaml"
             sentence = card.sentence.replace("|", "\\|")
             lines.append(f"| [`{card.stem}`]({link}) | {sentence} | `{card.command}` | {shown(times[name])} |")
         lines.append("")

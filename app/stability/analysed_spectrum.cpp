@@ -24,8 +24,8 @@ Json explanation_json(const Pencil& pencil, const Eigenvalue& eigenvalue) {
   const ModeEnergy energy = mode_energy(pencil, eigenvalue.s, vector);
   const double frequency = eigenvalue.frequency();
   // Modes far above take no part; those a little above may.
-  const std::vector<Eigenvalue> modes =
-      secular_eigenvalues(frictionless(pencil), SpectrumWindow::below(1.5 * frequency));
+  const std::vector<Eigenvalue> modes = lowest_eigenvalues(
+      frictionless(pencil), EigenvalueMethod::secular, SpectrumWindow::below(1.5 * frequency));
   std::vector<Eigenvalue> vibrating;
   std::copy_if(modes.begin(), modes.end(), std::back_inserter(vibrating),
                [](const Eigenvalue& one) { return one.s.imag() > 0.0; });

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <span>
 #include <string>
 
 namespace stridor {
@@ -126,26 +129,78 @@ Json equilibrium_json(const Model& model, const Equilibrium& equilibrium) {
   return object;
 }
 
-void print_equilibrium(const System& system, const Equilibrium& equilibrium) {
-  for (std::size_t i = 0; i < system.contacts.size(); ++i) {
-    const ContactEquilibrium& contact = equilibrium.contacts[i];
-    if (!contact.is_closed) {
-      fmt::print("{:<20}open, gap {:.4g} m\n", system.contacts[i].name, contact.gap);
-      continue;
+namespace {
+
+void print_contact(const ContactPoint& point, const ContactEquilibrium& contact) {
+  if (!contact.is_closed) {
+    fmt::print("{:<20}open, gap {:.4g} m\n", point.name, contact.gap);
+    return;
+  }
+  const std::optional<FacePlace>& face = point.face;
+  const std::string place =
+      face ? fmt::format("at radius {:.6g} m and {:.4g} rad of {}", face->radius, face->angle,
+                         face->name)
+      : point.space ? fmt::format("{:.6g} m along {}", contact.position, point.space->name)
+                    : fmt::format("{:.6g} m along the master", contact.position);
+  fmt::print("{:<20}{}, force {:.6g} N, friction {:.6g} N, sliding at {:.4g} m/s{}\n", point.name,
+             place, contact.force, std::hypot(contact.friction_force, contact.friction_across),
+             contact.slip_velocity,
+             contact.force < 0.0    ? " (pulls: no equilibrium of real bodies)"
+             : contact.force == 0.0 ? " (nothing presses: give a load, or normal.preload)"
+                                    : "");
+}
+
+/// Many points of a pair in two lines.
+void print_pair(const std::string& name, std::span<const ContactEquilibrium> contacts) {
+  struct {
+    double lowest = std::numeric_limits<double>::infinity();
+    double highest = -lowest;
+    void include(double value) {
+      lowest = std::min(lowest, value);
+      highest = std::max(highest, value);
     }
-    const std::optional<FacePlace>& face = system.contacts[i].face;
-    const std::string place =
-        face ? fmt::format("at radius {:.6g} m and {:.4g} rad of {}", face->radius, face->angle,
-                           face->name)
-        : system.contacts[i].space
-            ? fmt::format("{:.6g} m along {}", contact.position, system.contacts[i].space->name)
-            : fmt::format("{:.6g} m along the master", contact.position);
-    fmt::print("{:<20}{}, force {:.6g} N, friction {:.6g} N, sliding at {:.4g} m/s{}\n",
-               system.contacts[i].name, place, contact.force,
-               std::hypot(contact.friction_force, contact.friction_across), contact.slip_velocity,
-               contact.force < 0.0    ? " (pulls: no equilibrium of real bodies)"
-               : contact.force == 0.0 ? " (nothing presses: give a load, or normal.preload)"
-                                      : "");
+  } force, speed;
+  double whole_force = 0.0;
+  double friction = 0.0;
+  std::size_t num_closed = 0;
+  std::size_t num_pulling = 0;
+  for (const ContactEquilibrium& contact : contacts) {
+    if (!contact.is_closed) continue;
+    ++num_closed;
+    if (contact.force < 0.0) ++num_pulling;
+    force.include(contact.force);
+    speed.include(contact.slip_velocity);
+    whole_force += contact.force;
+    friction += std::hypot(contact.friction_force, contact.friction_across);
+  }
+  fmt::print("{:<20}{} of {} points closed", name, num_closed, contacts.size());
+  if (num_closed > 0) {
+    fmt::print(
+        ", force {:.6g} N in all, {:.4g} to {:.4g} N each, friction {:.6g} N,\n"
+        "{:<20}sliding at {:.4g} to {:.4g} m/s",
+        whole_force, force.lowest, force.highest, friction, "", speed.lowest, speed.highest);
+  }
+  if (num_pulling > 0) fmt::print("; {} of them pull: no equilibrium of real bodies", num_pulling);
+  if (num_closed > 0 && force.lowest == 0.0 && force.highest == 0.0)
+    fmt::print(" (nothing presses: give a load, or normal.preload)");
+  fmt::print("\n");
+}
+
+}  // namespace
+
+void print_equilibrium(const System& system, const Equilibrium& equilibrium) {
+  constexpr std::size_t most_listed = 20;  // points of a pair
+  const std::span<const ContactEquilibrium> contacts = equilibrium.contacts;
+  for (std::size_t first = 0; first < contacts.size();) {
+    const std::string pair = system.contacts[first].pair();
+    std::size_t end = first + 1;
+    while (end < contacts.size() && system.contacts[end].pair() == pair) ++end;
+    if (end - first > most_listed) {
+      print_pair(pair, contacts.subspan(first, end - first));
+    } else {
+      for (std::size_t i = first; i < end; ++i) print_contact(system.contacts[i], contacts[i]);
+    }
+    first = end;
   }
 }
 

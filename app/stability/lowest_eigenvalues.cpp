@@ -12,21 +12,19 @@
 
 namespace stridor {
 
-namespace {
-
-/// Whether all eigenvalues by the dense method cost less than a search. The secular function is a
-/// determinant of as many rows as contacts and the ports that they and coupled bodies join, taken some tens
-/// of times for every eigenvalue.
 bool is_dense_cheaper(const Pencil& pencil) {
   constexpr Eigen::Index least = 100;  // below, a search takes no time
-  constexpr double share = 8.0;
-  if (pencil.num_modes() < least || pencil.num_eigenvalues() > most_dense) return false;
+  if (pencil.num_modes() < least) return false;
   const ModalRows rows = modal_rows(pencil);
   const auto size = static_cast<double>(rows.num_constraints + rows.rank);
-  return size * size > share * static_cast<double>(pencil.num_modes());
+  const auto num_modes = static_cast<double>(pencil.num_modes());
+  constexpr double share = 8.0;
+  // A determinant of a third of the modes, some thousand times over, takes longer than all
+  // eigenvalues, of however many.
+  constexpr double large = 1.0 / 3.0;
+  return pencil.num_eigenvalues() <= most_dense ? size * size > share * num_modes
+                                                : size > large * num_modes;
 }
-
-}  // namespace
 
 LowestEigenvalues find_lowest(const Pencil& pencil, EigenvalueMethod method,
                               const SpectrumWindow& window) {
@@ -55,6 +53,13 @@ LowestEigenvalues find_lowest(const Pencil& pencil, EigenvalueMethod method,
           "the dense method, as for any up to {}; fewer modes (time.retain) are faster",
           pencil.num_eigenvalues(), most_dense);
     }
+  }
+  if (found.remark.empty() && method == EigenvalueMethod::secular &&
+      pencil.num_eigenvalues() > most_dense) {
+    found.remark = fmt::format(
+        "contacts join most of the modes: all {} eigenvalues by the dense method; let interfaces of "
+        "meshes move in fewer modes (interface.modes), which is faster",
+        pencil.num_eigenvalues());
   }
   found.method = EigenvalueMethod::dense;
   found.eigenvalues = dense_eigenvalues(pencil);

@@ -14,6 +14,11 @@ enum class EigenvalueMethod { secular, dense };
 /// Up to how many eigenvalues the dense method steps in where another fails: about a minute.
 inline constexpr Eigen::Index most_dense = 2000;
 
+/// Whether all eigenvalues by the dense method cost less than a search. The secular function is a
+/// determinant of as many rows as contacts and the ports that they and coupled bodies join, taken
+/// some tens of times for every eigenvalue.
+bool is_dense_cheaper(const Pencil& pencil);
+
 /// Real eigenvalues, then those of a window with positive imaginary part, lowest first; those there
 /// are where there are fewer.
 /// @throws NumericalError if they cannot be found
@@ -32,8 +37,8 @@ struct LowestEigenvalues {
   }
 };
 
-/// If the search for zeros of the secular function does not converge, all eigenvalues are
-/// computed by the dense method, if there are no more than 2,000.
+/// All eigenvalues are computed by the dense method where that is cheaper, or where the search for
+/// zeros of the secular function does not converge and there are no more than 2,000.
 /// @throws NumericalError if there are more, or as dense_eigenvalues()
 LowestEigenvalues find_lowest(const Pencil& pencil, EigenvalueMethod method,
                               const SpectrumWindow& window);

@@ -125,6 +125,8 @@ enum class OnViolation {
 /// One slave point on one master surface, on one place of the face of a spinning body, or in space.
 struct ContactPoint {
   std::string name;  ///< of the pair it belongs to, with "[k]" where the pair has several points
+  /// Name of its pair, the points of which are <pair>[0], <pair>[1], ...; `name` where it has one.
+  std::string pair() const { return name.substr(0, name.find('[')); }
   int slave_body = 0;
   PointRows slave_rows;
   Eigen::Vector2d slave_position;  ///< undeformed, global, at the start of the drive, m

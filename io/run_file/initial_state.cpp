@@ -154,7 +154,7 @@ std::string key_of_start(const LoadedScene& loaded, const ContactPoint& contact)
   if (!model.initial.displacement.empty()) return "initial.displacement";
   if (model.initial.perturbation) return "initial.perturbation.amplitude";
   if (model.initial.is_file()) return state_key;
-  const std::string pair = contact.name.substr(0, contact.name.find('['));
+  const std::string pair = contact.pair();
   return (model.contact ? pair : "contacts." + pair) + ".slave";
 }
 

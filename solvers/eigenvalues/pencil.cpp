@@ -27,54 +27,6 @@ void check_size(const char* name, const Eigen::MatrixXd& matrix, Eigen::Index ro
   if (!matrix.allFinite()) reject(fmt::format("{} is not finite", name));
 }
 
-/// rows · ports. Few rows with few entries, many modes: plain loops along the columns, which are
-/// contiguous, where Eigen would set up a blocked product.
-void multiply(const Eigen::Ref<const Eigen::MatrixXd>& rows, const Eigen::MatrixXd& ports,
-              Eigen::Ref<Eigen::MatrixXd> product) {
-  const Eigen::MatrixXd columns = rows.transpose();
-  for (Eigen::Index i = 0; i < ports.cols(); ++i) {
-    for (Eigen::Index a = 0; a < columns.cols(); ++a) {
-      double sum = 0.0;
-      for (Eigen::Index port = 0; port < ports.rows(); ++port)
-        sum += columns(port, a) * ports(port, i);
-      product(a, i) = sum;
-    }
-  }
-}
-
-/// Orthonormal rows that span the rows of both matrices, of which either may be empty or zero.
-///
-/// By the modified Gram-Schmidt process, the longest row that is left first, each direction taken
-/// out twice. By hand, since loci call it in several threads, and BLAS may serve one at a time
-/// (core/blas.hpp). Rows are kept as columns, which are contiguous: bodies of meshes that spin have
-/// some hundred ports.
-Eigen::MatrixXd common_row_space(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second) {
-  constexpr double negligible = 1e-14;
-  const Eigen::Index m = std::max(first.cols(), second.cols());
-  Eigen::MatrixXd rest(m, 0);
-  for (const Eigen::MatrixXd* matrix : {&first, &second}) {
-    const double size = matrix->size() > 0 ? matrix->norm() : 0.0;
-    if (size == 0.0) continue;
-    rest.conservativeResize(m, rest.cols() + matrix->rows());
-    rest.rightCols(matrix->rows()) = matrix->transpose() / size;
-  }
-  Eigen::MatrixXd basis(m, std::min(rest.cols(), m));
-  Eigen::Index rank = 0;
-  while (rank < basis.cols()) {
-    Eigen::Index longest = 0;
-    const double length = rest.colwise().norm().maxCoeff(&longest);
-    if (length <= negligible) break;
-    basis.col(rank) = rest.col(longest) / length;
-    const auto direction = basis.col(rank);
-    for (Eigen::Index i = 0; i < rest.cols(); ++i) {
-      for (int pass = 0; pass < 2; ++pass) rest.col(i) -= direction.dot(rest.col(i)) * direction;
-    }
-    rest.col(longest).setZero();
-    ++rank;
-  }
-  return basis.leftCols(rank).transpose();
-}
-
 /// Segment under a point of the undeformed master and the projection on it.
 std::pair<int, Projection> undeformed_place(const MasterSurface& surface,
                                             const Eigen::Vector2d& point, int first) {
@@ -164,15 +116,13 @@ Pencil with_springs(const Pencil& pencil) {
   if (sprung.normal_stiffness.size() == 0)
     sprung.normal_stiffness.setZero(pencil.num_ports(), pencil.num_ports());
   std::vector<Eigen::Index> rigid;
-  for (Eigen::Index i = 0; i < pencil.num_constraints(); ++i) {
-    if (pencil.compliance(i) == 0.0) {
-      rigid.push_back(i);
-      continue;
-    }
-    const Eigen::RowVectorXd spring = pencil.compatibility.row(i) / pencil.compliance(i);
-    sprung.port_stiffness += pencil.equilibrium.row(i).transpose() * spring;
-    sprung.normal_stiffness += pencil.compatibility.row(i).transpose() * spring;
-  }
+  std::vector<Eigen::Index> yielding;
+  for (Eigen::Index i = 0; i < pencil.num_constraints(); ++i)
+    (pencil.compliance(i) == 0.0 ? rigid : yielding).push_back(i);
+  const Eigen::MatrixXd gaps = pencil.compatibility(yielding, Eigen::all);
+  const Eigen::MatrixXd springs = pencil.compliance(yielding).cwiseInverse().asDiagonal() * gaps;
+  sprung.port_stiffness += pencil.equilibrium(yielding, Eigen::all).transpose() * springs;
+  sprung.normal_stiffness += gaps.transpose() * springs;
   sprung.compatibility = pencil.compatibility(rigid, Eigen::all);
   sprung.equilibrium = pencil.equilibrium(rigid, Eigen::all);
   return sprung;
@@ -328,30 +278,6 @@ void place_undeformed(Pencil& pencil, const System& system, double drive_displac
     place_contact(pencil, system, static_cast<int>(c), segment,
                   make_rows(projection, friction, direction));
   }
-}
-
-ModalRows modal_rows(const Pencil& pencil) {
-  ModalRows rows;
-  rows.num_constraints = pencil.num_constraints();
-  const Eigen::Index k = rows.num_constraints;
-  const Eigen::MatrixXd V = common_row_space(pencil.port_stiffness, pencil.port_damping);
-  rows.rank = V.rows();
-  const Eigen::Index r = rows.rank;
-  rows.outputs.resize(k + r, pencil.num_modes());
-  multiply(pencil.compatibility, pencil.ports, rows.outputs.topRows(k));
-  rows.inputs.setZero(k + 2 * r, pencil.num_modes());
-  multiply(pencil.equilibrium, pencil.ports, rows.inputs.topRows(k));
-  if (r > 0) {
-    multiply(V, pencil.ports, rows.outputs.bottomRows(r));
-    const auto fill = [&](const Eigen::MatrixXd& matrix, Eigen::Index first) {
-      if (matrix.size() == 0) return;
-      const Eigen::MatrixXd combined = V.lazyProduct(matrix.transpose());
-      multiply(combined, pencil.ports, rows.inputs.middleRows(first, r));
-    };
-    fill(pencil.port_stiffness, k);
-    fill(pencil.port_damping, k + r);
-  }
-  return rows;
 }
 
 }  // namespace stridor

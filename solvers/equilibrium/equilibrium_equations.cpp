@@ -41,51 +41,94 @@ EquilibriumEquations::EquilibriumEquations(const System& system, EquilibriumStat
 }
 
 Eigen::VectorXd EquilibriumEquations::first_unknowns() const {
-  Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(ports_.num_ports + num_contacts() +
-                                                   ports_.num_rigid + (target_ ? 1 : 0));
+  Eigen::VectorXd unknowns =
+      Eigen::VectorXd::Zero(first_rigid() + ports_.num_rigid + (target_ ? 1 : 0));
   if (target_) unknowns(unknowns.size() - 1) = state_.drive_displacement;
   return unknowns;
 }
 
 EquilibriumEquations::Values EquilibriumEquations::evaluate(const Eigen::VectorXd& unknowns) {
   const Eigen::Index size = unknowns.size();
-  const Eigen::Index first_rigid = ports_.num_ports + num_contacts();
   if (target_) state_.drive_displacement = unknowns(size - 1);
   Values equations{Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size),
                    Eigen::MatrixXd::Zero(size, size), 0.0};
-  equations.values.segment(first_rigid, ports_.num_rigid) = -ports_.rigid_load;
-  equations.scale.segment(first_rigid, ports_.num_rigid) = ports_.rigid_load.cwiseAbs();
+  auto& [values, scale, derivative, residual] = equations;
+  const Eigen::Index num_unknown = ports_.num_unknown;
+  const Eigen::Index num_rigid = ports_.num_rigid;
+  values.segment(first_rigid(), num_rigid) = -ports_.rigid_load;
+  scale.segment(first_rigid(), num_rigid) = ports_.rigid_load.cwiseAbs();
   double length = 0.0;
+  const Eigen::VectorXd rigid = unknowns.segment(first_rigid(), num_rigid);
+  const Eigen::VectorXd at_ports = ports_.at_ports(unknowns.head(num_unknown), rigid);
+  ByModes by_modes;
   if (num_contacts() > 0) {
-    equations.values.head(ports_.num_ports) =
-        unknowns.head(ports_.num_ports) - ports_.loaded -
-        ports_.rigid_rows * unknowns.segment(first_rigid, ports_.num_rigid);
-    equations.derivative.topLeftCorner(ports_.num_ports, ports_.num_ports).setIdentity();
-    equations.derivative.block(0, first_rigid, ports_.num_ports, ports_.num_rigid) =
-        -ports_.rigid_rows;
-    length = unknowns.head(ports_.num_ports).cwiseAbs().maxCoeff();
+    values.head(num_unknown) = unknowns.head(num_unknown) - ports_.loaded;
+    derivative.topLeftCorner(num_unknown, num_unknown).setIdentity();
+    if (ports_.is_modal) {
+      by_modes.elastic.resize(ports_.num_ports, num_unknown);
+      by_modes.rigid.resize(ports_.num_ports, num_rigid);
+    } else {
+      values.head(num_unknown) -= ports_.rigid_rows * rigid;
+      derivative.block(0, first_rigid(), num_unknown, num_rigid) = -ports_.rigid_rows;
+    }
+    length = at_ports.cwiseAbs().maxCoeff();
   }
   for (Eigen::Index i = 0; i < num_contacts(); ++i)
-    length = std::max(length, add_contact(equations, i, unknowns));
-  equations.scale.head(first_rigid).setConstant(length);
-  if (target_) equations.scale(size - 1) = length;
-  for (Eigen::Index k = 0; k < size; ++k) {
-    const double value = std::abs(equations.values(k));
-    // Zero by zero where nothing loads the equation: it is satisfied.
-    if (value > 0.0) equations.residual = std::max(equations.residual, value / equations.scale(k));
+    length = std::max(length, add_contact(equations, i, unknowns, at_ports, by_modes));
+  if (by_modes.elastic.size() > 0) {
+    derivative.topLeftCorner(num_unknown, num_unknown) += ports_.flexibility * by_modes.elastic;
+    if (num_rigid > 0) {
+      const auto rows = ports_.rigid_rows.transpose();
+      derivative.block(0, first_rigid(), num_unknown, num_rigid) +=
+          ports_.flexibility * by_modes.rigid;
+      derivative.block(first_rigid(), 0, num_rigid, num_unknown) += rows * by_modes.elastic;
+      derivative.block(first_rigid(), first_rigid(), num_rigid, num_rigid) += rows * by_modes.rigid;
+    }
   }
-  if (!equations.values.allFinite()) equations.residual = std::numeric_limits<double>::infinity();
+  scale.head(first_rigid()).setConstant(length);
+  if (by_modes.elastic.size() > 0) {
+    // What moves a port by that, or what the load alone does, where contacts hold against it.
+    scale.head(num_unknown)
+        .setConstant(std::max(length / ports_.elastic_rows.cwiseAbs().maxCoeff(),
+                              ports_.loaded.cwiseAbs().maxCoeff()));
+  }
+  if (target_) scale(size - 1) = length;
+  for (Eigen::Index k = 0; k < size; ++k) {
+    const double value = std::abs(values(k));
+    // Zero by zero where nothing loads the equation: it is satisfied.
+    if (value > 0.0) residual = std::max(residual, value / scale(k));
+  }
+  if (!values.allFinite()) residual = std::numeric_limits<double>::infinity();
   return equations;
 }
 
+void EquilibriumEquations::add_by_ports(Values& equations, Eigen::Index row,
+                                        const SoughtContact& contact,
+                                        const Eigen::RowVectorXd& by_ports) const {
+  const Eigen::Index first = contact.first_port;
+  const Eigen::Index width = contact.num_ports;
+  auto derivative = equations.derivative.row(row);
+  if (!ports_.is_modal) {
+    derivative.segment(first, width) += by_ports;
+    return;
+  }
+  derivative.head(ports_.num_unknown) += by_ports * ports_.elastic_rows.middleRows(first, width);
+  if (ports_.num_rigid > 0) {
+    derivative.segment(first_rigid(), ports_.num_rigid) +=
+        by_ports * ports_.rigid_rows.middleRows(first, width);
+  }
+}
+
 double EquilibriumEquations::add_contact(Values& equations, Eigen::Index index,
-                                         const Eigen::VectorXd& unknowns) {
-  const Eigen::Index row = ports_.num_ports + index;
+                                         const Eigen::VectorXd& unknowns,
+                                         const Eigen::VectorXd& at_ports, ByModes& by_modes) {
+  const Eigen::Index num_unknown = ports_.num_unknown;
+  const Eigen::Index row = num_unknown + index;
   const Eigen::Index last = unknowns.size() - 1;
   SoughtContact& contact = contacts[static_cast<std::size_t>(index)];
   const Eigen::Index first = contact.first_port;
   const Eigen::Index width = contact.num_ports;
-  place(contact, state_, unknowns.segment(first, width));
+  place(contact, state_, at_ports.segment(first, width));
   const ContactPositions& positions = contact.result.positions;
   const double force = unknowns(row);
   const bool has_law = contact.point->substrate.has_value();
@@ -104,27 +147,33 @@ double EquilibriumEquations::add_contact(Values& equations, Eigen::Index index,
   const PortMatrix by_position = force * local.force_by_position;
   const PortVector by_drive = contact.path_share * by_position.col(0);
   const auto flexibility = ports_.flexibility.middleCols(first, width);
-  values.head(ports_.num_ports) += flexibility * (force * local.force_row);
-  derivative.block(0, first, ports_.num_ports, width) += flexibility * by_position;
+  values.head(num_unknown) += flexibility * (force * local.force_row);
   // ∂(λ b_E)/∂λ: the friction of a force law is not proportional to λ.
   const PortVector by_force =
       local.force_row + local.direction * law.friction_slope * local.tangent_row;
-  derivative.col(row).head(ports_.num_ports) = flexibility * by_force;
-  if (target_) derivative.col(last).head(ports_.num_ports) += flexibility * by_drive;
+  derivative.col(row).head(num_unknown) = flexibility * by_force;
+  if (target_) derivative.col(last).head(num_unknown) += flexibility * by_drive;
 
-  const Eigen::Index first_rigid = ports_.num_ports + num_contacts();
+  const Eigen::Index num_rigid = ports_.num_rigid;
   const auto rigid = ports_.rigid_rows.middleRows(first, width).transpose();
-  values.segment(first_rigid, ports_.num_rigid) += rigid * (force * local.force_row);
-  scale.segment(first_rigid, ports_.num_rigid) +=
+  values.segment(first_rigid(), num_rigid) += rigid * (force * local.force_row);
+  scale.segment(first_rigid(), num_rigid) +=
       rigid.cwiseAbs() * (force * local.force_row).cwiseAbs();
-  derivative.block(first_rigid, first, ports_.num_rigid, width) = rigid * by_position;
-  derivative.col(row).segment(first_rigid, ports_.num_rigid) = rigid * by_force;
-  if (target_) derivative.col(last).segment(first_rigid, ports_.num_rigid) += rigid * by_drive;
+  derivative.col(row).segment(first_rigid(), num_rigid) = rigid * by_force;
+  if (target_) derivative.col(last).segment(first_rigid(), num_rigid) += rigid * by_drive;
+  if (ports_.is_modal) {
+    by_modes.elastic.middleRows(first, width) =
+        by_position * ports_.elastic_rows.middleRows(first, width);
+    if (num_rigid > 0) by_modes.rigid.middleRows(first, width) = by_position * rigid.transpose();
+  } else {
+    derivative.block(0, first, num_unknown, width) += flexibility * by_position;
+    derivative.block(first_rigid(), first, num_rigid, width) = rigid * by_position;
+  }
 
   add_conditions(equations, index, local, law, force);
   if (contact.has_two_tangents())
     return std::max({contact.point->overlap, std::abs(law.indentation),
-                     ports_.loaded.segment(first, width).cwiseAbs().maxCoeff(),
+                     ports_.loaded_ports.segment(first, width).cwiseAbs().maxCoeff(),
                      length_of(contact)});
   const double segment_length = positions.master.chord().norm();
   const Eigen::Vector2d& T1 =
@@ -137,13 +186,11 @@ void EquilibriumEquations::add_conditions(Values& equations, Eigen::Index index,
                                           double force) {
   auto& [values, scale, derivative, residual] = equations;
   const SoughtContact& contact = contacts[static_cast<std::size_t>(index)];
-  const Eigen::Index row = ports_.num_ports + index;
+  const Eigen::Index row = ports_.num_unknown + index;
   const Eigen::Index last = values.size() - 1;
-  const Eigen::Index first = contact.first_port;
-  const Eigen::Index width = contact.num_ports;
   if (contact.result.is_closed) {
     values(row) = local.gap + law.indentation;
-    derivative.block(row, first, 1, width) = -local.gap_row.transpose();
+    add_by_ports(equations, row, contact, -local.gap_row.transpose());
     derivative(row, row) = law.compliance;
     if (target_) derivative(row, last) = -local.gap_row[0] * contact.path_share;
   } else {
@@ -153,7 +200,7 @@ void EquilibriumEquations::add_conditions(Values& equations, Eigen::Index index,
   if (!contact.has_two_tangents() && is_target(contact)) {
     const double segment_length = contact.result.positions.master.chord().norm();
     values(last) = segment_length * (local.projection.xi - target_->xi);
-    derivative.block(last, first, 1, width) = segment_length * local.shift_row.transpose();
+    add_by_ports(equations, last, contact, segment_length * local.shift_row.transpose());
     derivative(last, last) = segment_length * local.shift_row[0] * contact.path_share;
   }
 }
@@ -193,7 +240,7 @@ void EquilibriumEquations::refuse_singular(const Eigen::MatrixXd& matrix) const 
   const double smallest = std::abs(factor.matrixLU().diagonal().tail<1>().value());
   factor.setThreshold(smallest > 0.0 ? 2.0 * smallest / factor.maxPivot() : 0.0);
   const Eigen::VectorXd free = factor.kernel().col(0).cwiseAbs();
-  const Eigen::VectorXd rigid = free.segment(ports_.num_ports + num_contacts(), ports_.num_rigid);
+  const Eigen::VectorXd rigid = free.segment(first_rigid(), ports_.num_rigid);
   constexpr double negligible = 1e-3;
   if (ports_.num_rigid > 0 && rigid.maxCoeff() > negligible * free.maxCoeff()) {
     Eigen::Index mode = 0;
@@ -205,7 +252,7 @@ void EquilibriumEquations::refuse_singular(const Eigen::MatrixXd& matrix) const 
                     ports_.body_of(mode)));
   }
   Eigen::Index contact = 0;
-  free.segment(ports_.num_ports, num_contacts()).maxCoeff(&contact);
+  free.segment(ports_.num_unknown, num_contacts()).maxCoeff(&contact);
   throw NumericalError(
       Refusal::no_equilibrium,
       fmt::format("equilibrium: the force of {} is undetermined: friction jams it, or other "
@@ -230,8 +277,7 @@ std::vector<Eigen::VectorXd> EquilibriumEquations::displacements(
       ports(k) = pushed.master[static_cast<std::size_t>(k) - 2];
     ports *= -result.force;
   }
-  const Eigen::VectorXd rigid =
-      unknowns.segment(ports_.num_ports + num_contacts(), ports_.num_rigid);
+  const Eigen::VectorXd rigid = unknowns.segment(first_rigid(), ports_.num_rigid);
   std::vector<Eigen::VectorXd> found;
   found.reserve(system_.bodies.size());
   for (std::size_t b = 0; b < system_.bodies.size(); ++b)

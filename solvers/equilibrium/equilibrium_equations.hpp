@@ -24,7 +24,8 @@ struct Target {
 ///   z − z_load − S_r a + R B_Eᵀλ = 0,   gap = 0 (or λ = 0),   S_rᵀ B_Eᵀλ − load_r = 0
 ///
 /// for the displacements z of the ports, λ and the rigid amplitudes a, in this order; with a
-/// target, ξ of its contact for the displacement of the drive at the end.
+/// target, ξ of its contact for the displacement of the drive at the end. Where the ports are more
+/// than the elastic modes, p − p_load + R B_Eᵀλ = 0 for the displacements p of these (StaticPorts).
 class EquilibriumEquations {
  public:
   struct Values {
@@ -63,15 +64,26 @@ class EquilibriumEquations {
   }
   /// Place of a contact force among the unknowns.
   Eigen::Index force_index(const SoughtContact& contact) const {
-    return ports_.num_ports + (&contact - contacts.data());
+    return ports_.num_unknown + (&contact - contacts.data());
   }
 
   std::vector<SoughtContact> contacts;
 
  private:
   Eigen::Index num_contacts() const { return static_cast<Eigen::Index>(contacts.size()); }
+  /// What the forces of contacts change by the displacements of their ports, where the unknown ones
+  /// are those of modes.
+  struct ByModes {
+    Eigen::MatrixXd elastic;  ///< ports x elastic modes
+    Eigen::MatrixXd rigid;    ///< ports x rigid modes
+  };
+  Eigen::Index first_rigid() const { return ports_.num_unknown + num_contacts(); }
   /// Adds what a contact contributes and notes its state. @returns the largest length in it, m
-  double add_contact(Values& equations, Eigen::Index index, const Eigen::VectorXd& unknowns);
+  double add_contact(Values& equations, Eigen::Index index, const Eigen::VectorXd& unknowns,
+                     const Eigen::VectorXd& at_ports, ByModes& by_modes);
+  /// Adds to one equation what changes with the displacements of the ports of a contact.
+  void add_by_ports(Values& equations, Eigen::Index row, const SoughtContact& contact,
+                    const Eigen::RowVectorXd& by_ports) const;
   /// The conditions that a contact obeys: that of its gap or force, and that it is on its target.
   void add_conditions(Values& equations, Eigen::Index index, const ContactLinearisation& local,
                       const LawState& law, double force);

@@ -54,64 +54,105 @@ void add_motion(Eigen::VectorXd& state, const Eigen::MatrixXd& shapes,
   state += shapes * modal;
 }
 
-/// G, H and what of G is left without friction, on all ports of a system.
-class TermsOnPorts {
+/// The closed contacts of a pencil, one after the other, with what their forces add to G, H and
+/// what of G is left without friction. These join the ports of each contact alone.
+class ClosedContacts {
  public:
-  /// With the coupled terms of bodies.
-  explicit TermsOnPorts(const Pencil& bodies)
-      : stiffness_(Eigen::MatrixXd::Zero(bodies.num_ports(), bodies.num_ports())),
-        damping_(stiffness_),
-        normal_stiffness_(stiffness_) {
-    if (bodies.num_body_ports == 0) return;
-    stiffness_ = bodies.port_stiffness;
-    damping_ = bodies.port_damping;
+  /// A contact and what its force adds where it turns or shifts.
+  void add(double force, const ContactLinearisation& local) {
+    const Eigen::Index size = local.gap_row.size();
+    contacts_.push_back({num_ports_, size, force * local.force_by_position,
+                         force * local.force_by_velocity, Eigen::MatrixXd::Zero(size, size)});
+    num_ports_ += size;
   }
 
-  /// What the force of a contact adds where it turns or shifts; on ports from `first` on.
-  void add(Eigen::Index first, double force, const ContactLinearisation& local) {
-    block(stiffness_, first, local) = force * local.force_by_position;
-    block(damping_, first, local) = force * local.force_by_velocity;
-  }
-
-  /// A substrate's force varies with indentation and slip instead of closing the gap: on the
-  /// left-hand side b_nᵀ δF_k + b_tᵀ δT with b_n = ∂y/∂z and the friction T against the slip.
-  void add_substrate(Eigen::Index first, const SubstrateContact& substrate,
-                     const ContactEquilibrium& contact, const ContactLinearisation& local,
-                     double friction_factor) {
+  /// Of the contact added last: a substrate's force varies with indentation and slip instead of
+  /// closing the gap: on the left-hand side b_nᵀ δF_k + b_tᵀ δT with b_n = ∂y/∂z and the friction T
+  /// against the slip.
+  void add_substrate(const SubstrateContact& substrate, const ContactEquilibrium& contact,
+                     const ContactLinearisation& local, double friction_factor) {
     const SubstrateForces forces =
         substrate.at(-contact.gap, contact.slip_velocity, contact.direction);
     const auto pushed = [&](double normal, double tangential) -> PortVector {
       return normal * local.gap_row - friction_factor * tangential * local.tangent_row;
     };
-    block(stiffness_, first, local) +=
-        pushed(forces.normal.by_indentation, forces.tangential.by_indentation) *
-        local.gap_row.transpose();
-    block(normal_stiffness_, first, local) +=
-        pushed(forces.normal.by_indentation, 0.0) * local.gap_row.transpose();
-    block(damping_, first, local) +=
+    Contact& last = contacts_.back();
+    last.stiffness += pushed(forces.normal.by_indentation, forces.tangential.by_indentation) *
+                      local.gap_row.transpose();
+    last.normal_stiffness += pushed(forces.normal.by_indentation, 0.0) * local.gap_row.transpose();
+    last.damping +=
         pushed(forces.normal.by_slip, forces.tangential.by_slip) * local.tangent_row.transpose();
   }
 
-  /// The terms on the ports kept; empty where they vanish.
-  void move_to(Pencil& pencil, const std::vector<Eigen::Index>& kept) const {
-    const auto on_kept = [&](const Eigen::MatrixXd& terms) -> Eigen::MatrixXd {
-      if (terms.isZero(0.0)) return {};
-      return terms(kept, kept);
+  /// Adds G and H to the coupled terms of bodies; empty where they vanish.
+  /// @param pencil with the ports of these contacts, and then those of bodies
+  void move_terms_to(Pencil& pencil) const {
+    // The modes move in fewer ways than many contacts have ports: then they are the ports.
+    const bool is_on_modes = num_ports_ > pencil.num_modes();
+    const Eigen::MatrixXd contact_ports = pencil.ports.topRows(num_ports_);
+    if (is_on_modes) take_modes_as_ports(pencil);
+    const Eigen::Index m = pencil.num_ports();
+    const auto on_ports = [&](Eigen::MatrixXd Contact::*of_contact,
+                              const Eigen::MatrixXd& of_bodies) -> Eigen::MatrixXd {
+      const bool vanishes =
+          std::all_of(contacts_.begin(), contacts_.end(),
+                      [&](const Contact& one) { return (one.*of_contact).isZero(0.0); });
+      if (vanishes && of_bodies.isZero(0.0)) return {};
+      Eigen::MatrixXd terms = Eigen::MatrixXd::Zero(m, m);
+      const Eigen::Index num_body_ports = of_bodies.rows();
+      terms.bottomRightCorner(num_body_ports, num_body_ports) = of_bodies;
+      if (vanishes) return terms;
+      if (is_on_modes) {
+        Eigen::MatrixXd products(num_ports_, pencil.num_modes());
+        for (const Contact& one : contacts_)
+          products.middleRows(one.first, one.count) =
+              (one.*of_contact) * contact_ports.middleRows(one.first, one.count);
+        terms.topLeftCorner(pencil.num_modes(), pencil.num_modes()) =
+            contact_ports.transpose() * products;
+      } else {
+        for (const Contact& one : contacts_)
+          terms.block(one.first, one.first, one.count, one.count) = one.*of_contact;
+      }
+      return terms;
     };
-    pencil.port_stiffness = on_kept(stiffness_);
-    pencil.port_damping = on_kept(damping_);
-    pencil.normal_stiffness = on_kept(normal_stiffness_);
+    const Eigen::Index n = pencil.num_body_ports;
+    const auto of_bodies = [&](const Eigen::MatrixXd& terms) -> Eigen::MatrixXd {
+      if (terms.size() == 0) return {};
+      return terms.bottomRightCorner(n, n);
+    };
+    pencil.port_stiffness = on_ports(&Contact::stiffness, of_bodies(pencil.port_stiffness));
+    pencil.port_damping = on_ports(&Contact::damping, of_bodies(pencil.port_damping));
+    pencil.normal_stiffness = on_ports(&Contact::normal_stiffness, {});
   }
 
  private:
-  static Eigen::Block<Eigen::MatrixXd> block(Eigen::MatrixXd& terms, Eigen::Index first,
-                                             const ContactLinearisation& local) {
-    return terms.block(first, first, local.gap_row.size(), local.gap_row.size());
+  struct Contact {
+    Eigen::Index first = 0;  ///< of its ports
+    Eigen::Index count = 0;
+    Eigen::MatrixXd stiffness;
+    Eigen::MatrixXd damping;
+    Eigen::MatrixXd normal_stiffness;
+  };
+
+  /// y = q for the contacts; the ports of bodies stay the last ones.
+  void take_modes_as_ports(Pencil& pencil) const {
+    const Eigen::Index n = pencil.num_modes();
+    const Eigen::MatrixXd contact_ports = pencil.ports.topRows(num_ports_);
+    const auto on_modes = [&](const Eigen::MatrixXd& rows) {
+      Eigen::MatrixXd moved(rows.rows(), n + pencil.num_body_ports);
+      moved.leftCols(n) = rows.leftCols(num_ports_) * contact_ports;
+      moved.rightCols(pencil.num_body_ports) = rows.rightCols(pencil.num_body_ports);
+      return moved;
+    };
+    pencil.compatibility = on_modes(pencil.compatibility);
+    pencil.equilibrium = on_modes(pencil.equilibrium);
+    Eigen::MatrixXd ports(n + pencil.num_body_ports, n);
+    ports << Eigen::MatrixXd::Identity(n, n), pencil.ports.bottomRows(pencil.num_body_ports);
+    pencil.ports = std::move(ports);
   }
 
-  Eigen::MatrixXd stiffness_;
-  Eigen::MatrixXd damping_;
-  Eigen::MatrixXd normal_stiffness_;
+  std::vector<Contact> contacts_;
+  Eigen::Index num_ports_ = 0;
 };
 
 }  // namespace
@@ -126,7 +167,7 @@ Pencil linearise_constraints(const System& system, const Equilibrium& equilibriu
   if (equilibrium.status != EquilibriumStatus::converged)
     throw std::invalid_argument("linearise: the equilibrium has not converged");
   Pencil pencil = make_modal_pencil(system);
-  TermsOnPorts added(pencil);
+  ClosedContacts closed;
   std::vector<Eigen::Index> kept_ports;
   std::vector<Eigen::Index> kept_constraints;
   std::vector<double> compliance;
@@ -143,10 +184,9 @@ Pencil linearise_constraints(const System& system, const Equilibrium& equilibriu
       place_contact(pencil, system, static_cast<int>(i), contact.segment,
                     {row_of(local.gap_row), row_of(local.force_row)});
     }
-    added.add(first, contact.force, local);
+    closed.add(contact.force, local);
     if (point.substrate) {
-      added.add_substrate(first, *point.substrate, contact, local,
-                          equilibrium.state.friction_factor);
+      closed.add_substrate(*point.substrate, contact, local, equilibrium.state.friction_factor);
     } else {
       kept_constraints.push_back(static_cast<Eigen::Index>(i));
       compliance.push_back(point.compliance());
@@ -165,7 +205,7 @@ Pencil linearise_constraints(const System& system, const Equilibrium& equilibriu
     pencil.compliance = Eigen::Map<const Eigen::VectorXd>(
         compliance.data(), static_cast<Eigen::Index>(compliance.size()));
   }
-  added.move_to(pencil, kept_ports);
+  closed.move_terms_to(pencil);
   return pencil;
 }
 

@@ -26,14 +26,19 @@ double size_of(const BodyLoad& load, const EquilibriumState& state) {
 
 StaticPorts::StaticPorts(const System& system, const EquilibriumState& state)
     : system_(system), state_(state) {
+  Eigen::Index num_elastic = 0;
   for (const SystemBody& body : system.bodies) {
     BodyPorts ports;
     ports.num_rigid = (body.modal.omega.array() == 0.0).count();
     ports.first_rigid = num_rigid;
+    ports.first_elastic = num_elastic;
     num_rigid += ports.num_rigid;
+    num_elastic += body.modal.size() - ports.num_rigid;
     bodies_.push_back(std::move(ports));
   }
   for (const ContactPoint& point : system.contacts) num_ports += system.num_contact_ports(point);
+  is_modal = num_ports > num_elastic && num_elastic > 0;
+  num_unknown = is_modal ? num_elastic : num_ports;
 }
 
 /// Rows and static flexibility at the ports of the present segments.
@@ -68,9 +73,10 @@ void StaticPorts::gather(const std::vector<SoughtContact>& contacts) {
     }
   }
 
-  flexibility = Eigen::MatrixXd::Zero(num_ports, num_ports);
+  flexibility = Eigen::MatrixXd::Zero(num_unknown, num_ports);
+  if (is_modal) elastic_rows = Eigen::MatrixXd::Zero(num_ports, num_unknown);
   rigid_rows = Eigen::MatrixXd::Zero(num_ports, num_rigid);
-  loaded = Eigen::VectorXd::Zero(num_ports);
+  loaded = Eigen::VectorXd::Zero(num_unknown);
   rigid_load = Eigen::VectorXd::Zero(num_rigid);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const ModalBody& modal = system_.bodies[b].modal;
@@ -85,9 +91,27 @@ void StaticPorts::gather(const std::vector<SoughtContact>& contacts) {
     body.rows = modal.rows(watched[b], Eigen::all);
     rigid_rows(body.ports, columns) = body.rows.leftCols(body.num_rigid);
     const auto elastic = body.rows.rightCols(num_elastic);
-    flexibility(body.ports, body.ports) = elastic * answer_of(modal, elastic.transpose());
-    loaded(body.ports) = elastic * answer_of(modal, load.tail(num_elastic));
+    const Eigen::MatrixXd by_forces = answer_of(modal, elastic.transpose());
+    const Eigen::VectorXd by_load = answer_of(modal, load.tail(num_elastic));
+    if (is_modal) {
+      const auto modes = Eigen::seqN(body.first_elastic, num_elastic);
+      elastic_rows(body.ports, modes) = elastic;
+      flexibility(modes, body.ports) = by_forces;
+      loaded(modes) = by_load;
+    } else {
+      flexibility(body.ports, body.ports) = elastic * by_forces;
+      loaded(body.ports) = elastic * by_load;
+    }
   }
+  loaded_ports = is_modal ? Eigen::VectorXd(elastic_rows * loaded) : loaded;
+}
+
+Eigen::VectorXd StaticPorts::at_ports(const Eigen::VectorXd& unknown,
+                                      const Eigen::VectorXd& rigid) const {
+  if (!is_modal) return unknown;
+  Eigen::VectorXd ports = elastic_rows * unknown;
+  if (num_rigid > 0) ports += rigid_rows * rigid;  // BLAS takes no empty matrix
+  return ports;
 }
 
 Eigen::VectorXd StaticPorts::modes(std::size_t b, const Eigen::VectorXd& forces,

@@ -13,9 +13,15 @@ namespace stridor {
 /// Size of a load of a body in a state, N or m.
 double size_of(const BodyLoad& load, const EquilibriumState& state);
 
-/// Elastic modes eliminated: displacements z of all ports by contact forces, loads and rigid modes,
+/// Displacements of the bodies by contact forces, loads and rigid modes. Unknown are the
+/// displacements z of all ports, elastic modes eliminated,
 ///
-///   z = z_load + S_r a − R B_Eᵀλ
+///   z = z_load + S_r a − R B_Eᵀλ,   R = S D Sᵀ
+///
+/// with D = diag(1/ω²), or, where the ports are more than the elastic modes, those p of these
+/// modes,
+///
+///   p = p_load − R B_Eᵀλ,   R = D Sᵀ,   z = S p + S_r a
 ///
 /// for the segments on which the contacts are.
 class StaticPorts {
@@ -26,6 +32,9 @@ class StaticPorts {
   /// Rows and static flexibility at the ports of the present segments.
   /// @param contacts with the places of their ports among all
   void gather(const std::vector<SoughtContact>& contacts);
+
+  /// z of the unknown displacements and the amplitudes of the rigid modes.
+  Eigen::VectorXd at_ports(const Eigen::VectorXd& unknown, const Eigen::VectorXd& rigid) const;
 
   /// Displacement of the modes of a body.
   /// @param forces on all ports, N
@@ -38,10 +47,14 @@ class StaticPorts {
 
   Eigen::Index num_ports = 0;
   Eigen::Index num_rigid = 0;
-  Eigen::MatrixXd flexibility;  ///< R = S diag(1/ω²) Sᵀ over the elastic modes, m/N
-  Eigen::MatrixXd rigid_rows;   ///< S_r
-  Eigen::VectorXd loaded;       ///< z_load, displacements of the ports by the load, elastic, m
-  Eigen::VectorXd rigid_load;   ///< load on the rigid modes
+  Eigen::Index num_unknown = 0;  ///< displacements: of the ports, or of elastic modes
+  bool is_modal = false;         ///< whether they are those of elastic modes
+  Eigen::MatrixXd flexibility;   ///< R, over the elastic modes; unknown displacements x ports
+  Eigen::MatrixXd elastic_rows;  ///< S, ports x elastic modes; where these are unknown
+  Eigen::MatrixXd rigid_rows;    ///< S_r, ports x rigid modes
+  Eigen::VectorXd loaded;        ///< z_load or p_load, by the load, elastic
+  Eigen::VectorXd loaded_ports;  ///< z_load in both cases
+  Eigen::VectorXd rigid_load;    ///< load on the rigid modes
 
  private:
   /// Where the ports and rigid modes of one body stand among all, and its rows there.
@@ -50,6 +63,7 @@ class StaticPorts {
     Eigen::MatrixXd rows;  ///< ports x modes
     Eigen::Index num_rigid = 0;
     Eigen::Index first_rigid = 0;
+    Eigen::Index first_elastic = 0;
   };
 
   /// On the modes of a body: loads of drives and what it holds.

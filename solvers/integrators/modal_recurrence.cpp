@@ -146,7 +146,14 @@ double ModalRecurrence::ahead_compliance(int row_a, int row_b) const {
 }
 
 double ModalRecurrence::modal_compliance(std::size_t mode) const {
-  if (is_starting()) return start_coefficients(mode).share * coefficients_[mode].answer();
+  if (is_starting()) {
+    // Once for all pairs of rows, of which hundreds of contacts have millions.
+    if (start_answers_.empty()) {
+      for (std::size_t i = 0; i < size_; ++i)
+        start_answers_.push_back(start_coefficients(i).share * coefficients_[i].answer());
+    }
+    return start_answers_[mode];
+  }
   return has_feedthrough() ? feedthrough_[mode] : blocks_[modal_index(mode, ModalField::gain)];
 }
 
@@ -171,6 +178,7 @@ StepCoefficients ModalRecurrence::coefficients(std::size_t mode) const {
 void ModalRecurrence::set_mass_damping(double alpha) {
   if (alpha == alpha_) return;
   alpha_ = alpha;
+  start_answers_.clear();
   for (std::size_t i = 0; i < size_; ++i) {
     coefficients_[i] = coefficients(i);
     number(i, ModalField::keep) = coefficients_[i].keep;

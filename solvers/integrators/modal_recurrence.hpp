@@ -95,6 +95,7 @@ class ModalRecurrence : public Propagator {
   std::vector<double> amplitudes_;              ///< of the loads
   std::vector<StepCoefficients> coefficients_;  ///< of the damping set last
   std::vector<double> feedthrough_;                  ///< g
+  mutable std::vector<double> start_answers_;        ///< W at the start; empty until asked for
   bool are_gains_due_ = false;  ///< those of a changed damping hold from the next step on
   std::vector<const double*> port_rows_;
 };

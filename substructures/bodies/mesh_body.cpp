@@ -67,34 +67,34 @@ const Schema& MeshBodyParameters::schema() {
                           {.doc = "What is held, by name.", .optional = true})
           .section("guided", &P::guided, {.doc = "What follows the drive.", .optional = true})
           .section("spin", &P::spin,
-                   {.doc = "Of a body of revolution that spins about its axis, seen from space.",
-                    .optional = true})
+                   {.doc = "Of a body that spins about its axis.", .optional = true})
           .named_sections("points", &P::points,
                           {.doc = "Points that touch others or are recorded.", .optional = true})
-          .named_sections("rigid_regions", &P::rigid_regions,
-                          {.doc = "Sets of nodes that move as one rigid body, by name.",
-                           .optional = true})
+          .named_sections(
+              "rigid_regions", &P::rigid_regions,
+              {.doc = "Sets of nodes that move as one rigid body, by name.", .optional = true})
           .named_sections("ties", &P::ties,
                           {.doc = "Surfaces that are bonded though their meshes do not match, by "
                                   "name.",
                            .optional = true})
-          .named_sections("masses", &P::masses,
-                          {.doc = "Rigid masses at points and rigid regions, by name.",
-                           .optional = true})
-          .named_sections("loads", &P::loads,
-                          {.doc = "Pressures and tractions on surfaces, by name.",
-                           .optional = true})
+          .named_sections(
+              "masses", &P::masses,
+              {.doc = "Rigid masses at points and rigid regions, by name.", .optional = true})
+          .named_sections(
+              "loads", &P::loads,
+              {.doc = "Pressures and tractions on surfaces, by name.", .optional = true})
           .named_sections("springs", &P::springs,
                           {.doc = "Springs and dampers to the ground, by name; the damping of the "
                                   "body includes the springs.",
                            .optional = true})
           .section("interface", &P::interface,
                    {.doc = "Surface nodes kept for contact.", .optional = true})
-          .section("reduction", &P::reduction,
-                   {.doc = "Craig-Bampton reduction; default: every unknown is kept.",
-                    .optional = true})
+          .section(
+              "reduction", &P::reduction,
+              {.doc = "Craig-Bampton reduction; default: every unknown is kept.", .optional = true})
           .check([](const P& body, std::vector<Problem>& problems) {
-            if (!body.spin || body.springs.empty() || body.damping.beta == 0.0) return;
+            if (!body.spin || body.spin->sliding == SpinSliding::frozen) return;
+            if (body.springs.empty() || body.damping.beta == 0.0) return;
             problems.push_back(
                 {Refusal::contradiction, "damping.beta",
                  "damps the springs too, which rest while the body spins; damp its materials "

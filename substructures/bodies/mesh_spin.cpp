@@ -54,6 +54,8 @@ class MeshSpin {
     if (named_.dimension != 3)
       throw ConfigError(Refusal::not_of_revolution, "spin",
                         "is of a body with volumes; a planar mesh does not spin");
+    refuse_guide();
+    if (is_frozen()) return;
     check_shape();
     check_materials();
     refuse_attachments();
@@ -67,7 +69,7 @@ class MeshSpin {
     spin.direction = axis_.direction;
     spin.point = axis_.point;
     spin.turns_damping = parameters_.terms().damping;
-    if (!parameters_.terms().rotation) return spin;
+    if (!parameters_.terms().rotation || is_frozen()) return spin;
     const SparseMatrix A = constraints_.matrix();
     const SparseMatrix transposed = A.transpose();
     const auto projected = [&](const SparseMatrix& between_nodes) -> SparseMatrix {
@@ -84,6 +86,8 @@ class MeshSpin {
   }
 
  private:
+  bool is_frozen() const { return keys_.sliding == SpinSliding::frozen; }
+
   void check_shape() const {
     const Roundness shape = roundness(named_.mesh, sections_, axis_);
     if (shape.num_sectors == 0 || shape.num_sectors > 2) return;
@@ -95,7 +99,9 @@ class MeshSpin {
             "around its axis; of mass or stiffness of this one {:.2g} % goes with {} times the "
             "angle, "
             "and its centre is {:.3g} m off the axis. Seen from space its matrices would "
-            "change all the time. Give the axis by `about`, or let it be the master of sliding "
+            "change all the time. Give the axis by `about`; or take it as it stands, with "
+            "`sliding: frozen`, of which only the surface moves; or let it be the master of "
+            "sliding "
             "contacts that a drive moves",
             100.0 * *worst, worst - shape.harmonics.begin() + 1, shape.eccentricity));
   }
@@ -136,6 +142,9 @@ class MeshSpin {
     };
     if (!parameters_.masses.empty()) refuse("masses");
     if (!parameters_.rigid_regions.empty()) refuse("rigid_regions");
+  }
+
+  void refuse_guide() const {
     if (parameters_.guided)
       throw ConfigError(Refusal::not_of_revolution, "guided",
                         "moves the body with a drive, but it spins in its place; give it "
@@ -286,8 +295,16 @@ const Schema& MeshSpinParameters::schema() {
                 {.doc = "Angular velocity about the axis, right-handed.", .unit = "rad s-1"})
           .section("about", &P::about,
                    {.doc = "The axis; default: z of the mesh.", .optional = true})
+          .choice("sliding", &P::sliding,
+                  {{"moving", SpinSliding::moving}, {"frozen", SpinSliding::frozen}},
+                  {.doc = "moving: a body of revolution, seen from space; frozen: a body of any "
+                          "shape stands as its mesh has it, and only its surface moves past what "
+                          "touches it, as of a disc that turns slowly.",
+                   .optional = true})
           .flag("centrifugal", &P::centrifugal,
-                {.doc = "Whether the stress of the rotation stiffens the body.", .optional = true});
+                {.doc =
+                     "Whether the stress of the rotation stiffens the body; a frozen one has none.",
+                 .optional = true});
   return keys;
 }
 
@@ -301,7 +318,8 @@ void add_mesh_spin(const MeshBodyParameters& parameters, const NamedMesh& mesh,
 }
 
 void warn_of_sectors(const MeshBodyParameters& parameters, std::vector<Problem>& warnings) {
-  if (!parameters.spin || !parameters.mesh) return;
+  if (!parameters.spin || !parameters.mesh || parameters.spin->sliding == SpinSliding::frozen)
+    return;
   const NamedMesh named(parameters);
   if (named.dimension != 3) return;
   const Roundness shape =

@@ -9,11 +9,18 @@
 
 namespace stridor {
 
-/// Spin of a body of revolution, seen from space (docs/theory.md, 10.9).
+/// What spins of a body.
+enum class SpinSliding {
+  moving,  ///< the body, which is one of revolution, seen from space
+  frozen,  ///< its surfaces alone: the body stands as its mesh has it, whatever its shape
+};
+
+/// Spin of a body about its axis (docs/theory.md, 10.9).
 struct MeshSpinParameters {
   double speed = 0.0;           ///< Ω, rad/s
   AxisParameters about;         ///< right-handed
   bool centrifugal = true;      ///< whether the stress of the rotation stiffens the body
+  SpinSliding sliding = SpinSliding::moving;
   static const Schema& schema();
 };
 

@@ -111,6 +111,70 @@ TEST(SpaceModel, SmallMotionAboutTheEquilibriumStaysThere) {
   }
 }
 
+/// Coordinates of all bodies in an equilibrium.
+Eigen::VectorXd coordinates(const Equilibrium& equilibrium) {
+  std::vector<double> all;
+  for (const Eigen::VectorXd& body : equilibrium.displacement)
+    all.insert(all.end(), body.begin(), body.end());
+  return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
+}
+
+// (Ω² + Sᵀ G S) δq + Sᵀ B_Eᵀ δλ = δf, B_C S δq = 0 is how the equilibrium moves with the load. Nine
+// nodes on facets have more ports than the bodies have modes, which then are the ports; with the
+// bodies as they are the contacts keep their own.
+TEST(SpaceModel, HundredsOfPortsMoveInTheModesOfTheBodies) {
+  for (const bool gives_way : {true, false}) {
+    for (const bool has_few_modes : {true, false}) {
+      ModelParameters scene = pad_on_block();
+      for (auto& [name, body] : scene.substructures)
+        if (has_few_modes) body.get<MeshBodyParameters>().interface.modes = 15;
+      if (gives_way) {
+        scene.contacts["sole"].normal.law = &normal_law_type("penalty");
+        scene.contacts["sole"].normal.numbers["stiffness"] = 2e7;
+      }
+      System system = make_model(scene, {}).system;
+      EquilibriumState state = sliding_state(system, 0.0);
+      const Equilibrium equilibrium = find_equilibrium(system, state);
+      ASSERT_EQ(equilibrium.status, EquilibriumStatus::converged) << equilibrium.failure;
+      const Pencil pencil = linearise(system, equilibrium);
+      const Eigen::Index n = pencil.num_modes();
+      const Eigen::Index k = pencil.num_constraints();
+      const auto num_closed =
+          std::count_if(equilibrium.contacts.begin(), equilibrium.contacts.end(),
+                        [](const ContactEquilibrium& contact) { return contact.is_closed; });
+      EXPECT_GE(num_closed, 6);
+      EXPECT_EQ(k, gives_way ? 0 : num_closed);
+      EXPECT_EQ(pencil.num_ports() == n, has_few_modes);
+      EXPECT_NO_THROW(check_pencil(pencil));
+      Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + k, n + k);
+      matrix.diagonal().head(n) = pencil.omega.array().square();
+      ASSERT_GT(pencil.port_stiffness.size(), 0);
+      matrix.topLeftCorner(n, n) += pencil.ports.transpose() * pencil.port_stiffness * pencil.ports;
+      matrix.topRightCorner(n, k) = pencil.ports.transpose() * pencil.equilibrium.transpose();
+      matrix.bottomLeftCorner(k, n) = pencil.compatibility * pencil.ports;
+      const auto moved = [&](double by) {
+        state.drives[0].load = -load + by;
+        const Equilibrium found = find_equilibrium(system, state);
+        EXPECT_EQ(found.status, EquilibriumStatus::converged) << found.failure;
+        return coordinates(found);
+      };
+      const double step = 1e-3 * load;
+      const Eigen::VectorXd slope = (moved(step) - moved(-step)) / (2.0 * step);
+      // The load acts on the pad alone, by its guided row: Ω² q is what contacts leave of it.
+      Eigen::VectorXd right_side = Eigen::VectorXd::Zero(n + k);
+      const auto pad = static_cast<std::size_t>(system.contacts.front().slave_body);
+      Eigen::Index first = 0;
+      for (std::size_t b = 0; b < pad; ++b) first += system.bodies[b].modal.size();
+      const ModalBody& modal = system.bodies[pad].modal;
+      right_side.segment(first, modal.size()) =
+          modal.rows.row(system.bodies[pad].loads.front().row);
+      const Eigen::VectorXd tangent = matrix.partialPivLu().solve(right_side).head(n);
+      // Central difference, whose error is (step/load)² times the curvature.
+      EXPECT_LT((tangent - slope).norm(), 1e-5 * slope.norm()) << gives_way << has_few_modes;
+    }
+  }
+}
+
 /// Slides far over a block: force, resumption and energy on the way.
 TEST(SpaceModel, SlidesOverManyFacetsAndResumesBitIdentically) {
   ModelParameters scene = pad_on_block();

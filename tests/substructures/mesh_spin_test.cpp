@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <complex>
+#include <functional>
 #include <vector>
 
 #include "core/errors.hpp"
@@ -261,6 +262,46 @@ TEST(MeshSpin, RefusesWhatIsNotAlikeAroundItsAxis) {
                     OrthotropicParameters{{2e11, 1e11, 1e11}, {0.3, 0.3, 0.3}, {5e10, 5e10, 5e10}};
               }),
               HasSubstr("is not alike around the axis"));
+}
+
+TEST(MeshSpin, AFrozenBodyOfAnyShapeHasTheMatricesOfOneAtRest) {
+  using P = MeshBodyParameters;
+  // None of these could spin as seen from space.
+  for (const auto& change :
+       std::vector<std::function<void(P&)>>{[](P& body) {
+                                              body.spin->about.point = {0.02, 0.0, 0.0};
+                                            },
+                                            [](P& body) {
+                                              body.supports["hub"].held = {"x", "z"};
+                                            },
+                                            [](P& body) {
+                                              body.springs["bearing"] = {"rim", {}};
+                                              body.springs["bearing"].stiffness.xx = 1e6;
+                                            }}) {
+    P body = clamped_annulus(10.0);
+    change(body);
+    P rest = body;
+    rest.spin.reset();
+    EXPECT_THROW(body.make(), ConfigError);
+    body.spin->sliding = SpinSliding::frozen;
+    const BodyMatrices frozen = body.make();
+    const BodyMatrices still = rest.make();
+    ASSERT_TRUE(frozen.spin);
+    EXPECT_EQ(frozen.spin->speed, 10.0);
+    EXPECT_EQ(frozen.spin->point, body.spin->about.axis(Eigen::Matrix2d::Identity()).point);
+    EXPECT_EQ(frozen.spin->gyroscopic.size(), 0);
+    EXPECT_EQ(frozen.spin->position.size(), 0);
+    EXPECT_EQ((frozen.stiffness - still.stiffness).norm(), 0.0);
+    EXPECT_EQ((frozen.mass - still.mass).norm(), 0.0);
+    std::vector<Problem> problems;
+    body.damping.beta = 1e-6;
+    for (const auto& check : P::schema().checks) check(&body, problems);
+    EXPECT_TRUE(problems.empty());  // its springs rest as it does
+  }
+  P guided = clamped_annulus(10.0);
+  guided.spin->sliding = SpinSliding::frozen;
+  guided.guided = MeshGuideParameters{{"rim"}};
+  EXPECT_THAT(message_of<ConfigError>([&] { guided.make(); }), HasSubstr("guided"));
 }
 
 TEST(MeshSpin, DampingOfTheBodyDoesNotTurnItsSprings) {

@@ -3,7 +3,7 @@
 // Meshed by a scene of this folder, or: gmsh -3 -setnumber mesh_size 0.008 -o brake.msh brake.geo
 //   mesh_size  element size (m): 0.014 gives 27,000 nodes, 0.009 57,000, 0.0068 95,000
 //   gap     distance pad - disc in the drawing (the contact closes it): published 1e-4
-//   part    0 disc and pads, 1 disc only, 2 one pad only
+//   part    0 disc and pads, 1 disc only, 2 the lower pad only, 3 the upper one
 SetFactory("OpenCASCADE");
 DefineConstant[ mesh_size = 0.010, gap = 0.0001, part = 0 ];
 
@@ -21,7 +21,7 @@ eps = 1e-5;
 H = 2*tp + zv;                                 // 0.035, upper friction face
 
 // --- disc ----------------------------------------------------------------
-If (part != 2)
+If (part < 2)
 Cylinder(1) = {0,0,0,    0,0,tp, ro};  Cylinder(2) = {0,0,0,    0,0,tp, ri};
 BooleanDifference(10) = { Volume{1}; Delete; }{ Volume{2}; Delete; };           // ring, lower face z = 0
 Cylinder(1) = {0,0,tp+zv, 0,0,tp, ro}; Cylinder(2) = {0,0,tp+zv, 0,0,tp, ri};
@@ -64,17 +64,19 @@ EndIf
 
 // --- pads ----------------------------------------------------------------
 If (part != 1)
-np = (part == 2) ? 0 : 1;
-For s In {0:np}
+first = (part == 3) ? 1 : 0;  last = (part == 2) ? 0 : 1;
+For s In {first:last}
   z0 = (s == 0) ? -gap-tpad : H+gap;
   Cylinder(201) = {0,0,z0, 0,0,tpad, po, pa};  Cylinder(202) = {0,0,z0, 0,0,tpad, pi1, pa};
   BooleanDifference(210+s) = { Volume{201}; Delete; }{ Volume{202}; Delete; };
   Rotate { {0,0,1}, {0,0,0}, Pi/2-pa/2 } { Volume{210+s}; }
 EndFor
 x1 = -po; x2 = po; y1 = 0; y2 = po;
+If (part != 3)
 Physical Volume("pad_lower") = {210};
 Physical Surface("pad_lower_face") = Surface In BoundingBox{x1,y1,-gap-eps, x2,y2+eps,-gap+eps};
 Physical Surface("pad_lower_back") = Surface In BoundingBox{x1,y1,-gap-tpad-eps, x2,y2+eps,-gap-tpad+eps};
+EndIf
 If (part != 2)
 Physical Volume("pad_upper") = {211};
 Physical Surface("pad_upper_face") = Surface In BoundingBox{x1,y1,H+gap-eps, x2,y2+eps,H+gap+eps};

@@ -1,3 +1,3 @@
-// One pad of brake.geo alone.
+// The lower pad of brake.geo alone.
 part = 2;
 Include "brake.geo";

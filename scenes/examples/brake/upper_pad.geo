@@ -1,0 +1,3 @@
+// The upper pad of brake.geo alone.
+part = 3;
+Include "brake.geo";
