@@ -326,7 +326,8 @@ def keep(large, small, numbers_of_colours=(64, 48, 32, 24, 16)):
     size = (3 * picture.width // 10, 3 * picture.height // 10)
     picture = picture.resize(size, Image.Resampling.LANCZOS)
     for num_colours in numbers_of_colours:
-        picture.quantize(num_colours).save(small, optimize=True)
+        # Colours of small areas count as much as others.
+        picture.quantize(num_colours, Image.Quantize.MAXCOVERAGE).save(small, optimize=True)
         if small.stat().st_size <= LARGEST:
             break
 

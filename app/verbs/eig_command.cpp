@@ -113,11 +113,13 @@ std::vector<std::string> write_shapes(const EigOptions& options, const LoadedSce
     picture.contacts.push_back(surface.positions[static_cast<std::size_t>(contact.segment)] +
                                seen.combine(contact.projection.weights));
   }
+  const bool shows_rest = std::any_of(picture.bodies.begin(), picture.bodies.end(),
+                                      [](const BodyShape& body) { return !body.outlines.empty(); });
   picture.caption = fmt::format(
       "Mode {} at {:.2f} Hz, growth rate {:.4g} 1/s, about the {} geometry; displacements "
-      "enlarged, "
-      "grey: at rest, circle: contact. {}, scene {}.",
+      "enlarged{}{}. {}, scene {}.",
       number, eigenvalue.frequency(), eigenvalue.growth(), options.stability.about,
+      shows_rest ? ", grey: at rest" : "", picture.contacts.empty() ? "" : ", circle: contact",
       std::filesystem::path(options.stability.scene).filename().string(), loaded.hash());
   plot_shape(picture, figure);
   const double period = eigenvalue.frequency() > 0.0 ? 1.0 / eigenvalue.frequency() : 1.0;

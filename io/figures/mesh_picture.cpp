@@ -36,7 +36,7 @@ class MeshFigure {
     const bool has_faces = std::any_of(
         picture_.parts.begin(), picture_.parts.end(),
         [](const PicturePart& part) { return !part.faces.empty() || !part.lines.empty(); });
-    if (has_faces) script.append(polygon_data(picture_, canvas_));
+    if (has_faces) script.append(polygon_data("$faces", picture_, canvas_));
     script.append(place_data());
     script.add("set multiplot\n{}\nunset key\nunset grid", axes_style);
     // The page itself in cm for faces, then axes with numbers over it.

@@ -108,9 +108,10 @@ PictureCanvas::PictureCanvas(const MeshPicture& picture) : view_(picture.view) {
   y = {y.lower - margin, y.upper + margin};
 }
 
-std::string polygon_data(const MeshPicture& picture, const PictureCanvas& canvas) {
+std::string polygon_data(const std::string& block, const MeshPicture& picture,
+                         const PictureCanvas& canvas) {
   const std::vector<Painted> all = painted_parts(picture, canvas);
-  std::string data = "$faces << END_OF_DATA\n";
+  std::string data = block + " << END_OF_DATA\n";
   const auto corner = [&](const Eigen::Vector2d& at, PictureColour colour) {
     fmt::format_to(std::back_inserter(data), "{:.5f} {:.5f} {}\n", at.x(), at.y(), colour);
   };

@@ -60,9 +60,11 @@ class PictureCanvas {
   double arrow_length_ = 0.0;
 };
 
-/// The faces and lines of all parts as a data block `$faces` of polygons for `filledcurves closed`,
-/// in cm of the page with a colour each, farther ones first. Lines are narrow polygons, so that they
-/// are hidden as faces are.
-std::string polygon_data(const MeshPicture& picture, const PictureCanvas& canvas);
+/// The faces and lines of all parts as a data block of polygons for `filledcurves closed`, in cm of
+/// the page with a colour each, farther ones first. Lines are narrow polygons, so that they are
+/// hidden as faces are.
+/// @param block its name, as `$faces`
+std::string polygon_data(const std::string& block, const MeshPicture& picture,
+                         const PictureCanvas& canvas);
 
 }  // namespace stridor

@@ -13,12 +13,13 @@
 #include "io/figures/axes.hpp"
 #include "io/figures/gnuplot.hpp"
 #include "io/figures/mesh_picture.hpp"
+#include "io/figures/picture_canvas.hpp"
 #include "io/results/vtu_writer.hpp"
 
 namespace stridor {
 namespace {
 
-constexpr std::array<const char*, 4> shape_colours{"#0b5394", "#c0392b", "#38761d", "#741b47"};
+constexpr std::array<PictureColour, 4> shape_colours{0x0b5394, 0xc0392b, 0x38761d, 0x741b47};
 
 /// How bodies are seen: in their plane, or from above where they are in space.
 PictureView view_of(const std::vector<BodyShape>& bodies) {
@@ -71,8 +72,8 @@ std::string line_data(const std::string& block, const std::vector<std::vector<in
   return data + "END_OF_DATA\n";
 }
 
-/// What is seen of the elements, each edge through its middle node; none where they would lie closer
-/// than can be drawn.
+/// What is seen of the elements in a plane, each edge through its middle node; none where they
+/// would lie closer than can be drawn.
 std::vector<std::vector<int>> element_sides(const BodyShape& body) {
   constexpr std::size_t most_drawn = 5000;
   std::vector<std::vector<int>> sides;
@@ -113,6 +114,9 @@ struct ShapeLayout {
   double below = 0.0, upper = 0.0;  ///< lower edges of the diagrams
   double panel_height = 0.0;
   std::vector<std::string> caption;
+  bool has_faces = false;  ///< of bodies in space
+
+  double bottom(std::size_t phase) const { return phase + 1 == phases.size() ? below : upper; }
 };
 
 ShapeLayout shape_layout(const ShapePicture& picture) {
@@ -147,6 +151,32 @@ ShapeLayout shape_layout(const ShapePicture& picture) {
   return layout;
 }
 
+/// The faces of bodies in space at a phase, nearer ones over farther ones; empty where there are
+/// none.
+std::string face_data(const ShapePicture& picture, const ShapeLayout& layout, std::size_t phase) {
+  MeshPicture faces;
+  faces.view = layout.view;
+  bool has_faces = false;
+  for (std::size_t b = 0; b < picture.bodies.size(); ++b) {
+    const BodyShape& body = picture.bodies[b];
+    PicturePart& part = faces.parts.emplace_back();
+    part.colour = shape_colours[b % shape_colours.size()];
+    part.nodes = body.nodes +
+                 layout.scale * (body.displacement * std::polar(1.0, phases[phase].first)).real();
+    part.faces = face_loops(body.elements);
+    has_faces = has_faces || !part.faces.empty();
+  }
+  if (!has_faces) return {};
+  PictureCanvas canvas(faces);
+  canvas.x = layout.x_range;
+  canvas.y = layout.y_range;
+  canvas.left = layout.left;
+  canvas.bottom = layout.bottom(phase);
+  canvas.cm_per_metre =
+      (layout.right - layout.left) / (layout.x_range.upper - layout.x_range.lower);
+  return polygon_data(fmt::format("$faces_{}", phase), faces, canvas);
+}
+
 void add_shape_data(FigureScript& script, const ShapePicture& picture, const ShapeLayout& layout) {
   const AxisScale& x = layout.x;
   const AxisScale& y = layout.y;
@@ -157,7 +187,8 @@ void add_shape_data(FigureScript& script, const ShapePicture& picture, const Sha
   script.append(contacts + "END_OF_DATA\n");
   for (std::size_t b = 0; b < picture.bodies.size(); ++b) {
     const BodyShape& body = picture.bodies[b];
-    const std::vector<std::vector<int>> sides = element_sides(body);
+    const std::vector<std::vector<int>> sides =
+        layout.has_faces ? std::vector<std::vector<int>>() : element_sides(body);
     script.append(line_data(fmt::format("$rest_{}", b), body.outlines, seen(body.nodes, layout.view),
                             x, y));
     for (std::size_t p = 0; p < phases.size(); ++p) {
@@ -171,14 +202,18 @@ void add_shape_data(FigureScript& script, const ShapePicture& picture, const Sha
 /// What gnuplot is to plot at a phase.
 std::string shape_plots(const ShapePicture& picture, const ShapeLayout& layout, std::size_t phase) {
   std::string plot = "plot NaN";
+  if (layout.has_faces) {
+    plot += fmt::format(
+        ", $faces_{} using 1:2:3 axes x2y2 with filledcurves closed fillcolor rgb variable", phase);
+  }
   // gnuplot refuses data without a line; bodies in space have no outlines.
   for (std::size_t b = 0; b < picture.bodies.size(); ++b) {
     if (!picture.bodies[b].outlines.empty())
       plot += fmt::format(", $rest_{} using 1:2 with lines linewidth 0.8 linecolor '#909090'", b);
   }
   for (std::size_t b = 0; b < picture.bodies.size(); ++b) {
-    const char* colour = shape_colours[b % shape_colours.size()];
-    if (!element_sides(picture.bodies[b]).empty()) {
+    const std::string colour = fmt::format("#{:06x}", shape_colours[b % shape_colours.size()]);
+    if (!layout.has_faces && !element_sides(picture.bodies[b]).empty()) {
       plot += fmt::format(", $mesh_{}_{} using 1:2 with lines linewidth 0.5 linecolor '{}'", b,
                           phase, colour);
     }
@@ -197,7 +232,12 @@ std::string shape_plots(const ShapePicture& picture, const ShapeLayout& layout, 
 void add_shape_panel(FigureScript& script, const ShapePicture& picture, const ShapeLayout& layout,
                      std::size_t phase) {
   const bool is_last = phase + 1 == phases.size();
-  const double bottom = is_last ? layout.below : layout.upper;
+  const double bottom = layout.bottom(phase);
+  if (layout.has_faces) {
+    // Faces are given in cm of the page.
+    script.add("set x2range [{}:{}]\nset y2range [{}:{}]\nset style fill solid 1.0 noborder",
+               layout.left, layout.right, bottom, bottom + layout.panel_height);
+  }
   script.set_margins(layout.left, layout.right, bottom, bottom + layout.panel_height);
   script.set_axis('x', layout.x_range, layout.x);
   if (!is_last) script.add("set xtics format ''");
@@ -222,8 +262,13 @@ void add_shape_panel(FigureScript& script, const ShapePicture& picture, const Sh
 
 void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure) {
   check_figure_name(figure);
-  const ShapeLayout layout = shape_layout(picture);
+  ShapeLayout layout = shape_layout(picture);
   FigureScript script(layout.size);
+  for (std::size_t phase = 0; !layout.view.is_planar && phase < phases.size(); ++phase) {
+    const std::string faces = face_data(picture, layout, phase);
+    layout.has_faces = !faces.empty();
+    if (layout.has_faces) script.append(faces);
+  }
   add_shape_data(script, picture, layout);
   script.add("set multiplot\n{}\nunset key", axes_style);
   for (std::size_t phase = 0; phase < phases.size(); ++phase)

@@ -109,7 +109,7 @@ TEST(MeshPicture, FacesThatLookAwayAreNotDrawnAndNearerOnesComeLast) {
   far.nodes.rowwise() -= picture.view.towards.transpose();
   picture.parts = {near, far};
   PictureCanvas canvas(picture);
-  const auto polygons = polygons_of(polygon_data(picture, canvas));
+  const auto polygons = polygons_of(polygon_data("$faces", picture, canvas));
   // Three sides of six are seen, of 2*3, 3*2 and 2*2 elements, each with a polygon and four edges.
   EXPECT_EQ(polygons.size(), 2u * (6 + 6 + 4) * 5u);
   const auto is_red = [](unsigned colour) { return (colour >> 16) > (colour & 0xffu); };

@@ -153,6 +153,37 @@ TEST(ShapePlot, BodiesInSpaceAreSeenFromAbove) {
   EXPECT_EQ(frame.types, (std::vector<int>{hexahedron}));
 }
 
+TEST(ShapePlot, BodiesInSpaceOfManyElementsShowTheirOuterFaces) {
+  const TemporaryFolder folder;
+  constexpr int n = 18;  // 5,832 elements, of which 6 n² sides are outside
+  const auto node = [](int i, int j, int k) { return (k * (n + 1) + j) * (n + 1) + i; };
+  BodyShape block;
+  block.name = "block";
+  block.nodes.resize((n + 1) * (n + 1) * (n + 1), 3);
+  for (int k = 0; k <= n; ++k)
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i) block.nodes.row(node(i, j, k)) << i, j, k;
+  for (int k = 0; k < n; ++k) {
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        block.elements.push_back({ElementShape::hex8,
+                                  {node(i, j, k), node(i + 1, j, k), node(i + 1, j + 1, k),
+                                   node(i, j + 1, k), node(i, j, k + 1), node(i + 1, j, k + 1),
+                                   node(i + 1, j + 1, k + 1), node(i, j + 1, k + 1)}});
+      }
+    }
+  }
+  block.displacement = Eigen::MatrixX3cd::Zero(block.nodes.rows(), 3);
+  block.displacement(0, 2) = 1.0;
+  plot_shape({{block}, {}, "A block."}, folder / "shape.svg");
+  const std::string drawn = contents_of(folder / "shape.svg");
+  int num_polygons = 0;
+  for (std::size_t at = drawn.find("<polygon"); at != std::string::npos;
+       at = drawn.find("<polygon", at + 1))
+    ++num_polygons;
+  EXPECT_GE(num_polygons, 2 * 6 * n * n);  // of both phases
+}
+
 TEST(ShapeFrames, OfABodyWithoutElementsHoldItsOutline) {
   const TemporaryFolder folder;
   BodyShape outline = square();
