@@ -24,6 +24,14 @@ void note_result(ContactEquilibrium& result, const ContactLinearisation& local, 
   result.velocity = local.velocity;
 }
 
+/// The law of a contact that closes, or gives way as a spring.
+LawState spring_state(const ContactPoint& point, double force) {
+  LawState law;
+  law.compliance = point.compliance();
+  law.indentation = law.compliance * force;
+  return law;
+}
+
 }  // namespace
 
 EquilibriumEquations::EquilibriumEquations(const System& system, EquilibriumState& state,
@@ -132,11 +140,8 @@ double EquilibriumEquations::add_contact(Values& equations, Eigen::Index index,
   const ContactPositions& positions = contact.result.positions;
   const double force = unknowns(row);
   const bool has_law = contact.point->substrate.has_value();
-  LawState law = has_law ? law_state(contact, force, state_.friction_factor) : LawState();
-  if (!has_law) {
-    law.compliance = contact.point->compliance();
-    law.indentation = law.compliance * force;
-  }
+  const LawState law = has_law ? law_state(contact, force, state_.friction_factor)
+                               : spring_state(*contact.point, force);
   const ContactLinearisation local =
       contact.has_two_tangents() ? linearised_face(system_, state_, contact)
       : has_law ? linearise_contact(positions, constant_friction(law.friction), 1.0)

@@ -78,32 +78,34 @@ void StaticPorts::gather(const std::vector<SoughtContact>& contacts) {
   rigid_rows = Eigen::MatrixXd::Zero(num_ports, num_rigid);
   loaded = Eigen::VectorXd::Zero(num_unknown);
   rigid_load = Eigen::VectorXd::Zero(num_rigid);
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const ModalBody& modal = system_.bodies[b].modal;
-    BodyPorts& body = bodies_[b];
-    // Rigid modes come first, ω ascending.
-    const Eigen::Index num_elastic = modal.size() - body.num_rigid;
-    const auto columns = Eigen::seqN(body.first_rigid, body.num_rigid);
-    const Eigen::VectorXd load = load_on(system_.bodies[b]);
-    rigid_load(columns) = load.head(body.num_rigid);
-    if (body.ports.empty()) continue;
-
-    body.rows = modal.rows(watched[b], Eigen::all);
-    rigid_rows(body.ports, columns) = body.rows.leftCols(body.num_rigid);
-    const auto elastic = body.rows.rightCols(num_elastic);
-    const Eigen::MatrixXd by_forces = answer_of(modal, elastic.transpose());
-    const Eigen::VectorXd by_load = answer_of(modal, load.tail(num_elastic));
-    if (is_modal) {
-      const auto modes = Eigen::seqN(body.first_elastic, num_elastic);
-      elastic_rows(body.ports, modes) = elastic;
-      flexibility(modes, body.ports) = by_forces;
-      loaded(modes) = by_load;
-    } else {
-      flexibility(body.ports, body.ports) = elastic * by_forces;
-      loaded(body.ports) = elastic * by_load;
-    }
-  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) gather_body(b, watched[b]);
   loaded_ports = is_modal ? Eigen::VectorXd(elastic_rows * loaded) : loaded;
+}
+
+void StaticPorts::gather_body(std::size_t b, const std::vector<int>& watched) {
+  const ModalBody& modal = system_.bodies[b].modal;
+  BodyPorts& body = bodies_[b];
+  // Rigid modes come first, ω ascending.
+  const Eigen::Index num_elastic = modal.size() - body.num_rigid;
+  const auto columns = Eigen::seqN(body.first_rigid, body.num_rigid);
+  const Eigen::VectorXd load = load_on(system_.bodies[b]);
+  rigid_load(columns) = load.head(body.num_rigid);
+  if (body.ports.empty()) return;
+
+  body.rows = modal.rows(watched, Eigen::all);
+  rigid_rows(body.ports, columns) = body.rows.leftCols(body.num_rigid);
+  const auto elastic = body.rows.rightCols(num_elastic);
+  const Eigen::MatrixXd by_forces = answer_of(modal, elastic.transpose());
+  const Eigen::VectorXd by_load = answer_of(modal, load.tail(num_elastic));
+  if (is_modal) {
+    const auto modes = Eigen::seqN(body.first_elastic, num_elastic);
+    elastic_rows(body.ports, modes) = elastic;
+    flexibility(modes, body.ports) = by_forces;
+    loaded(modes) = by_load;
+  } else {
+    flexibility(body.ports, body.ports) = elastic * by_forces;
+    loaded(body.ports) = elastic * by_load;
+  }
 }
 
 Eigen::VectorXd StaticPorts::at_ports(const Eigen::VectorXd& unknown,

@@ -66,6 +66,8 @@ class StaticPorts {
     Eigen::Index first_elastic = 0;
   };
 
+  /// The part of a body. @param watched rows at its ports
+  void gather_body(std::size_t b, const std::vector<int>& watched);
   /// On the modes of a body: loads of drives and what it holds.
   Eigen::VectorXd load_on(const SystemBody& body) const;
 
