@@ -12,6 +12,11 @@
 
 namespace stridor {
 
+namespace {
+
+/// Whether all eigenvalues by the dense method cost less than a search. The secular function is a
+/// determinant of as many rows as contacts and the ports that they and coupled bodies join, taken
+/// some tens of times for every eigenvalue.
 bool is_dense_cheaper(const Pencil& pencil) {
   constexpr Eigen::Index least = 100;  // below, a search takes no time
   if (pencil.num_modes() < least) return false;
@@ -25,6 +30,8 @@ bool is_dense_cheaper(const Pencil& pencil) {
   return pencil.num_eigenvalues() <= most_dense ? size * size > share * num_modes
                                                 : size > large * num_modes;
 }
+
+}  // namespace
 
 LowestEigenvalues find_lowest(const Pencil& pencil, EigenvalueMethod method,
                               const SpectrumWindow& window) {

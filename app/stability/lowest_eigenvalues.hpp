@@ -14,11 +14,6 @@ enum class EigenvalueMethod { secular, dense };
 /// Up to how many eigenvalues the dense method steps in where another fails: about a minute.
 inline constexpr Eigen::Index most_dense = 2000;
 
-/// Whether all eigenvalues by the dense method cost less than a search. The secular function is a
-/// determinant of as many rows as contacts and the ports that they and coupled bodies join, taken
-/// some tens of times for every eigenvalue.
-bool is_dense_cheaper(const Pencil& pencil);
-
 /// Real eigenvalues, then those of a window with positive imaginary part, lowest first; those there
 /// are where there are fewer.
 /// @throws NumericalError if they cannot be found

@@ -72,8 +72,8 @@ std::string line_data(const std::string& block, const std::vector<std::vector<in
   return data + "END_OF_DATA\n";
 }
 
-/// What is seen of the elements in a plane, each edge through its middle node; none where they
-/// would lie closer than can be drawn.
+/// Sides of the elements in a plane that are seen, each edge through its middle node; none where
+/// they would lie closer than can be drawn.
 std::vector<std::vector<int>> element_sides(const BodyShape& body) {
   constexpr std::size_t most_drawn = 5000;
   std::vector<std::vector<int>> sides;
@@ -101,8 +101,8 @@ constexpr double quarter = -0.5 * std::numbers::pi;  // Re(u e^{-iπ/2}) = Im u
 constexpr std::array<std::pair<double, const char*>, 2> phases{
     {{0.0, "real part"}, {quarter, "imaginary part"}}};
 
-/// What the diagrams show of the bodies, and where they are on the page, cm; one length is the same along
-/// both axes.
+/// The part of the bodies that the diagrams show, and where they are on the page, cm; one length is
+/// the same along both axes.
 struct ShapeLayout {
   double scale = 0.0;
   PictureView view;
@@ -199,7 +199,7 @@ void add_shape_data(FigureScript& script, const ShapePicture& picture, const Sha
   }
 }
 
-/// What gnuplot is to plot at a phase.
+/// The command of gnuplot that plots a phase.
 std::string shape_plots(const ShapePicture& picture, const ShapeLayout& layout, std::size_t phase) {
   std::string plot = "plot NaN";
   if (layout.has_faces) {

@@ -1,4 +1,4 @@
-// What the contacts of a pencil see of its modes.
+// The contacts of a pencil as its modes feel them.
 #include <algorithm>
 #include <numeric>
 #include <utility>

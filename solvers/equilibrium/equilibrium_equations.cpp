@@ -95,7 +95,8 @@ EquilibriumEquations::Values EquilibriumEquations::evaluate(const Eigen::VectorX
   }
   scale.head(first_rigid()).setConstant(length);
   if (by_modes.elastic.size() > 0) {
-    // What moves a port by that, or what the load alone does, where contacts hold against it.
+    // An amplitude that moves a port by that length, or that by the load alone, where contacts hold
+    // against it.
     scale.head(num_unknown)
         .setConstant(std::max(length / ports_.elastic_rows.cwiseAbs().maxCoeff(),
                               ports_.loaded.cwiseAbs().maxCoeff()));

@@ -71,7 +71,7 @@ class EquilibriumEquations {
 
  private:
   Eigen::Index num_contacts() const { return static_cast<Eigen::Index>(contacts.size()); }
-  /// What the forces of contacts change by the displacements of their ports, where the unknown ones
+  /// How contact forces change with the displacements of their ports, where the unknown ones
   /// are those of modes.
   struct ByModes {
     Eigen::MatrixXd elastic;  ///< ports x elastic modes

@@ -89,8 +89,11 @@ class ClosedContacts {
   void move_terms_to(Pencil& pencil) const {
     // The modes move in fewer ways than many contacts have ports: then they are the ports.
     const bool is_on_modes = num_ports_ > pencil.num_modes();
-    const Eigen::MatrixXd contact_ports = pencil.ports.topRows(num_ports_);
-    if (is_on_modes) take_modes_as_ports(pencil);
+    Eigen::MatrixXd contact_ports;
+    if (is_on_modes) {
+      contact_ports = pencil.ports.topRows(num_ports_);
+      take_modes_as_ports(pencil, contact_ports);
+    }
     const Eigen::Index m = pencil.num_ports();
     const auto on_ports = [&](Eigen::MatrixXd Contact::*of_contact,
                               const Eigen::MatrixXd& of_bodies) -> Eigen::MatrixXd {
@@ -135,9 +138,8 @@ class ClosedContacts {
   };
 
   /// y = q for the contacts; the ports of bodies stay the last ones.
-  void take_modes_as_ports(Pencil& pencil) const {
+  void take_modes_as_ports(Pencil& pencil, const Eigen::MatrixXd& contact_ports) const {
     const Eigen::Index n = pencil.num_modes();
-    const Eigen::MatrixXd contact_ports = pencil.ports.topRows(num_ports_);
     const auto on_modes = [&](const Eigen::MatrixXd& rows) {
       Eigen::MatrixXd moved(rows.rows(), n + pencil.num_body_ports);
       moved.leftCols(n) = rows.leftCols(num_ports_) * contact_ports;

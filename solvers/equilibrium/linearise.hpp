@@ -18,8 +18,8 @@ namespace stridor {
 ///
 /// @param equilibrium of this system, converged
 /// @param terms       which parts of G, H and of the gap's derivative are kept
-/// @return ports and constraints of the closed contacts, in their order; G and H empty where they
-///         vanish
+/// @return ports and constraints of the closed contacts, in their order; where they have more ports
+///         than there are modes, the modes as ports, S = 1; G and H empty where they vanish
 /// @throws std::invalid_argument if the equilibrium has not converged
 Pencil linearise(const System& system, const Equilibrium& equilibrium,
                  const LinearisationTerms& terms = {});

@@ -101,8 +101,7 @@ class MeshSpin {
             "and its centre is {:.3g} m off the axis. Seen from space its matrices would "
             "change all the time. Give the axis by `about`; or take it as it stands, with "
             "`sliding: frozen`, of which only the surface moves; or let it be the master of "
-            "sliding "
-            "contacts that a drive moves",
+            "sliding contacts that a drive moves",
             100.0 * *worst, worst - shape.harmonics.begin() + 1, shape.eccentricity));
   }
 

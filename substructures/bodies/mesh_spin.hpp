@@ -9,7 +9,7 @@
 
 namespace stridor {
 
-/// What spins of a body.
+/// Whether a body spins as a whole or its surfaces alone.
 enum class SpinSliding {
   moving,  ///< the body, which is one of revolution, seen from space
   frozen,  ///< its surfaces alone: the body stands as its mesh has it, whatever its shape
