@@ -10,11 +10,14 @@
 
 #include "core/activity.hpp"
 #include "core/errors.hpp"
+#include "solvers/eigenvalues/full_spectrum.hpp"
 
 namespace stridor {
 namespace {
 
 constexpr double relative_rounding = 1e-9;  ///< of |s|, as pairs have converged
+/// Unknowns up to which systems of no span are projected: what their bases take of memory.
+constexpr Eigen::Index most_direct = 20'000;
 
 SampledSpectrum sampled(const std::vector<std::complex<double>>& eigenvalues) {
   SampledSpectrum found;
@@ -58,7 +61,10 @@ SampledSpectrum CountedSpectra::search(double value, const SparseSystem& system)
   const auto known = searched_.find(value);
   if (known != searched_.end()) return known->second;
   ++effort_.num_searched;
-  return searched_[value] = sampled(eigenvalues_of(whole_spectrum(system, window_)));
+  const SparseSpectrum spectrum = is_full(system)
+                                      ? full_spectrum(system, window_, SpectrumWork::Sides::right)
+                                      : whole_spectrum(system, window_);
+  return searched_[value] = sampled(eigenvalues_of(spectrum));
 }
 
 void CountedSpectra::begin() {
@@ -75,24 +81,34 @@ void CountedSpectra::begin() {
   count_.reset();
 }
 
-/// The whole search at the first value, and what follows from it.
-void CountedSpectra::make_basis() {
-  SparseSystem first = system_(range_->first);
-  SystemSpan span(first);
-  const SparseSystem last = system_(range_->second);
-  if (last.size() != first.size() || !span.factors(last)) return;
+/// All pairs of both sides in the window of the first system.
+SparseSpectrum CountedSpectra::search_first(const SparseSystem& first) {
+  ++effort_.num_searched;
+  if (is_full(first)) return full_spectrum(first, window_, SpectrumWork::Sides::both);
   SpectrumWork work;
   work.sides = SpectrumWork::Sides::both;
-  if (span.num_parts() == 2) {
-    count_.emplace(first, span.part(1), 1.0);
+  if (span_->num_parts() == 2) {
+    count_.emplace(first, span_->part(1), 1.0);
     work.on_count = [this](std::complex<double> s, const SparseFactor& factor) {
       count_->add(s, factor);
     };
   }
-  ++effort_.num_searched;
-  SparseSpectrum spectrum = whole_spectrum(first, window_, work);
+  return whole_spectrum(first, window_, work);
+}
+
+/// The whole search at the first value, and what follows from it.
+void CountedSpectra::make_basis() {
+  const SparseSystem first = system_(range_->first);
+  const SparseSystem last = system_(range_->second);
+  if (last.size() != first.size()) return;
+  if (!is_full(first)) {
+    span_.emplace(first);
+    if (!span_->factors(last)) return;
+  }
+  SparseSpectrum spectrum = search_first(first);
   searched_[range_->first] = sampled(eigenvalues_of(spectrum));
   num_first_ = spectrum.num_counted;
+  size_ = first.size();
   const double height = spectrum.rectangle.height;
   // Those with left vectors must be those that were counted.
   int num_sided = 0;
@@ -103,10 +119,9 @@ void CountedSpectra::make_basis() {
     if (s.imag() > height) above_.push_back(s);
   for (const double omega : spectrum.omega)
     if (omega > 1.1 * height) above_.emplace_back(0.0, omega);
-  span_.emplace(std::move(span));
   basis_.emplace(height);
   basis_->add(std::move(spectrum.pairs));
-  if (span_->num_parts() > 1) extend();
+  if (!span_ || span_->num_parts() > 1) extend();
 }
 
 /// Adds values to the basis until its projections are good between them: the extrema of Chebyshev's
@@ -123,7 +138,7 @@ void CountedSpectra::extend() {
   const auto is_good_at = [&](std::initializer_list<double> shares) {
     return std::all_of(shares.begin(), shares.end(), [&](double share) {
       const Member one = member(at_share(share));
-      return !one.factors || project(one).is_certified;
+      return !one.is_like || project(one).is_certified;
     });
   };
   join_at({1.0, 0.345, 0.655});
@@ -147,16 +162,21 @@ void CountedSpectra::extend() {
 }
 
 CountedSpectra::Member CountedSpectra::member(double value) {
-  Member one{system_(value), std::nullopt};
-  const bool is_like = span_ && one.system.size() == span_->part(0).size();
-  if (is_like) one.factors = span_->factors(one.system);
+  Member one{system_(value)};
+  if (!basis_ || one.system.size() != size_) return one;
+  one.is_like = true;
+  if (!span_) return one;
+  one.factors = span_->factors(one.system);
+  if (one.factors) return one;
+  one.is_like = size_ <= most_direct;
+  if (one.is_like) span_.reset();
   return one;
 }
 
 /// Adds a system to the basis. @returns whether it did
 bool CountedSpectra::join(const Member& member) {
   constexpr std::size_t most_systems = 24;
-  if (!member.factors || basis_->num_systems() >= most_systems) return false;
+  if (!member.is_like || basis_->num_systems() >= most_systems) return false;
   const Activity finding("eigenvectors of a value");
   ++effort_.num_refined;
   int factorisations = 0;
@@ -168,12 +188,14 @@ bool CountedSpectra::join(const Member& member) {
 ProjectedSpectrum CountedSpectra::project(const Member& member,
                                           std::optional<std::complex<double>> place) {
   ++effort_.num_projected;
+  if (!span_) return basis_->project(member.system, place);
   return basis_->project(*span_, *member.factors, member.system, place);
 }
 
 /// Eigenvalues in the rectangle, conjugates counted; nothing where they are not counted.
 std::optional<int> CountedSpectra::count(const Member& member,
                                          const std::vector<std::complex<double>>& found) {
+  if (!span_ || !member.factors) return std::nullopt;
   const Eigen::VectorXd& factors = *member.factors;
   if (factors.size() == 1) return num_first_;
   if (factors.size() != 2 || !count_) return std::nullopt;
@@ -205,9 +227,10 @@ SampledSpectrum CountedSpectra::at(double value) {
   const auto known = searched_.find(value);
   if (known != searched_.end()) return known->second;
   const Member one = member(value);
-  if (!one.factors || value < range_->first || value > range_->second)
+  if (!one.is_like || value < range_->first || value > range_->second)
     return search(value, one.system);
-  if (one.factors->size() == 1) return searched_.at(range_->first);  // the same system
+  const bool is_first = one.factors && one.factors->size() == 1;  // the same system
+  if (is_first) return searched_.at(range_->first);
   if (const auto found = counted(one)) return *found;
   bool has_joined = false;
   try {
@@ -224,7 +247,7 @@ SampledSpectrum CountedSpectra::at(double value) {
 SampledSpectrum CountedSpectra::near(double value) {
   if (!has_begun_) begin();
   const Member one = member(value);
-  if (one.factors) {
+  if (one.is_like) {
     const ProjectedSpectrum spectrum = project(one);
     if (spectrum.is_certified) return sampled(spectrum.eigenvalues);
   }
@@ -234,7 +257,7 @@ SampledSpectrum CountedSpectra::near(double value) {
 SampledSpectrum CountedSpectra::around(double value, std::complex<double> place) {
   if (!has_begun_) begin();
   const Member one = member(value);
-  if (one.factors) {
+  if (one.is_like) {
     const ProjectedSpectrum spectrum = project(one, place);
     if (spectrum.is_certified && !spectrum.eigenvalues.empty())
       return sampled(spectrum.eigenvalues);

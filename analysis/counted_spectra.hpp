@@ -30,12 +30,17 @@ struct CountedEffort {
 
 /// Spectra of large matrices along a parameter, for sample_locus().
 ///
-/// The first value of the range takes a whole search. From its vectors those of the last one follow,
-/// of the middle, and of the middles between them until the projection on all of them (PairBasis) is
-/// good at the next middles. Every eigenvalue of a projection has its residual at full size; where
-/// one fails, the value joins the basis, and where that does not help or a count differs, the value
-/// takes a whole search. Where the parameter enters as one factor, CountAlong counts at every value;
-/// else a spectrum says that it was not counted. What near() and around() find is certified, not counted.
+/// The first value of the range takes a whole search. From its vectors those of the last one
+/// follow, of the middle, and of the middles between them until the projection on all of them
+/// (PairBasis) is good at the next middles. Every eigenvalue of a projection has its residual at
+/// full size; where one fails, the value joins the basis, and where that does not help or a count
+/// differs, the value takes a whole search. Where the parameter enters as one factor, CountAlong
+/// counts at every value; else a spectrum says that it was not counted. What near() and around()
+/// find is certified, not counted.
+///
+/// Where the parameter enters as more functions than a SystemSpan holds, up to 20,000 unknowns are
+/// projected all the same, every system by products of its own. Full matrices take all their
+/// eigenvalues at once as whole search, which needs no count.
 class CountedSpectra {
  public:
   using System = std::function<SparseSystem(double value)>;
@@ -54,11 +59,13 @@ class CountedSpectra {
  private:
   struct Member {
     SparseSystem system;
-    std::optional<Eigen::VectorXd> factors;  ///< in the span, where there is a basis
+    bool is_like = false;  ///< whether the basis, where there is one, is for it
+    std::optional<Eigen::VectorXd> factors = std::nullopt;  ///< in the span, where it is in one
   };
 
   void begin();
   void make_basis();
+  SparseSpectrum search_first(const SparseSystem& first);
   void extend();
   Member member(double value);
   bool join(const Member& member);
@@ -73,9 +80,10 @@ class CountedSpectra {
   std::optional<std::pair<double, double>> range_;
   bool has_begun_ = false;
   std::map<double, SampledSpectrum> searched_;
-  std::optional<SystemSpan> span_;
+  std::optional<SystemSpan> span_;  ///< none where every system is projected by itself
   std::optional<PairBasis> basis_;
   std::optional<CountAlong> count_;
+  Eigen::Index size_ = 0;  ///< of the systems that the basis is for
   int num_first_ = 0;  ///< eigenvalues in the rectangle at the first value, conjugates counted
   std::vector<std::complex<double>> above_;  ///< about those above the rectangle
   CountedEffort effort_;

@@ -87,13 +87,23 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
   // An end that is not allowed is named as it was given, before anything is computed in between.
   std::vector<double> ends = values;
   ends[key] = range.front();
-  const SpectrumMethod method = family.method(ends);
+  SpectrumMethod method = family.method(ends);
+  if (method == SpectrumMethod::projected && options.method == LocusMethod::dense)
+    method = SpectrumMethod::sampled;
   double trusted = std::numeric_limits<double>::infinity();
   Eigen::Index num_wanted = 0;
+  Eigen::VectorXd modes;
   for (const double end : {range.front(), range.back()}) {
     ends[key] = end;
-    if (method != SpectrumMethod::counted)
-      num_wanted = std::max(num_wanted, family.pencil(ends).num_eigenvalues() / 2);
+    if (method != SpectrumMethod::counted) {
+      const Pencil pencil = family.pencil(ends);
+      num_wanted = std::max(num_wanted, pencil.num_eigenvalues() / 2);
+      if (end == range.front()) modes = pencil.omega;
+      // What modes are at one value says nothing about another one where the key changes the
+      // bodies.
+      const bool are_modes_alike = pencil.omega.size() == modes.size() && pencil.omega == modes;
+      if (method == SpectrumMethod::projected && !are_modes_alike) method = SpectrumMethod::sampled;
+    }
     trusted = std::min(trusted, family.trusted_frequency(ends));
   }
   if (method == SpectrumMethod::counted) num_wanted = options.count;
@@ -107,7 +117,7 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
       memory_limit());
   LocusOptions within = options;
   within.trusted = trusted;
-  if (method == SpectrumMethod::counted) {
+  if (method == SpectrumMethod::counted || method == SpectrumMethod::projected) {
     // Between the values of a whole number there are none to project on.
     std::optional<std::pair<double, double>> between;
     if (!varied.is_integer) between.emplace(range.front(), range.back());

@@ -49,7 +49,7 @@ std::vector<std::complex<double>> eigenvalues_at(StabilityFamily& family,
   const SpectrumMethod how = family.method(values);
   if (how == SpectrumMethod::counted)
     return family.spectra(0, values, options).at(values[0]).eigenvalues;
-  const bool is_dense = options.method == LocusMethod::dense || how == SpectrumMethod::sampled;
+  const bool is_dense = options.method == LocusMethod::dense || how != SpectrumMethod::followed;
   const EigenvalueMethod method = is_dense ? EigenvalueMethod::dense : EigenvalueMethod::secular;
   std::vector<std::complex<double>> found;
   for (const Eigenvalue& one :

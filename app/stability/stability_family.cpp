@@ -13,6 +13,7 @@
 #include "core/blas.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
+#include "solvers/eigenvalues/full_spectrum.hpp"
 #include "solvers/eigenvalues/residual_modes.hpp"
 #include "solvers/integrators/retained_modes.hpp"
 
@@ -74,9 +75,9 @@ std::string BodyStabilityFamily::values_text(std::span<const double> values) con
   return text;
 }
 
-SlidingState BodyStabilityFamily::at(std::span<const double> values) {
+SlidingState BodyStabilityFamily::at(const SceneFamily::Member& member,
+                                     std::span<const double> values) {
   const BlasGuard guard;
-  const SceneFamily::Member member = family_.at(values);
   SlidingState state = sliding_state_of(member, geometry_, terms_, values_text(values));
   // Once for all values: it takes much longer than a pencil, and a branch must not change its
   // modes.
@@ -97,16 +98,27 @@ double BodyStabilityFamily::trusted_frequency(std::span<const double> values) {
 
 SpectrumMethod BodyStabilityFamily::method(std::span<const double> values) {
   const BlasGuard guard;
-  const Model& model = *family_.at(values).model;
+  const SceneFamily::Member member = family_.at(values);
+  const Model& model = *member.model;
   if (model.sparse) return SpectrumMethod::counted;
   // Bodies that spin couple their modes, of which there are few: all eigenvalues cost less than to
   // follow some.
   const bool is_sampled = model.system.contacts.empty() || model.system.has_faces();
-  return is_sampled ? SpectrumMethod::sampled : SpectrumMethod::followed;
+  if (!is_sampled) return SpectrumMethod::followed;
+  constexpr Eigen::Index many_modes = 300;  // half a second for all eigenvalues of one value
+  Eigen::Index num_modes = 0;
+  for (const SystemBody& body : model.system.bodies) num_modes += body.modal.size();
+  if (num_modes < many_modes) return SpectrumMethod::sampled;
+  const Pencil pencil = at(member, values).pencil;
+  const bool is_projected = pencil.num_modes() >= many_modes && pencil.num_constraints() == 0;
+  return is_projected ? SpectrumMethod::projected : SpectrumMethod::sampled;
 }
 
 SparseSystem BodyStabilityFamily::sparse_system(std::span<const double> values) {
-  return *family_.at(values).model->sparse;
+  const SceneFamily::Member member = family_.at(values);
+  if (member.model->sparse) return *member.model->sparse;
+  const BlasGuard guard;
+  return modal_system(at(member, values).pencil);
 }
 
 /// Places at which a contact passes a master node, if the place is what varies: positions of the

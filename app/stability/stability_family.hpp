@@ -20,7 +20,10 @@ namespace stridor {
 enum class SpectrumMethod {
   followed,  ///< from value to value, by the problem on the ports that contacts join
   sampled,   ///< all of the dense problem at every value (analysis/sampled_locus.hpp)
-  counted,   ///< those in a window of large sparse matrices (analysis/counted_spectra.hpp)
+  /// Those in a window of a dense problem so large that all at every value would take long
+  /// (analysis/counted_spectra.hpp).
+  projected,
+  counted,  ///< those in a window of large sparse matrices (analysis/counted_spectra.hpp)
 };
 
 /// Small motions of a scene as some of its keys vary.
@@ -36,8 +39,8 @@ class StabilityFamily {
   /// Where eigenvalues are counted there is no pencil(), and spectra() takes its place.
   /// @throws as pencil()
   virtual SpectrumMethod method(std::span<const double>) { return SpectrumMethod::followed; }
-  /// The eigenvalues wanted along one of the keys; arguments as of along(). They throw
-  /// NumericalError naming the values if one may be missing.
+  /// The eigenvalues wanted along one of the keys where they are projected or counted; arguments as
+  /// of along(). They throw NumericalError naming the values if one may be missing.
   /// @param range of the key, where many values of it will be asked for
   SpectrumFamily spectra(std::size_t key, const std::vector<double>& values,
                          const LocusOptions& options,
@@ -54,7 +57,7 @@ class StabilityFamily {
   void on_value(std::function<void(double)> report) { report_ = std::move(report); }
 
  private:
-  /// M, P and Q where eigenvalues are counted.
+  /// M, P and Q where eigenvalues are projected or counted.
   virtual SparseSystem sparse_system(std::span<const double>) { return {}; }
   virtual std::vector<double> kinks(std::size_t, const std::vector<double>&, double, double) {
     return {};
@@ -70,12 +73,13 @@ class BodyStabilityFamily : public StabilityFamily {
                       ContactGeometry geometry);
 
   /// With the modes that `time.retain` keeps.
-  SlidingState at(std::span<const double> values);
+  SlidingState at(std::span<const double> values) { return at(family_.at(values), values); }
   Pencil pencil(std::span<const double> values) override { return at(values).pencil; }
   double trusted_frequency(std::span<const double> values) override;
   SpectrumMethod method(std::span<const double> values) override;
 
  private:
+  SlidingState at(const SceneFamily::Member& member, std::span<const double> values);
   std::string values_text(std::span<const double> values) const;
   SparseSystem sparse_system(std::span<const double> values) override;
   std::vector<double> kinks(std::size_t key, const std::vector<double>& values, double from,

@@ -50,6 +50,17 @@ const SparseMatrix& matrix_of(const SparseSystem& system, int power) {
   return power == 2 ? system.mass : (power == 1 ? system.velocity : system.position);
 }
 
+/// A matrix times complex columns; of one that is stored sparse and is full by BLAS.
+Eigen::MatrixXcd product(const SparseMatrix& matrix, const Eigen::MatrixXcd& columns) {
+  const double places = static_cast<double>(matrix.rows()) * static_cast<double>(matrix.cols());
+  if (static_cast<double>(matrix.nonZeros()) < 0.25 * places) return matrix * columns;
+  const Eigen::MatrixXd full = matrix;
+  Eigen::MatrixXcd image(matrix.rows(), columns.cols());
+  image.real() = full * columns.real().eval();
+  image.imag() = full * columns.imag().eval();
+  return image;
+}
+
 /// Residual of a pair at full size.
 double scaled_residual(const SparseSystem& system, Complex s, const Eigen::VectorXcd& x) {
   const Eigen::VectorXcd inertia = s * s * (system.mass * x);
@@ -72,12 +83,13 @@ void PairBasis::drop_latest() {
 }
 
 /// Cuts the pairs into groups where a strip is free of eigenvalues of every system.
-void PairBasis::make_groups(const SystemSpan& span) {
+void PairBasis::make_groups(const SystemSpan* span) {
   constexpr std::size_t least_pairs = 8;
   constexpr double least_gap = 1e-3;  // of the height
-  if (!groups_.empty() && grouped_parts_ == span.num_parts()) return;
+  const std::size_t num_parts = span == nullptr ? 0 : span->num_parts();
+  if (!groups_.empty() && grouped_parts_ == num_parts) return;
   groups_.clear();
-  grouped_parts_ = span.num_parts();
+  grouped_parts_ = num_parts;
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   for (const TwoSidedPairs& one : known_) fewest = std::min(fewest, one.s.size());
   Group group;
@@ -85,7 +97,12 @@ void PairBasis::make_groups(const SystemSpan& span) {
   const auto close = [&](std::size_t last, double high) {
     group.last = last;
     group.high = high;
-    reduce(group, span);
+    Sides sides = reduce(group);
+    if (span == nullptr) {
+      group.sides = std::move(sides);
+    } else if (group.mixture.cols() > 0) {
+      multiply(group, sides, *span);
+    }
     groups_.push_back(std::move(group));
     group = Group();
     group.first = last;
@@ -104,6 +121,18 @@ void PairBasis::make_groups(const SystemSpan& span) {
   }
   group.is_top = true;
   close(std::numeric_limits<std::size_t>::max(), 1.1 * rectangle_.height);
+}
+
+/// Pairs of the group inside the rectangle, of the system that has fewest.
+std::size_t PairBasis::fewest_within(const Group& group) const {
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  for (const TwoSidedPairs& one : known_) {
+    std::size_t num = 0;
+    for (std::size_t i = group.first; i < one.s.size(); ++i)
+      if (rectangle_.contains(one.s[i])) ++num;
+    fewest = std::min(fewest, num);
+  }
+  return fewest;
 }
 
 /// The states of all systems in a group, displacements above velocities over omega.
@@ -125,7 +154,8 @@ Eigen::MatrixXcd PairBasis::states(const Group& group, bool are_left) const {
   return all;
 }
 
-void PairBasis::reduce(Group& group, const SystemSpan& span) const {
+/// Bases of the states of both sides.
+PairBasis::Sides PairBasis::reduce(Group& group) const {
   const Eigen::Index n = known_[0].right.rows();
   double sum = 0.0;
   int num = 0;
@@ -133,31 +163,39 @@ void PairBasis::reduce(Group& group, const SystemSpan& span) const {
     for (std::size_t i = group.first; i < std::min(group.last, one.s.size()); ++i, ++num)
       sum += std::abs(one.s[i]);
   }
-  if (num == 0) return;
+  if (num == 0) return {};
   group.omega = std::max(sum / num, 1e-3 * rectangle_.height);
-  Orthonormal right = orthonormal(states(group, false));
+  const Orthonormal right = orthonormal(states(group, false));
   const Orthonormal left = orthonormal(states(group, true));
   const Eigen::Index m = std::min(right.basis.cols(), left.basis.cols());
   group.mixture = right.mixture.leftCols(m);
-  const Eigen::MatrixXcd X = right.basis.topLeftCorner(n, m);
-  const Eigen::MatrixXcd V = group.omega * right.basis.bottomLeftCorner(n, m);
-  const Eigen::MatrixXcd Y = left.basis.topLeftCorner(n, m);
-  const Eigen::MatrixXcd Z = group.omega * left.basis.bottomLeftCorner(n, m);
+  return {right.basis.topLeftCorner(n, m), group.omega * right.basis.bottomLeftCorner(n, m),
+          left.basis.topLeftCorner(n, m), group.omega * left.basis.bottomLeftCorner(n, m)};
+}
+
+/// Adds what one matrix of a system contributes. @param image its product with X
+void PairBasis::Products::add(const Sides& sides, const SparseMatrix& matrix, int power,
+                              const Eigen::MatrixXcd& image) {
+  if (power == 2) {
+    const Eigen::MatrixXcd momenta = matrix * sides.V;
+    slope += sides.Z.adjoint() * image + sides.Y.adjoint() * momenta;
+    rest -= sides.Z.adjoint() * momenta;
+  } else {
+    (power == 1 ? slope : rest) += sides.Y.adjoint() * image;
+  }
+}
+
+/// Products of the bases of a group with all parts of a span.
+void PairBasis::multiply(Group& group, const Sides& sides, const SystemSpan& span) const {
+  const Eigen::Index m = group.mixture.cols();
   std::vector<Eigen::MatrixXcd> images;
   for (std::size_t k = 0; k < span.num_parts(); ++k) {
-    const SparseSystem& part = span.part(k);
-    Products products{Eigen::MatrixXcd::Zero(m, m), Eigen::MatrixXcd::Zero(m, m)};
+    Products products(m);
     for (const int power : {2, 1, 0}) {
-      const SparseMatrix& matrix = matrix_of(part, power);
+      const SparseMatrix& matrix = matrix_of(span.part(k), power);
       if (matrix.nonZeros() == 0) continue;
-      const Eigen::MatrixXcd image = matrix * X;
-      if (power == 2) {
-        const Eigen::MatrixXcd momenta = matrix * V;
-        products.slope += Z.adjoint() * image + Y.adjoint() * momenta;
-        products.rest -= Z.adjoint() * momenta;
-      } else {
-        (power == 1 ? products.slope : products.rest) += Y.adjoint() * image;
-      }
+      const Eigen::MatrixXcd image = matrix * sides.X;
+      products.add(sides, matrix, power, image);
       group.terms.push_back({k, power});
       images.push_back(std::pow(group.omega, power) * image);
     }
@@ -175,21 +213,31 @@ void PairBasis::reduce(Group& group, const SystemSpan& span) const {
   }
 }
 
+PairBasis::Products PairBasis::products_of(const Group& group, const Projected& one) const {
+  Products all(group.mixture.cols());
+  if (one.span == nullptr) {
+    for (const int power : {2, 1, 0}) {
+      const SparseMatrix& matrix = matrix_of(one.system, power);
+      if (matrix.nonZeros() > 0)
+        all.add(group.sides, matrix, power, product(matrix, group.sides.X));
+    }
+    return all;
+  }
+  for (std::size_t k = 0; k < group.products.size(); ++k) {
+    const double factor = (*one.factors)(static_cast<Eigen::Index>(k));
+    all.slope += factor * group.products[k].slope;
+    all.rest += factor * group.products[k].rest;
+  }
+  return all;
+}
+
 /// The small problem of a group: (A + σ B)⁻¹ B a = a/(σ − s).
-PairBasis::Solution PairBasis::solve(const Group& group, const Eigen::VectorXd& factors) const {
+PairBasis::Solution PairBasis::solve(const Group& group, const Products& products) const {
   Solution solution;
   const Eigen::Index m = group.mixture.cols();
-  if (m == 0) return solution;
-  Eigen::MatrixXcd slope = Eigen::MatrixXcd::Zero(m, m);
-  Eigen::MatrixXcd shifted = Eigen::MatrixXcd::Zero(m, m);
-  for (std::size_t k = 0; k < group.products.size(); ++k) {
-    const double factor = factors(static_cast<Eigen::Index>(k));
-    slope += factor * group.products[k].slope;
-    shifted += factor * group.products[k].rest;
-  }
   const Complex shift(0.01 * rectangle_.height, 0.5 * (std::max(group.low, 0.0) + group.high));
-  shifted += shift * slope;
-  const Eigen::MatrixXcd inverse = shifted.partialPivLu().solve(slope);
+  const Eigen::MatrixXcd shifted = products.rest + shift * products.slope;
+  const Eigen::MatrixXcd inverse = shifted.partialPivLu().solve(products.slope);
   if (!inverse.allFinite()) return solution;
   const ComplexEigenpairs ritz = complex_eigenpairs(inverse);
   std::vector<std::pair<Complex, Eigen::Index>> found;
@@ -248,12 +296,12 @@ Eigen::VectorXcd PairBasis::vector_of(const Group& group, const Eigen::VectorXcd
 }
 
 /// Whether a pair of the small problem is one at full size.
-bool PairBasis::is_pair(const Group& group, const Eigen::VectorXd& factors,
-                        const SparseSystem& system, Complex s, const Eigen::VectorXcd& a,
-                        double& residual_of) const {
-  residual_of = residual(group, factors, s, a);
+bool PairBasis::is_pair(const Group& group, const Projected& one, Complex s,
+                        const Eigen::VectorXcd& a, double& residual_of) const {
+  const SparseSystem& system = one.system;
+  if (one.span != nullptr) residual_of = residual(group, *one.factors, s, a);
   // The rounding of the Gram matrix may hide a smaller one.
-  if (residual_of > certified_residual && residual_of < 1e-3)
+  if (one.span == nullptr || (residual_of > certified_residual && residual_of < 1e-3))
     residual_of = scaled_residual(system, s, vector_of(group, a));
   if (residual_of <= certified_residual) return true;
   // In a rigid motion all terms of the residual are rounding.
@@ -264,21 +312,30 @@ bool PairBasis::is_pair(const Group& group, const Eigen::VectorXd& factors,
 
 ProjectedSpectrum PairBasis::project(const SystemSpan& span, const Eigen::VectorXd& factors,
                                      const SparseSystem& system, std::optional<Complex> place) {
+  return project(Projected{system, &span, &factors}, place);
+}
+
+ProjectedSpectrum PairBasis::project(const SparseSystem& system, std::optional<Complex> place) {
+  return project(Projected{system}, place);
+}
+
+ProjectedSpectrum PairBasis::project(const Projected& one, std::optional<Complex> place) {
   constexpr double spurious = 0.05;  // residual of what is no approximation of a pair
-  make_groups(span);
+  make_groups(one.span);
   ProjectedSpectrum spectrum;
   for (const Group& group : groups_) {
     const double margin = 0.2 * (group.high - group.low);
     if (place && (place->imag() < group.low - margin || place->imag() > group.high + margin))
       continue;
-    const Solution solution = solve(group, factors);
+    Solution solution;
+    if (group.mixture.cols() > 0) solution = solve(group, products_of(group, one));
     std::size_t num_found = 0;
     for (std::size_t i = 0; i < solution.s.size(); ++i) {
       const Complex s = solution.s[i];
       if (s.imag() > rectangle_.height) continue;
       double residual_of = 0.0;
-      if (is_pair(group, factors, system, s, solution.right.col(static_cast<Eigen::Index>(i)),
-                  residual_of)) {
+      const auto a = solution.right.col(static_cast<Eigen::Index>(i));
+      if (is_pair(group, one, s, a, residual_of)) {
         spectrum.eigenvalues.push_back(s);
         spectrum.largest_residual = std::max(spectrum.largest_residual, residual_of);
         ++num_found;
@@ -287,6 +344,9 @@ ProjectedSpectrum PairBasis::project(const SystemSpan& span, const Eigen::Vector
       }
     }
     if (!group.is_top && num_found != group.last - group.first) spectrum.is_certified = false;
+    // Where every system of the basis has more, the basis may show nothing of some: of a system in
+    // other coordinates it shows none at all.
+    if (group.is_top && num_found < fewest_within(group)) spectrum.is_certified = false;
   }
   return spectrum;
 }

@@ -115,13 +115,21 @@ class Search {
   /// @returns false where it does not converge; `failure` says how
   bool iterate() {
     constexpr double smallest_fraction = 1e-4;
+    constexpr double good_reduction = 0.01;  // by a step with a derivative that is factored already
     EquilibriumEquations::Values present = equations_.evaluate(unknowns_);
     for (int iteration = 0; iteration < parameters_.max_iterations; ++iteration) {
       const bool is_converged = present.residual <= parameters_.tolerance;
-      const Eigen::VectorXd step = equations_.newton_step(present);
+      Eigen::VectorXd step = equations_.newton_step(present);
       ++answer_.iterations;
       double fraction = 1.0;
       EquilibriumEquations::Values next = equations_.evaluate(unknowns_ - step);
+      const bool is_poor = equations_.was_step_approximate() && !is_converged &&
+                           !(next.residual < good_reduction * present.residual);
+      if (is_poor) {
+        equations_.forget_factor();
+        step = equations_.newton_step(present);
+        next = equations_.evaluate(unknowns_ - step);
+      }
       while (!(next.residual < present.residual) && !is_converged && fraction > smallest_fraction) {
         fraction *= 0.5;
         next = equations_.evaluate(unknowns_ - fraction * step);
@@ -183,6 +191,7 @@ class Search {
   void toggle(SoughtContact& contact) {
     contact.result.is_closed = !contact.result.is_closed;
     unknowns_(equations_.force_index(contact)) = 0.0;
+    equations_.forget_factor();  // whether what is left holds all bodies is to be looked at
   }
 
   /// Displacements of all modes, and the places on the masters.

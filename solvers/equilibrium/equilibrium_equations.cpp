@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/errors.hpp"
+#include "solvers/algebra/block_products.hpp"
 
 namespace stridor {
 namespace {
@@ -60,7 +62,7 @@ EquilibriumEquations::Values EquilibriumEquations::evaluate(const Eigen::VectorX
   if (target_) state_.drive_displacement = unknowns(size - 1);
   Values equations{Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size),
                    Eigen::MatrixXd::Zero(size, size), 0.0};
-  auto& [values, scale, derivative, residual] = equations;
+  auto& [values, scale, derivative, residual, by_ports] = equations;
   const Eigen::Index num_unknown = ports_.num_unknown;
   const Eigen::Index num_rigid = ports_.num_rigid;
   values.segment(first_rigid(), num_rigid) = -ports_.rigid_load;
@@ -68,33 +70,19 @@ EquilibriumEquations::Values EquilibriumEquations::evaluate(const Eigen::VectorX
   double length = 0.0;
   const Eigen::VectorXd rigid = unknowns.segment(first_rigid(), num_rigid);
   const Eigen::VectorXd at_ports = ports_.at_ports(unknowns.head(num_unknown), rigid);
-  ByModes by_modes;
   if (num_contacts() > 0) {
     values.head(num_unknown) = unknowns.head(num_unknown) - ports_.loaded;
     derivative.topLeftCorner(num_unknown, num_unknown).setIdentity();
-    if (ports_.is_modal) {
-      by_modes.elastic.resize(ports_.num_ports, num_unknown);
-      by_modes.rigid.resize(ports_.num_ports, num_rigid);
-    } else {
+    if (!ports_.is_modal) {
       values.head(num_unknown) -= ports_.rigid_rows * rigid;
       derivative.block(0, first_rigid(), num_unknown, num_rigid) = -ports_.rigid_rows;
     }
     length = at_ports.cwiseAbs().maxCoeff();
   }
   for (Eigen::Index i = 0; i < num_contacts(); ++i)
-    length = std::max(length, add_contact(equations, i, unknowns, at_ports, by_modes));
-  if (by_modes.elastic.size() > 0) {
-    derivative.topLeftCorner(num_unknown, num_unknown) += ports_.flexibility * by_modes.elastic;
-    if (num_rigid > 0) {
-      const auto rows = ports_.rigid_rows.transpose();
-      derivative.block(0, first_rigid(), num_unknown, num_rigid) +=
-          ports_.flexibility * by_modes.rigid;
-      derivative.block(first_rigid(), 0, num_rigid, num_unknown) += rows * by_modes.elastic;
-      derivative.block(first_rigid(), first_rigid(), num_rigid, num_rigid) += rows * by_modes.rigid;
-    }
-  }
+    length = std::max(length, add_contact(equations, i, unknowns, at_ports));
   scale.head(first_rigid()).setConstant(length);
-  if (by_modes.elastic.size() > 0) {
+  if (ports_.is_modal && num_contacts() > 0) {
     // An amplitude that moves a port by that length, or that by the load alone, where contacts hold
     // against it.
     scale.head(num_unknown)
@@ -130,7 +118,7 @@ void EquilibriumEquations::add_by_ports(Values& equations, Eigen::Index row,
 
 double EquilibriumEquations::add_contact(Values& equations, Eigen::Index index,
                                          const Eigen::VectorXd& unknowns,
-                                         const Eigen::VectorXd& at_ports, ByModes& by_modes) {
+                                         const Eigen::VectorXd& at_ports) {
   const Eigen::Index num_unknown = ports_.num_unknown;
   const Eigen::Index row = num_unknown + index;
   const Eigen::Index last = unknowns.size() - 1;
@@ -149,7 +137,7 @@ double EquilibriumEquations::add_contact(Values& equations, Eigen::Index index,
                 : linearise_contact(positions, contact.point->friction, state_.friction_factor);
   note_result(contact.result, local, force);
 
-  auto& [values, scale, derivative, residual] = equations;
+  auto& [values, scale, derivative, residual, by_ports] = equations;
   const PortMatrix by_position = force * local.force_by_position;
   const PortVector by_drive = contact.path_share * by_position.col(0);
   const auto flexibility = ports_.flexibility.middleCols(first, width);
@@ -168,9 +156,7 @@ double EquilibriumEquations::add_contact(Values& equations, Eigen::Index index,
   derivative.col(row).segment(first_rigid(), num_rigid) = rigid * by_force;
   if (target_) derivative.col(last).segment(first_rigid(), num_rigid) += rigid * by_drive;
   if (ports_.is_modal) {
-    by_modes.elastic.middleRows(first, width) =
-        by_position * ports_.elastic_rows.middleRows(first, width);
-    if (num_rigid > 0) by_modes.rigid.middleRows(first, width) = by_position * rigid.transpose();
+    by_ports.push_back(by_position);
   } else {
     derivative.block(0, first, num_unknown, width) += flexibility * by_position;
     derivative.block(first_rigid(), first, num_rigid, width) = rigid * by_position;
@@ -190,7 +176,7 @@ double EquilibriumEquations::add_contact(Values& equations, Eigen::Index index,
 void EquilibriumEquations::add_conditions(Values& equations, Eigen::Index index,
                                           const ContactLinearisation& local, const LawState& law,
                                           double force) {
-  auto& [values, scale, derivative, residual] = equations;
+  auto& [values, scale, derivative, residual, by_ports] = equations;
   const SoughtContact& contact = contacts[static_cast<std::size_t>(index)];
   const Eigen::Index row = ports_.num_unknown + index;
   const Eigen::Index last = values.size() - 1;
@@ -211,10 +197,36 @@ void EquilibriumEquations::add_conditions(Values& equations, Eigen::Index index,
   }
 }
 
-Eigen::VectorXd EquilibriumEquations::newton_step(const Values& equations) const {
+void EquilibriumEquations::add_forces_by_modes(const std::vector<PortMatrix>& by_ports,
+                                               Eigen::MatrixXd& matrix) const {
+  const Eigen::Index n = ports_.num_unknown;
+  const Eigen::Index r = ports_.num_rigid;
+  BlockProducts products(n + r, n + r);
+  for (std::size_t i = 0; i < by_ports.size(); ++i) {
+    if (by_ports[i].isZero(0.0)) continue;
+    const Eigen::Index first = contacts[i].first_port;
+    const Eigen::Index width = contacts[i].num_ports;
+    const auto rigid = ports_.rigid_rows.middleRows(first, width);
+    Eigen::MatrixXd before(n + r, width);
+    before.topRows(n) = ports_.flexibility.middleCols(first, width);
+    before.bottomRows(r) = rigid.transpose();
+    Eigen::MatrixXd after(width, n + r);
+    after.leftCols(n) = ports_.elastic_rows.middleRows(first, width);
+    after.rightCols(r) = rigid;
+    products.add(before, by_ports[i], after);
+  }
+  if (products.is_zero()) return;
+  const Eigen::MatrixXd sum = products.sum();
+  matrix.topLeftCorner(n, n) += sum.topLeftCorner(n, n);
+  matrix.block(0, first_rigid(), n, r) += sum.topRightCorner(n, r);
+  matrix.block(first_rigid(), 0, r, n) += sum.bottomLeftCorner(r, n);
+  matrix.block(first_rigid(), first_rigid(), r, r) += sum.bottomRightCorner(r, r);
+}
+
+EquilibriumEquations::Factor EquilibriumEquations::factorise(const Values& equations) const {
   const Eigen::Index size = equations.values.size();
-  if (size == 0) return {};
   Eigen::MatrixXd matrix = equations.derivative;
+  if (ports_.is_modal) add_forces_by_modes(equations.by_ports, matrix);
   Eigen::VectorXd row_scale = Eigen::VectorXd::Ones(size);
   Eigen::VectorXd column_scale = Eigen::VectorXd::Ones(size);
   const auto inverse_root = [](double largest) {
@@ -229,13 +241,23 @@ Eigen::VectorXd EquilibriumEquations::newton_step(const Values& equations) const
     row_scale.array() *= rows.array();
     column_scale.array() *= columns.array();
   }
-  const Eigen::PartialPivLU<Eigen::MatrixXd> factor(matrix);
+  Factor factor{std::move(row_scale), std::move(column_scale),
+                Eigen::PartialPivLU<Eigen::MatrixXd>(matrix)};
   constexpr double singular_below = 1e-14;
   // The estimate of the condition is not made for pivots that vanish.
-  const double smallest_pivot = factor.matrixLU().diagonal().cwiseAbs().minCoeff();
-  if (!(smallest_pivot > singular_below) || !(factor.rcond() > singular_below))
+  const double smallest_pivot = factor.lu.matrixLU().diagonal().cwiseAbs().minCoeff();
+  if (!(smallest_pivot > singular_below) || !(factor.lu.rcond() > singular_below))
     refuse_singular(matrix);
-  return column_scale.cwiseProduct(factor.solve(row_scale.cwiseProduct(equations.values)).eval());
+  return factor;
+}
+
+Eigen::VectorXd EquilibriumEquations::newton_step(const Values& equations) {
+  if (equations.values.size() == 0) return {};
+  constexpr Eigen::Index many = 100;  // below, a factor costs nothing
+  was_step_approximate_ = ports_.is_modal && equations.values.size() >= many && factor_.has_value();
+  if (!was_step_approximate_) factor_ = factorise(equations);
+  return factor_->column_scale.cwiseProduct(
+      factor_->lu.solve(factor_->row_scale.cwiseProduct(equations.values)).eval());
 }
 
 void EquilibriumEquations::refuse_singular(const Eigen::MatrixXd& matrix) const {

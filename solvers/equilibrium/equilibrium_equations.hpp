@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <optional>
 #include <vector>
 
@@ -31,8 +32,12 @@ class EquilibriumEquations {
   struct Values {
     Eigen::VectorXd values;
     Eigen::VectorXd scale;       ///< what each of them is made of
-    Eigen::MatrixXd derivative;  ///< with respect to the unknowns
-    double residual = 0.0;       ///< largest value by scale
+    /// With respect to the unknowns; where those are displacements of modes, without `by_ports`.
+    Eigen::MatrixXd derivative;
+    double residual = 0.0;  ///< largest value by scale
+    /// How the force of each contact changes with the displacements of its ports, where the unknown
+    /// ones are those of modes.
+    std::vector<PortMatrix> by_ports{};
   };
 
   /// @param system must outlive it
@@ -52,9 +57,13 @@ class EquilibriumEquations {
   /// Also notes in `contacts` what they are like there.
   Values evaluate(const Eigen::VectorXd& unknowns);
 
-  /// Newton step. Rows and columns are brought to the same size first: they mix m, N and m kg^½.
+  /// Newton step. Where the unknowns are displacements of many modes, by the derivative that was
+  /// factored last, until forget_factor().
   /// @throws NumericalError if the equations are singular, naming what is free
-  Eigen::VectorXd newton_step(const Values& equations) const;
+  Eigen::VectorXd newton_step(const Values& equations);
+  /// Whether the last step was by the derivative of other unknowns.
+  bool was_step_approximate() const { return was_step_approximate_; }
+  void forget_factor() { factor_.reset(); }
 
   /// Displacements of the modes of all bodies.
   std::vector<Eigen::VectorXd> displacements(const Eigen::VectorXd& unknowns) const;
@@ -71,16 +80,18 @@ class EquilibriumEquations {
 
  private:
   Eigen::Index num_contacts() const { return static_cast<Eigen::Index>(contacts.size()); }
-  /// How contact forces change with the displacements of their ports, where the unknown ones
-  /// are those of modes.
-  struct ByModes {
-    Eigen::MatrixXd elastic;  ///< ports x elastic modes
-    Eigen::MatrixXd rigid;    ///< ports x rigid modes
+  /// A derivative, rows and columns brought to the same size first: they mix m, N and m kg^½.
+  struct Factor {
+    Eigen::VectorXd row_scale, column_scale;
+    Eigen::PartialPivLU<Eigen::MatrixXd> lu;
   };
+  Factor factorise(const Values& equations) const;
+  /// Adds what contact forces that change with displacements of modes contribute to the derivative.
+  void add_forces_by_modes(const std::vector<PortMatrix>& by_ports, Eigen::MatrixXd& matrix) const;
   Eigen::Index first_rigid() const { return ports_.num_unknown + num_contacts(); }
   /// Adds what a contact contributes and notes its state. @returns the largest length in it, m
   double add_contact(Values& equations, Eigen::Index index, const Eigen::VectorXd& unknowns,
-                     const Eigen::VectorXd& at_ports, ByModes& by_modes);
+                     const Eigen::VectorXd& at_ports);
   /// Adds to one equation what changes with the displacements of the ports of a contact.
   void add_by_ports(Values& equations, Eigen::Index row, const SoughtContact& contact,
                     const Eigen::RowVectorXd& by_ports) const;
@@ -93,6 +104,8 @@ class EquilibriumEquations {
   EquilibriumState& state_;
   std::optional<Target> target_;
   StaticPorts ports_;
+  std::optional<Factor> factor_;
+  bool was_step_approximate_ = false;
 };
 
 }  // namespace stridor

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "solvers/algebra/block_products.hpp"
+
 namespace stridor {
 namespace {
 
@@ -106,12 +108,13 @@ class ClosedContacts {
       terms.bottomRightCorner(num_body_ports, num_body_ports) = of_bodies;
       if (vanishes) return terms;
       if (is_on_modes) {
-        Eigen::MatrixXd products(num_ports_, pencil.num_modes());
-        for (const Contact& one : contacts_)
-          products.middleRows(one.first, one.count) =
-              (one.*of_contact) * contact_ports.middleRows(one.first, one.count);
-        terms.topLeftCorner(pencil.num_modes(), pencil.num_modes()) =
-            contact_ports.transpose() * products;
+        const Eigen::Index n = pencil.num_modes();
+        BlockProducts products(n, n);
+        for (const Contact& one : contacts_) {
+          const auto rows = contact_ports.middleRows(one.first, one.count);
+          products.add(rows.transpose(), one.*of_contact, rows);
+        }
+        terms.topLeftCorner(n, n) = products.sum();
       } else {
         for (const Contact& one : contacts_)
           terms.block(one.first, one.first, one.count, one.count) = one.*of_contact;

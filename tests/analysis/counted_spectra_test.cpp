@@ -8,6 +8,7 @@
 
 #include "analysis/sampled_locus.hpp"
 #include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/full_spectrum.hpp"
 #include "solvers/eigenvalues/linear_pencil.hpp"
 #include "tests/support/elastic_pads.hpp"
 
@@ -265,6 +266,124 @@ TEST(CountedSpectra, WhereAParameterEntersAsSeveralFunctionsNothingIsSaidToBeCou
   expect_equal(between.eigenvalues, dense_eigenvalues_below(system_of(0.1234), 8000.0), 1e-4,
                0.1234);
   EXPECT_FALSE(between.is_counted);
+}
+
+/// pads_with(), every eighth of whose unknowns has a stiffness of its own function of the value.
+SparseSystem pads_of_many_functions(double value) {
+  SparseSystem system = pads_with(value);
+  Eigen::VectorXd root = Eigen::VectorXd::Ones(system.size());
+  for (Eigen::Index i = 0; i < root.size(); ++i)
+    root(i) += 0.01 * std::sin(3.0 * static_cast<double>(i % 8 + 1) * value);
+  system.position = SparseMatrix(root.asDiagonal() * system.position * root.asDiagonal());
+  return system;
+}
+
+TEST(CountedSpectra, AParameterMayEnterAsMoreFunctionsThanASpanHolds) {
+  constexpr double frequency = 8000.0;
+  SystemSpan span(pads_of_many_functions(0.0));
+  bool is_in_span = true;
+  for (int i = 1; i <= 8 && is_in_span; ++i)
+    is_in_span = span.factors(pads_of_many_functions(0.06 * i)).has_value();
+  ASSERT_FALSE(is_in_span);
+
+  CountedSpectra spectra(pads_of_many_functions, SpectrumWindow::below(frequency),
+                         std::pair(0.0, 0.6));
+  for (int i = 0; i <= 12; ++i) {
+    const double value = 0.6 * i / 12.0;
+    const SampledSpectrum found = spectra.at(value);
+    EXPECT_EQ(found.is_counted, i == 0) << value;
+    expect_equal(found.eigenvalues,
+                 dense_eigenvalues_below(pads_of_many_functions(value), frequency), 1e-4, value);
+  }
+  EXPECT_EQ(spectra.effort().num_searched, 1);
+}
+
+Pencil pencil_of(const SparseSystem& sparse) {
+  const Eigen::MatrixXd none(0, sparse.size());
+  return make_pencil({Eigen::MatrixXd(sparse.mass), Eigen::MatrixXd(sparse.velocity),
+                      Eigen::MatrixXd(sparse.position), none, none});
+}
+
+/// pads_with() in the modes that it has without friction.
+SparseSystem pads_in_modes(double friction) {
+  static const Eigen::MatrixXd modes = pencil_of(pads_with(0.0)).ports;
+  SparseSystem system = pads_with(friction);
+  for (SparseMatrix* matrix : {&system.velocity, &system.position})
+    *matrix = (modes.transpose() * (*matrix * modes)).eval().sparseView(1.0, 0.0);
+  system.mass.setIdentity();
+  return system;
+}
+
+/// pads_with() in modes of its own.
+SparseSystem pads_in_own_modes(double friction) {
+  return modal_system(pencil_of(pads_with(friction)));
+}
+
+TEST(FullSpectrum, IsThatOfTheDenseProblemWithPairsOfBothSides) {
+  constexpr double frequency = 8000.0;
+  const SparseSystem system = pads_in_own_modes(0.3);
+  ASSERT_TRUE(is_full(system));
+  EXPECT_FALSE(is_full(pads_with(0.3)));
+  const SparseSpectrum spectrum =
+      full_spectrum(system, SpectrumWindow::below(frequency), SpectrumWork::Sides::both);
+  std::vector<Complex> found;
+  for (const Eigenvalue& one : spectrum.eigenvalues) found.push_back(one.s);
+  expect_equal(found, dense_eigenvalues_below(pads_with(0.3), frequency), 1e-4, 0.3);
+  const TwoSidedPairs& pairs = spectrum.pairs;
+  EXPECT_GE(pairs.s.size(), found.size());
+  const Eigen::MatrixXd velocity = system.velocity, position = system.position;
+  for (Eigen::Index i = 0; i < pairs.size(); ++i) {
+    const Complex s = pairs.s[static_cast<std::size_t>(i)];
+    Eigen::MatrixXcd P = s * velocity.cast<Complex>() + position.cast<Complex>();
+    P.diagonal().array() += s * s;
+    EXPECT_LT((P * pairs.right.col(i)).norm(), 1e-6 * std::norm(s)) << s;
+  }
+  EXPECT_EQ(pairs.left.cols(), pairs.size());
+  // A count ends in the gap above the last one wanted.
+  const SparseSpectrum lowest =
+      full_spectrum(system, SpectrumWindow::lowest(7), SpectrumWork::Sides::right);
+  EXPECT_EQ(std::count_if(lowest.eigenvalues.begin(), lowest.eigenvalues.end(),
+                          [](const Eigenvalue& one) { return one.s.imag() > 0.0; }),
+            7);
+  Pencil constrained = make_pencil({Eigen::MatrixXd::Identity(2, 2), Eigen::MatrixXd::Zero(2, 2),
+                                    Eigen::MatrixXd::Identity(2, 2), Eigen::MatrixXd::Ones(1, 2),
+                                    Eigen::MatrixXd::Ones(1, 2)});
+  EXPECT_THROW((void)modal_system(constrained), std::invalid_argument);
+}
+
+TEST(CountedSpectra, CoordinatesThatChangeWithTheValueAreNoticed) {
+  constexpr double frequency = 8000.0;
+  CountedSpectra spectra(pads_in_own_modes, SpectrumWindow::below(frequency), std::pair(0.0, 0.6));
+  for (const double value : {0.0, 0.1, 0.45})
+    expect_equal(spectra.at(value).eigenvalues,
+                 dense_eigenvalues_below(pads_with(value), frequency), 1e-4, value);
+}
+
+TEST(CountedSpectra, FullMatricesAreProjectedAfterOneDenseProblem) {
+  constexpr double frequency = 8000.0;
+  for (const bool is_by_count : {false, true}) {
+    const SpectrumWindow window =
+        is_by_count ? SpectrumWindow::lowest(12) : SpectrumWindow::below(frequency);
+    CountedSpectra spectra(pads_in_modes, window, std::pair(0.0, 0.6));
+    for (const double value : {0.0, 0.1, 0.2, 0.37, 0.5, 0.6}) {
+      const SampledSpectrum found = spectra.at(value);
+      // Two of the twelve are above 8 kHz.
+      const std::vector<Complex> all =
+          dense_eigenvalues_below(pads_with(value), is_by_count ? 2.0 * frequency : frequency);
+      if (!is_by_count) {
+        expect_equal(found.eigenvalues, all, 1e-4, value);
+        continue;
+      }
+      EXPECT_GE(found.eigenvalues.size(), 12u);
+      for (const Complex& s : found.eigenvalues) {
+        const bool is_known = std::any_of(all.begin(), all.end(), [&](const Complex& other) {
+          return std::abs(other - s) <= 1e-4;
+        });
+        EXPECT_TRUE(is_known) << s << " at " << value;
+      }
+    }
+    EXPECT_EQ(spectra.effort().num_searched, 1);
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // A brake of meshes whose squeal another finite element program has found, by the program.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <filesystem>
@@ -59,6 +60,54 @@ TEST_F(BrakeProgram, NothingGrowsWithoutFriction) {
   const auto found = eigenvalues(0.0);
   EXPECT_GE(found.size(), 30u);
   for (const std::complex<double> s : found) EXPECT_LT(s.real(), 1e-6 * std::abs(s)) << s;
+}
+
+// More than 300 modes, whose eigenvalues are projected from those at a few values, none of them
+// 0.4.
+TEST(HundredsOfModes, ALocusHasTheEigenvaluesOfSingleValues) {
+  std::vector<std::string> scene{STRIDOR_SOURCE_DIR "/scenes/examples/meshed_disc.yaml", "--below",
+                                 "6kHz"};
+  for (const char* modes :
+       {"disc.reduction.fixed_interface_modes=150", "upper.reduction.fixed_interface_modes=40",
+        "lower.reduction.fixed_interface_modes=40"}) {
+    scene.emplace_back("--set");
+    scene.push_back(std::string("substructures.") + modes);
+  }
+  const auto answer = [&](const std::string& verb, const std::vector<std::string>& others) {
+    std::vector<std::string> arguments{verb};
+    arguments.insert(arguments.end(), scene.begin(), scene.end());
+    arguments.insert(arguments.end(), others.begin(), others.end());
+    return test::json_of(arguments);
+  };
+  const auto vibrating = [](const test::Json& list) {
+    std::vector<std::complex<double>> found;
+    for (const test::Json& s : list)
+      if (s[1].get<double>() > 0.0) found.emplace_back(s[0].get<double>(), s[1].get<double>());
+    return found;
+  };
+  const test::Json locus = answer("locus", {"--parameter", "parameters.mu", "--from", "0", "--to",
+                                            "0.8", "--points", "3", "--count", "100"});
+  EXPECT_GE(locus["unverified"].size(), 30u);
+  const std::vector<std::string> values{"0", "0.4", "0.8"};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto expected = vibrating(
+        answer("eig", {"--set", "parameters.mu=" + values[i], "--method", "dense"})["eigenvalues"]);
+    const auto found = vibrating(locus["eigenvalues"][i]);
+    ASSERT_EQ(found.size(), expected.size()) << values[i];
+    for (std::size_t k = 0; k < found.size(); ++k)
+      EXPECT_LT(std::abs(found[k] - expected[k]), 1e-7 * std::abs(expected[k])) << values[i];
+  }
+  // Where a window begins, the first one grows.
+  ASSERT_GE(locus["unstable"].size(), 1u);
+  const double begin = locus["unstable"][0]["from"].get<double>();
+  EXPECT_GT(begin, 0.1);
+  const auto num_growing_at = [&](double mu) {
+    const auto found = vibrating(answer("eig", {"--set", "parameters.mu=" + std::to_string(mu),
+                                                "--method", "dense"})["eigenvalues"]);
+    return std::count_if(found.begin(), found.end(), [](auto s) { return s.real() > 0.0; });
+  };
+  EXPECT_EQ(num_growing_at(begin - 1e-4), 0);
+  EXPECT_EQ(num_growing_at(begin + 1e-4), 1);
 }
 
 }  // namespace

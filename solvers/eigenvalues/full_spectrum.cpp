@@ -1,0 +1,102 @@
+#include "solvers/eigenvalues/full_spectrum.hpp"
+
+#include <algorithm>
+#include <complex>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
+#include "solvers/eigenvalues/linear_pencil.hpp"
+
+namespace stridor {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// A height with as many vibrations below as are wanted, in the middle of a gap.
+double height_of_window(const std::vector<Eigenvalue>& all, const SpectrumWindow& window) {
+  if (!window.count) return 2.0 * std::numbers::pi * window.frequency;
+  std::vector<double> heights;
+  for (const Eigenvalue& one : all)
+    if (one.s.imag() > 0.0) heights.push_back(one.s.imag());
+  const auto count = static_cast<std::size_t>(*window.count);
+  for (std::size_t i = count; i > 0 && i < heights.size(); ++i)
+    if (heights[i] - heights[i - 1] > 1e-6 * heights[i]) return 0.5 * (heights[i] + heights[i - 1]);
+  return heights.empty() ? 0.0 : 1.2 * heights.back();
+}
+
+/// Pairs at eigenvalues that are known, from any vectors.
+TwoSidedPairs pairs_at(const SparseSystem& system, std::vector<Complex> s, double height) {
+  TwoSidedPairs guesses;
+  guesses.s = std::move(s);
+  guesses.right.resize(system.size(), static_cast<Eigen::Index>(guesses.s.size()));
+  std::mt19937 generator{1};
+  std::normal_distribution<double> normal;
+  for (Complex& entry : guesses.right.reshaped()) {
+    const double re = normal(generator);
+    entry = {re, normal(generator)};
+  }
+  int factorisations = 0;
+  return pairs_near(system, guesses, height, factorisations);
+}
+
+}  // namespace
+
+bool is_full(const SparseSystem& system) {
+  const double places = static_cast<double>(system.size()) * static_cast<double>(system.size());
+  return static_cast<double>(system.position.nonZeros()) > 0.25 * places;
+}
+
+SparseSystem modal_system(const Pencil& pencil) {
+  if (pencil.num_constraints() > 0)
+    throw std::invalid_argument("modal system: the pencil has constraints");
+  const Eigen::Index n = pencil.num_modes();
+  // Modes that are ports need no product.
+  const bool has_own_ports = pencil.num_ports() != n || !pencil.ports.isIdentity(0.0);
+  const auto with_ports = [&](const Eigen::VectorXd& diagonal,
+                              const Eigen::MatrixXd& terms) -> SparseMatrix {
+    Eigen::MatrixXd sum = diagonal.asDiagonal();
+    if (terms.size() > 0 && !has_own_ports) sum += terms;
+    if (terms.size() > 0 && has_own_ports)
+      sum += pencil.ports.transpose() * (terms * pencil.ports).eval();
+    return sum.sparseView(1.0, 0.0);
+  };
+  SparseSystem system;
+  system.mass.resize(n, n);
+  system.mass.setIdentity();
+  system.velocity = with_ports(pencil.damping, pencil.port_damping);
+  system.position = with_ports(pencil.omega.cwiseAbs2(), pencil.port_stiffness);
+  return system;
+}
+
+SparseSpectrum full_spectrum(const SparseSystem& system, const SpectrumWindow& window,
+                             SpectrumWork::Sides sides) {
+  LinearSystem linear;
+  linear.mass = system.mass;
+  linear.velocity = system.velocity;
+  linear.position = system.position;
+  linear.gaps = linear.forces = Eigen::MatrixXd(0, system.size());
+  const Pencil pencil = make_pencil(linear);
+  const std::vector<Eigenvalue> all = dense_eigenvalues(pencil, DenseWork::eigenvalues);
+  SparseSpectrum spectrum;
+  spectrum.rectangle.height = height_of_window(all, window);
+  const double height = spectrum.rectangle.height;
+  std::vector<Complex> near;
+  for (const Eigenvalue& one : all) {
+    const bool is_beside =
+        one.s.real() >= spectrum.rectangle.left() && one.s.real() <= spectrum.rectangle.right();
+    if (is_beside && one.s.imag() <= 1.1 * height) near.push_back(one.s);
+    if (!spectrum.rectangle.contains(one.s)) continue;
+    spectrum.eigenvalues.push_back(one);
+    spectrum.num_found += one.s.imag() > 0.0 ? 2 : 1;
+  }
+  spectrum.num_counted = spectrum.num_found;
+  spectrum.is_complete = true;
+  spectrum.omega = pencil.omega;
+  if (sides == SpectrumWork::Sides::both) spectrum.pairs = pairs_at(system, near, height);
+  return spectrum;
+}
+
+}  // namespace stridor

@@ -1,0 +1,26 @@
+// Eigenvalues in a window of systems whose matrices are stored sparse and are not.
+#pragma once
+
+#include "solvers/eigenvalues/pencil.hpp"
+#include "solvers/eigenvalues/sparse_spectrum.hpp"
+
+namespace stridor {
+
+/// Whether more than a quarter of Q is stored.
+bool is_full(const SparseSystem& system);
+
+/// The motion of a pencil in its modal coordinates: M = 1, P = diag(c) + Sᵀ H S, Q = diag(ω²) + Sᵀ
+/// G S.
+/// @throws std::invalid_argument if it has constraints
+SparseSystem modal_system(const Pencil& pencil);
+
+/// The eigenvalues in a window, from all of them by the dense method; nothing is left to count.
+///
+/// @param sides where pairs of both sides are wanted, those to a tenth above the window by
+///              pairs_near(), one of which may be missing
+/// @return without `right`, `backward_errors` and `modes`; residuals are not computed
+/// @throws NumericalError as dense_eigenvalues(), pairs_near()
+SparseSpectrum full_spectrum(const SparseSystem& system, const SpectrumWindow& window,
+                             SpectrumWork::Sides sides);
+
+}  // namespace stridor
