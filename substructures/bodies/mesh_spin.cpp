@@ -90,19 +90,24 @@ class MeshSpin {
 
   void check_shape() const {
     const Roundness shape = roundness(named_.mesh, sections_, axis_);
-    if (shape.num_sectors == 0 || shape.num_sectors > 2) return;
-    const auto worst = std::max_element(shape.harmonics.begin(), shape.harmonics.end());
+    const std::vector<int> spoiling = shape.without_sectors();
+    if (spoiling.empty()) return;
+    std::string shares;
+    for (const int m : spoiling) {
+      shares += fmt::format("{}{:.2g} % goes with {} times the angle", shares.empty() ? "" : ", ",
+                            100.0 * shape.harmonics[static_cast<std::size_t>(m - 1)], m);
+    }
     throw ConfigError(
         Refusal::not_of_revolution, "spin",
         fmt::format(
-            "is of a body of revolution, or of one that repeats itself three times or more "
-            "around its axis; of mass or stiffness of this one {:.2g} % goes with {} times the "
-            "angle, "
+            "is of a body of revolution, or of one whose parts all repeat themselves the same "
+            "three "
+            "times or more around its axis; of mass or stiffness of this one {}, "
             "and its centre is {:.3g} m off the axis. Seen from space its matrices would "
             "change all the time. Give the axis by `about`; or take it as it stands, with "
             "`sliding: frozen`, of which only the surface moves; or let it be the master of "
             "sliding contacts that a drive moves",
-            100.0 * *worst, worst - shape.harmonics.begin() + 1, shape.eccentricity));
+            shares, shape.eccentricity));
   }
 
   void check_materials() const {

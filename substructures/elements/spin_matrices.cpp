@@ -293,4 +293,23 @@ Roundness roundness(const Mesh& mesh, const MeshSections& sections, const AxisOf
   return found;
 }
 
+std::vector<int> Roundness::without_sectors() const {
+  if (num_sectors == 0 || num_sectors > 2) return {};
+  std::vector<int> order(harmonics.size());
+  std::iota(order.begin(), order.end(), 1);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return harmonics[static_cast<std::size_t>(a - 1)] > harmonics[static_cast<std::size_t>(b - 1)];
+  });
+  std::vector<int> found;
+  int sectors = 0;
+  for (const int m : order) {
+    const int left = std::gcd(sectors, m);
+    if (left == sectors) continue;  // fits those before
+    sectors = left;
+    found.push_back(m);
+    if (sectors <= 2) break;
+  }
+  return found;
+}
+
 }  // namespace stridor

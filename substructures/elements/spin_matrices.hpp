@@ -52,6 +52,10 @@ struct Roundness {
   /// Greatest number of equal sectors that those harmonics allow which are not negligible: 0 for a
   /// body of revolution, 1 for one without any symmetry.
   int num_sectors = 0;
+
+  /// The m of the largest harmonics which together leave fewer than three equal sectors, largest
+  /// first; none where there are three or more.
+  std::vector<int> without_sectors() const;
 };
 Roundness roundness(const Mesh& mesh, const MeshSections& sections, const AxisOfRevolution& axis);
 

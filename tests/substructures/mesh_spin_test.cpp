@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <complex>
 #include <functional>
+#include <numeric>
 #include <vector>
 
 #include "core/errors.hpp"
@@ -216,17 +217,29 @@ TEST(Roundness, FindsHolesAndEccentricity) {
   const Roundness off = roundness(mesh, sections, beside);
   EXPECT_NEAR(off.eccentricity, 0.01, 1e-9);
   EXPECT_EQ(off.num_sectors, 1);
-  // Every eighth of the elements of the inner ring is left out: three holes.
-  Mesh holed;
-  holed.nodes = mesh.nodes;
-  holed.node_labels = mesh.node_labels;
-  for (std::size_t e = 0; e < mesh.num_elements(); ++e) {
-    const bool is_inner = e % 2 == 0;
-    const std::size_t sector = e / 2;
-    if (is_inner && sector % 8 == 0) continue;
-    holed.add_element(mesh.shapes[e], mesh.nodes_of(e), mesh.element_labels[e]);
-  }
-  EXPECT_EQ(roundness(holed, one_section(holed, steel()), {}).num_sectors, 3);
+  // Elements of the inner and of the outer ring are left out.
+  const auto holed = [&](std::size_t each_inner, std::size_t each_outer) {
+    Mesh left;
+    left.nodes = mesh.nodes;
+    left.node_labels = mesh.node_labels;
+    for (std::size_t e = 0; e < mesh.num_elements(); ++e) {
+      const std::size_t sector = e / 2;
+      if (sector % (e % 2 == 0 ? each_inner : each_outer) == 0) continue;
+      left.add_element(mesh.shapes[e], mesh.nodes_of(e), mesh.element_labels[e]);
+    }
+    return roundness(left, one_section(left, steel()), {});
+  };
+  EXPECT_EQ(holed(8, 100).num_sectors, 1);  // the first sector alone has a hole outside
+  const Roundness three = holed(8, 8);
+  EXPECT_EQ(three.num_sectors, 3);
+  EXPECT_TRUE(three.without_sectors().empty());
+  // Three and four holes have nothing in common, and it takes both to say so.
+  const Roundness both = holed(8, 6);
+  EXPECT_EQ(both.num_sectors, 1);
+  const std::vector<int> spoiling = both.without_sectors();
+  ASSERT_GE(spoiling.size(), 2u);
+  EXPECT_LE(std::accumulate(spoiling.begin(), spoiling.end(), 0, std::gcd<int, int>), 2);
+  EXPECT_GE(std::accumulate(spoiling.begin(), spoiling.end() - 1, 0, std::gcd<int, int>), 3);
 }
 
 TEST(MeshSpin, RefusesWhatIsNotAlikeAroundItsAxis) {
