@@ -4,8 +4,9 @@
 /// Put before a function: it is compiled for several instruction sets, of which the processor's
 /// best is chosen at start-up, where the tool chain can do that. Results differ between processors
 /// by rounding only. Not under the thread sanitizer, which is not yet there when the choice is
-/// made.
-#if defined(__x86_64__) && defined(__ELF__) && defined(__GLIBC__) && !defined(__SANITIZE_THREAD__)
+/// made. Nor by clang: version 14 makes one function of them, for the first set, whatever the processor.
+#if defined(__x86_64__) && defined(__ELF__) && defined(__GLIBC__) && defined(__GNUC__) && \
+    !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define STRIDOR_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define STRIDOR_CLONES
