@@ -99,8 +99,7 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
       const Pencil pencil = family.pencil(ends);
       num_wanted = std::max(num_wanted, pencil.num_eigenvalues() / 2);
       if (end == range.front()) modes = pencil.omega;
-      // What modes are at one value says nothing about another one where the key changes the
-      // bodies.
+      // Where the key changes the bodies, a modal coordinate is another motion at every value.
       const bool are_modes_alike = pencil.omega.size() == modes.size() && pencil.omega == modes;
       if (method == SpectrumMethod::projected && !are_modes_alike) method = SpectrumMethod::sampled;
     }

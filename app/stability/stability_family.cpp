@@ -98,8 +98,7 @@ double BodyStabilityFamily::trusted_frequency(std::span<const double> values) {
 
 SpectrumMethod BodyStabilityFamily::method(std::span<const double> values) {
   const BlasGuard guard;
-  const SceneFamily::Member member = family_.at(values);
-  const Model& model = *member.model;
+  const Model& model = *family_.at(values).model;
   if (model.sparse) return SpectrumMethod::counted;
   // Bodies that spin couple their modes, of which there are few: all eigenvalues cost less than to
   // follow some.
@@ -109,9 +108,12 @@ SpectrumMethod BodyStabilityFamily::method(std::span<const double> values) {
   Eigen::Index num_modes = 0;
   for (const SystemBody& body : model.system.bodies) num_modes += body.modal.size();
   if (num_modes < many_modes) return SpectrumMethod::sampled;
-  const Pencil pencil = at(member, values).pencil;
-  const bool is_projected = pencil.num_modes() >= many_modes && pencil.num_constraints() == 0;
-  return is_projected ? SpectrumMethod::projected : SpectrumMethod::sampled;
+  const auto& contacts = model.system.contacts;
+  const bool all_give_way =
+      std::all_of(contacts.begin(), contacts.end(), [](const ContactPoint& contact) {
+        return contact.compliance() > 0.0 || contact.substrate;
+      });
+  return all_give_way ? SpectrumMethod::projected : SpectrumMethod::sampled;
 }
 
 SparseSystem BodyStabilityFamily::sparse_system(std::span<const double> values) {

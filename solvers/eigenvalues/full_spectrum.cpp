@@ -44,9 +44,9 @@ TwoSidedPairs pairs_at(const SparseSystem& system, std::vector<Complex> s, doubl
 
 }  // namespace
 
-bool is_full(const SparseSystem& system) {
-  const double places = static_cast<double>(system.size()) * static_cast<double>(system.size());
-  return static_cast<double>(system.position.nonZeros()) > 0.25 * places;
+bool is_full(const SparseMatrix& matrix) {
+  const double places = static_cast<double>(matrix.rows()) * static_cast<double>(matrix.cols());
+  return static_cast<double>(matrix.nonZeros()) > 0.25 * places;
 }
 
 SparseSystem modal_system(const Pencil& pencil) {

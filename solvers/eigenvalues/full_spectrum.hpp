@@ -6,8 +6,11 @@
 
 namespace stridor {
 
-/// Whether more than a quarter of Q is stored.
-bool is_full(const SparseSystem& system);
+/// Whether more than a quarter of a matrix, or of Q, is stored.
+bool is_full(const SparseMatrix& matrix);
+inline bool is_full(const SparseSystem& system) {
+  return is_full(system.position);
+}
 
 /// The motion of a pencil in its modal coordinates: M = 1, P = diag(c) + Sᵀ H S, Q = diag(ω²) + Sᵀ
 /// G S.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "solvers/eigenvalues/complex_eigenpairs.hpp"
+#include "solvers/eigenvalues/full_spectrum.hpp"
 
 namespace stridor {
 namespace {
@@ -52,8 +53,7 @@ const SparseMatrix& matrix_of(const SparseSystem& system, int power) {
 
 /// A matrix times complex columns; of one that is stored sparse and is full by BLAS.
 Eigen::MatrixXcd product(const SparseMatrix& matrix, const Eigen::MatrixXcd& columns) {
-  const double places = static_cast<double>(matrix.rows()) * static_cast<double>(matrix.cols());
-  if (static_cast<double>(matrix.nonZeros()) < 0.25 * places) return matrix * columns;
+  if (!is_full(matrix)) return matrix * columns;
   const Eigen::MatrixXd full = matrix;
   Eigen::MatrixXcd image(matrix.rows(), columns.cols());
   image.real() = full * columns.real().eval();

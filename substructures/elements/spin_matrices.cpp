@@ -19,7 +19,7 @@ namespace {
 
 using Entries = std::vector<Eigen::Triplet<double>>;
 
-/// What an element has at one of its points.
+/// Shape functions of an element at one of its points, with the share of its volume.
 struct ElementPoint {
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 20, 1> values;     ///< N_a
   Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 20, 3> gradients;  ///< ∂N_a/∂x, 1/m
@@ -251,7 +251,7 @@ SparseMatrix in_every_direction(const SparseMatrix& between_nodes, int dimension
 Roundness roundness(const Mesh& mesh, const MeshSections& sections, const AxisOfRevolution& axis) {
   require_volumes(mesh, "roundness");
   constexpr int num_harmonics = 36;
-  // What the corners of a mesh are, and more, is no feature of the part.
+  // The corners of a mesh of a round part give harmonics of up to this size.
   constexpr double negligible = 2e-3;
   // Directions across the axis.
   const Eigen::Vector3d first = axis.direction.unitOrthogonal();
