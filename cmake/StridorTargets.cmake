@@ -6,7 +6,9 @@ target_compile_features(stridor_options INTERFACE cxx_std_20)
 target_compile_options(stridor_options INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion
   # Of other local names alone: files that are compiled together see each other's.
-  $<IF:$<CXX_COMPILER_ID:GNU>,-Wshadow=local,-Wshadow>
+  $<$<CXX_COMPILER_ID:GNU>:-Wshadow=local>
+  # clang warns of all names, and at -Wconversion of signs, which g++ does not in C++.
+  $<$<NOT:$<CXX_COMPILER_ID:GNU>>:-Wno-sign-conversion;$<$<NOT:$<BOOL:${STRIDOR_UNITY}>>:-Wshadow>>
   # Eigen and fmt headers trip these two in g++ 12 at -O3; both are false positives there.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-array-bounds>
   # g++ frees what it no longer needs once it holds a gigabyte, instead of again and again.

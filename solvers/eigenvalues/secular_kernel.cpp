@@ -199,9 +199,8 @@ struct Kernel {
 
 STRIDOR_SECULAR_KERNEL(portable, , Vector4)
 #if defined(__x86_64__)
-STRIDOR_SECULAR_KERNEL(v3, __attribute__((target("arch=x86-64-v3"))), Vector4)
-STRIDOR_SECULAR_KERNEL(v4, __attribute__((target("arch=x86-64-v4,prefer-vector-width=512"))),
-                       Vector8)
+STRIDOR_SECULAR_KERNEL(v3, STRIDOR_V3, Vector4)
+STRIDOR_SECULAR_KERNEL(v4, STRIDOR_V4, Vector8)
 #endif
 #undef STRIDOR_SECULAR_KERNEL
 

@@ -153,8 +153,6 @@ double gather_portable(const double* blocks, std::size_t num_blocks, ModalField 
 }
 
 #if defined(__x86_64__)
-#define STRIDOR_V3 __attribute__((target("arch=x86-64-v3")))
-#define STRIDOR_V4 __attribute__((target("arch=x86-64-v4,prefer-vector-width=512")))
 STRIDOR_V3
 void advance_v3(double* blocks, std::size_t num_blocks, const double* const* rows,
                 const double* forces, int num_ports, double lookahead, double* seen) {

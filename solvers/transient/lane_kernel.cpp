@@ -266,7 +266,7 @@ STRIDOR_INLINE V solve_contact(const Lanes& lanes) {
     V& of_lane = at<V>(c.slip_velocity, 0);
     of_lane = is_taken ? slip : of_lane;
   }
-  return is_taken | (at<V>(lanes.is_used, 0) == zero) ? zero : one;
+  return (is_taken | (at<V>(lanes.is_used, 0) == zero)) ? zero : one;
 }
 
 /// The slip velocity that a step of the published kind ends with; 1 where it is against the drive.
@@ -285,7 +285,7 @@ STRIDOR_INLINE V update_slip(const Lanes& lanes) {
   const V driven = at<V>(c.sliding_velocity, 0) * tx;
   const V slip = moved / at<V>(lanes.step, 0) + driven;
   at<V>(c.slip_velocity, 0) = slip;
-  return (slip * driven < zero) & (at<V>(lanes.is_used, 0) > zero) ? zero + 1.0 : zero;
+  return ((slip * driven < zero) & (at<V>(lanes.is_used, 0) > zero)) ? zero + 1.0 : zero;
 }
 
 /// Propagator::displacement() of the row that is watched.
@@ -358,13 +358,10 @@ std::int64_t step_portable(const Lanes& lanes, std::int64_t max_steps, double* f
   return step_all<Lanes2>(lanes, max_steps, flagged);
 }
 #if defined(__x86_64__)
-__attribute__((target("arch=x86-64-v3"))) std::int64_t step_v3(const Lanes& lanes,
-                                                               std::int64_t max_steps,
-                                                               double* flagged) {
+STRIDOR_V3 std::int64_t step_v3(const Lanes& lanes, std::int64_t max_steps, double* flagged) {
   return step_all<Lanes4>(lanes, max_steps, flagged);
 }
-__attribute__((target("arch=x86-64-v4,prefer-vector-width=512"))) std::int64_t step_v4(
-    const Lanes& lanes, std::int64_t max_steps, double* flagged) {
+STRIDOR_V4 std::int64_t step_v4(const Lanes& lanes, std::int64_t max_steps, double* flagged) {
   return step_all<Lanes8>(lanes, max_steps, flagged);
 }
 #endif

@@ -137,15 +137,13 @@ STRIDOR_INLINE void with_count(ptrdiff_t count, Act&& act) {
 
 #define STRIDOR_PART [&]<int n>() __attribute__((always_inline))
 
-}  // namespace
-
-STRIDOR_CLONES void solve_lower_triangle(const SupernodeView& node, double* own) {
+STRIDOR_CLONES void solve_lower(const SupernodeView& node, double* own) {
   for (ptrdiff_t first = 0; first < node.num_columns; first += together)
     with_count(
         node.num_columns - first, STRIDOR_PART { lower_part<n>(node, first, own); });
 }
 
-STRIDOR_CLONES void solve_upper_triangle(const SupernodeView& node, double* own) {
+STRIDOR_CLONES void solve_upper(const SupernodeView& node, double* own) {
   for (ptrdiff_t end = node.num_columns; end > 0;) {
     const ptrdiff_t first = (end - 1) / together * together;
     with_count(
@@ -154,31 +152,56 @@ STRIDOR_CLONES void solve_upper_triangle(const SupernodeView& node, double* own)
   }
 }
 
-STRIDOR_CLONES void subtract_rows(const SupernodeView& node, ptrdiff_t first, ptrdiff_t count,
-                                  const int* rows, const double* own, double* strip) {
+STRIDOR_CLONES void take_rows(const SupernodeView& node, ptrdiff_t first, ptrdiff_t count,
+                              const int* rows, const double* own, double* strip) {
   for (ptrdiff_t k = 0; k < count; k += together)
     with_count(
         count - k, STRIDOR_PART { rows_part<n>(node, first + k, rows + k, own, strip); });
 }
 
-STRIDOR_CLONES void subtract_columns(const SupernodeView& node, ptrdiff_t offset,
-                                     ptrdiff_t num_rows, const int* rows, ptrdiff_t first,
-                                     ptrdiff_t count, const double* strip, double* own) {
+STRIDOR_CLONES void take_columns(const SupernodeView& node, ptrdiff_t offset, ptrdiff_t num_rows,
+                                 const int* rows, ptrdiff_t first, ptrdiff_t count,
+                                 const double* strip, double* own) {
   for (ptrdiff_t k = 0; k < count; k += together)
     with_count(
         count - k,
         STRIDOR_PART { columns_part<n>(node, offset, num_rows, rows, first + k, strip, own); });
 }
 
-STRIDOR_CLONES void multiply_columns(ptrdiff_t num_columns, const int* starts, const int* rows,
-                                     const double* entries, ptrdiff_t stride, const double* x,
-                                     double* y) {
+STRIDOR_CLONES void multiply(ptrdiff_t num_columns, const int* starts, const int* rows,
+                             const double* entries, ptrdiff_t stride, const double* x, double* y) {
   for (ptrdiff_t column = 0; column < num_columns; ++column) {
     Lanes sum{};
     for (int k = starts[column]; k < starts[column + 1]; ++k)
       sum += entries[k] * reinterpret_cast<const StoredLanes*>(x + stride * rows[k])->lanes;
     reinterpret_cast<StoredLanes*>(y + stride * column)->lanes = sum;
   }
+}
+
+}  // namespace
+
+void solve_lower_triangle(const SupernodeView& node, double* own) {
+  solve_lower(node, own);
+}
+
+void solve_upper_triangle(const SupernodeView& node, double* own) {
+  solve_upper(node, own);
+}
+
+void subtract_rows(const SupernodeView& node, ptrdiff_t first, ptrdiff_t count, const int* rows,
+                   const double* own, double* strip) {
+  take_rows(node, first, count, rows, own, strip);
+}
+
+void subtract_columns(const SupernodeView& node, ptrdiff_t offset, ptrdiff_t num_rows,
+                      const int* rows, ptrdiff_t first, ptrdiff_t count, const double* strip,
+                      double* own) {
+  take_columns(node, offset, num_rows, rows, first, count, strip, own);
+}
+
+void multiply_columns(ptrdiff_t num_columns, const int* starts, const int* rows,
+                      const double* entries, ptrdiff_t stride, const double* x, double* y) {
+  multiply(num_columns, starts, rows, entries, stride, x, y);
 }
 
 }  // namespace stridor
