@@ -38,6 +38,27 @@ void predict_modes(const double* blocks, std::size_t num_modes, const double* co
   }
 }
 
+/// Σ a_i w_i b_i over all modes; the same with a and b in turn.
+STRIDOR_CLONES
+double weighted_product(std::size_t num_blocks, const double* a, const double* weights,
+                        const double* b) {
+  const auto* as = reinterpret_cast<const Block*>(a);
+  const auto* bs = reinterpret_cast<const Block*>(b);
+  const auto* ws = reinterpret_cast<const Block*>(weights);
+  // Two sums, as one would wait for every addition.
+  Block even{}, odd{};
+  std::size_t i = 0;
+  for (; i + 1 < num_blocks; i += 2) {
+    even += as[i] * bs[i] * ws[i];
+    odd += as[i + 1] * bs[i + 1] * ws[i + 1];
+  }
+  if (i < num_blocks) even += as[i] * bs[i] * ws[i];
+  even += odd;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < modal_block; ++k) sum += even[k];
+  return sum;
+}
+
 }  // namespace
 
 StepCoefficients step_coefficients(Integrator scheme, double omega, double damping, double step,
@@ -64,7 +85,8 @@ ModalRecurrence::ModalRecurrence(const ModalBody& body, const Eigen::MatrixXd& p
       patterns_(patterns),
       amplitudes_(static_cast<std::size_t>(patterns.cols()), 0.0),
       coefficients_(size_),
-      feedthrough_(size_, 0.0),
+      feedthrough_(num_blocks_ * modal_block),
+      ahead_answers_(num_blocks_ * modal_block),
       port_rows_(static_cast<std::size_t>(num_ports)) {
   for (Eigen::Index row = 0; row < body.rows.rows(); ++row) {
     double* const padded =
@@ -125,10 +147,8 @@ double ModalRecurrence::predicted_displacement(int row) const {
 }
 
 double ModalRecurrence::row_compliance(int row_a, int row_b) const {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < size_; ++i)
-    sum += row_data(row_a)[i] * modal_compliance(i) * row_data(row_b)[i];
-  return sum;
+  return weighted_product(num_blocks_, row_data(row_a), modal_compliances().data(),
+                          row_data(row_b));
 }
 
 double ModalRecurrence::ahead_displacement(int row) const {
@@ -137,24 +157,19 @@ double ModalRecurrence::ahead_displacement(int row) const {
 }
 
 double ModalRecurrence::ahead_compliance(int row_a, int row_b) const {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < size_; ++i) {
-    const double answer = blocks_[modal_index(i, ModalField::gain)] + feedthrough_[i];
-    sum += row_data(row_a)[i] * answer * row_data(row_b)[i];
-  }
-  return sum;
+  return weighted_product(num_blocks_, row_data(row_a), ahead_answers_.data(), row_data(row_b));
 }
 
-double ModalRecurrence::modal_compliance(std::size_t mode) const {
-  if (is_starting()) {
-    // Once for all pairs of rows, of which hundreds of contacts have millions.
-    if (start_answers_.empty()) {
-      for (std::size_t i = 0; i < size_; ++i)
-        start_answers_.push_back(start_coefficients(i).share * coefficients_[i].answer());
-    }
-    return start_answers_[mode];
+const AlignedArray& ModalRecurrence::modal_compliances() const {
+  // Without direct feedthrough g = 0.
+  if (!is_starting()) return has_feedthrough() ? feedthrough_ : ahead_answers_;
+  // Once for all pairs of rows, of which hundreds of contacts have millions.
+  if (start_answers_.size() == 0) {
+    start_answers_ = AlignedArray(num_blocks_ * modal_block);
+    for (std::size_t i = 0; i < size_; ++i)
+      start_answers_[i] = start_coefficients(i).share * coefficients_[i].answer();
   }
-  return has_feedthrough() ? feedthrough_[mode] : blocks_[modal_index(mode, ModalField::gain)];
+  return start_answers_;
 }
 
 void ModalRecurrence::set_body_loads(std::span<const double> amplitudes) {
@@ -178,7 +193,7 @@ StepCoefficients ModalRecurrence::coefficients(std::size_t mode) const {
 void ModalRecurrence::set_mass_damping(double alpha) {
   if (alpha == alpha_) return;
   alpha_ = alpha;
-  start_answers_.clear();
+  start_answers_ = {};
   for (std::size_t i = 0; i < size_; ++i) {
     coefficients_[i] = coefficients(i);
     number(i, ModalField::keep) = coefficients_[i].keep;
@@ -193,6 +208,7 @@ void ModalRecurrence::renew_gains() {
   for (std::size_t i = 0; i < size_; ++i) {
     number(i, ModalField::gain) = coefficients_[i].gain;
     feedthrough_[i] = coefficients_[i].feedthrough;
+    ahead_answers_[i] = coefficients_[i].gain + feedthrough_[i];
   }
   renew_compliances();
   are_gains_due_ = false;

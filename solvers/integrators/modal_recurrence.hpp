@@ -70,8 +70,8 @@ class ModalRecurrence : public Propagator {
   void renew_gains();
   StepCoefficients coefficients(std::size_t mode) const;
   StartCoefficients start_coefficients(std::size_t mode) const;
-  /// W of a mode.
-  double modal_compliance(std::size_t mode) const;
+  /// W of all modes, padded.
+  const AlignedArray& modal_compliances() const;
   /// Σ_j row_j f_j of a mode.
   double modal_force(std::size_t mode, const double* forces) const;
   double& number(std::size_t mode, ModalField field) { return blocks_[modal_index(mode, field)]; }
@@ -94,8 +94,10 @@ class ModalRecurrence : public Propagator {
   Eigen::MatrixXd patterns_;
   std::vector<double> amplitudes_;              ///< of the loads
   std::vector<StepCoefficients> coefficients_;  ///< of the damping set last
-  std::vector<double> feedthrough_;                  ///< g
-  mutable std::vector<double> start_answers_;        ///< W at the start; empty until asked for
+  // Padded like the rows.
+  AlignedArray feedthrough_;    ///< g
+  AlignedArray ahead_answers_;  ///< e + g: at t_{n+1} per force that is constant from t_n on
+  mutable AlignedArray start_answers_;  ///< W at the start; empty until asked for
   bool are_gains_due_ = false;  ///< those of a changed damping hold from the next step on
   std::vector<const double*> port_rows_;
 };

@@ -213,10 +213,15 @@ void Propagator::set_loads(std::span<const double> amplitudes) {
 
 void Propagator::watch(int port, int row) {
   rows_[at(port)] = row;
-  has_new_rows_ = true;
   port_changed(port);
-  predicted_[at(port)] = predicted_displacement(row);
   renew_compliance(port);
+  look(port);
+}
+
+void Propagator::look(int port) {
+  has_new_rows_ = true;
+  const int row = this->row(port);
+  predicted_[at(port)] = predicted_displacement(row);
   if (!has_feedthrough_) {
     current_[at(port)] = body_displacement(row);
     return;
@@ -227,8 +232,13 @@ void Propagator::watch(int port, int row) {
   }
   double& expected = expected_[at(port)];
   expected = predicted_[at(port)];
-  for (std::size_t j = 0; j < acting_.rows.size(); ++j)
-    expected += feedthrough_compliance(row, acting_.rows[j]) * acting_.forces[j];
+  const std::size_t n = rows_.size();
+  for (std::size_t j = 0; j < acting_.rows.size(); ++j) {
+    const bool is_watched = j < n && acting_.rows[j] == rows_[j];
+    expected += (is_watched ? compliance_[j * n + at(port)]
+                            : feedthrough_compliance(row, acting_.rows[j])) *
+                acting_.forces[j];
+  }
   current_[at(port)] = expected;
 }
 
@@ -258,7 +268,9 @@ void Propagator::predict_start(const Eigen::VectorXd& displacement,
 }
 
 void Propagator::place_ports() {
-  for (int port = 0; port < num_ports(); ++port) watch(port, row(port));
+  for (int port = 0; port < num_ports(); ++port) port_changed(port);
+  renew_compliances();
+  for (int port = 0; port < num_ports(); ++port) look(port);
 }
 
 void Propagator::predict_ahead() {
@@ -288,26 +300,31 @@ bool Propagator::find_ahead_compliances() {
   return true;
 }
 
+void Propagator::renew_compliance(int port, int other) {
+  const int row_a = row(port), row_b = row(other);
+  const std::size_t n = rows_.size();
+  compliance_[at(other) * n + at(port)] = feedthrough_compliance(row_a, row_b);
+  compliance_[at(port) * n + at(other)] = feedthrough_compliance(row_b, row_a);
+  if (!has_residual()) return;
+  const double lag = (1.0 - share_) * residual_.modes.flexibility(row_a, row_b);
+  port_lag_[at(other) * n + at(port)] = lag;
+  port_lag_[at(port) * n + at(other)] = lag;
+}
+
 void Propagator::renew_compliance(int port) {
   has_ahead_compliance_ = false;
   if (has_feedthrough_) lacks_ahead_compliance_[at(port)] = 1;
   ++compliance_version_;
-  const int row_a = row(port);
-  const std::size_t n = rows_.size();
-  for (int other = 0; other < num_ports(); ++other) {
-    const int row_b = row(other);
-    compliance_[at(other) * n + at(port)] = feedthrough_compliance(row_a, row_b);
-    compliance_[at(port) * n + at(other)] = feedthrough_compliance(row_b, row_a);
-    if (!has_residual()) continue;
-    const double lag = (1.0 - share_) * residual_.modes.flexibility(row_a, row_b);
-    port_lag_[at(other) * n + at(port)] = lag;
-    port_lag_[at(port) * n + at(other)] = lag;
-  }
+  for (int other = 0; other < num_ports(); ++other) renew_compliance(port, other);
 }
 
 void Propagator::renew_compliances() {
   influences_.clear();
-  for (int port = 0; port < num_ports(); ++port) renew_compliance(port);
+  has_ahead_compliance_ = false;
+  std::fill(lacks_ahead_compliance_.begin(), lacks_ahead_compliance_.end(), char{1});
+  ++compliance_version_;
+  for (int port = 0; port < num_ports(); ++port)
+    for (int other = 0; other <= port; ++other) renew_compliance(port, other);
 }
 
 void Propagator::settle(const double* forces) {
@@ -359,7 +376,9 @@ void Propagator::load(const State& state, const std::string& prefix) {
   std::vector<double> rows(rows_.size());
   state.get(prefix + "rows", rows);
   load_body(state, prefix);
-  for (int port = 0; port < num_ports(); ++port) watch(port, static_cast<int>(rows[at(port)]));
+  std::transform(rows.begin(), rows.end(), rows_.begin(),
+                 [](double row) { return static_cast<int>(row); });
+  place_ports();
   state.get(prefix + "predicted", predicted_);
   state.get(prefix + "current", current_);
   state.get(prefix + "increment", increment_);

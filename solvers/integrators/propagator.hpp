@@ -184,10 +184,14 @@ class Propagator {
 
   static std::size_t at(int port) { return static_cast<std::size_t>(port); }
   bool has_residual() const { return residual_.modes.flexibility.size() > 0; }
+  /// `watch` for all ports as they are.
   void place_ports();
   void find_feedthrough_ports();
   void take_new_rows(const double* forces);
   void renew_compliance(int port);
+  void renew_compliance(int port, int other);
+  /// Predicts a port whose row and compliances are known.
+  void look(int port);
   const Influence& influence_on(int row) const;
   double feedthrough_compliance(int row_a, int row_b) const;
   /// Displacement of a row by the truncated modes, due to the loads and the forces before t_n.
