@@ -10,6 +10,7 @@
 
 #include "core/activity.hpp"
 #include "core/errors.hpp"
+#include "core/memory.hpp"
 #include "solvers/eigenvalues/full_spectrum.hpp"
 
 namespace stridor {
@@ -18,6 +19,16 @@ namespace {
 constexpr double relative_rounding = 1e-9;  ///< of |s|, as pairs have converged
 /// Unknowns up to which systems of no span are projected: what their bases take of memory.
 constexpr Eigen::Index most_direct = 20'000;
+
+/// For systems that may be asked for again.
+double memory_for_systems() {
+  return std::min(4e9, 0.1 * memory_limit().bytes);
+}
+
+double bytes_of(const SparseMatrix& matrix) {
+  constexpr double bytes_per_entry = sizeof(double) + sizeof(int);
+  return bytes_per_entry * static_cast<double>(matrix.nonZeros());
+}
 
 SampledSpectrum sampled(const std::vector<std::complex<double>>& eigenvalues) {
   SampledSpectrum found;
@@ -50,9 +61,29 @@ SparseSpectrum whole_spectrum(const SparseSystem& system, SpectrumWindow window,
   return spectrum;
 }
 
+std::shared_ptr<const SparseSystem> KeptSystems::at(double value) {
+  const auto known =
+      std::find_if(kept_.begin(), kept_.end(), [&](const Kept& one) { return one.value == value; });
+  if (known != kept_.end()) {
+    kept_.splice(kept_.begin(), kept_, known);
+    return kept_.front().system;
+  }
+  ++num_made_;
+  Kept made{value, std::make_shared<const SparseSystem>(system_(value)), 0.0};
+  made.bytes = bytes_of(made.system->mass) + bytes_of(made.system->velocity) +
+               bytes_of(made.system->position);
+  bytes_ += made.bytes;
+  kept_.push_front(made);
+  while (bytes_ > most_bytes_ && !kept_.empty()) {
+    bytes_ -= kept_.back().bytes;
+    kept_.pop_back();
+  }
+  return made.system;
+}
+
 CountedSpectra::CountedSpectra(System system, const SpectrumWindow& window,
                                std::optional<std::pair<double, double>> range)
-    : system_(std::move(system)), window_(window), range_(std::move(range)) {
+    : systems_(std::move(system), memory_for_systems()), window_(window), range_(std::move(range)) {
   if (std::isfinite(window_.frequency)) window_.count.reset();
   if (range_ && !(range_->first < range_->second)) range_.reset();
 }
@@ -98,8 +129,10 @@ SparseSpectrum CountedSpectra::search_first(const SparseSystem& first) {
 
 /// The whole search at the first value, and what follows from it.
 void CountedSpectra::make_basis() {
-  const SparseSystem first = system_(range_->first);
-  const SparseSystem last = system_(range_->second);
+  const std::shared_ptr<const SparseSystem> first_kept = systems_.at(range_->first);
+  const std::shared_ptr<const SparseSystem> last_kept = systems_.at(range_->second);
+  const SparseSystem& first = *first_kept;
+  const SparseSystem& last = *last_kept;
   if (last.size() != first.size()) return;
   if (!is_full(first)) {
     span_.emplace(first);
@@ -162,11 +195,11 @@ void CountedSpectra::extend() {
 }
 
 CountedSpectra::Member CountedSpectra::member(double value) {
-  Member one{system_(value)};
-  if (!basis_ || one.system.size() != size_) return one;
+  Member one{systems_.at(value)};
+  if (!basis_ || one.system->size() != size_) return one;
   one.is_like = true;
   if (!span_) return one;
-  one.factors = span_->factors(one.system);
+  one.factors = span_->factors(*one.system);
   if (one.factors) return one;
   one.is_like = size_ <= most_direct;
   if (one.is_like) span_.reset();
@@ -180,16 +213,16 @@ bool CountedSpectra::join(const Member& member) {
   const Activity finding("eigenvectors of a value");
   ++effort_.num_refined;
   int factorisations = 0;
-  basis_->add(pairs_near(member.system, basis_->latest(), basis_->rectangle().height,
-                         factorisations));
+  basis_->add(
+      pairs_near(*member.system, basis_->latest(), basis_->rectangle().height, factorisations));
   return true;
 }
 
 ProjectedSpectrum CountedSpectra::project(const Member& member,
                                           std::optional<std::complex<double>> place) {
   ++effort_.num_projected;
-  if (!span_) return basis_->project(member.system, place);
-  return basis_->project(*span_, *member.factors, member.system, place);
+  if (!span_) return basis_->project(*member.system, place);
+  return basis_->project(*span_, *member.factors, *member.system, place);
 }
 
 /// Eigenvalues in the rectangle, conjugates counted; nothing where they are not counted.
@@ -228,7 +261,7 @@ SampledSpectrum CountedSpectra::at(double value) {
   if (known != searched_.end()) return known->second;
   const Member one = member(value);
   if (!one.is_like || value < range_->first || value > range_->second)
-    return search(value, one.system);
+    return search(value, *one.system);
   const bool is_first = one.factors && one.factors->size() == 1;  // the same system
   if (is_first) return searched_.at(range_->first);
   if (const auto found = counted(one)) return *found;
@@ -241,7 +274,7 @@ SampledSpectrum CountedSpectra::at(double value) {
     if (const auto found = counted(one)) return *found;
     basis_->drop_latest();
   }
-  return search(value, one.system);
+  return search(value, *one.system);
 }
 
 SampledSpectrum CountedSpectra::near(double value) {

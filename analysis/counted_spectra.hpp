@@ -3,7 +3,9 @@
 
 #include <complex>
 #include <functional>
+#include <list>
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -28,6 +30,32 @@ struct CountedEffort {
   int num_projected = 0;  ///< spectra by projection
 };
 
+/// Systems along a parameter, the latest of them kept: windows are looked at in turn, many of them
+/// at the same values, and an equilibrium may stand behind every system.
+class KeptSystems {
+ public:
+  using System = std::function<SparseSystem(double value)>;
+  /// @param most_bytes that those kept may take; what was asked for longest ago goes first
+  KeptSystems(System system, double most_bytes)
+      : system_(std::move(system)), most_bytes_(most_bytes) {}
+
+  std::shared_ptr<const SparseSystem> at(double value);
+  int num_made() const { return num_made_; }
+
+ private:
+  struct Kept {
+    double value;
+    std::shared_ptr<const SparseSystem> system;
+    double bytes;
+  };
+
+  System system_;
+  double most_bytes_;
+  std::list<Kept> kept_;  ///< the latest first
+  double bytes_ = 0.0;
+  int num_made_ = 0;
+};
+
 /// Spectra of large matrices along a parameter, for sample_locus().
 ///
 /// The first value of the range takes a whole search. From its vectors those of the last one
@@ -43,7 +71,7 @@ struct CountedEffort {
 /// eigenvalues at once as whole search, which needs no count.
 class CountedSpectra {
  public:
-  using System = std::function<SparseSystem(double value)>;
+  using System = KeptSystems::System;
   /// @param window of the eigenvalues wanted
   /// @param range  of the parameter; where there is none, every value takes a whole search
   CountedSpectra(System system, const SpectrumWindow& window,
@@ -58,7 +86,7 @@ class CountedSpectra {
 
  private:
   struct Member {
-    SparseSystem system;
+    std::shared_ptr<const SparseSystem> system;
     bool is_like = false;  ///< whether the basis, where there is one, is for it
     std::optional<Eigen::VectorXd> factors = std::nullopt;  ///< in the span, where it is in one
   };
@@ -75,7 +103,7 @@ class CountedSpectra {
   std::optional<int> count(const Member& member, const std::vector<std::complex<double>>& found);
   SampledSpectrum search(double value, const SparseSystem& system);
 
-  System system_;
+  KeptSystems systems_;
   SpectrumWindow window_;
   std::optional<std::pair<double, double>> range_;
   bool has_begun_ = false;

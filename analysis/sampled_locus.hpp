@@ -17,7 +17,7 @@ struct SamplingEffort {
   SearchFor wanted = SearchFor::every_window;
 };
 /// For spectra of large matrices.
-inline constexpr SamplingEffort sparing_effort{32, 64, {1e-9, 8, WindowEffort::Ends::secants}};
+inline constexpr SamplingEffort sparing_effort{32, 64, {1e-9, 8, WindowEffort::Ends::parabolas}};
 
 /// For the places alone where the system as a whole becomes stable or unstable, as a map draws
 /// them.

@@ -34,58 +34,40 @@ double middle_number(double a, double b) {
                                           : middle);
 }
 
-/// Value at which the rank-th largest excess changes its sign.
+/// Value at which the rank-th largest excess changes its sign, by halves.
 class SignChange {
  public:
   SignChange(const SpectrumSampler& sampler, const WindowEffort& effort, std::size_t rank)
       : sampler_(sampler), effort_(effort), rank_(rank) {}
 
   /// Narrows the interval until nothing lies between.
-  void narrow(Sample& stable, Sample& growing) {
+  void narrow(Sample& stable, Sample& growing) const {
     constexpr int max_steps = 200;
     for (int i = 0; i < max_steps; ++i) {
-      const double next = next_value(stable, growing, i);
+      const double next = next_value(stable.value, growing.value, i);
       const double width = std::abs(growing.value - stable.value);
       if (next == stable.value || next == growing.value ||
           width <= effort_.tolerance * std::abs(next)) {
         return;
       }
       Sample sample = sampler_.near(next);
-      const bool is_growing = sample.ranked_excess(rank_) > 0.0;
-      num_growing_ = is_growing ? num_growing_ + 1 : 0;
-      num_stable_ = is_growing ? 0 : num_stable_ + 1;
-      stable_weight_ = num_growing_ > 1 ? 0.5 * stable_weight_ : 1.0;
-      growing_weight_ = num_stable_ > 1 ? 0.5 * growing_weight_ : 1.0;
-      (is_growing ? growing : stable) = std::move(sample);
+      (sample.ranked_excess(rank_) > 0.0 ? growing : stable) = std::move(sample);
     }
   }
 
  private:
-  /// The secant, with the excess halved at an end that stays again (Illinois); now and then the
-  /// middle, as the excess may have a kink.
-  double next_value(const Sample& stable, const Sample& growing, int step) const {
+  static double next_value(double a, double b, int step) {
     constexpr int first_by_order = 12;
     constexpr double wide = 1024.0;
-    const double halfway = 0.5 * (stable.value + growing.value);
-    const double larger = std::max(std::abs(stable.value), std::abs(growing.value));
-    const double smaller = std::min(std::abs(stable.value), std::abs(growing.value));
-    if (step >= first_by_order && larger > wide * smaller && stable.value * growing.value >= 0.0)
-      return middle_number(stable.value, growing.value);
-    const double below = stable_weight_ * stable.ranked_excess(rank_);
-    const double above = growing_weight_ * growing.ranked_excess(rank_);
-    if (effort_.ends == WindowEffort::Ends::halving || step % 6 == 5 || !std::isfinite(below))
-      return halfway;
-    const double at = stable.value + (growing.value - stable.value) * below / (below - above);
-    const double margin = 0.3 * effort_.tolerance * std::abs(halfway);
-    return std::clamp(at, std::min(stable.value, growing.value) + margin,
-                      std::max(stable.value, growing.value) - margin);
+    const double larger = std::max(std::abs(a), std::abs(b));
+    const double smaller = std::min(std::abs(a), std::abs(b));
+    const bool is_by_order = step >= first_by_order && larger > wide * smaller && a * b >= 0.0;
+    return is_by_order ? middle_number(a, b) : 0.5 * (a + b);
   }
 
   const SpectrumSampler& sampler_;
   const WindowEffort& effort_;
   std::size_t rank_;
-  double stable_weight_ = 1.0, growing_weight_ = 1.0;
-  int num_growing_ = 0, num_stable_ = 0;  ///< in a row
 };
 
 /// The same by inverse quadratic interpolation, halving where the excess is not monotonic and

@@ -12,7 +12,7 @@ struct WindowEffort {
   double tolerance = 1e-13;  ///< of the ends, relative
   int climbing_steps = 40;   ///< of golden sections towards the largest growth
   /// How ends are approached: parabolas where the growth is smooth and spectra dear.
-  enum class Ends { halving, secants, parabolas } ends = Ends::halving;
+  enum class Ends { halving, parabolas } ends = Ends::halving;
 };
 
 /// Solves for all changes in the number of eigenvalues that grow, and appends a window for each

@@ -47,6 +47,27 @@ Orthonormal orthonormal(const Eigen::MatrixXcd& matrix) {
   return result;
 }
 
+/// Adds directions of another basis where this one has fewer, the most important first, so that
+/// neither side is cut to the rank of the other: left vectors may need twice as many as right ones
+/// where bodies act on each other in one direction only. The mixture is then that of the columns of
+/// both.
+void extend_by(Orthonormal& one, const Orthonormal& other) {
+  const Eigen::Index missing = other.basis.cols() - one.basis.cols();
+  if (missing <= 0) return;
+  const Eigen::MatrixXcd shared = one.basis.adjoint() * other.basis;
+  const Orthonormal more = orthonormal(other.basis - one.basis * shared);
+  const Eigen::Index num = std::min(missing, more.basis.cols());
+  const Eigen::MatrixXcd turned = more.mixture.leftCols(num);
+  Orthonormal all;
+  all.basis.resize(one.basis.rows(), one.basis.cols() + num);
+  all.basis << one.basis, more.basis.leftCols(num);
+  all.mixture = Eigen::MatrixXcd::Zero(one.mixture.rows() + other.mixture.rows(), all.basis.cols());
+  all.mixture.topLeftCorner(one.mixture.rows(), one.mixture.cols()) = one.mixture;
+  all.mixture.topRightCorner(one.mixture.rows(), num) = -one.mixture * (shared * turned);
+  all.mixture.bottomRightCorner(other.mixture.rows(), num) = other.mixture * turned;
+  one = std::move(all);
+}
+
 const SparseMatrix& matrix_of(const SparseSystem& system, int power) {
   return power == 2 ? system.mass : (power == 1 ? system.velocity : system.position);
 }
@@ -165,8 +186,10 @@ PairBasis::Sides PairBasis::reduce(Group& group) const {
   }
   if (num == 0) return {};
   group.omega = std::max(sum / num, 1e-3 * rectangle_.height);
-  const Orthonormal right = orthonormal(states(group, false));
-  const Orthonormal left = orthonormal(states(group, true));
+  Orthonormal right = orthonormal(states(group, false));
+  Orthonormal left = orthonormal(states(group, true));
+  extend_by(right, left);
+  extend_by(left, right);
   const Eigen::Index m = std::min(right.basis.cols(), left.basis.cols());
   group.mixture = right.mixture.leftCols(m);
   return {right.basis.topLeftCorner(n, m), group.omega * right.basis.bottomLeftCorner(n, m),
@@ -285,12 +308,15 @@ Eigen::VectorXcd PairBasis::vector_of(const Group& group, const Eigen::VectorXcd
   const Eigen::VectorXcd shares = group.mixture * a;
   Eigen::VectorXcd x = Eigen::VectorXcd::Zero(known_[0].right.rows());
   Eigen::Index column = 0;
-  for (const TwoSidedPairs& one : known_) {
-    const auto first = static_cast<Eigen::Index>(group.first);
-    const Eigen::Index num =
-        static_cast<Eigen::Index>(std::min(group.last, one.s.size())) - first;
-    x.noalias() += one.right.middleCols(first, num) * shares.segment(column, num);
-    column += num;
+  for (const auto side : {&TwoSidedPairs::right, &TwoSidedPairs::left}) {
+    if (column == shares.size()) break;  // the right vectors alone are a basis
+    for (const TwoSidedPairs& one : known_) {
+      const auto first = static_cast<Eigen::Index>(group.first);
+      const Eigen::Index num =
+          static_cast<Eigen::Index>(std::min(group.last, one.s.size())) - first;
+      x.noalias() += (one.*side).middleCols(first, num) * shares.segment(column, num);
+      column += num;
+    }
   }
   return x.normalized();
 }

@@ -81,7 +81,8 @@ class PairBasis {
     bool is_top = false;
     double low = 0.0, high = 0.0;  ///< of Im s
     double omega = 0.0;            ///< about |s|, rad/s
-    Eigen::MatrixXcd mixture;      ///< basis of right states = those of the systems times this
+    Eigen::MatrixXcd mixture;      ///< basis of right states = those of the systems, and left ones
+                                   ///< after them, times this
     Sides sides;                   ///< where systems of no span are projected
     std::vector<Products> products;  ///< of the parts of a span
     std::vector<Term> terms;
