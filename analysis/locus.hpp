@@ -4,6 +4,7 @@
 #include <complex>
 #include <functional>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "solvers/eigenvalues/pencil.hpp"
@@ -94,6 +95,7 @@ struct Locus {
   double unresolved = 0.0;
   int num_places = 0;   ///< values at which all eigenvalues were computed and counted
   int num_refined = 0;  ///< values at which one branch was computed for windows and crossings
+  std::string method{};  ///< how eigenvalues were found, where the finder says it
 };
 
 /// Follows eigenvalues along a parameter (docs/theory.md, 7.4).

@@ -57,13 +57,22 @@ Locus locus_at(const PencilFamily& family, const std::vector<double>& range,
   return locus;
 }
 
+Locus by(const char* method, Locus locus) {
+  locus.method = method;
+  return locus;
+}
+
+const char* name_of(LocusMethod method) {
+  return method == LocusMethod::dense ? "dense" : "secular";
+}
+
 /// The branches along a range, by the dense method where the search for zeros of the secular
 /// function fails.
 /// @throws NumericalError as trace_locus()
 Locus trace(const PencilFamily& family, const NumericKey& varied, const std::vector<double>& range,
             const LocusOptions& options) {
   try {
-    return trace_locus(family, range, options);
+    return by(name_of(options.method), trace_locus(family, range, options));
   } catch (const SearchFailure& error) {
     if (options.method == LocusMethod::dense) throw;
     Pencil first;
@@ -76,7 +85,7 @@ Locus trace(const PencilFamily& family, const NumericKey& varied, const std::vec
   }
   LocusOptions dense = options;
   dense.method = LocusMethod::dense;
-  return trace_locus(family, range, dense);
+  return by(name_of(dense.method), trace_locus(family, range, dense));
 }
 
 }  // namespace
@@ -120,18 +129,20 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
     // Between the values of a whole number there are none to project on.
     std::optional<std::pair<double, double>> between;
     if (!varied.is_integer) between.emplace(range.front(), range.back());
-    return sample_locus(family.spectra(key, values, within, between), range, within,
-                        sparing_effort);
+    return by(
+        method == SpectrumMethod::counted ? "sparse" : "projected",
+        sample_locus(family.spectra(key, values, within, between), range, within, sparing_effort));
   }
   const PencilFamily pencils = family.along(key, values, range.front(), range.back());
   if (varied.is_integer) {
     LocusOptions wholes = options;
     if (method == SpectrumMethod::sampled) wholes.method = LocusMethod::dense;
-    return locus_at(pencils, range, wholes);
+    return by(name_of(wholes.method), locus_at(pencils, range, wholes));
   }
   if (method == SpectrumMethod::followed) return trace(pencils, varied, range, options);
-  return sample_locus(pencils, range, within,
-                      wanted == SearchFor::stability ? stability_effort : SamplingEffort{});
+  return by(name_of(LocusMethod::dense),
+            sample_locus(pencils, range, within,
+                         wanted == SearchFor::stability ? stability_effort : SamplingEffort{}));
 }
 
 std::vector<StabilityChange> stability_changes(const Locus& locus) {

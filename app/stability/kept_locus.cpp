@@ -24,7 +24,7 @@ void write_locus(const std::string& path, const Locus& locus,
   for (const auto& [name, text] : {std::pair{"parameter", source.key.path},
                                    {"units", units},
                                    {"about", source.options.about},
-                                   {"method", source.options.method}})
+                                   {"method", locus.method}})
     attributes.emplace_back(name, text);
   write_locus_file(path, source.options.common.overwrite(), locus, windows, units, attributes);
 }

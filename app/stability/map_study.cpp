@@ -28,11 +28,12 @@ struct LineResult {
   PointFailures failures;                                    ///< by the index of the value
   std::vector<double> changes;                               ///< of stability, ascending
   double highest = std::numeric_limits<double>::infinity();  ///< up to where all were looked at, Hz
-  Locus resolution;  ///< only its unresolved and unverified, of all parts of the line
+  Locus resolution;  ///< only its method, unresolved and unverified, of all parts of the line
 };
 
 /// Adds what may have been missed of one locus to that of others.
 void add_resolution(Locus& all, const Locus& one) {
+  if (all.method.empty()) all.method = one.method;
   all.unresolved = std::max(all.unresolved, one.unresolved);
   all.unverified.insert(all.unverified.end(), one.unverified.begin(), one.unverified.end());
 }

@@ -21,7 +21,7 @@ struct KeyAxis {
 
 /// The growth rates at all points of a grid, with the reason where there is none, and the boundary
 /// of stability.
-/// @param resolution gets what may have been missed along x and along y
+/// @param resolution gets what may have been missed along x and along y, and the method taken
 /// @throws ConfigError, Interrupted
 StabilityMap make_stability_map(const StabilityScene& loaded, const std::array<KeyAxis, 2>& axes,
                                 const StabilityOptions& stability,

@@ -147,7 +147,7 @@ Json locus_json(const FoundLocus& found) {
   Json object = {{"parameter", found.range.key.path},
                  {"units", printed_units(found.range.key)},
                  {"about", stability.about},
-                 {"method", stability.method},
+                 {"method", found.locus.method},
                  {"values", found.range.values},
                  {"eigenvalues", Json::array()},
                  {"unstable", windows_json(found.windows, found.trusted)},

@@ -119,13 +119,19 @@ std::string point_command(const FoundMap& found) {
          fmt::format(" --set {}=@X@ --set {}=@Y@", found.axes[0].key.path, found.axes[1].key.path);
 }
 
+/// That taken along the lines; that asked for where growth has a formula.
+const std::string& method_of(const FoundMap& found) {
+  const std::string& taken = found.resolution[0].method;
+  return taken.empty() ? found.options.stability.method : taken;
+}
+
 void write_map(const FoundMap& found) {
   const StabilityOptions& stability = found.options.stability;
   Attributes attributes = source_attributes(found.scene.loaded(), found.options.command_line);
   for (const auto& [name, text] : {std::pair{"x", found.axes[0].key.path},
                                    {"y", found.axes[1].key.path},
                                    {"about", stability.about},
-                                   {"method", stability.method},
+                                   {"method", method_of(found)},
                                    {"point_command", point_command(found)}})
     attributes.emplace_back(name, text);
   write_map_file(*found.options.output, stability.common.overwrite(), found.map,
@@ -137,7 +143,7 @@ Json map_json(const FoundMap& found) {
   Json object = {{"x_parameter", found.axes[0].key.path},
                  {"y_parameter", found.axes[1].key.path},
                  {"about", stability.about},
-                 {"method", stability.method},
+                 {"method", method_of(found)},
                  {"x", found.map.x},
                  {"y", found.map.y},
                  {"window", {0.0, number(found.map.highest_frequency)}},

@@ -111,7 +111,7 @@ ExitCode threshold(ThresholdOptions options) {
   if (stability.common.json) {
     Json object = {{"parameter", range.key.path},
                    {"about", stability.about},
-                   {"method", stability.method},
+                   {"method", locus.method},
                    {"from", range.values.front()},
                    {"to", range.values.back()},
                    {"roots", Json::array()},

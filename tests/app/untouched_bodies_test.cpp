@@ -80,6 +80,7 @@ TEST(UntouchedBodies, LargeMatricesAreCountedInTheirWindow) {
   const Json locus = json_of({"locus", scene, "--parameter", "parameters.load", "--from",
                               "0", "--to", "1", "--points", "2", "--count", "4"});
   EXPECT_EQ(locus["eigenvalues"][1], lowest["eigenvalues"]);
+  EXPECT_EQ(locus["method"], "sparse");
   EXPECT_TRUE(locus["unstable"].empty());
   const ProgramResult too_many = Program({"eig", scene, "--below", "1 kHz"}).run();
   EXPECT_EQ(too_many.exit_code, 3);
@@ -142,6 +143,7 @@ TEST(UntouchedBodies, LargeMatricesHaveLociAndThresholds) {
   const Json threshold = json_of(arguments);
   ASSERT_EQ(threshold["roots"].size(), 1U);
   EXPECT_NEAR(threshold["roots"][0]["value"].get<double>(), 0.2280350850, 1e-8);
+  EXPECT_EQ(threshold["method"], "sparse");
   EXPECT_EQ(threshold["window"][1], 0.3);
   arguments[0] = "locus";
   const Json locus = json_of(arguments);
