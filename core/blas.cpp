@@ -1,6 +1,10 @@
 #include "core/blas.hpp"
 
 #include <dlfcn.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <string>
 
 namespace stridor {
 namespace {
@@ -24,7 +28,31 @@ Threads threads_of_blas() {
 
 std::mutex blas_in_use;
 
+/// Before main(): starts the program anew where OpenBLAS should have other kernels, which it
+/// chooses when it is loaded. Where the user names some, or that is not possible, all stays as it
+/// is.
+__attribute__((constructor)) void ask_for_wide_kernels([[maybe_unused]] int num_arguments,
+                                                       [[maybe_unused]] char** arguments) {
+#if defined(__x86_64__)
+  constexpr const char* variable = "OPENBLAS_CORETYPE";
+  const auto taken = library_function<const char*()>("openblas_get_corename");
+  if (taken == nullptr || std::getenv(variable) != nullptr) return;
+  const bool has_avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
+                          __builtin_cpu_supports("avx512bw") &&
+                          __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+  const bool has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  const std::string wanted(blas_kernels_to_ask_for(taken(), has_avx2, has_avx512));
+  if (wanted.empty() || setenv(variable, wanted.c_str(), 1) != 0) return;
+  execv("/proc/self/exe", arguments);
+#endif
+}
+
 }  // namespace
+
+std::string_view blas_kernels_to_ask_for(std::string_view taken, bool has_avx2, bool has_avx512) {
+  if (taken != "Prescott" || !has_avx2) return {};
+  return has_avx512 ? "SkylakeX" : "Haswell";
+}
 
 bool is_blas_reentrant() {
   const Threads threads = threads_of_blas();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <mutex>
+#include <string_view>
 
 namespace stridor {
 
@@ -15,6 +16,15 @@ bool is_blas_reentrant();
 /// processors' time, and sums must not depend on the number of processors. Done for the first
 /// thread before main().
 void keep_blas_in_this_thread();
+
+/// Kernels to ask OpenBLAS for, as its variable OPENBLAS_CORETYPE names them; empty where those
+/// that it took are wide enough.
+///
+/// It chooses them by the model of the processor. Of one that is younger than the library it knows
+/// nothing and takes those for vectors of two numbers, with which dense products take five times as
+/// long as with those for eight.
+/// @param taken name of the kernels taken
+std::string_view blas_kernels_to_ask_for(std::string_view taken, bool has_avx2, bool has_avx512);
 
 /// Held while work in several threads may pass dense products to BLAS: where BLAS is not reentrant,
 /// one thread holds it at a time, else it does nothing.

@@ -1,8 +1,10 @@
 #include "core/blas.hpp"
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <cstdlib>
 #include <thread>
 #include <vector>
 
@@ -39,6 +41,29 @@ TEST(Threads, GetOfBlasWhatOneAloneGets) {
   for (std::thread& thread : threads) thread.join();
   for (const int count : wrong) EXPECT_EQ(count, 0);
 }
+
+TEST(BlasKernels, AreAskedForWhereTheLibraryDoesNotKnowTheProcessor) {
+  EXPECT_EQ(blas_kernels_to_ask_for("Prescott", true, true), "SkylakeX");
+  EXPECT_EQ(blas_kernels_to_ask_for("Prescott", true, false), "Haswell");
+  EXPECT_EQ(blas_kernels_to_ask_for("Prescott", false, false), "");  // such a processor
+  for (const char* known : {"Haswell", "Zen", "SkylakeX", "SapphireRapids", "a later one"})
+    EXPECT_EQ(blas_kernels_to_ask_for(known, true, true), "");
+}
+
+#if defined(__x86_64__)
+TEST(BlasKernels, AreWideInEveryProgram) {
+  using Name = const char*();
+  const auto taken = reinterpret_cast<Name*>(dlsym(RTLD_DEFAULT, "openblas_get_corename"));
+  if (taken == nullptr) GTEST_SKIP() << "no OpenBLAS";
+  if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "no vectors of four numbers";
+  const char* asked = std::getenv("OPENBLAS_CORETYPE");
+  if (asked != nullptr) {
+    EXPECT_STRCASEEQ(taken(), asked);
+  } else {
+    EXPECT_STRNE(taken(), "Prescott");
+  }
+}
+#endif
 
 }  // namespace
 }  // namespace stridor
