@@ -1,6 +1,7 @@
 # Counts the instructions of a step and compares them with the figure kept in instructions.txt.
 #
 #   cmake -DPROGRAM=build/release/bench/step_forms -DVALGRIND=valgrind -DFORM=exact_50_kHz \
+#         -DCOMPILER=Clang-14 \
 #         -DKEPT=bench/instructions.txt -P bench/instructions.cmake
 #
 # More than 1 % above it fails; where it is 1 % below, the kept figure should be lowered.
@@ -17,9 +18,9 @@ if(NOT "${error}" MATCHES "Collected : ([0-9]+)")
 endif()
 math(EXPR measured "${CMAKE_MATCH_1} / ${steps}")
 
-file(STRINGS "${KEPT}" lines REGEX "^${FORM} ")
-if(NOT "${lines}" MATCHES "^${FORM} +([0-9]+)$")
-  message(FATAL_ERROR "${KEPT} has no figure for ${FORM}")
+file(STRINGS "${KEPT}" lines REGEX "^${FORM} +${COMPILER} ")
+if(NOT "${lines}" MATCHES "^${FORM} +${COMPILER} +([0-9]+)$")
+  message(FATAL_ERROR "${KEPT} has no figure for ${FORM} by ${COMPILER}")
 endif()
 set(kept "${CMAKE_MATCH_1}")
 math(EXPR allowed "${kept} * 101 / 100")
