@@ -44,9 +44,12 @@ class BodiesInContact {
     Pencil rows = *contacts_;
     drop_contact_terms(rows);
     rows = with_springs(rows);
-    SecularFunction function(rows);
-    const double frequency = size / (2.0 * std::numbers::pi);
-    SecularSpectrum found = secular_spectrum(function, SpectrumWindow::below(frequency));
+    SecularSpectrum found;
+    if (!is_dense_cheaper(rows)) {
+      SecularFunction function(rows);
+      const double frequency = size / (2.0 * std::numbers::pi);
+      found = secular_spectrum(function, SpectrumWindow::below(frequency));
+    }
     if (!found.is_complete) found.eigenvalues = dense_eigenvalues(rows, DenseWork::eigenvalues);
     searched_ = found.is_complete ? size : std::numeric_limits<double>::infinity();
     eigenvalues_.clear();

@@ -4,15 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "solvers/eigenvalues/dense_eigenvalues.hpp"
 #include "solvers/eigenvalues/pencil.hpp"
 #include "solvers/eigenvalues/secular_eigenvalues.hpp"
 
 namespace stridor {
 
 enum class EigenvalueMethod { secular, dense };
-
-/// Up to how many eigenvalues the dense method steps in where another fails: about a minute.
-inline constexpr Eigen::Index most_dense = 2000;
 
 /// Real eigenvalues, then those of a window with positive imaginary part, lowest first; those there
 /// are where there are fewer.

@@ -137,7 +137,27 @@ void print_forces(const Json& results) {
   };
   if (results.contains("contact_force")) print_force("contact force", results["contact_force"]);
   if (!results.contains("contacts")) return;
-  for (const auto& [name, contact] : results["contacts"].items())
+  constexpr std::size_t most_listed = 20;
+  const Json& contacts = results["contacts"];
+  if (contacts.size() > most_listed) {
+    // Where the largest force acts; --json has those of all.
+    const Json* largest = nullptr;
+    std::string name_of_largest;
+    for (const auto& [name, contact] : contacts.items()) {
+      const Json& force = contact["contact_force"];
+      if (!force["max"].is_number()) continue;
+      if (largest != nullptr && force["max"] <= (*largest)["max"]) continue;
+      largest = &force;
+      name_of_largest = name;
+    }
+    fmt::print("{:<23} of {} points", "contact force", contacts.size());
+    if (largest != nullptr)
+      fmt::print(", largest in {}: {} to {} N", name_of_largest, result_text((*largest)["min"]),
+                 result_text((*largest)["max"]));
+    fmt::print("\n");
+    return;
+  }
+  for (const auto& [name, contact] : contacts.items())
     print_force("contact force, " + name, contact["contact_force"]);
 }
 

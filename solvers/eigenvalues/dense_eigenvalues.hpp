@@ -65,6 +65,14 @@ DenseSpectrum dense_spectrum(const Pencil& pencil, DenseWork work = DenseWork::r
 std::vector<Eigenvalue> dense_eigenvalues(const Pencil& pencil,
                                           DenseWork work = DenseWork::residuals);
 
+/// Up to how many eigenvalues the dense method steps in where another fails: about a minute.
+inline constexpr Eigen::Index most_dense = 2000;
+
+/// Whether all eigenvalues by the dense method cost less than a search for zeros of the secular
+/// function. That is a determinant of as many rows as contacts and the ports that they and coupled
+/// bodies join, taken some tens of times for every eigenvalue.
+bool is_dense_cheaper(const Pencil& pencil);
+
 /// All eigenvalues of a square matrix, balanced first; conjugates one by one.
 /// @throws NumericalError if the iteration fails
 std::vector<std::complex<double>> matrix_eigenvalues(Eigen::MatrixXd matrix);

@@ -110,6 +110,19 @@ FrozenModes frozen_modes(const Pencil& contacts, const TimeParameters& time,
   return modes;
 }
 
+/// Whether a dense decomposition takes less than the search for zeros: of few modes, and of
+/// hundreds of contacts by so much that the relative accuracy of slow motions is given up for it.
+bool is_decomposition_cheaper(const FrozenModes& modes) {
+  constexpr Eigen::Index few_modes = 12;
+  constexpr double worth = 10.0;
+  const auto n = static_cast<double>(modes.gaps.cols());
+  const auto k = static_cast<double>(modes.gaps.rows());
+  const double size = 2.0 * n + k * static_cast<double>(modes.left_out.size());
+  const double by_search = 10.0 * size * (n * k * k + 10.0 * k * k * k);
+  const double by_decomposition = 25.0 * size * size * size;
+  return modes.gaps.cols() <= few_modes || by_search > worth * by_decomposition;
+}
+
 /// @throws NumericalError where a contact jams
 void check_closed(const Eigen::MatrixXd& closed) {
   for (Eigen::Index i = 0; i < closed.rows(); ++i) {
@@ -186,9 +199,7 @@ std::vector<std::complex<double>> FrozenStep::factors(const Pencil& contacts) co
   if (coupled_.empty() && ahead.empty()) {
     FrozenModes uncoupled = frozen_modes(contacts, time_, added_, cutoff_);
     uncoupled.left_out = left_out;
-    // A dense decomposition of few modes takes less than the search for zeros.
-    constexpr Eigen::Index most_dense = 12;
-    if (uncoupled.gaps.cols() > most_dense) {
+    if (!is_decomposition_cheaper(uncoupled)) {
       check_closed(uncoupled.closed());
       if (auto found = step_factors(uncoupled)) return std::move(*found);
     }
