@@ -97,7 +97,7 @@ void print_cycles(const Json& results, const std::string& output) {
   fmt::print("{:<24}{}\n", "run file", output);
 }
 
-/// What of the work the run left out.
+/// Work that the run left out.
 void print_left_out(const Json& left_out) {
   const auto part = [](const Json& one) {
     return fmt::format("{} of {}", one["left_out"].get<std::int64_t>(),
@@ -212,7 +212,7 @@ Json error_json(const ErrorEstimate& estimate) {
           {"failure", estimate.failure.empty() ? Json(nullptr) : Json(estimate.failure)}};
 }
 
-/// What cannot be studied is refused before the run.
+/// Refuses before the run settings that cannot be studied.
 std::optional<StudiedScene> studied(const LoadedScene& loaded, const RunOptions& options) {
   if (!options.error) return std::nullopt;
   if (loaded.scene.time->is_event_driven()) {

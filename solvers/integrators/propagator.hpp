@@ -188,7 +188,9 @@ class Propagator {
   void place_ports();
   void find_feedthrough_ports();
   void take_new_rows(const double* forces);
+  /// W between a port and all others.
   void renew_compliance(int port);
+  /// W between two ports, in both directions.
   void renew_compliance(int port, int other);
   /// Predicts a port whose row and compliances are known.
   void look(int port);

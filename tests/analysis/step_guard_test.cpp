@@ -90,7 +90,11 @@ TEST(StepGuard, HoldsContactsInEveryStateThatMatters) {
       found.push_back(held.name);
     return found;
   };
-  System system = random_sliding_bodies(1, 0.3, true, 2);
+  System system = random_sliding_bodies(1, 0.3, true, 9);
+  system.contacts[8].name = "last";
+  EXPECT_THAT(names(system),
+              ElementsAre(StartsWith("9 contacts from 'contact' to 'last' sliding")));
+  system = random_sliding_bodies(1, 0.3, true, 2);
   system.contacts[1].name = "other";
   EXPECT_THAT(names(system), ElementsAre(StartsWith("'contact', 'other' sliding at")));
   for (ContactPoint& contact : system.contacts) contact.assumption = ContactAssumption::film;

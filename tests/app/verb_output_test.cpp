@@ -33,6 +33,20 @@ void expect_picture(const fs::path& file) {
   EXPECT_GT(fs::file_size(file), 10000U) << file;
 }
 
+TEST(VerbOutput, ARunOfManyPointsNamesTheLargestForce) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> run{"run",   scene_path("examples/slave_edge.yaml"),
+                                     "--set", "substructures.post.mesh.through=10",
+                                     "--set", "contact.normal={law: penalty, stiffness: 1e5}",
+                                     "--set", "time={integrator: exact, step: 1e-7, end: 1e-4}",
+                                     "--set", "measure.from=1e-5",
+                                     "--set", "drive.ramp=0",
+                                     "-o",    (folder / "edge.h5").string()};
+  const std::string out = output_of(run);
+  EXPECT_THAT(out, HasSubstr("of 21 points, largest in contact[0]: "));
+  EXPECT_THAT(out, Not(HasSubstr("contact[1]")));
+}
+
 TEST(VerbOutput, EigDrawsAModeAndItsMotion) {
   const TemporaryFolder folder;
   const fs::path shapes = folder / "shapes";
