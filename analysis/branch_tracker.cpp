@@ -142,15 +142,16 @@ class Tracker {
 
   /// Im s of the highest eigenvalue that is wanted of a set.
   double needed_height(const std::vector<Complex>& set) {
-    const double top = 2.0 * std::numbers::pi * options_.frequency;
+    const double top = 2.0 * std::numbers::pi * options_.window.frequency;
     heights_.clear();
     for (const Complex s : set) {
       if (is_pair(s)) heights_.push_back(s.imag());
     }
-    const auto count = static_cast<std::size_t>(options_.count);
-    if (heights_.size() < count) return top;
-    std::nth_element(heights_.begin(), heights_.begin() + (options_.count - 1), heights_.end());
-    return std::min(top, heights_[count - 1]);
+    const auto count = static_cast<std::size_t>(options_.window.count.value_or(0));
+    if (count == 0 || heights_.size() < count) return top;
+    const auto last = heights_.begin() + static_cast<std::ptrdiff_t>(count) - 1;
+    std::nth_element(heights_.begin(), last, heights_.end());
+    return std::min(top, *last);
   }
 
   /// Whether no two eigenvalues can have been exchanged from one set to the next.
@@ -341,11 +342,12 @@ class Tracker {
     std::vector<Complex> wanted;
     for (const std::size_t index : active_) wanted.push_back(tracks_[index].last());
     sort_eigenvalues(wanted);
-    const double top = 2.0 * std::numbers::pi * options_.frequency;
+    const double top = 2.0 * std::numbers::pi * options_.window.frequency;
     int num_pairs = 0;
     std::size_t size = 0;
     while (size < wanted.size() && wanted[size].imag() <= top) {
-      if (is_pair(wanted[size]) && ++num_pairs > options_.count) break;
+      if (is_pair(wanted[size])) ++num_pairs;
+      if (options_.window.count && num_pairs > *options_.window.count) break;
       ++size;
     }
     wanted.resize(size);

@@ -30,14 +30,14 @@ std::optional<double> height_at(const Branch& branch, double value) {
 /// Drops the results of eigenvalues that were not asked for.
 void keep_wanted(Locus& locus, const LocusOptions& options) {
   const auto is_wanted = [&](const UnstableWindow& window) {
-    if (window.frequency > options.frequency) return false;
+    if (window.frequency > options.window.frequency) return false;
     int below = 0;
     for (std::size_t b = 0; b < locus.branches.size(); ++b) {
       if (static_cast<int>(b) == window.branch) continue;
       const auto height = height_at(locus.branches[b], window.value_max);
       if (height && *height > 0.0 && *height < 2.0 * std::numbers::pi * window.frequency) ++below;
     }
-    return below < options.count;
+    return !options.window.count || below < *options.window.count;
   };
   std::erase_if(locus.unstable, [&](const UnstableWindow& window) { return !is_wanted(window); });
   std::erase_if(locus.crossings, [&](const Crossing& crossing) {
@@ -61,9 +61,10 @@ void check(const PencilFamily& family, const std::vector<double>& values,
     }
   }
   if (!std::is_sorted(family.kinks.begin(), family.kinks.end())) reject("the kinks must ascend");
-  if (options.count < 1) reject(fmt::format("{} eigenvalues are none", options.count));
-  if (!(options.frequency > 0.0)) {
-    reject(fmt::format("no eigenvalues below {:g} Hz", options.frequency));
+  if (options.window.count && *options.window.count < 1)
+    reject(fmt::format("{} eigenvalues are none", *options.window.count));
+  if (!(options.window.frequency > 0.0)) {
+    reject(fmt::format("no eigenvalues below {:g} Hz", options.window.frequency));
   }
   if (!(options.resolution > 0.0)) {
     reject(fmt::format("the resolution must be positive, is {:g}", options.resolution));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "solvers/eigenvalues/pencil.hpp"
+#include "solvers/eigenvalues/secular_eigenvalues.hpp"
 
 namespace stridor {
 
@@ -42,10 +43,10 @@ enum class LocusMethod {
 
 struct LocusOptions {
   LocusMethod method = LocusMethod::secular;
-  /// Eigenvalues with positive imaginary part, lowest first, that are wanted at every value, >= 1.
-  int count = 20;
-  /// No higher than this, Hz, > 0.
-  double frequency = std::numeric_limits<double>::infinity();
+  /// Eigenvalues with positive imaginary part that are wanted at every value, lowest first: so
+  /// many,
+  /// >= 1, or all, and none above the frequency, Hz, > 0.
+  SpectrumWindow window = SpectrumWindow::lowest(20);
   /// Windows and crossings are of eigenvalues up to here, Hz; those above are only listed. For
   /// sampled loci (analysis/sampled_locus.hpp).
   double trusted = std::numeric_limits<double>::infinity();

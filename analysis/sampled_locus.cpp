@@ -36,7 +36,8 @@ void check(bool has_family, const std::vector<double>& values, const LocusOption
   const bool ascends =
       std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
   if (!ascends) reject("the values must ascend");
-  if (options.count < 1) reject(fmt::format("{} eigenvalues are none", options.count));
+  if (options.window.count && *options.window.count < 1)
+    reject(fmt::format("{} eigenvalues are none", *options.window.count));
 }
 
 }  // namespace

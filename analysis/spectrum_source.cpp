@@ -19,6 +19,9 @@ using Complex = std::complex<double>;
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
+/// So many more than wanted: what comes down from above is then known before it counts.
+constexpr int num_above = 2;
+
 Eigen::VectorXcd shape_of(const Pencil& pencil, Complex s) {
   const BlasGuard guard;
   return eigenvector(pencil, s).right;
@@ -27,10 +30,8 @@ Eigen::VectorXcd shape_of(const Pencil& pencil, Complex s) {
 class SecularSource : public SpectrumSource {
  public:
   SecularSource(const PencilFamily& family, double value, const LocusOptions& options)
-      : family_(family), function_(first_function(value)) {
-    // Two more than wanted: what comes down from above is then known before it counts.
-    window_.count = options.count + 2;
-    window_.frequency = options.frequency;
+      : family_(family), function_(first_function(value)), window_(options.window) {
+    if (window_.count) *window_.count += num_above;
   }
 
   void move_to(double value) override {
@@ -147,7 +148,7 @@ class SecularSource : public SpectrumSource {
 class DenseSource : public SpectrumSource {
  public:
   DenseSource(const PencilFamily& family, const LocusOptions& options)
-      : family_(family), count_(options.count + 2) {}
+      : family_(family), window_(options.window) {}
 
   void move_to(double value) override {
     if (value == value_) return;
@@ -162,9 +163,13 @@ class DenseSource : public SpectrumSource {
 
   std::optional<std::vector<Complex>> search() override {
     std::vector<Complex> lowest;
+    const double top = 2.0 * std::numbers::pi * window_.frequency;
     int num_pairs = 0;
+    int num_unwanted = 0;
     for (const Complex s : known_) {
-      if (is_pair(s) && ++num_pairs > count_) break;
+      if (is_pair(s)) ++num_pairs;
+      const bool is_unwanted = window_.count ? num_pairs > *window_.count : s.imag() > top;
+      if (is_unwanted && ++num_unwanted > num_above) break;
       lowest.push_back(s);
     }
     searched_ = lowest.empty() ? 0.0 : lowest.back().imag();
@@ -194,7 +199,7 @@ class DenseSource : public SpectrumSource {
  private:
   const PencilFamily& family_;
   Pencil pencil_;
-  int count_;
+  SpectrumWindow window_;
   double value_ = std::numeric_limits<double>::quiet_NaN();
   double searched_ = 0.0;       ///< Im s up to which the last search found all
   std::vector<Complex> known_;  ///< ascending imaginary part

@@ -30,8 +30,7 @@ Locus locus_at(const PencilFamily& family, const std::vector<double>& range,
     family.place(value, pencil);
     locus.eigenvalues.emplace_back();
     const Eigenvalue* fastest = nullptr;
-    const std::vector<Eigenvalue> eigenvalues =
-        lowest_eigenvalues(pencil, method, {options.count, options.frequency});
+    const std::vector<Eigenvalue> eigenvalues = lowest_eigenvalues(pencil, method, options.window);
     for (const Eigenvalue& one : eigenvalues) {
       locus.eigenvalues.back().push_back(one.s);
       if (is_growing(one) && (fastest == nullptr || one.growth() > fastest->growth()))
@@ -114,8 +113,10 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
     }
     trusted = std::min(trusted, family.trusted_frequency(ends));
   }
-  if (method == SpectrumMethod::counted) num_wanted = options.count;
-  num_wanted = std::min<Eigen::Index>(num_wanted, options.count);
+  // How many large sparse matrices have below a frequency is known only once they are found.
+  const Eigen::Index most = options.window.count.value_or(std::numeric_limits<int>::max());
+  if (method == SpectrumMethod::counted) num_wanted = options.window.count.value_or(0);
+  num_wanted = std::min(num_wanted, most);
   // Measured: tracks, results and their JSON.
   constexpr double bytes_per_eigenvalue = 500.0;
   const auto num_values = static_cast<double>(range.size());

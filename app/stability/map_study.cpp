@@ -53,8 +53,7 @@ std::vector<std::complex<double>> eigenvalues_at(StabilityFamily& family,
   const bool is_dense = options.method == LocusMethod::dense || how != SpectrumMethod::followed;
   const EigenvalueMethod method = is_dense ? EigenvalueMethod::dense : EigenvalueMethod::secular;
   std::vector<std::complex<double>> found;
-  for (const Eigenvalue& one :
-       lowest_eigenvalues(family.pencil(values), method, {options.count, options.frequency}))
+  for (const Eigenvalue& one : lowest_eigenvalues(family.pencil(values), method, options.window))
     found.push_back(one.s);
   return found;
 }
@@ -81,9 +80,8 @@ LineResult trace_broken_line(StabilityFamily& family, const KeyAxis& axis, std::
     double growth = std::numeric_limits<double>::quiet_NaN();
     try {
       const std::vector<std::complex<double>> found = eigenvalues_at(family, values, options);
-      result.highest =
-          std::min(result.highest, verdict_limit(found, {options.count, options.frequency},
-                                                 family.trusted_frequency(values)));
+      result.highest = std::min(
+          result.highest, verdict_limit(found, options.window, family.trusted_frequency(values)));
       growth = largest_growth(found);
     } catch (const NumericalError& error) {
       result.failures.emplace(result.growth.size(), error.what());
@@ -122,8 +120,7 @@ LineResult trace_line(StabilityFamily& family, const std::array<KeyAxis, 2>& axe
     const Locus locus =
         locus_along(family, axis.key, varied, values, axis.values, options, SearchFor::stability);
     LineResult result;
-    result.highest =
-        verdict_limit(locus, {options.count, options.frequency}, family.trusted_frequency(values));
+    result.highest = verdict_limit(locus, options.window, family.trusted_frequency(values));
     for (const auto& eigenvalues : locus.eigenvalues)
       result.growth.push_back(largest_growth(eigenvalues));
     add_changes(result, axis, locus);

@@ -21,10 +21,6 @@ std::string examples_of_keys(const Scene& scene) {
 
 }  // namespace
 
-SpectrumWindow StabilityOptions::locus_window() const {
-  return {count, window().frequency};
-}
-
 ContactGeometry StabilityOptions::geometry() const {
   return about == "deformed" ? ContactGeometry::deformed : ContactGeometry::undeformed;
 }
@@ -36,8 +32,7 @@ EigenvalueMethod StabilityOptions::eigenvalue_method() const {
 LocusOptions StabilityOptions::locus_options() const {
   LocusOptions options;
   options.method = method == "dense" ? LocusMethod::dense : LocusMethod::secular;
-  options.count = count;
-  options.frequency = window().frequency;
+  options.window = window();
   return options;
 }
 
@@ -64,9 +59,10 @@ void add_stability_options(CLI::App& verb, StabilityOptions& options) {
       verb.add_option("--count", options.count,
                       "How many eigenvalues with positive frequency, lowest first")
           ->check(CLI::Range(1, 100000));
-  verb.add_option("--below", options.below,
-                  "Only those up to this frequency, Hz or with a unit; eig lists all of them where "
-                  "no --count is given");
+  verb.add_option(
+      "--below", options.below,
+      "Only those up to this frequency, Hz or with a unit: all of them where no --count is "
+      "given");
   add_scene_options(verb, options.common);
   add_json_option(verb, options.common);
 }

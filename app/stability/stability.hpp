@@ -32,8 +32,6 @@ struct StabilityOptions {
   /// The eigenvalues wanted: the lowest ones, or all below a frequency.
   /// @throws ConfigError if the frequency is none
   SpectrumWindow window() const;
-  /// That of locus_options(): the lowest ones, and none above the frequency.
-  SpectrumWindow locus_window() const;
   ContactGeometry geometry() const;
   EigenvalueMethod eigenvalue_method() const;
   LocusOptions locus_options() const;

@@ -41,7 +41,7 @@ SpectrumFamily StabilityFamily::spectra(std::size_t key, const std::vector<doubl
         at[key] = value;
         return sparse_system(at);
       },
-      {options.count, options.frequency}, std::move(range));
+      options.window, std::move(range));
   for (auto* spectrum : {&family.at, &family.near}) {
     *spectrum = [this, found_at = std::move(*spectrum)](double value) {
       if (stop_requested()) throw Interrupted("nothing has been written");

@@ -174,7 +174,7 @@ ExitCode locus(LocusCommandOptions options) {
   progress.reset();
   found.trusted = std::min(family->trusted_frequency(std::array{range.values.front()}),
                            family->trusted_frequency(std::array{range.values.back()}));
-  found.highest = verdict_limit(found.locus, stability.locus_window(), found.trusted);
+  found.highest = verdict_limit(found.locus, stability.window(), found.trusted);
 
   found.windows = timed_windows(found.locus, range.key, scene, *family);
   if (options.output)

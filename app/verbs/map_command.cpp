@@ -67,10 +67,15 @@ void draw(const MapOptions& options, const std::array<KeyAxis, 2>& axes, const S
     for (const auto& point : line)
       picture.boundary.back().push_back({x_unit.number(point[0]), y_unit.number(point[1])});
   }
+  const SpectrumWindow window = options.stability.window();
+  const std::string lowest =
+      window.count ? fmt::format("{} lowest eigenvalues", *window.count) : "eigenvalues";
+  const std::string below =
+      std::isfinite(window.frequency) ? fmt::format(" below {:g} Hz", window.frequency) : "";
   picture.caption = fmt::format(
-      "Largest growth rate of the {} lowest eigenvalues{}, {} by {} values; line: boundary of "
-      "stability. {}, scene {}.",
-      options.stability.count, loaded.about_text(options.stability), map.x.size(), map.y.size(),
+      "Largest growth rate of the {}{}{}, {} by {} values; line: boundary of stability. {}, scene "
+      "{}.",
+      lowest, below, loaded.about_text(options.stability), map.x.size(), map.y.size(),
       std::filesystem::path(options.stability.scene).filename().string(), loaded.loaded().hash());
   plot_stability_map(picture, *options.figure);
 }

@@ -106,7 +106,7 @@ ExitCode threshold(ThresholdOptions options) {
   const std::vector<StabilityChange> changes = stability_changes(locus);
   const double trusted = std::min(family->trusted_frequency(std::array{range.values.front()}),
                                   family->trusted_frequency(std::array{range.values.back()}));
-  const double highest = verdict_limit(locus, stability.locus_window(), trusted);
+  const double highest = verdict_limit(locus, stability.window(), trusted);
 
   if (stability.common.json) {
     Json object = {{"parameter", range.key.path},

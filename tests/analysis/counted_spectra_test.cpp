@@ -281,8 +281,8 @@ TEST(CountedSpectra, WhereAParameterEntersAsSeveralFunctionsNothingIsSaidToBeCou
     return system;
   };
   LocusOptions options;
-  options.frequency = 8000.0;
-  options.count = 100;
+  options.window.frequency = 8000.0;
+  options.window.count = 100;
   const SpectrumFamily family = counted_spectra(
       system_of, SpectrumWindow::below(8000.0), std::pair(0.0, 0.2));
   const SampledSpectrum first = family.at(0.0);

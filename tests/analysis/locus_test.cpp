@@ -256,23 +256,38 @@ TEST(Locus, APairThatBecomesRealIsFollowedIntoDivergence) {
   EXPECT_THAT(back.eigenvalues.back(), SizeIs(2));
 }
 
+/// Eleven uncoupled masses; the last one softens from k = 30 to 0.5, past all the others.
+PencilFamily softening_family() {
+  return {[](double v, Pencil& pencil) {
+            Eigen::VectorXd stiffness = Eigen::VectorXd::LinSpaced(11, 1.0, 11.0);
+            stiffness(10) = 30.0;
+            const Eigen::VectorXd damping = Eigen::VectorXd::Constant(11, 0.02);
+            pencil = test::constrained_modes(stiffness.cwiseSqrt(), damping, Eigen::MatrixXd(0, 11),
+                                             Eigen::MatrixXd(0, 11));
+            pencil.damping(10) = 0.1;
+            pencil.port_stiffness.setZero(11, 11);
+            pencil.port_stiffness(10, 10) = -v;
+          },
+          {}};
+}
+
+TEST(Locus, AllBelowAFrequencyAreThoseThatComeDownToo) {
+  for (const LocusMethod method : {LocusMethod::secular, LocusMethod::dense}) {
+    LocusOptions options;
+    options.method = method;
+    // The damped mass oscillates with ω² = k − d²/4.
+    options.window = SpectrumWindow::below(std::sqrt(8.5) / (2.0 * std::numbers::pi));
+    const Locus locus = trace_locus(softening_family(), range(0.0, 29.5, 30), options);
+    EXPECT_THAT(locus.unverified, IsEmpty());
+    for (std::size_t i = 0; i < locus.values.size(); ++i)
+      EXPECT_THAT(locus.eigenvalues[i], SizeIs(locus.values[i] < 21.49 ? 8 : 9));
+  }
+}
+
 TEST(Locus, WhatComesDownFromAboveIsNotOverlooked) {
-  // Eleven uncoupled masses; the last one softens from k = 30 to 0.5, past all the others.
-  const PencilFamily family{[](double v, Pencil& pencil) {
-                              Eigen::VectorXd stiffness = Eigen::VectorXd::LinSpaced(11, 1.0, 11.0);
-                              stiffness(10) = 30.0;
-                              const Eigen::VectorXd damping = Eigen::VectorXd::Constant(11, 0.02);
-                              pencil = test::constrained_modes(stiffness.cwiseSqrt(), damping,
-                                                               Eigen::MatrixXd(0, 11),
-                                                               Eigen::MatrixXd(0, 11));
-                              pencil.damping(10) = 0.1;
-                              pencil.port_stiffness.setZero(11, 11);
-                              pencil.port_stiffness(10, 10) = -v;
-                            },
-                            {}};
   LocusOptions options;
-  options.count = 3;
-  const Locus locus = trace_locus(family, range(0.0, 29.5, 30), options);
+  options.window.count = 3;
+  const Locus locus = trace_locus(softening_family(), range(0.0, 29.5, 30), options);
   EXPECT_THAT(locus.unverified, IsEmpty());
   for (std::size_t i = 0; i < locus.values.size(); ++i) {
     std::vector<double> squares{1.0, 2.0, 3.0, 4.0, 30.0 - locus.values[i]};
@@ -302,7 +317,7 @@ TEST(Locus, WhatMeetsFarAboveIsNotFollowed) {
       },
       {}};
   LocusOptions options;
-  options.count = 1;
+  options.window.count = 1;
   const Locus locus = trace_locus(family, range(0.0, 1.0, 2), options);
   EXPECT_THAT(locus.branches, SizeIs(3));
   EXPECT_THAT(locus.unstable, IsEmpty());
@@ -330,7 +345,7 @@ TEST(Locus, CountAndFrequencyLimitWhatIsGiven) {
                       },
                       {}};
   LocusOptions options;
-  options.count = 5;
+  options.window.count = 5;
   const Locus lowest = trace_locus(family, range(0.0, 1.0, 3), options);
   for (std::size_t i = 0; i < 3; ++i) {
     Pencil pencil;
@@ -340,7 +355,7 @@ TEST(Locus, CountAndFrequencyLimitWhatIsGiven) {
     for (std::size_t j = 0; j < expected.size(); ++j)
       EXPECT_LT(std::abs(lowest.eigenvalues[i][j] - expected[j].s),
                 1e-11 * std::abs(expected[j].s));
-    options.frequency = 0.5 * (expected[2].frequency() + expected[3].frequency());
+    options.window.frequency = 0.5 * (expected[2].frequency() + expected[3].frequency());
     const Locus below = trace_locus(family, {lowest.values[i]}, options);
     EXPECT_THAT(below.eigenvalues[0], SizeIs(3));
   }
@@ -357,9 +372,9 @@ TEST(Locus, RefusesWhatHasNoMeaning) {
   EXPECT_EQ(refusal({}, none), "locus: there are no values");
   EXPECT_EQ(refusal({0.0, 0.1, 0.1}, none), "locus: the values must ascend, but value 3 is 0.1");
   EXPECT_EQ(refusal({std::nan("")}, none), "locus: the values must ascend, but value 1 is nan");
-  EXPECT_EQ(refusal({0.0}, [](auto& options, auto&) { options.count = 0; }),
+  EXPECT_EQ(refusal({0.0}, [](auto& options, auto&) { options.window.count = 0; }),
             "locus: 0 eigenvalues are none");
-  EXPECT_EQ(refusal({0.0}, [](auto& options, auto&) { options.frequency = 0.0; }),
+  EXPECT_EQ(refusal({0.0}, [](auto& options, auto&) { options.window.frequency = 0.0; }),
             "locus: no eigenvalues below 0 Hz");
   EXPECT_EQ(refusal({0.0}, [](auto& options, auto&) { options.resolution = 0.0; }),
             "locus: the resolution must be positive, is 0");
@@ -494,7 +509,7 @@ TEST_F(PaperLocus, IsTheSameByTheDenseMethod) {
   };
   const std::vector<double> values = range(0.0475, 0.0486, 3);
   LocusOptions options;
-  options.count = 16;
+  options.window.count = 16;
   const Locus secular = trace_locus(few, values, options);
   options.method = LocusMethod::dense;
   const Locus dense = trace_locus(few, values, options);

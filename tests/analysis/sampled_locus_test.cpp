@@ -290,7 +290,7 @@ TEST(SampledLocus, RejectsWhatIsNoRange) {
             }),
             "locus: the values must ascend");
   LocusOptions none;
-  none.count = 0;
+  none.window.count = 0;
   EXPECT_EQ(message_of<std::invalid_argument>([&] { sample_locus(family, {1.0}, none); }),
             "locus: 0 eigenvalues are none");
 }

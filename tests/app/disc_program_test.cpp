@@ -262,6 +262,25 @@ TEST(DiscProgram, EveryVerbStatesItsWindow) {
   for (const Json& s : eig["eigenvalues"]) EXPECT_LT(s[1].get<double>(), 2.0 * 3.14159266 * 2000.0);
 }
 
+TEST(DiscProgram, AFrequencyAloneAsksForAllBelowIt) {
+  const std::string scene = scene_path("beam_on_beam.yaml");
+  const std::vector<std::string> below{"--below", "200 kHz"};
+  std::vector<std::string> eig{"eig", scene, "--set", "contact.start=50 mm"};
+  std::vector<std::string> locus{"locus", scene,   "--from",   "50 mm",
+                                 "--to",  "51 mm", "--points", "2"};
+  eig.insert(eig.end(), below.begin(), below.end());
+  locus.insert(locus.end(), below.begin(), below.end());
+  const Json all = json_of(eig)["eigenvalues"];
+  EXPECT_GT(all.size(), 60U);
+  const Json along = json_of(locus)["eigenvalues"][0];
+  ASSERT_EQ(along.size(), all.size());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    EXPECT_NEAR(along[i][1].get<double>(), all[i][1].get<double>(),
+                1e-9 * all.back()[1].get<double>());
+  locus.insert(locus.end(), {"--count", "7"});
+  EXPECT_LE(json_of(locus)["eigenvalues"][0].size(), 7U + 2U);  // with the real ones
+}
+
 TEST(DiscProgram, ElasticPadsInEveryVerbOfSmallMotion) {
   const std::string elastic = scene_path("examples/elastic_pads.yaml");
   const Json eig = json_of({"eig", elastic, "--explain"});

@@ -166,7 +166,7 @@ TEST(DenseFallback, LocusHasTheWindowOfTheModesThatAreCoupled) {
   const NumericKey coupling{"parameters.v", "", {}, false};
   NearlyJammed family;
   LocusOptions options;
-  options.frequency = 1.0;
+  options.window.frequency = 1.0;
   const std::vector<double> range{0.0, 0.05, 0.1};
   const Locus locus = locus_along(family, coupling, 0, {0.0}, range, options);
   const Locus expected = trace_locus(
