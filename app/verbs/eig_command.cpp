@@ -82,13 +82,11 @@ std::vector<std::string> write_shapes(const EigOptions& options, const LoadedSce
   ShapePicture picture;
   picture.bodies = mode_shape(*member.model, state.equilibrium, right, cache);
   const double of_all = std::abs(largest_displacement(picture.bodies));
-  // Points alone, as of lumped masses, make no picture.
-  std::erase_if(picture.bodies, [](const BodyShape& body) {
-    return body.outlines.empty() && body.elements.empty();
-  });
+  std::erase_if(picture.bodies, [](const BodyShape& body) { return body.nodes.rows() == 0; });
   if (picture.bodies.empty())
-    throw ConfigError(Refusal::missing, "--shapes",
-                      "needs a mesh, or surfaces, of some body to draw");
+    throw ConfigError(
+        Refusal::missing, "--shapes",
+        "no body has nodes to draw; matrices take them from a mesh or a table of nodes (nodes)");
   const std::complex<double> largest = largest_displacement(picture.bodies);
   constexpr double rounding = 1e-9;
   if (!(std::abs(largest) > rounding * of_all))
@@ -113,8 +111,10 @@ std::vector<std::string> write_shapes(const EigOptions& options, const LoadedSce
     picture.contacts.push_back(surface.positions[static_cast<std::size_t>(contact.segment)] +
                                seen.combine(contact.projection.weights));
   }
-  const bool shows_rest = std::any_of(picture.bodies.begin(), picture.bodies.end(),
-                                      [](const BodyShape& body) { return !body.outlines.empty(); });
+  // In grey are outlines, and nodes of bodies that have nothing else.
+  const bool shows_rest = std::any_of(
+      picture.bodies.begin(), picture.bodies.end(),
+      [](const BodyShape& body) { return !body.outlines.empty() || body.elements.empty(); });
   picture.caption = fmt::format(
       "Mode {} at {:.2f} Hz, growth rate {:.4g} 1/s, about the {} geometry; displacements "
       "enlarged{}{}. {}, scene {}.",

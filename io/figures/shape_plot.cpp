@@ -40,6 +40,11 @@ Eigen::MatrixX2d displaced(const BodyShape& body, const PictureView& view, doubl
   return seen(moved, view);
 }
 
+/// Whether a body shows as its nodes alone: matrices with a table of nodes, a modal test, masses.
+bool is_of_points(const BodyShape& body) {
+  return body.outlines.empty() && body.elements.empty();
+}
+
 struct Extent {
   ValueRange x, y;
   void include(const Eigen::MatrixX2d& nodes) {
@@ -47,7 +52,11 @@ struct Extent {
     x.include({nodes.col(0).data(), size});
     y.include({nodes.col(1).data(), size});
   }
-  double diagonal() const { return std::hypot(x.upper - x.lower, y.upper - y.lower); }
+  /// 1 m for nodes in a single place, whose picture may have any scale.
+  double diagonal() const {
+    const double length = std::hypot(x.upper - x.lower, y.upper - y.lower);
+    return length > 0.0 ? length : 1.0;
+  }
 };
 
 Extent extent_of(const std::vector<BodyShape>& bodies, const PictureView& view) {
@@ -68,6 +77,20 @@ std::string line_data(const std::string& block, const std::vector<std::vector<in
                      as_number(nodes(node, 1), y));
     }
     data += '\n';
+  }
+  return data + "END_OF_DATA\n";
+}
+
+/// Where each node is at rest, and the way it moves.
+std::string arrow_data(const std::string& block, const Eigen::MatrixX2d& rest,
+                       const Eigen::MatrixX2d& moved, const AxisScale& x, const AxisScale& y) {
+  std::string data = block + " << END_OF_DATA\n";
+  auto out = std::back_inserter(data);
+  for (Eigen::Index node = 0; node < rest.rows(); ++node) {
+    const double from_x = as_number(rest(node, 0), x);
+    const double from_y = as_number(rest(node, 1), y);
+    fmt::format_to(out, "{:.7g} {:.7g} {:.7g} {:.7g}\n", from_x, from_y,
+                   as_number(moved(node, 0), x) - from_x, as_number(moved(node, 1), y) - from_y);
   }
   return data + "END_OF_DATA\n";
 }
@@ -127,6 +150,14 @@ ShapeLayout shape_layout(const ShapePicture& picture) {
   for (const auto& [phase, name] : phases)
     for (const BodyShape& body : picture.bodies)
       extent.include(displaced(body, layout.view, layout.scale, phase));
+  // Nodes along a line make no diagram.
+  constexpr double flattest = 0.12;
+  const double least_half = 0.5 * flattest * extent.diagonal();
+  for (ValueRange* range : {&extent.x, &extent.y}) {
+    const double middle = 0.5 * (range->lower + range->upper);
+    *range = {std::min(range->lower, middle - least_half),
+              std::max(range->upper, middle + least_half)};
+  }
   const double margin = 0.03 * extent.diagonal();
   layout.x_range = {extent.x.lower - margin, extent.x.upper + margin};
   layout.y_range = {extent.y.lower - margin, extent.y.upper + margin};
@@ -195,8 +226,24 @@ void add_shape_data(FigureScript& script, const ShapePicture& picture, const Sha
       const Eigen::MatrixX2d moved = displaced(body, layout.view, layout.scale, phases[p].first);
       script.append(line_data(fmt::format("$mesh_{}_{}", b, p), sides, moved, x, y));
       script.append(line_data(fmt::format("$moved_{}_{}", b, p), body.outlines, moved, x, y));
+      if (is_of_points(body))
+        script.append(arrow_data(fmt::format("$nodes_{}_{}", b, p), seen(body.nodes, layout.view),
+                                 moved, x, y));
     }
   }
+}
+
+/// The nodes of a body that shows as these alone: grey circles at rest, dots where they move to.
+std::string node_plots(const ShapePicture& picture, std::size_t b, std::size_t phase) {
+  if (!is_of_points(picture.bodies[b]) || picture.bodies[b].nodes.rows() == 0) return {};
+  const double size = picture.bodies[b].nodes.rows() > 200 ? 0.5 : 1.3;
+  const std::string colour = fmt::format("#{:06x}", shape_colours[b % shape_colours.size()]);
+  return fmt::format(
+      ", $nodes_{0}_{1} using 1:2 with points pointtype 6 pointsize {2} linecolor '#909090'"
+      ", $nodes_{0}_{1} using 1:2:3:4 with vectors nohead linewidth 1 linecolor '{3}'"
+      ", $nodes_{0}_{1} using ($1+$3):($2+$4) with points pointtype 7 pointsize {2} linecolor "
+      "'{3}'",
+      b, phase, size, colour);
 }
 
 /// The command of gnuplot that plots a phase.
@@ -222,6 +269,7 @@ std::string shape_plots(const ShapePicture& picture, const ShapeLayout& layout, 
                           phase, colour);
     }
   }
+  for (std::size_t b = 0; b < picture.bodies.size(); ++b) plot += node_plots(picture, b, phase);
   if (!picture.contacts.empty() && layout.view.is_planar)
     plot +=
         ", $contacts using 1:2 with points pointtype 6 pointsize 1.6 linewidth 2 linecolor "

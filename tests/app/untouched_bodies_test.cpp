@@ -361,7 +361,7 @@ TEST(UntouchedBodies, AreExplainedAndDrawn) {
     const ProgramResult nowhere =
         Program({"eig", without, "--shapes", (folder / "no").string()}).run();
     EXPECT_EQ(nowhere.exit_code, 2);
-    EXPECT_THAT(nowhere.err, HasSubstr("--shapes: needs a mesh, or surfaces, of some body"));
+    EXPECT_THAT(nowhere.err, HasSubstr("--shapes: no body has nodes to draw"));
   }
   const std::string beam = scene_of(folder, "substructures:\n" + std::string(beam_body));
   EXPECT_GT(json_of({"eig", beam, "--shapes", (folder / "beam").string()})["files"].size(), 1U);

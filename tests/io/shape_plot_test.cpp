@@ -106,6 +106,30 @@ TEST(ShapePlot, BothPartsAreDrawn) {
               HasSubstr("there is no node"));
 }
 
+TEST(ShapePlot, NodesAloneAreDrawnAtRestAndWhereTheyMove) {
+  const TemporaryFolder folder;
+  BodyShape tested = square();
+  tested.outlines.clear();
+  tested.elements.clear();
+  plot_shape({{tested}, {}, "A body of matrices."}, folder / "nodes.svg");
+  const std::string svg = contents_of(folder / "nodes.svg");
+  const auto marks_of = [&](const std::string& mark) {
+    int marks = 0;
+    for (std::size_t at = svg.find(mark); at != std::string::npos; at = svg.find(mark, at + 1))
+      ++marks;
+    return marks;
+  };
+  EXPECT_EQ(marks_of("xlink:href='#gpPt5'"), 2 * 8 + 1);  // circles in both diagrams, and in a dot
+  EXPECT_EQ(marks_of("xlink:href='#gpPt6'"), 2 * 8);  // dots
+  // One node, and a motion along one line: a picture all the same.
+  tested.nodes = Eigen::MatrixX3d::Zero(1, 3);
+  tested.displacement = Eigen::MatrixX3cd::Constant(1, 3, 0.0);
+  tested.displacement(0, 0) = 1.0;
+  EXPECT_DOUBLE_EQ(shape_scale({tested}), 0.06);
+  plot_shape({{tested}, {}, "A mass."}, folder / "mass.svg");
+  EXPECT_GT(fs::file_size(folder / "mass.svg"), 1000U);
+}
+
 TEST(ShapeFrames, HoldOnePeriod) {
   const TemporaryFolder folder;
   const auto files =
