@@ -218,10 +218,15 @@ Json run_verdict(const Json& results, const RecordedStretch& run, const Heard& h
                         shown(loudest->burst.peak, "m/s^2"), shown(loudest->burst.frequency, "Hz"),
                         shown(loudest->burst.start, "s"), shown(loudest->burst.end, "s"));
   }
-  if (has_tone)
-    text += fmt::format(" A tone of {} lasts throughout, {} r.m.s.",
-                        shown(results["lasting_tone.frequency"].get<double>(), "Hz"),
+  if (has_tone) {
+    const auto frequency = results["lasting_tone.frequency"].get<double>();
+    text += fmt::format(" A tone of {} lasts throughout, {} r.m.s.", shown(frequency, "Hz"),
                         shown(results["lasting_tone.rms"].get<double>(), "m/s^2"));
+    const Json trusted = results.value("trusted_frequency", Json(nullptr));
+    if (trusted.is_number() && frequency > trusted.get<double>())
+      text += fmt::format(" It is doubtful: the bodies resolve no more than {}.",
+                          shown(trusted.get<double>(), "Hz"));
+  }
   if (!predictions.empty()) {
     const auto num_heard = std::count_if(predictions.begin(), predictions.end(), [](const Json& row) {
       return !row["burst"].is_null();

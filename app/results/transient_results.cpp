@@ -239,21 +239,13 @@ Json transient_results(const Simulation& simulation, const System& system,
 void print_bursts(const Json& results) {
   if (results["bursts"].is_null()) return;
   if (results["bursts"].empty()) fmt::print("{:<24}none\n", "bursts");
-  for (const Json& burst : results["bursts"]) {
-    fmt::print("{:<24}{}\n", "burst", burst_text(burst));
-  }
-  if (const Json tone = results.value("lasting_tone", Json(nullptr)); !tone.is_null())
-    fmt::print("{:<24}{}\n", "lasting tone", lasting_tone_text(tone));
-  const Json trusted = results.value("trusted_frequency", Json(nullptr));
-  if (trusted.is_null()) return;
-  const auto above = std::count_if(results["bursts"].begin(), results["bursts"].end(), [&](const Json& burst) {
-    return burst["frequency"].get<double>() > trusted.get<double>();
-  });
-  if (above == 0) return;
-  fmt::print(
-      "{:<24}{} above {:.6g} Hz, more than the bodies resolve (docs/theory/07_stability.md): keep more "
-      "modes\n",
-      "doubtful bursts", above, trusted.get<double>());
+  for (const auto& [name, text] : burst_lines(results["bursts"]))
+    fmt::print("{:<24}{}\n", name, text);
+  const Json tone = results.value("lasting_tone", Json(nullptr));
+  if (!tone.is_null()) fmt::print("{:<24}{}\n", "lasting tone", lasting_tone_text(tone));
+  const std::string doubtful =
+      doubtful_text(results["bursts"], tone, results.value("trusted_frequency", Json(nullptr)));
+  if (!doubtful.empty()) fmt::print("{:<24}{}\n", "doubtful", doubtful);
 }
 
 }  // namespace stridor

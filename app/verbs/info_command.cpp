@@ -68,10 +68,13 @@ ExitCode info(const InfoOptions& options) {
     line("  " + name, file.units(name) + (note.empty() ? "" : ", " + note));
   }
   if (object["bursts"].empty()) line("bursts", "none");
-  for (const Json& burst : object["bursts"]) line("burst", burst_text(burst));
+  for (const auto& [name, text] : burst_lines(object["bursts"])) line(name, text);
   const Json results = stored_results(file);
-  if (results.contains("lasting_tone") && !options.band)
-    line("lasting tone", lasting_tone_text(results["lasting_tone"]));
+  const Json tone = options.band ? Json(nullptr) : results.value("lasting_tone", Json(nullptr));
+  if (!tone.is_null()) line("lasting tone", lasting_tone_text(tone));
+  const std::string doubtful =
+      doubtful_text(object["bursts"], tone, results.value("trusted_frequency", Json(nullptr)));
+  if (!doubtful.empty()) line("doubtful", doubtful);
   fmt::print("results\n");
   for (const auto& [name, value] : object["results"].items()) {
     line("  " + name, value.is_string() ? value.get<std::string>() : value.dump());

@@ -67,7 +67,8 @@ TEST(Program, BurstsAboveWhatTheBodiesResolveAreCalledDoubtful) {
         .run();
   };
   // Half of the highest mode kept of the three of the oblique beam is 3286 Hz, of ten far more; bursts are at 3.5 kHz.
-  EXPECT_THAT(run("3").out, ContainsRegex("\ndoubtful bursts +3 above 3286.12 Hz, more than the bodies resolve"));
+  EXPECT_THAT(run("3").out,
+              ContainsRegex("\ndoubtful +3 bursts above 3286.12 Hz, more than the bodies resolve"));
   EXPECT_THAT(run("10").out, AllOf(ContainsRegex("\nburst +"), Not(HasSubstr("doubtful"))));
 }
 
