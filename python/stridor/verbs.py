@@ -15,7 +15,7 @@ import numpy as np
 from . import errors, invocation, opening
 from .results import FrequencyResponses, Locus, StabilityMap, Sweep
 from .rubber import ContactLaw, SlidingContacts
-from .runs import Run
+from .runs import Cycle, Run
 from .scene import Place, Scene, as_scene
 
 Settings = Mapping[str, Any]
@@ -223,9 +223,18 @@ def threshold(scene: Scene | Place, *, set: Settings | None = None, **options: A
     return call("threshold", scene, set=set, **options)["roots"]
 
 
-def cycle(scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> dict[str, Any]:  # noqa: A002
-    """A periodic motion and its multipliers; with ``output=FILE`` also a file of one period, which `open` reads."""
-    return call("cycle", scene, set=set, **options)
+def cycle(scene: Scene | Place, *, output: Place | None = None, set: Settings | None = None,  # noqa: A002
+          **options: Any) -> Cycle:
+    """A periodic motion, one period of it with its multipliers.
+
+    Parameters
+    ----------
+    output : path, optional
+        HDF5 file; default: one in a new folder of its own.
+    **options
+        ``figure``, ``verify``, ``force``: as of ``stridor cycle``.
+    """
+    return _written("cycle", scene, output, set, options)
 
 
 def sweep(scene: Scene | Place, *, output: Place | None = None, set: Settings | None = None,  # noqa: A002
@@ -235,7 +244,7 @@ def sweep(scene: Scene | Place, *, output: Place | None = None, set: Settings | 
 
 
 def compare(scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> list[dict[str, Any]]:  # noqa: A002
-    """The four contact assumptions on the same work, a row each."""
+    """The four contact assumptions on the same work, a row each, as ``pandas.DataFrame`` takes them."""
     return call("compare", scene, set=set, **options)["rows"]
 
 

@@ -160,7 +160,9 @@ class Files(unittest.TestCase):
     def test_info_is_of_runs_alone(self):
         with tempfile.TemporaryDirectory() as folder:
             cycle = os.path.join(folder, "cycle.h5")
-            stridor.cycle(stridor.example("mass_on_belt"), output=cycle)
+            with stridor.cycle(stridor.example("mass_on_belt"), output=cycle) as found:
+                self.assertEqual(os.fspath(found.path), cycle)
+                self.assertEqual(found.raw["period"], found.period)
             with self.assertRaises(stridor.FileError):
                 stridor.info(cycle)
             with stridor.open(cycle) as found:
