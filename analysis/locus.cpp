@@ -61,17 +61,24 @@ void check(const PencilFamily& family, const std::vector<double>& values,
     }
   }
   if (!std::is_sorted(family.kinks.begin(), family.kinks.end())) reject("the kinks must ascend");
-  if (options.window.count && *options.window.count < 1)
-    reject(fmt::format("{} eigenvalues are none", *options.window.count));
-  if (!(options.window.frequency > 0.0)) {
-    reject(fmt::format("no eigenvalues below {:g} Hz", options.window.frequency));
-  }
+  check_window(options);
   if (!(options.resolution > 0.0)) {
     reject(fmt::format("the resolution must be positive, is {:g}", options.resolution));
   }
 }
 
 }  // namespace
+
+void check_window(const LocusOptions& options) {
+  if (options.window.count && *options.window.count < 1) {
+    throw std::invalid_argument(
+        fmt::format("locus: {} eigenvalues are none", *options.window.count));
+  }
+  if (!(options.window.frequency > 0.0)) {
+    throw std::invalid_argument(
+        fmt::format("locus: no eigenvalues below {:g} Hz", options.window.frequency));
+  }
+}
 
 std::vector<double> kinks_along_drive(const System& system) {
   std::vector<double> kinks;

@@ -43,9 +43,8 @@ enum class LocusMethod {
 
 struct LocusOptions {
   LocusMethod method = LocusMethod::secular;
-  /// Eigenvalues with positive imaginary part that are wanted at every value, lowest first: so
-  /// many,
-  /// >= 1, or all, and none above the frequency, Hz, > 0.
+  /// The eigenvalues that are wanted at every value: at most `count`, >= 1, with positive imaginary
+  /// part, lowest first, and none above `frequency`, Hz, > 0.
   SpectrumWindow window = SpectrumWindow::lowest(20);
   /// Windows and crossings are of eigenvalues up to here, Hz; those above are only listed. For
   /// sampled loci (analysis/sampled_locus.hpp).
@@ -54,6 +53,9 @@ struct LocusOptions {
   /// can be missed.
   double resolution = 1e-9;
 };
+
+/// @throws std::invalid_argument if the window of a locus holds nothing
+void check_window(const LocusOptions& options);
 
 /// One eigenvalue as the parameter varies.
 struct Branch {

@@ -36,8 +36,7 @@ void check(bool has_family, const std::vector<double>& values, const LocusOption
   const bool ascends =
       std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
   if (!ascends) reject("the values must ascend");
-  if (options.window.count && *options.window.count < 1)
-    reject(fmt::format("{} eigenvalues are none", *options.window.count));
+  check_window(options);
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ using Complex = std::complex<double>;
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-/// So many more than wanted: what comes down from above is then known before it counts.
+/// So many more than a count asks for, and in the dense method above a frequency: what comes down
+/// from above is then known before it counts.
 constexpr int num_above = 2;
 
 Eigen::VectorXcd shape_of(const Pencil& pencil, Complex s) {
@@ -168,7 +169,7 @@ class DenseSource : public SpectrumSource {
     int num_unwanted = 0;
     for (const Complex s : known_) {
       if (is_pair(s)) ++num_pairs;
-      const bool is_unwanted = window_.count ? num_pairs > *window_.count : s.imag() > top;
+      const bool is_unwanted = s.imag() > top || (window_.count && num_pairs > *window_.count);
       if (is_unwanted && ++num_unwanted > num_above) break;
       lowest.push_back(s);
     }

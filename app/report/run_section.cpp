@@ -90,7 +90,7 @@ SceneInFile scene_of(const RunFileHeader& header) {
   return {header.scene_hash, header.scene_resolved};
 }
 
-/// The windows that a locus of the same scene predicts, beside the bursts.
+/// The windows that a locus of the same scene predicts and the run has come to, beside the bursts.
 Json predictions_of(const RecordedStretch& run, const ReportContext& context,
                     const std::vector<NumberedBurst>& bursts, Json& section) {
   Json rows = Json::array();
@@ -102,7 +102,10 @@ Json predictions_of(const RecordedStretch& run, const ReportContext& context,
           run.file.header().scene_hash));
       continue;
     }
-    for (Json& row : prediction_json(match_bursts(one.windows, bursts))) rows.push_back(std::move(row));
+    std::vector<TimedWindow> passed = one.windows;
+    std::erase_if(passed,
+                  [&](const TimedWindow& window) { return window.from_time > run.last_time(); });
+    for (Json& row : prediction_json(match_bursts(passed, bursts))) rows.push_back(std::move(row));
   }
   return rows;
 }
@@ -112,6 +115,7 @@ struct Heard {
   std::vector<NumberedBurst> bursts;
   Json predictions;
   bool is_searched = false;  ///< for bursts
+  bool is_done = false;      ///< the run has come to its end
   bool grows = false;        ///< some mode about the sliding equilibrium
   std::string growth;        ///< what is said of the modes
 };
@@ -146,12 +150,14 @@ void judge_modes(const Json& section, Heard& heard) {
         growing == 0 ? "none" : std::to_string(growing), places);
     return;
   }
+  // How far a run came that was killed is not known; its modes are those of its start.
+  const std::string where = heard.is_done ? "" : " where the run began";
   heard.growth = heard.grows
                      ? fmt::format(
-                           " Small vibrations about the sliding equilibrium grow, fastest at {} "
+                           " Small vibrations about the sliding equilibrium{} grow, fastest at {} "
                            "with {:.3g} 1/s.",
-                           shown(frequency, "Hz"), fastest)
-                     : std::string(" No mode grows about the sliding equilibrium.");
+                           where, shown(frequency, "Hz"), fastest)
+                     : fmt::format(" No mode grows about the sliding equilibrium{}.", where);
 }
 
 /// The windows that `run --predict` set beside the bursts of a run.
@@ -321,6 +327,7 @@ Json run_section(const ResultFile& source, const ReportContext& context) {
   heard.is_searched = acceleration_channel(run.file).has_value() &&
                       recorded_settings(run.file, run.path).measure.band.size() == 2;
   const Json results = results_json(run.file);
+  heard.is_done = results.value("status", std::string()) == "done";
   const Json resolved = results.value("trusted_frequency", Json(nullptr));
   heard.predictions = predictions_of(run, context, heard.bursts, section);
   if (heard.predictions.empty()) heard.predictions = recorded_predictions(source, heard.bursts);
@@ -342,7 +349,7 @@ Json run_section(const ResultFile& source, const ReportContext& context) {
   }
   section["verdict"] = run_verdict(results, run, heard);
   section["results"] = results;
-  add_expectations(header.scene_resolved, results, heard.bursts, section);
+  if (heard.is_done) add_expectations(header.scene_resolved, results, heard.bursts, section);
   return section;
 }
 

@@ -232,17 +232,26 @@ Json locus_section(const ResultFile& file, const ReportContext& context) {
   return section;
 }
 
+/// Points of a map without a growth rate for a reason; one where nothing lies in the window is
+/// none.
+std::ptrdiff_t num_failed(const ResultFile& file, const std::vector<double>& growth) {
+  if (!file.has("/failure"))
+    return std::count_if(growth.begin(), growth.end(),
+                         [](double value) { return std::isnan(value); });
+  const std::vector<double> failure = file.read("/failure", 2);
+  return std::count_if(failure.begin(), failure.end(), [](double number) { return number > 0.0; });
+}
+
 Json map_section(const ResultFile& file, const ReportContext& context) {
   Json section =
       section_head(file, "stability map",
                    fmt::format("stability over {} and {}", file.text("x"), file.text("y")));
   const std::vector<double> growth = file.read("/growth", 2);
   const auto is_unstable = [](double value) { return value > 0.0; };
-  const auto is_known = [](double value) { return std::isfinite(value); };
   const auto unstable = std::count_if(growth.begin(), growth.end(), is_unstable);
-  const auto known = std::count_if(growth.begin(), growth.end(), is_known);
+  const auto failed = num_failed(file, growth);
   std::string text = fmt::format("Of {} points {} are unstable", growth.size(), unstable);
-  if (known < std::ssize(growth)) text += fmt::format(", {} failed", std::ssize(growth) - known);
+  if (failed > 0) text += fmt::format(", {} failed", failed);
   if (unstable > 0) {
     double most = 0.0;
     for (const double value : growth)

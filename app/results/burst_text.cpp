@@ -46,8 +46,11 @@ std::vector<std::pair<std::string, std::string>> burst_lines(const Json& bursts)
     std::sort(listed.begin(), listed.end());
   }
   std::vector<std::pair<std::string, std::string>> lines;
-  for (const std::size_t i : listed) lines.emplace_back("burst", burst_text(bursts[i]));
-  if (listed.size() < bursts.size())
+  // Harmonics name their bursts by number.
+  const bool are_all = listed.size() == bursts.size();
+  for (const std::size_t i : listed)
+    lines.emplace_back(are_all ? "burst" : fmt::format("burst {}", i + 1), burst_text(bursts[i]));
+  if (!are_all)
     lines.emplace_back("more bursts",
                        fmt::format("{}, none with a peak above {:.4g} m/s^2 (--json lists all)",
                                    bursts.size() - listed.size(), loudest_left));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/terminal/command.hpp"
@@ -17,13 +18,14 @@ std::string burst_text(const Json& burst);
 /// @param tone object with the numbers frequency (Hz), rms (m/s^2) and share
 std::string lasting_tone_text(const Json& tone);
 
-/// The lines that list bursts, as name and value: of more than 20 the loudest 20, in order of time,
-/// and how many are not listed.
+/// The lines that list bursts, as name and value: of more than 20 the loudest 20 in order of time,
+/// by their numbers, and how many are not listed.
+/// @param bursts array of objects as of burst_text(), or null
 std::vector<std::pair<std::string, std::string>> burst_lines(const Json& bursts);
 
 /// The line that says which bursts, and whether a lasting tone, lie above what the bodies resolve;
 /// empty where none does.
-/// @param bursts  as of burst_lines()
+/// @param bursts  array of objects with a frequency, Hz, or null
 /// @param tone    null without
 /// @param trusted trusted_frequency(), Hz, or null
 std::string doubtful_text(const Json& bursts, const Json& tone, const Json& trusted);

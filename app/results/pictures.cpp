@@ -121,9 +121,26 @@ double option_value(const char* option, const std::string& text, const std::stri
   return value;
 }
 
+namespace {
+
+/// Whether a run was killed, or is going on, before it sought its bursts.
+bool has_to_be_searched(const RunFileReader& file, const std::string& path) {
+  if (file.has("/bursts") || !file.results().empty()) return false;
+  const MeasureParameters measure = recorded_settings(file, path).measure;
+  const double interval = sampling_interval(file, path);
+  return measure.band.size() == 2 && interval > 0.0 && measure.band[1] < 0.5 / interval;
+}
+
+}  // namespace
+
 std::vector<Burst> bursts_of(const RunFileReader& file, const std::string& path,
                              const std::optional<std::string>& band) {
-  if (!band) return recorded_bursts(file, path);
+  if (!band && !has_to_be_searched(file, path)) return recorded_bursts(file, path);
+  if (!band) {
+    const MeasureParameters measure = recorded_settings(file, path).measure;
+    return bursts_in_band(file, path, measure, {measure.band[0], measure.band[1]})
+        .value_or(std::vector<Burst>());
+  }
   constexpr const char* option = "--band";
   const std::size_t comma = band->find(',');
   if (comma == std::string::npos)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -16,6 +17,15 @@
 
 namespace stridor {
 namespace {
+
+/// About how many pairs a window holds. Contacts move few of them down past the frequencies of the
+/// bodies.
+Eigen::Index most_wanted(const Pencil& pencil, const SpectrumWindow& window) {
+  const double top = 2.0 * std::numbers::pi * window.frequency;
+  const Eigen::Index below = (pencil.omega.array() <= top).count() + pencil.num_constraints();
+  const Eigen::Index most = window.count.value_or(std::numeric_limits<int>::max());
+  return std::min({below, pencil.num_eigenvalues() / 2, most});
+}
 
 /// The locus along whole numbers.
 Locus locus_at(const PencilFamily& family, const std::vector<double>& range,
@@ -105,7 +115,7 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
     ends[key] = end;
     if (method != SpectrumMethod::counted) {
       const Pencil pencil = family.pencil(ends);
-      num_wanted = std::max(num_wanted, pencil.num_eigenvalues() / 2);
+      num_wanted = std::max(num_wanted, most_wanted(pencil, options.window));
       if (end == range.front()) modes = pencil.omega;
       // Where the key changes the bodies, a modal coordinate is another motion at every value.
       const bool are_modes_alike = pencil.omega.size() == modes.size() && pencil.omega == modes;
@@ -114,15 +124,14 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
     trusted = std::min(trusted, family.trusted_frequency(ends));
   }
   // How many large sparse matrices have below a frequency is known only once they are found.
-  const Eigen::Index most = options.window.count.value_or(std::numeric_limits<int>::max());
   if (method == SpectrumMethod::counted) num_wanted = options.window.count.value_or(0);
-  num_wanted = std::min(num_wanted, most);
   // Measured: tracks, results and their JSON.
   constexpr double bytes_per_eigenvalue = 500.0;
   const auto num_values = static_cast<double>(range.size());
   require_memory_for(
       {"--points", fmt::format("{} eigenvalues at {} values", num_wanted, range.size()),
-       "ask for fewer", bytes_per_eigenvalue * num_values * static_cast<double>(num_wanted)},
+       "ask for fewer values, or eigenvalues (--count, --below)",
+       bytes_per_eigenvalue * num_values * static_cast<double>(num_wanted)},
       memory_limit());
   LocusOptions within = options;
   within.trusted = trusted;

@@ -195,6 +195,7 @@ StabilityMap make_stability_map(const StabilityScene& loaded, const std::array<K
   const auto make_field = [&] { return loaded.growth_field({axes[0].key, axes[1].key}); };
   if (make_field() != nullptr) {
     const Activity tracing("growth at every point, then the boundary");
+    resolution[0].method = growth_formula;
     GrowthMap found = make_growth_map(make_field, map.x, map.y, stability.common.threads);
     map.growth = std::move(found.growth);
     add_failures(map, found.failures, axes);

@@ -12,6 +12,9 @@
 
 namespace stridor {
 
+/// The method where growth has a formula, of all eigenvalues at once.
+inline constexpr const char* growth_formula = "formula";
+
 /// A key with the values that it takes along an axis of a map.
 struct KeyAxis {
   NumericKey key;

@@ -29,6 +29,15 @@ EigenvalueMethod StabilityOptions::eigenvalue_method() const {
   return method == "dense" ? EigenvalueMethod::dense : EigenvalueMethod::secular;
 }
 
+std::string StabilityOptions::window_words() const {
+  const SpectrumWindow wanted = window();
+  std::string words = !wanted.count       ? "eigenvalues"
+                      : *wanted.count > 1 ? fmt::format("{} lowest eigenvalues", *wanted.count)
+                                          : "lowest eigenvalue";
+  if (std::isfinite(wanted.frequency)) words += fmt::format(" below {:g} Hz", wanted.frequency);
+  return words;
+}
+
 LocusOptions StabilityOptions::locus_options() const {
   LocusOptions options;
   options.method = method == "dense" ? LocusMethod::dense : LocusMethod::secular;
@@ -37,10 +46,11 @@ LocusOptions StabilityOptions::locus_options() const {
 }
 
 SpectrumWindow StabilityOptions::window() const {
-  if (!below) return SpectrumWindow::lowest(count);
+  constexpr int default_count = 20;
+  if (!below) return SpectrumWindow::lowest(count.value_or(default_count));
   const NumericKey frequency{"--below", "Hz", Range::positive()};
   SpectrumWindow window = SpectrumWindow::below(parse_value(frequency, *below, "--below"));
-  if (count_option != nullptr && count_option->count() > 0) window.count = count;
+  window.count = count;
   return window;
 }
 
@@ -55,10 +65,10 @@ void add_stability_options(CLI::App& verb, StabilityOptions& options) {
                   "secular (default): zeros of the secular function; dense: all eigenvalues of the "
                   "assembled matrices, as a check")
       ->check(CLI::IsMember({"secular", "dense"}));
-  options.count_option =
-      verb.add_option("--count", options.count,
-                      "How many eigenvalues with positive frequency, lowest first")
-          ->check(CLI::Range(1, 100000));
+  verb.add_option("--count", options.count,
+                  "How many eigenvalues with positive frequency, lowest first (default: 20, with "
+                  "--below all)")
+      ->check(CLI::Range(1, 100000));
   verb.add_option(
       "--below", options.below,
       "Only those up to this frequency, Hz or with a unit: all of them where no --count is "

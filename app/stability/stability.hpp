@@ -25,13 +25,15 @@ struct StabilityOptions {
   std::string scene;
   std::string about;   ///< empty until make_choices() where none was asked for
   std::string method;  ///< likewise
-  int count = 20;
-  std::optional<std::string> below;           ///< frequency, as written
-  const CLI::Option* count_option = nullptr;  ///< tells whether a count was given
+  std::optional<int> count;
+  std::optional<std::string> below;  ///< frequency, as written
 
-  /// The eigenvalues wanted: the lowest ones, or all below a frequency.
+  /// The eigenvalues wanted: all below a frequency, or the lowest ones, of those below it where
+  /// both are given; the lowest 20 where nothing is asked for.
   /// @throws ConfigError if the frequency is none
   SpectrumWindow window() const;
+  /// "20 lowest eigenvalues", "eigenvalues below 5000 Hz", for captions.
+  std::string window_words() const;
   ContactGeometry geometry() const;
   EigenvalueMethod eigenvalue_method() const;
   LocusOptions locus_options() const;
@@ -42,7 +44,7 @@ struct StabilityOptions {
 /// them.
 void make_choices(StabilityOptions& options, const Scene& scene);
 
-/// The scene, --about, --method, --count, --set, --threads and --json.
+/// The scene, --about, --method, --count, --below, --set, --threads and --json.
 void add_stability_options(CLI::App& verb, StabilityOptions& options);
 
 /// The key that a verb varies. Only keys of bodies, contacts and drive change eigenvalues.

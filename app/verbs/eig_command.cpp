@@ -67,6 +67,26 @@ std::complex<double> largest_displacement(const std::vector<BodyShape>& bodies) 
   return largest;
 }
 
+/// Where bodies touch that slide on lines, m.
+std::vector<Eigen::Vector2d> contact_places(const SceneFamily::Member& member,
+                                            const SlidingState& state) {
+  std::vector<Eigen::Vector2d> places;
+  for (std::size_t i = 0; i < state.equilibrium.contacts.size(); ++i) {
+    if (!state.equilibrium.contacts[i].is_closed) continue;
+    // The positions of a contact are as seen from the undeformed first node of its segment.
+    const ContactEquilibrium& contact = state.equilibrium.contacts[i];
+    const ContactPoint& point = member.model->system.contacts[i];
+    if (point.has_two_tangents()) continue;  // the picture shows no face
+    const MasterSurface& surface = member.model->system.surface_of(point);
+    const SurfacePiece& seen = state.equilibrium.state.geometry == ContactGeometry::deformed
+                                   ? contact.positions.master
+                                   : contact.positions.undeformed;
+    places.push_back(surface.positions[static_cast<std::size_t>(contact.segment)] +
+                     seen.combine(contact.projection.weights));
+  }
+  return places;
+}
+
 /// Draws one mode and writes it for ParaView. @return the files
 std::vector<std::string> write_shapes(const EigOptions& options, const LoadedScene& loaded,
                                       const SceneFamily::Member& member, const SlidingState& state,
@@ -86,7 +106,7 @@ std::vector<std::string> write_shapes(const EigOptions& options, const LoadedSce
   if (picture.bodies.empty())
     throw ConfigError(
         Refusal::missing, "--shapes",
-        "no body has nodes to draw; matrices take them from a mesh or a table of nodes (nodes)");
+        "no body has nodes to draw; matrices take them from their keys mesh or nodes");
   const std::complex<double> largest = largest_displacement(picture.bodies);
   constexpr double rounding = 1e-9;
   if (!(std::abs(largest) > rounding * of_all))
@@ -98,19 +118,7 @@ std::vector<std::string> write_shapes(const EigOptions& options, const LoadedSce
     throw FileError(Refusal::cannot_write, folder.string(), "",
                     "cannot be made: " + error.message());
   for (BodyShape& body : picture.bodies) body.displacement /= largest;
-  for (std::size_t i = 0; i < state.equilibrium.contacts.size(); ++i) {
-    if (!state.equilibrium.contacts[i].is_closed) continue;
-    // The positions of a contact are as seen from the undeformed first node of its segment.
-    const ContactEquilibrium& contact = state.equilibrium.contacts[i];
-    const ContactPoint& point = member.model->system.contacts[i];
-    if (point.has_two_tangents()) continue;  // the picture shows no face
-    const MasterSurface& surface = member.model->system.surface_of(point);
-    const SurfacePiece& seen = state.equilibrium.state.geometry == ContactGeometry::deformed
-                                   ? contact.positions.master
-                                   : contact.positions.undeformed;
-    picture.contacts.push_back(surface.positions[static_cast<std::size_t>(contact.segment)] +
-                               seen.combine(contact.projection.weights));
-  }
+  picture.contacts = contact_places(member, state);
   // In grey are outlines, and nodes of bodies that have nothing else.
   const bool shows_rest = std::any_of(
       picture.bodies.begin(), picture.bodies.end(),
@@ -358,7 +366,8 @@ void add_eig_command(CLI::App& program, Action& action, const std::string& comma
                    "Number of the mode to explain or draw; default: the one that grows fastest")
       ->check(CLI::Range(1, 100000));
   verb->add_option("--shapes", options->shapes,
-                   "Folder for a picture of the mode and its motion for ParaView (VTK)");
+                   "Folder for a picture of the mode and its motion for ParaView (VTK); bodies "
+                   "without a mesh show their nodes");
   verb->add_option("--uff", options->universal,
                    "Universal file to write: all modes at all nodes (datasets 2411, 2412, 82, 55)");
   verb->add_option("--compare", options->compared,

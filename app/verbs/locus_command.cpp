@@ -134,7 +134,7 @@ LocusPicture picture_of(const FoundLocus& found) {
         {unit.number(window.from), unit.number(window.to), window.frequency, window.growth_max});
   }
   picture.caption = fmt::format(
-      "The lowest {} eigenvalues{}, {} from {} to {}; {}, scene {}.", most_eigenvalues(locus),
+      "The {}{}, {} from {} to {}; {}, scene {}.", stability.window_words(),
       found.scene.about_text(stability), range.key.path, unit.number(range.values.front()),
       fmt::format("{:g}{}", unit.number(range.values.back()),
                   unit.name == "1" ? "" : " " + unit.name),
@@ -181,6 +181,9 @@ ExitCode locus(LocusCommandOptions options) {
     write_locus(*options.output, found.locus, found.windows,
                 {scene, stability, range.key, options.command_line});
   if (options.figure || options.history) {
+    if (most_eigenvalues(found.locus) == 0)
+      throw ConfigError(Refusal::wrong_value, stability.below ? "--below" : "scene",
+                        "there is no eigenvalue to draw; ask for a higher frequency");
     const LocusPicture picture = picture_of(found);
     if (options.figure) plot_locus(picture, *options.figure);
     if (options.history) plot_locus_histories(picture, *options.history);

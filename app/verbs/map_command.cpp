@@ -50,8 +50,9 @@ KeyAxis make_axis(const StabilityScene& scene, const std::vector<std::string>& w
   return axis;
 }
 
+/// @param which eigenvalues the growth is of, as " of the 20 lowest eigenvalues"
 void draw(const MapOptions& options, const std::array<KeyAxis, 2>& axes, const StabilityMap& map,
-          const StabilityScene& loaded) {
+          const StabilityScene& loaded, const std::string& which) {
   StabilityMapPicture picture;
   const SceneNode* tree = &loaded.loaded().tree;
   const AxisUnit x_unit = axis_unit(axes[0].key, {options.x[1], options.x[2]}, tree);
@@ -67,15 +68,9 @@ void draw(const MapOptions& options, const std::array<KeyAxis, 2>& axes, const S
     for (const auto& point : line)
       picture.boundary.back().push_back({x_unit.number(point[0]), y_unit.number(point[1])});
   }
-  const SpectrumWindow window = options.stability.window();
-  const std::string lowest =
-      window.count ? fmt::format("{} lowest eigenvalues", *window.count) : "eigenvalues";
-  const std::string below =
-      std::isfinite(window.frequency) ? fmt::format(" below {:g} Hz", window.frequency) : "";
   picture.caption = fmt::format(
-      "Largest growth rate of the {}{}{}, {} by {} values; line: boundary of stability. {}, scene "
-      "{}.",
-      lowest, below, loaded.about_text(options.stability), map.x.size(), map.y.size(),
+      "Largest growth rate{}{}, {} by {} values; line: boundary of stability. {}, scene {}.", which,
+      loaded.about_text(options.stability), map.x.size(), map.y.size(),
       std::filesystem::path(options.stability.scene).filename().string(), loaded.loaded().hash());
   plot_stability_map(picture, *options.figure);
 }
@@ -111,20 +106,26 @@ std::string shell_word(const std::string& word) {
   return quoted + "'";
 }
 
+/// Whether growth has a formula, of all eigenvalues at once.
+bool is_by_formula(const FoundMap& found) {
+  return found.resolution[0].method == growth_formula;
+}
+
 /// The command that gives the eigenvalues of one point of a map, with @X@ and @Y@ for its values.
 std::string point_command(const FoundMap& found) {
   const StabilityOptions& stability = found.options.stability;
   std::string command = fmt::format("stridor eig {} --about {} --method {}",
                                     shell_word(stability.scene), stability.about, stability.method);
-  if (stability.count_option != nullptr && stability.count_option->count() > 0)
-    command += fmt::format(" --count {}", stability.count);
-  if (stability.below) command += " --below " + shell_word(*stability.below);
+  if (stability.count && !is_by_formula(found))
+    command += fmt::format(" --count {}", *stability.count);
+  if (stability.below && !is_by_formula(found))
+    command += " --below " + shell_word(*stability.below);
   for (const std::string& set : stability.common.sets) command += " --set " + shell_word(set);
   return command +
          fmt::format(" --set {}=@X@ --set {}=@Y@", found.axes[0].key.path, found.axes[1].key.path);
 }
 
-/// That taken along the lines; that asked for where growth has a formula.
+/// That taken along the lines, or growth_formula; that asked for where every point failed.
 const std::string& method_of(const FoundMap& found) {
   const std::string& taken = found.resolution[0].method;
   return taken.empty() ? found.options.stability.method : taken;
@@ -213,7 +214,9 @@ ExitCode map(MapOptions options) {
   FoundMap found{options, loaded, axes, {}, {}};
   found.map = make_stability_map(loaded, axes, stability, found.resolution);
   if (options.output) write_map(found);
-  if (options.figure) draw(options, axes, found.map, loaded);
+  if (options.figure)
+    draw(options, axes, found.map, loaded,
+         is_by_formula(found) ? "" : " of the " + stability.window_words());
   if (stability.common.json) {
     print_json(map_json(found));
   } else {

@@ -14,7 +14,6 @@
 #include "io/figures/gnuplot.hpp"
 #include "io/figures/mesh_picture.hpp"
 #include "io/figures/picture_canvas.hpp"
-#include "io/results/vtu_writer.hpp"
 
 namespace stridor {
 namespace {
@@ -150,9 +149,9 @@ ShapeLayout shape_layout(const ShapePicture& picture) {
   for (const auto& [phase, name] : phases)
     for (const BodyShape& body : picture.bodies)
       extent.include(displaced(body, layout.view, layout.scale, phase));
-  // Nodes along a line make no diagram.
-  constexpr double flattest = 0.12;
-  const double least_half = 0.5 * flattest * extent.diagonal();
+  // Nodes along a line make no diagram; a beam does.
+  const bool has_points_alone = std::ranges::all_of(picture.bodies, is_of_points);
+  const double least_half = has_points_alone ? 0.06 * extent.diagonal() : 0.0;
   for (ValueRange* range : {&extent.x, &extent.y}) {
     const double middle = 0.5 * (range->lower + range->upper);
     *range = {std::min(range->lower, middle - least_half),
@@ -236,14 +235,14 @@ void add_shape_data(FigureScript& script, const ShapePicture& picture, const Sha
 /// The nodes of a body that shows as these alone: grey circles at rest, dots where they move to.
 std::string node_plots(const ShapePicture& picture, std::size_t b, std::size_t phase) {
   if (!is_of_points(picture.bodies[b]) || picture.bodies[b].nodes.rows() == 0) return {};
-  const double size = picture.bodies[b].nodes.rows() > 200 ? 0.5 : 1.3;
+  const double size = picture.bodies[b].nodes.rows() > 200 ? 0.5 : 1.0;
   const std::string colour = fmt::format("#{:06x}", shape_colours[b % shape_colours.size()]);
   return fmt::format(
-      ", $nodes_{0}_{1} using 1:2 with points pointtype 6 pointsize {2} linecolor '#909090'"
+      ", $nodes_{0}_{1} using 1:2 with points pointtype 6 pointsize {4} linecolor '#909090'"
       ", $nodes_{0}_{1} using 1:2:3:4 with vectors nohead linewidth 1 linecolor '{3}'"
       ", $nodes_{0}_{1} using ($1+$3):($2+$4) with points pointtype 7 pointsize {2} linecolor "
       "'{3}'",
-      b, phase, size, colour);
+      b, phase, size, colour, 2.2 * size);
 }
 
 /// The command of gnuplot that plots a phase.
@@ -323,78 +322,6 @@ void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure
     add_shape_panel(script, picture, layout, phase);
   script.add("unset multiplot");
   draw_figure(figure, script.text(), layout.size);
-}
-
-VtkMesh vtk_mesh(const std::vector<BodyShape>& bodies) {
-  VtkMesh mesh;
-  int num_points = 0;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const BodyShape& body = bodies[b];
-    const auto add = [&](int type, std::vector<int> points) {
-      for (int& node : points) node += num_points;
-      mesh.cells.push_back({type, std::move(points)});
-      mesh.parts.push_back(static_cast<int>(b));
-    };
-    for (const DrawnElement& element : body.elements)
-      add(vtk_cell_type(element.shape), element.nodes);
-    // A body without elements shows its outline, or its nodes.
-    if (body.elements.empty()) {
-      for (const std::vector<int>& outline : body.outlines) add(VtkMesh::poly_line, outline);
-      for (int node = 0; body.outlines.empty() && node < body.nodes.rows(); ++node)
-        add(VtkMesh::vertex, {node});
-    }
-    num_points += static_cast<int>(body.nodes.rows());
-  }
-  mesh.points.resize(num_points, 3);
-  Eigen::Index first = 0;
-  for (const BodyShape& body : bodies) {
-    mesh.points.middleRows(first, body.nodes.rows()) = body.nodes;
-    first += body.nodes.rows();
-  }
-  return mesh;
-}
-
-Eigen::MatrixX3d stacked_displacement(const std::vector<BodyShape>& bodies, double phase) {
-  Eigen::Index num_points = 0;
-  for (const BodyShape& body : bodies) num_points += body.nodes.rows();
-  Eigen::MatrixX3d stacked(num_points, 3);
-  Eigen::Index first = 0;
-  for (const BodyShape& body : bodies) {
-    stacked.middleRows(first, body.nodes.rows()) =
-        (body.displacement * std::polar(1.0, phase)).real();
-    first += body.nodes.rows();
-  }
-  return stacked;
-}
-
-std::vector<std::filesystem::path> write_shape_frames(const ShapePicture& picture,
-                                                      const std::filesystem::path& stem,
-                                                      int num_frames, double period) {
-  VtkMesh mesh = vtk_mesh(picture.bodies);
-  mesh.title = picture.caption;
-  std::vector<std::filesystem::path> files;
-  const auto name = [&](const std::string& ending) {
-    files.push_back(stem);
-    files.back() += ending;
-    return files.back();
-  };
-  mesh.vectors = {{"real", stacked_displacement(picture.bodies, 0.0)},
-                  {"imaginary", stacked_displacement(picture.bodies, -0.5 * std::numbers::pi)}};
-  write_vtu(name(".vtu"), mesh);
-  const Eigen::MatrixX3d rest = mesh.points;
-  const double scale = shape_scale(picture.bodies);
-  std::vector<TimedFile> frames;
-  for (int frame = 0; frame < num_frames; ++frame) {
-    const double part = static_cast<double>(frame) / num_frames;
-    const Eigen::MatrixX3d moved =
-        stacked_displacement(picture.bodies, 2.0 * std::numbers::pi * part);
-    mesh.points = rest + scale * moved;
-    mesh.vectors = {{"displacement", moved}};
-    write_vtu(name(fmt::format("_frame_{:03}.vtu", frame)), mesh);
-    frames.push_back({part * period, files.back()});
-  }
-  write_pvd(name(".pvd"), frames);
-  return files;
 }
 
 }  // namespace stridor

@@ -23,7 +23,7 @@ double shape_scale(const std::vector<BodyShape>& bodies);
 /// Draws the meshes of the bodies displaced by the real and the imaginary part of their motion, a
 /// quarter of a period apart: in a plane over their outlines at rest, with the contacts marked, of
 /// a mesh finer than can be drawn the outline; in space their outer faces. Of bodies without both,
-/// as matrices with a table of nodes, the nodes at rest and displaced.
+/// as matrices with a table of nodes, the nodes at rest and displaced, in space over all faces.
 /// @throws std::invalid_argument if there is no node
 /// @throws ConfigError, FileError as draw_figure()
 void plot_shape(const ShapePicture& picture, const std::filesystem::path& figure);

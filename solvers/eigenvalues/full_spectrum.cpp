@@ -15,16 +15,13 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// A height with as many vibrations below as are wanted, in the middle of a gap.
+/// A height with as many vibrations below as are wanted.
 double height_of_window(const std::vector<Eigenvalue>& all, const SpectrumWindow& window) {
   if (!window.count) return 2.0 * std::numbers::pi * window.frequency;
   std::vector<double> heights;
   for (const Eigenvalue& one : all)
     if (one.s.imag() > 0.0) heights.push_back(one.s.imag());
-  const auto count = static_cast<std::size_t>(*window.count);
-  for (std::size_t i = count; i > 0 && i < heights.size(); ++i)
-    if (heights[i] - heights[i - 1] > 1e-6 * heights[i]) return 0.5 * (heights[i] + heights[i - 1]);
-  return heights.empty() ? 0.0 : 1.2 * heights.back();
+  return heights.empty() ? 0.0 : height_above(heights, *window.count);
 }
 
 /// Pairs at eigenvalues that are known, from any vectors.

@@ -109,8 +109,7 @@ void SparseSearch::add_modes_below(double omega) {
     if (modes_.omega_squared(i) <= omega * omega) basis_.add(modes_.shapes.col(i));
 }
 
-/// A height with as many pairs below as are wanted, in the middle of a gap; that of the highest
-/// pair where there are too few.
+/// A height with as many pairs below as are wanted.
 double SparseSearch::height_for_count() const {
   std::vector<double> heights;
   for (const Pair& pair : pairs_)
@@ -120,10 +119,7 @@ double SparseSearch::height_for_count() const {
   std::sort(heights.begin(), heights.end());
   if (heights.empty())
     throw NumericalError(Refusal::eigenvalues_incomplete, "sparse eigenvalues: nothing vibrates");
-  const auto count = static_cast<std::size_t>(*window_.count);
-  for (std::size_t i = count; i > 0 && i < heights.size(); ++i)
-    if (heights[i] - heights[i - 1] > 1e-6 * heights[i]) return 0.5 * (heights[i] + heights[i - 1]);
-  return 1.2 * heights.back();
+  return height_above(heights, *window_.count);
 }
 
 /// Whether a pair lies in the window or so close to it that it may come in.
@@ -351,6 +347,12 @@ TwoSidedPairs SparseSearch::run(const TwoSidedPairs& guesses, double height) {
 }
 
 }  // namespace
+
+double height_above(const std::vector<double>& heights, int count) {
+  for (auto i = static_cast<std::size_t>(count); i > 0 && i < heights.size(); ++i)
+    if (heights[i] - heights[i - 1] > 1e-6 * heights[i]) return 0.5 * (heights[i] + heights[i - 1]);
+  return 1.2 * heights.back();
+}
 
 SparseSpectrum sparse_spectrum(const SparseSystem& system, const SpectrumWindow& window,
                                const SpectrumWork& work) {

@@ -77,6 +77,11 @@ struct SpectrumWork {
 SparseSpectrum sparse_spectrum(const SparseSystem& system, const SpectrumWindow& window,
                                const SpectrumWork& work = {});
 
+/// A height above `count` of the heights, in the middle of the first gap that is none of
+/// rounding; 1.2 times the highest where there are too few.
+/// @param heights ascending, at least one, rad/s
+double height_above(const std::vector<double>& heights, int count);
+
 /// The pairs of a system that is like another one, by the same method from the vectors of that one;
 /// nothing is counted.
 /// @param guesses of the other system

@@ -35,6 +35,8 @@ TEST(BurstText, OfManyTheLoudestAreListedInOrderOfTime) {
   for (int i = 20; i < 300; ++i) bursts.push_back(burst_at(i, 500.0, i == 150 ? 99.0 : 2.5));
   const auto lines = burst_lines(bursts);
   ASSERT_EQ(lines.size(), 21U);
+  EXPECT_EQ(lines[0].first, "burst 2");
+  EXPECT_EQ(lines[19].first, "burst 151");
   EXPECT_THAT(lines[0].second, HasSubstr("1.000 to 1.100 s"));
   EXPECT_THAT(lines[18].second, HasSubstr("peak 29 "));
   EXPECT_THAT(lines[19].second, HasSubstr("150.000 to 150.100 s, 500 Hz, peak 99 m/s^2"));

@@ -1,6 +1,7 @@
 // Pages that the program makes of files of results, and its messages where it cannot.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
 
 #include <algorithm>
 #include <cmath>
@@ -227,6 +228,15 @@ TEST_F(ReportProgram, ALocusOfAnotherSceneIsNotSetBesideARun) {
   EXPECT_TRUE(view_of(section, "bursts")["predicted"].empty());
 }
 
+TEST_F(ReportProgram, PointsOfAMapWithoutAnEigenvalueInTheWindowHaveNotFailed) {
+  const std::string map =
+      made({"map", scene("beam_on_beam.yaml"), "--x", "contact.start", "50mm", "51mm", "2", "--y",
+            "contact.friction.coefficient", "0.3", "0.4", "2", "--below", "1Hz"},
+           "map.h5");
+  const Json contents = contents_of_report(page_of({map}));
+  EXPECT_EQ(contents["sections"][0]["verdict"]["text"], "Of 4 points 0 are unstable.");
+}
+
 TEST_F(ReportProgram, EveryKindOfFileHasASection) {
   const std::string belt = scene("examples/mass_on_belt.yaml");
   const std::string sphere = scene("viscoelastic_sphere.yaml");
@@ -408,6 +418,34 @@ TEST_F(ReportProgram, AKilledRunIsShownAsFarAsItGot) {
   const ProgramResult result = report({make_run(contents), "-o", path("page.html")});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("Has not ended, or was killed; rows up to 9.9 ms"));
+}
+
+TEST_F(ReportProgram, BurstsOfAKilledRunAreSought) {
+  const std::string run =
+      made({"run", scene("beam_on_beam.yaml"), "--set", "time.end=1.75"}, "run.h5");
+  const Json whole = json_of({"info", run})["bursts"];
+  ASSERT_GT(whole.size(), 0U);
+  const hid_t file = H5Fopen(run.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  for (const char* group : {"/bursts", "/results", "/final"}) H5Ldelete(file, group, H5P_DEFAULT);
+  H5Fclose(file);
+  const Json sought = json_of({"info", run})["bursts"];
+  ASSERT_EQ(sought.size(), whole.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    EXPECT_NEAR(sought[i]["frequency"].get<double>(), whole[i]["frequency"].get<double>(), 20.0);
+    EXPECT_NEAR(sought[i]["start"].get<double>(), whole[i]["start"].get<double>(), 2e-3);
+  }
+  const std::string locus = made({"locus", scene("beam_on_beam.yaml"), "--from", "75mm", "--to",
+                                  "95mm", "--points", "21", "--about", "deformed"},
+                                 "locus.h5");
+  const Json section = contents_of_report(page_of({run, locus, "--no-shapes"}))["sections"][0];
+  const std::string verdict = section["verdict"]["text"];
+  EXPECT_THAT(verdict, HasSubstr("Has not ended, or was killed"));
+  EXPECT_THAT(verdict, HasSubstr(std::to_string(whole.size()) + " burst"));
+  // Of the windows of the path the run has come to those before 83 mm.
+  EXPECT_FALSE(view_of(section, "bursts")["predicted"].empty());
+  for (const Json& window : view_of(section, "bursts")["predicted"])
+    EXPECT_LE(window["from"].get<double>(), 1.75);
+  EXPECT_FALSE(section.contains("expectations"));
 }
 
 TEST_F(ReportProgram, RefusesWhatIsNoFileOfResults) {
