@@ -279,7 +279,8 @@ TEST(DiscProgram, AFrequencyAloneAsksForAllBelowIt) {
                 1e-9 * all.back()[1].get<double>());
   locus.insert(locus.end(), {"--count", "7"});
   int num_pairs = 0;
-  for (const Json& s : json_of(locus)["eigenvalues"][0]) num_pairs += s[1].get<double>() > 0.0;
+  const Json lowest = json_of(locus)["eigenvalues"][0];
+  for (const Json& s : lowest) num_pairs += s[1].get<double>() > 0.0;
   EXPECT_EQ(num_pairs, 7);
 }
 

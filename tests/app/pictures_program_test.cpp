@@ -128,7 +128,8 @@ TEST_F(Pictures, ALocusOverAnotherKeyThanThePathPredictsNothing) {
 }
 
 TEST_F(Pictures, BurstsAreSoughtInAnotherBand) {
-  const std::string file = make_run({.has_bursts = false});
+  // A result says that the run has ended, else its bursts would be sought.
+  const std::string file = make_run({.has_bursts = false, .trusted_frequency = 5000.0});
   EXPECT_EQ(json_of({"info", file})["bursts"], Json::array());
   const Json info = json_of({"info", file, "--band", "800,1.2 kHz"});
   ASSERT_EQ(info["bursts"].size(), 1u);
@@ -148,6 +149,7 @@ TEST_F(Pictures, BurstsAreSoughtInAnotherBand) {
 TEST_F(Pictures, SpectrogramWithoutBurstsIsDrawn) {
   RunContents quiet;
   quiet.has_bursts = false;
+  quiet.trusted_frequency = 5000.0;  // a result, as of a run that has ended
   const std::string run = make_run(quiet);
   EXPECT_EQ(json_of({"spectrogram", run, "-o", path("a.svg")})["bursts"], 0);
   EXPECT_THAT(contents_of(path("a.svg")), Not(HasSubstr("Dashed")));
