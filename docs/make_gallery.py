@@ -373,8 +373,9 @@ def shown(seconds):
 
 def gallery(all_cards, times):
     lines = ["# Gallery", "",
-             "Every scene of the tree, with what it shows, the command to begin with and, below it, those that make",
-             "the picture of the result, all run from the folder that holds `scenes`. Times are processor times of",
+             "The scenes of the tree, with what each shows, the command to begin with and, below it, those that make",
+             "the picture of the result, all run from the folder that holds `scenes`; left out are those of `scenes/extreme`, which",
+             "try limits of the main scenes, and the parts of the brake one by one. Times are processor times of",
              "the first command, measured by `docs/make_gallery.py --measure`, which writes this page. Reference",
              "values are those of the scene's `expect:` block, which `--verify` and the tests compare.", ""]
     for group, names in GROUPS.items():
