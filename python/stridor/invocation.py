@@ -27,6 +27,11 @@ def program() -> str:
     ------
     FileError
         Where there is none.
+
+    Examples
+    --------
+    >>> program().endswith("stridor")
+    True
     """
     named = os.environ.get("STRIDOR_PROGRAM")
     built = Path(__file__).resolve().parents[2] / "build" / "release" / "stridor"

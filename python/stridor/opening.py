@@ -23,10 +23,21 @@ def open(path: Place) -> ResultFile:  # noqa: A001, as in h5py and xarray
     """A result file: `Run`, `Locus`, `StabilityMap`, `FrequencyResponses`, `Sweep`, `Cycle`, `SlidingContacts`,
     `ContactLaw`, or else `ResultFile`.
 
+    Parameters
+    ----------
+    path : path
+        Of a file that a verb has written.
+
     Raises
     ------
     FileError
         If it is not there, or no HDF5 file.
+
+    Examples
+    --------
+    >>> written = cycle(example("mass_on_belt")).path
+    >>> type(open(written)).__name__
+    'Cycle'
     """
     try:
         file = h5py.File(path, "r", locking=False)

@@ -53,12 +53,24 @@ def spectrogram(run: Run | Place, *, output: Place | None = None, **options: Any
 
 
 def plot(file: ResultFile | Place, *, kind: str, output: Place | None = None, **options: Any) -> Path:
-    """A picture of a result: `kind` is ``history``, ``phase``, ``spectrogram`` or ``spectrum``."""
+    """A picture of a result: `kind` is ``history``, ``phase``, ``spectrogram`` or ``spectrum``.
+
+    Examples
+    --------
+    >>> plot(run(example("frozen_growth"), set={"time.end": 0.1}), kind="history").name
+    'history.png'
+    """
     return _made_from("plot", [file], output, kind + ".png", {"kind": kind, **options})
 
 
 def sound(run: Run | Place, *, output: Place | None = None, **options: Any) -> Path:
-    """A channel as a WAV file: ``channel``, ``from_``, ``to``, ``slow``, ...: as of ``stridor sound``."""
+    """A channel as a WAV file: ``channel``, ``from_``, ``to``, ``slow``, ...: as of ``stridor sound``.
+
+    Examples
+    --------
+    >>> sound(run(example("frozen_growth"))).suffix
+    '.wav'
+    """
     return _made_from("sound", [run], output, "sound.wav", options)
 
 

@@ -67,10 +67,21 @@ class Scene:
 def load(path: Place) -> Scene:
     """A scene file.
 
+    Parameters
+    ----------
+    path : path
+        Of the file (YAML); it is read when a verb takes the scene.
+
     Raises
     ------
     FileError
         If there is none.
+
+    Examples
+    --------
+    >>> scene = load(example("mass_on_belt"))
+    >>> eig(scene, set={"parameters.mu_s": 0.3}).stable
+    True
     """
     if not Path(path).is_file():
         raise errors.FileError([errors.Problem("is not there", file=os.fspath(path))])
@@ -84,6 +95,12 @@ def example(name: str) -> str:
     ------
     FileError
         If there is none of that name.
+
+    Examples
+    --------
+    >>> import os
+    >>> os.path.basename(example("ruler"))
+    'ruler.yaml'
     """
     for folder in _scene_folders():
         for path in (folder / f"{name}.yaml", folder / "examples" / f"{name}.yaml"):

@@ -113,6 +113,12 @@ def run(scene: Scene | Place | None = None, *, output: Place | None = None, set:
     ------
     Stopped
         By Ctrl-C or `max_wall`; its `file` can be resumed.
+
+    Examples
+    --------
+    >>> with run(example("frozen_growth"), set={"time.end": 0.1}) as found:
+    ...     found.status, float(found.time[-1])
+    ('done', 0.1)
     """
     file = os.fspath(resume) if resume is not None else output_of(output, "run.h5")
     if resume is not None:
@@ -163,6 +169,12 @@ def locus(scene: Scene | Place, *, output: Place | None = None, set: Settings | 
         File; default: one in a new folder of its own.
     **options
         ``parameter``, ``from_``, ``to``, ``points``, ``about``, ``count``, ``below``, ``figure``.
+
+    Examples
+    --------
+    >>> found = locus(example("two_springs_on_a_belt"), parameter="parameters.mu", from_=0, to=1.2, points=13)
+    >>> [round(float(value), 2) for value in found.values[(found.eigenvalues.real > 1e-6).any(axis=1)]]
+    [0.8, 0.9, 1.0, 1.1, 1.2]
     """
     return _written("locus", scene, output, set, options)
 
@@ -197,6 +209,13 @@ def frf(scene: Scene | Place, *, output: Place | None = None, set: Settings | No
         Motions that are wanted (``--output`` of the command line).
     **options
         ``input``, ``from_``, ``to``, ``points``, ``scale``, ``about``, ``figure``, ``compare``, ``node``.
+
+    Examples
+    --------
+    >>> found = frf(example("reed"), input="reed.middle.y", motions="reed.tip.y.displacement", from_="100 Hz",
+    ...             to="3 kHz", points=30)
+    >>> found.frequency.shape
+    (30,)
     """
     file = output_of(output, "frf.h5")
     progress = options.pop("progress", None)
@@ -219,7 +238,14 @@ def _opened(file: str, answer: dict[str, Any]) -> Any:
 
 
 def threshold(scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> list[dict[str, Any]]:  # noqa: A002
-    """Every value of a key where the stability changes: ``parameter``, ``from_``, ``to``."""
+    """Every value of a key where the stability changes: ``parameter``, ``from_``, ``to``.
+
+    Examples
+    --------
+    >>> found = threshold(example("two_springs_on_a_belt"), parameter="parameters.mu", from_=0, to=1.2)
+    >>> [round(root["value"], 4) for root in found]
+    [0.75]
+    """
     return call("threshold", scene, set=set, **options)["roots"]
 
 
@@ -233,23 +259,55 @@ def cycle(scene: Scene | Place, *, output: Place | None = None, set: Settings | 
         HDF5 file; default: one in a new folder of its own.
     **options
         ``figure``, ``verify``, ``force``: as of ``stridor cycle``.
+
+    Returns
+    -------
+    Cycle
+        Where none was found, its `status` says why, and its `period` is NaN.
+
+    Examples
+    --------
+    >>> found = cycle(example("mass_on_belt"))
+    >>> found.status, round(found.period, 4)
+    ('periodic', 0.6712)
     """
     return _written("cycle", scene, output, set, options)
 
 
 def sweep(scene: Scene | Place, *, output: Place | None = None, set: Settings | None = None,  # noqa: A002
           **options: Any) -> Sweep:
-    """Transients or cycles along a key: ``parameter``, ``from_``, ``to``, ``points``, ``threads``."""
+    """Transients or cycles along a key: ``parameter``, ``from_``, ``to``, ``points``, ``threads``.
+
+    Examples
+    --------
+    >>> found = sweep(example("mass_on_belt"), parameter="parameters.v", from_=0.05, to=0.15, points=3)
+    >>> found.parameter, found.values.tolist()
+    ('parameters.v', [0.05, 0.1, 0.15])
+    """
     return _written("sweep", scene, output, set, options)
 
 
 def compare(scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> list[dict[str, Any]]:  # noqa: A002
-    """The four contact assumptions on the same work, a row each, as ``pandas.DataFrame`` takes them."""
+    """The four contact assumptions on the same work, a row each, as ``pandas.DataFrame`` takes them.
+
+    Examples
+    --------
+    >>> rows = compare(example("beam_on_beam"), set={"time.end": 0.02, "measure.from": 0.01})
+    >>> [row["assumption"] for row in rows]
+    ['subs_a', 'subs_b', 'subs_c', 'film']
+    """
     return call("compare", scene, set=set, **options)["rows"]
 
 
 def precision(scene: Scene | Place, *, set: Settings | None = None, **options: Any) -> dict[str, Any]:  # noqa: A002
-    """Error against run time; with ``reduction=True`` that of the reduced bodies alone."""
+    """Error against run time; with ``reduction=True`` that of the reduced bodies alone.
+
+    Examples
+    --------
+    >>> found = precision(example("tuning_fork"), reduction=True)
+    >>> sorted(found)
+    ['reduction']
+    """
     return call("precision", scene, set=set, **options)
 
 
@@ -277,6 +335,13 @@ def contact(scene: Scene | Place, *, output: Place | None = None, set: Settings 
         If the scene has no such law, or several and `contact` names none.
     NumericalError
         If a contact did not converge; its `answer` has all rows.
+
+    Examples
+    --------
+    >>> found = contact(example("viscoelastic_contact"), speed=[0.1, 1], indentation=0.01,
+    ...                 set={"contacts.tip.normal.solver.grid": 32})
+    >>> len(found.rows)
+    2
     """
     return _written("contact", scene, output, set, options)
 
@@ -291,6 +356,13 @@ def contact_table(scene: Scene | Place, *, output: Place | None = None, set: Set
         File; default: one in a new folder of its own.
     **options
         ``speeds`` and ``indentations``, each (first, last, number of values); ``contact``, ``threads``, ``force``.
+
+    Examples
+    --------
+    >>> law = contact_table(example("viscoelastic_contact"), speeds=(0.1, 1, 4), indentations=(0.005, 0.01, 4),
+    ...                     set={"contacts.tip.normal.solver.grid": 32})
+    >>> type(law).__name__
+    'ContactLaw'
     """
     file = output_of(output, "law.h5")
     return _opened(file, call("contact", scene, set=set, table=file, **options))
