@@ -21,7 +21,7 @@ from .inspection import Findings, check, import_, info, schema
 from .invocation import program
 from .opening import open
 from .pictures import draw, plot, report, sound, spectrogram
-from .results import FrequencyResponses, Locus, StabilityMap, Sweep
+from .results import FrequencyResponses, Locus, Spectrum, StabilityMap, Sweep
 from .rubber import ContactLaw, SlidingContacts
 from .runs import Cycle, Run
 from .scene import Scene, example, load
@@ -33,7 +33,7 @@ __version__ = "0.1.0"
 __all__ = [
     "ConfigError", "ContactLaw", "Cycle", "Eigenvalues", "Error", "FileError", "Findings", "FrequencyResponses",
     "Locus", "NumericalError", "Problem", "ResultFile", "Run", "Scene", "SceneWarning", "Series", "SlidingContacts",
-    "StabilityMap", "Stopped", "Sweep",
+    "Spectrum", "StabilityMap", "Stopped", "Sweep",
     "call", "check", "compare", "contact", "contact_table", "cycle", "draw", "eig", "example", "fit", "frf",
     "import_", "info", "load", "locus", "map", "open", "plot", "precision", "program", "report", "run", "schema",
     "sound", "spectrogram", "sweep", "threshold"

@@ -8,19 +8,19 @@ import h5py
 
 from . import errors
 from .files import ResultFile
-from .results import FrequencyResponses, Locus, StabilityMap, Sweep
+from .results import FrequencyResponses, Locus, Spectrum, StabilityMap, Sweep
 from .rubber import ContactLaw, SlidingContacts
 from .runs import Cycle, Run
 from .scene import Place
 from .series import plain
 
-_KINDS = {"run": Run, "locus": Locus, "map": StabilityMap, "stability map": StabilityMap,
+_KINDS = {"run": Run, "eigenvalues": Spectrum, "locus": Locus, "map": StabilityMap, "stability map": StabilityMap,
           "frequency responses": FrequencyResponses, "limit cycle": Cycle, "sweep of transients": Sweep,
           "sweep of limit cycles": Sweep, "sliding contacts": SlidingContacts, "contact law": ContactLaw}
 
 
 def open(path: Place) -> ResultFile:  # noqa: A001, as in h5py and xarray
-    """A result file: `Run`, `Locus`, `StabilityMap`, `FrequencyResponses`, `Sweep`, `Cycle`, `SlidingContacts`,
+    """A result file: `Run`, `Spectrum`, `Locus`, `StabilityMap`, `FrequencyResponses`, `Sweep`, `Cycle`, `SlidingContacts`,
     `ContactLaw`, or else `ResultFile`.
 
     Parameters

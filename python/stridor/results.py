@@ -13,6 +13,56 @@ from .files import ResultFile, counted, listed, span
 _TURN = 2.0 * np.pi
 
 
+class Spectrum(ResultFile):
+    """Eigenvalues of one scene, of a file that ``stridor eig -o`` wrote; what `eig` gives is named alike.
+
+    Examples
+    --------
+    >>> import os, tempfile
+    >>> file = os.path.join(tempfile.mkdtemp(), "eig.h5")
+    >>> told = eig(example("beam_on_beam"), output=file)
+    >>> with open(file) as found:
+    ...     found.stable, bool(abs(found.values - told.values).max() < 1e-6 * abs(told.values).max())
+    (True, True)
+    """
+
+    _group_of_arrays = "eigenvalues"
+
+    @property
+    def values(self) -> np.ndarray:
+        """s, 1/s, ascending frequency."""
+        group = self._file["eigenvalues"]
+        return group["growth"][:] + 1j * _TURN * group["frequency"][:]
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        """Hz."""
+        return self._file["eigenvalues/frequency"][:]
+
+    @property
+    def growth(self) -> np.ndarray:
+        """1/s."""
+        return self._file["eigenvalues/growth"][:]
+
+    @property
+    def stable(self) -> bool:
+        """Whether none grows within `window`."""
+        return bool(self.attributes.get("stable", np.nan) == 1.0)
+
+    @property
+    def window(self) -> tuple[float, float]:
+        """Frequencies for which that holds, Hz."""
+        return 0.0, float(self.attributes.get("highest_frequency", np.inf))
+
+    def _lines(self) -> list[str]:
+        growth = self.growth
+        if len(growth) == 0:
+            return [*super()._lines(), "no eigenvalues"]
+        worst = int(growth.argmax())
+        return [*super()._lines(), f"{counted(len(growth), 'eigenvalue')}, {'stable' if self.stable else 'unstable'}",
+                f"largest growth {growth[worst]:.4g} 1/s at {self.frequencies[worst]:.6g} Hz"]
+
+
 class Locus(ResultFile):
     """Eigenvalues along a key.
 
