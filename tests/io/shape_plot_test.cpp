@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <filesystem>
 #include <iterator>
 #include <map>
 #include <sstream>
@@ -127,7 +128,7 @@ TEST(ShapePlot, NodesAloneAreDrawnAtRestAndWhereTheyMove) {
   tested.displacement(0, 0) = 1.0;
   EXPECT_DOUBLE_EQ(shape_scale({tested}), 0.06);
   plot_shape({{tested}, {}, "A mass."}, folder / "mass.svg");
-  EXPECT_GT(fs::file_size(folder / "mass.svg"), 1000U);
+  EXPECT_GT(std::filesystem::file_size(folder / "mass.svg"), 1000U);
 }
 
 TEST(ShapeFrames, HoldOnePeriod) {
