@@ -342,13 +342,11 @@ class Tracker {
     std::vector<Complex> wanted;
     for (const std::size_t index : active_) wanted.push_back(tracks_[index].last());
     sort_eigenvalues(wanted);
-    const double top = 2.0 * std::numbers::pi * options_.window.frequency;
     int num_pairs = 0;
     std::size_t size = 0;
-    while (size < wanted.size() && wanted[size].imag() <= top) {
+    for (; size < wanted.size(); ++size) {
       if (is_pair(wanted[size])) ++num_pairs;
-      if (options_.window.count && num_pairs > *options_.window.count) break;
-      ++size;
+      if (options_.window.ends_before(wanted[size].imag(), num_pairs)) break;
     }
     wanted.resize(size);
     locus_.eigenvalues.push_back(std::move(wanted));

@@ -90,13 +90,12 @@ Sample SpectrumSampler::sample_of(double value, SampledSpectrum all) const {
   Sample sample;
   sample.value = value;
   sample.is_counted = all.is_counted;
-  const double top = 2.0 * std::numbers::pi * options_.window.frequency;
   const double trusted = 2.0 * std::numbers::pi * options_.trusted;
   int num_pairs = 0;
   for (std::size_t i = 0; i < all.eigenvalues.size(); ++i) {
     const Complex s = all.eigenvalues[i];
     if (s.imag() > 0.0) ++num_pairs;
-    if (s.imag() > top || (options_.window.count && num_pairs > *options_.window.count)) break;
+    if (options_.window.ends_before(s.imag(), num_pairs)) break;
     sample.eigenvalues.push_back(s);
     sample.excess.push_back(s.imag() > trusted ? -infinite : s.real() - all.rounding[i]);
   }

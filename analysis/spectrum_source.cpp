@@ -164,13 +164,11 @@ class DenseSource : public SpectrumSource {
 
   std::optional<std::vector<Complex>> search() override {
     std::vector<Complex> lowest;
-    const double top = 2.0 * std::numbers::pi * window_.frequency;
     int num_pairs = 0;
     int num_unwanted = 0;
     for (const Complex s : known_) {
       if (is_pair(s)) ++num_pairs;
-      const bool is_unwanted = s.imag() > top || (window_.count && num_pairs > *window_.count);
-      if (is_unwanted && ++num_unwanted > num_above) break;
+      if (window_.ends_before(s.imag(), num_pairs) && ++num_unwanted > num_above) break;
       lowest.push_back(s);
     }
     searched_ = lowest.empty() ? 0.0 : lowest.back().imag();

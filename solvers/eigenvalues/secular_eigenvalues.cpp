@@ -260,12 +260,11 @@ void check_window(const SpectrumWindow& window) {
 /// @param zeros in the order of the eigenvalues
 std::vector<Eigenvalue> eigenvalues_in(const SpectrumWindow& window,
                                        const std::vector<Complex>& zeros) {
-  const double top = 2.0 * std::numbers::pi * window.frequency;
   std::vector<Eigenvalue> eigenvalues;
   int num_pairs = 0;
   for (const Complex& s : zeros) {
-    if (s.imag() > top || (window.count && num_pairs == *window.count)) break;
     if (s.imag() > 0.0) ++num_pairs;
+    if (window.ends_before(s.imag(), num_pairs)) break;
     eigenvalues.push_back({s, 0.0});
   }
   return eigenvalues;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -18,6 +19,13 @@ struct SpectrumWindow {
   static SpectrumWindow lowest(int count) { return {count, inf}; }
   static SpectrumWindow below(double frequency) { return {std::nullopt, frequency}; }
   static SpectrumWindow all() { return {}; }
+
+  /// Whether an eigenvalue lies beyond the window.
+  /// @param height   Im s, 1/s
+  /// @param num_pairs those with a positive imaginary part up to this one, itself included
+  bool ends_before(double height, int num_pairs) const {
+    return height > 2.0 * std::numbers::pi * frequency || (count && num_pairs > *count);
+  }
 
  private:
   static constexpr double inf = std::numeric_limits<double>::infinity();
