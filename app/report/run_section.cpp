@@ -9,6 +9,7 @@
 
 #include "app/report/histories.hpp"
 #include "app/report/mode_frames.hpp"
+#include "app/results/burst_text.hpp"
 #include "app/results/expectations.hpp"
 #include "app/results/pictures.hpp"
 #include "app/results/transient_results.hpp"
@@ -90,7 +91,7 @@ SceneInFile scene_of(const RunFileHeader& header) {
   return {header.scene_hash, header.scene_resolved};
 }
 
-/// The windows that a locus of the same scene predicts and the run has come to, beside the bursts.
+/// The windows that a locus of the same scene predicts, beside the bursts.
 Json predictions_of(const RecordedStretch& run, const ReportContext& context,
                     const std::vector<NumberedBurst>& bursts, Json& section) {
   Json rows = Json::array();
@@ -102,10 +103,8 @@ Json predictions_of(const RecordedStretch& run, const ReportContext& context,
           run.file.header().scene_hash));
       continue;
     }
-    std::vector<TimedWindow> passed = one.windows;
-    std::erase_if(passed,
-                  [&](const TimedWindow& window) { return window.from_time > run.last_time(); });
-    for (Json& row : prediction_json(match_bursts(passed, bursts))) rows.push_back(std::move(row));
+    for (Json& row : prediction_json(match_bursts(one.windows, bursts)))
+      rows.push_back(std::move(row));
   }
   return rows;
 }
@@ -192,6 +191,15 @@ Json recorded_predictions(const ResultFile& file, const std::vector<NumberedBurs
   return rows;
 }
 
+/// Those of the windows to which a run has come.
+Json come_to(const Json& windows, double last_time) {
+  Json rows = Json::array();
+  for (const Json& window : windows)
+    if (!(window["from"].is_number() && window["from"].get<double>() > last_time))
+      rows.push_back(window);
+  return rows;
+}
+
 Json run_verdict(const Json& results, const RecordedStretch& run, const Heard& heard) {
   const std::string status = results.value("status", std::string());
   const std::vector<NumberedBurst>& bursts = heard.bursts;
@@ -224,15 +232,16 @@ Json run_verdict(const Json& results, const RecordedStretch& run, const Heard& h
                         shown(loudest->burst.peak, "m/s^2"), shown(loudest->burst.frequency, "Hz"),
                         shown(loudest->burst.start, "s"), shown(loudest->burst.end, "s"));
   }
+  Json tone;
   if (has_tone) {
-    const auto frequency = results["lasting_tone.frequency"].get<double>();
-    text += fmt::format(" A tone of {} lasts throughout, {} r.m.s.", shown(frequency, "Hz"),
+    tone["frequency"] = results["lasting_tone.frequency"];
+    text += fmt::format(" A tone of {} lasts throughout, {} r.m.s.",
+                        shown(tone["frequency"].get<double>(), "Hz"),
                         shown(results["lasting_tone.rms"].get<double>(), "m/s^2"));
-    const Json trusted = results.value("trusted_frequency", Json(nullptr));
-    if (trusted.is_number() && frequency > trusted.get<double>())
-      text += fmt::format(" It is doubtful: the bodies resolve no more than {}.",
-                          shown(trusted.get<double>(), "Hz"));
   }
+  const std::string doubtful = doubtful_text(bursts_json_of(bursts), tone,
+                                             results.value("trusted_frequency", Json(nullptr)));
+  if (!doubtful.empty()) text += fmt::format(" Doubtful: {}.", doubtful);
   if (!predictions.empty()) {
     const auto num_heard = std::count_if(predictions.begin(), predictions.end(), [](const Json& row) {
       return !row["burst"].is_null();
@@ -331,6 +340,7 @@ Json run_section(const ResultFile& source, const ReportContext& context) {
   const Json resolved = results.value("trusted_frequency", Json(nullptr));
   heard.predictions = predictions_of(run, context, heard.bursts, section);
   if (heard.predictions.empty()) heard.predictions = recorded_predictions(source, heard.bursts);
+  heard.predictions = come_to(heard.predictions, run.last_time());
   section["verdict"] = nullptr;  // stands above what it needs
   section["views"].push_back({{"type", "bursts"},
                               {"bursts", bursts_json_of(heard.bursts)},

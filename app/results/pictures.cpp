@@ -123,24 +123,22 @@ double option_value(const char* option, const std::string& text, const std::stri
 
 namespace {
 
-/// Whether a run was killed, or is going on, before it sought its bursts.
-bool has_to_be_searched(const RunFileReader& file, const std::string& path) {
-  if (file.has("/bursts") || !file.results().empty()) return false;
+/// Those that a run has found; of one that was killed, or is going on, those in what it has
+/// recorded.
+std::vector<Burst> bursts_of_run(const RunFileReader& file, const std::string& path) {
+  if (file.has("/bursts") || !file.results().empty()) return recorded_bursts(file, path);
   const MeasureParameters measure = recorded_settings(file, path).measure;
   const double interval = sampling_interval(file, path);
-  return measure.band.size() == 2 && interval > 0.0 && measure.band[1] < 0.5 / interval;
+  if (measure.band.size() != 2 || !(interval > 0.0 && measure.band[1] < 0.5 / interval)) return {};
+  return bursts_in_band(file, path, measure, {measure.band[0], measure.band[1]})
+      .value_or(std::vector<Burst>());
 }
 
 }  // namespace
 
 std::vector<Burst> bursts_of(const RunFileReader& file, const std::string& path,
                              const std::optional<std::string>& band) {
-  if (!band && !has_to_be_searched(file, path)) return recorded_bursts(file, path);
-  if (!band) {
-    const MeasureParameters measure = recorded_settings(file, path).measure;
-    return bursts_in_band(file, path, measure, {measure.band[0], measure.band[1]})
-        .value_or(std::vector<Burst>());
-  }
+  if (!band) return bursts_of_run(file, path);
   constexpr const char* option = "--band";
   const std::size_t comma = band->find(',');
   if (comma == std::string::npos)
