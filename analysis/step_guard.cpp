@@ -223,11 +223,11 @@ void add_states(const System& system, const SlidingContacts& at, double displace
   constexpr std::size_t most_named = 8;
   const std::size_t num_contacts = at.contacts.size();
   std::string all = name_of(0);
-  for (std::size_t c = 1; c < num_contacts && num_contacts <= most_named; ++c)
-    all += ", " + name_of(c);
-  if (num_contacts > most_named)
-    all = fmt::format("{} contacts from {} to {}", num_contacts, name_of(0),
-                      name_of(num_contacts - 1));
+  if (num_contacts > most_named) {
+    all = fmt::format("{} contacts from {} to {}", num_contacts, all, name_of(num_contacts - 1));
+  } else {
+    for (std::size_t c = 1; c < num_contacts; ++c) all += ", " + name_of(c);
+  }
   states.push_back({fmt::format("{} sliding {}", all, at.place(system, 0, displacement)), at.rows});
   // Of many, some from one end to the other: neighbours are alike.
   constexpr std::size_t most_alone = 8;

@@ -104,10 +104,4 @@ double highest_frequency(const Locus& locus) {
   return highest;
 }
 
-std::size_t most_eigenvalues(const Locus& locus) {
-  std::size_t most = 0;
-  for (const auto& list : locus.eigenvalues) most = std::max(most, list.size());
-  return most;
-}
-
 }  // namespace stridor

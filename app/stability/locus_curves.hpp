@@ -16,7 +16,4 @@ std::vector<LocusCurve> curves_of(const Locus& locus, double highest);
 /// The highest frequency of the eigenvalues asked for.
 double highest_frequency(const Locus& locus);
 
-/// Largest number of them at any value.
-std::size_t most_eigenvalues(const Locus& locus);
-
 }  // namespace stridor

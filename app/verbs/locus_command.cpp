@@ -181,7 +181,7 @@ ExitCode locus(LocusCommandOptions options) {
     write_locus(*options.output, found.locus, found.windows,
                 {scene, stability, range.key, options.command_line});
   if (options.figure || options.history) {
-    if (most_eigenvalues(found.locus) == 0)
+    if (std::ranges::all_of(found.locus.eigenvalues, [](const auto& all) { return all.empty(); }))
       throw ConfigError(Refusal::wrong_value, stability.below ? "--below" : "scene",
                         "there is no eigenvalue to draw; ask for a higher frequency");
     const LocusPicture picture = picture_of(found);

@@ -13,6 +13,11 @@ from .files import ResultFile, counted, listed, span
 _TURN = 2.0 * np.pi
 
 
+def _complex(group: Any) -> np.ndarray:
+    """s, 1/s, of the growth rates and frequencies of a group."""
+    return group["growth"][:] + 1j * _TURN * group["frequency"][:]
+
+
 class Spectrum(ResultFile):
     """Eigenvalues of one scene, of a file that ``stridor eig -o`` wrote; what `eig` gives is named alike.
 
@@ -31,8 +36,7 @@ class Spectrum(ResultFile):
     @property
     def values(self) -> np.ndarray:
         """s, 1/s, ascending frequency."""
-        group = self._file["eigenvalues"]
-        return group["growth"][:] + 1j * _TURN * group["frequency"][:]
+        return _complex(self._file["eigenvalues"])
 
     @property
     def frequencies(self) -> np.ndarray:
@@ -97,8 +101,7 @@ class Locus(ResultFile):
     @property
     def eigenvalues(self) -> np.ndarray:
         """s, 1/s, [value][eigenvalue], ascending frequency; NaN where there are fewer."""
-        group = self._file["eigenvalues"]
-        return group["growth"][:] + 1j * _TURN * group["frequency"][:]
+        return _complex(self._file["eigenvalues"])
 
     @property
     def branches(self) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -178,8 +178,9 @@ void SparseSearch::search(std::size_t most_at_once) {
   }
 }
 
-/// What a Krylov space grows from: a mixture of the vectors at hand, or two random ones, so that it
-/// finds eigenvalues that coincide. More would be of no use: its degree counts, not its width.
+/// Starting vectors of a Krylov space: a mixture of the vectors at hand, or two random ones, so
+/// that it finds eigenvalues that coincide. More would be of no use: its degree counts, not its
+/// width.
 Eigen::MatrixXcd SparseSearch::start_of(std::size_t first, std::size_t last,
                                         const SparseFactor& factor) {
   const Eigen::Index width = starts_at_pairs_ ? 1 : 2;
@@ -230,8 +231,8 @@ void SparseSearch::keep_sides(const NearestPairs& found, Complex shift, const Sp
     if (pair.s.imag() < -real_enough * std::abs(pair.s)) continue;
     Eigen::VectorXcd y =
         factor.solve_adjoint(pencil_.slope_adjoint(pair.s, shift, pair.x)).normalized();
-    // What is rough in an error of 1e-9 has a residual that grows with the fineness of the mesh, up to
-    // 1e-4; a step of inverse iteration leaves nothing of it: P(σ) x = (σ − s) ((s + σ) M + P) x.
+    // The rough part of an error of 1e-9 has a residual that grows with the fineness of the mesh,
+    // up to 1e-4; a step of inverse iteration removes it: P(σ) x = (σ − s) ((s + σ) M + P) x.
     Eigen::VectorXcd x = factor.solve(pencil_.slope(pair.s, shift, pair.x)).normalized();
     rights_.push_back({pair.s, std::move(x)});
     lefts_.push_back({pair.s, std::move(y)});

@@ -52,7 +52,7 @@ struct SparseSpectrum {
   TwoSidedPairs pairs;       ///< where they are asked for
 };
 
-/// What a search does besides.
+/// Further work of a search.
 struct SpectrumWork {
   enum class Sides { right, both } sides = Sides::right;  ///< `both`: with SparseSpectrum::pairs
   /// Called with every s and factor of P(s) that the count takes.

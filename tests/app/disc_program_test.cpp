@@ -262,28 +262,6 @@ TEST(DiscProgram, EveryVerbStatesItsWindow) {
   for (const Json& s : eig["eigenvalues"]) EXPECT_LT(s[1].get<double>(), 2.0 * 3.14159266 * 2000.0);
 }
 
-TEST(DiscProgram, AFrequencyAloneAsksForAllBelowIt) {
-  const std::string scene = scene_path("beam_on_beam.yaml");
-  const std::vector<std::string> below{"--below", "200 kHz"};
-  std::vector<std::string> eig{"eig", scene, "--set", "contact.start=50 mm"};
-  std::vector<std::string> locus{"locus", scene,   "--from",   "50 mm",
-                                 "--to",  "51 mm", "--points", "2"};
-  eig.insert(eig.end(), below.begin(), below.end());
-  locus.insert(locus.end(), below.begin(), below.end());
-  const Json all = json_of(eig)["eigenvalues"];
-  EXPECT_GT(all.size(), 60U);
-  const Json along = json_of(locus)["eigenvalues"][0];
-  ASSERT_EQ(along.size(), all.size());
-  for (std::size_t i = 0; i < all.size(); ++i)
-    EXPECT_NEAR(along[i][1].get<double>(), all[i][1].get<double>(),
-                1e-9 * all.back()[1].get<double>());
-  locus.insert(locus.end(), {"--count", "7"});
-  int num_pairs = 0;
-  const Json lowest = json_of(locus)["eigenvalues"][0];
-  for (const Json& s : lowest) num_pairs += s[1].get<double>() > 0.0;
-  EXPECT_EQ(num_pairs, 7);
-}
-
 TEST(DiscProgram, WhereNothingLiesBelowAFrequencyNothingIsDrawn) {
   const TemporaryFolder folder;
   const ProgramResult drawn =

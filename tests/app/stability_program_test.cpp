@@ -594,5 +594,26 @@ TEST(LocusProgram, FilesAreWrittenOnceAndKeptWithoutForce) {
   EXPECT_THAT(refused.err, HasSubstr("exists; use --force to overwrite it"));
 }
 
+TEST(LocusProgram, AFrequencyAloneAsksForAllBelowIt) {
+  const std::vector<std::string> below{"--below", "200 kHz"};
+  std::vector<std::string> eig{"eig", trailing, "--set", "contact.start=50 mm"};
+  std::vector<std::string> locus{"locus", trailing, "--from",   "50 mm",
+                                 "--to",  "51 mm",  "--points", "2"};
+  eig.insert(eig.end(), below.begin(), below.end());
+  locus.insert(locus.end(), below.begin(), below.end());
+  const Json all = run_json(eig)["eigenvalues"];
+  EXPECT_GT(all.size(), 60U);
+  const Json along = run_json(locus)["eigenvalues"][0];
+  ASSERT_EQ(along.size(), all.size());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    EXPECT_NEAR(along[i][1].get<double>(), all[i][1].get<double>(),
+                1e-9 * all.back()[1].get<double>());
+  locus.insert(locus.end(), {"--count", "7"});
+  int num_pairs = 0;
+  const Json lowest = run_json(locus)["eigenvalues"][0];
+  for (const Json& s : lowest) num_pairs += s[1].get<double>() > 0.0;
+  EXPECT_EQ(num_pairs, 7);
+}
+
 }  // namespace
 }  // namespace stridor
