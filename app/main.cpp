@@ -125,11 +125,11 @@ void add_verbs(CLI::App& program, Action& action, const std::string& command) {
   add_draw_command(program, action);
   add_import_command(program, action);
   add_info_command(program, action);
-  add_plot_command(program, action);
+  add_plot_command(program, action, command);
   add_schema_command(program, action);
   add_compare_command(program, action, command);
   add_precision_command(program, action, command);
-  add_spectrogram_command(program, action);
+  add_spectrogram_command(program, action, command);
   add_sound_command(program, action);
   add_report_command(program, action, command);
   add_eig_command(program, action, command);

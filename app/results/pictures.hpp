@@ -20,6 +20,7 @@ namespace stridor {
 /// Options as the user wrote them; nothing where an option was not given.
 struct PictureOptions {
   CommonOptions common;
+  std::string command_line;  ///< as typed, for files of data
   std::string file;
   std::string output;
   std::vector<std::string> channels;

@@ -82,7 +82,7 @@ void add_check_command(CLI::App& program, Action& action);
 void add_import_command(CLI::App& program, Action& action);
 void add_info_command(CLI::App& program, Action& action);
 void add_draw_command(CLI::App& program, Action& action);
-void add_plot_command(CLI::App& program, Action& action);
+void add_plot_command(CLI::App& program, Action& action, const std::string& command_line);
 void add_schema_command(CLI::App& program, Action& action);
 void add_compare_command(CLI::App& program, Action& action, const std::string& command_line);
 void add_precision_command(CLI::App& program, Action& action, const std::string& command_line);
@@ -90,7 +90,7 @@ void add_eig_command(CLI::App& program, Action& action, const std::string& comma
 void add_locus_command(CLI::App& program, Action& action, const std::string& command_line);
 void add_map_command(CLI::App& program, Action& action, const std::string& command_line);
 void add_threshold_command(CLI::App& program, Action& action, const std::string& command_line);
-void add_spectrogram_command(CLI::App& program, Action& action);
+void add_spectrogram_command(CLI::App& program, Action& action, const std::string& command_line);
 void add_sound_command(CLI::App& program, Action& action);
 void add_report_command(CLI::App& program, Action& action, const std::string& command_line);
 /// Verbs that no user calls: pages of the manual.

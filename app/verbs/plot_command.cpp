@@ -312,8 +312,9 @@ ExitCode plot(const PlotOptions& options) {
 
 }  // namespace
 
-void add_plot_command(CLI::App& program, Action& action) {
+void add_plot_command(CLI::App& program, Action& action, const std::string& command_line) {
   auto options = std::make_shared<PlotOptions>();
+  options->command_line = command_line;
   CLI::App* verb = program.add_subcommand("plot", "Pictures of a run file");
   verb->add_option("file", options->file, "Run file (HDF5)")->required();
   verb->add_option("--kind", options->kind,

@@ -8,8 +8,10 @@
 #include "app/stability/prediction.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
+#include "core/version.hpp"
 #include "io/figures/axes.hpp"
 #include "io/figures/spectrogram_plot.hpp"
+#include "io/hdf5/output_options.hpp"
 #include "io/results/spectrogram_file.hpp"
 
 namespace stridor {
@@ -88,13 +90,20 @@ void check_band(const PictureOptions& options, const RecordedStretch& run,
                                 acceleration_name(run.file), channel_name(series)));
 }
 
-Attributes data_attributes(const Json& settings, const RecordedStretch& run) {
+Attributes data_attributes(const Json& settings, const RecordedStretch& run,
+                           const std::string& command_line) {
   const RunFileHeader& header = run.file.header();
-  Attributes attributes{{"run_file", run.path},
+  Attributes attributes{{"command", command_line},
+                        {"version", std::string(version)},
+                        {"commit", std::string(commit)},
+                        {"date", utc_now()},
+                        {"run_file", run.path},
                         {"run_command", header.command},
+                        {"run_version", header.version},
+                        {"run_commit", header.commit},
+                        {"scene", scene_of_command(header.command)},
                         {"scene_hash", header.scene_hash},
-                        {"version", header.version},
-                        {"commit", header.commit},
+                        {"scene_resolved", header.scene_resolved},
                         {"interval", run.interval}};
   for (const auto& [name, value] : settings.items()) {
     if (value.is_number()) attributes.emplace_back(name, value.get<double>());
@@ -216,15 +225,17 @@ ExitCode draw_spectrogram(const PictureOptions& options) {
   const Json settings = settings_json(run, drawn);
   if (options.data) {
     write_spectrogram_file(*options.data, options.common.overwrite(), spectrogram,
-                           drawn.picture.units, data_attributes(settings, run));
+                           drawn.picture.units,
+                           data_attributes(settings, run, options.command_line));
   }
   plot_spectrogram(spectrogram, drawn.picture, options.output);
   print_drawn(options, run, drawn, spectrogram, settings);
   return ExitCode::done;
 }
 
-void add_spectrogram_command(CLI::App& program, Action& action) {
+void add_spectrogram_command(CLI::App& program, Action& action, const std::string& command_line) {
   auto options = std::make_shared<PictureOptions>();
+  options->command_line = command_line;
   CLI::App* verb =
       program.add_subcommand("spectrogram", "Amplitude over time and frequency of one channel");
   verb->add_option("file", options->file, "Run file (HDF5)")->required();

@@ -13,6 +13,19 @@
 
 namespace stridor {
 
+namespace {
+
+/// The kind of a file that holds results of another verb, and what reads it; else what it lacks.
+std::string instead_of_run(const AttributeValues& values) {
+  const auto found = values.find("kind");
+  const auto* kind = found == values.end() ? nullptr : std::get_if<std::string>(&found->second);
+  if (kind == nullptr) return " (no attribute 'format')";
+  return fmt::format(", but of the kind '{}', which `stridor report` draws and HDF5 viewers read",
+                     *kind);
+}
+
+}  // namespace
+
 struct RunFileReader::Impl {
   explicit Impl(const std::string& path) : at(path) {}
   ~Impl() {
@@ -41,7 +54,7 @@ void RunFileReader::Impl::read_header() {
   const double* number = format == values.end() ? nullptr : std::get_if<double>(&format->second);
   if (number == nullptr)
     throw FileError(Refusal::other_kind_of_file, at.path(), "",
-                    "is not a run file of stridor (no attribute 'format')");
+                    "is not a run file of stridor" + instead_of_run(values));
   if (*number > run_file_format) {
     throw FileError(
         Refusal::other_kind_of_file, at.path(), "",

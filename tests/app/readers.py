@@ -169,8 +169,7 @@ class Readers(unittest.TestCase):
                               for name, value in opened.attrs.items()}
                 self.assertEqual(attributes["kind"], kind)
                 self.assertTrue(attributes["title"].startswith(kind), attributes["title"])
-                if kind != "spectrogram":
-                    self.assertIn("stridor", attributes["history"])
+                self.assertIn("stridor", attributes["history"])
                 self.assertRegex(attributes["source"], r"^stridor \d")
 
     def test_viewers_of_nexus_find_what_to_draw(self):
