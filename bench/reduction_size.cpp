@@ -213,8 +213,9 @@ void compare(const BodyMatrices& body, const std::vector<int>& interface, int ro
     Cost factorisation{};
     {
       const SparseMatrix interior = interior_stiffness(body, interface);
-      factorisation = cost_of(
-          [&] { const Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> factor(interior); });
+      factorisation = cost_of([&] {
+        const Eigen::CholmodSupernodalLLT<SparseMatrix::Base, Eigen::Lower> factor(interior);
+      });
     }
     print("factorisation", factorisation);
     const Cost reduction =

@@ -175,7 +175,7 @@ class ModelBuilder {
 
   void make_model_sparse(std::vector<SparseSystem> blocks) {
     for (const SystemBody& body : model_.system.bodies) blocks.push_back(make_sparse(body.modal));
-    model_.sparse = block_diagonal(blocks);
+    model_.sparse = block_diagonal(std::move(blocks));
     model_.system = {};
     model_.points.clear();
     model_.placements.clear();

@@ -56,18 +56,63 @@ void keep_nodes(const std::vector<BodyShape>& bodies, ShapedModes& shapes) {
   }
 }
 
-/// The row of every measured node.
-/// @param farthest becomes the largest distance of those that were matched by place, m
+constexpr double coincident = 1e-9;  // distance of nodes at one place, of the extent
+
+/// The row of the node nearest to a place, with those that coincide with it.
+std::vector<Eigen::Index> nearest_nodes(const Eigen::MatrixX3d& places,
+                                        const Eigen::Vector3d& place, double extent) {
+  Eigen::Index nearest = 0;
+  (places.rowwise() - place.transpose()).rowwise().norm().minCoeff(&nearest);
+  std::vector<Eigen::Index> nodes;
+  for (Eigen::Index node = 0; node < places.rows(); ++node)
+    if ((places.row(node) - places.row(nearest)).norm() <= coincident * extent)
+      nodes.push_back(node);
+  return nodes;
+}
+
+/// Nodes of the scene that coincide, with the places of the measured nodes to which they are
+/// nearest.
+struct SharedPlace {
+  std::vector<Eigen::Index> nodes;
+  std::map<std::int64_t, Eigen::Vector3d> measured;
+};
+
+/// Measured nodes that coincide as those of the scene do take one of them each; of any others it is
+/// unclear which is meant, and they take the first.
+void share_nodes(const ShapedModes& shapes, const SharedPlace& place, double extent,
+                 NodesByLabel& node_of, std::vector<UnclearNode>& unclear) {
+  const Eigen::Vector3d& first = place.measured.begin()->second;
+  const bool is_clear =
+      place.nodes.size() == 1 || (place.measured.size() == place.nodes.size() &&
+                                  std::ranges::all_of(place.measured, [&](const auto& one) {
+                                    return (one.second - first).norm() <= coincident * extent;
+                                  }));
+  std::size_t next = 0;
+  for (const auto& [label, where] : place.measured) {
+    const bool takes_next = is_clear && place.nodes.size() > 1;
+    node_of.emplace(label, place.nodes[takes_next ? next++ : 0]);
+    if (is_clear) continue;
+    UnclearNode one{label, {}};
+    for (const Eigen::Index node : place.nodes)
+      one.bodies.push_back(shapes.bodies[static_cast<std::size_t>(node)]);
+    unclear.push_back(std::move(one));
+  }
+}
+
+/// The row of every measured node. Sets what of a comparison tells of the match.
 NodesByLabel matched_nodes(const ShapedModes& shapes, const ModalTest& measured,
-                           const NodesByLabel& named, const std::string& path, double& farthest) {
+                           const NodesByLabel& named, const std::string& path,
+                           ShapeComparison& comparison) {
   const Eigen::RowVector3d low = shapes.places.colwise().minCoeff();
   const Eigen::RowVector3d high = shapes.places.colwise().maxCoeff();
   const double extent = (high - low).norm();
   NodesByLabel node_of;
+  std::map<Eigen::Index, SharedPlace> shared;  // by the first of their nodes
+  std::set<std::int64_t> seen;
   for (const TestMode& mode : measured.modes) {
     for (const auto& entry : mode.shape) {
       const std::int64_t label = entry.first;
-      if (node_of.contains(label)) continue;
+      if (!seen.insert(label).second) continue;
       if (const auto name = named.find(label); name != named.end()) {
         node_of.insert(*name);
         continue;
@@ -79,9 +124,9 @@ NodesByLabel matched_nodes(const ShapedModes& shapes, const ModalTest& measured,
                                       "name it with --node {}=BODY.POINT",
                                       path, label, label));
       }
-      Eigen::Index nearest = 0;
+      const std::vector<Eigen::Index> nearest = nearest_nodes(shapes.places, place->second, extent);
       const double distance =
-          (shapes.places.rowwise() - place->second.transpose()).rowwise().norm().minCoeff(&nearest);
+          (shapes.places.row(nearest.front()) - place->second.transpose()).norm();
       if (!(distance <= 0.05 * extent)) {
         throw ConfigError(
             Refusal::off_the_surface, "--compare",
@@ -91,10 +136,13 @@ NodesByLabel matched_nodes(const ShapedModes& shapes, const ModalTest& measured,
                         label, path, place->second.x(), place->second.y(), place->second.z(),
                         distance, extent, label));
       }
-      farthest = std::max(farthest, distance);
-      node_of.emplace(label, nearest);
+      comparison.farthest = std::max(comparison.farthest, distance);
+      shared[nearest.front()].nodes = nearest;
+      shared[nearest.front()].measured.emplace(label, place->second);
     }
   }
+  for (const auto& [first, place] : shared)
+    share_nodes(shapes, place, extent, node_of, comparison.unclear);
   for (const auto& [label, node] : named) {
     if (!node_of.contains(label))
       throw ConfigError(Refusal::unknown_name, "--node",
@@ -210,7 +258,7 @@ ShapeComparison compared_shapes(const ShapedModes& shapes, const ModalTest& meas
                                 const NodesByLabel& named, const std::string& path) {
   ShapeComparison comparison;
   comparison.measured = measured.modes;
-  const NodesByLabel node_of = matched_nodes(shapes, measured, named, path, comparison.farthest);
+  const NodesByLabel node_of = matched_nodes(shapes, measured, named, path, comparison);
   comparison.num_nodes = node_of.size();
   comparison.assurance.resize(static_cast<Eigen::Index>(shapes.modes.size()),
                               static_cast<Eigen::Index>(measured.modes.size()));

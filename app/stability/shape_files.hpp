@@ -37,6 +37,12 @@ ShapedModes shaped_modes(const Analysis& analysis, const std::string& option);
 /// As a universal file: 2411 (nodes from 1), 2412 (elements), 82 (lines) and a 55 for each mode.
 UffContents uff_contents(const ShapedModes& shapes, const std::string& scene);
 
+/// A measured node whose place several nodes of the scene share.
+struct UnclearNode {
+  std::int64_t label = 0;
+  std::vector<std::string> bodies;  ///< of those nodes; the first is that of the node taken
+};
+
 /// Modal assurance criterion |φᴴψ|²/(φᴴφ ψᴴψ) of computed and measured modes over the nodes that were
 /// measured.
 struct ShapeComparison {
@@ -44,6 +50,8 @@ struct ShapeComparison {
   Eigen::MatrixXd assurance;  ///< [computed mode][measured mode]
   double farthest = 0.0;      ///< of a measured node from the node of the scene taken for it, m
   std::size_t num_nodes = 0;
+  /// Measured nodes that stand where more nodes of the scene do than were measured there.
+  std::vector<UnclearNode> unclear;
 };
 
 /// Rows of `shapes` by the label of a measured node.
@@ -54,10 +62,13 @@ using NodesByLabel = std::map<std::int64_t, Eigen::Index>;
 NodesByLabel nodes_at_points(const ShapedModes& shapes, const LoadedScene& loaded,
                              const std::vector<NodeName>& names);
 
-/// A measured node is what `named` says, else the node of the scene that is nearest to it.
+/// A measured node is what `named` says, else the node of the scene that is nearest to it. Where
+/// nodes of the scene coincide, as in a contact, as many measured nodes that coincide take one
+/// each, in the order of their labels; of any others it is unclear.
 /// @param path of the measured shapes, for messages
 /// @throws ConfigError if a measured node without a name is farther from every node than 5 % of the
-///         extent of the bodies or the file has no place of it, or a named node has not been measured
+///         extent of the bodies or the file has no place of it, or a named node has not been
+///         measured
 ShapeComparison compared_shapes(const ShapedModes& shapes, const ModalTest& measured,
                                 const NodesByLabel& named, const std::string& path);
 

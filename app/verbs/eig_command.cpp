@@ -1,11 +1,14 @@
 // stridor eig: sliding equilibrium of a scene and its eigenvalues.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <filesystem>
+#include <numbers>
 #include <string>
+#include <vector>
 
 #include "app/results/file_attributes.hpp"
 #include "app/stability/analysed_spectrum.hpp"
@@ -169,6 +172,13 @@ std::size_t mode_of_interest(const Analysis& analysis, const std::optional<int>&
   return chosen_mode(choice, num_real_of(choice), mode);
 }
 
+Json unclear_json(const ShapeComparison& comparison) {
+  Json nodes = Json::array();
+  for (const UnclearNode& one : comparison.unclear)
+    nodes.push_back({{"node", one.label}, {"bodies", one.bodies}});
+  return nodes;
+}
+
 /// All modes as a universal file, and beside measured ones.
 void add_shape_files(const EigOptions& options, const LoadedScene& loaded, const Analysis& analysis,
                      Json& object) {
@@ -191,13 +201,14 @@ void add_shape_files(const EigOptions& options, const LoadedScene& loaded, const
     rows.push_back({{"measured", comparison.measured[m].number},
                     {"measured_frequency", comparison.measured[m].frequency},
                     {"mode", best + 1},
-                    {"frequency", computed.frequency()},
+                    {"frequency", std::abs(computed.s) / (2.0 * std::numbers::pi)},
                     {"mac", column[best]},
                     {"macs", std::vector<double>(column.begin(), column.end())}});
   }
   object["comparison"] = {{"file", *options.compared},
                           {"nodes", comparison.num_nodes},
                           {"farthest", comparison.farthest},
+                          {"unclear", unclear_json(comparison)},
                           {"modes", rows}};
   if (!options.figure) return;
   AssurancePicture picture{comparison.assurance, {}, {}};
@@ -213,8 +224,17 @@ void add_shape_files(const EigOptions& options, const LoadedScene& loaded, const
 void print_comparison(const Json& comparison) {
   fmt::print("\n{} measured nodes, at most {:.3g} m from a node of the scene\n",
              comparison["nodes"].get<std::size_t>(), comparison["farthest"].get<double>());
-  fmt::print("{:>8} {:>14} {:>6} {:>14} {:>10} {:>7}\n", "measured", "Hz", "mode", "Hz", "difference",
-             "MAC");
+  for (const Json& one : comparison["unclear"]) {
+    const auto bodies = one["bodies"].get<std::vector<std::string>>();
+    fmt::print(
+        "node {} stands where {} nodes coincide ({}); that of {} was taken, --node {}=BODY.POINT "
+        "names "
+        "another\n",
+        one["node"].get<std::int64_t>(), bodies.size(), fmt::join(bodies, ", "), bodies.front(),
+        one["node"].get<std::int64_t>());
+  }
+  fmt::print("{:>8} {:>14} {:>6} {:>14} {:>10} {:>7}   (undamped frequencies)\n", "measured", "Hz",
+             "mode", "Hz", "difference", "MAC");
   for (const Json& row : comparison["modes"]) {
     const auto measured = row["measured_frequency"].get<double>();
     const auto computed = row["frequency"].get<double>();

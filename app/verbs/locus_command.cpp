@@ -172,6 +172,11 @@ ExitCode locus(LocusCommandOptions options) {
   found.locus =
       locus_along(*family, range.key, 0, {first}, range.values, stability.locus_options());
   progress.reset();
+  // Before anything is written: an empty locus is no loss.
+  if ((options.figure || options.history) &&
+      std::ranges::all_of(found.locus.eigenvalues, [](const auto& all) { return all.empty(); }))
+    throw ConfigError(Refusal::wrong_value, stability.below ? "--below" : "scene",
+                      "there is no eigenvalue to draw; ask for a higher frequency");
   found.trusted = std::min(family->trusted_frequency(std::array{range.values.front()}),
                            family->trusted_frequency(std::array{range.values.back()}));
   found.highest = verdict_limit(found.locus, stability.window(), found.trusted);
@@ -181,9 +186,6 @@ ExitCode locus(LocusCommandOptions options) {
     write_locus(*options.output, found.locus, found.windows,
                 {scene, stability, range.key, options.command_line});
   if (options.figure || options.history) {
-    if (std::ranges::all_of(found.locus.eigenvalues, [](const auto& all) { return all.empty(); }))
-      throw ConfigError(Refusal::wrong_value, stability.below ? "--below" : "scene",
-                        "there is no eigenvalue to draw; ask for a higher frequency");
     const LocusPicture picture = picture_of(found);
     if (options.figure) plot_locus(picture, *options.figure);
     if (options.history) plot_locus_histories(picture, *options.history);

@@ -16,7 +16,7 @@ Eigen::MatrixXd free_motions(const Mesh& mesh, const SparseMatrix& choice) {
   Eigen::MatrixXd motions = rigid_motions(mesh);
   motions.rightCols(motions.cols() - mesh.dimension()) /= extent_of(mesh);
   const SparseMatrix transposed = choice.transpose();
-  const Eigen::SimplicialLDLT<SparseMatrix> factor(SparseMatrix(transposed * choice));
+  const Eigen::SimplicialLDLT<SparseMatrix::Base> factor(SparseMatrix(transposed * choice));
   const Eigen::MatrixXd rest =
       motions - choice * factor.solve(Eigen::MatrixXd(transposed * motions));
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(rest.transpose() * rest);

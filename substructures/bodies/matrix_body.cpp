@@ -55,19 +55,19 @@ int dof_of(std::int64_t number, Eigen::Index num_dofs, const std::string& key) {
 
 }  // namespace
 
-void take_system(const SparseSystem& system, BodyMatrices& body) {
+void take_system(SparseSystem system, BodyMatrices& body) {
   const Eigen::Index n = system.size();
-  body.mass = system.mass;
+  body.mass = std::move(system.mass);
   const SparseMatrix transposed = system.position.transpose();
   body.stiffness = 0.5 * (system.position + transposed);
-  body.loss_stiffness = system.loss;
-  const SparseMatrix skew = 0.5 * (system.position - transposed);
+  body.loss_stiffness = std::move(system.loss);
+  SparseMatrix skew = 0.5 * (system.position - transposed);
   const std::optional<RayleighDamping> damping =
       proportional_damping(system.velocity, body.mass, body.stiffness);
   if (damping) body.damping = *damping;
   if (!damping || skew.norm() > 0.0) {
-    body.velocity = damping ? SparseMatrix(n, n) : system.velocity;
-    body.circulatory = skew;
+    body.velocity = damping ? SparseMatrix(n, n) : std::move(system.velocity);
+    body.circulatory = std::move(skew);
   }
 }
 
@@ -104,10 +104,10 @@ BodyMatrices make_matrix_body(const TouchedMatrixBodyParameters& parameters) {
     throw std::invalid_argument("make_matrix_body: the matrices have not been read");
   if (parameters.has_nodes()) return make_nodal_body(parameters);
   refuse_node_keys(parameters);
-  const SparseSystem system = sum(*parameters.matrices, parameters.body, parameters.nodes);
+  SparseSystem system = sum(*parameters.matrices, parameters.body, parameters.nodes);
   const Eigen::Index n = system.size();
   BodyMatrices body;
-  take_system(system, body);
+  take_system(std::move(system), body);
   body.nodes.resize(static_cast<Eigen::Index>(parameters.points.size()), 3);
   for (const auto& [name, point] : parameters.points) {
     const auto node = static_cast<int>(body.node_dofs.size());

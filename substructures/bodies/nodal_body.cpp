@@ -139,7 +139,7 @@ SparseSystem sum(const NamedMatrices& matrices, const MatrixBodyParameters& body
     SparseMatrix& to = role == MatrixRole::structural ? system.loss
                        : is_of_velocity(role)         ? system.velocity
                                                       : system.position;
-    const SparseMatrix before = to;
+    const SparseMatrix before = std::move(to);
     to = before + body.terms[i].factor * matrices.terms.at(i);
   }
   const double length = unit_of(nodes.length_unit, "length_unit", "m");
@@ -225,7 +225,7 @@ BodyMatrices make_nodal_body(const TouchedMatrixBodyParameters& parameters) {
   SparseSystem system = sum(matrices, parameters.body, parameters.nodes);
   if (parameters.angle != 0.0) turn(matrices, nodes, parameters.angle, system);
   BodyMatrices parts;
-  take_system(system, parts);
+  take_system(std::move(system), parts);
   const NodalMatrices nodal{dimension_of(matrices),        std::move(parts.mass),
                             std::move(parts.stiffness),    parts.damping,
                             std::move(parts.velocity),     std::move(parts.circulatory),

@@ -26,7 +26,7 @@ struct NodeRows {
 NodeRows node_rows(const NamedMatrices& matrices);
 
 /// Symmetric parts, damping and coupled terms of a system, into a body.
-void take_system(const SparseSystem& system, BodyMatrices& body);
+void take_system(SparseSystem system, BodyMatrices& body);
 /// Outlines that name points.
 /// @throws ConfigError for points that are not there
 void add_point_surfaces(const TouchedMatrixBodyParameters& parameters, BodyMatrices& body);

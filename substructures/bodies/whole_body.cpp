@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "substructures/matrices/massless_motions.hpp"
@@ -90,12 +91,15 @@ ReducedBody make_whole(const BodyMatrices& body, std::span<const int> watched) {
 SparseSystem make_sparse(const BodyMatrices& body) {
   SparseSystem system;
   system.mass = body.mass;
-  system.velocity = body.damping.alpha * body.mass + body.damping.beta * body.stiffness;
   system.position = body.stiffness;
   if (body.velocity.size() > 0) {
-    system.velocity += body.velocity;
+    system.velocity = body.velocity;
     system.position += body.circulatory;
+  } else {
+    system.velocity.resize(body.mass.rows(), body.mass.cols());
   }
+  if (body.damping.alpha > 0.0 || body.damping.beta > 0.0)
+    system.velocity += body.damping.alpha * body.mass + body.damping.beta * body.stiffness;
   if (body.spin && body.spin->gyroscopic.size() > 0) add_spin(body, system);
   return system;
 }
@@ -114,9 +118,8 @@ SparseSystem make_sparse(const ModalBody& body) {
   return {sparse(Eigen::MatrixXd::Identity(n, n)), sparse(velocity), sparse(position)};
 }
 
-SparseSystem block_diagonal(std::span<const SparseSystem> blocks) {
-  if (blocks.size() == 1)
-    return {blocks.front().mass, blocks.front().velocity, blocks.front().position};
+SparseSystem block_diagonal(std::vector<SparseSystem> blocks) {
+  if (blocks.size() == 1) return std::move(blocks.front());
   SparseSystem whole;
   for (SparseMatrix SparseSystem::*member :
        {&SparseSystem::mass, &SparseSystem::velocity, &SparseSystem::position}) {

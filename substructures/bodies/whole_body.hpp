@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "substructures/matrices/body_matrices.hpp"
 #include "substructures/matrices/sparse_system.hpp"
@@ -31,6 +32,6 @@ SparseSystem make_sparse(const BodyMatrices& body);
 SparseSystem make_sparse(const ModalBody& body);
 
 /// Bodies side by side: block-diagonal matrices.
-SparseSystem block_diagonal(std::span<const SparseSystem> blocks);
+SparseSystem block_diagonal(std::vector<SparseSystem> blocks);
 
 }  // namespace stridor

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/SparseCore>
 #include <array>
 #include <functional>
 #include <limits>
@@ -13,10 +12,9 @@
 
 #include "substructures/matrices/damping.hpp"
 #include "substructures/matrices/facet.hpp"
+#include "substructures/matrices/sparse_matrix.hpp"
 
 namespace stridor {
-
-using SparseMatrix = Eigen::SparseMatrix<double>;
 
 /// A DoF with the weight that it has in a displacement.
 struct DofWeight {

@@ -67,7 +67,7 @@ double smallest_pivot_ratio(const SparseMatrix& matrix) {
   const ScaledMatrix scaled = scaled_to_unit_diagonal(matrix);
   if (scaled.has_negative) return -1.0;
   if (scaled.matrix.rows() < matrix.rows() || matrix.rows() == 0) return 0.0;
-  const Eigen::SimplicialLDLT<SparseMatrix> factor(scaled.matrix);
+  const Eigen::SimplicialLDLT<SparseMatrix::Base> factor(scaled.matrix);
   if (factor.info() != Eigen::Success) return 0.0;
   return factor.vectorD().minCoeff();
 }

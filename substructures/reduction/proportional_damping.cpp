@@ -5,6 +5,16 @@
 namespace stridor {
 namespace {
 
+/// Whether an entry differs from its mirror by more than this. It looks at the first entry of each
+/// column alone: a matrix with a skew part mostly shows it there, and no other matrix is made.
+bool is_plainly_unsymmetric(const SparseMatrix& matrix, double least) {
+  for (int column = 0; column < matrix.cols(); ++column) {
+    const SparseMatrix::InnerIterator first(matrix, column);
+    if (first && std::abs(first.value() - matrix.coeff(column, first.row())) > least) return true;
+  }
+  return false;
+}
+
 double dot(const SparseMatrix& a, const SparseMatrix& b) {
   return a.cwiseProduct(b).sum();
 }
@@ -18,6 +28,7 @@ std::optional<RayleighDamping> proportional_damping(const SparseMatrix& velocity
   const double size = velocity.norm();
   if (size == 0.0) return RayleighDamping{};
   // What is skew is no part of either; most often that decides, at a fraction of what follows.
+  if (is_plainly_unsymmetric(velocity, 2.0 * tolerance * size)) return std::nullopt;
   const SparseMatrix skew = velocity - SparseMatrix(velocity.transpose());
   if (0.5 * skew.norm() > tolerance * size) return std::nullopt;
   // Of unit size, or the normal equations lose the mass beside the stiffness.

@@ -266,10 +266,12 @@ TEST(DiscProgram, WhereNothingLiesBelowAFrequencyNothingIsDrawn) {
   const TemporaryFolder folder;
   const ProgramResult drawn =
       Program({"locus", brake, "--parameter", friction, "--from", "0.3", "--to", "0.4", "--points",
-               "2", "--below", "1 Hz", "--figure", (folder / "locus.png").string()})
+               "2", "--below", "1 Hz", "--figure", (folder / "locus.png").string(), "-o",
+               (folder / "locus.h5").string()})
           .run();
   EXPECT_EQ(drawn.exit_code, 2);
   EXPECT_THAT(drawn.err, HasSubstr("--below: there is no eigenvalue to draw"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "locus.h5"));
 }
 
 TEST(DiscProgram, ElasticPadsInEveryVerbOfSmallMotion) {

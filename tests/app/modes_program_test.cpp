@@ -9,7 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
+#include <vector>
 
+#include "io/imports/uff_file.hpp"
+#include "io/results/uff_writer.hpp"
 #include "tests/support/program.hpp"
 
 namespace stridor::test {
@@ -182,10 +185,12 @@ TEST(ShapeFiles, ModesAreThoseThatWereWritten) {
   ASSERT_EQ(modes.size(), 8u);
   for (std::size_t i = 0; i < modes.size(); ++i) {
     EXPECT_EQ(modes[i]["mode"], i + 1);
-    EXPECT_GT(modes[i]["mac"].get<double>(), 0.99) << modes[i];
+    EXPECT_GT(modes[i]["mac"].get<double>(), 1.0 - 1e-8) << modes[i];
+    EXPECT_NEAR(modes[i]["frequency"].get<double>(), undamped.at(i), 1e-9 * undamped[i]);
     EXPECT_EQ(modes[i]["macs"].size(), 8u);
     EXPECT_NEAR(modes[i]["measured_frequency"].get<double>(), undamped.at(i), 1e-5 * undamped[i]);
   }
+  EXPECT_EQ(compared["comparison"]["unclear"].size(), 0u);
   const ProgramResult again = Program({"eig", scene, "--uff", file}).run();
   EXPECT_EQ(again.exit_code, 4);
   EXPECT_THAT(again.err, HasSubstr("--force"));
@@ -231,6 +236,38 @@ TEST(ShapeFiles, MatchNamedNodesWherePlacesDoNotTell) {
   const ProgramResult alone = Program({"eig", scene, "--figure", figure}).run();
   EXPECT_EQ(alone.exit_code, 2);
   EXPECT_THAT(alone.err, HasSubstr("give it with --compare"));
+}
+
+// Where nodes of two bodies coincide a single measured node may be of either.
+TEST(ShapeFiles, TellWhereSeveralNodesOfTheSceneStandAtAMeasuredPlace) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "modes.uff").string();
+  const std::string scene = scene_path("examples/bracket.yaml");
+  eig_json({scene, "--count", "1", "--uff", file});
+  const ModalTest own = read_uff_file(file);
+  std::vector<std::int64_t> there;  // the first two nodes that coincide
+  for (const auto& [label, place] : own.nodes) {
+    for (const auto& [other, its_place] : own.nodes)
+      if (there.empty() && other > label && (place - its_place).norm() < 1e-12)
+        there = {label, other};
+  }
+  ASSERT_EQ(there.size(), 2u) << "the nodes of the bodies do not meet";
+  const auto compared_with = [&](const std::vector<std::int64_t>& labels) {
+    UffContents contents;
+    contents.modes.push_back({.number = 1, .eigenvalue = {-1.0, 1000.0}, .shape = {}});
+    for (const std::int64_t label : labels) {
+      contents.nodes.push_back({label, "part", own.nodes.at(label)});
+      contents.modes[0].shape.push_back({1.0, 2.0, 0.0});
+    }
+    const std::string measured = (folder / "measured.uff").string();
+    write_file(measured, uff_text(contents, "test"));
+    return eig_json({scene, "--count", "1", "--compare", measured})["comparison"]["unclear"];
+  };
+  const auto one = compared_with({there[0]});
+  ASSERT_EQ(one.size(), 1u);
+  EXPECT_EQ(one[0]["node"], there[0]);
+  EXPECT_EQ(one[0]["bodies"].size(), 2u);
+  EXPECT_EQ(compared_with(there).size(), 0u);
 }
 
 TEST(ShapeFiles, RefusesPlacesThatAreNotThoseOfTheScene) {

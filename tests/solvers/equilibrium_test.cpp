@@ -255,7 +255,7 @@ TEST(Equilibrium, IsThatOfTheFullModel) {
     right_side(num_dofs) = -penetration;
     SparseMatrix matrix(num_dofs + 1, num_dofs + 1);
     matrix.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SparseLU<SparseMatrix> factor(matrix);
+    const Eigen::SparseLU<SparseMatrix::Base> factor(matrix);
     ASSERT_EQ(factor.info(), Eigen::Success);
     const Eigen::VectorXd next = factor.solve(right_side);
     change = (next - solution).norm() / next.norm();

@@ -169,7 +169,7 @@ TEST(Assembly, OnlyRigidMotionsGiveNoForce) {
       // eigenvalues lie below a shift as the factor of the shifted matrix has negative pivots.
       SparseMatrix shifted = stiffness;
       shifted.diagonal().array() -= 1e-9 * largest_value(stiffness);
-      const Eigen::SimplicialLDLT<SparseMatrix> factor(shifted);
+      const Eigen::SimplicialLDLT<SparseMatrix::Base> factor(shifted);
       EXPECT_EQ((factor.vectorD().array() < 0.0).count(), motions.cols());
     }
   }

@@ -66,8 +66,7 @@ TEST(WholeBody, StandSideBySideInSparseBlocks) {
   ModalBody modal;
   modal.omega = Eigen::Vector2d(0.0, 3.0);
   modal.damping.beta = 0.01;
-  const std::array blocks{make_sparse(body), make_sparse(modal)};
-  const SparseSystem both = block_diagonal(blocks);
+  const SparseSystem both = block_diagonal({make_sparse(body), make_sparse(modal)});
   Eigen::MatrixXd M = Eigen::MatrixXd::Identity(5, 5), P = Eigen::MatrixXd::Zero(5, 5), Q = P;
   M.topLeftCorner(3, 3) = mass;
   P.topLeftCorner(3, 3) = 0.5 * mass + 0.1 * saddle;

@@ -68,7 +68,7 @@ double lowest_omega(const Mesh& mesh, const ElementSection& section, const Held&
   };
   const SparseMatrix stiffness = only_free(matrices.stiffness);
   const SparseMatrix mass = only_free(matrices.mass);
-  const Eigen::SimplicialLDLT<SparseMatrix> factor(stiffness);
+  const Eigen::SimplicialLDLT<SparseMatrix::Base> factor(stiffness);
   EXPECT_EQ(factor.info(), Eigen::Success);
   Eigen::VectorXd shape = Eigen::VectorXd::LinSpaced(count, 1.0, 2.0);
   double value = 0.0;
