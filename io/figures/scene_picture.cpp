@@ -10,8 +10,7 @@
 #include <optional>
 #include <set>
 
-#include "models/face_seats.hpp"
-#include "substructures/reduction/recovery.hpp"
+#include "io/figures/placed_bodies.hpp"
 
 namespace stridor {
 namespace {
@@ -27,11 +26,10 @@ class ScenePicture {
  public:
   ScenePicture(const PlacedModel& model, const std::vector<std::string>& recorded,
                const LengthUnit& unit)
-      : model_(model), recorded_(recorded.begin(), recorded.end()) {
+      : model_(model), placed_(model), recorded_(recorded.begin(), recorded.end()) {
     picture_.unit = unit.name;
     picture_.metres_per_unit = unit.metres;
-    find_seats();
-    bool is_spatial = has_faces_;
+    bool is_spatial = placed_.has_faces();
     for (const ModelBody& body : model.bodies) {
       if (body.parameters == nullptr) continue;
       for (const DrawnElement& element : body.parameters->elements())
@@ -41,10 +39,8 @@ class ScenePicture {
   }
 
   MeshPicture make() {
-    places_.resize(model_.bodies.size());
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
       if (model_.bodies[b].parameters == nullptr) continue;
-      place_nodes(b);
       add_body(b);
       add_supports(b);
     }
@@ -60,49 +56,15 @@ class ScenePicture {
   }
 
  private:
-  void find_seats() {
-    std::vector<double> outer_radii;
-    for (const ModelBody& body : model_.bodies) {
-      outer_radii.push_back(outer_radius_of_faces(body.matrices));
-      has_faces_ = has_faces_ || !body.matrices.faces.empty();
-    }
-    seats_ = face_seats(model_.system.contacts, outer_radii);
-  }
-
-  /// Of the frame of a body.
-  Eigen::Vector3d global(std::size_t b, const Eigen::Vector3d& in_body) const {
-    const Eigen::Vector3d place = unrolled(b, in_body);
-    return seats_[b] ? seats_[b]->place(place) : place;
-  }
-  /// The same before a body on a face stands about its axis.
-  Eigen::Vector3d unrolled(std::size_t b, const Eigen::Vector3d& in_body) const {
-    const ModelBody& body = model_.bodies[b];
-    Eigen::Vector3d place = in_body;
-    place.head(body.place.size()) += body.place;
-    if (body.is_mirrored) place.y() *= -1.0;
-    return place;
-  }
-  /// A direction of the frame of a body at a place of it.
-  Eigen::Vector3d global_direction(std::size_t b, const Eigen::Vector3d& in_body,
-                                   Eigen::Vector3d direction) const {
-    if (model_.bodies[b].is_mirrored) direction.y() *= -1.0;
-    return seats_[b] ? seats_[b]->directions(unrolled(b, in_body)) * direction : direction;
-  }
-
-  void place_nodes(std::size_t b) {
-    Eigen::MatrixX3d& places = places_[b];
-    places = node_places(model_.bodies[b].matrices);
-    for (Eigen::Index i = 0; i < places.rows(); ++i)
-      places.row(i) = global(b, places.row(i).transpose()).transpose();
-  }
-  Eigen::Vector3d place(std::size_t b, int node) const { return places_[b].row(node).transpose(); }
+  const Eigen::MatrixX3d& nodes(std::size_t b) const { return placed_.nodes(b); }
+  Eigen::Vector3d place(std::size_t b, int node) const { return placed_.node(b, node); }
 
   void add_body(std::size_t b) {
     const ModelBody& body = model_.bodies[b];
     PicturePart part;
     part.name = body.name;
     part.colour = part_colour(b);
-    part.nodes = places_[b];
+    part.nodes = nodes(b);
     const std::vector<DrawnElement> elements = body.parameters->elements();
     part.faces = face_loops(elements);
     part.is_closed =
@@ -123,9 +85,9 @@ class ScenePicture {
   void add_joined(std::size_t b, PicturePart& part) {
     constexpr Eigen::Index most = 400;
     const BodyMatrices& matrices = model_.bodies[b].matrices;
-    for (Eigen::Index i = 0; i < places_[b].rows() && i < most; ++i)
+    for (Eigen::Index i = 0; i < nodes(b).rows() && i < most; ++i)
       picture_.places.push_back({place(b, static_cast<int>(i)), PictureMark::mass});
-    if (places_[b].rows() > most || matrices.is_modal) return;
+    if (nodes(b).rows() > most || matrices.is_modal) return;
     const std::vector<int> nodes = nodes_of_dofs(matrices);
     std::set<std::pair<int, int>> joined;
     for (int column = 0; column < matrices.stiffness.outerSize(); ++column) {
@@ -189,21 +151,13 @@ class ScenePicture {
       picture_.places.push_back(marked[i]);
   }
 
-  /// Springs; the ground is where no master is: on the side to which the master's normal points.
   void add_springs(std::size_t b) {
-    std::optional<Eigen::Vector3d> away;
-    for (const ContactPoint& contact : model_.system.contacts)
-      if (contact.slave_body == static_cast<int>(b) && !away) away = normal_of(contact);
     for (const BodySpring& spring : model_.bodies[b].matrices.springs) {
-      const Eigen::Vector3d at = global(b, spring.at);
-      if (spring.other) {
-        picture_.springs.push_back({at, global(b, *spring.other), false});
-        continue;
-      }
-      Eigen::Vector3d behind = -global_direction(b, spring.at, spring.along);
-      constexpr double along_the_normal = 0.5;
-      if (away && away->dot(behind) < -along_the_normal) behind *= -1.0;
-      picture_.springs.push_back({at, behind, true});
+      const Eigen::Vector3d at = placed_.at(b, spring.at);
+      if (spring.other)
+        picture_.springs.push_back({at, placed_.at(b, *spring.other), false});
+      else
+        picture_.springs.push_back({at, placed_.ground_side(b, spring), true});
     }
   }
 
@@ -218,19 +172,10 @@ class ScenePicture {
       picture_.labels.push_back({at, "", fmt::format("{} on {}", pair.name, pair.master_name), 2});
       for (const ContactPoint& contact : model_.system.contacts) {
         if (contact.name != pair.point_name(0)) continue;
-        if (const std::optional<Eigen::Vector3d> normal = normal_of(contact))
+        if (const std::optional<Eigen::Vector3d> normal = placed_.normal_of(contact))
           picture_.arrows.push_back({at, *normal, PictureArrow::Kind::normal});
       }
     }
-  }
-
-  std::optional<Eigen::Vector3d> normal_of(const ContactPoint& contact) const {
-    if (contact.face)
-      return Eigen::Vector3d(contact.face->side * Eigen::Vector3d::UnitZ());
-    if (contact.surface < 0) return std::nullopt;
-    const Eigen::Vector2d slave = contact.slave_position.head(2);
-    return in_space(
-        model_.system.surface_of(contact).project_undeformed(contact.first_segment, slave).normal);
   }
 
   void add_master(const MasterSurface& surface) {
@@ -242,7 +187,8 @@ class ScenePicture {
       // As far as the bodies reach.
       double low = 0.0;
       double high = 0.0;
-      for (const Eigen::MatrixX3d& places : places_) {
+      for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+        const Eigen::MatrixX3d& places = nodes(b);
         if (places.rows() == 0) continue;
         low = std::min(low, places.col(0).minCoeff());
         high = std::max(high, places.col(0).maxCoeff());
@@ -327,7 +273,7 @@ class ScenePicture {
     const bool is_force = load.by == BodyLoad::By::force;
     if (at_the_end(is_force ? drive.load : drive.shift) < 0.0) direction *= -1.0;
     if (model_.bodies[b].is_mirrored) direction.y() *= -1.0;
-    if (seats_[b]) direction = Eigen::Vector3d(0.0, 0.0, direction.y());
+    if (placed_.seat(b)) direction = Eigen::Vector3d(0.0, 0.0, direction.y());
     picture_.arrows.push_back({at / total, direction,
                                is_force ? PictureArrow::Kind::load : PictureArrow::Kind::motion});
   }
@@ -349,11 +295,9 @@ class ScenePicture {
   }
 
   const PlacedModel& model_;
+  PlacedBodies placed_;
   std::set<std::string> recorded_;
-  std::vector<std::optional<FaceSeat>> seats_;
-  bool has_faces_ = false;
   bool names_masters_ = false;
-  std::vector<Eigen::MatrixX3d> places_;  ///< of the nodes of all bodies
   std::map<std::size_t, std::vector<int>> guided_;
   MeshPicture picture_;
 };
