@@ -7,6 +7,7 @@
 #include <cmath>
 #include <complex>
 
+#include "app/report/drawn_bodies.hpp"
 #include "app/stability/analysed_spectrum.hpp"
 #include "app/stability/passing_times.hpp"
 #include "core/activity.hpp"
@@ -20,68 +21,11 @@ namespace {
 
 constexpr int most_modes = 20;
 
-/// The nodes of the bodies that are drawn, and what is drawn between them.
-struct DrawnNodes {
-  struct Part {
-    std::size_t body = 0;    ///< of the shapes
-    std::vector<int> nodes;  ///< of the body
-    std::size_t first = 0;   ///< of its nodes, among all
-    std::vector<std::vector<int>> faces;  ///< numbers among all
-    std::vector<std::vector<int>> lines;
-  };
-  std::vector<Part> parts;
-  std::size_t count = 0;
-};
-
-DrawnNodes drawn_nodes(const std::vector<BodyShape>& shapes) {
-  DrawnNodes drawn;
-  for (std::size_t b = 0; b < shapes.size(); ++b) {
-    DrawnNodes::Part part{b, {}, drawn.count, face_loops(shapes[b].elements), shapes[b].outlines};
-    if (!part.faces.empty()) part.lines.clear();
-    std::vector<int> number(static_cast<std::size_t>(shapes[b].nodes.rows()), -1);
-    const auto use = [&](int& node) {
-      int& known = number[static_cast<std::size_t>(node)];
-      if (known < 0) {
-        known = static_cast<int>(drawn.count + part.nodes.size());
-        part.nodes.push_back(node);
-      }
-      node = known;
-    };
-    for (auto* list : {&part.faces, &part.lines})
-      for (std::vector<int>& loop : *list) std::for_each(loop.begin(), loop.end(), use);
-    if (part.nodes.empty()) {  // points alone, as of lumped masses
-      for (int node = 0; node < shapes[b].nodes.rows(); ++node) {
-        int copy = node;
-        use(copy);
-      }
-    }
-    drawn.count += part.nodes.size();
-    drawn.parts.push_back(std::move(part));
-  }
-  return drawn;
-}
-
-std::vector<double> stacked(const std::vector<std::vector<int>>& loops, bool sizes) {
-  std::vector<double> numbers;
-  for (const std::vector<int>& loop : loops) {
-    if (sizes) numbers.push_back(static_cast<double>(loop.size()));
-    else numbers.insert(numbers.end(), loop.begin(), loop.end());
-  }
-  return numbers;
-}
-
-Json parts_json(const DrawnNodes& drawn, const std::vector<BodyShape>& shapes, ReportPage& page) {
-  Json parts = Json::array();
-  for (const DrawnNodes::Part& part : drawn.parts) {
-    Json one = {{"name", shapes[part.body].name}, {"first", part.first}, {"count", part.nodes.size()}};
-    for (const auto& [name, loops] : {std::pair{"faces", &part.faces}, std::pair{"lines", &part.lines}}) {
-      if (loops->empty()) continue;
-      one[name] = {{"sizes", page.add_numbers(stacked(*loops, true))},
-                   {"nodes", page.add_numbers(stacked(*loops, false))}};
-    }
-    parts.push_back(std::move(one));
-  }
-  return parts;
+std::vector<DrawnBody> drawn_bodies(const std::vector<BodyShape>& shapes) {
+  std::vector<DrawnBody> bodies;
+  for (const BodyShape& shape : shapes)
+    bodies.push_back({shape.name, shape.nodes.rows(), face_loops(shape.elements), shape.outlines});
+  return bodies;
 }
 
 std::vector<double> places_of(const DrawnNodes& drawn, const std::vector<BodyShape>& shapes) {
@@ -191,7 +135,8 @@ class Frames {
 
  private:
   void begin(const std::vector<BodyShape>& shapes) {
-    drawn_ = drawn_nodes(shapes);
+    const std::vector<DrawnBody> bodies = drawn_bodies(shapes);
+    drawn_ = drawn_nodes(bodies);
     if (drawn_.count == 0) throw ConfigError(Refusal::wrong_value, "", "no body has nodes to draw");
     while (num_modes_ > 1 && bytes_of_frame() > budget_.bytes) --num_modes_;
     if (bytes_of_frame() > 4.0 * budget_.bytes)
@@ -200,7 +145,8 @@ class Frames {
     view_ = {{"type", "modes"},
              {"planar", !is_spatial(shapes)},
              {"nodes", drawn_.count},
-             {"parts", parts_json(drawn_, shapes, page_)},
+             {"up", upward_axis(model_->system)},
+             {"parts", parts_json(drawn_, bodies, page_)},
              {"frames", Json::array()}};
   }
   double bytes_of_frame() const {

@@ -76,6 +76,7 @@ Json cycle_section(const ResultFile& file, const ReportContext& context) {
     };
     Json view = curve_of_columns(column(*place), column(*speed), context.page);
     view["title"] = "velocity against displacement";
+    view["over_time"] = true;  // a point for each row of the histories
     section["views"].push_back(std::move(view));
   }
   return section;

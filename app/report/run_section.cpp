@@ -9,6 +9,7 @@
 
 #include "app/report/histories.hpp"
 #include "app/report/mode_frames.hpp"
+#include "app/report/slide_view.hpp"
 #include "app/results/burst_text.hpp"
 #include "app/results/expectations.hpp"
 #include "app/results/pictures.hpp"
@@ -309,6 +310,21 @@ void add_expectations(const std::string& resolved, const Json& results,
   section["expectations"] = rows;
 }
 
+/// Where one cause leaves away the slide and the shapes, it is told once.
+void tell_once(Json& remarks) {
+  const auto cause = [](const Json& remark) {
+    const std::string text = remark.get<std::string>();
+    const std::size_t colon = text.find(": ");
+    return text.starts_with("No ") && colon != std::string::npos ? text.substr(colon) : text;
+  };
+  for (std::size_t i = 0; i + 1 < remarks.size();) {
+    if (cause(remarks[i]) == cause(remarks.back()))
+      remarks.erase(i);
+    else
+      ++i;
+  }
+}
+
 Json results_json(const RunFileReader& file) {
   Json results = Json::object();
   for (const auto& [name, value] : file.results()) {
@@ -347,6 +363,9 @@ Json run_section(const ResultFile& source, const ReportContext& context) {
                               {"resolved", resolved.is_number() ? resolved : Json(nullptr)},
                               {"predicted", heard.predictions}});
   add_spectrogram(run, context, section);
+  if (!context.options.without_shapes)
+    add_slide(header.scene_resolved, source.path() + ":/scene/resolved", run,
+              0.1 * context.bytes_per_file, context.page, section);
   section["views"].push_back(histories_view(run, context, 0.7 * context.bytes_per_file));
   const bool has_locus =
       std::any_of(context.windows.begin(), context.windows.end(), [&](const WindowsOfScene& one) {
@@ -355,6 +374,7 @@ Json run_section(const ResultFile& source, const ReportContext& context) {
   if (!context.options.without_shapes && !has_locus) {
     add_mode_frames({header.scene_resolved, source.path() + ":/scene/resolved", "", ""},
                     way_of(run.file), {0.25 * context.bytes_per_file, 41}, context.page, section);
+    tell_once(section["remarks"]);
     judge_modes(section, heard);
   }
   section["verdict"] = run_verdict(results, run, heard);

@@ -86,7 +86,7 @@ function sayCurves(view, curves, nearest) {
   }).filter(Boolean).join(' – ');
 }
 
-function makeCurvesPanel(place, view, panel, charts) {
+function makeCurvesPanel(place, view, panel, charts, run) {
   // What does not vary tells nothing as a curve; it stands in the table.
   const varies = numbers => numbers.some(value => isFinite(value) && value !== numbers.find(isFinite));
   const curves = panel.curves.filter(curve => curve.numbers.some(isFinite));
@@ -106,17 +106,30 @@ function makeCurvesPanel(place, view, panel, charts) {
     zoomed: () => charts.forEach(other => { if (other !== chart) { other.x.set(chart.x.from, chart.x.to); other.draw(); } }),
   });
   charts.push(chart);
+  if (run) run.timed.then(() => followTime(chart, view.sets[0].numbers, curves[0].numbers, run));
   chart.draw();
 }
 
-async function makeCurves(place, view) {
+// A dot on a curve that was passed in time, a point for each row of the histories.
+function followTime(chart, xs, ys, run) {
+  chart.marks = () => {
+    if (run.view.moment === null) return;
+    const place = Math.min(xs.length - 1, Math.max(0, run.clock.index(run.view.moment))), i = Math.min(xs.length - 2, Math.floor(place));
+    const at = list => list[i] + (place - i) * (list[i + 1] - list[i]);
+    chart.dot(at(xs), at(ys), colour('mark'), 6, colour('ground'));
+  };
+  chart.play = () => run.player && run.player.motion.toggle();
+  run.view.momentListeners.add(() => chart.mark());
+}
+
+async function makeCurves(place, view, section) {
   for (const set of view.sets) set.numbers = await numbersOf(set.values);
   for (const panel of view.panels) for (const curve of panel.curves) curve.numbers = await numbersOf(curve.values);
   const first = view.sets[0].numbers;
   view.isLogX = view.x_log || (isGeometric(first) && first[first.length - 1] / first[0] > 20);
   if (view.title) place.append(element('h3', {}, view.title));
   const charts = [];
-  for (const panel of view.panels) makeCurvesPanel(place, view, panel, charts);
+  for (const panel of view.panels) makeCurvesPanel(place, view, panel, charts, view.over_time ? section.run : null);
   place.curves = charts;  // for those who test the page
   if (!view.table) return;
   view.sets.forEach((set, number) => {

@@ -28,14 +28,24 @@ async function clockOf(time) {
 
 const cursors = uPlot.sync('time');
 
+// The time that is marked, as a line over a diagram: it moves without a drawing.
+function momentMark() { return element('div', {class: 'moment'}); }
+function putMark(mark, view, width, left = 0) {
+  const isShown = view.moment !== null && view.moment >= view.from && view.moment <= view.to;
+  mark.style.display = isShown ? '' : 'none';
+  if (isShown) mark.style.transform = `translateX(${left + width * (view.moment - view.from) / view.length - 1}px)`;
+}
+
+const historyHeight = 188;
+
 function historyOptions(series, scale, view, width, hooks) {
   const axis = {stroke: () => colour('text'), grid: {stroke: () => colour('line'), width: 0.6},
     ticks: {stroke: () => colour('line'), width: 0.6}, font: '12px system-ui'};
   return {
-    width, height: 170,
+    width, height: historyHeight,
     legend: {show: false},
     scales: {x: {time: false, auto: false, range: () => [view.from, view.to]}, y: {auto: true}},
-    axes: [{...axis, size: 30, values: (u, ticks) => ticks.map(t => tickText(t, Math.abs(ticks[1] - ticks[0]) || 1))},
+    axes: [{...axis, size: 30, label: 'time (s)', labelSize: 16, labelFont: '12px system-ui', values: (u, ticks) => ticks.map(t => tickText(t, Math.abs(ticks[1] - ticks[0]) || 1))},
       {...axis, size: 58, label: scale[1] || ' ', labelSize: 18, labelFont: '12px system-ui',
         values: (u, ticks) => ticks.map(t => tickText(t, Math.abs(ticks[1] - ticks[0]) || 1))}],
     series: [{}, {stroke: () => lineColour(series.number), width: 1.1, points: {show: false}, spanGaps: false}],
@@ -69,6 +79,8 @@ async function makeHistory(place, series, clock, view, bursts) {
     }
     return [xs, ys];
   };
+  const mark = momentMark();
+  let placeMark = () => {};
   const hooks = {
     drawClear: [u => {
       for (const burst of bursts) {
@@ -78,12 +90,7 @@ async function makeHistory(place, series, clock, view, bursts) {
         u.ctx.fillRect(from, u.bbox.top, to - from, u.bbox.height);
       }
     }],
-    draw: [u => {
-      if (view.moment === null || view.moment < view.from || view.moment > view.to) return;
-      const x = u.valToPos(view.moment, 'x', true);
-      u.ctx.fillStyle = colour('mark');
-      u.ctx.fillRect(x - 1, u.bbox.top, 2, u.bbox.height);
-    }],
+    draw: [() => placeMark()],
     setSelect: [u => {
       if (u.select.width < 5) return;
       const from = u.posToVal(u.select.left, 'x'), to = u.posToVal(u.select.left + u.select.width, 'x');
@@ -101,6 +108,14 @@ async function makeHistory(place, series, clock, view, bursts) {
   };
   const width = () => Math.max(200, body.clientWidth || place.clientWidth || 700);
   const diagram = new uPlot(historyOptions(series, scale, view, width(), hooks), dataNow(width()), body);
+  diagram.over.append(mark);
+  placeMark = () => putMark(mark, view, diagram.over.clientWidth);
+  placeMark();
+  let pressed = 0;
+  diagram.over.addEventListener('mousedown', event => { pressed = event.clientX; });
+  diagram.over.addEventListener('click', event => {
+    if (Math.abs(event.clientX - pressed) < 5) view.mark(diagram.posToVal(event.clientX - diagram.over.getBoundingClientRect().left, 'x'));
+  });
   diagram.over.addEventListener('dblclick', () => view.reset());
   diagram.over.addEventListener('wheel', event => {
     if (!event.ctrlKey && !event.shiftKey) return;
@@ -109,8 +124,8 @@ async function makeHistory(place, series, clock, view, bursts) {
   }, {passive: false});
   const draw = () => diagram.setData(dataNow(width()), true);
   view.listeners.add(draw);
-  view.momentListeners.add(() => diagram.redraw(false));
-  redrawn.add(() => { diagram.setSize({width: width(), height: 170}); diagram.redraw(true); });
+  view.momentListeners.add(placeMark);
+  redrawn.add(() => { diagram.setSize({width: width(), height: historyHeight}); diagram.redraw(true); });
   body.dataset.peak = String(largest);
   body.diagram = diagram;  // for those who test the page
 }
@@ -126,10 +141,14 @@ async function makeStates(place, series, clock, view) {
     return element('span', {}, box, name);
   }));
   const canvas = element('canvas', {role: 'img', 'aria-label': `${series.name}: states over time`});
-  place.append(element('h3', {}, series.name), legend, canvas);
+  const mark = momentMark();
+  place.append(element('h3', {}, series.name), legend, element('div', {class: 'layers'}, canvas, mark));
+  let placeMark = () => {};
   const draw = () => {
     const [c, width] = sharp(canvas, 22);
     const left = 76, right = width - 25;
+    placeMark = () => putMark(mark, view, right - left, left);
+    placeMark();
     const begin = clock.index(view.from), end = clock.index(view.to);
     let run = null;
     for (let x = left; x < right; ++x) {
@@ -148,6 +167,7 @@ async function makeStates(place, series, clock, view) {
     if (run && run.state >= 0) { c.fillStyle = stateColours[run.state]; c.fillRect(run.x, 2, right - run.x, 18); }
   };
   view.listeners.add(draw);
+  view.momentListeners.add(() => placeMark());
   redrawn.add(draw);
   draw();
 }

@@ -7,6 +7,7 @@ class Place {
     this.listeners = new Set();
   }
   set(value) {
+    this.isFresh = false;  // whoever plays it begins here
     this.value = Math.min(this.values[this.values.length - 1], Math.max(this.values[0], value));
     if (this.wish && this.wish.value !== this.value) this.wish = null;
     this.listeners.forEach(listen => listen());
@@ -97,6 +98,10 @@ async function makeLocus(place, view, section) {
         if (view.points) for (let i = 0; i < branch.values.length; ++i) chart.dot(branch.growth[i], branch.frequency[i], tint(branch.values[i]), 2);
         else for (let i = 1; i < branch.values.length; ++i)
           chart.line(branch.growth.subarray(i - 1, i + 1), branch.frequency.subarray(i - 1, i + 1), tint(branch.values[i]), 1.8);
+      }
+    },
+    marks: chart => {
+      for (const branch of vibrating) {
         const now = branchAt(branch, where.value);
         if (now) chart.dot(now.growth, now.frequency, now.growth > 0 ? colour('loud') : colour('accent'), section.branch === branch.number ? 6 : 4, colour('ground'));
       }
@@ -122,8 +127,13 @@ async function makeLocus(place, view, section) {
         if (view.points) for (let i = 0; i < branch.values.length; ++i) chart.dot(branch.values[i], branch.growth[i], lineColour(branch.number), 1.8);
         else chart.line(branch.values, branch.growth, lineColour(branch.number), section.branch === branch.number ? 2.6 : 1.2);
       }
+    },
+    marks: chart => {
+      const c = chart.context, f = chart.inner;
       c.fillStyle = colour('mark');
       c.fillRect(chart.px(where.value) - 0.75, f.y, 1.5, f.height);
+      const chosen = branches[section.branch], now = chosen && branchAt(chosen, where.value);
+      if (now) chart.dot(where.value, now.growth, now.growth > 0 ? colour('loud') : colour('accent'), 5, colour('ground'));
     },
     hover: x => {
       const best = along.pointer && nearest(along, along.pointer, b => b.values, b => b.growth);
@@ -160,7 +170,13 @@ async function makeLocus(place, view, section) {
   }
   if (where.wish) where.choose();
   place.append(element('figcaption', {}, `Colour on the left: position along the key, dark to light; shaded on the right: unstable windows. ${view.points ? 'Points in the order of their frequencies at each value.' : 'Click a branch to follow its mode.'}`));
-  const draw = () => { plane.draw(); along.draw(); };
+  let drawnBranch = null;
+  const draw = () => {
+    const isOther = drawnBranch !== section.branch;
+    drawnBranch = section.branch;
+    for (const chart of [plane, along]) if (isOther) chart.draw(); else chart.mark();
+  };
+  for (const chart of [plane, along]) chart.play = () => section.player && section.player.motion.toggle();
   where.listeners.add(draw);
   draw();
   place.locus = {plane, along, branches};  // for those who test the page
@@ -182,66 +198,85 @@ function placeTools(section, view) {
   where.listeners.add(tell);
   tell();
   slider.style.width = 'min(420px, 60vw)';
-  return element('div', {class: 'tools'}, element('label', {}, 'Position', slider), text);
+  section.player = placePlayer(where);
+  return element('div', {class: 'tools'}, motionButton(section.player.motion, ['Play', 'Stop'], `along ${view.parameter}`),
+    element('label', {}, 'Lasts', section.player.pace), element('label', {}, 'Position', slider), text);
+}
+
+// The frame nearest to a position, the one on the other side of it, and how far it is on the way there.
+function framesAbout(frames, where) {
+  if (!where) return [frames[0], frames[0], 0];
+  let near = 0;
+  frames.forEach((one, i) => { if (Math.abs(one.value - where.value) < Math.abs(frames[near].value - where.value)) near = i; });
+  const frame = frames[near], other = frames[near + (where.value < frame.value ? -1 : 1)];
+  if (!other || other.value === frame.value) return [frame, frame, 0];
+  return [frame, other, (where.value - frame.value) / (other.value - frame.value)];
+}
+
+// Which mode of a frame is shown: the one wished for, that of the branch followed, the one chosen, or the one that grows fastest.
+function shownMode(frame, where, section) {
+  const wish = where && where.wish;
+  const wanted = section.shownMode || (section.branch !== undefined && section.wantedNow ? section.wantedNow() : null);
+  if (!wish && !wanted) return Math.min(section.mode ?? frame.modes.reduce((best, one, i) => one.growth > frame.modes[best].growth ? i : best, 0), frame.modes.length - 1);
+  const offs = frame.modes.map(one => wish ? offOf(wish, one)
+    : Math.abs(one.frequency - wanted.frequency) / (wanted.frequency + 1) + 1e-3 * Math.abs(one.growth - wanted.growth) / (1 + Math.abs(wanted.growth)));
+  return offs.indexOf(Math.min(...offs));
+}
+
+// A motion φ turned by the e^{iα} with which it is most like the one before, so that a slide shows no jumps.
+function inPhaseWith(before, motion) {
+  if (!before || before.length !== motion.length) return motion;
+  const half = motion.length / 2;
+  let re = 0, im = 0;
+  for (let i = 0; i < half; ++i) {
+    re += motion[i] * before[i] + motion[half + i] * before[half + i];
+    im += motion[i] * before[half + i] - motion[half + i] * before[i];
+  }
+  const size = Math.hypot(re, im);
+  if (!(size > 0)) return motion;
+  const turned = new Float32Array(motion.length);
+  for (let i = 0; i < half; ++i) {
+    turned[i] = (motion[i] * re - motion[half + i] * im) / size;
+    turned[half + i] = (motion[i] * im + motion[half + i] * re) / size;
+  }
+  return turned;
 }
 
 async function makeModes(place, view, section) {
-  const parts = [];
-  for (const part of view.parts) {
-    const loops = async one => one ? loopsOf(await numbersOf(one.sizes), await numbersOf(one.nodes)) : [];
-    parts.push({...part, faces: await loops(part.faces), lines: await loops(part.lines)});
-  }
+  const parts = await partsOf(view);
   const where = section.place;
-  const legend = element('div', {class: 'legend'}, parts.map((part, number) => {
-    const box = element('i');
-    box.style.background = `rgb(${partColours[number % partColours.length].map(v => Math.round(255 * v))})`;
-    return element('span', {}, box, part.name);
-  }));
-  place.append(legend);
-  const mesh = new MeshView(place, parts, view.planar);
+  place.append(partLegend(parts));
+  const mesh = new MeshView(place, parts, view, 'Bodies displaced by the mode');
   const firsts = await Promise.all([view.frames[0], view.frames[view.frames.length - 1]].map(frame => numbersOf(frame.places)));
   mesh.fit(...firsts);
   const text = element('div', {class: 'readout'});
   const choice = element('select', {'aria-label': 'Mode', onchange: () => { section.mode = Number(choice.value); section.branch = section.shownMode = undefined; if (where) where.wish = null; show(); }});
-  const play = element('button', {type: 'button', 'aria-pressed': 'true', onclick: () => run(!isRunning)}, 'Pause');
+  const vibration = new Motion(seconds => { mesh.phase += 4 * seconds * Number(speed.value); mesh.draw(); }, mesh.canvas);
+  const play = motionButton(vibration, ['Vibrate', 'Pause'], 'the mode, slowly');
   const size = element('input', {type: 'range', min: 0, max: 3, step: 0.05, value: 1, 'aria-label': 'Amplitude', oninput: () => { mesh.amplitude = Number(size.value); mesh.draw(); }});
   const speed = element('input', {type: 'range', min: 0.1, max: 3, step: 0.1, value: 1, 'aria-label': 'Speed'});
   place.append(element('div', {class: 'tools'}, element('label', {}, 'Mode', choice), play, element('label', {}, 'Amplitude', size), element('label', {}, 'Speed', speed)), text,
-    element('figcaption', {}, `Displacements enlarged, as of Re(φ e^{iθ})${mesh.gl ? '' : '; grey: at rest'}. Modes about the ${view.about} geometry. `,
-      view.planar ? 'Drag to move, ' : 'Drag to turn, ', 'Ctrl and wheel or + and − to scale, double click to begin anew.'));
+    element('figcaption', {}, `Displacements enlarged, as of Re(φ exp iθ)${mesh.isPlanar ? '; grey: at rest' : ''}. Modes about the ${view.about} geometry. `,
+      mesh.help));
+  mesh.play = () => (section.player ? section.player.motion : vibration).toggle();
 
-  let isRunning = false, former = 0;
-  const run = now => {
-    isRunning = now;
-    play.textContent = now ? 'Pause' : 'Play';
-    play.setAttribute('aria-pressed', String(now));
-    if (now) requestAnimationFrame(step);
-  };
-  const isSeen = () => { const box = mesh.canvas.getBoundingClientRect(); return box.bottom > 0 && box.top < innerHeight; };
-  const step = moment => {
-    if (!isRunning || !place.isConnected) return;
-    if (former && isSeen()) { mesh.phase += (moment - former) * 0.004 * Number(speed.value); mesh.draw(); }
-    former = moment;
-    requestAnimationFrame(step);
-  };
-  let latest = 0;
+  let latest = 0, framed = null, numbered = null;
   const show = async () => {
     const ticket = ++latest;
-    let frame = view.frames[0];
-    if (where) for (const one of view.frames) if (Math.abs(one.value - where.value) < Math.abs(frame.value - where.value)) frame = one;
-    let number = Math.min(section.mode ?? frame.modes.reduce((best, one, i) => one.growth > frame.modes[best].growth ? i : best, 0), frame.modes.length - 1);
-    const wanted = section.shownMode || (section.branch !== undefined && section.wantedNow ? section.wantedNow() : null);
-    const wish = where && where.wish;
-    if (wish || wanted) {
-      const offs = frame.modes.map(one => wish ? offOf(wish, one)
-        : Math.abs(one.frequency - wanted.frequency) / (wanted.frequency + 1) + 1e-3 * Math.abs(one.growth - wanted.growth) / (1 + Math.abs(wanted.growth)));
-      number = offs.indexOf(Math.min(...offs));
-    }
-    choice.replaceChildren(...frame.modes.map((one, i) => element('option', {value: i, selected: i === number}, `${i + 1}: ${shown(one.frequency, 'Hz')}, ${digits(one.growth, 3)} 1/s`)));
-    const [places, motions] = await Promise.all([numbersOf(frame.places), numbersOf(frame.displacements)]);
+    const [frame, other, share] = framesAbout(view.frames, where);
+    const number = shownMode(frame, where, section);
+    if (frame !== framed)
+      choice.replaceChildren(...frame.modes.map((one, i) => element('option', {value: i}, `${i + 1}: ${shown(one.frequency, 'Hz')}, ${digits(one.growth, 3)} 1/s`)));
+    choice.value = String(number);
+    const [places, motions, others] = await Promise.all([frame.places, frame.displacements, other.places].map(numbersOf));
     if (ticket !== latest) return;
-    const length = 2 * places.length;
-    mesh.show(places, motions.subarray(number * length, (number + 1) * length));
+    const between = other === frame ? places : places.map((x, i) => x + share * (others[i] - x));
+    if (frame === framed && number === numbered) mesh.move(between);
+    else {
+      const length = 2 * places.length;
+      mesh.show(between, inPhaseWith(mesh.motion, motions.subarray(number * length, (number + 1) * length)));
+    }
+    [framed, numbered] = [frame, number];
     const mode = frame.modes[number];
     text.textContent = `Mode ${number + 1}: ${shown(mode.frequency, 'Hz', 6)}, growth rate ${digits(mode.growth, 4)} 1/s` +
       (view.parameter ? `, computed at ${view.parameter} = ${shown(frame.value, view.units, 5)}` : '');
@@ -250,6 +285,5 @@ async function makeModes(place, view, section) {
   if (where) where.listeners.add(show);
   section.showMode = () => { place.scrollIntoView({block: 'nearest'}); show(); };
   await show();
-  run(!matchMedia('(prefers-reduced-motion: reduce)').matches);
   place.mesh = mesh;  // for those who test the page
 }

@@ -9,14 +9,18 @@ function prepare(sections) {
     if (histories || picture) {
       const time = histories && !histories.time.values ? histories.time : picture ? picture.time : null;
       const view = time ? new TimeView(time.from, time.from + (time.step || 1) * Math.max(1, time.count - 1)) : null;
-      section.run = {view, clock: null, bursts: bursts ? bursts.bursts : [],
+      section.run = {view: null, clock: null, player: null, bursts: bursts ? bursts.bursts : [],
         resolved: bursts ? bursts.resolved : null, predicted: bursts ? bursts.predicted : [], places: []};
+      // Times that are listed are known when they are unpacked.
+      section.run.timed = new Promise(resolve => { section.run.isTimed = resolve; });
+      if (view) { section.run.view = view; section.run.player = timePlayer(view); }
     }
     const modes = viewOf(section, 'modes');
     if (modes && modes.parameter && modes.frames.length > 1) section.place = new Place(modes.frames.map(frame => frame.value), modes.frames.map(frame => frame.time));
     const locus = viewOf(section, 'locus');
     if (section.place && locus && locus.windows.length)
       section.place.set(locus.windows.reduce((a, b) => b.growth_max > a.growth_max ? b : a).value_max);
+    if (section.place) section.place.isFresh = true;
   }
   const runs = sections.filter(section => section.kind === 'run' && section.run);
   for (const section of sections) {
@@ -24,9 +28,24 @@ function prepare(sections) {
     for (const other of runs) {
       if (section.mechanics === undefined || other.mechanics !== section.mechanics) continue;
       other.run.places.push(section.place);
-      section.place.listeners.add(() => { const moment = section.place.moment; if (moment !== null) other.run.view.mark(moment); });
+      linkPlace(section.place, other.run.view);
     }
   }
+}
+
+// Where a run is when, both ways; each leads the other once.
+function linkPlace(place, view) {
+  let isLed = false;
+  const lead = act => {
+    if (isLed) return;
+    isLed = true;
+    try { act(); } finally { isLed = false; }
+  };
+  place.listeners.add(() => lead(() => { if (place.moment !== null) view.mark(place.moment); }));
+  view.momentListeners.add(() => lead(() => {
+    const value = place.valueAt(view.moment);
+    if (value !== null) place.set(value);
+  }));
 }
 
 async function completePlace(section) {
@@ -35,7 +54,9 @@ async function completePlace(section) {
   const values = await numbersOf(locus.value);
   let low = Infinity, high = -Infinity;
   for (const value of values) { low = Math.min(low, value); high = Math.max(high, value); }
-  if (low < high) section.place = new Place([low, high], [null, null]);
+  if (!(low < high)) return;
+  section.place = new Place([low, high], [null, null]);
+  section.place.isFresh = true;
 }
 
 function framed(parent, title, minHeight, make) {
@@ -52,15 +73,18 @@ function makeView(parent, view, section) {
     case 'bursts': makeBursts(parent, view, run, section); break;
     case 'table': makeTable(parent, view, section); break;
     case 'windows': makeWindows(parent, view, section); break;
+    case 'slide': framed(parent, 'The slide', 340, place => makeSlide(place, view, run, section)); break;
     case 'spectrogram': framed(parent, 'Spectrogram', 430, place => makeSpectrogram(place, view, run)); break;
     case 'histories':
       framed(parent, 'Histories', 60, async place => {
         if (!run.view) {
           const clock = await clockOf(view.time);
           run.view = new TimeView(clock.first, clock.last);
-          parent.insertBefore(timeTools(run.view), place);
+          run.player = timePlayer(run.view);
+          parent.insertBefore(timeTools(run.view, run.player), place);
         }
         await makeHistories(place, view, run);
+        run.isTimed();
         const sound = element('div');
         if (section.kind === 'run') { place.append(element('h3', {}, 'Sound'), sound); makeSound(sound, view, run, section); }
       });
@@ -81,7 +105,7 @@ function makeView(parent, view, section) {
       break;
     case 'field': framed(parent, null, 480, place => makeField(place, view, section)); break;
     case 'errors': framed(parent, null, 400, place => makeErrors(place, view)); break;
-    case 'curves': framed(parent, null, 260, place => makeCurves(place, view)); break;
+    case 'curves': framed(parent, null, 260, place => makeCurves(place, view, section)); break;
     case 'responses': framed(parent, null, 480, place => makeResponses(place, view)); break;
   }
 }
@@ -93,7 +117,7 @@ function makeSection(section, number) {
   // Of several files the verdicts stand at the head of the page, each with the way to its section.
   if (report.sections.length === 1) place.append(makeVerdict(section.verdict));
   for (const remark of section.remarks || []) place.append(element('p', {class: 'faint'}, remark));
-  if (section.run && section.run.view && section.kind === 'run') place.append(timeTools(section.run.view));
+  if (section.run && section.run.view && section.kind === 'run') place.append(timeTools(section.run.view, section.run.player));
   for (const view of section.views) makeView(place, view, section);
   if (section.results && Object.keys(section.results).length) place.append(makeResults(section.results));
   if (section.expectations) place.append(makeExpectations(section.expectations));

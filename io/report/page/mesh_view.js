@@ -12,16 +12,44 @@ function loopsOf(sizes, nodes) {
   return loops;
 }
 
+// The parts of a view with what is drawn between their nodes.
+async function partsOf(view) {
+  const loops = async one => one ? loopsOf(await numbersOf(one.sizes), await numbersOf(one.nodes)) : [];
+  return Promise.all(view.parts.map(async part => ({...part, faces: await loops(part.faces), lines: await loops(part.lines)})));
+}
+
+function partLegend(parts) {
+  return element('div', {class: 'legend'}, parts.map((part, number) => {
+    const box = element('i');
+    box.style.background = `rgb(${partColours[number % partColours.length].map(v => Math.round(255 * v))})`;
+    return element('span', {}, box, part.name);
+  }));
+}
+
+// Of a face as WebGL lights it.
+function lightOn(places, loop) {
+  const [a, b, d] = [places[loop[0]], places[loop[1]], places[loop[2]]];
+  const u = b.map((x, k) => x - a[k]), v = d.map((x, k) => x - a[k]);
+  const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+  return Math.abs(0.3 * n[0] + 0.5 * n[1] - 0.8 * n[2]) / (Math.hypot(...n) * Math.hypot(0.3, 0.5, 0.8) || 1);
+}
+
 class MeshView {
-  // parts: [{name, first, count, faces: loops, lines: loops}]
-  constructor(place, parts, isPlanar) {
-    Object.assign(this, {parts, isPlanar, angle: [0.6, 0.5], closeness: 1, amplitude: 1, phase: 0, shift: [0, 0]});
-    this.canvas = element('canvas', {tabindex: '0', role: 'img', 'aria-label': 'Bodies displaced by the mode'});
-    place.append(this.canvas);
+  // parts: [{name, first, count, faces: loops, lines: loops}]; view: {planar, up}.
+  // marks(context, screen), where it is set, draws over the bodies; play(), where it is set, answers the space bar
+  constructor(place, parts, view, label) {
+    Object.assign(this, {parts, isPlanar: view.planar, up: view.up ?? 2, angle: [0.6, 0.5], closeness: 1, amplitude: 1, phase: 0, shift: [0, 0]});
+    this.canvas = element('canvas', {tabindex: '0', role: 'img', 'aria-label': label});
+    this.over = element('canvas', {class: 'over', 'aria-hidden': 'true'});
+    place.append(element('div', {class: 'layers'}, this.canvas));
     this.edges = this.uniqueEdges();
-    if (!isPlanar && parts.some(part => part.faces.length)) this.startWebGl();
+    if (!this.isPlanar && parts.some(part => part.faces.length)) this.startWebGl();
     this.listen();
+    watchSight(this.canvas);
     redrawn.add(() => this.draw());
+  }
+  get help() {
+    return `${this.isPlanar ? 'Drag to move' : 'Drag to turn'}, Ctrl and wheel or + and − to scale, double click to begin anew; the space bar plays.`;
   }
   uniqueEdges() {
     return this.parts.map(part => {
@@ -61,7 +89,9 @@ class MeshView {
       if (event.key === '+') this.closeness *= 1.18;
       else if (event.key === '-') this.closeness *= 0.85;
       else if (turn && this.isPlanar) { this.shift[0] -= 20 * turn[0]; this.shift[1] -= 20 * turn[1]; }
-      else if (turn) { this.angle[0] += 0.1 * turn[0]; this.angle[1] += 0.1 * turn[1]; } else return;
+      else if (turn) { this.angle[0] += 0.1 * turn[0]; this.angle[1] += 0.1 * turn[1]; }
+      else if (event.key === ' ' && this.play) this.play();
+      else return;
       event.preventDefault();
       this.draw();
     });
@@ -71,7 +101,13 @@ class MeshView {
     Object.assign(this, {places, motion});
     if (!this.box) this.fit(places);
     if (this.gl) this.upload();
-    this.draw();
+    this.redraw();
+  }
+  // The same bodies elsewhere.
+  move(places) {
+    this.places = places;
+    if (this.gl) this.uploadPlaces();
+    this.redraw();
   }
   // The box about all places that the view will show.
   fit(...lists) {
@@ -96,24 +132,46 @@ class MeshView {
   turned(point) {
     if (this.isPlanar) return point;
     const [a, b] = this.angle;
-    const x = Math.cos(a) * point[0] + Math.sin(a) * point[1], y = -Math.sin(a) * point[0] + Math.cos(a) * point[1];
-    return [x, Math.cos(b) * point[2] + Math.sin(b) * y, Math.cos(b) * y - Math.sin(b) * point[2]];
+    // Into axes of which the last one shows upwards.
+    const [u, v, w] = this.up === 2 ? point : this.up === 1 ? [point[0], -point[2], point[1]] : [-point[2], point[1], point[0]];
+    const x = Math.cos(a) * u + Math.sin(a) * v, y = -Math.sin(a) * u + Math.cos(a) * v;
+    return [x, Math.cos(b) * w + Math.sin(b) * y, Math.cos(b) * y - Math.sin(b) * w];
+  }
+  // At first at once, so that there always is a picture.
+  redraw() {
+    if (this.isDrawn) drawWhenSeen(this.canvas, () => this.draw());
+    else this.draw();
   }
   draw() {
     if (!this.canvas.isConnected || !this.places) return;
+    late.delete(this.canvas);
+    this.isDrawn = true;
     if (this.gl) this.drawWebGl();
     else this.drawFlat();
+    if (this.marks) this.drawMarks();
+  }
+  // Pixels of a canvas for a metre, without those by which a screen is sharper.
+  get perMetre() {
+    const width = this.canvas.clientWidth || 600, {height, box} = this;
+    if (!this.isPlanar) return this.closeness * Math.min(width, height) / (Math.min(box.extent, 1.1 * Math.max(...box.size)) + 0.1 * box.extent);
+    // Room for displacements of the usual size on all sides.
+    const size = box.size.map(v => 1.04 * v + 0.16 * box.extent);
+    return this.closeness * Math.min(width / size[0], height / size[1]);
+  }
+  screen(point) {
+    const p = this.turned(point.map((x, k) => x - this.box.middle[k])), factor = this.perMetre;
+    return [(this.canvas.clientWidth || 600) / 2 + this.shift[0] + factor * p[0], this.height / 2 + this.shift[1] - factor * p[1]];
+  }
+  // On the canvas itself, or on one above it where it is one of WebGL.
+  drawMarks() {
+    if (this.gl && !this.over.isConnected) this.canvas.after(this.over);
+    const c = this.gl ? sharp(this.over, this.height)[0] : this.canvas.getContext('2d');
+    this.marks(c, point => this.screen(point));
   }
   get height() { return this.isPlanar ? 260 : 380; }
   drawFlat() {
-    const [c, width, height] = sharp(this.canvas, this.height);
-    // Room for displacements of the usual size on all sides.
-    const size = (this.isPlanar ? this.box.size : [this.box.extent, this.box.extent]).map(v => 1.04 * v + 0.16 * this.box.extent);
-    const factor = this.closeness * Math.min(width / size[0], height / size[1]);
-    const project = (points, node) => {
-      const p = this.turned([0, 1, 2].map(k => points[3 * node + k] - this.box.middle[k]));
-      return [width / 2 + this.shift[0] + factor * p[0], height / 2 + this.shift[1] - factor * p[1]];
-    };
+    const [c] = sharp(this.canvas, this.height);
+    const project = (points, node) => this.screen([points[3 * node], points[3 * node + 1], points[3 * node + 2]]);
     const layer = (points, faint) => this.parts.forEach((part, number) => {
       const [r, g, b] = partColours[number % partColours.length].map(v => Math.round(255 * v));
       c.strokeStyle = faint ? colour('line') : darkness.matches ? `rgb(${r / 2 + 127},${g / 2 + 127},${b / 2 + 127})` : `rgb(${r},${g},${b})`;
@@ -125,11 +183,48 @@ class MeshView {
       c.fillStyle = c.strokeStyle;
       for (let node = part.first; node < part.first + part.count; ++node) {
         const [x, y] = project(points, node);
-        c.fillRect(x - 3, y - 3, 6, 6);
+        c.fillRect(x - 4, y - 4, 8, 8);
       }
     });
-    if (this.motion) layer(this.places, true);
-    layer(this.moved(), false);
+    if (this.motion && this.isPlanar) layer(this.places, true);
+    if (this.isPlanar || !this.paintFaces(c, this.moved())) layer(this.moved(), false);
+  }
+  // Faces in space without WebGL, farther ones first. Of too many only the edges are drawn.
+  paintFaces(c, points) {
+    const most = 6000;
+    if (this.parts.reduce((sum, part) => sum + part.faces.length, 0) > most) return false;
+    const count = points.length / 3, seen = new Array(count), onScreen = new Array(count);
+    for (let node = 0; node < count; ++node) {
+      const point = [points[3 * node], points[3 * node + 1], points[3 * node + 2]];
+      seen[node] = this.turned(point.map((x, k) => x - this.box.middle[k]));
+      onScreen[node] = this.screen(point);
+    }
+    const pieces = [];
+    this.parts.forEach((part, number) => {
+      for (const loop of part.faces) pieces.push({number, loop, depth: loop.reduce((sum, node) => sum + seen[node][2], 0) / loop.length});
+      if (!part.faces.length) for (const loop of this.edges[number].length ? this.edges[number] : Array.from({length: part.count}, (_, i) => [part.first + i]))
+        pieces.push({number, loop, depth: loop.reduce((sum, node) => sum + seen[node][2], 0) / loop.length});
+    });
+    c.lineWidth = 0.7;
+    c.lineJoin = 'round';
+    for (const {number, loop} of pieces.sort((a, b) => b.depth - a.depth)) {
+      const dye = partColours[number % partColours.length];
+      const rgb = light => `rgb(${dye.map(v => Math.round(255 * light * (0.25 + 0.75 * v)))})`;
+      if (loop.length < 3) {
+        c.fillStyle = c.strokeStyle = rgb(1);
+        if (loop.length === 1) c.fillRect(onScreen[loop[0]][0] - 4, onScreen[loop[0]][1] - 4, 8, 8);
+        else { c.beginPath(); loop.forEach(node => c.lineTo(...onScreen[node])); c.stroke(); }
+        continue;
+      }
+      c.fillStyle = rgb(0.35 + 0.65 * lightOn(seen, loop));
+      c.strokeStyle = rgb(0.3);
+      c.beginPath();
+      loop.forEach(node => c.lineTo(...onScreen[node]));
+      c.closePath();
+      c.fill();
+      c.stroke();
+    }
+    return true;
   }
   startWebGl() {
     const gl = this.canvas.getContext('webgl2', {antialias: true, preserveDrawingBuffer: true});
@@ -149,7 +244,7 @@ class MeshView {
         vec3 p = turn * (place + motion.x * re + motion.y * im - middle);
         seen = p; dye = tint;
         gl_Position = vec4(p.x * factor.x, p.y * factor.y, -p.z * depth - nearer, 1.0);
-        gl_PointSize = 9.0;
+        gl_PointSize = 12.0;
       }`));
     gl.attachShader(program, shader(gl.FRAGMENT_SHADER, `#version 300 es
       precision highp float;
@@ -180,23 +275,24 @@ class MeshView {
       gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, new Uint32Array(list), gl.STATIC_DRAW);
     }
   }
+  fill(buffer, values) {
+    this.gl.bindBuffer(this.gl.ARRAY_BUFFER, buffer);
+    this.gl.bufferData(this.gl.ARRAY_BUFFER, new Float32Array(values), this.gl.DYNAMIC_DRAW);
+  }
+  uploadPlaces() { this.fill(this.buffers.place, this.places); }
   upload() {
-    const {gl, buffers, places, motion} = this;
-    const fill = (buffer, values) => {
-      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-      gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(values), gl.DYNAMIC_DRAW);
-    };
-    const none = new Float32Array(places.length);
-    fill(buffers.place, places);
-    fill(buffers.re, motion ? motion.subarray(0, places.length) : none);
-    fill(buffers.im, motion ? motion.subarray(places.length) : none);
+    const {buffers, places, motion} = this;
+    const none = motion ? null : new Float32Array(places.length);
+    this.uploadPlaces();
+    this.fill(buffers.re, motion ? motion.subarray(0, places.length) : none);
+    this.fill(buffers.im, motion ? motion.subarray(places.length) : none);
   }
   drawWebGl() {
     const {gl, program, buffers} = this;
     const ratio = devicePixelRatio || 1, width = this.canvas.clientWidth || 600, height = this.height;
     this.canvas.style.height = height + 'px';
-    this.canvas.width = width * ratio;
-    this.canvas.height = height * ratio;
+    const size = [Math.round(width * ratio), Math.round(height * ratio)];
+    if (this.canvas.width !== size[0] || this.canvas.height !== size[1]) [this.canvas.width, this.canvas.height] = size;
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     const ground = colour('panel');
     const [r, g, b] = [1, 3, 5].map(i => parseInt(ground.slice(i, i + 2), 16) / 255);
@@ -215,8 +311,7 @@ class MeshView {
     const at = name => gl.getUniformLocation(program, name);
     gl.uniformMatrix3fv(at('turn'), false, new Float32Array(columns.flat().map((v, i) => i % 3 === 2 ? -v : v)));
     gl.uniform3fv(at('middle'), this.box.middle);
-    const scale = this.closeness * 2 / (Math.min(this.box.extent, 1.1 * Math.max(...this.box.size)) + 0.1 * this.box.extent);
-    gl.uniform2f(at('factor'), scale * Math.min(1, height / width), scale * Math.min(1, width / height));
+    gl.uniform2f(at('factor'), 2 * this.perMetre / width, 2 * this.perMetre / height);
     gl.uniform1f(at('depth'), 0.9 / this.box.extent);
     gl.uniform2f(at('motion'), this.scale * Math.cos(this.phase), -this.scale * Math.sin(this.phase));
     for (const [name, kind, flat] of [['triangles', gl.TRIANGLES, 0], ['edges', gl.LINES, 1]]) {

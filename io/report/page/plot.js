@@ -85,7 +85,8 @@ function rangeOf(arrays, isLog) {
 
 class Chart {
   // options: x, y (Axis), height, paint(chart) draws within the frame, hover(x, y) gives a text,
-  // click(x, y), zoomed(), isToScale: one length for one number along both axes
+  // click(x, y), zoomed(), isToScale: one length for one number along both axes;
+  // marks(chart) draws what moves over all of this, play() answers the space bar
   constructor(place, options) {
     Object.assign(this, options);
     this.place = place;
@@ -95,6 +96,7 @@ class Chart {
     // The sides are those of the histories, so that one time stands at one place.
     this.margin = {left: 76, right: 25, top: 8, bottom: 38};
     this.listen();
+    watchSight(this.canvas);
     redrawn.add(() => this.draw());
   }
   get inner() {
@@ -149,6 +151,7 @@ class Chart {
       if (event.key === '+') this.scale(middle, 0.8);
       else if (event.key === '-') this.scale(middle, 1.25);
       else if (event.key === '0') this.reset();
+      else if (event.key === ' ' && this.play) this.play();
       else if (shift) {
         const from = this.x.value(shift), to = this.x.value(1 + shift);
         this.x.set(from, to);
@@ -175,6 +178,41 @@ class Chart {
   changed() { if (this.zoomed) this.zoomed(); this.draw(); }
   draw() {
     if (!this.canvas.isConnected) return;
+    late.delete(this.canvas);
+    this.still = null;
+    this.drawStill();
+    this.drawMarks();
+  }
+  // What has moved alone, over a copy of the rest.
+  mark() {
+    drawWhenSeen(this.canvas, () => {
+      if (!this.canvas.isConnected || !this.context || late.has(this.canvas)) { this.draw(); return; }
+      const {canvas, context} = this;
+      if (!this.still) {
+        this.drawStill();
+        this.still = element('canvas', {width: canvas.width, height: canvas.height});
+        this.still.getContext('2d').drawImage(canvas, 0, 0);
+      } else {
+        context.save();
+        context.setTransform(1, 0, 0, 1, 0, 0);
+        context.clearRect(0, 0, canvas.width, canvas.height);
+        context.drawImage(this.still, 0, 0);
+        context.restore();
+      }
+      this.drawMarks();
+    });
+  }
+  drawMarks() {
+    if (!this.marks) return;
+    const c = this.context, f = this.inner;
+    c.save();
+    c.beginPath();
+    c.rect(f.x, f.y, f.width, f.height);
+    c.clip();
+    this.marks(this);
+    c.restore();
+  }
+  drawStill() {
     [this.context, this.width, this.total] = sharp(this.canvas, this.height || 300);
     const c = this.context, f = this.inner;
     if (this.isToScale) this.equalise(f);

@@ -30,7 +30,17 @@ function makeSound(place, view, run, section) {
   const slow = element('select', {'aria-label': 'Tempo'}, [[1, 'as fast as it was'], [2, 'half as fast'], [4, 'a quarter'], [10, 'a tenth']].map(([value, text]) => element('option', {value}, text)));
   const text = element('span', {class: 'readout'});
   let context = null, source = null;
-  const stop = () => { if (source) source.stop(); source = null; button.textContent = 'Play what is shown'; };
+  // What is heard leads all that is seen.
+  let heardNow = null;
+  const motion = new Slide(() => { if (heardNow) run.view.mark(Math.min(heardNow(), run.view.last)); });
+  run.sounds = motion;
+  motion.listeners.add(() => {
+    if (motion.isRunning) return;
+    if (source) source.stop();
+    source = heardNow = null;
+    button.textContent = 'Play what is shown';
+  });
+  const stop = () => motion.stop();
   const play = async () => {
     if (source) { stop(); return; }
     const series = playable[Number(channel.value)], times = Number(slow.value);
@@ -52,12 +62,14 @@ function makeSound(place, view, run, section) {
     source.buffer = buffer;
     source.connect(context.destination);
     source.onended = stop;
+    motion.start();
     const start = context.currentTime, from = run.clock.at(begin);
     source.start();
     button.textContent = 'Stop';
     text.textContent = `${digits(heard.length / context.sampleRate, 3)} s, loudest ${shown(largest, series.units)}; up to ${shown(Math.min(0.5 / run.clock.step, 0.5 * context.sampleRate * times), 'Hz')} is heard`;
-    const follow = () => { if (!source) return; run.view.mark(from + (context.currentTime - start) / times); requestAnimationFrame(follow); };
-    follow();
+    // currentTime is that of what goes out, which is heard later.
+    const delay = context.outputLatency || context.baseLatency || 0;
+    heardNow = () => from + Math.max(0, context.currentTime - start - delay) / times;
   };
   const button = element('button', {type: 'button', onclick: () => play().catch(error => { text.textContent = String(error.message || error); })}, 'Play what is shown');
   place.append(element('div', {class: 'tools'}, button, element('label', {}, 'Channel', channel), element('label', {}, 'Tempo', slow), text),

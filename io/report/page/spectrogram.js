@@ -73,11 +73,14 @@ async function makeSpectrogram(place, view, run) {
         c.fillStyle = '#ffffff';
         c.fillText(String(burst.number), chart.px(burst.start) + 2, y0 - 1);
       }
-      if (run.view.moment !== null) {
-        c.fillStyle = '#ffffff';
-        c.fillRect(chart.px(run.view.moment) - 1, chart.inner.y, 2, chart.inner.height);
-      }
     },
+    marks: chart => {
+      if (run.view.moment === null) return;
+      chart.context.fillStyle = '#ffffff';
+      chart.context.fillRect(chart.px(run.view.moment) - 1, chart.inner.y, 2, chart.inner.height);
+    },
+    click: moment => run.view.mark(moment),
+    play: () => run.player && run.player.motion.toggle(),
     hover: (moment, hertz) => {
       const db = level(moment, hertz);
       const burst = run.bursts.find(b => moment >= b.start && moment <= b.end && Math.abs(hertz - frequencyAt(b, moment)) < 0.03 * (chart.y.to - chart.y.from));
@@ -100,9 +103,9 @@ async function makeSpectrogram(place, view, run) {
   element('figcaption', {}, `${view.channel}; 0 dB is ${shown(view.reference, view.units)}, the highest level ${digits(view.top, 4)} dB. ${view.caption || ''} `,
     run.bursts.length ? 'Framed: bursts, the line in the frame their frequency over time. ' : '', run.predicted.length ? 'Dotted: predicted windows. ' : '',
       run.resolved !== null && run.resolved > frequency.from && run.resolved < frequencyEnd ? `White line: ${shown(run.resolved, 'Hz', 4)}, up to which the bodies are resolved. ` : '',
-    'Drag to zoom, double click to see all, Ctrl and wheel or + and − to scale.'));
+    'Click to mark a time, drag to zoom, double click to see all, Ctrl and wheel or + and − to scale.'));
   run.view.listeners.add(() => { chart.x.set(run.view.from, run.view.to); chart.draw(); });
-  run.view.momentListeners.add(() => chart.draw());
+  run.view.momentListeners.add(() => chart.mark());
   paintPicture();
   chart.draw();
   place.spectrogram = chart;  // for those who test the page

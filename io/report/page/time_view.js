@@ -41,17 +41,20 @@ class TimeView {
 }
 
 // Buttons that move the view, for those who use no mouse.
-function timeTools(view) {
+function timeTools(view, player) {
   const button = (text, title, act) => element('button', {type: 'button', title, onclick: act}, text);
   const stretch = element('span', {class: 'readout'});
   const tell = () => { stretch.textContent = `${shown(view.from, 's', 5)} to ${shown(view.to, 's', 5)}`; };
   view.listeners.add(tell);
   tell();
+  const moment = element('span', {class: 'readout'});
+  view.momentListeners.add(() => { moment.textContent = `at ${shown(view.moment, 's', 5)}`; });
   return element('div', {class: 'tools bar', role: 'group', 'aria-label': 'Stretch of time'},
+    motionButton(player.motion, ['Play', 'Stop'], 'what is shown, from the time that is marked'), element('label', {}, 'Lasts', player.pace),
     button('◀', 'Earlier', () => view.move(-0.5)), button('▶', 'Later', () => view.move(0.5)),
     button('+', 'Closer', () => view.zoom(0.5)), button('−', 'Wider', () => view.zoom(2)),
     button('Back', 'The stretch before', () => view.back()),
-    button('All', 'The whole run', () => view.reset()), stretch);
+    button('All', 'The whole run', () => view.reset()), stretch, moment);
 }
 
 // Samples with least and largest values of groups of 4, 16, 64 …, so that any stretch draws fast.
