@@ -1,8 +1,10 @@
 #include "app/report/drawn_bodies.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <optional>
 #include <utility>
+
+#include "io/figures/placed_bodies.hpp"
 
 namespace stridor {
 namespace {
@@ -68,16 +70,9 @@ int upward_axis(const System& system) {
   if (system.contacts.empty() || system.contacts.front().face) return 2;
   const ContactPoint& contact = system.contacts.front();
   if (!contact.space) return 1;
-  Eigen::Vector3d normal = contact.space->normal;
-  if (const FacetSurface* surface = system.facets_of(contact)) {
-    const auto& nodes = surface->facets[static_cast<std::size_t>(contact.space->first_facet)].nodes;
-    const auto corner = [&](std::size_t k) -> const Eigen::Vector3d& {
-      return surface->positions[static_cast<std::size_t>(nodes[k])];
-    };
-    normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
-  }
+  const std::optional<Eigen::Vector3d> normal = normal_in_space(system, contact);
   Eigen::Index axis = 0;
-  normal.cwiseAbs().maxCoeff(&axis);
+  normal->cwiseAbs().maxCoeff(&axis);
   return static_cast<int>(axis);
 }
 

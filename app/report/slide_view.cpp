@@ -31,12 +31,19 @@ Json triple(const Eigen::Vector3d& vector) {
 class Slide {
  public:
   Slide(const PlacedModel& model, const RecordedStretch& run, ReportPage& page)
-      : model_(model), placed_(model), run_(run), page_(page) {}
+      : model_(model), placed_(model), run_(run), page_(page) {
+    for (const Drive& drive : model.system.drives) {
+      std::vector<double>& way = ways_.emplace_back();
+      for (int i = 0; i < num_moments; ++i)
+        way.push_back(drive.displacement(
+            std::lerp(run.first_time(), run.last_time(), 1.0 * i / (num_moments - 1))));
+    }
+  }
 
   /// @param channels of the scene
   Json view(const std::vector<Channel>& channels, double bytes) {
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) add_body(b);
-    add_masters();
+    add_masters(channels);
     const DrawnNodes drawn = drawn_nodes(drawn_);
     constexpr double bytes_per_node = 30.0;  // places, and the faces or lines at it
     if (drawn.count == 0 || bytes_per_node * static_cast<double>(drawn.count) > bytes)
@@ -101,16 +108,25 @@ class Slide {
   }
 
   /// Masters without end, as lines with teeth: the teeth show that the master moves.
-  void add_masters() {
-    double low = 0.0, high = 0.0, deep = 0.0;
+  void add_masters(const std::vector<Channel>& channels) {
+    double low = 0.0, high = 0.0;
     for (const Eigen::MatrixX3d& places : nodes_) {
       if (places.rows() == 0) continue;
       low = std::min(low, places.col(0).minCoeff());
       high = std::max(high, places.col(0).maxCoeff());
-      deep = std::max(deep, places.col(1).maxCoeff() - places.col(1).minCoeff());
     }
-    // Bodies of points alone have no extent; any will do.
-    const double extent = high > low ? high - low : std::max(deep, 0.01);
+    const double width = high - low;
+    for (const ModelBody& body : model_.bodies) {
+      if (body.drive < 0 || body.parameters == nullptr) continue;
+      for (const double way : ways_[static_cast<std::size_t>(body.drive)]) {
+        low = std::min(low, way);
+        high = std::max(high, width + way);
+      }
+    }
+    // Bodies of points alone have no extent but that of their motion.
+    constexpr double motions_across = 10.0;
+    const double extent =
+        std::max({high - low, width > 0.0 ? 0.0 : motions_across * largest_motion(channels), 1e-9});
     for (const MasterSurface& surface : model_.system.surfaces) {
       if (!surface.is_endless) continue;
       constexpr int num_teeth = 16;
@@ -131,6 +147,19 @@ class Slide {
     }
   }
 
+  /// The largest recorded displacement of points, m.
+  double largest_motion(const std::vector<Channel>& channels) const {
+    double largest = 0.0;
+    for (const Channel& channel : channels) {
+      const std::string series = "/channels/" + channel.name;
+      if (!channel.point || channel.derivative != Derivative::none || !run_.file.has(series))
+        continue;
+      for (const double value : run_.values(series))
+        if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+    }
+    return largest > 0.0 ? largest : 1e-3;
+  }
+
   bool is_planar() const {
     if (placed_.has_faces()) return false;
     return std::all_of(nodes_.begin(), nodes_.end(), [](const Eigen::MatrixX3d& places) {
@@ -138,17 +167,12 @@ class Slide {
     });
   }
 
-  /// Displacements over the time of the run; null of drives that move nothing.
+  /// Null of drives that move nothing.
   Json drives() const {
     Json all = Json::array();
-    for (const Drive& drive : model_.system.drives) {
-      std::vector<double> displacement;
-      for (int i = 0; i < num_moments; ++i)
-        displacement.push_back(drive.displacement(
-            std::lerp(run_.first_time(), run_.last_time(), 1.0 * i / (num_moments - 1))));
-      const bool moves = std::any_of(displacement.begin(), displacement.end(),
-                                     [](double one) { return one != 0.0; });
-      all.push_back(moves ? page_.add_floats(displacement) : Json(nullptr));
+    for (const std::vector<double>& way : ways_) {
+      const bool moves = std::any_of(way.begin(), way.end(), [](double one) { return one != 0.0; });
+      all.push_back(moves ? page_.add_floats(way) : Json(nullptr));
     }
     return all;
   }
@@ -212,6 +236,7 @@ class Slide {
   PlacedBodies placed_;
   const RecordedStretch& run_;
   ReportPage& page_;
+  std::vector<std::vector<double>> ways_;  ///< displacements of each drive, m
   std::vector<DrawnBody> drawn_;
   std::vector<Eigen::MatrixX3d> nodes_;  ///< of each of them
   std::vector<Json> motions_;            ///< what is said of each of them

@@ -1,8 +1,21 @@
 #include "io/figures/placed_bodies.hpp"
 
+#include <Eigen/Geometry>
+
 #include "substructures/reduction/recovery.hpp"
 
 namespace stridor {
+
+std::optional<Eigen::Vector3d> normal_in_space(const System& system, const ContactPoint& contact) {
+  if (!contact.space) return std::nullopt;
+  const FacetSurface* surface = system.facets_of(contact);
+  if (surface == nullptr) return contact.space->normal;
+  const auto& nodes = surface->facets[static_cast<std::size_t>(contact.space->first_facet)].nodes;
+  const auto corner = [&](std::size_t k) -> const Eigen::Vector3d& {
+    return surface->positions[static_cast<std::size_t>(nodes[k])];
+  };
+  return (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+}
 
 PlacedBodies::PlacedBodies(const PlacedModel& model) : model_(&model) {
   std::vector<double> outer_radii;
@@ -54,7 +67,8 @@ Eigen::Vector3d PlacedBodies::ground_side(std::size_t body, const BodySpring& sp
   const Eigen::Vector3d behind = -direction(body, spring.at, spring.along);
   for (const ContactPoint& contact : model_->system.contacts) {
     if (contact.slave_body != static_cast<int>(body)) continue;
-    const std::optional<Eigen::Vector3d> away = normal_of(contact);
+    const std::optional<Eigen::Vector3d> away =
+        contact.space ? normal_in_space(model_->system, contact) : normal_of(contact);
     if (!away) continue;
     constexpr double along_the_normal = 0.5;
     return away->dot(behind) < -along_the_normal ? Eigen::Vector3d(-behind) : behind;

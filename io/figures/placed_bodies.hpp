@@ -10,6 +10,10 @@
 
 namespace stridor {
 
+/// Out of the rigid plane or the first facet that a contact in space touches, of length 1; nothing
+/// of other contacts.
+std::optional<Eigen::Vector3d> normal_in_space(const System& system, const ContactPoint& contact);
+
 /// The bodies of a scene at rest, before a drive has moved them. Plates and the bodies on their
 /// faces are rolled into space, with the axis along z (FaceSeat).
 class PlacedBodies {

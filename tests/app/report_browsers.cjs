@@ -236,10 +236,12 @@ async function playsTheLocus(tab) {
     const button = [...document.querySelectorAll('#section-1 button')].find(one => one.textContent === 'Play');
     button.focus();
   });
+  await tab.wait(500);  // shapes are unpacked as they are come to
   const first = await now();
   await tab.press('Enter');
   await tab.until(() => report.sections[1].place.value > 0.045);
   await tab.press(' ');  // on the button, which now says Stop
+  await tab.wait(500);
   const stopped = await now();
   assert.ok(!stopped.runs);
   assert.ok(stopped.moment > first.moment + 0.4 && stopped.middle > first.middle + 0.014 && stopped.mode !== first.mode);

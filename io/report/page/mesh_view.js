@@ -34,6 +34,33 @@ function lightOn(places, loop) {
   return Math.abs(0.3 * n[0] + 0.5 * n[1] - 0.8 * n[2]) / (Math.hypot(...n) * Math.hypot(0.3, 0.5, 0.8) || 1);
 }
 
+// Of a face seen, positive where its nodes run as those of a closed body do on the side of the viewer.
+function facing(places, loop) {
+  let area = 0;
+  loop.forEach((node, i) => {
+    const a = places[node], b = places[loop[(i + 1) % loop.length]];
+    area += a[0] * b[1] - a[1] * b[0];
+  });
+  return area;
+}
+
+// 1 or -1 of a closed body, each edge of which is of two faces, by the way in which these run; 0 of others.
+function outwardOf(part, places) {
+  const uses = new Map();
+  let volume = 0;
+  const at = node => [places[3 * node] - places[3 * part.first], places[3 * node + 1] - places[3 * part.first + 1], places[3 * node + 2] - places[3 * part.first + 2]];
+  for (const loop of part.faces) {
+    loop.forEach((node, i) => {
+      const other = loop[(i + 1) % loop.length], key = node < other ? `${node} ${other}` : `${other} ${node}`;
+      uses.set(key, (uses.get(key) || 0) + 1);
+      if (i < 2) return;
+      const [a, b, c] = [at(loop[0]), at(loop[i - 1]), at(node)];
+      volume += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+    });
+  }
+  return part.faces.length && [...uses.values()].every(count => count === 2) ? Math.sign(volume) : 0;
+}
+
 class MeshView {
   // parts: [{name, first, count, faces: loops, lines: loops}]; view: {planar, up}.
   // marks(context, screen), where it is set, draws over the bodies; play(), where it is set, answers the space bar
@@ -200,8 +227,11 @@ class MeshView {
       onScreen[node] = this.screen(point);
     }
     const pieces = [];
+    this.outward = this.outward || this.parts.map(part => outwardOf(part, this.places));
     this.parts.forEach((part, number) => {
-      for (const loop of part.faces) pieces.push({number, loop, depth: loop.reduce((sum, node) => sum + seen[node][2], 0) / loop.length});
+      const side = this.outward[number];
+      for (const loop of part.faces)
+        if (!side || side * facing(seen, loop) > 0) pieces.push({number, loop, depth: loop.reduce((sum, node) => sum + seen[node][2], 0) / loop.length});
       if (!part.faces.length) for (const loop of this.edges[number].length ? this.edges[number] : Array.from({length: part.count}, (_, i) => [part.first + i]))
         pieces.push({number, loop, depth: loop.reduce((sum, node) => sum + seen[node][2], 0) / loop.length});
     });

@@ -116,7 +116,7 @@ function timePlayer(view) {
     view.mark(Math.min(moment, view.to));
     if (moment >= view.to) motion.stop();
   });
-  return {motion, pace, slower: () => Number(pace.value) ? Number(pace.value) / view.length : 1};
+  return {motion, pace};
 }
 
 // Plays the way along a key.

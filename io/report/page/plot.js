@@ -186,7 +186,7 @@ class Chart {
   // What has moved alone, over a copy of the rest.
   mark() {
     drawWhenSeen(this.canvas, () => {
-      if (!this.canvas.isConnected || !this.context || late.has(this.canvas)) { this.draw(); return; }
+      if (!this.canvas.isConnected || !this.context) { this.draw(); return; }
       const {canvas, context} = this;
       if (!this.still) {
         this.drawStill();
@@ -244,7 +244,7 @@ class Chart {
     c.strokeStyle = colour('line');
     c.lineWidth = 0.6;
     c.beginPath();
-    for (const [value] of this.x.ticks(f.width / 90)) { c.moveTo(this.px(value), f.y); c.lineTo(this.px(value), f.y + f.height); }
+    for (const [value] of this.x.ticks(Math.max(4, f.width / 90))) { c.moveTo(this.px(value), f.y); c.lineTo(this.px(value), f.y + f.height); }
     for (const [value] of this.y.ticks(f.height / 45)) { c.moveTo(f.x, this.py(value)); c.lineTo(f.x + f.width, this.py(value)); }
     c.stroke();
   }
@@ -255,7 +255,7 @@ class Chart {
     c.strokeRect(f.x, f.y, f.width, f.height);
     c.textAlign = 'center';
     c.textBaseline = 'top';
-    for (const [value, text] of this.x.ticks(f.width / 90)) c.fillText(text, this.px(value), f.y + f.height + 5);
+    for (const [value, text] of this.x.ticks(Math.max(4, f.width / 90))) c.fillText(text, this.px(value), f.y + f.height + 5);
     c.fillText(this.x.text.label, f.x + f.width / 2, f.y + f.height + 21);
     c.textAlign = 'right';
     c.textBaseline = 'middle';

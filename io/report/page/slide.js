@@ -88,9 +88,12 @@ function springOn(c, from, to) {
   c.stroke();
 }
 
+// Of the size of the picture.
+const springLength = 0.16, forceLength = 0.14;
+
 class SlidePicture {
   constructor(view, mesh, clock) {
-    Object.assign(this, {view, mesh, clock, amplitude: 1, moment: clock.first, former: clock.first});
+    Object.assign(this, {view, mesh, clock, amplitude: 1, extent: 1, moment: clock.first, former: clock.first});
     this.places = view.places.numbers;
     this.moved = new Float32Array(this.places.length);
     this.forces = view.contacts.map(contact => contact.series).filter(Boolean);
@@ -101,9 +104,13 @@ class SlidePicture {
     this.largestDisplacement = largest(true);
   }
   // m on the picture for m of a displacement
-  get enlarged() { return this.largestDisplacement > 0 ? 0.08 * this.amplitude * this.mesh.box.extent / this.largestDisplacement : 0; }
+  get enlarged() {
+    if (!(this.largestDisplacement > 0)) return 0;
+    const times = 0.08 * this.extent / this.largestDisplacement;
+    return this.amplitude * (times < 3 ? 1 : times);  // large ones stand to scale
+  }
   // m on the picture for one unit of a recorded series
-  lengthOf(point) { return point.is_displacement ? this.enlarged : point.series.largest > 0 ? 0.12 * this.amplitude * this.mesh.box.extent / point.series.largest : 0; }
+  lengthOf(point) { return point.is_displacement ? this.enlarged : point.series.largest > 0 ? 0.12 * this.amplitude * this.extent / point.series.largest : 0; }
   set(moment, former) {
     Object.assign(this, {moment, former});
     const {view, places, moved} = this;
@@ -141,7 +148,7 @@ class SlidePicture {
     c.lineWidth = 1.2;
     for (const spring of this.view.springs) {
       const part = this.view.parts[spring.part], shift = part.count === 1 ? this.shiftOf(part) : [0, 0, 0];
-      const ground = spring.to || spring.at.map((x, k) => x + 0.25 * this.mesh.box.extent * spring.behind[k]);
+      const ground = spring.to || spring.at.map((x, k) => x + springLength * this.extent * spring.behind[k]);
       const from = screen(this.slid(spring, shift)), to = screen(this.slid({part: spring.part, at: ground}));
       springOn(c, from, to);
       if (spring.behind) { c.fillStyle = colour('faint'); c.fillRect(to[0] - 4, to[1] - 4, 8, 8); }
@@ -153,7 +160,7 @@ class SlidePicture {
       const force = contact.series && contact.series.between(this.moment, this.moment) || null;
       c.strokeStyle = c.fillStyle = colour('text');
       if (this.showsForces) {
-        const length = 0.14 * this.mesh.box.extent * (force ? force.now : 0) / this.largestForce;
+        const length = forceLength * this.extent * (force ? force.now : 0) / this.largestForce;
         arrowOn(c, on, screen(at.map((x, k) => x + length * contact.normal[k])));
       }
       c.beginPath();
@@ -226,6 +233,11 @@ async function makeSlide(place, view, run, section) {
     return list;
   });
   mesh.fit(...ends);
+  // Room for springs and arrows on the side to which they point.
+  picture.extent = mesh.box.extent;
+  const room = (at, along, length) => at.map((x, k) => x + length * picture.extent * along[k]);
+  mesh.fit(...ends, ...view.springs.filter(spring => spring.behind).map(spring => room(spring.at, spring.behind, springLength)),
+    ...(picture.showsForces ? view.contacts.map(contact => room(contact.at, contact.normal, forceLength)) : []));
   mesh.marks = (c, screen) => picture.paint(c, screen);
   const text = element('div', {class: 'readout'});
   const slider = element('input', {type: 'range', min: 0, max: 1000, step: 1, value: 0, 'aria-label': 'Time',
@@ -243,7 +255,7 @@ async function makeSlide(place, view, run, section) {
     former = moment;
     slider.value = Math.round(1000 * (moment - run.view.from) / run.view.length);
     const ways = view.drives.map((drive, d) => drive ? `drive${view.drives.length > 1 ? ' ' + (d + 1) : ''} at ${shown(sampledAt(drive.numbers, view.time, moment), 'm', 4)}` : null).filter(Boolean);
-    const enlarged = picture.enlarged > 0 && hasPoints ? `; displacements ${digits(picture.enlarged, 2)} times enlarged` : '';
+    const enlarged = picture.enlarged > 0 && hasPoints ? `; displacements ${picture.enlarged === 1 ? 'to scale' : digits(picture.enlarged, 2) + ' times enlarged'}` : '';
     text.textContent = `${shown(moment, 's', 5)}${ways.length ? ': ' + ways.join(', ') : ''}${enlarged}`;
   };
   place.append(element('div', {class: 'tools'}, element('label', {}, 'Time', slider), hasPoints ? element('label', {}, 'Amplitude', size) : null), text,

@@ -61,7 +61,12 @@ function makeSound(place, view, run, section) {
     source = context.createBufferSource();
     source.buffer = buffer;
     source.connect(context.destination);
-    source.onended = stop;
+    const played = source;
+    source.onended = () => {
+      if (source !== played) return;  // it was stopped
+      run.view.mark(Math.min(run.clock.at(end - 1), run.view.last));
+      stop();
+    };
     motion.start();
     const start = context.currentTime, from = run.clock.at(begin);
     source.start();
