@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <stdexcept>
+#include <system_error>
 
 #include "core/errors.hpp"
 #include "core/fft_plan.hpp"
@@ -14,6 +15,7 @@
 #include "core/units.hpp"
 #include "io/figures/axes.hpp"
 #include "io/figures/gnuplot.hpp"
+#include "io/hdf5/output_options.hpp"
 
 namespace stridor {
 namespace {
@@ -101,8 +103,17 @@ void add_band_option(CLI::App& verb, std::optional<std::string>& band) {
                   "that the run found in measure.band");
 }
 
-void add_data_option(CLI::App& verb, PictureOptions& options) {
-  verb.add_option("--data", options.data, "Write the spectrogram also as numbers (HDF5)");
+void check_data_file(const PictureOptions& options) {
+  if (!options.data) return;
+  namespace fs = std::filesystem;
+  std::error_code missing;
+  if (fs::equivalent(*options.data, options.file, missing))
+    throw ConfigError(Refusal::doubled_name, "--data",
+                      fmt::format("'{}' is the run file itself", *options.data));
+  if (fs::path(*options.data) == fs::path(options.output))
+    throw ConfigError(Refusal::doubled_name, "--data",
+                      fmt::format("'{}' is also the figure", *options.data));
+  check_output(*options.data, options.common.overwrite());
 }
 
 double option_value(const char* option, const std::string& text, const std::string& unit,

@@ -41,8 +41,9 @@ struct PictureOptions {
 void add_picture_options(CLI::App& verb, PictureOptions& options);
 /// Division of a signal into pieces, and display of levels.
 void add_spectrum_options(CLI::App& verb, PictureOptions& options);
-/// --data.
-void add_data_option(CLI::App& verb, PictureOptions& options);
+/// Checks before anything is computed that --data, where it is given, can be written.
+/// @throws ConfigError if it is the run file or the figure; FileError as check_output()
+void check_data_file(const PictureOptions& options);
 
 /// --band, of verbs that tell the bursts of a run.
 void add_band_option(CLI::App& verb, std::optional<std::string>& band);

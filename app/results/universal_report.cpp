@@ -21,6 +21,7 @@ std::string quantity_words(int quantity) {
       return "velocity";
     case UffQuantity::acceleration:
       return "acceleration";
+    case UffQuantity::reaction_force:
     case UffQuantity::excitation_force:
       return "force";
     case UffQuantity::time:
@@ -47,6 +48,10 @@ std::string type_words(int type) {
       return "frequency response";
     case 6:
       return "coherence";
+    case 9:
+      return "power spectral density";
+    case 12:
+      return "spectrum";
     default:
       return fmt::format("function of type {}", type);
   }
@@ -66,6 +71,8 @@ Json dof_json(const UffDof& dof) {
 
 Json function_json(const UffFunction& function) {
   Json object = {{"id", function.id},
+                 {"note", function.note},
+                 {"units", function.units},
                  {"type", type_words(function.type)},
                  {"response", dof_json(function.response)},
                  {"reference", dof_json(function.reference)},
@@ -116,14 +123,17 @@ void print_functions(const std::vector<UffFunction>& functions) {
   print_line("functions", fmt::format("{}", functions.size()));
   for (std::size_t i = 0; i < std::min(most_shown, functions.size()); ++i) {
     const UffFunction& one = functions[i];
-    std::string text =
-        fmt::format("{}, {} per {}, {} {} values", type_words(one.type),
-                    quantity_words(one.ordinate_quantity), quantity_words(one.denominator_quantity),
-                    one.values.size(), one.is_complex ? "complex" : "real");
+    const bool is_ratio = one.denominator_quantity != 0 || one.reference.node != 0;
+    std::string text = fmt::format(
+        "{}, {}{}, {} {} values", type_words(one.type), quantity_words(one.ordinate_quantity),
+        is_ratio ? " per " + quantity_words(one.denominator_quantity) : "", one.values.size(),
+        one.is_complex ? "complex" : "real");
     if (!one.abscissa.empty())
       text += fmt::format(" at a {} of {:g} to {:g}", quantity_words(one.abscissa_quantity),
                           one.abscissa.front(), one.abscissa.back());
-    print_line(fmt::format("  {} per {}", dof_words(one.response), dof_words(one.reference)), text);
+    print_line(
+        "  " + dof_words(one.response) + (is_ratio ? " per " + dof_words(one.reference) : ""),
+        text);
   }
   if (functions.size() > most_shown)
     print_line("  ...", fmt::format("{} more", functions.size() - most_shown));
@@ -137,12 +147,14 @@ void print_use(const UffHoldings& held, const std::string& file) {
         "{}\n",
         file, held.shapes.nodes.empty() ? 1 : held.shapes.nodes.begin()->first, file);
   }
-  if (held.functions.empty()) return;
+  const auto response = std::ranges::find(
+      held.functions, static_cast<int>(UffFunctionType::frequency_response), &UffFunction::type);
+  if (response == held.functions.end()) return;
   fmt::print(
       "\nBeside the responses of a scene: stridor frf SCENE.yaml --input BODY.POINT.AXIS --from "
       "... "
       "--to ... --compare {} --node {}=BODY.POINT\n",
-      file, held.functions.front().response.node);
+      file, response->response.node);
 }
 
 }  // namespace

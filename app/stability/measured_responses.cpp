@@ -12,9 +12,8 @@
 #include <string_view>
 
 #include "analysis/response_assurance.hpp"
+#include "app/results/universal_file.hpp"
 #include "core/errors.hpp"
-#include "core/version.hpp"
-#include "models/placed_model.hpp"
 
 namespace stridor {
 namespace {
@@ -225,25 +224,10 @@ std::vector<ComparedResponse> compared_responses(const ResponseStudy& study,
 
 UffContents uff_contents(const ResponseStudy& study, const std::vector<double>& frequencies,
                          const std::vector<ResponseCurve>& curves) {
-  UffContents contents;
-  contents.title = "frequency responses of " + study.loaded().path;
-  contents.program = std::string("stridor ") + std::string(version);
-  contents.stamp(utc_now());
-  BodyCache cache;
-  const ModelParameters parameters = parameters_with_files(study.loaded(), cache);
-  const PlacedModel placed = place_model(parameters, cache);
-  std::map<PointName, std::int64_t> numbers;
+  UffContents contents = headed_contents("frequency responses of " + study.loaded().path);
+  PointNodes points;
   const auto dof_of = [&](const Channel& channel) {
-    const auto [entry, is_new] =
-        numbers.emplace(*channel.point, static_cast<std::int64_t>(numbers.size() + 1));
-    if (is_new) {
-      const auto body =
-          std::find_if(placed.bodies.begin(), placed.bodies.end(),
-                       [&](const ModelBody& one) { return one.name == channel.point->body; });
-      contents.nodes.push_back({entry->second, channel.point->body + "." + channel.point->point,
-                                body->place_of(node_at(*body, channel.point->point, channel.key))});
-    }
-    return UffDof{entry->second, channel.direction + 1};
+    return points.dof(channel.point->body + "." + channel.point->point, channel.direction);
   };
   std::size_t i = 0;
   for (const Channel& output : study.places().outputs) {
@@ -262,6 +246,7 @@ UffContents uff_contents(const ResponseStudy& study, const std::vector<double>& 
       contents.functions.push_back(std::move(function));
     }
   }
+  contents.nodes = points.placed(study.loaded());
   return contents;
 }
 

@@ -8,9 +8,9 @@
 #include <limits>
 #include <set>
 
+#include "app/results/universal_file.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
-#include "core/version.hpp"
 #include "io/figures/mesh_picture.hpp"
 #include "io/run_file/run_file.hpp"
 #include "models/placed_model.hpp"
@@ -195,10 +195,7 @@ ShapedModes shaped_modes(const Analysis& analysis, const std::string& option) {
 }
 
 UffContents uff_contents(const ShapedModes& shapes, const std::string& scene) {
-  UffContents contents;
-  contents.title = "modes of " + scene;
-  contents.program = std::string("stridor ") + std::string(version);
-  contents.stamp(utc_now());
+  UffContents contents = headed_contents("modes of " + scene);
   for (Eigen::Index i = 0; i < shapes.places.rows(); ++i)
     contents.nodes.push_back({i + 1, shapes.bodies[static_cast<std::size_t>(i)],
                               shapes.places.row(i).transpose()});

@@ -185,7 +185,9 @@ void add_shape_files(const EigOptions& options, const LoadedScene& loaded, const
   if (!options.universal && !options.compared) return;
   const ShapedModes shapes = shaped_modes(analysis, options.universal ? "--uff" : "--compare");
   if (options.universal) {
-    write_text_file(*options.universal, uff_text(uff_contents(shapes, options.stability.scene), "--uff"));
+    const UffContents contents = uff_contents(shapes, options.stability.scene);
+    write_text_file(*options.universal,
+                    [&](const TextSink& sink) { write_uff(contents, "--uff", sink); });
     object["uff"] = *options.universal;
   }
   if (!options.compared) return;

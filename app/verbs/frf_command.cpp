@@ -7,6 +7,7 @@
 
 #include "app/results/file_attributes.hpp"
 #include "app/results/pictures.hpp"
+#include "app/results/universal_file.hpp"
 #include "app/stability/measured_responses.hpp"
 #include "app/stability/response_picture.hpp"
 #include "app/stability/response_study.hpp"
@@ -32,14 +33,9 @@ struct FrfOptions {
   std::optional<std::string> figure;
   std::optional<std::string> measured;
   std::vector<std::string> nodes;
-  bool is_binary = false;  ///< universal files
+  UniversalOptions universal;
   std::string command_line;
 };
-
-bool is_universal(const std::string& file) {
-  const fs::path ending = fs::path(file).extension();
-  return ending == ".uff" || ending == ".unv";
-}
 
 void check_files(const FrfOptions& options) {
   for (const std::string& file : options.files) {
@@ -51,8 +47,8 @@ void check_files(const FrfOptions& options) {
     check_output(file, options.stability.common.overwrite());
   }
   if (options.figure) check_figure(*options.figure, options.stability.common);
-  if (options.is_binary && std::ranges::none_of(options.files, is_universal))
-    throw ConfigError(Refusal::wrong_value, "--binary",
+  if (options.universal.is_given() && std::ranges::none_of(options.files, is_universal))
+    throw ConfigError(Refusal::wrong_value, options.universal.is_binary ? "--binary" : "--single",
                       "is the form of universal files; name one with -o FILE.uff");
   if (!options.nodes.empty() && !options.measured)
     throw ConfigError(Refusal::wrong_value, "--node",
@@ -76,8 +72,10 @@ void write_files(const FrfOptions& options, const ResponseStudy& study,
   const StabilityOptions& stability = options.stability;
   for (const std::string& file : options.files) {
     if (is_universal(file)) {
-      const UffForm form = options.is_binary ? UffForm::binary : UffForm::text;
-      write_text_file(file, uff_text(uff_contents(study, frequencies, curves), "-o", form));
+      const UffContents contents = uff_contents(study, frequencies, curves);
+      write_text_file(file, [&](const TextSink& sink) {
+        write_uff(contents, "-o", sink, options.universal.numbers());
+      });
       continue;
     }
     Attributes attributes = source_attributes(study.loaded(), options.command_line);
@@ -281,9 +279,7 @@ void add_frf_command(CLI::App& program, Action& action, const std::string& comma
                    "File to write: .h5 (HDF5), or .uff, .unv (universal file); may be repeated")
       ->take_all()
       ->allow_extra_args(false);
-  verb->add_flag(
-      "--binary", options->is_binary,
-      "Universal files with their numbers in binary (58b), at any frequencies to the last digit");
+  add_universal_options(*verb, options->universal);
   verb->add_option("--figure", options->figure,
                    "Picture of magnitude, phase and locus of the responses: .png, .svg or .pdf");
   verb->add_option("--compare", options->measured,

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "app/results/pictures.hpp"
+#include "app/results/run_functions.hpp"
+#include "app/results/universal_file.hpp"
 #include "core/errors.hpp"
 #include "io/figures/axes.hpp"
 #include "io/figures/history_plot.hpp"
@@ -17,6 +20,8 @@ namespace {
 struct PlotOptions : PictureOptions {
   std::string kind;
   std::optional<std::string> scale;
+  UniversalOptions universal;  ///< form of --data
+  bool has_figure() const { return !output.empty(); }
 };
 
 /// An option that only some kinds of pictures have.
@@ -48,7 +53,7 @@ Wanted wanted_series(const PlotOptions& options, const RecordedStretch& run, Ser
   Wanted wanted;
   for (const std::string& channel : options.channels)
     wanted.series.push_back(find_series(run, channel, "--channel"));
-  if (wanted.series.size() > most_panels) {
+  if (options.has_figure() && wanted.series.size() > most_panels) {
     throw ConfigError(Refusal::wrong_value, "--channel",
                       fmt::format("{} channels, but one picture holds at most {}; draw several",
                                   wanted.series.size(), most_panels));
@@ -73,10 +78,20 @@ Wanted wanted_series(const PlotOptions& options, const RecordedStretch& run, Ser
 /// Addition of a kind of picture to the JSON object.
 using Drawn = Json;
 
+void note_written(const WrittenFunctions& written, Drawn& drawn) {
+  drawn["functions"] = written.count;
+  if (!written.remark.empty()) drawn["remark"] = written.remark;
+}
+
 Drawn draw_history(const PlotOptions& options, const RecordedStretch& run) {
   const auto acceleration = acceleration_channel(run.file);
   const std::vector<NumberedBurst> bursts = bursts_in(run, options);
   const Wanted wanted = wanted_series(options, run, SeriesUse::history);
+  Drawn drawn;
+  if (options.data)
+    note_written(write_history_functions(*options.data, run, wanted.series, options.universal),
+                 drawn);
+  if (!options.has_figure()) return drawn;
   std::vector<Panel> panels;
   for (const std::string& series : wanted.series) {
     panels.push_back(panel_of(run.file, series, run.samples));
@@ -89,7 +104,9 @@ Drawn draw_history(const PlotOptions& options, const RecordedStretch& run) {
   plot_histories(panels, options.output, "",
                  wanted.rest_text() + filters_text(run.file, wanted.series) + source_text(run) +
                      ".");
-  return {{"panels", panels.size()}, {"bursts", bursts.size()}, {"left_out", wanted.left_out}};
+  drawn.update(
+      {{"panels", panels.size()}, {"bursts", bursts.size()}, {"left_out", wanted.left_out}});
+  return drawn;
 }
 
 // ---------------------------------------------------------------- one channel against another
@@ -211,6 +228,21 @@ AmplitudeScale amplitude_scale(const PlotOptions& options) {
                     fmt::format("'{}' is neither db nor linear", *options.scale));
 }
 
+/// A panel for each unit. @throws ConfigError at --reference where there is more than one
+SpectrumPanel& panel_in(std::vector<SpectrumPanel>& panels, const std::string& units,
+                        const PlotOptions& options) {
+  const auto panel = std::find_if(panels.begin(), panels.end(),
+                                  [&](const SpectrumPanel& other) { return other.units == units; });
+  if (panel != panels.end()) return *panel;
+  if (options.reference && !panels.empty()) {
+    throw ConfigError(Refusal::wrong_unit, "--reference",
+                      fmt::format("the channels have several units ({}, {}); choose those of "
+                                  "one with --channel",
+                                  panels.front().units, units));
+  }
+  return panels.emplace_back(SpectrumPanel{units, settle_reference(options, units), {}});
+}
+
 Drawn draw_spectrum(const PlotOptions& options, const RecordedStretch& run) {
   const RecordedSettings scene = recorded_settings(run.file, run.path);
   // An eighth of the stretch: 15 pieces at half overlap, a compromise of lines and scatter.
@@ -224,26 +256,23 @@ Drawn draw_spectrum(const PlotOptions& options, const RecordedStretch& run) {
 
   Wanted wanted = wanted_series(options, run, SeriesUse::spectrum);
   std::vector<SpectrumPanel> panels;
+  std::vector<std::pair<std::string, Spectrum>> spectra;
   Json channels = Json::array();
   for (std::string& series : wanted.series) {
     series = spectral_series(run.file, series);
     const std::string units = run.file.units(series);
-    auto panel = std::find_if(panels.begin(), panels.end(),
-                              [&](const SpectrumPanel& other) { return other.units == units; });
-    if (panel == panels.end()) {
-      if (options.reference && !panels.empty()) {
-        throw ConfigError(Refusal::wrong_unit, "--reference",
-                          fmt::format("the channels have several units ({}, {}); choose those of "
-                                      "one with --channel",
-                                      panels.front().units, units));
-      }
-      panels.push_back({units, settle_reference(options, units), {}});
-      panel = panels.end() - 1;
-    }
-    panel->curves.push_back(
-        {channel_name(series), make_spectrum(run.finite_values(series), run.interval, parameters)});
+    SpectrumPanel& panel = panel_in(panels, units, options);
+    spectra.emplace_back(series,
+                         make_spectrum(run.finite_values(series), run.interval, parameters));
+    panel.curves.push_back({channel_name(series), spectra.back().second});
     channels.push_back(
-        {{"channel", channel_name(series)}, {"units", units}, {"reference", panel->reference}});
+        {{"channel", channel_name(series)}, {"units", units}, {"reference", panel.reference}});
+  }
+  Drawn drawn;
+  if (options.data) {
+    note_written(
+        write_spectrum_functions(*options.data, run, spectra, parameters, options.universal),
+        drawn);
   }
   const std::vector<NumberedBurst> bursts = bursts_in(run, options);
   for (const auto& [number, burst] : bursts)
@@ -256,27 +285,49 @@ Drawn draw_spectrum(const PlotOptions& options, const RecordedStretch& run) {
     picture.caption += fmt::format(" Dashed: frequencies of the bursts{}.",
                                    options.band ? " in the band " + *options.band : "");
   picture.caption += " " + filters_text(run.file, wanted.series) + wanted.rest_text();
-  plot_spectra(panels, picture, options.output);
-  return {{"channels", channels},
-          {"window", window_name(parameters.window)},
-          {"length", static_cast<double>(parameters.length) * run.interval},
-          {"length_samples", parameters.length},
-          {"overlap", parameters.overlap},
-          {"pieces", num_pieces},
-          {"from", run.first_time()},
-          {"to", run.last_time()},
-          {"max_frequency", max_frequency},
-          {"scale", picture.scale == AmplitudeScale::level ? "db" : "linear"},
-          {"bursts", bursts.size()},
-          {"left_out", wanted.left_out}};
+  if (options.has_figure()) plot_spectra(panels, picture, options.output);
+  drawn.update({{"channels", channels},
+                {"window", window_name(parameters.window)},
+                {"length", static_cast<double>(parameters.length) * run.interval},
+                {"length_samples", parameters.length},
+                {"overlap", parameters.overlap},
+                {"pieces", num_pieces},
+                {"from", run.first_time()},
+                {"to", run.last_time()},
+                {"max_frequency", max_frequency},
+                {"scale", picture.scale == AmplitudeScale::level ? "db" : "linear"},
+                {"bursts", bursts.size()},
+                {"left_out", wanted.left_out}});
+  return drawn;
 }
 
 // ---------------------------------------------------------------- the verb
 
+/// What is written, and as what.
+void check_outputs(const PlotOptions& options) {
+  const bool is_of_channels = options.kind == "history" || options.kind == "spectrum";
+  if (options.kind == "phase") refuse_option(options, "--data", options.data);
+  if (options.universal.is_given() && !(is_of_channels && options.data))
+    throw ConfigError(
+        Refusal::wrong_value, options.universal.is_binary ? "--binary" : "--single",
+        "is the form of universal files; name one with --kind history or spectrum and "
+        "--data FILE.uff");
+  if (is_of_channels && options.data && !is_universal(*options.data))
+    throw ConfigError(
+        Refusal::wrong_value, "--data",
+        fmt::format("'{}' ends neither in .uff nor in .unv (universal file, dataset 58); the "
+                    "samples of the run stand in {} already (HDF5)",
+                    *options.data, options.file));
+  if (!options.has_figure() && !(is_of_channels && options.data))
+    throw ConfigError(Refusal::missing, "--output",
+                      fmt::format("is missing: name a figure, .png, .svg or .pdf{}",
+                                  is_of_channels ? ", or --data FILE.uff alone" : ""));
+  if (is_of_channels) check_data_file(options);
+}
+
 void check_options(const PlotOptions& options) {
   const bool is_spectrogram = options.kind == "spectrogram";
   const bool is_spectrum = options.kind == "spectrum";
-  if (!is_spectrogram) refuse_option(options, "--data", options.data);
   if (!is_spectrum) refuse_option(options, "--scale", options.scale);
   if (is_spectrogram || is_spectrum) return;
   refuse_option(options, "--window", options.window);
@@ -290,18 +341,23 @@ void check_options(const PlotOptions& options) {
 
 ExitCode plot(const PlotOptions& options) {
   check_options(options);
+  check_outputs(options);
   if (options.kind == "spectrogram") return draw_spectrogram(options);
-  check_figure(options.output, options.common);
+  if (options.has_figure()) check_figure(options.output, options.common);
   const RecordedStretch run = open_stretch(options);
   const Drawn drawn = options.kind == "history" ? draw_history(options, run)
                       : options.kind == "phase" ? draw_phase(options, run)
                                                 : draw_spectrum(options, run);
   if (options.common.json) {
-    Json object = {{"figure", options.output}};
+    Json object = {{"figure", options.has_figure() ? Json(options.output) : Json(nullptr)},
+                   {"data", options.data ? Json(*options.data) : Json(nullptr)}};
     object.update(drawn);
     print_json(object);
   } else {
-    fmt::print("{}\n", options.output);
+    if (options.has_figure()) fmt::print("{}\n", options.output);
+    if (options.data) fmt::print("{}\n", *options.data);
+    if (const auto remark = drawn.find("remark"); remark != drawn.end())
+      fmt::print("{}\n", remark->get<std::string>());
     if (const auto rest = drawn.find("left_out"); rest != drawn.end() && !rest->empty())
       fmt::print("{} more channels are not drawn; name those wanted with --channel (stridor info "
                  "lists them)\n",
@@ -321,16 +377,21 @@ void add_plot_command(CLI::App& program, Action& action, const std::string& comm
                    "history, spectrogram, phase (one channel against another) or spectrum")
       ->check(CLI::IsMember({"history", "spectrogram", "phase", "spectrum"}))
       ->required();
-  verb->add_option("-o,--output", options->output, "Figure to write: .png, .svg or .pdf")
-      ->required();
-  verb->add_option("--channel", options->channels,
-                   "Channel to draw (repeatable); default: the eight of most use, for a phase plot "
-                   "the first pair of displacement and velocity")
+  verb->add_option("-o,--output", options->output,
+                   "Figure to write: .png, .svg or .pdf; with --data it may be left away");
+  verb->add_option(
+          "--channel", options->channels,
+          "Channel to draw or write (repeatable); default: the eight of most use, for a phase plot "
+          "the first pair of displacement and velocity")
       ->take_all()
       ->allow_extra_args(false);
   add_spectrum_options(*verb, *options);
   verb->add_option("--scale", options->scale, "Amplitudes of a spectrum: db or linear");
-  add_data_option(*verb, *options);
+  verb->add_option(
+      "--data", options->data,
+      "Write numbers too: histories and spectra as a universal file (.uff, .unv: dataset "
+      "58), a spectrogram as HDF5");
+  add_universal_options(*verb, options->universal);
   add_picture_options(*verb, *options);
   verb->callback([options, &action] { action = [options] { return plot(*options); }; });
 }

@@ -5,13 +5,13 @@
 #include <filesystem>
 
 #include "app/results/pictures.hpp"
+#include "app/results/universal_file.hpp"
 #include "app/stability/prediction.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
 #include "core/version.hpp"
 #include "io/figures/axes.hpp"
 #include "io/figures/spectrogram_plot.hpp"
-#include "io/hdf5/output_options.hpp"
 #include "io/results/spectrogram_file.hpp"
 
 namespace stridor {
@@ -21,19 +21,6 @@ namespace fs = std::filesystem;
 
 /// Amplitudes of a spectrogram held in memory, 2 GB.
 constexpr double most_amplitudes = 2.5e8;
-
-/// Checks before anything is computed that --data can be written.
-void check_data_file(const PictureOptions& options) {
-  if (!options.data) return;
-  std::error_code missing;
-  if (fs::equivalent(*options.data, options.file, missing))
-    throw ConfigError(Refusal::doubled_name, "--data",
-                      fmt::format("'{}' is the run file itself", *options.data));
-  if (fs::path(*options.data) == fs::path(options.output))
-    throw ConfigError(Refusal::doubled_name, "--data",
-                      fmt::format("'{}' is also the figure", *options.data));
-  check_output(*options.data, options.common.overwrite());
-}
 
 std::string shown_series(const PictureOptions& options, const RecordedStretch& run,
                          const std::optional<SpectrogramSection>& section) {
@@ -200,6 +187,12 @@ void print_drawn(const PictureOptions& options, const RecordedStretch& run,
 
 ExitCode draw_spectrogram(const PictureOptions& options) {
   check_figure(options.output, options.common);
+  if (options.data && is_universal(*options.data))
+    throw ConfigError(
+        Refusal::wrong_value, "--data",
+        fmt::format("'{}' is named like a universal file, which holds no spectrograms; "
+                    "name it .h5 (HDF5)",
+                    *options.data));
   check_data_file(options);
   const RecordedStretch run = open_stretch(options);
   const RecordedSettings scene = recorded_settings(run.file, run.path);
@@ -249,7 +242,7 @@ void add_spectrogram_command(CLI::App& program, Action& action, const std::strin
                    "Locus file (`locus -o`) whose unstable windows are marked and set beside the "
                    "bursts");
   add_spectrum_options(*verb, *options);
-  add_data_option(*verb, *options);
+  verb->add_option("--data", options->data, "Write the spectrogram also as numbers (HDF5)");
   add_picture_options(*verb, *options);
   verb->callback([options, &action] {
     if (options->output.empty()) {

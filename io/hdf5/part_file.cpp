@@ -166,24 +166,26 @@ void PartFile::replace() {
   sync_name();
 }
 
-void write_text_file(const std::string& path, const std::string& text) {
+void write_text_file(const std::string& path, const std::function<void(const TextSink&)>& fill) {
   PartFile file(path);
-  std::FILE* stream = std::fopen(file.path().c_str(), "we");
-  if (stream == nullptr) {
+  const auto refuse = [&] {
     throw FileError(Refusal::cannot_write, path, "",
                     fmt::format("cannot be written: {}", std::strerror(errno)));
-  }
+  };
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.path().c_str(), "we"),
+                                                         &std::fclose);
+  if (!stream) refuse();
   file.made();
-  lock_for_writing(fileno(stream));
-  const bool is_taken =
-      std::fwrite(text.data(), 1, text.size(), stream) == text.size() && std::fflush(stream) == 0;
-  const int error = errno;
-  const bool is_closed = std::fclose(stream) == 0;
-  if (!is_taken || !is_closed) {
-    throw FileError(Refusal::cannot_write, path, "",
-                    fmt::format("cannot be written: {}", std::strerror(is_taken ? errno : error)));
-  }
+  lock_for_writing(fileno(stream.get()));
+  fill([&](std::string_view text) {
+    if (std::fwrite(text.data(), 1, text.size(), stream.get()) != text.size()) refuse();
+  });
+  if (std::fflush(stream.get()) != 0 || std::fclose(stream.release()) != 0) refuse();
   file.replace();
+}
+
+void write_text_file(const std::string& path, const std::string& text) {
+  write_text_file(path, [&](const TextSink& sink) { sink(text); });
 }
 
 }  // namespace stridor

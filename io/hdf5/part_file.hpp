@@ -1,7 +1,9 @@
 // Files that appear under their name only when they are whole and on the disk.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <string_view>
 
 #include "core/stop_token.hpp"
 #include "io/hdf5/output_options.hpp"
@@ -51,8 +53,13 @@ std::string folder_of(const std::string& path);
 /// @param final_path of the file that was being made
 void remove_leftovers(const std::string& final_path);
 
+/// Takes pieces of a text, one behind the other.
+using TextSink = std::function<void(std::string_view)>;
+
 /// Writes a text into a file that appears when it is whole; one of that name is replaced.
+/// @param fill gives the text piece by piece; where it throws, nothing is left behind
 /// @throws FileError if the system refuses
+void write_text_file(const std::string& path, const std::function<void(const TextSink&)>& fill);
 void write_text_file(const std::string& path, const std::string& text);
 
 }  // namespace stridor

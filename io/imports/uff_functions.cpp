@@ -158,6 +158,7 @@ double factor_of(const UffFunction& function, const UffUnits& units) {
       case UffQuantity::velocity:
       case UffQuantity::acceleration:
         return 1.0 / units.length;
+      case UffQuantity::reaction_force:
       case UffQuantity::excitation_force:
         return 1.0 / units.force;
       default:
@@ -181,18 +182,29 @@ void fill(UffFunction& function, const FunctionForm& form, const std::vector<dou
   }
 }
 
+/// A text of the file, which says NONE where there is none.
+std::string word_or_none(std::string_view text) {
+  const std::string_view word = trimmed(text);
+  return word == "NONE" ? "" : std::string(word);
+}
+
 UffFunction read_function(const UffDataset& dataset, const UffUnits& units) {
   UffReader reader(dataset);
   UffFunction function;
   function.source = place_text(dataset.place);
   function.id = std::string(trimmed(reader.line("five lines of text").text));
-  reader.skip(4, "five lines of text");
+  reader.skip(2, "five lines of text");
+  function.note = word_or_none(reader.line("five lines of text").text);
+  reader.skip(1, "five lines of text");
   read_dofs(reader.line(dofs_expected), function);
   const FunctionForm form =
       read_form(reader.line("type, number and spacing of the values (record 7)"));
   function.is_complex = form.is_complex;
   function.abscissa_quantity = read_quantity(reader.line("what the abscissa is (record 8)"));
-  function.ordinate_quantity = read_quantity(reader.line("what the values are (record 9)"));
+  const UffLine& ordinate = reader.line("what the values are (record 9)");
+  function.ordinate_quantity = read_quantity(ordinate);
+  // I10, 3I5, 2(1X,20A1): the second text is the unit.
+  if (ordinate.text.size() > 47) function.units = word_or_none(ordinate.text.substr(47));
   function.denominator_quantity = read_quantity(reader.line("what they are divided by (record 10)"));
   reader.skip(1, "record 11");
   fill(function, form,

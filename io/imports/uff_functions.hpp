@@ -20,11 +20,17 @@ struct UffDof {
 };
 
 /// What a function is of, by the numbers of record 6.
-enum class UffFunctionType { general = 0, time_response = 1, frequency_response = 4 };
+enum class UffFunctionType {
+  general = 0,
+  time_response = 1,
+  frequency_response = 4,
+  spectrum = 12
+};
 /// What its numbers are, by the numbers of records 8 to 10.
 enum class UffQuantity {
   general = 0,
   displacement = 8,
+  reaction_force = 9,
   velocity = 11,
   acceleration = 12,
   excitation_force = 13,
@@ -35,11 +41,13 @@ enum class UffQuantity {
 /// A function of a universal file in SI units.
 struct UffFunction {
   int type = 0;  ///< UffFunctionType, or another one of the format
-  std::string id;  ///< first line of text
+  std::string id;    ///< first line of text
+  std::string note;  ///< fourth one; empty where it says NONE
   UffDof response, reference;
   int abscissa_quantity = 0;  ///< UffQuantity, or another one, as the next two
   int ordinate_quantity = 0;
   int denominator_quantity = 0;
+  std::string units;  ///< of the values, by their name in the file, which may have none
   bool is_complex = false;
   std::vector<double> abscissa;
   std::vector<std::complex<double>> values;  ///< as many

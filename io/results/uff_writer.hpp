@@ -4,10 +4,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <complex>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "io/hdf5/part_file.hpp"
 #include "io/imports/uff_functions.hpp"
 #include "substructures/elements/mesh.hpp"
 
@@ -51,20 +53,35 @@ struct UffContents {
 
 /// How the numbers of functions are written: datasets 58 or 58b.
 enum class UffForm { text, binary };
+/// In text 6 or 13 digits, in binary 4 or 8 bytes.
+enum class UffPrecision { single_precision, double_precision };
 
-/// The text of a file: dataset 151 (head), 164 (SI), 2411 (nodes), 2412 (elements), 82 (lines), a
-/// 55 for each mode (complex displacements, modal a and b unknown and 0), and a 58 for each
-/// function, in double precision.
+struct UffNumbers {
+  UffForm form = UffForm::text;
+  UffPrecision precision = UffPrecision::double_precision;
+};
+
+/// Hands the text of a file on, piece by piece: dataset 151 (head), 164 (SI), 2411 (nodes), 2412
+/// (elements), 82 (lines), a 55 for each mode (complex displacements, modal a and b unknown and 0),
+/// and a 58 for each function.
 ///
 /// Elements are there to be drawn: planar ones are called plane stress, all have property and
-/// material 1. Functions are written at even abscissas where first one and increment, which have
-/// six digits (E13.5), give them to 1e-9; else at uneven ones, which have six digits in text and
-/// are whole in binary.
-/// @throws std::invalid_argument if abscissas and values of a function are not as many, a mode has
-/// not a
-///         value for each node, or an element not the nodes of its shape
-/// @throws ConfigError at `key` if neighbouring abscissas are the same in six digits
-std::string uff_text(const UffContents& contents, const std::string& key,
-                     UffForm form = UffForm::text);
+/// material 1.
+/// @throws std::invalid_argument if a mode has not a value for each node, or an element not the
+/// nodes
+///         of its shape; and as write_uff_function()
+void write_uff(const UffContents& contents, const std::string& key, const TextSink& sink,
+               UffNumbers numbers = {});
+
+/// One dataset 58 more, behind those of write_uff(): real where the values are, at even abscissas
+/// where first one and increment, which have six digits (E13.5), give them to 1e-9; else at uneven
+/// ones, which have six digits in text and those of the precision in binary.
+/// @param number   of the function in the file, from 1
+/// @param contents its program, date and time
+/// @throws std::invalid_argument if abscissas and values are not as many, or none
+/// @throws ConfigError at `key` if neighbouring abscissas are the same in the digits they have
+void write_uff_function(const UffFunction& function, std::size_t number,
+                        const UffContents& contents, const std::string& key, const TextSink& sink,
+                        UffNumbers numbers);
 
 }  // namespace stridor

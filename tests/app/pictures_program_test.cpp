@@ -522,7 +522,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadUsage{{"plot", "--kind", "phase", "--scale", "db"},
                  "--scale: means nothing for --kind phase"},
         BadUsage{{"plot", "--kind", "spectrum", "--data", "x.h5"},
-                 "--data: means nothing for --kind spectrum"},
+                 "--data: 'x.h5' ends neither in .uff nor in .unv"},
         BadUsage{{"plot", "--kind", "history", "--from", "7 N"}, "--from: '7 N' has unit N"}));
 
 TEST_F(Pictures, RunWithoutAccelerationNamesItsChannels) {

@@ -11,6 +11,7 @@
 #include "io/results/uff_writer.hpp"
 #include "substructures/elements/shape_functions.hpp"
 #include "tests/support/message_of.hpp"
+#include "tests/support/uff_text.hpp"
 
 namespace stridor {
 namespace {

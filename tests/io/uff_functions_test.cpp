@@ -6,14 +6,18 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <complex>
 #include <cstring>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/errors.hpp"
 #include "io/results/uff_writer.hpp"
 #include "tests/support/message_of.hpp"
+#include "tests/support/uff_text.hpp"
 
 namespace stridor {
 namespace {
@@ -203,7 +207,7 @@ TEST(UffFunctions, WhatIsWrittenIsReadBack) {
   for (std::size_t i = 0; i < function.values.size(); ++i)
     EXPECT_LE(std::abs(read.values[i] - function.values[i]), 1e-12 * std::abs(function.values[i]));
 
-  const std::string binary = uff_text(contents, "--output", UffForm::binary);
+  const std::string binary = uff_text(contents, "--output", {UffForm::binary});
   const UffFunction whole = read_uff_functions({"a.uff", binary}).functions.at(0);
   EXPECT_EQ(whole.abscissa, function.abscissa);
   EXPECT_EQ(whole.values, function.values);
@@ -228,7 +232,7 @@ TEST(UffFunctions, UnevenAbscissasHaveSixDigitsInTextAndAllInBinary) {
     const std::string text = uff_text(contents, "-o");
     const UffFunctions read = read_uff_functions({"a.uff", text});
     const UffFunctions whole =
-        read_uff_functions({"a.uff", uff_text(contents, "-o", UffForm::binary)});
+        read_uff_functions({"a.uff", uff_text(contents, "-o", {UffForm::binary})});
     ASSERT_THAT(read.functions, SizeIs(2));
     ASSERT_THAT(whole.functions, SizeIs(2));
     for (const std::size_t k : {0u, 1u}) {
@@ -247,7 +251,121 @@ TEST(UffFunctions, UnevenAbscissasHaveSixDigitsInTextAndAllInBinary) {
     EXPECT_THAT(
         message_of<ConfigError>([&] { uff_text(contents, "-o"); }),
         AllOf(HasSubstr("-o"), HasSubstr("20 and 20.00001 are the same"), HasSubstr("--binary")));
-    EXPECT_NO_THROW(uff_text(contents, "-o", UffForm::binary));
+    EXPECT_NO_THROW(uff_text(contents, "-o", {UffForm::binary}));
+  }
+}
+
+/// A function of one of the eight forms, its values and abscissas of a precision that 13 digits, or
+/// 4 bytes and six digits, hold.
+UffFunction formed(bool is_complex, bool is_even) {
+  UffFunction function;
+  function.type = 1;
+  function.id = "pad.tip.y.acceleration";
+  function.note = "low-passed to 4 kHz";
+  function.units = "m/s^2";
+  function.abscissa_quantity = 17;
+  function.ordinate_quantity = 12;
+  function.response = {2, 2};
+  function.is_complex = is_complex;
+  for (int i = 0; i < 1000; ++i) {
+    function.abscissa.push_back(is_even ? 0.125 + 2.5e-4 * i : 0.5 * (i + 1) * (i + 2));
+    // Of three decimals, on a scale of 30 decades.
+    const auto value = [&](int k) {
+      return ((k * 37) % 1999 - 999) * 1e-3 * std::pow(10.0, k % 31 - 15);
+    };
+    function.values.emplace_back(value(i), is_complex ? value(3 * i + 1) : 0.0);
+  }
+  return function;
+}
+
+TEST(UffFunctions, EightFormsAreWrittenAndReadBackToTheLastDigit) {
+  for (const bool is_complex : {false, true}) {
+    for (const bool is_even : {false, true}) {
+      for (const UffPrecision precision :
+           {UffPrecision::single_precision, UffPrecision::double_precision}) {
+        UffContents contents{.title = "run",
+                             .program = "stridor",
+                             .date = "26-NOV-26",
+                             .time = "17:24:09",
+                             .nodes = {},
+                             .functions = {formed(is_complex, is_even)}};
+        const UffFunction& written = contents.functions[0];
+        const bool is_single = precision == UffPrecision::single_precision;
+        const int kind = (is_complex ? 5 : 2) + (is_single ? 0 : is_complex ? 1 : 2);
+        for (const UffForm form : {UffForm::text, UffForm::binary}) {
+          SCOPED_TRACE(fmt::format("kind {}, {}, {}", kind, is_even ? "even" : "uneven",
+                                   form == UffForm::text ? "text" : "binary"));
+          const std::string text = uff_text(contents, "-o", {form, precision});
+          EXPECT_THAT(text,
+                      HasSubstr(fmt::format("\n{:10}{:10}{:10}", kind, 1000, is_even ? 1 : 0)));
+          const UffFunctions all = read_uff_functions({"a.uff", text});
+          EXPECT_TRUE(all.remarks.empty());
+          ASSERT_THAT(all.functions, SizeIs(1));
+          const UffFunction& read = all.functions[0];
+          EXPECT_EQ(read.is_complex, is_complex);
+          EXPECT_EQ(read.note, written.note);
+          EXPECT_EQ(read.units, "m/s^2");
+          ASSERT_THAT(read.values, SizeIs(1000));
+          const auto kept = [&](double value) {
+            if (form == UffForm::text)
+              return std::stod(is_single ? fmt::format("{:.5E}", value)
+                                         : fmt::format("{:.12E}", value));
+            return is_single ? static_cast<double>(static_cast<float>(value)) : value;
+          };
+          for (std::size_t i = 0; i < 1000; ++i) {
+            // An even abscissa is a sum, an uneven one of this test has six digits.
+            EXPECT_NEAR(read.abscissa[i], written.abscissa[i], 1e-15);
+            EXPECT_EQ(read.values[i], std::complex<double>(kept(written.values[i].real()),
+                                                           kept(written.values[i].imag())));
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(UffFunctions, SinglePrecisionRefusesWhatItCannotHold) {
+  UffContents contents{.title = "run",
+                       .program = "stridor",
+                       .date = "26-NOV-26",
+                       .time = "17:24:09",
+                       .nodes = {},
+                       .functions = {formed(false, false)}};
+  const UffNumbers single{UffForm::binary, UffPrecision::single_precision};
+  contents.functions[0].abscissa[1] = contents.functions[0].abscissa[0] + 1e-9;
+  EXPECT_THAT(message_of<ConfigError>([&] { uff_text(contents, "--data", single); }),
+              AllOf(HasSubstr("--data"), HasSubstr("uneven times in seven digits"),
+                    HasSubstr("--single"), HasSubstr("--from")));
+  EXPECT_NO_THROW(uff_text(contents, "--data", {UffForm::binary}));
+  contents.functions[0] = formed(false, true);
+  contents.functions[0].values[3] = 1e39;
+  EXPECT_THAT(message_of<ConfigError>([&] { uff_text(contents, "--data", single); }),
+              AllOf(HasSubstr("reaches 1e+39"), HasSubstr("--single")));
+  EXPECT_NO_THROW(uff_text(contents, "--data", {UffForm::text, UffPrecision::single_precision}));
+}
+
+TEST(UffFunctions, ALongFunctionIsHandedOnInPieces) {
+  UffContents contents{.title = "run",
+                       .program = "stridor",
+                       .date = "26-NOV-26",
+                       .time = "17:24:09",
+                       .nodes = {},
+                       .functions = {formed(false, true)}};
+  UffFunction& function = contents.functions[0];
+  for (int i = 1000; i < 200000; ++i) {
+    function.abscissa.push_back(0.125 + 2.5e-4 * i);
+    function.values.emplace_back(i);
+  }
+  for (const UffForm form : {UffForm::text, UffForm::binary}) {
+    std::size_t longest = 0, total = 0;
+    write_uff(contents, "-o",
+              [&](std::string_view piece) {
+                longest = std::max(longest, piece.size());
+                total += piece.size();
+              },
+              {form});
+    EXPECT_GT(total, 200000u * 8u);
+    EXPECT_LT(longest, 70000u);
   }
 }
 
