@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
 
 #include "app/report/report_section.hpp"
+#include "app/report/tables.hpp"
 #include "core/errors.hpp"
 #include "io/results/response_file.hpp"
 
@@ -37,7 +41,60 @@ PagedResponse paged_response(const ResultFile& file, const std::string& output,
   response.curve = {{"name", output + " per force at " + input},
                     {"real", page.add_numbers(real)},
                     {"imaginary", page.add_numbers(imaginary)}};
+  if (file.has(group + "/truncation_error")) {
+    const std::vector<double> error = file.read(group + "/truncation_error");
+    if (error.size() != frequencies.size())
+      throw FileError(Refusal::file_damaged, file.path(), group + "/truncation_error",
+                      "is unlike /frequency in length");
+    response.curve["error"] = page.add_numbers(error);
+  }
   return response;
+}
+
+/// What was measured and what was computed there, as a view of their own.
+Json compared_view(const ResultFile& file, std::size_t number, const std::string& name,
+                   ReportPage& page) {
+  const std::string group = "/compared/" + std::to_string(number);
+  const std::vector<double> frequencies = file.read(group + "/frequency");
+  const std::string units = file.array(group + "/measured_real").units;
+  Json curves = Json::array();
+  for (const char* which : {"measured", "computed"}) {
+    Json curve = {{"name", std::string(which) + ": " + name}};
+    for (const char* part : {"real", "imaginary"}) {
+      const std::string dataset = group + "/" + which + "_" + part;
+      const std::vector<double> values = file.read(dataset);
+      if (values.size() != frequencies.size())
+        throw FileError(Refusal::file_damaged, file.path(), dataset,
+                        "is unlike " + group + "/frequency in length");
+      curve[part] = page.add_numbers(values);
+    }
+    curves.push_back(std::move(curve));
+  }
+  return {
+      {"type", "responses"},
+      {"frequency", page.add_numbers(frequencies)},
+      {"groups", {{{"quantity", response_quantity(units)}, {"units", units}, {"curves", curves}}}}};
+}
+
+/// A table of measured responses beside computed ones, and their curves.
+void add_compared(const ResultFile& file, ReportPage& page, Json& section) {
+  const std::vector<std::string> outputs = file.texts("/compared/output");
+  const std::vector<std::string> inputs = file.texts("/compared/input");
+  if (outputs.empty()) return;
+  if (inputs.size() != outputs.size())
+    throw FileError(Refusal::file_damaged, file.path(), "/compared/input",
+                    "is unlike /compared/output in length");
+  std::vector<TableColumn> columns =
+      columns_in(file, {{"/compared/frac", "FRAC", 4}, {"/compared/ratio", "ratio", 4}});
+  columns.insert(columns.begin(), {{"motion", "", {}, outputs}, {"force at", "", {}, inputs}});
+  section["views"].push_back(table_view("Measured beside computed", columns));
+  constexpr std::size_t most_shown = 12;
+  for (std::size_t i = 0; i < std::min(most_shown, outputs.size()); ++i)
+    section["views"].push_back(
+        compared_view(file, i + 1, outputs[i] + " per force at " + inputs[i], page));
+  if (outputs.size() > most_shown)
+    section["remarks"].push_back(
+        fmt::format("{} more measured responses are in the file.", outputs.size() - most_shown));
 }
 
 }  // namespace
@@ -85,6 +142,7 @@ Json response_section(const ResultFile& file, const ReportContext& context) {
   section["views"].push_back({{"type", "responses"},
                               {"frequency", context.page.add_numbers(frequencies)},
                               {"groups", groups}});
+  add_compared(file, context.page, section);
   return section;
 }
 

@@ -160,9 +160,14 @@ void print_use(const UffHoldings& held, const std::string& file) {
 }  // namespace
 
 Json universal_json(const UffHoldings& held) {
-  Json object = {{"format", "universal file"}, {"datasets", Json::array()},
-                 {"units", nullptr},           {"nodes", held.shapes.nodes.size()},
-                 {"modes", Json::array()},     {"functions", Json::array()},
+  Json object = {{"format", "universal file"},
+                 {"datasets", Json::array()},
+                 {"units", nullptr},
+                 {"nodes", held.shapes.nodes.size()},
+                 {"lines", held.shapes.lines.size()},
+                 {"elements", held.shapes.elements.size()},
+                 {"modes", Json::array()},
+                 {"functions", Json::array()},
                  {"remarks", held.remarks}};
   for (const auto& [type, count] : held.datasets)
     object["datasets"].push_back(
@@ -201,6 +206,9 @@ void print_universal(const UffHoldings& held, const std::string& file) {
                            held.shapes.nodes.size(), lowest.x(), lowest.y(), lowest.z(),
                            highest.x(), highest.y(), highest.z()));
   }
+  if (!held.shapes.lines.empty()) print_line("lines", fmt::format("{}", held.shapes.lines.size()));
+  if (!held.shapes.elements.empty())
+    print_line("elements", fmt::format("{}", held.shapes.elements.size()));
   print_modes(held.shapes.modes);
   print_functions(held.functions);
   for (const std::string& remark : held.remarks) fmt::print("{}\n", remark);

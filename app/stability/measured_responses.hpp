@@ -7,6 +7,7 @@
 #include "app/stability/response_study.hpp"
 #include "app/terminal/command.hpp"
 #include "io/imports/uff_functions.hpp"
+#include "io/results/response_file.hpp"
 #include "io/results/uff_writer.hpp"
 
 namespace stridor {
@@ -19,16 +20,6 @@ struct NodeName {
 
 /// @throws ConfigError at --node
 std::vector<NodeName> parse_node_names(const std::vector<std::string>& words);
-
-/// A measured response and the same one of the scene.
-struct ComparedResponse {
-  ResponseCurve measured;
-  ResponseCurve computed;           ///< at the frequencies of the measured one
-  std::vector<double> frequencies;  ///< Hz
-  double assurance = 0.0;           ///< FRAC, see response_assurance()
-  double ratio = 0.0;               ///< of the r.m.s., computed over measured
-  std::string source;
-};
 
 /// The frequency responses of a universal file between nodes that have names, in a range.
 ///

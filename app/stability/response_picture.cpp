@@ -90,6 +90,11 @@ void ResponsePicture::add(const std::vector<double>& frequencies, const Response
   added_.push_back({frequencies, curve, label, mark, colour});
 }
 
+void ResponsePicture::add_error(const std::vector<double>& frequencies, const ResponseCurve& curve,
+                                int colour) {
+  errors_.push_back({frequencies, curve, "", Mark::dashed_line, colour});
+}
+
 std::vector<DiagramPanel> ResponsePicture::panels_of(const std::vector<const Added*>& row) const {
   const AxisKind x_kind = is_log_ ? AxisKind::logarithmic : AxisKind::linear;
   const std::string& units = row.front()->curve.units;
@@ -132,6 +137,10 @@ std::vector<DiagramPanel> ResponsePicture::panels_of(const std::vector<const Add
     panels[2].curves.push_back(std::move(locus));
   }
   panels[0].y_least = least_magnitude(panels);
+  for (const Added& error : errors_)
+    if (error.curve.units == units)
+      panels[0].curves.push_back(
+          {"", error.frequencies, error.curve.truncation_error, error.mark, error.colour});
   return panels;
 }
 

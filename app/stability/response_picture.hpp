@@ -34,6 +34,9 @@ class ResponsePicture {
   /// @param frequencies Hz, as many as values of the curve
   void add(const std::vector<double>& frequencies, const ResponseCurve& curve,
            const std::string& label, Mark mark, int colour);
+  /// The size of a difference to a response, dashed beside its magnitude.
+  /// @param curve with its truncation_error at these frequencies
+  void add_error(const std::vector<double>& frequencies, const ResponseCurve& curve, int colour);
   /// @throws as plot_panels()
   void draw(const std::string& caption, const std::filesystem::path& figure) const;
 
@@ -49,6 +52,7 @@ class ResponsePicture {
 
   bool is_log_ = false;
   std::vector<Added> added_;
+  std::vector<Added> errors_;
 };
 
 }  // namespace stridor

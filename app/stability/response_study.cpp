@@ -138,10 +138,10 @@ std::vector<ResponseCurve> ResponseStudy::curves(const std::vector<double>& freq
   return curves_of(FrequencyResponse(state_.pencil, loads_, sensors_), frequencies);
 }
 
-std::vector<double> ResponseStudy::truncation_errors(
-    const std::vector<double>& frequencies, const std::vector<ResponseCurve>& curves) const {
+void ResponseStudy::add_truncation(const std::vector<double>& frequencies,
+                                   std::vector<ResponseCurve>& curves) const {
   const auto& time = loaded_.scene.time;
-  if (!time || !time->retain) return {};
+  if (!time || !time->retain) return;
   const Eigen::Index num_loads = loads_.rows();
   const Eigen::Index num_sensors = sensors_.rows();
   Eigen::MatrixXd rows(num_loads + num_sensors, loads_.cols());
@@ -152,10 +152,11 @@ std::vector<double> ResponseStudy::truncation_errors(
   const std::vector<ResponseCurve> of_run =
       curves_of(FrequencyResponse(kept, kept_rows.topRows(num_loads), kept_rows.bottomRows(num_sensors)),
                 frequencies);
-  std::vector<double> errors;
-  for (std::size_t i = 0; i < curves.size(); ++i)
-    errors.push_back(response_difference(of_run[i].values, curves[i].values));
-  return errors;
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    curves[c].truncation = response_difference(of_run[c].values, curves[c].values);
+    for (std::size_t i = 0; i < frequencies.size(); ++i)
+      curves[c].truncation_error.push_back(std::abs(of_run[c].values[i] - curves[c].values[i]));
+  }
 }
 
 }  // namespace stridor

@@ -45,10 +45,10 @@ class ResponseStudy {
   /// @param frequencies Hz
   /// @throws Interrupted on request
   std::vector<ResponseCurve> curves(const std::vector<double>& frequencies) const;
-  /// ‖h_kept − h‖/‖h‖ of the same curves with the modes that a run keeps (time.retain) and the
-  /// residual flexibility of the others; empty where a run keeps all.
-  std::vector<double> truncation_errors(const std::vector<double>& frequencies,
-                                        const std::vector<ResponseCurve>& curves) const;
+  /// Adds to curves() how far they are off with the modes that a run keeps (time.retain) and the
+  /// residual flexibility of the others; leaves them as they are where a run keeps all.
+  void add_truncation(const std::vector<double>& frequencies,
+                      std::vector<ResponseCurve>& curves) const;
 
  private:
   std::vector<ResponseCurve> curves_of(const FrequencyResponse& response,

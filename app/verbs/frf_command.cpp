@@ -67,24 +67,6 @@ std::vector<double> frequencies_of(const FrfOptions& options) {
                        is_log ? Spacing::logarithmic : Spacing::linear);
 }
 
-void write_files(const FrfOptions& options, const ResponseStudy& study,
-                 const std::vector<double>& frequencies, const std::vector<ResponseCurve>& curves) {
-  const StabilityOptions& stability = options.stability;
-  for (const std::string& file : options.files) {
-    if (is_universal(file)) {
-      const UffContents contents = uff_contents(study, frequencies, curves);
-      write_text_file(file, [&](const TextSink& sink) {
-        write_uff(contents, "-o", sink, options.universal.numbers());
-      });
-      continue;
-    }
-    Attributes attributes = source_attributes(study.loaded(), options.command_line);
-    attributes.emplace_back("about", stability.about);
-    attributes.emplace_back("trusted_frequency", study.trusted_frequency());
-    write_response_file(file, stability.common.overwrite(), frequencies, curves, attributes);
-  }
-}
-
 /// The responses, and those measured that were set beside them.
 struct FoundResponses {
   const FrfOptions& options;
@@ -94,6 +76,26 @@ struct FoundResponses {
   std::vector<ComparedResponse> compared;
   std::vector<std::string> remarks;
 };
+
+void write_files(const FoundResponses& found) {
+  const FrfOptions& options = found.options;
+  const StabilityOptions& stability = options.stability;
+  for (const std::string& file : options.files) {
+    if (is_universal(file)) {
+      const UffContents contents = uff_contents(found.study, found.frequencies, found.curves);
+      write_text_file(file, [&](const TextSink& sink) {
+        write_uff(contents, "-o", sink, options.universal.numbers());
+      });
+      continue;
+    }
+    Attributes attributes = source_attributes(found.study.loaded(), options.command_line);
+    attributes.emplace_back("about", stability.about);
+    attributes.emplace_back("trusted_frequency", found.study.trusted_frequency());
+    if (options.measured) attributes.emplace_back("measured", *options.measured);
+    write_response_file(file, stability.common.overwrite(), found.frequencies, found.curves,
+                        attributes, found.compared);
+  }
+}
 
 void draw_responses(const FoundResponses& found) {
   const FrfOptions& options = found.options;
@@ -113,18 +115,29 @@ void draw_responses(const FoundResponses& found) {
       const std::string label = next_label(curve);
       picture.add(frequencies, curve, label, Mark::line, colour++);
     }
+    for (std::size_t i = 0; i < found.curves.size(); ++i)
+      if (found.curves[i].truncation)
+        picture.add_error(found.frequencies, found.curves[i], static_cast<int>(i));
   }
+  const bool has_errors = found.compared.empty() && found.curves.front().truncation;
   for (const ComparedResponse& one : found.compared) {
     const std::string label = next_label(one.computed);
     picture.add(one.frequencies, one.measured, label + " measured", Mark::points, 2 * colour + 1);
     picture.add(one.frequencies, one.computed, label, Mark::line, 2 * colour);
     ++colour;
   }
-  picture.draw(fmt::format("Frequency responses about the {} geometry.{} {}, scene {}.",
-                           options.stability.about, names,
-                           fs::path(options.stability.scene).filename().string(),
-                           found.study.loaded().hash()),
-               *options.figure);
+  picture.draw(
+      fmt::format(
+          "Frequency responses about the {} geometry.{}{} {}, scene {}.", options.stability.about,
+          names, has_errors ? " Dashed: how far they are off with the modes that a run keeps." : "",
+          fs::path(options.stability.scene).filename().string(), found.study.loaded().hash()),
+      *options.figure);
+}
+
+/// Where the modes of a run leave most out.
+std::size_t worst_of(const ResponseCurve& curve) {
+  const std::vector<double>& errors = curve.truncation_error;
+  return static_cast<std::size_t>(std::max_element(errors.begin(), errors.end()) - errors.begin());
 }
 
 /// Where a curve is largest.
@@ -140,6 +153,12 @@ Json numbers_json(const std::vector<std::complex<double>>& values, bool is_real)
   Json list = Json::array();
   for (const std::complex<double>& value : values)
     list.push_back(number(is_real ? value.real() : value.imag()));
+  return list;
+}
+
+Json numbers_json(const std::vector<double>& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(number(value));
   return list;
 }
 
@@ -161,6 +180,8 @@ Json responses_json(const FoundResponses& found) {
           {{"frequency", found.frequencies[peak]},
            {"magnitude", number(std::abs(curve.values[peak]))}}},
          {"truncation", curve.truncation ? number(*curve.truncation) : Json(nullptr)},
+         {"truncation_error",
+          curve.truncation ? numbers_json(curve.truncation_error) : Json(nullptr)},
          {"real", numbers_json(curve.values, true)},
          {"imaginary", numbers_json(curve.values, false)}});
   }
@@ -187,9 +208,12 @@ void print_responses(const FoundResponses& found) {
     const std::size_t peak = peak_of(curve);
     fmt::print("{} per {}: largest {:.4g} {} at {:.6g} Hz\n", curve.output, curve.input,
                std::abs(curve.values[peak]), curve.units, found.frequencies[peak]);
-    if (curve.truncation)
-      fmt::print("  with the modes that a run keeps (time.retain): off by {:.2g}\n",
-                 *curve.truncation);
+    if (!curve.truncation) continue;
+    const std::size_t worst = worst_of(curve);
+    fmt::print(
+        "  with the modes that a run keeps (time.retain): off by {:.2g}, most at {:.6g} Hz, by "
+        "{:.2g} {}\n",
+        *curve.truncation, found.frequencies[worst], curve.truncation_error[worst], curve.units);
   }
   fmt::print("{} frequencies from {:g} to {:g} Hz about the {} geometry\n", found.frequencies.size(),
              found.frequencies.front(), found.frequencies.back(), found.options.stability.about);
@@ -226,14 +250,13 @@ ExitCode frf(FrfOptions options) {
   ResponsePlaces places = response_places(options.inputs, options.outputs, loaded.scene.model);
   const ResponseStudy study(std::move(loaded), stability.geometry(), std::move(places));
   FoundResponses found{options, study, frequencies, study.curves(frequencies), {}, {}};
-  const std::vector<double> truncation = study.truncation_errors(frequencies, found.curves);
-  for (std::size_t i = 0; i < truncation.size(); ++i) found.curves[i].truncation = truncation[i];
+  study.add_truncation(frequencies, found.curves);
   if (options.measured) {
     found.remarks = measured.remarks;
     found.compared = compared_responses(study, measured, names, frequencies.front(),
                                         frequencies.back(), found.remarks);
   }
-  write_files(options, study, frequencies, found.curves);
+  write_files(found);
   if (options.figure) draw_responses(found);
   if (stability.common.json) {
     print_json(responses_json(found));

@@ -1,11 +1,15 @@
 // stridor import: what files of meshes, matrices and modal tests hold.
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "app/results/import_report.hpp"
 #include "app/results/universal_report.hpp"
 #include "app/terminal/command.hpp"
 #include "core/units.hpp"
+#include "io/figures/mesh_picture.hpp"
 #include "io/figures/mesh_plot.hpp"
+#include "io/figures/modal_test_plot.hpp"
 #include "io/imports/mesh_file.hpp"
 #include "io/imports/named_files.hpp"
 #include "io/imports/uff_contents.hpp"
@@ -96,11 +100,19 @@ ExitCode import_universal(const ImportOptions& options, const std::string& file)
     throw ConfigError(Refusal::wrong_value, "files",
                       fmt::format("'{}' is a universal file, which is given alone", file));
   }
-  if (!options.figure.empty())
-    throw ConfigError(
-        Refusal::wrong_value, "--output",
-        "a universal file has no mesh to draw; `stridor draw` shows a scene with its nodes");
   const UffHoldings held = read_uff_holdings_file(file);
+  if (!options.figure.empty()) {
+    const ModalTest& test = held.shapes;
+    if (test.nodes.empty())
+      throw ConfigError(Refusal::missing, "--output",
+                        fmt::format("'{}' has no nodes to draw (datasets 15, 2411)", file));
+    draw_mesh_picture(
+        modal_test_picture(
+            test, fmt::format("{}: {} nodes, {} lines, {} elements.",
+                              std::filesystem::path(file).filename().string(), test.nodes.size(),
+                              test.lines.size(), test.elements.size())),
+        options.figure);
+  }
   if (options.common.json) {
     print_json({{"universal", universal_json(held)}});
   } else {
@@ -182,7 +194,9 @@ void add_import_command(CLI::App& program, Action& action) {
                    "How many of the lowest frequencies of matrices to find (default 10)")
       ->check(CLI::Range(0, 1000));
   verb->add_option("-o,--output", options->figure,
-                   "Also draw the mesh with its surfaces in colours: FIG.png, .svg or .pdf");
+                   "Also draw the mesh with its surfaces in colours, or the nodes, lines and "
+                   "elements of a universal file: "
+                   "FIG.png, .svg or .pdf");
   add_json_option(*verb, options->common);
   add_force_option(*verb, options->common);
   verb->callback([options, &action] { action = [options] { return import_files(*options); }; });

@@ -76,7 +76,8 @@ class ScenePicture {
       if (body.matrices.faces.empty())
         for (const auto& [name, nodes] : body.matrices.surfaces) part.lines.push_back(nodes);
     }
-    if (elements.empty() && part.lines.empty()) add_joined(b, part);
+    const bool is_measured = body.matrices.is_modal && body.matrices.faces.empty();
+    if (elements.empty() && (part.lines.empty() || is_measured)) add_joined(b, part);
     if (part.nodes.rows() == 0) part.name += " (has no places)";
     picture_.parts.push_back(std::move(part));
   }

@@ -19,13 +19,13 @@ std::string dataset_words(int number) {
     case 58:
       return "functions";
     case 82:
-      return "lines to draw, passed over";
+      return "lines to draw";
     case 151:
       return "head, passed over";
     case 164:
       return "units";
     case 2412:
-      return "elements, passed over";
+      return "elements to draw";
     case 2414:
       return "analysis data, passed over";
     case 18:

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/errors.hpp"
+#include "io/imports/uff_elements.hpp"
 #include "io/imports/uff_lines.hpp"
 #include "io/imports/uff_units.hpp"
 
@@ -149,6 +150,8 @@ ModalTest modal_test_in(const std::vector<UffDataset>& datasets) {
   for (const UffDataset& dataset : datasets) {
     if (dataset.data) continue;  // functions
     if (dataset.type == 15 || dataset.type == 2411) read_nodes(dataset, units, test);
+    if (dataset.type == 82) read_trace_lines(dataset, test);
+    if (dataset.type == 2412) read_elements(dataset, test);
     if (dataset.type == 55) read_mode(dataset, units, test);
   }
   if (!units.is_given) test.remarks.emplace_back(no_units);

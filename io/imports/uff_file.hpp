@@ -10,12 +10,13 @@
 
 namespace stridor {
 
-/// Reads datasets 15 and 2411 (nodes), 164 (units) and 55 (shapes at nodes: normal and complex modes) of
-/// a universal file in ASCII; other datasets are passed over, binary ones (58b) too.
+/// Reads datasets 15 and 2411 (nodes), 82 (trace lines), 2412 (elements), 164 (units) and 55
+/// (shapes at nodes: normal and complex modes) of a universal file in ASCII; other datasets are
+/// passed over, binary ones (58b) too.
 ///
 /// Tolerated: line ends of any system, a last dataset that is not closed, numbers without blanks
-/// between them in columns of 13 (E13.5) or 10, exponents with D, a delimiter right behind binary data,
-/// texts in any encoding.
+/// between them in columns of 13 (E13.5) or 10, exponents with D, a delimiter right behind binary
+/// data, texts in any encoding.
 /// @throws ConfigError with the place in the file and what was expected
 ModalTest read_uff(const SourceText& source);
 

@@ -13,6 +13,8 @@
 #include <stdexcept>
 
 #include "core/errors.hpp"
+#include "io/imports/uff_elements.hpp"
+#include "substructures/elements/mesh.hpp"
 
 namespace stridor {
 namespace {
@@ -41,30 +43,6 @@ void add_nodes(const std::vector<UffNode>& nodes, std::string& text) {
   text += "    -1\n";
 }
 
-/// How a universal file holds a shape: the number of its kind, and its nodes in the order there, which goes
-/// around the lower side from corner to middle to corner, up the edges, and around the upper side.
-struct ElementRecord {
-  int kind = 0;
-  std::vector<int> order;  ///< empty where it is that of the shape
-};
-
-ElementRecord element_record(ElementShape shape) {
-  switch (shape) {
-    case ElementShape::tri3: return {41, {}};
-    case ElementShape::tri6: return {42, {0, 3, 1, 4, 2, 5}};
-    case ElementShape::quad4: return {44, {}};
-    case ElementShape::quad8: return {45, {0, 4, 1, 5, 2, 6, 3, 7}};
-    case ElementShape::tet4: return {111, {}};
-    case ElementShape::tet10: return {118, {0, 4, 1, 5, 2, 6, 7, 8, 9, 3}};
-    case ElementShape::wedge6: return {112, {}};
-    case ElementShape::wedge15: return {113, {0, 6, 1, 7, 2, 8, 12, 13, 14, 3, 9, 4, 10, 5, 11}};
-    case ElementShape::hex8: return {115, {}};
-    case ElementShape::hex20:
-      return {116, {0, 8, 1, 9, 2, 10, 3, 11, 16, 17, 18, 19, 4, 12, 5, 13, 6, 14, 7, 15}};
-  }
-  throw std::invalid_argument("write_uff: unknown shape of an element");
-}
-
 /// Labels of nodes, eight in a line of the file.
 void add_labels(const std::vector<std::int64_t>& labels, const std::vector<int>& order, std::string& text) {
   for (std::size_t k = 0; k < labels.size(); ++k) {
@@ -73,12 +51,12 @@ void add_labels(const std::vector<std::int64_t>& labels, const std::vector<int>&
   }
 }
 
-void add_elements(const std::vector<UffElement>& elements, std::string& text) {
+void add_elements(const std::vector<TestElement>& elements, std::string& text) {
   if (elements.empty()) return;
   constexpr int property = 1, material = 1, colour = 7;
   text += "    -1\n  2412\n";
   for (std::size_t i = 0; i < elements.size(); ++i) {
-    const ElementRecord record = element_record(elements[i].shape);
+    const UffElementRecord record = element_record(elements[i].shape);
     if (elements[i].nodes.size() != static_cast<std::size_t>(facts_of(elements[i].shape).num_nodes))
       throw std::invalid_argument("write_uff: an element has not the nodes of its shape");
     text += fmt::format("{:10}{:10}{:10}{:10}{:10}{:10}\n", i + 1, record.kind, property, material, colour,

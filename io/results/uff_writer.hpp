@@ -11,7 +11,7 @@
 
 #include "io/hdf5/part_file.hpp"
 #include "io/imports/uff_functions.hpp"
-#include "substructures/elements/mesh.hpp"
+#include "substructures/bodies/modal_test.hpp"
 
 namespace stridor {
 
@@ -20,12 +20,6 @@ struct UffNode {
   std::int64_t number = 0;
   std::string name;  ///< "<body>.<point>"
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< m
-};
-
-/// An element, with the labels of its nodes in the order of its shape.
-struct UffElement {
-  ElementShape shape = ElementShape::quad8;
-  std::vector<std::int64_t> nodes;
 };
 
 /// A complex mode at all nodes, in their order.
@@ -43,7 +37,7 @@ struct UffContents {
   std::string time;
   std::vector<UffNode> nodes;
   std::vector<std::vector<std::int64_t>> lines{};  ///< labels of nodes in order
-  std::vector<UffElement> elements{};
+  std::vector<TestElement> elements{};
   std::vector<UffMode> modes{};
   std::vector<UffFunction> functions;  ///< in SI units, abscissas ascending
 

@@ -273,6 +273,12 @@ class FrequencyResponses(ResultFile):
         return {(output, name): float(self._file["responses"][output][name]["truncation"][()])
                 for output, name in self if "truncation" in self._file["responses"][output][name]}
 
+    @property
+    def truncation_error(self) -> dict[tuple[str, str], np.ndarray]:
+        """The size of that difference at each frequency, in the unit of the response; empty where a run keeps all."""
+        return {(output, name): self._file["responses"][output][name]["truncation_error"][:]
+                for output, name in self if "truncation_error" in self._file["responses"][output][name]}
+
     def __iter__(self) -> Iterator[tuple[str, str]]:
         for output, inputs in self._file["responses"].items():
             for name in inputs:

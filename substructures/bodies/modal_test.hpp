@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "substructures/elements/mesh.hpp"
+
 namespace stridor {
 
 /// One measured mode, in SI units.
@@ -22,8 +24,17 @@ struct TestMode {
   std::string source;  ///< where it stands, "FILE:LINE"
 };
 
+/// An element, with the labels of its nodes in the order of its shape.
+struct TestElement {
+  ElementShape shape = ElementShape::quad8;
+  std::vector<std::int64_t> nodes;
+};
+
 struct ModalTest {
   std::map<std::int64_t, Eigen::Vector3d> nodes;  ///< places, m, by label
+  /// What is drawn between nodes: labels in order. Not all of them need have a place.
+  std::vector<std::vector<std::int64_t>> lines{};
+  std::vector<TestElement> elements{};
   std::vector<TestMode> modes;                    ///< in the order of the file
   std::vector<std::string> remarks;               ///< what was taken to be so though the file does not say it
 };

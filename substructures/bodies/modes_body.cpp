@@ -7,11 +7,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
+#include <cstdint>
+#include <map>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "core/errors.hpp"
 #include "core/suggestion.hpp"
+#include "substructures/bodies/drawn_test.hpp"
 #include "substructures/bodies/realised_shape.hpp"
 #include "substructures/matrices/symmetric_eigenpairs.hpp"
 #include "substructures/reduction/proportional_damping.hpp"
@@ -22,14 +27,15 @@ namespace {
 constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr std::array<const char*, 3> direction_names{"x", "y", "z"};
 
-/// Modes and where their shapes are known, with a column of `shapes` for each mode and three rows for
-/// each port.
+/// Modes and where their shapes are known, with a column of `shapes` for each mode and three rows
+/// for each port and for each measured node that is drawn besides.
 class ModesBody {
  public:
   explicit ModesBody(const ModesBodyParameters& parameters) : parameters_(parameters) {
     for (const auto& [name, port] : parameters.ports) names_.push_back(name);
     find_places();
     choose_modes();
+    find_drawn();
     fill_shapes();
     add_rigid();
     add_residual();
@@ -39,7 +45,8 @@ class ModesBody {
     const Eigen::Index n = omega_.size();
     BodyMatrices body;
     body.is_modal = true;
-    body.mass = identity(n);
+    body.mass.resize(n, n);
+    body.mass.setIdentity();
     const Eigen::MatrixXd squares = omega_.array().square().matrix().asDiagonal();
     body.stiffness = squares.sparseView();
     const Eigen::MatrixXd rates = (2.0 * ratio_.array() * omega_.array()).matrix().asDiagonal();
@@ -52,17 +59,12 @@ class ModesBody {
     }
     if (parameters_.complete_up_to) body.lowest_omitted = two_pi * *parameters_.complete_up_to;
     add_nodes(body);
+    body.outlines = drawn_.lines;
     add_surfaces(body);
     return body;
   }
 
  private:
-  static SparseMatrix identity(Eigen::Index n) {
-    SparseMatrix one(n, n);
-    one.setIdentity();
-    return one;
-  }
-
   const ModalTest& test(const std::string& key) const {
     if (parameters_.file.empty())
       throw ConfigError(Refusal::contradiction, key,
@@ -166,9 +168,22 @@ class ModesBody {
                                   given.size(), num_given_));
   }
 
+  void find_drawn() {
+    if (!parameters_.test) return;
+    std::map<std::int64_t, std::size_t> ports;
+    for (std::size_t p = 0; p < names_.size(); ++p)
+      if (const auto& node = parameters_.ports.at(names_[p]).node) ports.emplace(*node, p);
+    drawn_ = drawn_test(*parameters_.test, measured_, std::move(ports), names_.size());
+    for (const std::int64_t label : drawn_.labels)
+      places_.push_back(parameters_.test->nodes.at(label));
+    for (const TestMode* mode : measured_) turns_.push_back(std::polar(1.0, -realise(*mode).phase));
+  }
+
   void fill_shapes() {
-    shapes_ = Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(names_.size()), num_given_);
-    moves_.assign(3 * names_.size(), false);
+    shapes_ = Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(places_.size()), num_given_);
+    moves_.assign(3 * places_.size(), false);
+    for (std::size_t i = 0; i < drawn_.labels.size(); ++i)
+      take_values(names_.size() + i, drawn_.labels[i]);
     for (std::size_t p = 0; p < names_.size(); ++p) {
       const ModesPortParameters& port = parameters_.ports.at(names_[p]);
       const std::array<const std::vector<double>*, 3> given{&port.x, &port.y, &port.z};
@@ -202,19 +217,17 @@ class ModesBody {
                           fmt::format("{} has no values at node {}",
                                       source_of(static_cast<Eigen::Index>(i)), node));
       }
-      const RealisedShape real = realise(mode);
-      if (real.complexity > parameters_.complexity) {
-        throw ConfigError(
-            Refusal::wrong_value, "complexity",
-            fmt::format(
-                "{} is complex: {:.3g} % of its shape is out of phase, more than {:.3g} %; a "
-                "body of real modes cannot have it. Leave it out by `take`, or allow more",
-                source_of(static_cast<Eigen::Index>(i)), 100.0 * real.complexity,
-                100.0 * parameters_.complexity));
-      }
-      const std::complex<double> turn = std::polar(1.0, -real.phase);
+      require_real(mode, parameters_.complexity, source_of(static_cast<Eigen::Index>(i)));
+    }
+    take_values(p, node);
+  }
+
+  /// The values of every mode at a node that has them, turned to be as real as they can be.
+  void take_values(std::size_t p, std::int64_t node) {
+    for (std::size_t i = 0; i < measured_.size(); ++i) {
+      const auto& values = measured_[i]->shape.at(node);
       for (std::size_t d = 0; d < 3; ++d)
-        shapes_(row_of(p, d), static_cast<Eigen::Index>(i)) = (turn * found->second[d]).real();
+        shapes_(row_of(p, d), static_cast<Eigen::Index>(i)) = (turns_[i] * values[d]).real();
     }
     // A direction that no mode moves was not measured.
     for (std::size_t d = 0; d < 3; ++d) moves_[3 * p + d] = !shapes_.row(row_of(p, d)).isZero(0.0);
@@ -240,7 +253,7 @@ class ModesBody {
     const bool is_planar = rigid.inertia.size() == 1;
     const auto add = [&](double inertia, const auto& motion) {
       Eigen::VectorXd shape(shapes_.rows());
-      for (std::size_t p = 0; p < names_.size(); ++p)
+      for (std::size_t p = 0; p < places_.size(); ++p)
         shape.segment<3>(row_of(p, 0)) = motion(places_[p]) / std::sqrt(inertia);
       // Directions in which ports do not move stay so.
       for (std::size_t r = 0; r < moves_.size(); ++r)
@@ -260,7 +273,7 @@ class ModesBody {
 
   /// A rigid body moves everywhere.
   void allow_rigid_directions(bool is_planar) {
-    for (std::size_t p = 0; p < names_.size(); ++p)
+    for (std::size_t p = 0; p < places_.size(); ++p)
       for (std::size_t d = 0; d < (is_planar ? 2u : 3u); ++d) moves_[3 * p + d] = true;
   }
 
@@ -326,9 +339,9 @@ class ModesBody {
   }
 
   void add_nodes(BodyMatrices& body) const {
-    body.nodes.setZero(static_cast<Eigen::Index>(names_.size()), body.nodes.cols());
+    body.nodes.setZero(static_cast<Eigen::Index>(places_.size()), body.nodes.cols());
     bool moves_across = false;
-    for (std::size_t p = 0; p < names_.size(); ++p) {
+    for (std::size_t p = 0; p < places_.size(); ++p) {
       const auto node = static_cast<int>(p);
       body.nodes.row(node) = places_[p].head(body.nodes.cols()).transpose();
       body.node_dofs.push_back({BodyMatrices::held, BodyMatrices::held});
@@ -340,9 +353,9 @@ class ModesBody {
         }
       }
       moves_across = moves_across || !sums[2].empty();
-      body.points[names_[p]] = node;
+      if (p < names_.size()) body.points[names_[p]] = node;
     }
-    if (moves_across) body.across.assign(names_.size(), BodyMatrices::held);
+    if (moves_across) body.across.assign(places_.size(), BodyMatrices::held);
   }
 
   void add_surfaces(BodyMatrices& body) const {
@@ -368,9 +381,11 @@ class ModesBody {
 
   const ModesBodyParameters& parameters_;
   std::vector<std::string> names_;  ///< of the ports
-  std::vector<Eigen::Vector3d> places_;
+  DrawnTest drawn_;                 ///< of the file
+  std::vector<Eigen::Vector3d> places_;    ///< of the ports, then of what is drawn besides
   std::vector<bool> moves_;                ///< by row of `shapes_`
   std::vector<const TestMode*> measured_;  ///< of the file; empty where the scene gives the modes
+  std::vector<std::complex<double>> turns_;  ///< that make each of these as real as it can be
   Eigen::Index num_given_ = 0;             ///< modes of the scene or file
   Eigen::VectorXd omega_, ratio_, masses_;
   Eigen::MatrixXd shapes_;  ///< normalised to the mass

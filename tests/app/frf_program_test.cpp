@@ -1,9 +1,12 @@
 // Frequency responses that the program computes, and its messages where it cannot.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <hdf5_hl.h>
 
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +16,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/stability/response_picture.hpp"
@@ -175,6 +179,132 @@ TEST_F(FrfProgram, TellsWhatTheModesOfARunLeaveOut) {
       ResultFile(path("all.h5"))
           .number("/responses/cantilever.free_end.y.acceleration/cantilever.free_end.y/truncation"),
       std::nullopt);
+}
+
+// Of a chain of three masses a run keeps one mode. At a single port the others act as one with
+// their flexibility g = Σ φ²/ω² and inertia Σ φ²/ω⁴ there: h = g²/(g − Ω² Σ φ²/ω⁴).
+TEST_F(FrfProgram, TruncationOverFrequencyIsThatOfTheClosedForm) {
+  const std::string scene = write("chain.yaml", R"(format: 2
+substructures:
+  chain:
+    type: lumped
+    directions: x
+    masses: {a: {mass: 1}, b: {mass: 2, at: [0.1, 0]}, c: {mass: 1.5, at: [0.2, 0]}}
+    springs:
+      ground: {at: a, stiffness: 4e4}
+      ab: {at: [a, b], stiffness: 3e4}
+      bc: {at: [b, c], stiffness: 2e4}
+time: {integrator: exact, step: 0.1 ms, end: 0.1, retain: {frequency: 15 Hz}}
+)");
+  const Json object =
+      json_of({scene, "--input", "chain.c.x", "--output", "chain.c.x.displacement", "--from", "1",
+               "--to", "60", "--points", "60", "-o", path("chain.h5"), "--figure", path("a.svg")});
+  const Eigen::Vector3d mass(1.0, 2.0, 1.5);
+  Eigen::Matrix3d stiffness;
+  stiffness << 7e4, -3e4, 0.0, -3e4, 5e4, -2e4, 0.0, -2e4, 2e4;
+  const Eigen::Vector3d scale = mass.cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> modes(scale.asDiagonal() * stiffness *
+                                                             scale.asDiagonal());
+  const Eigen::Array3d squares = modes.eigenvalues();
+  ASSERT_LT(std::sqrt(squares(0)) / two_pi, 15.0);
+  ASSERT_GT(std::sqrt(squares(1)) / two_pi, 15.0);
+  const Eigen::Array3d shape = scale(2) * modes.eigenvectors().row(2).transpose();
+  const double g = (shape.square() / squares).tail(2).sum();
+  const double inertia = (shape.square() / squares.square()).tail(2).sum();
+  const Json& response = object["responses"][0];
+  double of_errors = 0.0, of_responses = 0.0;
+  const ResultFile file(path("chain.h5"));
+  const std::string dataset = "/responses/chain.c.x.displacement/chain.c.x/truncation_error";
+  const std::vector<double> kept = file.read(dataset);
+  EXPECT_EQ(file.array(dataset).units, "m/N");
+  ASSERT_EQ(kept.size(), 60u);
+  for (std::size_t i = 0; i < 60; ++i) {
+    const double square = std::pow(two_pi * object["frequencies"][i].get<double>(), 2);
+    const Eigen::Array3d parts = shape.square() / (squares - square);
+    const double error = std::abs(g * g / (g - square * inertia) - parts.tail(2).sum());
+    EXPECT_NEAR(kept[i], error, 1e-9 * parts.abs().sum()) << i;
+    EXPECT_EQ(response["truncation_error"][i].get<double>(), kept[i]);
+    of_errors += error * error;
+    of_responses += parts.sum() * parts.sum();
+  }
+  EXPECT_GT(of_errors, 1e-8 * of_responses);
+  EXPECT_NEAR(response["truncation"].get<double>(), std::sqrt(of_errors / of_responses), 1e-7);
+  EXPECT_THAT(contents_of(path("a.svg")), HasSubstr("Dashed: how far they are off"));
+  const std::size_t worst =
+      static_cast<std::size_t>(std::max_element(kept.begin(), kept.end()) - kept.begin());
+  const ProgramResult printed =
+      frf({scene, "--input", "chain.c.x", "--output", "chain.c.x.displacement", "--from", "1",
+           "--to", "60", "--points", "60"});
+  EXPECT_THAT(printed.out,
+              HasSubstr(fmt::format("most at {} Hz, by {:.2g} m/N", worst + 1, kept[worst])));
+}
+
+TEST_F(FrfProgram, KeepsTheComparisonInItsFile) {
+  const std::string scene = write("mass.yaml", one_mass);
+  const std::vector<std::string> arguments{scene,
+                                           "--input",
+                                           "slider.mass.x",
+                                           "--input",
+                                           "slider.mass.y",
+                                           "--output",
+                                           "slider.mass.x.velocity",
+                                           "--output",
+                                           "slider.mass.y.velocity",
+                                           "--from",
+                                           "1",
+                                           "--to",
+                                           "30",
+                                           "--points",
+                                           "30"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), arguments.begin(), arguments.end());
+    return more;
+  };
+  json_of(with({"-o", path("measured.uff")}));
+  EXPECT_FALSE(ResultFile([&] {
+                 json_of(with({"-o", path("alone.h5")}));
+                 return path("alone.h5");
+               }())
+                   .has("/compared/number"));
+  // Twice the mass along both; the first measured response is that of x per force at x.
+  const Json object =
+      json_of(with({"--compare", path("measured.uff"), "--node", "1=slider.mass", "--set",
+                    "substructures.slider.masses.mass.mass=4", "-o", path("compared.h5")}));
+  const ResultFile file(path("compared.h5"));
+  EXPECT_EQ(file.text("measured"), path("measured.uff"));
+  const Json& compared = object["compared"];
+  ASSERT_EQ(compared.size(), 4u);
+  EXPECT_EQ(file.read("/compared/number"), (std::vector<double>{1, 2, 3, 4}));
+  const std::vector<std::string> outputs = file.texts("/compared/output");
+  const std::vector<std::string> inputs = file.texts("/compared/input");
+  const std::vector<std::string> sources = file.texts("/compared/source");
+  ASSERT_EQ(outputs.size(), 4u);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(outputs[k], compared[k]["output"]);
+    EXPECT_EQ(inputs[k], compared[k]["input"]);
+    EXPECT_EQ(sources[k], compared[k]["source"]);
+    EXPECT_EQ(file.read("/compared/frac")[k], compared[k]["frac"].get<double>());
+    // Nothing moves across: neither the measured nor the computed response has a size there.
+    const bool has_ratio = outputs[k].substr(0, 13) == inputs[k];
+    EXPECT_EQ(compared[k]["ratio"].is_number(), has_ratio);
+    if (has_ratio)
+      EXPECT_EQ(file.read("/compared/ratio")[k], compared[k]["ratio"].get<double>());
+    else
+      EXPECT_TRUE(std::isnan(file.read("/compared/ratio")[k]));
+  }
+  const std::vector<double> frequencies = file.read("/compared/1/frequency");
+  ASSERT_EQ(frequencies.size(), 30u);
+  EXPECT_EQ(file.array("/compared/1/measured_real").units, "m/s/N");
+  for (const auto& [which, mass] : {std::pair("measured", 2.0), std::pair("computed", 4.0)}) {
+    const std::vector<double> real = file.read(std::string("/compared/1/") + which + "_real");
+    const std::vector<double> imaginary =
+        file.read(std::string("/compared/1/") + which + "_imaginary");
+    for (std::size_t i = 0; i < 30; ++i) {
+      const Complex s(0.0, two_pi * frequencies[i]);
+      const Complex expected = s / (mass * s * s + 6.0 * s + 8000.0);
+      EXPECT_LT(std::abs(Complex(real[i], imaginary[i]) - expected), 1e-10 * std::abs(expected));
+    }
+  }
 }
 
 TEST_F(FrfProgram, WritesFilesThatItComparesWithItselfAndAPicture) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/program.hpp"
@@ -136,6 +137,29 @@ TEST(Import, SaysWhatAUniversalFileHolds) {
             HasSubstr("stridor frf SCENE.yaml")));
 }
 
+TEST(Import, DrawsNodesLinesAndElementsOfAUniversalFile) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "lines.uff").string();
+  std::ofstream(file)
+      << contents_of(scene_path("examples/reed.uff")) +
+             "    -1\n    82\n         1         4         1\nNONE\n"
+             "         1         2         3         4\n    -1\n"
+             "    -1\n  2412\n         1        91         1         1         7         3\n"
+             "         1         2         4\n    -1\n";
+  const json held = report({"import", file, "--json"})["universal"];
+  EXPECT_EQ(held["lines"], 1);
+  EXPECT_EQ(held["elements"], 1);
+  const std::string figure = (folder / "a.svg").string();
+  const ProgramResult drawn = Program({"import", file, "-o", figure}).run();
+  EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_THAT(contents_of(figure), HasSubstr("lines.uff: 4 nodes, 1 lines, 1 elements."));
+  EXPECT_EQ(Program({"import", scene_path("examples/reed.uff"), "-o", (folder / "b.svg").string()})
+                .run()
+                .exit_code,
+            0);
+  EXPECT_GT(contents_of(figure).size(), contents_of((folder / "b.svg").string()).size());
+}
+
 TEST(Import, RefusesWhatItCannotTell) {
   const auto refused = [](std::vector<std::string> files) {
     files.insert(files.begin(), "import");
@@ -157,7 +181,11 @@ TEST(Import, RefusesWhatItCannotTell) {
   const std::string reed = scene_path("examples/reed.uff");
   EXPECT_THAT(refused({reed, data + "c3d4.inp"}),
               HasSubstr("is a universal file, which is given alone"));
-  EXPECT_THAT(refused({reed, "-o", "a.png"}), HasSubstr("has no mesh to draw"));
+  const TemporaryFolder folder;
+  const std::string bare = (folder / "bare.uff").string();
+  std::ofstream(bare) << "    -1\n   151\nhead\n    -1\n";
+  EXPECT_THAT(refused({bare, "-o", (folder / "a.png").string()}),
+              HasSubstr("has no nodes to draw (datasets 15, 2411)"));
 }
 
 TEST(Import, NamesTheKeysWhereOneIsUnknown) {

@@ -144,7 +144,9 @@ TEST(ModesProgram, ThePageRunsFromTheFirstLineToTheLast) {
     words >> word;
     while (words >> word) {
       if (word.starts_with("scenes/")) word = (root / word).string();
-      const bool is_made = !arguments.empty() && (arguments.back() == "-o" || arguments.back() == "--figure");
+      const bool is_made =
+          !arguments.empty() && (arguments.back() == "-o" || arguments.back() == "--figure" ||
+                                 arguments.back() == "--data");
       if (word.find('.') != std::string::npos && !word.starts_with("-") && is_made)
         word = (folder / word).string();
       if (fs::exists(folder / word)) word = (folder / word).string();
@@ -163,6 +165,44 @@ nlohmann::json eig_json(std::vector<std::string> arguments) {
   const ProgramResult result = Program(arguments).run();
   EXPECT_EQ(result.exit_code, 0) << result.err;
   return nlohmann::json::parse(result.out, nullptr, false);
+}
+
+// A part of which one place is a port is drawn with all measured nodes that lines join, in their
+// measured shapes.
+TEST(ShapeFiles, LinesOfATestCarryItsShapesToAllTheirNodes) {
+  const TemporaryFolder folder;
+  const std::string measured = (folder / "lines.uff").string();
+  const std::string reed = contents_of(scene_path("examples/reed.uff"));
+  std::ofstream(measured) << reed +
+                                 "    -1\n    82\n         1         4         1\nNONE\n"
+                                 "         1         2         3         4\n    -1\n";
+  const std::string scene = (folder / "reed.yaml").string();
+  std::ofstream(scene)
+      << "format: 2\nsubstructures:\n  reed:\n    type: modes\n    file: lines.uff\n"
+         "    ports:\n      tip: {node: 4}\n";
+  const std::string file = (folder / "modes.uff").string();
+  eig_json({scene, "--uff", file});
+  const ModalTest written = read_uff_file(file);
+  EXPECT_EQ(written.nodes.size(), 4u);
+  ASSERT_EQ(written.lines.size(), 1u);
+  EXPECT_EQ(written.lines[0].size(), 4u);
+  // All nodes are matched by place: the shapes are those measured.
+  const auto compared = eig_json({scene, "--compare", measured})["comparison"];
+  EXPECT_EQ(compared["nodes"], 4);
+  for (const auto& mode : compared["modes"]) EXPECT_GT(mode["mac"].get<double>(), 1.0 - 1e-9);
+  const fs::path shapes = folder / "shapes";
+  eig_json({scene, "--shapes", shapes.string()});
+  const auto figure = [&](const std::string& of, const std::string& name) {
+    const ProgramResult drawn = Program({"draw", of, "-o", (folder / name).string()}).run();
+    EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+    return contents_of(folder / name).size();
+  };
+  const std::string alone = (folder / "alone.yaml").string();
+  std::ofstream(folder / "alone.uff") << reed;
+  std::ofstream(alone)
+      << "format: 2\nsubstructures:\n  reed:\n    type: modes\n    file: alone.uff\n"
+         "    ports:\n      tip: {node: 4}\n";
+  EXPECT_GT(figure(scene, "a.svg"), figure(alone, "b.svg"));
 }
 
 // The modes of a scene, written as if they had been measured, are those of the scene; with another

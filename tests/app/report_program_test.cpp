@@ -302,6 +302,37 @@ TEST_F(ReportProgram, ResponsesOfOneUnitStandTogether) {
   }
 }
 
+TEST_F(ReportProgram, MeasuredResponsesStandBesideComputedOnes) {
+  const std::vector<std::string> asked{"frf",      scene("examples/reed.yaml"),
+                                       "--input",  "reed.middle.y",
+                                       "--from",   "100Hz",
+                                       "--to",     "2kHz",
+                                       "--points", "20"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), asked.begin(), asked.end());
+    return more;
+  };
+  const std::string measured = made(with({}), "measured.uff");
+  const std::string file = made(with({"--compare", measured, "--set", "parameters.mu=0.1", "--set",
+                                      "time.retain.frequency=2kHz"}),
+                                "compared.h5");
+  const std::string page = page_of({file});
+  const Json section = contents_of_report(page)["sections"][0];
+  std::vector<Json> responses;
+  for (const Json& view : section["views"])
+    if (view["type"] == "responses") responses.push_back(view);
+  ASSERT_EQ(responses.size(), 2u);
+  EXPECT_EQ(numbers_of(page, responses[0]["groups"][0]["curves"][0]["error"]).size(), 20u);
+  const Json& curves = responses[1]["groups"][0]["curves"];
+  ASSERT_EQ(curves.size(), 2u);
+  EXPECT_EQ(curves[0]["name"], "measured: reed.middle.y.acceleration per force at reed.middle.y");
+  EXPECT_FALSE(curves[0].contains("error"));
+  EXPECT_EQ(numbers_of(page, curves[1]["real"]).size(), 20u);
+  const Json& table = view_of(section, "table");
+  EXPECT_EQ(table["title"], "Measured beside computed");
+  EXPECT_EQ(table["columns"][2]["name"], "FRAC");
+}
+
 // Up and down in one picture, amplitudes first, states in words.
 TEST_F(ReportProgram, CyclesSweptUpAndDownShareTheirPictures) {
   const std::string swept =

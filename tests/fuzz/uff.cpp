@@ -1,4 +1,5 @@
 // Any text as a universal file: it is read or refused with a place.
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -27,7 +28,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     stridor::fuzz::expect_placed(error, "fuzz.uff");
   }
   try {
-    (void)stridor::read_uff_holdings(source);
+    const stridor::UffHoldings held = stridor::read_uff_holdings(source);
+    for (const auto& line : held.shapes.lines) expect_that(line.size() > 1);
+    for (const stridor::TestElement& element : held.shapes.elements)
+      expect_that(element.nodes.size() ==
+                  static_cast<std::size_t>(stridor::facts_of(element.shape).num_nodes));
   } catch (const stridor::ConfigError& error) {
     stridor::fuzz::expect_placed(error, "fuzz.uff");
   }

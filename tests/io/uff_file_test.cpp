@@ -4,10 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <numbers>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "core/errors.hpp"
+#include "io/imports/uff_lines.hpp"
 #include "io/results/uff_writer.hpp"
 #include "substructures/elements/shape_functions.hpp"
 #include "tests/support/message_of.hpp"
@@ -142,6 +146,80 @@ TEST(Uff, WrongFilesAreAnsweredWithPlaceAndWhatWasExpected) {
               HasSubstr("expected a universal file"));
 }
 
+ModalTest drawn(const std::string& text) {
+  const SourceText source{"a.uff", text};
+  return modal_test_in(uff_datasets(source));
+}
+
+TEST(Uff, TraceLinesJoinNodesAndAZeroLiftsThePen) {
+  using Lines = std::vector<std::vector<std::int64_t>>;
+  const std::string head = "    82\n         1        10         7\n";
+  const Lines expected{{1, 2, 3}, {4, 5, 6, 7, 8}};
+  const std::string labels =
+      "         1         2         3         0         0         4         5         6\n         "
+      "7         8\n";
+  EXPECT_EQ(drawn(dataset(head + "frame\n" + labels)).lines, expected);
+  // Without a name, padded, with line ends of Windows.
+  EXPECT_EQ(drawn(dataset(head + labels)).lines, expected);
+  EXPECT_EQ(drawn(dataset(head + "NONE\n" + labels + "         0         0\n")).lines, expected);
+  std::string windows;
+  for (const char c : dataset(head + "NONE\n" + labels))
+    windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  EXPECT_EQ(drawn(windows).lines, expected);
+  // Two in one dataset; a pair of pens lifted leaves no line.
+  EXPECT_EQ(
+      drawn(
+          dataset(
+              "    82\n         1         2\nNONE\n         1         2\n         2         2\nb\n"
+              "         5         0\n"))
+          .lines,
+      (Lines{{1, 2}}));
+  const ModalTest cut = drawn(
+      dataset("    82\n         4         5         1\nNONE\n         1         2         3\n"));
+  EXPECT_EQ(cut.lines, (Lines{{1, 2, 3}}));
+  EXPECT_THAT(cut.remarks.front(),
+              HasSubstr("a.uff:3: 2 of 5 nodes of the trace line 4 are missing"));
+}
+
+TEST(Uff, BeamsAreLinesWithOrWithoutTheirOrientationAndOthersAreToldOf) {
+  const std::string head = "  2412\n         1        21         1         1         7         2\n";
+  const std::vector<std::vector<std::int64_t>> expected{{4, 9}};
+  EXPECT_EQ(drawn(dataset(head + "         0         1         1\n         4         9\n")).lines,
+            expected);
+  EXPECT_EQ(drawn(dataset(head + "         4         9\n")).lines, expected);
+  const std::string thin_shell =
+      "         2        94         1         1         7         4\n"
+      "         1         2         3         4\n";
+  const std::string mass =
+      "         3       161         1         1         7         1\n         1\n";
+  const ModalTest test = drawn(dataset(head + "         4         9\n" + thin_shell + mass + mass));
+  ASSERT_THAT(test.elements, SizeIs(1));
+  EXPECT_EQ(test.elements[0].shape, ElementShape::quad4);
+  EXPECT_THAT(test.remarks.front(), HasSubstr("a.uff:2: 2 elements of kind 161 are passed over"));
+}
+
+TEST(Uff, WrongLinesAndElementsAreRefusedWithTheirPlace) {
+  const auto refusal = [](const std::string& text) {
+    return message_of<ConfigError>([&] { drawn(dataset(text)); });
+  };
+  EXPECT_THAT(
+      refusal("    82\n         1       two         1\nNONE\n"),
+      AllOf(HasSubstr("a.uff:3:"), HasSubstr("number of nodes and colour of a trace line")));
+  EXPECT_THAT(refusal("    82\n         1         2         1\n"),
+              AllOf(HasSubstr("a.uff:3:"), HasSubstr("the name of a trace line")));
+  EXPECT_THAT(refusal("    82\n         1         2         1\nNONE\n         1     0.500\n"),
+              AllOf(HasSubstr("a.uff:5:"), HasSubstr("labels of nodes")));
+  EXPECT_THAT(refusal("  2412\n         1        94         1\n"),
+              AllOf(HasSubstr("a.uff:3:"), HasSubstr("number of nodes of an element")));
+  EXPECT_THAT(refusal("  2412\n         1        94         1         1         7         3\n      "
+                      "   1         2         3\n"),
+              AllOf(HasSubstr("a.uff:3:"),
+                    HasSubstr("expected 4 nodes of an element of kind 94 (quad4), got 3")));
+  EXPECT_THAT(refusal("  2412\n         1        94         1         1         7         4\n      "
+                      "   1         2\n"),
+              AllOf(HasSubstr("a.uff:4:"), HasSubstr("labels of the nodes of an element")));
+}
+
 // What is written is read: E13.5 has six digits.
 TEST(UffWriter, ModesComeBackWithTheirNodes) {
   UffContents contents;
@@ -158,6 +236,7 @@ TEST(UffWriter, ModesComeBackWithTheirNodes) {
   EXPECT_THAT(text, HasSubstr("    -1\n    82\n         1         9         1\nNONE\n         1         2"));
   const ModalTest test = read(text);
   ASSERT_THAT(test.nodes, SizeIs(2));
+  EXPECT_EQ(test.lines, contents.lines);
   EXPECT_EQ(test.nodes.at(1), Eigen::Vector3d(0.0, 0.01, -2.5));
   ASSERT_THAT(test.modes, SizeIs(1));
   const TestMode& mode = test.modes[0];
@@ -186,12 +265,16 @@ TEST(UffWriter, NodesOfElementsGoAroundTheirSides) {
   for (const Expected& one : all) {
     const Eigen::Matrix<double, Eigen::Dynamic, 3> places = natural_nodes(one.shape);
     UffContents contents;
-    UffElement element{one.shape, {}};
+    TestElement element{one.shape, {}};
     for (Eigen::Index i = 0; i < places.rows(); ++i) element.nodes.push_back(10 * i + 10);
     contents.elements = {element};
     const std::string text = uff_text(contents, "-o");
     const std::string record =
         fmt::format("    -1\n  2412\n         1{:10}         1         1         7{:10}\n", one.kind, places.rows());
+    const ModalTest back = modal_test_in(uff_datasets({"a.uff", text}));
+    ASSERT_THAT(back.elements, SizeIs(1));
+    EXPECT_EQ(back.elements[0].shape, one.shape);
+    EXPECT_EQ(back.elements[0].nodes, element.nodes);
     const std::size_t at = text.find(record);
     ASSERT_NE(at, std::string::npos) << facts_of(one.shape).name << '\n' << text;
     std::istringstream words(text.substr(at + record.size()));

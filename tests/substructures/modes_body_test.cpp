@@ -5,7 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <array>
+#include <cmath>
+#include <memory>
 #include <numbers>
+#include <vector>
 
 #include "core/errors.hpp"
 #include "substructures/bodies/realised_shape.hpp"
@@ -129,6 +133,42 @@ TEST(ModesBody, ModesOfAFileAreTakenAsTheyAre) {
   EXPECT_FALSE(body.moves(0, 0));
   EXPECT_EQ(body.nodes(0, 0), 0.1);
   EXPECT_NEAR(std::sqrt(body.stiffness.coeff(0, 0)), two_pi * 100.0, 1e-10);
+}
+
+TEST(ModesBody, LinesOfAFileBringTheirNodesToBeDrawn) {
+  ModalTest test = measured(false);
+  test.nodes[6] = {0.2, 0.0, 0.0};
+  test.nodes[7] = {0.3, 0.0, 0.0};
+  test.nodes[9] = {0.2, 0.1, 0.0};
+  test.lines = {{5, 6, 7, 9, 6}};
+  // A triangle shares an edge with another.
+  test.elements = {{ElementShape::tri3, {5, 6, 9}}, {ElementShape::tri3, {6, 9, 8}}};
+  for (TestMode& mode : test.modes) {
+    mode.shape[6] = {0.5, -2.0, 0.25};
+    mode.shape[9] = {0.0, 1.0, 0.0};
+    mode.shape[8] = {1.0, 0.0, 0.0};  // has no place
+  }
+  const ModesBodyParameters parameters = from_file(test);
+  const BodyMatrices body = parameters.make();
+  ASSERT_EQ(body.nodes.rows(), 3);  // 5 is the port; 7 has no values
+  EXPECT_EQ(body.points.size(), 1u);
+  EXPECT_EQ(body.nodes.row(1), Eigen::RowVector3d(0.2, 0.0, 0.0));
+  EXPECT_EQ(body.nodes.row(2), Eigen::RowVector3d(0.2, 0.1, 0.0));
+  using Lines = std::vector<std::vector<int>>;
+  EXPECT_EQ(body.outlines, (Lines{{0, 1}, {2, 1}, {0, 1}, {1, 2}, {2, 0}}));
+  const double scale = 1.0 / std::sqrt(test.modes[0].modal_mass);
+  const std::array<double, 3> shape{0.5, -2.0, 0.25};
+  for (const std::size_t direction : {0u, 1u, 2u}) {
+    const DofSum sum = body.displacement(1, direction);
+    ASSERT_EQ(sum.size(), test.modes.size());
+    EXPECT_DOUBLE_EQ(sum[0].weight, scale * shape[direction]);
+  }
+  // What the port is stays as it is without the lines.
+  ModalTest bare = test;
+  bare.lines.clear();
+  bare.elements.clear();
+  EXPECT_EQ(row_of(body, "tip", 1), row_of(from_file(bare).make(), "tip", 1));
+  EXPECT_EQ(from_file(bare).make().nodes.rows(), 1);
 }
 
 TEST(ModesBody, ComplexShapesAreTurnedToRealOnesOrRefused) {

@@ -267,10 +267,11 @@ class Chart {
     c.fillText(this.y.text.label, 0, 0);
     c.restore();
   }
-  line(xs, ys, stroke, width = 1.4) {
+  line(xs, ys, stroke, width = 1.4, dashes = []) {
     const c = this.context;
     c.strokeStyle = stroke;
     c.lineWidth = width;
+    c.setLineDash(dashes);
     c.beginPath();
     let isDown = false;
     for (let i = 0; i < xs.length; ++i) {
@@ -280,6 +281,7 @@ class Chart {
       isDown = true;
     }
     c.stroke();
+    c.setLineDash([]);
   }
   dot(x, y, fill, radius = 4, stroke = null) {
     const c = this.context;

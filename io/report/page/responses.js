@@ -25,6 +25,7 @@ async function readResponses(group) {
     const size = Array.from(real, (re, i) => Math.hypot(re, imaginary[i]));
     const angle = Array.from(real, (re, i) => Math.atan2(imaginary[i], re) * 180 / Math.PI);
     Object.assign(curve, {real, imaginary, size, angle});
+    if (curve.error) curve.off = await numbersOf(curve.error);
   }
   // Between points farther apart than a tenth of the largest response a line would be a chord.
   group.most = group.curves.reduce((most, curve) => curve.size.reduce((a, b) => b > a ? b : a, most), 0);
@@ -59,6 +60,9 @@ function makeResponseGroup(place, view, group, xs) {
     y: new Axis('magnitude', group.units, ...magnitudeRange(group.curves.map(curve => curve.size)), true),
     paint: chart => {
       group.curves.forEach((curve, k) => chart.line(xs, curve.size, lineColour(k)));
+      group.curves.forEach((curve, k) => {
+        if (curve.off) chart.line(xs, curve.off, lineColour(k), 0.8, [4, 4]);
+      });
       mark(chart, () => xs[nearest], curve => curve.size[nearest]);
     }});
   const phase = new Chart(left, {...over, x: frequency(), height: 170, name: `Phase of the ${group.quantity}`,
@@ -90,6 +94,10 @@ function makeResponseGroup(place, view, group, xs) {
     }});
   const charts = [magnitude, phase, plane];
   charts.forEach(chart => chart.draw());
+  if (group.curves.some(curve => curve.off))
+    left.append(element(
+        'figcaption', {},
+        'Dashed: how far the response is off with the modes that a run keeps (time.retain).'));
   if (group.curves.some(curve => curve.isCoarse))
     right.append(element('figcaption', {}, 'Dots: the frequencies of the file. No line joins two between which the response turns far; more --points show the way.'));
   return {magnitude, phase, plane};
