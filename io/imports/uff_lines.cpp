@@ -188,7 +188,10 @@ std::optional<std::vector<double>> uff_numbers_in(std::string_view text, std::si
   std::vector<double> numbers;
   for (const std::string_view word : uff_words(text)) {
     const std::optional<double> number = real_in(word);
-    if (!number) {
+    // Digits beyond the column are those of the next integer.
+    const bool run_together =
+        word.size() > width && word.find_first_not_of("0123456789") == std::string_view::npos;
+    if (!number || run_together) {
       numbers.clear();
       break;
     }

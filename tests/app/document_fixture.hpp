@@ -76,7 +76,7 @@ class UserFolder {
     std::filesystem::create_directory(folder_ / "bin");
     std::filesystem::create_directory(folder_ / "work");
     std::filesystem::create_symlink(STRIDOR_PROGRAM, folder_ / "bin" / "stridor");
-    std::filesystem::create_directory_symlink(source / "scenes", folder_ / "work" / "scenes");
+    std::filesystem::copy(source / "scenes", folder_ / "work" / "scenes", std::filesystem::copy_options::recursive);
   }
   std::filesystem::path operator/(const std::string& name) const { return folder_ / "work" / name; }
 

@@ -53,21 +53,6 @@ std::string block_of(const fs::path& document, const std::string& language,
   return {};
 }
 
-TEST(Readme, SceneGivesWhatIsPrintedBelowIt) {
-  const UserFolder folder;
-  const fs::path readme = source / "README.md";
-  write_file(folder / "beam.yaml", block_of(readme, "yaml", "format:"));
-  const auto checked = folder.run("stridor check beam.yaml");
-  EXPECT_EQ(checked.exit_code, 0) << checked.output;
-  EXPECT_NE(checked.output.find("no errors"), std::string::npos) << checked.output;
-  const auto outcome = folder.run(block_of(readme, "sh", "stridor run beam.yaml"));
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
-  const auto printed = lines_of(block_of(readme, "text", "modes of"));
-  EXPECT_EQ(printed.size(), 6u);
-  for (const std::string& line : printed)
-    EXPECT_NE(outcome.output.find(line + "\n"), std::string::npos) << line << "\n" << outcome.output;
-}
-
 TEST(Readme, SceneSquealsForTheReasonGiven) {
   const UserFolder folder;
   const fs::path readme = source / "README.md";
@@ -112,22 +97,6 @@ TEST(Commands, WorkAsPrintedOneAfterTheOther) {
     ++num_run;
   }
   EXPECT_GE(num_run, 15);
-}
-
-TEST(Pages, OfOtherProgramsWorkFromTheirFirstLineToTheLast) {
-  for (const std::string program : {"calculix", "abaqus", "ansys", "nastran"}) {
-    const UserFolder folder;
-    int num_run = 0;
-    for (const std::string& block :
-         blocks_of(source / "docs" / ("from_" + program + ".md"), "sh")) {
-      for (const std::string& line : lines_of(block)) {
-        const auto outcome = folder.run(line);
-        EXPECT_EQ(outcome.exit_code, 0) << line << "\n" << outcome.output;
-        ++num_run;
-      }
-    }
-    EXPECT_EQ(num_run, 4) << program;
-  }
 }
 
 /// Whether a program has printed a number to the digits that it shows.

@@ -14,6 +14,7 @@
 #include "io/imports/uff_file.hpp"
 #include "io/results/uff_writer.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/uff_text.hpp"
 
 namespace stridor::test {
 namespace {

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <regex>
+#include <set>
 
 #include "tests/app/document_fixture.hpp"
 
@@ -75,44 +78,131 @@ void write_scenes(const UserFolder& folder, const std::vector<Block>& blocks) {
   for (const Block& block : blocks) {
     std::smatch name;
     if (block.language == "yaml" &&
-        std::regex_search(block.before, name, std::regex("Write `([a-z_]+\\.yaml)`")))
+        std::regex_search(block.before, name,
+                          std::regex("(?:Write|Save this as) `([a-z_]+\\.yaml)`")))
       write_file(folder / name[1], block.text);
   }
 }
 
-/// A section that shows what is printed is run from its first command to its last. How many blocks
-/// of what is printed the page has.
-int expect_shown_is_printed(const fs::path& page) {
-  SCOPED_TRACE(page);
-  std::ifstream text(page);
-  const auto blocks = blocks_in(text);
-  std::vector<int> sections;
-  for (std::size_t i = 0; i < blocks.size(); ++i)
-    if (is_output(blocks, i)) sections.push_back(blocks[i].section);
-  if (sections.empty()) return 0;
+/// Whether a block is for the source tree, or installs something: not for a folder of a user's.
+bool is_of_source_tree(const Block& block) {
+  return std::regex_search(block.text, std::regex("(^|\n)(\\./run|cmake|ctest|sudo) "));
+}
 
+/// The pages whose commands are run as printed: all but the list of commands, which `Commands`
+/// runs.
+std::vector<fs::path> pages_with_commands() {
+  std::vector<fs::path> pages{source / "README.md"};
+  for (const char* folder : {"docs", "docs/theory", "scenes/examples"})
+    for (const auto& entry : fs::directory_iterator(source / folder))
+      if (entry.path().extension() == ".md" && entry.path().filename() != "commands.md" &&
+          !blocks_of(entry.path(), "sh").empty())
+        pages.push_back(entry.path());
+  std::ranges::sort(pages);
+  return pages;
+}
+
+class PagesWithCommands : public testing::TestWithParam<fs::path> {};
+
+TEST_P(PagesWithCommands, RunFromTheFirstToTheLastAndPrintWhatIsShown) {
+  std::ifstream text(GetParam());
+  const auto blocks = blocks_in(text);
   const UserFolder folder;
   write_scenes(folder, blocks);
   std::string output;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    if (std::ranges::find(sections, blocks[i].section) == sections.end()) continue;
-    if (blocks[i].language == "sh") {
-      const auto outcome = folder.run("set -e\n" + blocks[i].text);
+    if (blocks[i].language == "sh" && !is_of_source_tree(blocks[i])) {
+      const auto outcome =
+          folder.run("set -e\ntrap 'echo \"exit code $?: $BASH_COMMAND\"' ERR\n" + blocks[i].text);
       EXPECT_EQ(outcome.exit_code, 0) << blocks[i].text << outcome.output;
       output = outcome.output;
     } else if (is_output(blocks, i)) {
       EXPECT_EQ(first_that_is_not_printed(blocks[i].text, output), "") << blocks[i].text << output;
     }
   }
-  return static_cast<int>(sections.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(Docs, PagesWithCommands, testing::ValuesIn(pages_with_commands()),
+                         [](const auto& page) { return page.param.stem().string(); });
+
+TEST(Pages, WithCommandsForTheSourceTreeAreThese) {
+  std::set<std::string> pages;
+  for (const fs::path& page : pages_with_commands()) {
+    std::ifstream text(page);
+    if (std::ranges::any_of(blocks_in(text), is_of_source_tree)) pages.insert(page.filename());
+  }
+  EXPECT_EQ(pages,
+            (std::set<std::string>{"python.md", "robustness.md", "tutorial.md", "verified.md"}));
 }
 
 TEST(Pages, ShowWhatIsPrinted) {
-  int num_blocks = 0;
-  for (const char* folder : {"docs", "docs/theory"})
-    for (const auto& entry : fs::directory_iterator(source / folder))
-      if (entry.path().extension() == ".md") num_blocks += expect_shown_is_printed(entry.path());
-  EXPECT_GE(num_blocks, 12);
+  int num_shown = 0;
+  for (const fs::path& page : pages_with_commands()) {
+    std::ifstream text(page);
+    const auto blocks = blocks_in(text);
+    for (std::size_t i = 0; i < blocks.size(); ++i) num_shown += is_output(blocks, i);
+  }
+  EXPECT_GE(num_shown, 13);
+}
+
+TEST(Pages, OfWhatIsVerifiedNameSuitesThatThereAre) {
+  const UserFolder folder;
+  int num_commands = 0;
+  for (const std::string& block : blocks_of(source / "docs" / "verified.md", "sh")) {
+    for (const std::string& line : lines_of(block)) {
+      std::smatch suites;
+      ASSERT_TRUE(std::regex_search(line, suites, std::regex(R"('(.*?)')"))) << line;
+      const auto listed =
+          folder.run("ctest --test-dir '" + fs::path(STRIDOR_PROGRAM).parent_path().string() +
+                     "' -N -R '" + suites[1].str() + "'");
+      EXPECT_FALSE(listed.output.find("Total Tests: 0") != std::string::npos)
+          << line << listed.output;
+      // Each suite of an alternative by itself.
+      const std::regex name("[A-Z][A-Za-z]+");
+      for (std::sregex_iterator it(line.begin(), line.end(), name), end; it != end; ++it)
+        if (it->str() != "R" && it->str() != "Scene")
+          EXPECT_NE(listed.output.find(it->str() + "."), std::string::npos) << it->str();
+      ++num_commands;
+    }
+  }
+  EXPECT_EQ(num_commands, 3);
+}
+
+/// The last number behind a word in the line of a text that has both words; NaN where none has.
+double number_behind(const std::string& word, const std::string& of, const std::string& text) {
+  for (const std::string& line : lines_of(text)) {
+    std::smatch found;
+    if (line.find(of) != std::string::npos &&
+        std::regex_search(line, found, std::regex(word + " ([0-9.]+[0-9])")))
+      return std::stod(found[1]);
+  }
+  return std::nan("");
+}
+
+TEST(Pages, OfBeamOnBeamGiveTheirPeaks) {
+  const UserFolder folder;
+  const std::string page = contents_of(source / "docs" / "beam_on_beam.md");
+  int num_commands = 0;
+  std::string output;
+  const std::regex row("\\| Fig[^|]*\\| `([a-z]+) S ([^`]*)`");
+  for (std::sregex_iterator it(page.begin(), page.end(), row), end; it != end; ++it) {
+    const std::string verb = (*it)[1], rest = (*it)[2];
+    const auto outcome = folder.run("stridor " + verb + " scenes/beam_on_beam.yaml " + rest);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    if (verb == "compare") output = outcome.output;
+    ++num_commands;
+  }
+  EXPECT_EQ(num_commands, 2);
+  for (const char* assumption : {"a", "b", "c"}) {
+    const double stated = number_behind("peak", std::string("Subs-") + assumption, page);
+    double computed = std::nan("");
+    for (const std::string& line : lines_of(output)) {
+      const auto words = words_of(line);
+      if (words.size() > 5 && words[0] == std::string("subs_") + assumption)
+        computed = std::stod(words[5]);
+    }
+    EXPECT_NEAR(computed, stated, 2e-3 * stated) << assumption;
+  }
 }
 
 TEST(ShownOutput, IsComparedLineByLine) {

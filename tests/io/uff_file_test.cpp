@@ -174,6 +174,9 @@ TEST(Uff, TraceLinesJoinNodesAndAZeroLiftsThePen) {
               "         5         0\n"))
           .lines,
       (Lines{{1, 2}}));
+  // Labels of ten digits leave no blanks between them.
+  EXPECT_EQ(drawn(dataset("    82\n         1         2\nNONE\n10000000011000000002\n")).lines,
+            (Lines{{1000000001, 1000000002}}));
   const ModalTest cut = drawn(
       dataset("    82\n         4         5         1\nNONE\n         1         2         3\n"));
   EXPECT_EQ(cut.lines, (Lines{{1, 2, 3}}));
