@@ -46,7 +46,9 @@ PagedResponse paged_response(const ResultFile& file, const std::string& output,
     if (error.size() != frequencies.size())
       throw FileError(Refusal::file_damaged, file.path(), group + "/truncation_error",
                       "is unlike /frequency in length");
-    response.curve["error"] = page.add_numbers(error);
+    // Zeros have no place on the scale of levels.
+    if (std::ranges::any_of(error, [](double off) { return off > 0.0; }))
+      response.curve["error"] = page.add_numbers(error);
   }
   return response;
 }

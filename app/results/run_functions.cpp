@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -43,9 +46,9 @@ std::vector<UffNode> places_in_run(const RecordedStretch& run, const PointNodes&
   const std::string source = run.path + ":/scene/resolved";
   try {
     return points.placed(load_resolved_scene(run.file.header().scene_resolved, source));
-  } catch (const ConfigError& error) {
-    remark = error.what();
-  } catch (const FileError& error) {
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const std::exception& error) {  // places are no reason to lose the numbers
     remark = error.what();
   }
   remark = "places of points are not in the file (2411): " + remark.substr(0, remark.find('\n'));
@@ -95,8 +98,9 @@ WrittenFunctions write_history_functions(const std::string& file, const Recorded
 
 WrittenFunctions write_spectrum_functions(
     const std::string& file, const RecordedStretch& run,
-    const std::vector<std::pair<std::string, Spectrum>>& spectra,
-    const SpectrogramParameters& parameters, const UniversalOptions& options) {
+    const std::vector<std::pair<std::string, Spectrum>>& spectra, const WrittenSpectra& how,
+    const UniversalOptions& options) {
+  const SpectrogramParameters& parameters = how.parameters;
   std::vector<std::string> series;
   for (const auto& entry : spectra) series.push_back(entry.first);
   const auto fill = [&](std::size_t i, UffFunction& function) {
@@ -106,8 +110,11 @@ WrittenFunctions write_spectrum_functions(
         "peak amplitudes, r.m.s. of {} pieces of {} samples, {}, overlap {:g}", spectrum.num_pieces,
         parameters.length, window_name(parameters.window), parameters.overlap);
     function.abscissa_quantity = static_cast<int>(UffQuantity::frequency);
-    function.abscissa = spectrum.frequencies;
-    function.values.assign(spectrum.amplitude.begin(), spectrum.amplitude.end());
+    const auto end = std::upper_bound(spectrum.frequencies.begin(), spectrum.frequencies.end(),
+                                      how.max_frequency);
+    function.abscissa.assign(spectrum.frequencies.begin(), end);
+    const auto count = static_cast<std::ptrdiff_t>(function.abscissa.size());
+    function.values.assign(spectrum.amplitude.begin(), spectrum.amplitude.begin() + count);
   };
   return write_functions(file, run, series, "spectra", fill, options);
 }

@@ -27,13 +27,18 @@ WrittenFunctions write_history_functions(const std::string& file, const Recorded
                                          const std::vector<std::string>& series,
                                          const UniversalOptions& options);
 
+/// How spectra were made, and what of them is written.
+struct WrittenSpectra {
+  SpectrogramParameters parameters;
+  double max_frequency;  ///< Hz
+};
+
 /// Writes spectra of series, peak amplitudes over frequency, as functions 12, real.
 /// @param spectra with the paths of their series
-/// @param parameters by which they were made
 /// @throws as write_history_functions()
 WrittenFunctions write_spectrum_functions(
     const std::string& file, const RecordedStretch& run,
-    const std::vector<std::pair<std::string, Spectrum>>& spectra,
-    const SpectrogramParameters& parameters, const UniversalOptions& options);
+    const std::vector<std::pair<std::string, Spectrum>>& spectra, const WrittenSpectra& how,
+    const UniversalOptions& options);
 
 }  // namespace stridor

@@ -131,9 +131,10 @@ void print_functions(const std::vector<UffFunction>& functions) {
     if (!one.abscissa.empty())
       text += fmt::format(" at a {} of {:g} to {:g}", quantity_words(one.abscissa_quantity),
                           one.abscissa.front(), one.abscissa.back());
-    print_line(
-        "  " + dof_words(one.response) + (is_ratio ? " per " + dof_words(one.reference) : ""),
-        text);
+    const std::string response = one.response.node == 0 && !one.id.empty() && one.id != "NONE"
+                                     ? one.id
+                                     : dof_words(one.response);
+    print_line("  " + response + (is_ratio ? " per " + dof_words(one.reference) : ""), text);
   }
   if (functions.size() > most_shown)
     print_line("  ...", fmt::format("{} more", functions.size() - most_shown));

@@ -141,6 +141,13 @@ NodesByLabel matched_nodes(const ShapedModes& shapes, const ModalTest& measured,
       shared[nearest.front()].measured.emplace(label, place->second);
     }
   }
+  for (auto& [first, place] : shared) {
+    // Nodes that names have taken are no choice, unless nothing else is left.
+    const auto is_taken = [&](Eigen::Index node) {
+      return std::ranges::any_of(named, [&](const auto& one) { return one.second == node; });
+    };
+    if (!std::ranges::all_of(place.nodes, is_taken)) std::erase_if(place.nodes, is_taken);
+  }
   for (const auto& [first, place] : shared)
     share_nodes(shapes, place, extent, node_of, comparison.unclear);
   for (const auto& [label, node] : named) {

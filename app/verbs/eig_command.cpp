@@ -172,6 +172,11 @@ std::size_t mode_of_interest(const Analysis& analysis, const std::optional<int>&
   return chosen_mode(choice, num_real_of(choice), mode);
 }
 
+/// |s|/2π, Hz, as tests state frequencies.
+double undamped_frequency(const ShapedMode& mode) {
+  return std::abs(mode.eigenvalue.s) / (2.0 * std::numbers::pi);
+}
+
 Json unclear_json(const ShapeComparison& comparison) {
   Json nodes = Json::array();
   for (const UnclearNode& one : comparison.unclear)
@@ -199,11 +204,11 @@ void add_shape_files(const EigOptions& options, const LoadedScene& loaded, const
     const auto column = comparison.assurance.col(static_cast<Eigen::Index>(m));
     Eigen::Index best = 0;
     column.maxCoeff(&best);
-    const Eigenvalue& computed = shapes.modes[static_cast<std::size_t>(best)].eigenvalue;
+    const ShapedMode& computed = shapes.modes[static_cast<std::size_t>(best)];
     rows.push_back({{"measured", comparison.measured[m].number},
                     {"measured_frequency", comparison.measured[m].frequency},
                     {"mode", best + 1},
-                    {"frequency", std::abs(computed.s) / (2.0 * std::numbers::pi)},
+                    {"frequency", undamped_frequency(computed)},
                     {"mac", column[best]},
                     {"macs", std::vector<double>(column.begin(), column.end())}});
   }
@@ -214,7 +219,7 @@ void add_shape_files(const EigOptions& options, const LoadedScene& loaded, const
                           {"modes", rows}};
   if (!options.figure) return;
   AssurancePicture picture{comparison.assurance, {}, {}};
-  for (const ShapedMode& mode : shapes.modes) picture.computed.push_back(mode.eigenvalue.frequency());
+  for (const ShapedMode& mode : shapes.modes) picture.computed.push_back(undamped_frequency(mode));
   for (const TestMode& mode : comparison.measured) picture.measured.push_back(mode.frequency);
   plot_assurance(picture,
                  fmt::format("{} beside {}: modal assurance criterion at {} nodes.",

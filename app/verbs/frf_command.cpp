@@ -97,6 +97,11 @@ void write_files(const FoundResponses& found) {
   }
 }
 
+/// Whether the modes that a run keeps leave anything out.
+bool is_off(const ResponseCurve& curve) {
+  return curve.truncation && *curve.truncation > 0.0;
+}
+
 void draw_responses(const FoundResponses& found) {
   const FrfOptions& options = found.options;
   ResponsePicture picture(options.scale == "log");
@@ -116,10 +121,10 @@ void draw_responses(const FoundResponses& found) {
       picture.add(frequencies, curve, label, Mark::line, colour++);
     }
     for (std::size_t i = 0; i < found.curves.size(); ++i)
-      if (found.curves[i].truncation)
+      if (is_off(found.curves[i]))
         picture.add_error(found.frequencies, found.curves[i], static_cast<int>(i));
   }
-  const bool has_errors = found.compared.empty() && found.curves.front().truncation;
+  const bool has_errors = found.compared.empty() && std::ranges::any_of(found.curves, is_off);
   for (const ComparedResponse& one : found.compared) {
     const std::string label = next_label(one.computed);
     picture.add(one.frequencies, one.measured, label + " measured", Mark::points, 2 * colour + 1);
@@ -209,6 +214,10 @@ void print_responses(const FoundResponses& found) {
     fmt::print("{} per {}: largest {:.4g} {} at {:.6g} Hz\n", curve.output, curve.input,
                std::abs(curve.values[peak]), curve.units, found.frequencies[peak]);
     if (!curve.truncation) continue;
+    if (!(*curve.truncation > 0.0)) {
+      fmt::print("  the same with the modes that a run keeps (time.retain)\n");
+      continue;
+    }
     const std::size_t worst = worst_of(curve);
     fmt::print(
         "  with the modes that a run keeps (time.retain): off by {:.2g}, most at {:.6g} Hz, by "

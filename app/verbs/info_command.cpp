@@ -1,5 +1,10 @@
 // stridor info: contents of a file of results.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
 
 #include "app/results/burst_text.hpp"
 #include "app/results/pictures.hpp"
@@ -31,6 +36,14 @@ void print_line(const std::string& name, const std::string& value) {
   fmt::print("{:<48} {}\n", name, value);
 }
 
+std::vector<ResultArray> all_arrays(const ResultFile& file) {
+  std::vector<ResultArray> all = file.arrays();
+  const std::vector<ResultArray>& others = file.texts_and_numbers();
+  all.insert(all.end(), others.begin(), others.end());
+  std::ranges::sort(all, {}, &ResultArray::path);
+  return all;
+}
+
 /// "41 x 20, 1/s", of a number without extents its unit alone.
 std::string extents_text(const ResultArray& array) {
   if (array.shape.empty() || array.units.empty())
@@ -52,7 +65,7 @@ Json contents_json(const ResultFile& file) {
     if (!is_of_file && !is_for_viewers) results[name] = attribute_json(value);
   }
   object["series"] = Json::array();
-  for (const ResultArray& array : file.arrays())
+  for (const ResultArray& array : all_arrays(file))
     object["series"].push_back(
         {{"path", array.path}, {"shape", array.shape}, {"units", array.units}});
   object["results"] = std::move(results);
@@ -76,7 +89,8 @@ ExitCode info_of_results(const InfoOptions& options, const ResultFile& file) {
     if (const std::string text = file.text(name); !text.empty())
       print_line(name == std::string("scene_hash") ? "scene hash" : name, text);
   fmt::print("series\n");
-  for (const ResultArray& array : file.arrays()) print_line("  " + array.path, extents_text(array));
+  for (const ResultArray& array : all_arrays(file))
+    print_line("  " + array.path, extents_text(array));
   fmt::print("results\n");
   for (const auto& [name, value] : object["results"].items())
     print_line("  " + name, value.is_string() ? value.get<std::string>() : value.dump());
@@ -92,10 +106,10 @@ ExitCode info(const InfoOptions& options) {
   const RunFileReader file(options.file);
   const RunFileHeader& header = file.header();
   const std::vector<double>& times = file.times();
-  Json object = {
-      {"file", options.file},      {"version", header.version},       {"commit", header.commit},
-      {"command", header.command}, {"scene_hash", header.scene_hash}, {"date", header.date},
-      {"samples", times.size()}};
+  Json object = {{"file", options.file},      {"kind", "run"},
+                 {"version", header.version}, {"commit", header.commit},
+                 {"command", header.command}, {"scene_hash", header.scene_hash},
+                 {"date", header.date},       {"samples", times.size()}};
   object["time"] =
       times.empty() ? Json(nullptr) : Json{{"from", times.front()}, {"to", times.back()}};
   object["series"] = Json::array();

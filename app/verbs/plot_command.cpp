@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -91,6 +92,7 @@ Drawn draw_history(const PlotOptions& options, const RecordedStretch& run) {
   if (options.data)
     note_written(write_history_functions(*options.data, run, wanted.series, options.universal),
                  drawn);
+  drawn["left_out"] = wanted.left_out;
   if (!options.has_figure()) return drawn;
   std::vector<Panel> panels;
   for (const std::string& series : wanted.series) {
@@ -104,8 +106,7 @@ Drawn draw_history(const PlotOptions& options, const RecordedStretch& run) {
   plot_histories(panels, options.output, "",
                  wanted.rest_text() + filters_text(run.file, wanted.series) + source_text(run) +
                      ".");
-  drawn.update(
-      {{"panels", panels.size()}, {"bursts", bursts.size()}, {"left_out", wanted.left_out}});
+  drawn.update({{"panels", panels.size()}, {"bursts", bursts.size()}});
   return drawn;
 }
 
@@ -271,7 +272,9 @@ Drawn draw_spectrum(const PlotOptions& options, const RecordedStretch& run) {
   Drawn drawn;
   if (options.data) {
     note_written(
-        write_spectrum_functions(*options.data, run, spectra, parameters, options.universal),
+        write_spectrum_functions(*options.data, run, spectra,
+                                 {parameters, options.max_frequency ? max_frequency : HUGE_VAL},
+                                 options.universal),
         drawn);
   }
   const std::vector<NumberedBurst> bursts = bursts_in(run, options);
@@ -294,7 +297,8 @@ Drawn draw_spectrum(const PlotOptions& options, const RecordedStretch& run) {
                 {"pieces", num_pieces},
                 {"from", run.first_time()},
                 {"to", run.last_time()},
-                {"max_frequency", max_frequency},
+                {"max_frequency",
+                 options.has_figure() || options.max_frequency ? Json(max_frequency) : Json()},
                 {"scale", picture.scale == AmplitudeScale::level ? "db" : "linear"},
                 {"bursts", bursts.size()},
                 {"left_out", wanted.left_out}});
@@ -322,6 +326,13 @@ void check_outputs(const PlotOptions& options) {
     throw ConfigError(Refusal::missing, "--output",
                       fmt::format("is missing: name a figure, .png, .svg or .pdf{}",
                                   is_of_channels ? ", or --data FILE.uff alone" : ""));
+  if (!options.has_figure()) {
+    for (const auto& [name, value] :
+         {std::pair{"--scale", &options.scale}, std::pair{"--reference", &options.reference},
+          std::pair{"--range", &options.range}})
+      if (*value)
+        throw ConfigError(Refusal::contradiction, name, "is of the figure; name one with -o");
+  }
   if (is_of_channels) check_data_file(options);
 }
 
@@ -359,9 +370,10 @@ ExitCode plot(const PlotOptions& options) {
     if (const auto remark = drawn.find("remark"); remark != drawn.end())
       fmt::print("{}\n", remark->get<std::string>());
     if (const auto rest = drawn.find("left_out"); rest != drawn.end() && !rest->empty())
-      fmt::print("{} more channels are not drawn; name those wanted with --channel (stridor info "
-                 "lists them)\n",
-                 rest->size());
+      fmt::print(
+          "{} more channels are left out; name those wanted with --channel (stridor info "
+          "lists them)\n",
+          rest->size());
   }
   return ExitCode::done;
 }
@@ -378,7 +390,7 @@ void add_plot_command(CLI::App& program, Action& action, const std::string& comm
       ->check(CLI::IsMember({"history", "spectrogram", "phase", "spectrum"}))
       ->required();
   verb->add_option("-o,--output", options->output,
-                   "Figure to write: .png, .svg or .pdf; with --data it may be left away");
+                   "Figure to write: .png, .svg or .pdf; with --data it may be left out");
   verb->add_option(
           "--channel", options->channels,
           "Channel to draw or write (repeatable); default: the eight of most use, for a phase plot "

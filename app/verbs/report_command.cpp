@@ -192,7 +192,7 @@ void add_report_command(CLI::App& program, Action& action, const std::string& co
       ->capture_default_str();
   verb->add_flag("--full", options->is_full, "Keep every sample, whatever the size");
   verb->add_flag("--no-shapes", options->without_shapes,
-                 "Leave the bodies away: shapes of modes, and the slide of runs");
+                 "Leave out the bodies: shapes of modes, and the slide of runs");
   add_json_option(*verb, options->common);
   add_force_option(*verb, options->common);
   verb->callback([options, &action] {

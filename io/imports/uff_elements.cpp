@@ -37,10 +37,10 @@ std::vector<std::int64_t> labels_in(UffReader& reader, std::size_t count) {
 }
 
 /// The integers of a line that holds nothing else.
-std::vector<std::int64_t> integers_alone(const UffLine& line) {
+std::vector<std::int64_t> integers_alone(std::string_view line) {
   std::vector<std::int64_t> integers;
   constexpr std::size_t width = 10;
-  const auto numbers = uff_numbers_in(line.text, width);
+  const auto numbers = uff_numbers_in(line, width);
   if (!numbers) return {};
   for (const double number : *numbers) {
     if (!(number >= 0.0 && number <= 9e15) ||
@@ -72,9 +72,13 @@ std::vector<std::int64_t> element_nodes(UffReader& reader, std::int64_t kind, st
                                         const TextPlace& place) {
   std::vector<std::int64_t> labels;
   if (is_line(kind)) {
-    labels = reader.integers(2, "orientation or nodes of a beam");
-    // Three numbers are node of orientation and two cross-sections, unless they are the end.
-    if (labels.size() == 3 && !reader.is_at_end()) labels.clear();
+    labels = reader.integers(1, "orientation or nodes of a beam");
+    // Three numbers are the node of orientation and two cross-sections, unless they are the nodes
+    // themselves: then the head of the next element follows, or nothing.
+    constexpr std::size_t most_nodes_of_a_line = 3;
+    if (labels.size() == 3 &&
+        (count != 3 || integers_alone(reader.ahead()).size() == most_nodes_of_a_line))
+      labels.clear();
   }
   while (labels.size() < count) {
     const std::vector<std::int64_t> more = reader.integers(1, "labels of the nodes of an element");
@@ -141,7 +145,7 @@ void read_trace_lines(const UffDataset& dataset, ModalTest& test) {
   while (!reader.is_at_end()) {
     const UffLine& head = reader.line(expected);
     if (trimmed(head.text).empty()) continue;
-    const std::vector<std::int64_t> numbers = integers_alone(head);
+    const std::vector<std::int64_t> numbers = integers_alone(head.text);
     // A line of zeros pads the one before.
     if (!numbers.empty() && std::ranges::all_of(numbers, [](std::int64_t one) { return one == 0; }))
       continue;
@@ -151,9 +155,13 @@ void read_trace_lines(const UffDataset& dataset, ModalTest& test) {
     const UffLine& name = reader.line("the name of a trace line, or NONE");
     std::vector<std::int64_t> labels = labels_in(reader, count);
     if (labels.size() < count) {
-      const std::vector<std::int64_t> first = integers_alone(name);
-      if (first.size() + labels.size() >= count)
+      const std::vector<std::int64_t> first = integers_alone(name.text);
+      if (!first.empty() && first.size() + labels.size() >= count) {
         labels.insert(labels.begin(), first.begin(), first.end());
+        test.remarks.push_back(
+            fmt::format("{}: trace line {} has no name; the line after its head is taken for nodes",
+                        place_text(name.place), numbers[0]));
+      }
     }
     if (labels.size() < count) {
       test.remarks.push_back(fmt::format("{}: {} of {} nodes of the trace line {} are missing",
@@ -173,13 +181,14 @@ void read_elements(const UffDataset& dataset, ModalTest& test) {
   while (!reader.is_at_end()) {
     const UffLine& head = reader.line(expected);
     if (trimmed(head.text).empty()) continue;
-    const std::vector<std::int64_t> numbers = integers_alone(head);
-    constexpr std::int64_t most_nodes = 1000;
-    if (numbers.size() < 6 || numbers[5] < 1 || numbers[5] > most_nodes)
+    const std::vector<std::int64_t> numbers = integers_alone(head.text);
+    if (numbers.size() < 6)
       refuse_at(head.place, fmt::format("expected {}, got '{}'", expected, shown(head.text)));
     const std::int64_t kind = numbers[1];
     const std::vector<std::int64_t> labels =
-        element_nodes(reader, kind, static_cast<std::size_t>(numbers[5]), head.place);
+        numbers[5] > 0
+            ? element_nodes(reader, kind, static_cast<std::size_t>(numbers[5]), head.place)
+            : std::vector<std::int64_t>{};
     if (const auto shape = shape_of_kind(kind)) {
       add_element(kind, labels, *shape, head.place, test);
     } else if (is_line(kind)) {

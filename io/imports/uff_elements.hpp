@@ -26,8 +26,9 @@ std::optional<ElementShape> shape_of_kind(std::int64_t kind);
 
 /// Adds the trace line of a dataset 82, in pieces where a 0 lifts the pen.
 ///
-/// Tolerated, besides what read_uff() does: a name that is missing, a padded last line, less nodes
-/// than announced (with a remark), several lines in one dataset.
+/// Tolerated, besides what read_uff() does: a name that is missing (with a remark; of the only line
+/// of a dataset), a padded last line, fewer nodes than announced (with a remark), several lines in
+/// one dataset.
 /// @throws ConfigError with the place in the file and what was expected
 void read_trace_lines(const UffDataset& dataset, ModalTest& test);
 

@@ -48,6 +48,8 @@ class UffReader {
   /// @throws ConfigError where there is none
   const UffLine& line(const char* expected);
   void skip(std::size_t count, const char* expected);
+  /// The text of the next line, which stays the next one; empty at the end.
+  std::string_view ahead() const { return is_at_end() ? "" : dataset_.lines[next_].text; }
   /// Integers of the next line, in columns of 10 where blanks do not part them.
   /// @throws ConfigError if there are fewer than `least` or something else
   std::vector<std::int64_t> integers(std::size_t least, const char* expected);

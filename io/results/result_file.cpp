@@ -12,20 +12,27 @@
 namespace stridor {
 namespace {
 
-/// An array as far as it is one of numbers; its shape is empty where it is none.
+constexpr const char* text_units = "text";
+
+/// An array; its shape is empty where it is a single text or number.
 ResultArray described(const Checker& at, hid_t file, const std::string& path) {
   ResultArray array{path, {}, ""};
   const Handle dataset =
       at.own(H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose, path, "cannot be opened");
   const Handle type = at.own(H5Dget_type(dataset.id()), H5Tclose, path, "cannot be read");
   const H5T_class_t kind = H5Tget_class(type.id());
-  if (kind != H5T_FLOAT && kind != H5T_INTEGER) return array;
   const Handle space = at.own(H5Dget_space(dataset.id()), H5Sclose, path, "cannot be read");
   const int rank = H5Sget_simple_extent_ndims(space.id());
-  if (rank < 1) return array;
-  std::vector<hsize_t> extents(static_cast<std::size_t>(rank));
-  at.check(H5Sget_simple_extent_dims(space.id(), extents.data(), nullptr), path, "cannot be read");
-  array.shape.assign(extents.begin(), extents.end());
+  if (rank > 0) {
+    std::vector<hsize_t> extents(static_cast<std::size_t>(rank));
+    at.check(H5Sget_simple_extent_dims(space.id(), extents.data(), nullptr), path,
+             "cannot be read");
+    array.shape.assign(extents.begin(), extents.end());
+  }
+  if (kind != H5T_FLOAT && kind != H5T_INTEGER) {
+    array.units = text_units;
+    return array;
+  }
   const AttributeValues values = read_attributes(at, file, dataset.id(), path);
   if (const auto units = values.find("units"); units != values.end()) {
     if (const auto* text = std::get_if<std::string>(&units->second)) array.units = *text;
@@ -48,6 +55,7 @@ struct ResultFile::Impl {
   Handle file;
   Values attributes;
   std::vector<ResultArray> arrays;
+  std::vector<ResultArray> others;
 };
 
 ResultFile::ResultFile(const std::string& path) : impl_(std::make_unique<Impl>(path)) {
@@ -57,7 +65,8 @@ ResultFile::ResultFile(const std::string& path) : impl_(std::make_unique<Impl>(p
   impl_->attributes = read_attributes(impl_->at, file, file, "/");
   for (const std::string& dataset : dataset_paths(impl_->at, file)) {
     ResultArray array = described(impl_->at, file, dataset);
-    if (!array.shape.empty()) impl_->arrays.push_back(std::move(array));
+    const bool is_array_of_numbers = !array.shape.empty() && array.units != text_units;
+    (is_array_of_numbers ? impl_->arrays : impl_->others).push_back(std::move(array));
   }
   std::sort(impl_->arrays.begin(), impl_->arrays.end(),
             [](const ResultArray& a, const ResultArray& b) { return a.path < b.path; });
@@ -99,6 +108,10 @@ std::string ResultFile::kind() const {
 
 const std::vector<ResultArray>& ResultFile::arrays() const {
   return impl_->arrays;
+}
+
+const std::vector<ResultArray>& ResultFile::texts_and_numbers() const {
+  return impl_->others;
 }
 
 bool ResultFile::has(const std::string& path) const {

@@ -41,6 +41,8 @@ class ResultFile {
 
   /// All arrays of numbers, by path.
   const std::vector<ResultArray>& arrays() const;
+  /// All texts, alone or in arrays, with "text" as their units, and numbers alone (no extents).
+  const std::vector<ResultArray>& texts_and_numbers() const;
   bool has(const std::string& path) const;
   /// @throws FileError if there is no such array
   const ResultArray& array(const std::string& path) const;

@@ -21,7 +21,12 @@ namespace {
 
 /// The text cut to a line of the format, which holds 80 characters.
 std::string record_text(const std::string& text) {
-  return text.substr(0, 80);
+  constexpr std::size_t width = 80;
+  if (text.size() <= width) return text;
+  std::size_t end = width;
+  // Not within a character of UTF-8, whose bytes but the first are 10xxxxxx.
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0u) == 0x80u) --end;
+  return text.substr(0, end);
 }
 
 void add_head(const UffContents& contents, std::string& text) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
-#include <utility>
+#include <type_traits>
 
 namespace stridor {
 
@@ -19,11 +19,15 @@ class SparseMatrix : public Eigen::SparseMatrix<double> {
   ~SparseMatrix() = default;
   SparseMatrix(const SparseMatrix&) = default;
   SparseMatrix& operator=(const SparseMatrix&) = default;
-  SparseMatrix(SparseMatrix&& other) : Base() { swap(other); }
+  /// Not even memory for a single number, which Eigen asks for, is something to go on from: vectors
+  /// move only what does not throw.
+  SparseMatrix(SparseMatrix&& other) noexcept : Base() { swap(other); }
   SparseMatrix& operator=(SparseMatrix&& other) noexcept {
     swap(other);
     return *this;
   }
 };
+
+static_assert(std::is_nothrow_move_constructible_v<SparseMatrix>);
 
 }  // namespace stridor

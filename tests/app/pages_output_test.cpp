@@ -168,7 +168,7 @@ TEST(Pages, OfWhatIsVerifiedNameSuitesThatThereAre) {
   EXPECT_EQ(num_commands, 3);
 }
 
-/// The last number behind a word in the line of a text that has both words; NaN where none has.
+/// The number behind a word in the first line of a text that has both words; NaN where none has.
 double number_behind(const std::string& word, const std::string& of, const std::string& text) {
   for (const std::string& line : lines_of(text)) {
     std::smatch found;

@@ -348,7 +348,7 @@ TEST_F(Pictures, HistoryOfTenContactsShowsTheEightChannelsOfMostUse) {
   EXPECT_THAT(svg, HasSubstr("8 of 34 channels"));
   const ProgramResult plain =
       Program({"plot", run, "--kind", "history", "-o", path("a.png")}).run();
-  EXPECT_THAT(plain.out, HasSubstr("26 more channels are not drawn"));
+  EXPECT_THAT(plain.out, HasSubstr("26 more channels are left out"));
   EXPECT_LE(size_of_png(path("a.png")).second, 5000u);
   // Whoever names channels gets them, in that order.
   const Json named = json_of({"plot", run, "--kind", "history", "-o", path("b.svg"), "--channel",

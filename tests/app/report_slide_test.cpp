@@ -119,6 +119,7 @@ TEST_F(ReportSlide, ADiscTurnsUnderItsPads) {
   }
   // The frame of a body on the lower face is turned over; that on the upper one moves along the
   // axis.
+  ASSERT_FALSE(view["points"].empty());
   for (const Json& point : view["points"])
     EXPECT_EQ(point["along"], Json({0.0, 0.0, 1.0})) << point["channel"];
 }

@@ -201,6 +201,33 @@ TEST(Uff, BeamsAreLinesWithOrWithoutTheirOrientationAndOthersAreToldOf) {
   EXPECT_THAT(test.remarks.front(), HasSubstr("a.uff:2: 2 elements of kind 161 are passed over"));
 }
 
+TEST(Uff, ElementsThatAreNotDrawnDoNoHarm) {
+  const std::string springs =  // springs to ground have one node, some elements none
+      "         1       138         1         1         7         1\n         4\n"
+      "         2       900         1         1         7         0\n"
+      "         3       901         1         1         7         9\n"
+      "         1         2         3         4         5         6         7         8\n         "
+      "9\n";
+  const std::string plate =
+      "         4        44         1         1         7         4\n"
+      "         1         2         3         4\n";
+  const ModalTest test = drawn(dataset("  2412\n" + springs + plate));
+  EXPECT_THAT(test.elements, SizeIs(1));
+  EXPECT_TRUE(test.lines.empty());
+  EXPECT_THAT(test.remarks, SizeIs(2));
+}
+
+TEST(Uff, BeamsOfThreeNodesNeedNoOrientation) {
+  const std::string head = "         1        24         1         1         7         3\n";
+  const std::string nodes = "         4         5         6\n";
+  const std::vector<std::vector<std::int64_t>> expected{{4, 5, 6}, {4, 5, 6}};
+  EXPECT_EQ(drawn(dataset("  2412\n" + head + nodes + head + nodes)).lines, expected);
+  const std::string orientation = "         0         1         1\n";
+  EXPECT_EQ(
+      drawn(dataset("  2412\n" + head + orientation + nodes + head + orientation + nodes)).lines,
+      expected);
+}
+
 TEST(Uff, WrongLinesAndElementsAreRefusedWithTheirPlace) {
   const auto refusal = [](const std::string& text) {
     return message_of<ConfigError>([&] { drawn(dataset(text)); });

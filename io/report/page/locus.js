@@ -251,7 +251,10 @@ async function makeModes(place, view, section) {
   mesh.fit(...firsts);
   const text = element('div', {class: 'readout'});
   const choice = element('select', {'aria-label': 'Mode', onchange: () => { section.mode = Number(choice.value); section.branch = section.shownMode = undefined; if (where) where.wish = null; show(); }});
-  const vibration = new Motion(seconds => { mesh.phase += 4 * seconds * Number(speed.value); mesh.draw(); }, mesh.canvas);
+  const vibration = new Motion(seconds => {
+    mesh.phase += 4 * seconds * Number(speed.value);
+    mesh.draw();
+  }, mesh);
   const play = motionButton(vibration, ['Vibrate', 'Pause'], 'the mode, slowly');
   const size = element('input', {type: 'range', min: 0, max: 3, step: 0.05, value: 1, 'aria-label': 'Amplitude', oninput: () => { mesh.amplitude = Number(size.value); mesh.draw(); }});
   const speed = element('input', {type: 'range', min: 0.1, max: 3, step: 0.1, value: 1, 'aria-label': 'Speed'});

@@ -295,6 +295,7 @@ class MeshView {
       for (let node = 0; node < part.count; ++node) tints.push(...partColours[number % partColours.length]);
     });
     this.gl = gl;
+    this.canvas.addEventListener('webglcontextlost', () => this.loseWebGl(), {once: true});
     this.program = program;
     this.buffers = {place: gl.createBuffer(), re: gl.createBuffer(), im: gl.createBuffer(), tint: gl.createBuffer(), triangles: gl.createBuffer(), edges: gl.createBuffer()};
     this.counts = {triangles: triangles.length, edges: edges.length};
@@ -304,6 +305,18 @@ class MeshView {
       gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffers[name]);
       gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, new Uint32Array(list), gl.STATIC_DRAW);
     }
+  }
+  // A browser keeps so many contexts of WebGL, and takes the oldest one for another. Its canvas
+  // cannot be drawn on any more.
+  loseWebGl() {
+    const fresh = this.canvas.cloneNode(false);
+    this.canvas.replaceWith(fresh);
+    this.over.remove();
+    this.gl = null;
+    this.canvas = fresh;
+    this.listen();
+    watchSight(fresh);
+    this.draw();
   }
   fill(buffer, values) {
     this.gl.bindBuffer(this.gl.ARRAY_BUFFER, buffer);

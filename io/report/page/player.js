@@ -58,13 +58,13 @@ addEventListener('beforeprint', () => {
 
 class Motion {
   // step(seconds): shows what has changed since the picture before.
-  // canvas: the only thing that moves; out of sight nothing is to be done
-  constructor(step, canvas = null) {
-    Object.assign(this, {step, canvas, former: null});
+  // view: with the canvas of the only thing that moves; out of sight nothing is to be done
+  constructor(step, view = null) {
+    Object.assign(this, {step, view, former: null});
     this.listeners = new Set();
   }
   get isRunning() { return moving.has(this); }
-  get isSeen() { return !this.canvas || this.canvas.isSeen !== false; }
+  get isSeen() { return !this.view || this.view.canvas.isSeen !== false; }
   start() {
     if (this.isRunning) return;
     moving.add(this);

@@ -29,7 +29,7 @@ function makeSound(place, view, run, section) {
   const channel = element('select', {'aria-label': 'Channel'}, playable.map((series, i) => element('option', {value: i, selected: series === loudest}, series.name)));
   const slow = element('select', {'aria-label': 'Tempo'}, [[1, 'as fast as it was'], [2, 'half as fast'], [4, 'a quarter'], [10, 'a tenth']].map(([value, text]) => element('option', {value}, text)));
   const text = element('span', {class: 'readout'});
-  let context = null, source = null;
+  let context = null, source = null, isBeginning = false;
   // What is heard leads all that is seen.
   let heardNow = null;
   const motion = new Slide(() => { if (heardNow) run.view.mark(Math.min(heardNow(), run.view.last)); });
@@ -42,20 +42,39 @@ function makeSound(place, view, run, section) {
   });
   const stop = () => motion.stop();
   const play = async () => {
-    if (source) { stop(); return; }
+    if (source || isBeginning) {
+      stop();
+      return;
+    }
+    isBeginning = true;
+    try {
+      await sound();
+    } finally {
+      isBeginning = false;
+    }
+  };
+  const sound = async () => {
     const series = playable[Number(channel.value)], times = Number(slow.value);
     const samples = await numbersOf(series.samples);
-    const begin = Math.max(0, Math.floor(run.clock.index(run.view.from))), end = Math.min(samples.length, Math.ceil(run.clock.index(run.view.to)) + 1);
-    if ((end - begin) * run.clock.step * times > 120) { text.textContent = 'More than two minutes: zoom in first.'; return; }
-    let part = samples.subarray(begin, end), mean = 0, largest = 0;
+    const first = Math.max(0, Math.floor(run.clock.index(run.view.from))),
+          end = Math.min(samples.length, Math.ceil(run.clock.index(run.view.to)) + 1);
+    if ((end - first) * run.clock.step * times > 120) {
+      text.textContent = 'More than two minutes: zoom in first.';
+      return;
+    }
+    let part = samples.subarray(first, end), mean = 0, largest = 0;
     for (const value of part) mean += (isFinite(value) ? value : 0) / part.length;
     part = part.map(value => isFinite(value) ? value - mean : 0);
     context = context || new (window.AudioContext || window.webkitAudioContext)();
     const heard = resampled(part, run.clock.step * times * context.sampleRate);
     for (const value of heard) largest = Math.max(largest, Math.abs(value));
-    if (!(largest > 0)) { text.textContent = 'Nothing moves: the sound is silent.'; return; }
+    if (!(largest > 0)) {
+      text.textContent = 'Nothing moves: the sound is silent.';
+      return;
+    }
     const fade = Math.min(heard.length >> 1, Math.round(0.005 * context.sampleRate));
-    for (let i = 0; i < heard.length; ++i) heard[i] *= 0.9 / largest * Math.min(1, i / fade, (heard.length - 1 - i) / fade);
+    for (let i = 0; i < heard.length; ++i)
+      heard[i] *= 0.9 / largest * Math.min(1, i / fade, (heard.length - 1 - i) / fade);
     const buffer = context.createBuffer(1, heard.length, context.sampleRate);
     buffer.copyToChannel(heard, 0);
     source = context.createBufferSource();
@@ -68,7 +87,7 @@ function makeSound(place, view, run, section) {
       stop();
     };
     motion.start();
-    const start = context.currentTime, from = run.clock.at(begin);
+    const start = context.currentTime, from = run.clock.at(first);
     source.start();
     button.textContent = 'Stop';
     text.textContent = `${digits(heard.length / context.sampleRate, 3)} s, loudest ${shown(largest, series.units)}; up to ${shown(Math.min(0.5 / run.clock.step, 0.5 * context.sampleRate * times), 'Hz')} is heard`;
