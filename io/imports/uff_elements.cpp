@@ -198,8 +198,10 @@ void read_elements(const UffDataset& dataset, ModalTest& test) {
     }
   }
   for (const auto& [kind, count] : passed_over)
-    test.remarks.push_back(fmt::format("{}: {} elements of kind {} are passed over",
-                                       place_text(dataset.place), count, kind));
+    test.remarks.push_back(
+        place_text(dataset.place) +
+        (count == 1 ? fmt::format(": an element of kind {} is passed over", kind)
+                    : fmt::format(": {} elements of kind {} are passed over", count, kind)));
 }
 
 }  // namespace stridor
