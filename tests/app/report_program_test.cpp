@@ -342,7 +342,8 @@ TEST_F(ReportProgram, TheErrorOfTheModesThatARunKeepsIsACurve) {
            "kept.h5");
   const std::string page = page_of({file});
   const Json section = contents_of_report(page)["sections"][0];
-  const Json& curve = view_of(section, "responses")["groups"][0]["curves"][0];
+  const Json view = view_of(section, "responses");
+  const Json& curve = view["groups"][0]["curves"][0];
   const auto error = numbers_of(page, curve["error"]);
   EXPECT_EQ(error.size(), 20u);
   EXPECT_GT(*std::max_element(error.begin(), error.end()), 0.0);
