@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/report/curves.hpp"
 #include "app/report/report_section.hpp"
 #include "app/report/tables.hpp"
 #include "core/errors.hpp"
@@ -99,6 +100,56 @@ void add_compared(const ResultFile& file, ReportPage& page, Json& section) {
         fmt::format("{} more measured responses are in the file.", outputs.size() - most_shown));
 }
 
+/// What the file has of the shapes under a force.
+ComparedShapes kept_shapes(const ResultFile& file, std::size_t number, const std::string& input) {
+  const std::string group = "/shapes/" + std::to_string(number);
+  ComparedShapes shapes;
+  shapes.input = input;
+  shapes.frequencies = file.read(group + "/frequency");
+  shapes.assurance = file.read(group + "/mac");
+  if (shapes.assurance.size() != shapes.frequencies.size())
+    throw FileError(Refusal::file_damaged, file.path(), group + "/mac",
+                    "is unlike " + group + "/frequency in length");
+  if (!file.has(group + "/peak_mac")) return shapes;
+  shapes.measured_peaks = file.read(group + "/measured_peak");
+  shapes.computed_peaks = file.read(group + "/computed_peak");
+  const std::vector<double> rows = file.read(group + "/peak_mac", 2);
+  const std::size_t num_measured = shapes.measured_peaks.size();
+  const std::size_t num_computed = shapes.computed_peaks.size();
+  if (rows.size() != num_measured * num_computed)
+    throw FileError(Refusal::file_damaged, file.path(), group + "/peak_mac",
+                    "is unlike the peaks in length");
+  shapes.peak_assurance =
+      Eigen::Map<const Eigen::MatrixXd>(rows.data(), static_cast<Eigen::Index>(num_measured),
+                                        static_cast<Eigen::Index>(num_computed))
+          .transpose();
+  return shapes;
+}
+
+/// A table of peaks for every force that moves several measured points, and MAC over the frequency.
+void add_shapes(const ResultFile& file, ReportPage& page, Json& section) {
+  const std::vector<std::string> inputs = file.texts("/shapes/input");
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const ComparedShapes shapes = kept_shapes(file, i + 1, inputs[i]);
+    std::vector<double> measured, computed, difference, criteria;
+    for (const PeakPair& pair : peak_pairs(shapes)) {
+      measured.push_back(shapes.measured_peaks[pair.measured]);
+      computed.push_back(shapes.computed_peaks[pair.computed]);
+      difference.push_back(100.0 * (computed.back() / measured.back() - 1.0));
+      criteria.push_back(pair.assurance);
+    }
+    if (!measured.empty())
+      section["views"].push_back(table_view("Shapes by a force at " + inputs[i] + ", at peaks",
+                                            {{"measured", "Hz", measured},
+                                             {"computed", "Hz", computed},
+                                             {"difference", "%", difference, {}, 3},
+                                             {"MAC", "", criteria, {}, 4}}));
+    section["views"].push_back(
+        curve_of_columns({"frequency", "Hz", shapes.frequencies},
+                         {"MAC, force at " + inputs[i], "1", shapes.assurance}, page));
+  }
+}
+
 }  // namespace
 
 Json response_section(const ResultFile& file, const ReportContext& context) {
@@ -145,6 +196,7 @@ Json response_section(const ResultFile& file, const ReportContext& context) {
                               {"frequency", context.page.add_numbers(frequencies)},
                               {"groups", groups}});
   add_compared(file, context.page, section);
+  add_shapes(file, context.page, section);
   return section;
 }
 

@@ -9,9 +9,11 @@
 #include <iterator>
 #include <map>
 #include <numbers>
+#include <span>
 #include <string_view>
 
-#include "analysis/response_assurance.hpp"
+#include "analysis/assurance.hpp"
+#include "analysis/response_peaks.hpp"
 #include "app/results/universal_file.hpp"
 #include "core/errors.hpp"
 
@@ -138,14 +140,19 @@ double root_mean_square(const std::vector<std::complex<double>>& values) {
 constexpr const char* motions_of_responses[] = {"displacement", "velocity", "acceleration"};
 constexpr const char* units_of_responses[] = {"m/N", "m/s/N", "m/s^2/N"};
 
+/// 0, 1, 2 for a displacement, velocity or acceleration per force.
+int derivative_of(const ResponseCurve& curve) {
+  const auto* found = std::find(std::begin(units_of_responses), std::end(units_of_responses),
+                                std::string_view(curve.units));
+  return static_cast<int>(found - std::begin(units_of_responses));
+}
+
 /// Computes what belongs to a measured response: the curve between the same points as the same motion.
 void compute(const ResponseStudy& study, const NamedFunction& named, ComparedResponse& compared) {
   const auto motion = static_cast<std::size_t>(named.derivative);
   for (ResponseCurve& curve : study.curves(compared.frequencies)) {
     if (without_motion(curve.output) != named.output || curve.input != named.input) continue;
-    const auto of_curve = std::find(std::begin(units_of_responses), std::end(units_of_responses),
-                                    std::string_view(curve.units));
-    const auto order = static_cast<int>(of_curve - std::begin(units_of_responses));
+    const int order = derivative_of(curve);
     for (std::size_t i = 0; i < curve.values.size(); ++i) {
       const std::complex<double> s(0.0, 2.0 * std::numbers::pi * compared.frequencies[i]);
       curve.values[i] *= std::pow(s, named.derivative - order);
@@ -157,9 +164,68 @@ void compute(const ResponseStudy& study, const NamedFunction& named, ComparedRes
   }
   compared.measured.output = compared.computed.output;
   compared.measured.units = compared.computed.units;
-  compared.assurance = response_assurance(compared.computed.values, compared.measured.values);
+  compared.assurance = assurance_criterion(compared.computed.values, compared.measured.values);
   compared.ratio = root_mean_square(compared.computed.values) /
                    root_mean_square(compared.measured.values);
+}
+
+/// Responses to one force at the same frequencies, of different points or directions.
+using Points = std::vector<const ComparedResponse*>;
+
+std::vector<Points> points_by_force(const std::vector<ComparedResponse>& compared) {
+  std::vector<Points> forces;
+  for (const ComparedResponse& one : compared) {
+    const auto goes_with = [&](const Points& points) {
+      return points.front()->computed.input == one.computed.input &&
+             points.front()->frequencies == one.frequencies;
+    };
+    const auto force = std::find_if(forces.begin(), forces.end(), goes_with);
+    if (force == forces.end()) {
+      forces.push_back({&one});
+      continue;
+    }
+    // A point that was measured twice, or as two motions, counts once.
+    const auto is_same = [&](const ComparedResponse* known) {
+      return without_motion(known->computed.output) == without_motion(one.computed.output);
+    };
+    if (std::ranges::none_of(*force, is_same)) force->push_back(&one);
+  }
+  std::erase_if(forces, [](const Points& points) { return points.size() < 2; });
+  return forces;
+}
+
+/// The velocities of all points per force, [point][frequency].
+Eigen::MatrixXcd velocities(const Points& points, const ResponseCurve ComparedResponse::*which) {
+  const std::vector<double>& frequencies = points.front()->frequencies;
+  Eigen::MatrixXcd all(static_cast<Eigen::Index>(points.size()),
+                       static_cast<Eigen::Index>(frequencies.size()));
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const ResponseCurve& curve = points[p]->*which;
+    for (std::size_t i = 0; i < frequencies.size(); ++i) {
+      const std::complex<double> s(0.0, 2.0 * std::numbers::pi * frequencies[i]);
+      all(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(i)) =
+          curve.values[i] * std::pow(s, 1 - derivative_of(curve));
+    }
+  }
+  return all;
+}
+
+/// Where the points together move most, as places in the list of frequencies.
+std::vector<std::size_t> peaks_of(const Eigen::MatrixXcd& velocities) {
+  constexpr double stands_out = 2.0;
+  constexpr std::size_t most = 60;
+  const Eigen::VectorXd level = velocities.colwise().norm();
+  return response_peaks(std::span(level.data(), static_cast<std::size_t>(level.size())), stands_out,
+                        most);
+}
+
+double assurance_of(const Eigen::MatrixXcd& a, std::size_t i, const Eigen::MatrixXcd& b,
+                    std::size_t j) {
+  const auto shape = [](const Eigen::MatrixXcd& all, std::size_t at) {
+    return std::span(all.col(static_cast<Eigen::Index>(at)).data(),
+                     static_cast<std::size_t>(all.rows()));
+  };
+  return assurance_criterion(shape(a, i), shape(b, j));
 }
 
 bool is_of_study(const ResponseStudy& study, const NamedFunction& named) {
@@ -220,6 +286,35 @@ std::vector<ComparedResponse> compared_responses(const ResponseStudy& study,
   std::string text = "nothing of the file can be compared with the responses of the scene";
   for (const std::string& remark : remarks) text += "\n  " + remark;
   throw ConfigError(Refusal::wrong_value, "--compare", text);
+}
+
+std::vector<ComparedShapes> response_shapes(const std::vector<ComparedResponse>& compared) {
+  std::vector<ComparedShapes> all;
+  for (const Points& points : points_by_force(compared)) {
+    ComparedShapes shapes;
+    shapes.input = points.front()->computed.input;
+    for (const ComparedResponse* one : points)
+      shapes.outputs.push_back(without_motion(one->computed.output));
+    shapes.frequencies = points.front()->frequencies;
+    const Eigen::MatrixXcd measured = velocities(points, &ComparedResponse::measured);
+    const Eigen::MatrixXcd computed = velocities(points, &ComparedResponse::computed);
+    for (std::size_t i = 0; i < shapes.frequencies.size(); ++i)
+      shapes.assurance.push_back(assurance_of(computed, i, measured, i));
+    const std::vector<std::size_t> of_measured = peaks_of(measured);
+    const std::vector<std::size_t> of_computed = peaks_of(computed);
+    shapes.peak_assurance.resize(static_cast<Eigen::Index>(of_computed.size()),
+                                 static_cast<Eigen::Index>(of_measured.size()));
+    for (const std::size_t peak : of_computed)
+      shapes.computed_peaks.push_back(shapes.frequencies[peak]);
+    for (std::size_t m = 0; m < of_measured.size(); ++m) {
+      shapes.measured_peaks.push_back(shapes.frequencies[of_measured[m]]);
+      for (std::size_t c = 0; c < of_computed.size(); ++c)
+        shapes.peak_assurance(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(m)) =
+            assurance_of(computed, of_computed[c], measured, of_measured[m]);
+    }
+    all.push_back(std::move(shapes));
+  }
+  return all;
 }
 
 UffContents uff_contents(const ResponseStudy& study, const std::vector<double>& frequencies,

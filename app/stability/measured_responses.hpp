@@ -33,6 +33,12 @@ std::vector<ComparedResponse> compared_responses(const ResponseStudy& study,
                                                  const std::vector<NodeName>& names, double from,
                                                  double to, std::vector<std::string>& remarks);
 
+/// The deflection shapes that compared responses show: for every force to which two points or more
+/// respond at the same frequencies, MAC at each of these, and of the shapes at peaks of the
+/// mobility, √Σ|v|² over the points, that stand out by a factor of two (at most 60).
+/// @param compared with different outputs for one force
+std::vector<ComparedShapes> response_shapes(const std::vector<ComparedResponse>& compared);
+
 /// Curves as functions of a universal file, their points as nodes from 1.
 UffContents uff_contents(const ResponseStudy& study, const std::vector<double>& frequencies,
                          const std::vector<ResponseCurve>& curves);

@@ -144,6 +144,22 @@ std::vector<DiagramPanel> ResponsePicture::panels_of(const std::vector<const Add
   return panels;
 }
 
+DiagramPanel ResponsePicture::panel_of(const ComparedShapes& shapes) const {
+  DiagramPanel panel{"frequency (Hz)",
+                     "MAC, force at " + shapes.input,
+                     is_log_ ? AxisKind::logarithmic : AxisKind::linear,
+                     AxisKind::linear,
+                     false,
+                     {{"", shapes.frequencies, shapes.assurance, Mark::line, 0}}};
+  PanelCurve peaks{"", {}, {}, Mark::points, 1};
+  for (const PeakPair& pair : peak_pairs(shapes)) {
+    peaks.x.push_back(shapes.measured_peaks[pair.measured]);
+    peaks.y.push_back(pair.assurance);
+  }
+  if (!peaks.x.empty()) panel.curves.push_back(std::move(peaks));
+  return panel;
+}
+
 void ResponsePicture::draw(const std::string& caption, const std::filesystem::path& figure) const {
   std::vector<std::vector<const Added*>> rows;
   for (const Added& one : added_) {
@@ -166,6 +182,7 @@ void ResponsePicture::draw(const std::string& caption, const std::filesystem::pa
       curve.label.clear();
     }
   }
+  for (const ComparedShapes& shapes : shapes_) panels.push_back(panel_of(shapes));
   plot_panels(panels, caption, figure);
 }
 

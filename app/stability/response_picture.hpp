@@ -37,6 +37,9 @@ class ResponsePicture {
   /// The size of a difference to a response, dashed beside its magnitude.
   /// @param curve with its truncation_error at these frequencies
   void add_error(const std::vector<double>& frequencies, const ResponseCurve& curve, int colour);
+  /// A diagram of the MAC of measured and computed shapes over the frequency, with a point at each
+  /// measured peak for the computed one that belongs to it.
+  void add_shapes(const ComparedShapes& shapes) { shapes_.push_back(shapes); }
   /// @throws as plot_panels()
   void draw(const std::string& caption, const std::filesystem::path& figure) const;
 
@@ -48,11 +51,13 @@ class ResponsePicture {
     Mark mark = Mark::line;
     int colour = 0;
   };
+  DiagramPanel panel_of(const ComparedShapes& shapes) const;
   std::vector<DiagramPanel> panels_of(const std::vector<const Added*>& row) const;
 
   bool is_log_ = false;
   std::vector<Added> added_;
   std::vector<Added> errors_;
+  std::vector<ComparedShapes> shapes_;
 };
 
 }  // namespace stridor

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "analysis/response_assurance.hpp"
+#include "analysis/assurance.hpp"
 #include "app/stability/verdict.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"

@@ -8,6 +8,7 @@
 #include <limits>
 #include <set>
 
+#include "analysis/assurance.hpp"
 #include "app/results/universal_file.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
@@ -158,22 +159,16 @@ NodesByLabel matched_nodes(const ShapedModes& shapes, const ModalTest& measured,
   return node_of;
 }
 
-/// |φᴴψ|²/(φᴴφ ψᴴψ) over the directions of the measured nodes, from 0 to 1; 0 where one of both is at rest.
+/// Over the directions of the nodes of the measured mode.
 double modal_assurance(const ShapedMode& computed, const TestMode& measured, const NodesByLabel& node_of) {
-  std::complex<double> common = 0.0;
-  double of_computed = 0.0;
-  double of_measured = 0.0;
+  std::vector<std::complex<double>> here, there;
   for (const auto& [label, values] : measured.shape) {
     for (Eigen::Index d = 0; d < 3; ++d) {
-      const std::complex<double> a = computed.displacement(node_of.at(label), d);
-      const std::complex<double> b = values[static_cast<std::size_t>(d)];
-      common += std::conj(a) * b;
-      of_computed += std::norm(a);
-      of_measured += std::norm(b);
+      here.push_back(computed.displacement(node_of.at(label), d));
+      there.push_back(values[static_cast<std::size_t>(d)]);
     }
   }
-  const double size = of_computed * of_measured;
-  return size > 0.0 ? std::norm(common) / size : 0.0;
+  return assurance_criterion(here, there);
 }
 
 }  // namespace

@@ -74,6 +74,7 @@ struct FoundResponses {
   std::vector<double> frequencies;
   std::vector<ResponseCurve> curves;
   std::vector<ComparedResponse> compared;
+  std::vector<ComparedShapes> shapes;
   std::vector<std::string> remarks;
 };
 
@@ -93,7 +94,7 @@ void write_files(const FoundResponses& found) {
     attributes.emplace_back("trusted_frequency", found.study.trusted_frequency());
     if (options.measured) attributes.emplace_back("measured", *options.measured);
     write_response_file(file, stability.common.overwrite(), found.frequencies, found.curves,
-                        attributes, found.compared);
+                        attributes, found.compared, found.shapes);
   }
 }
 
@@ -131,6 +132,7 @@ void draw_responses(const FoundResponses& found) {
     picture.add(one.frequencies, one.computed, label, Mark::line, 2 * colour);
     ++colour;
   }
+  for (const ComparedShapes& shapes : found.shapes) picture.add_shapes(shapes);
   picture.draw(
       fmt::format(
           "Frequency responses about the {} geometry.{}{} {}, scene {}.", options.stability.about,
@@ -165,6 +167,23 @@ Json numbers_json(const std::vector<double>& values) {
   Json list = Json::array();
   for (const double value : values) list.push_back(number(value));
   return list;
+}
+
+Json shapes_json(const ComparedShapes& shapes) {
+  Json object = {{"input", shapes.input},
+                 {"outputs", shapes.outputs},
+                 {"frequencies", shapes.frequencies},
+                 {"mac", shapes.assurance},
+                 {"computed_peaks", shapes.computed_peaks},
+                 {"peaks", Json::array()}};
+  for (const PeakPair& pair : peak_pairs(shapes)) {
+    const auto macs = shapes.peak_assurance.col(static_cast<Eigen::Index>(pair.measured));
+    object["peaks"].push_back({{"measured", shapes.measured_peaks[pair.measured]},
+                               {"computed", shapes.computed_peaks[pair.computed]},
+                               {"mac", pair.assurance},
+                               {"macs", std::vector<double>(macs.begin(), macs.end())}});
+  }
+  return object;
 }
 
 Json responses_json(const FoundResponses& found) {
@@ -202,8 +221,28 @@ Json responses_json(const FoundResponses& found) {
                                     {"to", one.frequencies.back()},
                                     {"points", one.frequencies.size()}});
     }
+    object["shapes"] = Json::array();
+    for (const ComparedShapes& shapes : found.shapes)
+      object["shapes"].push_back(shapes_json(shapes));
   }
   return object;
+}
+
+void print_shapes(const ComparedShapes& shapes) {
+  const std::vector<PeakPair> pairs = peak_pairs(shapes);
+  if (pairs.empty()) {
+    fmt::print("\nno peak stands out of the responses to {}\n", shapes.input);
+    return;
+  }
+  fmt::print("\n{} directions move by a force at {}; where they move most\n", shapes.outputs.size(),
+             shapes.input);
+  fmt::print("{:>14} {:>14} {:>10} {:>7}\n", "measured, Hz", "computed, Hz", "difference", "MAC");
+  for (const PeakPair& pair : pairs) {
+    const double measured = shapes.measured_peaks[pair.measured];
+    const double computed = shapes.computed_peaks[pair.computed];
+    fmt::print("{:>14.3f} {:>14.3f} {:>8.2f} % {:>7.4f}\n", measured, computed,
+               100.0 * (computed / measured - 1.0), pair.assurance);
+  }
 }
 
 void print_responses(const FoundResponses& found) {
@@ -237,6 +276,7 @@ void print_responses(const FoundResponses& found) {
                  one.frequencies.front(), one.frequencies.back());
     }
   }
+  for (const ComparedShapes& shapes : found.shapes) print_shapes(shapes);
   for (const std::string& remark : found.remarks) fmt::print("{}\n", remark);
   for (const std::string& file : found.options.files) fmt::print("{}\n", file);
   if (found.options.figure) fmt::print("{}\n", *found.options.figure);
@@ -258,12 +298,13 @@ ExitCode frf(FrfOptions options) {
   const std::vector<double> frequencies = frequencies_of(options);
   ResponsePlaces places = response_places(options.inputs, options.outputs, loaded.scene.model);
   const ResponseStudy study(std::move(loaded), stability.geometry(), std::move(places));
-  FoundResponses found{options, study, frequencies, study.curves(frequencies), {}, {}};
+  FoundResponses found{options, study, frequencies, study.curves(frequencies), {}, {}, {}};
   study.add_truncation(frequencies, found.curves);
   if (options.measured) {
     found.remarks = measured.remarks;
     found.compared = compared_responses(study, measured, names, frequencies.front(),
                                         frequencies.back(), found.remarks);
+    found.shapes = response_shapes(found.compared);
   }
   write_files(found);
   if (options.figure) draw_responses(found);
@@ -314,8 +355,10 @@ void add_frf_command(CLI::App& program, Action& action, const std::string& comma
   add_universal_options(*verb, options->universal);
   verb->add_option("--figure", options->figure,
                    "Picture of magnitude, phase and locus of the responses: .png, .svg or .pdf");
-  verb->add_option("--compare", options->measured,
-                   "Measured responses (universal file, dataset 58) to set beside: FRAC and ratio");
+  verb->add_option(
+      "--compare", options->measured,
+      "Measured responses (universal file, dataset 58) to set beside: FRAC and ratio, and "
+      "MAC where a force moves several points");
   verb->add_option("--node", options->nodes,
                    "Which point a node of the measurement is, NUMBER=BODY.POINT; may be repeated")
       ->take_all()

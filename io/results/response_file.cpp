@@ -1,5 +1,6 @@
 #include "io/results/response_file.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -12,6 +13,26 @@ std::string response_quantity(const std::string& units) {
   if (units == "m/s/N") return "mobility";
   if (units == "m/s^2/N") return "accelerance";
   return "response";
+}
+
+std::vector<PeakPair> peak_pairs(const ComparedShapes& shapes) {
+  constexpr double as_alike = 0.05;
+  std::vector<PeakPair> pairs;
+  if (shapes.computed_peaks.empty()) return pairs;
+  for (std::size_t m = 0; m < shapes.measured_peaks.size(); ++m) {
+    const auto criteria = shapes.peak_assurance.col(static_cast<Eigen::Index>(m));
+    const double best = criteria.maxCoeff();
+    const auto distance = [&](std::size_t c) {
+      return std::abs(shapes.computed_peaks[c] - shapes.measured_peaks[m]);
+    };
+    std::optional<std::size_t> taken;
+    for (std::size_t c = 0; c < shapes.computed_peaks.size(); ++c) {
+      if (criteria[static_cast<Eigen::Index>(c)] < best - as_alike) continue;
+      if (!taken || distance(c) < distance(*taken)) taken = c;
+    }
+    pairs.push_back({m, *taken, criteria[static_cast<Eigen::Index>(*taken)]});
+  }
+  return pairs;
 }
 
 namespace {
@@ -64,12 +85,41 @@ void write_compared(const Hdf5Writer& writer, const std::vector<ComparedResponse
   }
 }
 
+void write_shapes(const Hdf5Writer& writer, const std::vector<ComparedShapes>& shapes) {
+  const Handle number = writer.write_numbers("/shapes/number", shapes.size());
+  writer.make_scale(number, "/shapes/number");
+  std::vector<std::string> inputs;
+  for (const ComparedShapes& one : shapes) inputs.push_back(one.input);
+  writer.tie(writer.write_texts("/shapes/input", inputs), "/shapes/input", number, 0);
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const ComparedShapes& one = shapes[i];
+    const std::string group = "/shapes/" + std::to_string(i + 1) + "/";
+    const auto scale = [&](const char* name, const std::vector<double>& values) {
+      Handle written = writer.write(group + name, values, "Hz");
+      writer.make_scale(written, group + name);
+      return written;
+    };
+    const Handle frequency = scale("frequency", one.frequencies);
+    writer.tie(writer.write(group + "mac", one.assurance, "1"), group + "mac", frequency, 0);
+    if (one.measured_peaks.empty() || one.computed_peaks.empty()) continue;
+    const Handle measured = scale("measured_peak", one.measured_peaks);
+    const Handle computed = scale("computed_peak", one.computed_peaks);
+    const std::string path = group + "peak_mac";
+    const Eigen::MatrixXd rows = one.peak_assurance.transpose();  // the file has them row by row
+    const Handle table = writer.write(path, {one.computed_peaks.size(), one.measured_peaks.size()},
+                                      rows.data(), "1");
+    writer.tie(table, path, computed, 0);
+    writer.tie(table, path, measured, 1);
+  }
+}
+
 }  // namespace
 
 void write_response_file(const std::string& path, Overwrite overwrite,
                          const std::vector<double>& frequencies,
                          const std::vector<ResponseCurve>& curves, const Attributes& attributes,
-                         const std::vector<ComparedResponse>& compared) {
+                         const std::vector<ComparedResponse>& compared,
+                         const std::vector<ComparedShapes>& shapes) {
   Attributes all{{"kind", std::string("frequency responses")}};
   all.insert(all.end(), attributes.begin(), attributes.end());
   write_hdf5_file(path, overwrite, all, [&](const Hdf5Writer& writer) {
@@ -84,6 +134,7 @@ void write_response_file(const std::string& path, Overwrite overwrite,
                  group + "truncation_error", frequency, 0);
     }
     if (!compared.empty()) write_compared(writer, compared);
+    if (!shapes.empty()) write_shapes(writer, shapes);
     if (curves.empty()) return;
     writer.make_default_plot("/responses/" + curves[0].output + "/" + curves[0].input + "/real",
                              {"/frequency"});

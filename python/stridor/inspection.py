@@ -98,12 +98,12 @@ def check(scene: Scene | Place, *, set: Settings | None = None, stability: bool 
 
 
 def info(run: ResultFile | Place, *, band: tuple[Any, Any] | None = None, **options: Any) -> dict[str, Any]:
-    """What a run file holds, as ``stridor info`` tells it: series, results, bursts.
+    """What a file of results holds, as ``stridor info`` tells it: of a run its series, results and bursts.
 
     Parameters
     ----------
-    run : Run or path
-        Of other kinds of files `open` tells.
+    run : Run, any other result or path
+        Of kinds other than runs there are ``kind``, ``command``, ``arrays`` and ``results``; `open` reads their numbers.
     band : tuple, optional
         Lower and upper frequency between which bursts are sought anew, Hz or texts with a unit.
 

@@ -112,7 +112,7 @@ def example(name: str) -> str:
 def _scene_folders() -> list[Path]:
     executable = Path(invocation.program()).resolve()
     return [Path(__file__).resolve().parents[2] / "scenes",
-            executable.parent / "../share/stridor/scenes", executable.parents[2] / "scenes"]
+            executable.parent / "../share/stridor/scenes", executable.parent / "../../scenes"]
 
 
 def as_scene(scene: Scene | Place, settings: Mapping[str, Any] | None = None) -> Scene:

@@ -307,6 +307,89 @@ TEST_F(FrfProgram, KeepsTheComparisonInItsFile) {
   }
 }
 
+// Two masses on three springs: modes in phase and against each other. A measurement of a chain
+// whose masses are alike stands beside one whose second mass is a third heavier.
+TEST_F(FrfProgram, ShapesOfSeveralPointsHaveTheirMac) {
+  const std::string scene = write("chain.yaml", R"(format: 2
+parameters: {mass: 2}
+substructures:
+  chain:
+    type: lumped
+    directions: x
+    masses: {a: {mass: 2}, b: {mass: =mass, at: [0.1, 0]}}
+    springs:
+      left: {at: a, stiffness: 4e4, damping: 4}
+      between: {at: [a, b], stiffness: 3e4, damping: 3}
+      right: {at: b, stiffness: 4e4, damping: 4}
+)");
+  const auto arguments = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {scene, "--input", "chain.a.x", "--from", "5", "--to", "80",
+                               "--points", "751", "--output", "chain.a.x.acceleration"});
+    return more;
+  };
+  json_of(arguments({"--output", "chain.b.x.velocity", "-o", path("measured.uff")}));
+  const std::vector<std::string> compare{"--output",  "chain.b.x.displacement",
+                                         "--compare", path("measured.uff"),
+                                         "--node",    "1=chain.a",
+                                         "--node",    "2=chain.b"};
+  const Json same = json_of(arguments(compare));
+  ASSERT_EQ(same["shapes"].size(), 1u);
+  EXPECT_EQ(same["shapes"][0]["input"], "chain.a.x");
+  EXPECT_EQ(same["shapes"][0]["outputs"], Json({"chain.a.x", "chain.b.x"}));
+  for (const Json& mac : same["shapes"][0]["mac"]) EXPECT_NEAR(mac.get<double>(), 1.0, 1e-10);
+
+  std::vector<std::string> other = compare;
+  other.insert(other.end(), {"--set", "parameters.mass=2.7", "-o", path("shapes.h5"), "--figure",
+                             path("shapes.svg")});
+  const Json object = json_of(arguments(other));
+  const Json& shapes = object["shapes"][0];
+  const auto response = [&](double mass, double frequency) {
+    const Complex s(0.0, two_pi * frequency);
+    const Complex between = 3e4 + 3.0 * s;
+    Eigen::Matrix2cd z;
+    z << 2.0 * s * s + 4e4 + 4.0 * s + between, -between, -between,
+        mass * s * s + 4e4 + 4.0 * s + between;
+    return Eigen::Vector2cd(z.inverse().col(0));
+  };
+  const auto mac = [](const Eigen::Vector2cd& a, const Eigen::Vector2cd& b) {
+    return std::norm(a.dot(b)) / (a.squaredNorm() * b.squaredNorm());
+  };
+  ASSERT_EQ(shapes["mac"].size(), 751u);
+  for (std::size_t i = 0; i < 751; i += 25) {
+    const double f = shapes["frequencies"][i].get<double>();
+    EXPECT_NEAR(shapes["mac"][i].get<double>(), mac(response(2.7, f), response(2.0, f)), 1e-9) << f;
+  }
+  // Of equal masses √(k/m) and √((k + 2 c)/m); lines lie 0.1 Hz apart.
+  ASSERT_EQ(shapes["peaks"].size(), 2u);
+  const double measured[] = {std::sqrt(4e4 / 2.0) / two_pi, std::sqrt(1e5 / 2.0) / two_pi};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Json& peak = shapes["peaks"][k];
+    EXPECT_NEAR(peak["measured"].get<double>(), measured[k], 0.1);
+    EXPECT_EQ(peak["computed"], shapes["computed_peaks"][k]);
+    const double there = peak["computed"].get<double>();
+    EXPECT_LT(there, peak["measured"].get<double>() - 1.0);
+    EXPECT_NEAR(peak["mac"].get<double>(),
+                mac(response(2.7, there), response(2.0, peak["measured"].get<double>())), 1e-9);
+    EXPECT_GT(peak["mac"].get<double>(), 0.9);
+    EXPECT_EQ(peak["macs"][k], peak["mac"]);
+    EXPECT_LT(peak["macs"][1 - k].get<double>(), 0.2);
+  }
+  const ResultFile file(path("shapes.h5"));
+  EXPECT_EQ(file.texts("/shapes/input"), std::vector<std::string>{"chain.a.x"});
+  EXPECT_EQ(Json(file.read("/shapes/1/mac")), shapes["mac"]);
+  EXPECT_EQ(file.array("/shapes/1/peak_mac").shape, (std::vector<std::size_t>{2, 2}));
+  EXPECT_EQ(file.read("/shapes/1/peak_mac", 2)[1], shapes["peaks"][1]["macs"][0].get<double>());
+  EXPECT_THAT(contents_of(path("shapes.svg")), HasSubstr("MAC, force at chain.a.x"));
+  other.resize(other.size() - 4);
+  const ProgramResult printed = frf(arguments(other));
+  EXPECT_THAT(printed.out, AllOf(HasSubstr("2 directions move by a force at chain.a.x"),
+                                 HasSubstr("difference     MAC\n        22.5")));
+  // One point has no shape.
+  const Json alone = json_of(arguments({"--compare", path("measured.uff"), "--node", "1=chain.a"}));
+  EXPECT_EQ(alone["compared"].size(), 1u);
+  EXPECT_TRUE(alone["shapes"].empty());
+}
+
 TEST_F(FrfProgram, WritesFilesThatItComparesWithItselfAndAPicture) {
   const std::string scene = write("mass.yaml", one_mass);
   const std::vector<std::string> range{"--from", "1", "--to", "30", "--points", "59"};

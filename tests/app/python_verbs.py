@@ -157,14 +157,15 @@ class Contact(unittest.TestCase):
 
 
 class Files(unittest.TestCase):
-    def test_info_is_of_runs_alone(self):
+    def test_info_tells_of_every_kind_of_file(self):
         with tempfile.TemporaryDirectory() as folder:
             cycle = os.path.join(folder, "cycle.h5")
             with stridor.cycle(stridor.example("mass_on_belt"), output=cycle) as found:
                 self.assertEqual(os.fspath(found.path), cycle)
                 self.assertEqual(found.raw["period"], found.period)
+            self.assertEqual(stridor.info(cycle)["kind"], "limit cycle")
             with self.assertRaises(stridor.FileError):
-                stridor.info(cycle)
+                stridor.info(os.path.join(folder, "missing.h5"))
             with stridor.open(cycle) as found:
                 self.assertIsInstance(found, stridor.Cycle)
                 self.assertEqual(found.status, "periodic")

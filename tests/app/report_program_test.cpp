@@ -334,6 +334,32 @@ TEST_F(ReportProgram, MeasuredResponsesStandBesideComputedOnes) {
   EXPECT_EQ(table["columns"][2]["name"], "FRAC");
 }
 
+TEST_F(ReportProgram, ShapesOfMeasuredPointsHaveATableOfPeaks) {
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(),
+                {"frf", scene("examples/reed.yaml"), "--input", "reed.middle.y", "--output",
+                 "reed.middle.y.acceleration", "--output", "reed.tip.y.acceleration", "--from",
+                 "100Hz", "--to", "2kHz", "--points", "381"});
+    return more;
+  };
+  const std::string measured = made(with({}), "measured.uff");
+  const std::string file = made(with({"--compare", measured, "--node", "1=reed.middle", "--node",
+                                      "2=reed.tip", "--set", "parameters.mu=0.1"}),
+                                "shapes.h5");
+  const std::string page = page_of({file});
+  const Json section = contents_of_report(page)["sections"][0];
+  std::vector<Json> tables;
+  for (const Json& view : section["views"])
+    if (view["type"] == "table") tables.push_back(view);
+  ASSERT_EQ(tables.size(), 2u);
+  EXPECT_EQ(tables[1]["title"], "Shapes by a force at reed.middle.y, at peaks");
+  EXPECT_EQ(tables[1]["columns"][3]["name"], "MAC");
+  EXPECT_GE(tables[1]["columns"][3]["values"].size(), 1u);
+  const Json panel = view_of(section, "curves")["panels"][0];
+  EXPECT_EQ(panel["curves"][0]["name"], "MAC, force at reed.middle.y");
+  EXPECT_EQ(numbers_of(page, panel["curves"][0]["values"]).size(), 381u);
+}
+
 TEST_F(ReportProgram, TheErrorOfTheModesThatARunKeepsIsACurve) {
   const std::string file =
       made({"frf", scene("beam_on_beam.yaml"), "--input", "cantilever.free_end.y", "--from",

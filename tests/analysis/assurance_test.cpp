@@ -1,4 +1,4 @@
-#include "analysis/response_assurance.hpp"
+#include "analysis/assurance.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,14 +9,14 @@ namespace {
 
 using Values = std::vector<std::complex<double>>;
 
-TEST(ResponseAssurance, IsOneAtAnyScaleAndNothingForWhatIsOrthogonal) {
+TEST(AssuranceCriterion, IsOneAtAnyScaleAndNothingForWhatIsOrthogonal) {
   const Values a{{1.0, 2.0}, {-0.5, 0.25}, {3.0, 0.0}};
   Values scaled = a;
   for (auto& value : scaled) value *= std::complex<double>(0.3, -4.0);
-  EXPECT_NEAR(response_assurance(a, scaled), 1.0, 1e-15);
-  EXPECT_NEAR(response_assurance(Values{1.0, 1.0}, Values{1.0, -1.0}), 0.0, 1e-15);
-  EXPECT_NEAR(response_assurance(Values{1.0, 0.0}, Values{1.0, 1.0}), 0.5, 1e-15);
-  EXPECT_EQ(response_assurance(Values{0.0, 0.0}, a), 0.0);
+  EXPECT_NEAR(assurance_criterion(a, scaled), 1.0, 1e-15);
+  EXPECT_NEAR(assurance_criterion(Values{1.0, 1.0}, Values{1.0, -1.0}), 0.0, 1e-15);
+  EXPECT_NEAR(assurance_criterion(Values{1.0, 0.0}, Values{1.0, 1.0}), 0.5, 1e-15);
+  EXPECT_EQ(assurance_criterion(Values{0.0, 0.0}, a), 0.0);
 }
 
 TEST(ResponseDifference, IsRelativeToTheSecond) {

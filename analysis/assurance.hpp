@@ -1,4 +1,4 @@
-// How alike two frequency responses are.
+// How alike two frequency responses, or two shapes, are.
 #pragma once
 
 #include <cmath>
@@ -7,10 +7,12 @@
 
 namespace stridor {
 
-/// Frequency response assurance criterion |Σ a* b|²/(Σ|a|² Σ|b|²) over the same frequencies (Heylen
-/// and Lammens 1996): 1 for the same shape at any scale, 0 for nothing in common or where one is zero.
-inline double response_assurance(std::span<const std::complex<double>> a,
-                                 std::span<const std::complex<double>> b) {
+/// |Σ a* b|²/(Σ|a|² Σ|b|²): 1 for the same values at any scale and phase, 0 for nothing in common
+/// or where one is zero. Over frequencies this is the frequency response assurance criterion (FRAC,
+/// Heylen and Lammens 1996), over the directions of points the modal one (MAC, Allemang and Brown
+/// 1982).
+inline double assurance_criterion(std::span<const std::complex<double>> a,
+                                  std::span<const std::complex<double>> b) {
   std::complex<double> common = 0.0;
   double of_a = 0.0, of_b = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -18,7 +20,7 @@ inline double response_assurance(std::span<const std::complex<double>> a,
     of_a += std::norm(a[i]);
     of_b += std::norm(b[i]);
   }
-  return of_a > 0.0 && of_b > 0.0 ? std::norm(common) / (of_a * of_b) : 0.0;
+  return of_a > 0.0 && of_b > 0.0 ? std::norm(common) / of_a / of_b : 0.0;
 }
 
 /// ‖a − b‖/‖b‖ over the same frequencies; 0 where both are zero.
