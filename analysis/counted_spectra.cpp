@@ -83,7 +83,10 @@ std::shared_ptr<const SparseSystem> KeptSystems::at(double value) {
 
 CountedSpectra::CountedSpectra(System system, const SpectrumWindow& window,
                                std::optional<std::pair<double, double>> range)
-    : systems_(std::move(system), memory_for_systems()), window_(window), range_(std::move(range)) {
+    : systems_(std::move(system), memory_for_systems()),
+      window_(window),
+      range_(std::move(range)),
+      followed_(window) {
   if (std::isfinite(window_.frequency)) window_.count.reset();
   if (range_ && !(range_->first < range_->second)) range_.reset();
 }
@@ -92,10 +95,18 @@ SampledSpectrum CountedSpectra::search(double value, const SparseSystem& system)
   const auto known = searched_.find(value);
   if (known != searched_.end()) return known->second;
   ++effort_.num_searched;
-  const SparseSpectrum spectrum = is_full(system)
-                                      ? full_spectrum(system, window_, SpectrumWork::Sides::right)
-                                      : whole_spectrum(system, window_);
-  return searched_[value] = sampled(eigenvalues_of(spectrum));
+  return searched_[value] = sampled(eigenvalues_of(whole_spectrum(system, window_)));
+}
+
+/// Of a full system; nothing of a sparse one.
+std::optional<SampledSpectrum> CountedSpectra::follow(double value) {
+  if (const auto known = followed_.known(value)) return known;
+  const std::shared_ptr<const SparseSystem> system = systems_.at(value);
+  if (!is_full(*system)) return std::nullopt;
+  SampledSpectrum found = followed_.at(value, *system);
+  effort_.num_followed = followed_.num_followed();
+  effort_.num_searched_full = followed_.num_searched();
+  return found;
 }
 
 void CountedSpectra::begin() {
@@ -115,7 +126,6 @@ void CountedSpectra::begin() {
 /// All pairs of both sides in the window of the first system.
 SparseSpectrum CountedSpectra::search_first(const SparseSystem& first) {
   ++effort_.num_searched;
-  if (is_full(first)) return full_spectrum(first, window_, SpectrumWork::Sides::both);
   SpectrumWork work;
   work.sides = SpectrumWork::Sides::both;
   if (span_->num_parts() == 2) {
@@ -133,11 +143,9 @@ void CountedSpectra::make_basis() {
   const std::shared_ptr<const SparseSystem> last_kept = systems_.at(range_->second);
   const SparseSystem& first = *first_kept;
   const SparseSystem& last = *last_kept;
-  if (last.size() != first.size()) return;
-  if (!is_full(first)) {
-    span_.emplace(first);
-    if (!span_->factors(last)) return;
-  }
+  if (last.size() != first.size() || is_full(first) || is_full(last)) return;
+  span_.emplace(first);
+  if (!span_->factors(last)) return;
   SparseSpectrum spectrum = search_first(first);
   searched_[range_->first] = sampled(eigenvalues_of(spectrum));
   num_first_ = spectrum.num_counted;
@@ -154,7 +162,7 @@ void CountedSpectra::make_basis() {
     if (omega > 1.1 * height) above_.emplace_back(0.0, omega);
   basis_.emplace(height);
   basis_->add(std::move(spectrum.pairs));
-  if (!span_ || span_->num_parts() > 1) extend();
+  if (span_->num_parts() > 1) extend();
 }
 
 /// Adds values to the basis until its projections are good between them: the extrema of Chebyshev's
@@ -256,6 +264,7 @@ std::optional<SampledSpectrum> CountedSpectra::counted(const Member& member) {
 }
 
 SampledSpectrum CountedSpectra::at(double value) {
+  if (const auto found = follow(value)) return *found;
   if (!has_begun_) begin();
   const auto known = searched_.find(value);
   if (known != searched_.end()) return known->second;
@@ -278,6 +287,7 @@ SampledSpectrum CountedSpectra::at(double value) {
 }
 
 SampledSpectrum CountedSpectra::near(double value) {
+  if (const auto found = follow(value)) return *found;
   if (!has_begun_) begin();
   const Member one = member(value);
   if (one.is_like) {
@@ -288,6 +298,7 @@ SampledSpectrum CountedSpectra::near(double value) {
 }
 
 SampledSpectrum CountedSpectra::around(double value, std::complex<double> place) {
+  if (const auto found = follow(value)) return *found;
   if (!has_begun_) begin();
   const Member one = member(value);
   if (one.is_like) {

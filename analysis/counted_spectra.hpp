@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/followed_spectra.hpp"
 #include "analysis/spectrum_sampler.hpp"
 #include "solvers/eigenvalues/count_along.hpp"
 #include "solvers/eigenvalues/pair_basis.hpp"
@@ -25,9 +26,11 @@ SparseSpectrum whole_spectrum(const SparseSystem& system, SpectrumWindow window,
 
 /// Work done for spectra along a parameter.
 struct CountedEffort {
-  int num_searched = 0;   ///< values with a whole search
+  int num_searched = 0;   ///< values of sparse systems with a whole search
   int num_refined = 0;    ///< values whose pairs were found from those of others
   int num_projected = 0;  ///< spectra by projection
+  int num_followed = 0;   ///< spectra of full systems from those close by
+  int num_searched_full = 0;  ///< full systems by the dense method
 };
 
 /// Systems along a parameter, the latest of them kept: windows are looked at in turn, many of them
@@ -67,8 +70,8 @@ class KeptSystems {
 /// find is certified, not counted.
 ///
 /// Where the parameter enters as more functions than a SystemSpan holds, up to 20,000 unknowns are
-/// projected all the same, every system by products of its own. Full matrices take all their
-/// eigenvalues at once as whole search, which needs no count.
+/// projected all the same, every system by products of its own. Full matrices are followed
+/// (FollowedSpectra).
 class CountedSpectra {
  public:
   using System = KeptSystems::System;
@@ -101,6 +104,7 @@ class CountedSpectra {
                             std::optional<std::complex<double>> place = std::nullopt);
   std::optional<SampledSpectrum> counted(const Member& member);
   std::optional<int> count(const Member& member, const std::vector<std::complex<double>>& found);
+  std::optional<SampledSpectrum> follow(double value);
   SampledSpectrum search(double value, const SparseSystem& system);
 
   KeptSystems systems_;
@@ -110,6 +114,7 @@ class CountedSpectra {
   std::map<double, SampledSpectrum> searched_;
   std::optional<SystemSpan> span_;  ///< none where every system is projected by itself
   std::optional<PairBasis> basis_;
+  FollowedSpectra followed_;  ///< of the systems that are full
   std::optional<CountAlong> count_;
   Eigen::Index size_ = 0;  ///< of the systems that the basis is for
   int num_first_ = 0;  ///< eigenvalues in the rectangle at the first value, conjugates counted

@@ -82,6 +82,24 @@ std::optional<FoundPair> closest_pair(const std::vector<Complex>& eigenvalues,
   return closest;
 }
 
+PairLook interpolated(const std::vector<PairLook>& looks, double value, double centre) {
+  std::vector<const PairLook*> order;
+  for (const PairLook& look : looks) order.push_back(&look);
+  const std::size_t count = std::min<std::size_t>(3, order.size());
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
+                    [&](const PairLook* a, const PairLook* b) {
+                      return std::abs(a->value - centre) < std::abs(b->value - centre);
+                    });
+  std::array<double, 3> at{};
+  std::array<Complex, 3> mean, square;
+  for (std::size_t i = 0; i < count; ++i) {
+    at[i] = order[i]->value;
+    mean[i] = order[i]->mean;
+    square[i] = order[i]->square;
+  }
+  return {value, interpolate(at, mean, count, value), interpolate(at, square, count, value)};
+}
+
 double growth_bound(const std::vector<PairLook>& looks, double from, double to) {
   constexpr int parts = 64;
   constexpr double safety = 4.0;
@@ -130,25 +148,6 @@ void PairSearch::add(const PairLook& look) {
 
 PairLook PairSearch::expected(double value) const {
   return expected(value, value);
-}
-
-/// @param centre the three looks closest to it are used
-PairLook PairSearch::expected(double value, double centre) const {
-  std::vector<const PairLook*> order;
-  for (const PairLook& look : looks_) order.push_back(&look);
-  const std::size_t count = std::min<std::size_t>(3, order.size());
-  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
-                    [&](const PairLook* a, const PairLook* b) {
-                      return std::abs(a->value - centre) < std::abs(b->value - centre);
-                    });
-  std::array<double, 3> at{};
-  std::array<Complex, 3> mean, square;
-  for (std::size_t i = 0; i < count; ++i) {
-    at[i] = order[i]->value;
-    mean[i] = order[i]->mean;
-    square[i] = order[i]->square;
-  }
-  return {value, interpolate(at, mean, count, value), interpolate(at, square, count, value)};
 }
 
 /// The look with the largest Re D, or the least, among those between the ends.

@@ -34,6 +34,11 @@ struct FoundPair {
 std::optional<FoundPair> closest_pair(const std::vector<std::complex<double>>& eigenvalues,
                                       const PairLook& expected);
 
+/// Mean and square at a value by the parabola through the three looks closest to another value, or
+/// what fewer allow.
+/// @param looks of different values, at least one
+PairLook interpolated(const std::vector<PairLook>& looks, double value, double centre);
+
 /// Bound of the growth of a pair between two values, by polynomials through mean and square:
 ///
 ///   max Re m + δm + √((|D| + Re D)/2 + δD)
@@ -72,7 +77,9 @@ class PairSearch {
   bool fits_ends() const;
 
  private:
-  PairLook expected(double value, double centre) const;
+  PairLook expected(double value, double centre) const {
+    return interpolated(looks_, value, centre);
+  }
   const PairLook& best() const;
   double side() const { return aim_ == Aim::growth ? 1.0 : -1.0; }
   std::optional<double> vertex() const;

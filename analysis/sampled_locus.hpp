@@ -17,12 +17,12 @@ struct SamplingEffort {
   SearchFor wanted = SearchFor::every_window;
 };
 /// For spectra of large matrices.
-inline constexpr SamplingEffort sparing_effort{32, 64, {1e-9, 8, WindowEffort::Ends::parabolas}};
+inline constexpr SamplingEffort sparing_effort{32, 64, {1e-9, 8, WindowEffort::Ends::by_pairs}};
 
 /// For the places alone where the system as a whole becomes stable or unstable, as a map draws
 /// them.
 inline constexpr SamplingEffort stability_effort{
-    16, 256, {1e-11, 0, WindowEffort::Ends::parabolas}, SearchFor::stability};
+    16, 256, {1e-11, 0, WindowEffort::Ends::by_pairs}, SearchFor::stability};
 
 /// Eigenvalues and unstable windows along a parameter, for systems whose eigenvalues coincide or
 /// lie on the imaginary axis over whole intervals: without damping, with bodies that are alike.

@@ -10,8 +10,10 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
+#include "analysis/pair_model.hpp"
 #include "core/activity.hpp"
 
 namespace stridor {
@@ -70,68 +72,169 @@ class SignChange {
   std::size_t rank_;
 };
 
-/// The same by inverse quadratic interpolation, halving where the excess is not monotonic and
-/// smooth (Chandrupatla, Advances in Engineering Software 28, 1997).
-class SmoothSignChange {
+/// The same for spectra that are dear. Two eigenvalues that meet do so with a root, and beside
+/// their window another one may be the largest: what stays smooth are mean and square of the pair
+/// (PairLook), of whose parabolas the growth vanishes where the next sample is taken. Where that
+/// does not narrow the interval, it is halved.
+class PairedSignChange {
  public:
-  SmoothSignChange(const SpectrumSampler& sampler, double tolerance, std::size_t rank)
+  PairedSignChange(const SpectrumSampler& sampler, double tolerance, std::size_t rank)
       : sampler_(sampler), tolerance_(tolerance), rank_(rank) {}
 
-  void narrow(Sample& stable, Sample& growing) const {
-    constexpr int max_steps = 100;
-    const double range = std::abs(growing.value - stable.value);
-    Place last = place_of(stable), other = place_of(growing), before = other;
-    double share = last.excess / (last.excess - other.excess);
-    for (int i = 0; i < max_steps; ++i) {
-      const double width = std::abs(other.value - last.value);
-      const double least = (tolerance_ * std::abs(last.value) + 1e-3 * tolerance_ * range) / width;
-      if (!(least < 0.5)) return;
-      if (!std::isfinite(share)) share = 0.5;
-      share = std::clamp(share, least, 1.0 - least);
-      const double next = last.value + share * (other.value - last.value);
-      if (next == last.value || next == other.value) return;
-      Sample sample = sampler_.near(next);
-      const Place place = place_of(sample);
-      const bool is_growing = place.excess > 0.0;
-      before = last;
-      if (is_growing != (last.excess > 0.0)) {
-        before = other;
-        other = last;
-      }
-      last = place;
-      (is_growing ? growing : stable) = std::move(sample);
-      share = next_share(last, other, before);
-    }
-  }
+  void narrow(Sample& stable, Sample& growing) const;
 
  private:
-  struct Place {
-    double value, excess;
+  /// The pair in the samples at hand.
+  struct Pair {
+    std::vector<PairLook> looks;
+    double rounding = 0.0;                                   ///< of its growth, 1/s
+    double last = std::numeric_limits<double>::quiet_NaN();  ///< value of the latest look
+
+    double growth(double value, double centre) const {
+      return interpolated(looks, value, centre).growth() - rounding;
+    }
   };
 
-  Place place_of(const Sample& sample) const { return {sample.value, sample.ranked_excess(rank_)}; }
-
-  /// @param other on the other side of the change than `last`
-  static double next_share(const Place& last, const Place& other, const Place& before) {
-    const double along = (last.value - other.value) / (before.value - other.value);
-    const double up = (last.excess - other.excess) / (before.excess - other.excess);
-    const bool is_smooth = up * up < along && (1.0 - up) * (1.0 - up) < 1.0 - along;
-    if (!is_smooth) return 0.5;
-    const double a = last.excess, b = other.excess, c = before.excess;
-    return a / (b - a) * c / (b - c) +
-           (before.value - last.value) / (other.value - last.value) * a / (c - a) * b / (c - b);
-  }
+  std::size_t beginner(const Sample& stable, const Sample& growing) const;
+  Pair pair_of(const Sample& stable, const Sample& growing) const;
+  double proposed(const Pair& pair, double stable, double growing, double least) const;
 
   const SpectrumSampler& sampler_;
   double tolerance_;
   std::size_t rank_;
 };
 
+/// An eigenvalue that grows and continues none that does on the other side: of several as many from
+/// the fastest on as the rank says.
+std::size_t PairedSignChange::beginner(const Sample& stable, const Sample& growing) const {
+  std::vector<std::size_t> begun;
+  for (std::size_t i = 0; i < growing.eigenvalues.size(); ++i)
+    if (growing.is_growing(i)) begun.push_back(i);
+  const std::vector<Complex> known = stable.growing();
+  const std::vector<int> partner = continuations(known, growing.growing());
+  std::vector<std::size_t> others;
+  for (std::size_t k = 0; k < begun.size(); ++k)
+    if (std::ranges::find(partner, static_cast<int>(k)) == partner.end())
+      others.push_back(begun[k]);
+  std::ranges::sort(
+      others, [&](std::size_t a, std::size_t b) { return growing.excess[a] > growing.excess[b]; });
+  return others[std::min(rank_ - known.size(), others.size()) - 1];
+}
+
+/// The eigenvalue that begins to grow with the one closest to it, or with its conjugate.
+PairedSignChange::Pair PairedSignChange::pair_of(const Sample& stable,
+                                                 const Sample& growing) const {
+  const std::size_t place = beginner(stable, growing);
+  const Complex s = growing.eigenvalues[place];
+  std::optional<Complex> partner;
+  if (s.imag() > 0.0) partner = std::conj(s);
+  for (std::size_t i = 0; i < growing.eigenvalues.size(); ++i)
+    if (i != place && (!partner || std::abs(growing.eigenvalues[i] - s) < std::abs(*partner - s)))
+      partner = growing.eigenvalues[i];
+  Pair pair;
+  if (!partner) return pair;
+  pair.rounding = s.real() - growing.excess[place];
+  pair.looks.push_back(PairLook::of(growing.value, s, *partner));
+  PairLook expected = pair.looks.front();
+  expected.value = stable.value;
+  if (const auto there = closest_pair(stable.eigenvalues, expected))
+    pair.looks.push_back(there->look);
+  return pair;
+}
+
+/// Where the growth of the pair vanishes between two values; a little beyond, as seen from the
+/// latest look, where the other end is far, so that it comes close too. The middle where nothing
+/// vanishes.
+double PairedSignChange::proposed(const Pair& pair, double stable, double growing,
+                                  double least) const {
+  const double middle = 0.5 * (stable + growing);
+  if (pair.looks.size() < 2) return middle;
+  const double centre = std::isnan(pair.last) ? middle : pair.last;
+  const double of_stable = pair.growth(stable, centre), of_growing = pair.growth(growing, centre);
+  // An end that is the root but for rounding may have the other sign.
+  constexpr double rounding = 1e-4;
+  const bool is_stable_root = of_stable > 0.0 && of_stable <= rounding * of_growing;
+  const bool is_growing_root = of_growing <= 0.0 && of_growing >= rounding * of_stable;
+  const bool has_root = (of_stable <= 0.0 && of_growing > 0.0) || is_stable_root || is_growing_root;
+  if (!has_root) return middle;
+  double below = is_growing_root ? growing : stable;
+  double above = is_stable_root ? stable : growing;
+  constexpr int most_halvings = 60;
+  for (int i = 0; i < most_halvings; ++i) {
+    const double between = 0.5 * (below + above);
+    (pair.growth(between, centre) > 0.0 ? above : below) = between;
+  }
+  const double root = 0.5 * (below + above);
+  if (std::isnan(pair.last)) return root;
+  const double far =
+      std::abs(pair.last - stable) < std::abs(pair.last - growing) ? growing : stable;
+  const double beyond = std::max(2.0 * std::abs(root - pair.last), 1.5 * least);
+  return std::abs(far - root) > 4.0 * beyond ? root + std::copysign(beyond, far - root) : root;
+}
+
+void PairedSignChange::narrow(Sample& stable, Sample& growing) const {
+  constexpr int max_steps = 100;
+  const double range = std::abs(growing.value - stable.value);
+  Pair pair = pair_of(stable, growing);
+  double width_before = std::numeric_limits<double>::infinity();  // two steps ago
+  double last_width = width_before;
+  for (int i = 0; i < max_steps; ++i) {
+    const double width = std::abs(growing.value - stable.value);
+    const double least = tolerance_ * std::abs(growing.value) + 1e-3 * tolerance_ * range;
+    if (!(width > 2.0 * least)) return;
+    const bool narrows = width <= 0.5 * width_before;
+    width_before = last_width;
+    last_width = width;
+    if (!narrows) pair = pair_of(stable, growing);
+    double next = narrows ? proposed(pair, stable.value, growing.value, least)
+                          : 0.5 * (stable.value + growing.value);
+    const auto [low, high] = std::minmax(stable.value, growing.value);
+    next = std::clamp(next, low + least, high - least);
+    if (next == stable.value || next == growing.value) return;
+    Sample sample = sampler_.near(next);
+    if (!pair.looks.empty()) {
+      const PairLook expected = interpolated(pair.looks, next, next);
+      if (const auto found = closest_pair(sample.eigenvalues, expected)) {
+        pair.looks.push_back(found->look);
+        pair.last = next;
+      }
+    }
+    (sample.ranked_excess(rank_) > 0.0 ? growing : stable) = std::move(sample);
+  }
+}
+
 /// An eigenvalue that grows.
 struct Point {
   double value;
   Complex s;
 };
+
+double trapezium(const Point& a, const Point& b) {
+  return 0.5 * (b.value - a.value) * (a.s.real() + b.s.real());
+}
+
+/// What the integral of the growth from a point to the next has besides the trapezium, by the mean
+/// of the parabolas through a point before and a point behind them; nothing where there are none.
+/// One much closer than the two are to each other says nothing of the curvature.
+std::optional<double> beside_trapezium(const std::vector<Point>& points, std::size_t first) {
+  const Point& a = points[first];
+  const Point& b = points[first + 1];
+  const double width = b.value - a.value;
+  const double least = 0.25 * width;
+  const auto before =
+      std::find_if(points.rend() - static_cast<std::ptrdiff_t>(first), points.rend(),
+                   [&](const Point& point) { return a.value - point.value >= least; });
+  const auto after =
+      std::find_if(points.begin() + static_cast<std::ptrdiff_t>(first) + 2, points.end(),
+                   [&](const Point& point) { return point.value - b.value >= least; });
+  if (before == points.rend() || after == points.end()) return std::nullopt;
+  const double slope = (b.s.real() - a.s.real()) / width;
+  const auto curvature = [&](const Point& other) {  // half the second derivative
+    const double along = other.value - a.value;
+    return (other.s.real() - a.s.real() - slope * along) / (along * (along - width));
+  };
+  return -std::pow(width, 3) / 12.0 * (curvature(*before) + curvature(*after));
+}
 
 class WindowBuilder {
  public:
@@ -225,9 +328,20 @@ void WindowBuilder::close(const Window& points) {
                        [](const Point& a, const Point& b) { return a.s.real() < b.s.real(); });
   Point peak = *top;
   if (top != points.begin() && top + 1 != points.end()) peak = climb(*(top - 1), *top, *(top + 1));
+  constexpr double smooth = 1e-3;
+  double roughly = 0.0;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i)
+    roughly += trapezium(points[i], points[i + 1]);
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Point& a = points[i];
     const Point& b = points[i + 1];
+    if (effort_.ends == WindowEffort::Ends::by_pairs) {
+      const std::optional<double> beside = beside_trapezium(points, i);
+      if (beside && std::abs(*beside) <= smooth * roughly) {
+        window.growth_integral += trapezium(a, b) + *beside;
+        continue;
+      }
+    }
     const Point middle = at(a, b, 0.5 * (a.value + b.value));
     if (middle.s.real() > peak.s.real()) peak = middle;
     // Simpson's rule.
@@ -292,8 +406,8 @@ void sort_by_place(Locus& locus) {
 
 void narrow(const SpectrumSampler& sampler, const WindowEffort& effort, std::size_t rank,
             Sample& stable, Sample& growing) {
-  if (effort.ends == WindowEffort::Ends::parabolas) {
-    SmoothSignChange(sampler, effort.tolerance, rank).narrow(stable, growing);
+  if (effort.ends == WindowEffort::Ends::by_pairs) {
+    PairedSignChange(sampler, effort.tolerance, rank).narrow(stable, growing);
   } else {
     SignChange(sampler, effort, rank).narrow(stable, growing);
   }

@@ -11,8 +11,9 @@ namespace stridor {
 struct WindowEffort {
   double tolerance = 1e-13;  ///< of the ends, relative
   int climbing_steps = 40;   ///< of golden sections towards the largest growth
-  /// How ends are approached: parabolas where the growth is smooth and spectra dear.
-  enum class Ends { halving, parabolas } ends = Ends::halving;
+  /// How ends are approached: where spectra are dear by the pairs of eigenvalues that meet there.
+  /// Then parabolas also give the integral of the growth where its curvature adds little.
+  enum class Ends { halving, by_pairs } ends = Ends::halving;
 };
 
 /// Solves for all changes in the number of eigenvalues that grow, and appends a window for each

@@ -106,20 +106,15 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
   std::vector<double> ends = values;
   ends[key] = range.front();
   SpectrumMethod method = family.method(ends);
-  if (method == SpectrumMethod::projected && options.method == LocusMethod::dense)
+  if (method == SpectrumMethod::from_neighbours && options.method == LocusMethod::dense)
     method = SpectrumMethod::sampled;
   double trusted = std::numeric_limits<double>::infinity();
   Eigen::Index num_wanted = 0;
-  Eigen::VectorXd modes;
   for (const double end : {range.front(), range.back()}) {
     ends[key] = end;
     if (method != SpectrumMethod::counted) {
       const Pencil pencil = family.pencil(ends);
       num_wanted = std::max(num_wanted, most_wanted(pencil, options.window));
-      if (end == range.front()) modes = pencil.omega;
-      // Where the key changes the bodies, a modal coordinate is another motion at every value.
-      const bool are_modes_alike = pencil.omega.size() == modes.size() && pencil.omega == modes;
-      if (method == SpectrumMethod::projected && !are_modes_alike) method = SpectrumMethod::sampled;
     }
     trusted = std::min(trusted, family.trusted_frequency(ends));
   }
@@ -135,12 +130,12 @@ Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t
       memory_limit());
   LocusOptions within = options;
   within.trusted = trusted;
-  if (method == SpectrumMethod::counted || method == SpectrumMethod::projected) {
-    // Between the values of a whole number there are none to project on.
+  if (method == SpectrumMethod::counted || method == SpectrumMethod::from_neighbours) {
+    // Between the values of a whole number there are none.
     std::optional<std::pair<double, double>> between;
     if (!varied.is_integer) between.emplace(range.front(), range.back());
     return by(
-        method == SpectrumMethod::counted ? "sparse" : "projected",
+        method == SpectrumMethod::counted ? "sparse" : "followed",
         sample_locus(family.spectra(key, values, within, between), range, within, sparing_effort));
   }
   const PencilFamily pencils = family.along(key, values, range.front(), range.back());

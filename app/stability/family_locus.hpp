@@ -18,7 +18,7 @@ namespace stridor {
 /// @param range  values of that key, strictly ascending
 /// @param wanted where stability alone is wanted, sampled loci have a window for every stretch in
 ///               which anything grows
-/// @return with the method taken: secular, dense, projected (of large dense problems) or sparse
+/// @return with the method taken: secular, dense, followed (of large dense problems) or sparse
 /// @throws ConfigError, NumericalError
 Locus locus_along(StabilityFamily& family, const NumericKey& varied, std::size_t key,
                   const std::vector<double>& values, const std::vector<double>& range,

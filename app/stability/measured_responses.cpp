@@ -172,12 +172,18 @@ void compute(const ResponseStudy& study, const NamedFunction& named, ComparedRes
 /// Responses to one force at the same frequencies, of different points or directions.
 using Points = std::vector<const ComparedResponse*>;
 
+/// The same but for rounding of text.
+bool are_alike(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::ranges::equal(
+      a, b, [](double x, double y) { return std::abs(x - y) <= 1e-6 * std::max(x, y); });
+}
+
 std::vector<Points> points_by_force(const std::vector<ComparedResponse>& compared) {
   std::vector<Points> forces;
   for (const ComparedResponse& one : compared) {
     const auto goes_with = [&](const Points& points) {
       return points.front()->computed.input == one.computed.input &&
-             points.front()->frequencies == one.frequencies;
+             are_alike(points.front()->frequencies, one.frequencies);
     };
     const auto force = std::find_if(forces.begin(), forces.end(), goes_with);
     if (force == forces.end()) {

@@ -113,7 +113,7 @@ SpectrumMethod BodyStabilityFamily::method(std::span<const double> values) {
       std::all_of(contacts.begin(), contacts.end(), [](const ContactPoint& contact) {
         return contact.compliance() > 0.0 || contact.substrate;
       });
-  return all_give_way ? SpectrumMethod::projected : SpectrumMethod::sampled;
+  return all_give_way ? SpectrumMethod::from_neighbours : SpectrumMethod::sampled;
 }
 
 SparseSystem BodyStabilityFamily::sparse_system(std::span<const double> values) {

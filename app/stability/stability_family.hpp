@@ -20,9 +20,9 @@ namespace stridor {
 enum class SpectrumMethod {
   followed,  ///< from value to value, by the problem on the ports that contacts join
   sampled,   ///< all of the dense problem at every value (analysis/sampled_locus.hpp)
-  /// Those in a window of a dense problem so large that all at every value would take long
-  /// (analysis/counted_spectra.hpp).
-  projected,
+  /// Those in a window of a dense problem so large that all at every value would take long, from
+  /// those of the nearest value (analysis/followed_spectra.hpp).
+  from_neighbours,
   counted,  ///< those in a window of large sparse matrices (analysis/counted_spectra.hpp)
 };
 
@@ -39,8 +39,8 @@ class StabilityFamily {
   /// Where eigenvalues are counted there is no pencil(), and spectra() takes its place.
   /// @throws as pencil()
   virtual SpectrumMethod method(std::span<const double>) { return SpectrumMethod::followed; }
-  /// The eigenvalues wanted along one of the keys where they are projected or counted; arguments as
-  /// of along(). They throw NumericalError naming the values if one may be missing.
+  /// The eigenvalues wanted along one of the keys where they come from neighbours or are counted;
+  /// arguments as of along(). They throw NumericalError naming the values if one may be missing.
   /// @param range of the key, where many values of it will be asked for
   SpectrumFamily spectra(std::size_t key, const std::vector<double>& values,
                          const LocusOptions& options,
@@ -57,7 +57,7 @@ class StabilityFamily {
   void on_value(std::function<void(double)> report) { report_ = std::move(report); }
 
  private:
-  /// M, P and Q where eigenvalues are projected or counted.
+  /// M, P and Q where eigenvalues come from neighbours or are counted.
   virtual SparseSystem sparse_system(std::span<const double>) { return {}; }
   virtual std::vector<double> kinks(std::size_t, const std::vector<double>&, double, double) {
     return {};

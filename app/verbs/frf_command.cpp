@@ -174,6 +174,7 @@ Json shapes_json(const ComparedShapes& shapes) {
                  {"outputs", shapes.outputs},
                  {"frequencies", shapes.frequencies},
                  {"mac", shapes.assurance},
+                 {"measured_peaks", shapes.measured_peaks},
                  {"computed_peaks", shapes.computed_peaks},
                  {"peaks", Json::array()}};
   for (const PeakPair& pair : peak_pairs(shapes)) {
@@ -231,7 +232,8 @@ Json responses_json(const FoundResponses& found) {
 void print_shapes(const ComparedShapes& shapes) {
   const std::vector<PeakPair> pairs = peak_pairs(shapes);
   if (pairs.empty()) {
-    fmt::print("\nno peak stands out of the responses to {}\n", shapes.input);
+    fmt::print("\nno peak stands out of the {} responses to {}\n",
+               shapes.measured_peaks.empty() ? "measured" : "computed", shapes.input);
     return;
   }
   fmt::print("\n{} directions move by a force at {}; where they move most\n", shapes.outputs.size(),

@@ -101,9 +101,11 @@ void write_shapes(const Hdf5Writer& writer, const std::vector<ComparedShapes>& s
     };
     const Handle frequency = scale("frequency", one.frequencies);
     writer.tie(writer.write(group + "mac", one.assurance, "1"), group + "mac", frequency, 0);
-    if (one.measured_peaks.empty() || one.computed_peaks.empty()) continue;
-    const Handle measured = scale("measured_peak", one.measured_peaks);
-    const Handle computed = scale("computed_peak", one.computed_peaks);
+    const bool has_measured = !one.measured_peaks.empty(),
+               has_computed = !one.computed_peaks.empty();
+    const Handle measured = has_measured ? scale("measured_peak", one.measured_peaks) : Handle();
+    const Handle computed = has_computed ? scale("computed_peak", one.computed_peaks) : Handle();
+    if (!has_measured || !has_computed) continue;
     const std::string path = group + "peak_mac";
     const Eigen::MatrixXd rows = one.peak_assurance.transpose();  // the file has them row by row
     const Handle table = writer.write(path, {one.computed_peaks.size(), one.measured_peaks.size()},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <complex>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <utility>
@@ -36,7 +37,7 @@ TwoSidedPairs pairs_at(const SparseSystem& system, std::vector<Complex> s, doubl
     entry = {re, normal(generator)};
   }
   int factorisations = 0;
-  return pairs_near(system, guesses, height, factorisations);
+  return pairs_near(system, guesses, height, factorisations, SpectrumWork::Sides::right);
 }
 
 }  // namespace
@@ -68,8 +69,7 @@ SparseSystem modal_system(const Pencil& pencil) {
   return system;
 }
 
-SparseSpectrum full_spectrum(const SparseSystem& system, const SpectrumWindow& window,
-                             SpectrumWork::Sides sides) {
+SparseSpectrum full_spectrum(const SparseSystem& system, const SpectrumWindow& window) {
   LinearSystem linear;
   linear.mass = system.mass;
   linear.velocity = system.velocity;
@@ -92,8 +92,36 @@ SparseSpectrum full_spectrum(const SparseSystem& system, const SpectrumWindow& w
   spectrum.num_counted = spectrum.num_found;
   spectrum.is_complete = true;
   spectrum.omega = pencil.omega;
-  if (sides == SpectrumWork::Sides::both) spectrum.pairs = pairs_at(system, near, height);
+  spectrum.pairs = pairs_at(system, near, height);
   return spectrum;
+}
+
+bool are_pairs(const SparseSystem& system, const TwoSidedPairs& pairs) {
+  constexpr double largest_residual = 1e-6;
+  constexpr double rigid = 1e-6;  // of the highest
+  const Eigen::Map<const Eigen::RowVectorXcd> s(pairs.s.data(), pairs.size());
+  const auto image = [&](const SparseMatrix& matrix) {
+    const Eigen::MatrixXd full = matrix;
+    Eigen::MatrixXcd product(full.rows(), pairs.size());
+    product.real() = full * pairs.right.real().eval();
+    product.imag() = full * pairs.right.imag().eval();
+    return product;
+  };
+  const Eigen::MatrixXcd inertia =
+      (system.mass * pairs.right) * s.cwiseProduct(s).eval().asDiagonal();
+  const Eigen::MatrixXcd damping = image(system.velocity) * s.asDiagonal();
+  const Eigen::MatrixXcd stiffness = image(system.position);
+  const double highest = pairs.s.empty() ? 0.0 : s.cwiseAbs().maxCoeff();
+  std::optional<SparsePencil> pencil;  // for rigid motions alone
+  for (Eigen::Index i = 0; i < pairs.size(); ++i) {
+    const double residual = (inertia.col(i) + damping.col(i) + stiffness.col(i)).norm();
+    const double terms = inertia.col(i).norm() + damping.col(i).norm() + stiffness.col(i).norm();
+    if (residual <= largest_residual * terms) continue;
+    if (std::abs(s(i)) >= rigid * highest) return false;
+    if (!pencil) pencil.emplace(system);
+    if (!(pencil->backward_error(s(i), pairs.right.col(i)) < 1e-13)) return false;
+  }
+  return true;
 }
 
 }  // namespace stridor

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "solvers/eigenvalues/complex_eigenpairs.hpp"
-#include "solvers/eigenvalues/full_spectrum.hpp"
 
 namespace stridor {
 namespace {
@@ -70,16 +69,6 @@ void extend_by(Orthonormal& one, const Orthonormal& other) {
 
 const SparseMatrix& matrix_of(const SparseSystem& system, int power) {
   return power == 2 ? system.mass : (power == 1 ? system.velocity : system.position);
-}
-
-/// A matrix times complex columns; of one that is stored sparse and is full by BLAS.
-Eigen::MatrixXcd product(const SparseMatrix& matrix, const Eigen::MatrixXcd& columns) {
-  if (!is_full(matrix)) return matrix * columns;
-  const Eigen::MatrixXd full = matrix;
-  Eigen::MatrixXcd image(matrix.rows(), columns.cols());
-  image.real() = full * columns.real().eval();
-  image.imag() = full * columns.imag().eval();
-  return image;
 }
 
 /// Residual of a pair at full size.
@@ -241,8 +230,7 @@ PairBasis::Products PairBasis::products_of(const Group& group, const Projected& 
   if (one.span == nullptr) {
     for (const int power : {2, 1, 0}) {
       const SparseMatrix& matrix = matrix_of(one.system, power);
-      if (matrix.nonZeros() > 0)
-        all.add(group.sides, matrix, power, product(matrix, group.sides.X));
+      if (matrix.nonZeros() > 0) all.add(group.sides, matrix, power, matrix * group.sides.X);
     }
     return all;
   }

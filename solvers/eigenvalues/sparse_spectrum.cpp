@@ -46,6 +46,7 @@ class SparseSearch {
   void project();
   void search(std::size_t most_at_once);
   void search_group(std::size_t first, std::size_t last, double low, double high);
+  Eigen::Index most_coincident(std::size_t first, std::size_t last) const;
   Eigen::MatrixXcd start_of(std::size_t first, std::size_t last, const SparseFactor& factor);
   void keep_sides(const NearestPairs& found, Complex shift, const SparseFactor& factor, double low,
                   double high);
@@ -178,22 +179,39 @@ void SparseSearch::search(std::size_t most_at_once) {
   }
 }
 
-/// Starting vectors of a Krylov space: a mixture of the vectors at hand, or two random ones, so
-/// that it finds eigenvalues that coincide. More would be of no use: its degree counts, not its
-/// width.
+/// The largest number of neighbours among the pairs that no Krylov space of one vector tells apart.
+Eigen::Index SparseSearch::most_coincident(std::size_t first, std::size_t last) const {
+  const double same = 1e-6 * height_;
+  Eigen::Index most = 1;
+  for (std::size_t i = first; i < last; ++i) {
+    Eigen::Index num = 0;
+    for (std::size_t j = first; j < last; ++j)
+      if (std::abs(pairs_[j].s - pairs_[i].s) <= same) ++num;
+    most = std::max(most, num);
+  }
+  return most;
+}
+
+/// Starting vectors of a Krylov space: mixtures of the vectors at hand, as many as eigenvalues of
+/// theirs coincide, or two random ones, so that it finds all that coincide. More would be of no
+/// use: its degree counts, not its width.
 Eigen::MatrixXcd SparseSearch::start_of(std::size_t first, std::size_t last,
                                         const SparseFactor& factor) {
-  const Eigen::Index width = starts_at_pairs_ ? 1 : 2;
+  const Eigen::Index width = starts_at_pairs_ ? most_coincident(first, last) : 2;
   std::normal_distribution<double> normal;
   const auto random = [&] { return Complex(normal(generator_), normal(generator_)); };
-  Eigen::MatrixXcd start = Eigen::MatrixXcd::Zero(size(), width);
-  if (starts_at_pairs_ && first < last) {
-    for (Eigen::Index j = 0; j < width; ++j)
-      for (std::size_t i = first; i < last; ++i) start.col(j) += random() * pairs_[i].x;
-    return start;
-  }
+  Eigen::MatrixXcd start(size(), width);
   for (Complex& entry : start.reshaped()) entry = random();
-  return factor.solve(pencil_.system().mass * start);
+  start = factor.solve(pencil_.system().mass * start);
+  if (!starts_at_pairs_ || first == last) return start;
+  // A share of any other vectors, so that what comes anew is found too.
+  constexpr double other = 1e-2;
+  for (Eigen::Index j = 0; j < width; ++j) {
+    Eigen::VectorXcd mixture = Eigen::VectorXcd::Zero(size());
+    for (std::size_t i = first; i < last; ++i) mixture += random() * pairs_[i].x;
+    start.col(j) = mixture + other * mixture.norm() * start.col(j).normalized();
+  }
+  return start;
 }
 
 /// @param first, last of pairs_: expected, with low <= Im s <= high
@@ -217,25 +235,30 @@ void SparseSearch::search_group(std::size_t first, std::size_t last, double low,
     const Complex square = (pair.x.transpose() * pair.x)(0);
     basis_.add_complex(pair.x * std::polar(1.0, -0.5 * std::arg(square)));
   }
-  if (work_.sides == SpectrumWork::Sides::both)
+  if (work_.sides == SpectrumWork::Sides::both || starts_at_pairs_)
     keep_sides(found, wanted.shift, factor, begin, high);
 }
 
-/// Vectors of both sides of the pairs of a group, begin <= Im s < end, by a step of inverse iteration.
+/// Vectors of the sides asked for of the pairs of a group, begin <= Im s < end, by a step of
+/// inverse iteration.
 void SparseSearch::keep_sides(const NearestPairs& found, Complex shift, const SparseFactor& factor,
                               double begin, double end) {
   for (const Pair& pair : found.pairs) {
     if (pair.s.imag() < begin || pair.s.imag() >= end || !is_near(pair.s)) continue;
-    // Conjugates are counted with what is above the real axis.
-    constexpr double real_enough = 1e-9;
-    if (pair.s.imag() < -real_enough * std::abs(pair.s)) continue;
-    Eigen::VectorXcd y =
-        factor.solve_adjoint(pencil_.slope_adjoint(pair.s, shift, pair.x)).normalized();
+    // Conjugates are counted with what is above the real axis. Pairs converge relative to their
+    // distance from the shift.
+    constexpr double of_size = 1e-9, of_distance = 1e-10;
+    const double rounding = of_size * std::abs(pair.s) + of_distance * std::abs(pair.s - shift);
+    if (pair.s.imag() < -rounding) continue;
+    const Complex s = pair.s.imag() <= rounding ? Complex(pair.s.real(), 0.0) : pair.s;
     // The rough part of an error of 1e-9 has a residual that grows with the fineness of the mesh,
     // up to 1e-4; a step of inverse iteration removes it: P(σ) x = (σ − s) ((s + σ) M + P) x.
     Eigen::VectorXcd x = factor.solve(pencil_.slope(pair.s, shift, pair.x)).normalized();
-    rights_.push_back({pair.s, std::move(x)});
-    lefts_.push_back({pair.s, std::move(y)});
+    rights_.push_back({s, std::move(x)});
+    if (work_.sides == SpectrumWork::Sides::right) continue;
+    Eigen::VectorXcd y =
+        factor.solve_adjoint(pencil_.slope_adjoint(pair.s, shift, pair.x)).normalized();
+    lefts_.push_back({s, std::move(y)});
   }
 }
 
@@ -243,17 +266,18 @@ TwoSidedPairs SparseSearch::sorted_sides() const {
   std::vector<std::size_t> order(rights_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
-    return rights_[i].s.imag() < rights_[j].s.imag();
+    const Complex a = rights_[i].s, b = rights_[j].s;
+    return std::pair(a.imag(), a.real()) < std::pair(b.imag(), b.real());
   });
   TwoSidedPairs pairs;
   const auto num = static_cast<Eigen::Index>(order.size());
   pairs.right.resize(size(), num);
-  pairs.left.resize(size(), num);
+  pairs.left.resize(size(), lefts_.empty() ? 0 : num);
   for (Eigen::Index j = 0; j < num; ++j) {
     const std::size_t i = order[static_cast<std::size_t>(j)];
     pairs.s.push_back(rights_[i].s);
     pairs.right.col(j) = rights_[i].x;
-    pairs.left.col(j) = lefts_[i].x;
+    if (!lefts_.empty()) pairs.left.col(j) = lefts_[i].x;
   }
   return pairs;
 }
@@ -366,8 +390,8 @@ SparseSpectrum sparse_spectrum(const SparseSystem& system, const SpectrumWindow&
 }
 
 TwoSidedPairs pairs_near(const SparseSystem& system, const TwoSidedPairs& guesses, double height,
-                         int& factorisations) {
-  const SpectrumWork work{SpectrumWork::Sides::both, nullptr};
+                         int& factorisations, SpectrumWork::Sides sides) {
+  const SpectrumWork work{sides, nullptr};
   SparseSearch search(system, {}, work);
   TwoSidedPairs pairs = search.run(guesses, height);
   factorisations += search.factorisations();

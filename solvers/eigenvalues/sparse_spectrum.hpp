@@ -28,9 +28,10 @@ struct SpectrumRectangle {
 /// Eigenpairs of a system from the real axis to a tenth above a window: what spans the motions of a
 /// system like it.
 struct TwoSidedPairs {
-  std::vector<std::complex<double>> s;  ///< ascending Im s, not below the axis but for rounding
+  std::vector<std::complex<double>> s;  ///< ascending Im s, then Re s; Im s >= 0
   Eigen::MatrixXcd right;               ///< P(s) x = 0, one per column, of length 1
-  /// About yᴴ P(s) = 0, of length 1: a step of inverse iteration that begins with x.
+  /// About yᴴ P(s) = 0, of length 1: a step of inverse iteration that begins with x; empty where
+  /// only right vectors were asked for.
   Eigen::MatrixXcd left;
 
   Eigen::Index size() const { return right.cols(); }
@@ -87,8 +88,10 @@ double height_above(const std::vector<double>& heights, int count);
 /// @param guesses of the other system
 /// @param height  of the window, rad/s
 /// @param factorisations to which those of P(s) are added
+/// @param sides   `right`: without left vectors
 /// Cost: a factorisation for 24 pairs, and about six solves for each.
 TwoSidedPairs pairs_near(const SparseSystem& system, const TwoSidedPairs& guesses, double height,
-                         int& factorisations);
+                         int& factorisations,
+                         SpectrumWork::Sides sides = SpectrumWork::Sides::both);
 
 }  // namespace stridor

@@ -15,6 +15,8 @@
 namespace stridor {
 namespace {
 
+using Complex = std::complex<double>;
+
 using test::message_of;
 using test::pencil_of;
 using test::reference_brake;
@@ -85,6 +87,55 @@ TEST(SampledLocus, SparingEffortFindsTheSameEndWithFewSpectra) {
   EXPECT_EQ(locus.unstable[0].to, 1.0);
   EXPECT_EQ(locus.num_places, 33);
   EXPECT_LT(num_spectra, 65);
+}
+
+/// One that hardly decays, one that always grows slowly, and two that meet at p = 0.3: squares
+/// −(4 ± sqrt(0.09 − p²)), with a little damping.
+SampledSpectrum flutter_among_others(double p) {
+  SampledSpectrum spectrum{{{-1e-7, 1.0}, {1e-4, 1.5}}, {0.0, 0.0}};
+  const Complex root = std::sqrt(Complex(0.09 - p * p, 0.0));
+  for (const double sign : {-1.0, 1.0}) {
+    Complex s = std::sqrt(-(4.0 + sign * root));
+    if (s.imag() < 0.0) s = -s;
+    spectrum.eigenvalues.push_back(s - 1e-3);
+    spectrum.rounding.push_back(0.0);
+  }
+  if (spectrum.eigenvalues[2].imag() > spectrum.eigenvalues[3].imag())
+    std::swap(spectrum.eigenvalues[2], spectrum.eigenvalues[3]);
+  return spectrum;
+}
+
+TEST(SampledLocus, TheEndOfAFlutterWindowTakesFewSpectra) {
+  // Re sqrt(−4 − i √(p² − 0.09)) = 1e-3, squared: 4 (1e-3)² (4 + (1e-3)²) = p² − 0.09.
+  const double expected = std::sqrt(0.09 + 4.0 * 1e-6 * (4.0 + 1e-6));
+  int num_near = 0;
+  SpectrumFamily family;
+  family.at = flutter_among_others;
+  family.near = [&](double p) {
+    ++num_near;
+    return flutter_among_others(p);
+  };
+  family.around = [](double p, Complex) { return flutter_among_others(p); };
+  const Locus locus = sample_locus(family, {0.0, 0.5, 1.0}, {}, sparing_effort);
+  ASSERT_EQ(locus.crossings.size(), 1U);
+  EXPECT_NEAR(locus.crossings[0].value, expected, 2e-9);
+  EXPECT_LE(num_near, 10);
+  EXPECT_EQ(locus.unstable.size(), 2U);
+}
+
+TEST(SampledLocus, SparingEffortIntegratesSmoothGrowthFromValuesAtHand) {
+  int num_around = 0;
+  const auto grow = [](double x) { return SampledSpectrum{{{std::sin(x) - 0.2, 20.0}}, {0.0}}; };
+  SpectrumFamily family{grow, grow, [&](double x, Complex) {
+                          ++num_around;
+                          return grow(x);
+                        }};
+  const Locus locus = sample_locus(family, {0.0, 1.0, 2.0}, {}, sparing_effort);
+  ASSERT_EQ(locus.unstable.size(), 1U);
+  const double from = std::asin(0.2);
+  const double integral = std::cos(from) - std::cos(2.0) - 0.2 * (2.0 - from);
+  EXPECT_NEAR(locus.unstable[0].growth_integral, integral, 1e-6 * integral);
+  EXPECT_LT(num_around, 20);  // 8 towards the top, and two or three for the integral
 }
 
 TEST(SampledLocus, SpectraThatWereNotCountedAreAmongTheValuesNotVerified) {

@@ -361,6 +361,7 @@ substructures:
   }
   // Of equal masses √(k/m) and √((k + 2 c)/m); lines lie 0.1 Hz apart.
   ASSERT_EQ(shapes["peaks"].size(), 2u);
+  EXPECT_EQ(shapes["measured_peaks"].size(), 2u);
   const double measured[] = {std::sqrt(4e4 / 2.0) / two_pi, std::sqrt(1e5 / 2.0) / two_pi};
   for (std::size_t k = 0; k < 2; ++k) {
     const Json& peak = shapes["peaks"][k];
