@@ -267,15 +267,19 @@ std::string purpose_of(const std::string& scene_text) {
   return end == std::string::npos ? comment : comment.substr(0, end + 1);
 }
 
-/// Along how far the drive has moved the bodies; nothing where it has not.
-std::optional<FramedRange> way_of(const RunFileReader& file) {
+/// The way that the drive went in a run, along which modes are about the deformed geometry, as the
+/// bodies of a run slide; the scene as it stands where the drive did not move.
+FramedRange way_of(const RunFileReader& file) {
+  FramedRange way{"", {}, "deformed"};
   constexpr const char* place = "/final/drive_displacement";
-  if (!file.has(place)) return std::nullopt;
+  if (!file.has(place)) return way;
   const std::vector<double> displacement = file.static_array(place);
   if (displacement.empty() || displacement.front() == 0.0 || !std::isfinite(displacement.front()))
-    return std::nullopt;
+    return way;
   const double end = displacement.front();
-  return FramedRange{drive_displacement_name, {std::min(0.0, end), std::max(0.0, end)}, ""};
+  way.parameter = drive_displacement_name;
+  way.values = {std::min(0.0, end), std::max(0.0, end)};
+  return way;
 }
 
 /// The numbers that the scene expects of its run, beside those that it has.

@@ -110,7 +110,29 @@ void add_failures(const std::string& parameter, const std::string& units,
     remarks.push_back(fmt::format("{} more failed; the table says why.", count - most));
 }
 
-std::string sweep_text(const std::string& parameter, const std::vector<CurveSet>& sets) {
+/// Where bursts were heard, and the value whose acceleration reached most.
+std::string loudest_of(const CurveSet& set, const std::string& units) {
+  std::string text;
+  for (const CurveColumn& column : set.columns) {
+    if (column.name == "num_bursts") {
+      const auto heard = std::ranges::count_if(column.values, [](double n) { return n > 0.0; });
+      text += fmt::format("; bursts at {} of them", heard);
+    }
+    if (column.name != "acceleration_peak") continue;
+    std::size_t top = column.values.size();
+    for (std::size_t i = 0; i < column.values.size(); ++i)
+      if (std::isfinite(column.values[i]) &&
+          (top == column.values.size() || column.values[i] > column.values[top]))
+        top = i;
+    if (top < column.values.size())
+      text += fmt::format("; the acceleration reaches most at {}, {}", shown(set.over[top], units),
+                          shown(column.values[top], column.units));
+  }
+  return text;
+}
+
+std::string sweep_text(const std::string& parameter, const std::string& units,
+                       const std::vector<CurveSet>& sets) {
   std::size_t points = 0;
   std::size_t num_failed = 0;
   std::string motions;
@@ -123,6 +145,7 @@ std::string sweep_text(const std::string& parameter, const std::vector<CurveSet>
     motions += set.name.empty() ? counted : set.name + " " + counted;
   }
   std::string text = fmt::format("{} values of {}{}", points, parameter, motions);
+  for (const CurveSet& set : sets) text += loudest_of(set, units);
   if (num_failed > 0)
     text += fmt::format("{} {} failed", motions.empty() ? ", of which" : ";", num_failed);
   return text;
@@ -154,7 +177,7 @@ Json sweep_section(const ResultFile& file, const ReportContext& context) {
   view["table"] = true;
   section["views"].push_back(std::move(view));
   add_failures(parameter, units, sets, section["remarks"]);
-  std::string text = sweep_text(parameter, sets);
+  std::string text = sweep_text(parameter, units, sets);
   const bool has_failed = std::any_of(sets.begin(), sets.end(),
                                       [](const CurveSet& set) { return !set.failed.empty(); });
   std::string level = has_failed ? "failed" : "told";

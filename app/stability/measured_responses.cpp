@@ -147,21 +147,30 @@ int derivative_of(const ResponseCurve& curve) {
   return static_cast<int>(found - std::begin(units_of_responses));
 }
 
-/// Computes what belongs to a measured response: the curve between the same points as the same motion.
-void compute(const ResponseStudy& study, const NamedFunction& named, ComparedResponse& compared) {
-  const auto motion = static_cast<std::size_t>(named.derivative);
-  for (ResponseCurve& curve : study.curves(compared.frequencies)) {
-    if (without_motion(curve.output) != named.output || curve.input != named.input) continue;
+/// The response between two points of a scene as a displacement, velocity or acceleration.
+ResponseCurve response_between(const ResponseStudy& study, const std::string& output,
+                               const std::string& input, int derivative,
+                               const std::vector<double>& frequencies) {
+  for (ResponseCurve& curve : study.curves(frequencies)) {
+    if (without_motion(curve.output) != output || curve.input != input) continue;
     const int order = derivative_of(curve);
     for (std::size_t i = 0; i < curve.values.size(); ++i) {
-      const std::complex<double> s(0.0, 2.0 * std::numbers::pi * compared.frequencies[i]);
-      curve.values[i] *= std::pow(s, named.derivative - order);
+      const std::complex<double> s(0.0, 2.0 * std::numbers::pi * frequencies[i]);
+      curve.values[i] *= std::pow(s, derivative - order);
     }
-    curve.output = named.output + "." + motions_of_responses[motion];
+    const auto motion = static_cast<std::size_t>(derivative);
+    curve.output = output + "." + motions_of_responses[motion];
     curve.units = units_of_responses[motion];
-    compared.computed = std::move(curve);
-    break;
+    return std::move(curve);
   }
+  return {};
+}
+
+/// Computes what belongs to a measured response: the curve between the same points as the same
+/// motion.
+void compute(const ResponseStudy& study, const NamedFunction& named, ComparedResponse& compared) {
+  compared.computed =
+      response_between(study, named.output, named.input, named.derivative, compared.frequencies);
   compared.measured.output = compared.computed.output;
   compared.measured.units = compared.computed.units;
   compared.assurance = assurance_criterion(compared.computed.values, compared.measured.values);
@@ -292,6 +301,12 @@ std::vector<ComparedResponse> compared_responses(const ResponseStudy& study,
   std::string text = "nothing of the file can be compared with the responses of the scene";
   for (const std::string& remark : remarks) text += "\n  " + remark;
   throw ConfigError(Refusal::wrong_value, "--compare", text);
+}
+
+ResponseCurve computed_beside(const ResponseStudy& study, const ComparedResponse& compared,
+                              const std::vector<double>& frequencies) {
+  return response_between(study, without_motion(compared.computed.output), compared.computed.input,
+                          derivative_of(compared.computed), frequencies);
 }
 
 std::vector<ComparedShapes> response_shapes(const std::vector<ComparedResponse>& compared) {

@@ -33,6 +33,10 @@ std::vector<ComparedResponse> compared_responses(const ResponseStudy& study,
                                                  const std::vector<NodeName>& names, double from,
                                                  double to, std::vector<std::string>& remarks);
 
+/// The response of the scene that belongs to a measured one, at any frequencies.
+ResponseCurve computed_beside(const ResponseStudy& study, const ComparedResponse& compared,
+                              const std::vector<double>& frequencies);
+
 /// The deflection shapes that compared responses show: for every force to which two points or more
 /// respond at the same frequencies, MAC at each of these, and of the shapes at peaks of the
 /// mobility, √Σ|v|² over the points, that stand out by a factor of two (at most 60).

@@ -151,6 +151,7 @@ DiagramPanel ResponsePicture::panel_of(const ComparedShapes& shapes) const {
                      AxisKind::linear,
                      false,
                      {{"", shapes.frequencies, shapes.assurance, Mark::line, 0}}};
+  panel.is_share = true;
   PanelCurve peaks{"", {}, {}, Mark::points, 1};
   for (const PeakPair& pair : peak_pairs(shapes)) {
     peaks.x.push_back(shapes.measured_peaks[pair.measured]);

@@ -128,15 +128,20 @@ void draw_responses(const FoundResponses& found) {
   const bool has_errors = found.compared.empty() && std::ranges::any_of(found.curves, is_off);
   for (const ComparedResponse& one : found.compared) {
     const std::string label = next_label(one.computed);
-    picture.add(one.frequencies, one.measured, label + " measured", Mark::points, 2 * colour + 1);
-    picture.add(one.frequencies, one.computed, label, Mark::line, 2 * colour);
+    const auto [frequencies, curves] =
+        resolved_curves(one.frequencies, {one.computed}, [&](const std::vector<double>& between) {
+          return std::vector{computed_beside(found.study, one, between)};
+        });
+    picture.add(one.frequencies, one.measured, "", Mark::points, 2 * colour + 1);
+    picture.add(frequencies, curves.front(), label, Mark::line, 2 * colour);
     ++colour;
   }
   for (const ComparedShapes& shapes : found.shapes) picture.add_shapes(shapes);
   picture.draw(
       fmt::format(
-          "Frequency responses about the {} geometry.{}{} {}, scene {}.", options.stability.about,
-          names, has_errors ? " Dashed: how far they are off with the modes that a run keeps." : "",
+          "Frequency responses about the {} geometry.{}{}{} {}, scene {}.", options.stability.about,
+          names, found.compared.empty() ? "" : " Points: measured.",
+          has_errors ? " Dashed: how far they are off with the modes that a run keeps." : "",
           fs::path(options.stability.scene).filename().string(), found.study.loaded().hash()),
       *options.figure);
 }

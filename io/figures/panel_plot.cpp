@@ -153,6 +153,10 @@ void keep_to_scale(PanelAxis& a, PanelAxis& b) {
 PanelPlane add_panel_data(FigureScript& script, const DiagramPanel& panel, std::size_t number) {
   PanelPlane plane{make_axis(panel, &PanelCurve::x, panel.x_kind),
                    make_axis(panel, &PanelCurve::y, panel.y_kind, panel.y_least)};
+  if (panel.is_share) {
+    plane.y.range = ValueRange{0.0, 1.0}.widened(0.04);
+    plane.y.scale = axis_scale(plane.y.range.lower, plane.y.range.upper, 5);
+  }
   if (panel.is_to_scale) keep_to_scale(plane.x, plane.y);
   for (std::size_t c = 0; c < panel.curves.size(); ++c) {
     const PanelCurve& curve = panel.curves[c];

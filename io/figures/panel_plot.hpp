@@ -29,6 +29,7 @@ struct DiagramPanel {
   bool is_to_scale = false;  ///< the same length for the same number along both axes
   std::vector<PanelCurve> curves;
   double y_least = 0.0;  ///< of a logarithmic axis: what lies below is cut off; 0: nothing
+  bool is_share = false;  ///< y goes from 0 to 1, whatever there is
 };
 
 /// Draws diagrams side by side, at most three in a row, with a caption below.

@@ -144,8 +144,16 @@ class ClosedContacts {
   void take_modes_as_ports(Pencil& pencil, const Eigen::MatrixXd& contact_ports) const {
     const Eigen::Index n = pencil.num_modes();
     const auto on_modes = [&](const Eigen::MatrixXd& rows) {
-      Eigen::MatrixXd moved(rows.rows(), n + pencil.num_body_ports);
-      moved.leftCols(n) = rows.leftCols(num_ports_) * contact_ports;
+      Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(rows.rows(), n + pencil.num_body_ports);
+      // A row is of one contact: the product of all ports would be mostly of zeros.
+      for (const Contact& one : contacts_) {
+        const auto of_contact = rows.middleCols(one.first, one.count);
+        for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+          if (!of_contact.row(i).isZero(0.0))
+            moved.row(i).head(n) +=
+                of_contact.row(i) * contact_ports.middleRows(one.first, one.count);
+        }
+      }
       moved.rightCols(pencil.num_body_ports) = rows.rightCols(pencil.num_body_ports);
       return moved;
     };
