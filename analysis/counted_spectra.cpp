@@ -264,10 +264,11 @@ std::optional<SampledSpectrum> CountedSpectra::counted(const Member& member) {
 }
 
 SampledSpectrum CountedSpectra::at(double value) {
-  if (const auto found = follow(value)) return *found;
-  if (!has_begun_) begin();
   const auto known = searched_.find(value);
   if (known != searched_.end()) return known->second;
+  if (const auto found = follow(value)) return *found;
+  if (!has_begun_) begin();
+  if (const auto begun = searched_.find(value); begun != searched_.end()) return begun->second;
   const Member one = member(value);
   if (!one.is_like || value < range_->first || value > range_->second)
     return search(value, *one.system);

@@ -213,7 +213,7 @@ double trapezium(const Point& a, const Point& b) {
   return 0.5 * (b.value - a.value) * (a.s.real() + b.s.real());
 }
 
-/// What the integral of the growth from a point to the next has besides the trapezium, by the mean
+/// Difference of the integral of the growth from a point to the next to the trapezium, by the mean
 /// of the parabolas through a point before and a point behind them; nothing where there are none.
 /// One much closer than the two are to each other says nothing of the curvature.
 std::optional<double> beside_trapezium(const std::vector<Point>& points, std::size_t first) {

@@ -100,7 +100,7 @@ void add_compared(const ResultFile& file, ReportPage& page, Json& section) {
         fmt::format("{} more measured responses are in the file.", outputs.size() - most_shown));
 }
 
-/// What the file has of the shapes under a force.
+/// The shapes under a force, as the file holds them.
 ComparedShapes kept_shapes(const ResultFile& file, std::size_t number, const std::string& input) {
   const std::string group = "/shapes/" + std::to_string(number);
   ComparedShapes shapes;

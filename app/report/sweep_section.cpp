@@ -112,11 +112,12 @@ void add_failures(const std::string& parameter, const std::string& units,
 
 /// Where bursts were heard, and the value whose acceleration reached most.
 std::string loudest_of(const CurveSet& set, const std::string& units) {
+  const std::string way = set.name.empty() ? "" : set.name + " ";
   std::string text;
   for (const CurveColumn& column : set.columns) {
     if (column.name == "num_bursts") {
       const auto heard = std::ranges::count_if(column.values, [](double n) { return n > 0.0; });
-      text += fmt::format("; bursts at {} of them", heard);
+      text += fmt::format("; {}bursts at {} of them", way, heard);
     }
     if (column.name != "acceleration_peak") continue;
     std::size_t top = column.values.size();
@@ -125,8 +126,8 @@ std::string loudest_of(const CurveSet& set, const std::string& units) {
           (top == column.values.size() || column.values[i] > column.values[top]))
         top = i;
     if (top < column.values.size())
-      text += fmt::format("; the acceleration reaches most at {}, {}", shown(set.over[top], units),
-                          shown(column.values[top], column.units));
+      text += fmt::format("; {}the acceleration reaches most at {}, {}", way,
+                          shown(set.over[top], units), shown(column.values[top], column.units));
   }
   return text;
 }

@@ -20,12 +20,12 @@ SparseSystem modal_system(const Pencil& pencil);
 /// The eigenvalues in a window, from all of them by the dense method; nothing is left to count.
 ///
 /// @return without `right`, `backward_errors` and `modes`; residuals are not computed. `pairs` are
-/// those
-///         to a tenth above the window, without left vectors, by pairs_near(); one may be missing
+///         by pairs_near(), to a tenth above the window, without left vectors; one may be missing
 /// @throws NumericalError as dense_eigenvalues(), pairs_near()
 SparseSpectrum full_spectrum(const SparseSystem& system, const SpectrumWindow& window);
 
-/// Whether every pair has a scaled residual |P(s) x| of at most 1e-6 of the sum of its three terms,
+/// SparsePencil::scaled_residual() of all pairs at once, since products of full matrices are made by
+/// BLAS: whether every pair has a scaled residual |P(s) x| of at most 1e-6 of the sum of its three terms,
 /// as in sparse_spectrum(); of a rigid motion, all of whose terms are rounding, a backward error of
 /// 1e-13.
 bool are_pairs(const SparseSystem& system, const TwoSidedPairs& pairs);
