@@ -21,22 +21,27 @@ double square_of(int i, double value) {
   return i == 9 ? 11.0 + 4.0 * value : 1.5 + 2.0 * i;
 }
 
-/// These oscillators in coordinates that a reflection mixes, so that all entries are there.
-SparseSystem oscillators(double value, double turn = 0.0) {
+/// A diagonal matrix in coordinates that a reflection mixes, so that all entries are there.
+SparseMatrix mixed(const Eigen::VectorXd& diagonal, double turn = 0.0) {
   Eigen::VectorXd axis(num_oscillators);
   for (int i = 0; i < num_oscillators; ++i) axis(i) = std::sin(1.0 + i * (1.0 + turn));
   axis.normalize();
-  Eigen::VectorXd squares(num_oscillators);
-  for (int i = 0; i < num_oscillators; ++i) squares(i) = square_of(i, value);
   const Eigen::MatrixXd mirror =
       Eigen::MatrixXd::Identity(num_oscillators, num_oscillators) - 2.0 * axis * axis.transpose();
+  return (mirror * diagonal.asDiagonal() * mirror).sparseView(1.0, 0.0);
+}
+
+/// These oscillators in mixed coordinates.
+SparseSystem oscillators(double value, double turn = 0.0) {
+  Eigen::VectorXd squares(num_oscillators);
+  for (int i = 0; i < num_oscillators; ++i) squares(i) = square_of(i, value);
   SparseSystem system;
   for (SparseMatrix* matrix : {&system.mass, &system.velocity})
     matrix->resize(num_oscillators, num_oscillators);
   system.mass.setIdentity();
   system.velocity.setIdentity();
   system.velocity *= damping;
-  system.position = (mirror * squares.asDiagonal() * mirror).sparseView(1.0, 0.0);
+  system.position = mixed(squares, turn);
   return system;
 }
 
@@ -116,15 +121,11 @@ TEST(FollowedSpectra, ACountIsKeptWhereOneLeavesTheWindow) {
 /// Of alike bodies: the same oscillators several times, and one that moves.
 SparseSystem copies(int num_copies, double value) {
   SparseSystem system = oscillators(value);
-  Eigen::VectorXd axis(num_oscillators), squares(num_oscillators);
+  Eigen::VectorXd squares(num_oscillators);
   for (int i = 0; i < num_oscillators; ++i) {
-    axis(i) = std::sin(1.0 + i);
     squares(i) = i == num_oscillators - 1 ? 10.0 + 0.1 * value : 1.5 + 2.0 * (i / num_copies);
   }
-  axis.normalize();
-  const Eigen::MatrixXd mirror =
-      Eigen::MatrixXd::Identity(num_oscillators, num_oscillators) - 2.0 * axis * axis.transpose();
-  system.position = (mirror * squares.asDiagonal() * mirror).sparseView(1.0, 0.0);
+  system.position = mixed(squares);
   return system;
 }
 
@@ -144,9 +145,8 @@ TEST(FollowedSpectra, NoneOfThoseThatCoincideIsLost) {
 /// Two oscillators are damped beyond vibration, and one has no stiffness but what the value takes.
 SparseSystem with_real_eigenvalues(double value) {
   SparseSystem system = oscillators(value);
-  Eigen::VectorXd axis(num_oscillators), squares(num_oscillators), rates(num_oscillators);
+  Eigen::VectorXd squares(num_oscillators), rates(num_oscillators);
   for (int i = 0; i < num_oscillators; ++i) {
-    axis(i) = std::sin(1.0 + i);
     squares(i) = 1.5 + 2.0 * i;
     rates(i) = damping;
   }
@@ -155,11 +155,8 @@ SparseSystem with_real_eigenvalues(double value) {
   rates(1) = 8.0;
   rates(2) = 7.5;
   squares(3) = -1.0 - value;
-  axis.normalize();
-  const Eigen::MatrixXd mirror =
-      Eigen::MatrixXd::Identity(num_oscillators, num_oscillators) - 2.0 * axis * axis.transpose();
-  system.velocity = (mirror * rates.asDiagonal() * mirror).sparseView(1.0, 0.0);
-  system.position = (mirror * squares.asDiagonal() * mirror).sparseView(1.0, 0.0);
+  system.velocity = mixed(rates);
+  system.position = mixed(squares);
   return system;
 }
 
