@@ -13,14 +13,16 @@ class Problem:
     Attributes
     ----------
     message : str
+        What is wrong, in a sentence.
     file : str
         A file, or the setting that it came from ("--set key=value"); "" where it has no place.
     line, column : int
-        From 1; 0 where there is none.
+        Place in the file, counted from 1; 0 where there is none.
     key : str
-        The key of the scene, "contact.friction.coefficient".
+        The key of the scene, "contact.friction.coefficient", or the option, "--points"; "" where it is of neither.
     code : str
-        Its kind, "off-the-surface": docs/refusals.md has a section for each.
+        Its kind, "off-the-surface", which stays the same from version to version: docs/refusals.md has a section for
+        each.
     """
 
     message: str
@@ -48,7 +50,9 @@ class Error(Exception):
     Attributes
     ----------
     problems : list of Problem
+        All that is wrong, each with its place.
     exit_code : int
+        Of the program: 2 of a `ConfigError`, 3 of a `NumericalError`, 4 of a `FileError`, 5 of `Stopped`, else 1.
     answer : dict
         The JSON object that the program printed all the same: the results of a run that missed what its scene
         expects (``verify=True``), contacts of which some did not converge.
@@ -81,12 +85,12 @@ class FileError(Error):
 
 
 class Stopped(Error):
-    """Stopped on request.
+    """The program was stopped, by Ctrl-C or `max_wall`.
 
     Attributes
     ----------
     file : str or None
-        The run file, where the run can be resumed: ``stridor.run(resume=error.file)``.
+        Of a run, the file with which it can go on: ``stridor.run(resume=error.file)``; of other verbs None.
     """
 
     exit_code = 5

@@ -50,10 +50,9 @@ class ResultFile:
     Attributes
     ----------
     path : str
-    kind : str
-        "run", "locus", "map", ...
+        Path of the file; "" where a result stands in memory alone.
     attributes : dict
-        What was computed, of what and how.
+        Attributes of the root of the file: what was computed, of what and how (docs/files.md).
     raw : dict
         The JSON object of the verb that wrote it; empty where the file was opened.
     """
@@ -68,20 +67,38 @@ class ResultFile:
 
     @property
     def kind(self) -> str:
+        """What it holds: "run", "locus", "stability map", ..."""
         return self.attributes.get("kind", "run" if "time" in self._file else "")
 
     @property
     def command(self) -> str:
-        """The command line that made it."""
+        """The command line that made it; "" where the file does not say."""
         return self.attributes.get("command", "")
 
     def __getitem__(self, name: str) -> Any:
-        """A dataset by its path, "/eigenvalues/growth": a `Series`, or a text or number alone."""
+        """A dataset by its path, "/eigenvalues/growth".
+
+        Parameters
+        ----------
+        name : str
+            Its path in the file.
+
+        Returns
+        -------
+        Series, str or number
+            A `Series`, which is read when its numbers are asked for; of a dataset without a shape what it holds.
+        """
         dataset = self._file[name]
         return self._series(name, dataset) if dataset.shape else plain(dataset[()])
 
     def datasets(self) -> list[str]:
-        """Paths of all datasets."""
+        """Paths of all datasets.
+
+        Returns
+        -------
+        list of str
+            As ``found[path]`` takes them.
+        """
         names: list[str] = []
         self._file.visititems(
             lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
@@ -96,8 +113,13 @@ class ResultFile:
         Parameters
         ----------
         group : str, optional
-            Path of the group, "bursts" or "contact/pad"; default: what the kind of file is about, else the root or the first
-            group that holds series.
+            Path of the group, "bursts" or "contact/pad"; default: what the kind of file is about, else the root or the
+            first group that holds series.
+
+        Returns
+        -------
+        xarray.Dataset
+            A variable for each series of the group, in the unit of its attribute ``units``.
 
         Raises
         ------
@@ -107,7 +129,7 @@ class ResultFile:
             Where xarray is not installed.
         """
         path = self._group_of_arrays if group is None else group
-        if path is None:
+        if path is None or (group is None and path not in self._file):
             path = "/" if self._group("/") else next(iter(self._groups()), "/")
         if not isinstance(self._file.get(path), h5py.Group):
             raise KeyError(f"{self.path} has no group {path!r}; it has {listed(self._groups(), 20)}")
@@ -116,6 +138,7 @@ class ResultFile:
                                 labelled.coordinates_of(series.values()), self._introduction())
 
     def close(self) -> None:
+        """Closes the file: what was read stays, what was not can no longer be read."""
         self._file.close()
 
     def _series(self, name: str, dataset: h5py.Dataset) -> Series:
@@ -158,7 +181,22 @@ class ResultFile:
         self.close()
 
     def __repr__(self) -> str:
+        name = f"{type(self).__name__} {self.path}" if self.path else type(self).__name__
         if not self._file:
-            return f"<{type(self).__name__} {self.path}: closed>"
+            return f"<{name}: closed>"
         title = self.attributes.get("title") or self.kind
-        return "\n ".join([f"<{type(self).__name__} {self.path}: {title}", *self._lines()]) + ">"
+        return "\n ".join([f"<{name}: {title}", *self._lines()]) + ">"
+
+
+def path_of(file: ResultFile | Place) -> str:
+    """The path of a file that is open, or that is named.
+
+    Raises
+    ------
+    ValueError
+        If the result stands in no file.
+    """
+    path = os.fspath(file.path if isinstance(file, ResultFile) else file)
+    if not path:
+        raise ValueError(f"this {type(file).__name__} stands in no file; name a folder with output= where it is made")
+    return path

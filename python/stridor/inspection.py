@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import Any, Mapping
 
 from . import errors, invocation
-from .files import ResultFile, counted
-from .scene import Place, Scene, as_scene
-from .verbs import Settings
+from .files import ResultFile, counted, path_of
+from .scene import Place, Quantity, Scene, Settings, as_scene
 
 
 @dataclass(frozen=True, repr=False)
@@ -19,14 +18,14 @@ class Findings:
     Attributes
     ----------
     problems : list of Problem
-        What is wrong; nothing runs before it is mended.
+        What is wrong, each with its place; nothing runs before it is mended.
     warnings : list of Problem
         What is hardly meant.
     imports : dict
         What the files of meshes and matrices hold, by body.
     stability : dict or None
-        Of the steps along the path, with `stability=True`: ``steps_grow``, ``step_limit``, ``stable_step`` and
-        ``places``.
+        Of the steps along the path, where it was asked for: ``steps_grow``, ``step_limit`` and ``stable_step``, s, and
+        ``places``; else None.
     raw : dict
         The whole JSON object.
     """
@@ -52,15 +51,24 @@ class Findings:
 
 
 def check(scene: Scene | Place, *, set: Settings | None = None, stability: bool = False,  # noqa: A002
-          places: int | None = None, **options: Any) -> Findings:
+          places: int | None = None, progress: invocation.Progress | None = None, **options: Any) -> Findings:
     """What is wrong with a scene, what is hardly meant, and what its imported files hold.
 
     Parameters
     ----------
-    stability : bool
+    scene : Scene or path
+        A scene, or the path of its file.
+    set : mapping, optional
+        Keys of the scene that are set anew for this call: numbers in SI units, or texts with a unit.
+    stability : bool, default: False
         Also whether the steps are stable along the path.
     places : int, optional
-        How many places of the path; default: 101.
+        With `stability`, at how many places of the path; default: 101.
+    progress : callable, optional
+        Is called a few times a second with the fraction done (0 to 1), the time left in s or None, and a text;
+        what it raises ends the program in order and is raised again.
+    **options
+        ``threads`` (int): threads to use.
 
     Returns
     -------
@@ -84,7 +92,6 @@ def check(scene: Scene | Place, *, set: Settings | None = None, stability: bool 
     >>> check(example("from_abaqus")).imports["clip"]["matrices"]["unknowns"]
     24
     """
-    progress = options.pop("progress", None)
     words = invocation.arguments_of({"stability": stability, "places": places, **options})
     try:
         raw = invocation.call(["check", *as_scene(scene, set).words(), *words], progress)
@@ -97,15 +104,32 @@ def check(scene: Scene | Place, *, set: Settings | None = None, stability: bool 
                     raw.get("imports", {}), raw.get("stability"), raw)
 
 
-def info(run: ResultFile | Place, *, band: tuple[Any, Any] | None = None, **options: Any) -> dict[str, Any]:
+def info(run: ResultFile | Place, *, band: tuple[Quantity, Quantity] | None = None,
+         progress: invocation.Progress | None = None) -> dict[str, Any]:
     """What a file of results holds, as ``stridor info`` tells it: of a run its series, results and bursts.
 
     Parameters
     ----------
     run : Run, any other result or path
-        Of kinds other than runs there are ``kind``, ``command``, ``arrays`` and ``results``; `open` reads their numbers.
+        A result, or the path of its file.
     band : tuple, optional
-        Lower and upper frequency between which bursts are sought anew, Hz or texts with a unit.
+        Lower and upper frequency between which bursts are sought anew, Hz or texts with a unit; default: those that the
+        run found in ``measure.band`` of its scene.
+    progress : callable, optional
+        Is called a few times a second with the fraction done (0 to 1), the time left in s or None, and a text;
+        what it raises ends the program in order and is raised again.
+
+    Returns
+    -------
+    dict
+        The JSON object of ``stridor info``. Of a run: ``samples``, ``time`` (``from`` and ``to``, s), ``series`` with
+        their units, ``results`` and ``bursts``; of other kinds ``arrays`` with shapes and units, and ``results``.
+        `open` reads the numbers.
+
+    Raises
+    ------
+    FileError
+        If there is no such file, or it is none of results.
 
     Examples
     --------
@@ -113,12 +137,12 @@ def info(run: ResultFile | Place, *, band: tuple[Any, Any] | None = None, **opti
     >>> info(grown, band=("1 kHz", "8 kHz"))["samples"] == len(grown.time)
     True
     """
-    progress = options.pop("progress", None)
-    file = os.fspath(run.path if isinstance(run, ResultFile) else run)
-    return invocation.call(["info", file, *invocation.arguments_of({"band": band, **options})], progress)
+    return invocation.call(["info", path_of(run), *invocation.arguments_of({"band": band})], progress)
 
 
-def import_(*sources: Place | Mapping[str, Place], output: Place | None = None, **options: Any) -> dict[str, Any]:
+def import_(*sources: Place | Mapping[str, Place], output: Place | None = None, length_unit: str | None = None,
+            force_unit: str | None = None, time_unit: str | None = None, frequencies: int | None = None,
+            force: bool = False, progress: invocation.Progress | None = None, **options: Any) -> dict[str, Any]:
     """What files of meshes, matrices and modal tests hold, before they are used in a scene.
 
     Parameters
@@ -128,16 +152,26 @@ def import_(*sources: Place | Mapping[str, Place], output: Place | None = None, 
         mapping where names do not tell which is which: ``{"mass": "a.mtx", "stiffness": "b.mtx"}``, also damping,
         unknowns, mesh, nodes, universal.
     output : path, optional
-        A picture of the mesh with its surfaces to write, ``.png``, ``.svg`` or ``.pdf``.
+        Picture to write, ``.png``, ``.svg`` or ``.pdf``: the mesh with its surfaces, or the nodes, lines and elements
+        of a universal file; default: none.
+    length_unit, force_unit, time_unit : str, optional
+        Units of the files, "mm"; default: "m", "N", "s".
+    frequencies : int, optional
+        How many of the lowest frequencies of matrices to find; default: 10.
+    force : bool, default: False
+        Whether a picture that exists is written over.
+    progress : callable, optional
+        Is called a few times a second with the fraction done (0 to 1), the time left in s or None, and a text;
+        what it raises ends the program in order and is raised again.
     **options
-        ``unknowns``, ``length_unit``, ``force_unit``, ``time_unit``, ``thickness``, ``frequencies``, ``force``: as
-        of ``stridor import``.
+        ``unknowns`` ("all_of_mesh"): the rows of the matrices are all displacements of all nodes of the mesh;
+        ``thickness`` (number): of a planar mesh, m, 1 by default.
 
     Returns
     -------
     dict
-        ``mesh``, ``matrices`` or ``universal``, as far as the files have them; lengths of a mesh in its own unit
-        unless ``length_unit`` says it.
+        ``mesh``, ``matrices`` or ``universal``, as far as the files have them. Lengths of a mesh are in m if
+        `length_unit` says its unit, else as they stand in the file; frequencies are in Hz.
 
     Raises
     ------
@@ -164,9 +198,9 @@ def import_(*sources: Place | Mapping[str, Place], output: Place | None = None, 
             words += [f"{role}={os.fspath(file)}" for role, file in one.items()]
         else:
             words.append(os.fspath(one))
-    progress = options.pop("progress", None)
-    picture = None if output is None else os.fspath(output)
-    return invocation.call(["import", *words, *invocation.arguments_of({"output": picture, **options})], progress)
+    asked = {"output": output, "length_unit": length_unit, "force_unit": force_unit, "time_unit": time_unit,
+             "frequencies": frequencies, "force": force, **options}
+    return invocation.call(["import", *words, *invocation.arguments_of(asked)], progress)
 
 
 def schema(*, reference: bool = False) -> Any:
@@ -174,8 +208,13 @@ def schema(*, reference: bool = False) -> Any:
 
     Parameters
     ----------
-    reference : bool
-        The reference page of all keys instead, a text of Markdown.
+    reference : bool, default: False
+        Whether the reference page of all keys is wanted instead.
+
+    Returns
+    -------
+    dict or str
+        The JSON Schema; with `reference` a text of Markdown.
 
     Examples
     --------

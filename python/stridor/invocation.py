@@ -23,6 +23,11 @@ def program() -> str:
     The environment variable ``STRIDOR_PROGRAM`` names it; else it is the one beside this package in a
     source tree that has been built, else the one on the path.
 
+    Returns
+    -------
+    str
+        Its name, or its path.
+
     Raises
     ------
     FileError
@@ -43,8 +48,8 @@ def program() -> str:
     return found
 
 
-#: Options that take several words after one another: first and last value, number.
-_OF_SEVERAL_WORDS = ("speeds", "indentations")
+#: Options that take several words after one another: a key, first and last value, number.
+_OF_SEVERAL_WORDS = ("speeds", "indentations", "x", "y")
 #: Options that take both ends with a comma between.
 _OF_BOTH_ENDS = ("band",)
 
@@ -169,7 +174,7 @@ def _communicate(process: subprocess.Popen, progress: Progress) -> tuple[str, st
 
 
 def _finish(words: Sequence[str], progress: Progress | None = None) -> tuple[int, str, str]:
-    """Runs the program to its end: exit code, output, messages. On Ctrl-C it is asked to end in order, and waited for."""
+    """Runs the program to its end: exit code, output, messages. On Ctrl-C it is asked to end in order."""
     process = subprocess.Popen([program(), *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                start_new_session=True)
     try:

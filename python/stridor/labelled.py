@@ -1,6 +1,6 @@
 """Labelled arrays of xarray, made of datasets of result files and read where they are used.
 
-xarray is an optional package: what needs it imports it when it is called.
+xarray and pandas are optional packages: what needs them imports them when it is called.
 """
 
 from __future__ import annotations
@@ -85,6 +85,22 @@ def import_xarray() -> Any:
         raise ImportError("to_xarray() needs the package xarray "
                           "(Debian: apt install python3-xarray; else: pip install xarray)") from error
     return xarray
+
+
+def import_pandas() -> Any:
+    """The package pandas.
+
+    Raises
+    ------
+    ImportError
+        Where it is not installed; the message says how it is.
+    """
+    try:
+        import pandas
+    except ImportError as error:
+        raise ImportError("to_pandas() needs the package pandas "
+                          "(Debian: apt install python3-pandas; else: pip install pandas)") from error
+    return pandas
 
 
 def _read(of: Labelled, shape: tuple[int, ...], key: tuple[Any, ...]) -> np.ndarray:

@@ -8,25 +8,33 @@ import h5py
 
 from . import errors
 from .files import ResultFile
-from .results import FrequencyResponses, Locus, Spectrum, StabilityMap, Sweep
+from .responses import FrequencyResponses
+from .results import Locus, Spectrum, StabilityMap, Sweep
 from .rubber import ContactLaw, SlidingContacts
 from .runs import Cycle, Run
 from .scene import Place
 from .series import plain
+from .tables import Comparison, PrecisionStudy
 
 _KINDS = {"run": Run, "eigenvalues": Spectrum, "locus": Locus, "map": StabilityMap, "stability map": StabilityMap,
           "frequency responses": FrequencyResponses, "limit cycle": Cycle, "sweep of transients": Sweep,
-          "sweep of limit cycles": Sweep, "sliding contacts": SlidingContacts, "contact law": ContactLaw}
+          "sweep of limit cycles": Sweep, "sliding contacts": SlidingContacts, "contact law": ContactLaw,
+          "comparison of assumptions": Comparison, "study of precision": PrecisionStudy}
 
 
 def open(path: Place) -> ResultFile:  # noqa: A001, as in h5py and xarray
-    """A result file: `Run`, `Spectrum`, `Locus`, `StabilityMap`, `FrequencyResponses`, `Sweep`, `Cycle`, `SlidingContacts`,
-    `ContactLaw`, or else `ResultFile`.
+    """Opens a result file as what it is.
 
     Parameters
     ----------
     path : path
-        Of a file that a verb has written.
+        Path of a file (HDF5) that a verb has written; a run may still be writing it.
+
+    Returns
+    -------
+    ResultFile
+        By its kind a `Run`, `Cycle`, `Sweep`, `Spectrum`, `Locus`, `StabilityMap`, `FrequencyResponses`,
+        `SlidingContacts`, `ContactLaw`, `Comparison` or `PrecisionStudy`; of any other kind a plain `ResultFile`.
 
     Raises
     ------

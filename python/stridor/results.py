@@ -1,8 +1,7 @@
-"""Files of loci, maps, responses, sweeps and sliding contacts."""
+"""Files of eigenvalues, loci, maps and sweeps."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -35,17 +34,17 @@ class Spectrum(ResultFile):
 
     @property
     def values(self) -> np.ndarray:
-        """s, 1/s, ascending frequency."""
+        """Eigenvalues s, 1/s, complex, ascending frequency."""
         return _complex(self._file["eigenvalues"])
 
     @property
     def frequencies(self) -> np.ndarray:
-        """Hz."""
+        """Frequency of each eigenvalue, Hz."""
         return self._file["eigenvalues/frequency"][:]
 
     @property
     def growth(self) -> np.ndarray:
-        """1/s."""
+        """Growth rate of each eigenvalue, 1/s; negative where it decays."""
         return self._file["eigenvalues/growth"][:]
 
     @property
@@ -55,7 +54,7 @@ class Spectrum(ResultFile):
 
     @property
     def window(self) -> tuple[float, float]:
-        """Frequencies for which that holds, Hz."""
+        """Lowest and highest frequency for which that holds, Hz."""
         return 0.0, float(self.attributes.get("highest_frequency", np.inf))
 
     def _lines(self) -> list[str]:
@@ -68,7 +67,7 @@ class Spectrum(ResultFile):
 
 
 class Locus(ResultFile):
-    """Eigenvalues along a key.
+    """Eigenvalues along a key, what `locus` finds.
 
     Examples
     --------
@@ -87,33 +86,37 @@ class Locus(ResultFile):
 
     @property
     def parameter(self) -> str:
+        """Key of the scene that was varied."""
         return self.attributes.get("parameter", "")
 
     @property
     def units(self) -> str:
-        """Of the parameter."""
+        """Unit of the parameter, "m"; "1" where it has none."""
         return self.attributes.get("units", "")
 
     @property
     def values(self) -> np.ndarray:
+        """Values of the parameter, in `units`."""
         return self._file["values"][:]
 
     @property
     def eigenvalues(self) -> np.ndarray:
-        """s, 1/s, [value][eigenvalue], ascending frequency; NaN where there are fewer."""
+        """Eigenvalues s, 1/s, complex, [value][number], ascending frequency; NaN where there are fewer."""
         return _complex(self._file["eigenvalues"])
 
     @property
     def branches(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Values and s of every eigenvalue that was followed."""
+        """Every eigenvalue that was followed: values of the parameter and s, 1/s, of each, in arrays of equal
+        length."""
         value, growth, frequency = (self._file["branches"][name][:] for name in ("value", "growth", "frequency"))
         return [(row[kept], s[kept]) for row, s in zip(value, growth + 1j * _TURN * frequency)
                 for kept in [~np.isnan(row)]]
 
     @property
     def windows(self) -> np.ndarray:
-        """Where something grows, as a structured array with from, to and value_max (of the parameter), growth_max, 1/s,
-        and frequency, Hz, there, and, where a run passes them, from_time, to_time, s, and gain (else NaN)."""
+        """Where something grows, a structured array: ``from``, ``to`` and ``value_max``, in `units`; ``growth_max``,
+        1/s, and ``frequency``, Hz, there; where a run passes them ``from_time`` and ``to_time``, s, and ``gain`` (else
+        NaN)."""
         names = ("from", "to", "value_max", "growth_max", "frequency", "from_time", "to_time", "gain")
         return self._records("unstable", dict.fromkeys(names, np.nan))
 
@@ -128,6 +131,10 @@ class Locus(ResultFile):
         ----------
         group : str, optional
             A single group of the file instead, "unstable".
+
+        Returns
+        -------
+        xarray.Dataset
 
         Examples
         --------
@@ -173,19 +180,29 @@ class Locus(ResultFile):
 
 
 class StabilityMap(ResultFile):
-    """The largest growth rate over two keys."""
+    """The largest growth rate over two keys, what `map` finds.
+
+    Examples
+    --------
+    >>> found = map(example("disc_and_pads"), x=("parameters.mu", 0.2, 0.5, 4),
+    ...             y=("substructures.disc.spin", 5, 10, 2))
+    >>> found.parameters, found.growth.shape, found.boundary[0].shape[1]
+    (('parameters.mu', 'substructures.disc.spin'), (2, 4), 2)
+    """
 
     @property
     def x(self) -> np.ndarray:
+        """Values of the key along x, SI."""
         return self._file["x"][:]
 
     @property
     def y(self) -> np.ndarray:
+        """Values of the key along y, SI."""
         return self._file["y"][:]
 
     @property
     def growth(self) -> np.ndarray:
-        """1/s, [y][x]; NaN where the point failed (`reasons`)."""
+        """The largest growth rate, 1/s, [y][x]; NaN where the point failed (`reasons`)."""
         return self._file["growth"][:]
 
     @property
@@ -215,6 +232,10 @@ class StabilityMap(ResultFile):
         ----------
         group : str, optional
             A single group of the file instead, "boundary".
+
+        Returns
+        -------
+        xarray.Dataset
 
         Examples
         --------
@@ -248,88 +269,8 @@ class StabilityMap(ResultFile):
         return lines
 
 
-class FrequencyResponses(ResultFile):
-    """Frequency responses, by output and input.
-
-    Examples
-    --------
-    >>> found = frf(example("reed"), input="reed.middle.y", from_="100 Hz", to="3 kHz", points=30)
-    >>> found.frequency.shape
-    (30,)
-    >>> [(output, input) for output, input in found]
-    [('reed.middle.y.acceleration', 'reed.middle.y')]
-    >>> found["reed.middle.y.acceleration", "reed.middle.y"].dtype
-    dtype('complex128')
-    """
-
-    @property
-    def frequency(self) -> np.ndarray:
-        """Hz."""
-        return self._file["frequency"][:]
-
-    @property
-    def truncation(self) -> dict[tuple[str, str], float]:
-        """How far each response is off with the modes that a run keeps; empty where it keeps all."""
-        return {(output, name): float(self._file["responses"][output][name]["truncation"][()])
-                for output, name in self if "truncation" in self._file["responses"][output][name]}
-
-    @property
-    def truncation_error(self) -> dict[tuple[str, str], np.ndarray]:
-        """The size of that difference at each frequency, in the unit of the response; empty where a run keeps all."""
-        return {(output, name): self._file["responses"][output][name]["truncation_error"][:]
-                for output, name in self if "truncation_error" in self._file["responses"][output][name]}
-
-    def __iter__(self) -> Iterator[tuple[str, str]]:
-        for output, inputs in self._file["responses"].items():
-            for name in inputs:
-                yield output, name
-
-    def __getitem__(self, names: Any) -> Any:
-        if isinstance(names, str):
-            return super().__getitem__(names)
-        output, name = names
-        group = self._file["responses"][output][name]
-        return group["real"][:] + 1j * group["imaginary"][:]
-
-    def to_xarray(self, group: str | None = None) -> Any:
-        """The responses as an `xarray.Dataset`: a complex variable for each output, over `input` and `frequency`.
-
-        Examples
-        --------
-        >>> found = frf(example("reed"), input="reed.middle.y", from_="100 Hz", to="3 kHz", points=30).to_xarray()
-        >>> response = found["reed.middle.y.acceleration"].sel(input="reed.middle.y")
-        >>> response.dims, response.attrs["units"], float(found.frequency[-1])
-        (('frequency',), 'm/s^2/N', 3000.0)
-        """
-        if group is not None:
-            return super().to_xarray(group)
-        inputs = list(dict.fromkeys(name for _, name in self))
-        variables = {output: self._response_of(output, inputs) for output in self._file["responses"]}
-        coordinates = {"frequency": labelled.of_series(self["/frequency"]),
-                       "input": labelled.of_array(("input",), np.array(inputs, dtype=object))}
-        return labelled.dataset(variables, coordinates, self._introduction())
-
-    def _response_of(self, output: str, inputs: list[str]) -> labelled.Labelled:
-        """The responses of an output to all inputs."""
-        parts = [labelled.of_parts(*(labelled.of_series(self[f"/responses/{output}/{name}/{part}"])
-                                     for part in ("real", "imaginary"))) for name in inputs]
-
-        def read(key: tuple[Any, ...]) -> np.ndarray:
-            which, frequencies = key
-            if isinstance(which, int):
-                return parts[which].read((frequencies,))
-            return np.array([one.read((frequencies,)) for one in parts[which]])
-
-        return labelled.Labelled(("input", "frequency"), (len(parts), *parts[0].shape), np.dtype(complex), read,
-                                 {**parts[0].attributes, "long_name": f"{output} per force"})
-
-    def _lines(self) -> list[str]:
-        return [f"{len(self._file['frequency'])} frequencies, {span(self.frequency, 'Hz')}",
-                "responses: " + listed((f"{output} / {name}" for output, name in self), 3)]
-
-
 class Sweep(ResultFile):
-    """Results of transients or of limit cycles along a key.
+    """Results of transients or of limit cycles along a key, what `sweep` finds; ``found["/force_max"]`` is a column.
 
     Examples
     --------
@@ -345,6 +286,7 @@ class Sweep(ResultFile):
 
     @property
     def parameter(self) -> str:
+        """Key of the scene that was varied."""
         return self.attributes.get("parameter", "")
 
     @property
@@ -354,7 +296,7 @@ class Sweep(ResultFile):
 
     @property
     def values(self) -> np.ndarray:
-        """Of the parameter; of a sweep up and down those upwards."""
+        """Values of the parameter, SI; of a sweep up and down those upwards."""
         return self._group(self.ways[0])["value"][:]
 
     def to_xarray(self, group: str | None = None) -> Any:
@@ -365,6 +307,10 @@ class Sweep(ResultFile):
         ----------
         group : str, optional
             A single group of the file instead, "bursts".
+
+        Returns
+        -------
+        xarray.Dataset
         """
         if group is not None:
             return super().to_xarray(group)

@@ -12,7 +12,7 @@ _FIRST = ("speed", "indentation", "force", "area", "friction", "converged")
 
 
 class SlidingContacts(ResultFile):
-    """Forces, areas and friction in steady sliding, with pressures and gaps.
+    """Forces, areas and friction in steady sliding, with pressures and gaps: what `contact` finds.
 
     ``to_xarray()`` gives the rows; ``to_xarray("contacts/000")`` pressure and gap of the first contact.
 
@@ -32,15 +32,17 @@ class SlidingContacts(ResultFile):
 
     @property
     def rows(self) -> np.ndarray:
-        """A structured array with speed, indentation, force, area, friction (numbers without dimension), converged
-        and what else tells of the solution, a row for each contact."""
+        """A structured array, a row for each contact: ``speed`` v tau/R, ``indentation`` y/R, ``force`` F/(E_0* R^2),
+        ``area`` A/R^2 and ``friction``, all dimensionless, ``converged`` (1 or 0) and what else tells of the
+        solution."""
         series = self._group("rows")
         names = sorted(series, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST))
         return np.rec.fromarrays([series[name][:] for name in names], names=names)
 
     @property
     def fields(self) -> list[dict[str, Series]]:
-        """Of every contact x, y, pressure, gap and, where it was resolved, the edge of the area of contact."""
+        """Of every contact ``x`` and ``y``, m, ``pressure``, Pa, and ``gap``, m, both [y][x], and, where it was
+        resolved, the edge of the area of contact, ``edge_x`` and ``edge_y``, m."""
         return [dict(self._group(f"contacts/{number}")) for number in sorted(self._file.get("contacts", {}))]
 
     def _lines(self) -> list[str]:
@@ -66,5 +68,6 @@ class ContactLaw(ResultFile):
     """
 
     def _lines(self) -> list[str]:
-        extents = [f"{len(self._file[name])} {name}s, {span(self._file[name][:], '')}" for name in ("speed", "indentation")]
+        extents = [f"{len(self._file[name])} {name}s, {span(self._file[name][:], '')}"
+                   for name in ("speed", "indentation")]
         return [*extents, listed(name for name in self._group("/") if name not in ("speed", "indentation"))]

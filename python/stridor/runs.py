@@ -28,17 +28,18 @@ class _Motion(ResultFile):
 
     @property
     def time(self) -> Series:
-        """s."""
+        """Times of the rows, s, ascending."""
         return self._series("time", self._file["time"])
 
     @property
     def channels(self) -> Mapping[str, Series]:
-        """Motions of points, "<body>.<point>.<direction>.<displacement|velocity|acceleration>"."""
+        """Motions of points by name, "<body>.<point>.<direction>.<displacement|velocity|acceleration>", m, m/s or
+        m/s²."""
         return self._group("channels")
 
     @property
     def contacts(self) -> dict[str, Mapping[str, Series]]:
-        """Forces, gaps, slip and states of every contact, by its name."""
+        """Of every contact, by its name, the series that the scene records: forces, N, gaps, m, slip and states."""
         return {name: self._group(f"contact/{name}") for name in self._file.get("contact", {})}
 
     def _lines(self) -> list[str]:
@@ -58,7 +59,7 @@ class Run(_Motion):
     Attributes
     ----------
     results : dict
-        What `run` said of it, where it has ended.
+        What `run` said of it, where it has ended: numbers and texts by name, "contact_force.max", in SI units.
 
     Examples
     --------
@@ -92,30 +93,31 @@ class Run(_Motion):
 
     @property
     def energy(self) -> Mapping[str, Series]:
-        """The ledger, J; empty where the scene does not record it."""
+        """The ledger of energy: its entries over time by name, J; empty where the scene does not record it."""
         return self._group("energy")
 
     @property
     def bursts(self) -> np.ndarray:
-        """Bursts as a structured array with start, end, frequency, peak and gain, the frequencies at
-        which each begins and ends (NaN in files of earlier versions), the index of its window in
-        `windows`, -1 where none explains it or none were predicted, and the index of the burst of
-        which it is a harmonic, `harmonic_of`, -1 where it is none, with its `order`."""
+        """A structured array, a row for each burst: ``start`` and ``end``, s; ``frequency``, ``start_frequency`` and
+        ``end_frequency``, Hz; ``peak``, in the unit of the channel in which bursts are sought; ``gain``; ``window``,
+        its index in `windows`, -1 where none explains it or none were predicted; ``harmonic_of``, the index of the
+        burst of which it is a harmonic, -1 where it is none, and its ``order``. Frequencies of both ends are NaN in
+        files of earlier versions."""
         return self._records("bursts", {"start": np.nan, "end": np.nan, "frequency": np.nan, "peak": np.nan,
                                         "gain": np.nan, "start_frequency": np.nan, "end_frequency": np.nan,
                                         "window": -1, "harmonic_of": -1, "order": 1})
 
     @property
     def burst_courses(self) -> np.ndarray:
-        """Frequencies and levels (r.m.s. values) of the bursts over time as a structured array with
-        burst (its index in `bursts`), time, frequency and level; empty in files of earlier versions."""
+        """The bursts over time, a structured array: ``burst`` (its index in `bursts`), ``time``, s, ``frequency``, Hz,
+        and ``level``, an r.m.s. value in the unit of the channel; empty in files of earlier versions."""
         return self._records("bursts/course", {"burst": -1, "time": np.nan, "frequency": np.nan,
                                                "level": np.nan})
 
     @property
     def windows(self) -> np.ndarray:
-        """Unstable windows of ``run(..., predict=LOCUS)`` as a structured array with from, to, frequency,
-        growth_max and gain, and the index of its burst in `bursts`, -1 where it was not heard."""
+        """Unstable windows of ``run(..., predict=LOCUS)``, a structured array: ``from`` and ``to``, s, ``frequency``,
+        Hz, ``growth_max``, 1/s, ``gain``, and ``burst``, its index in `bursts`, -1 where it was not heard."""
         return self._records("windows", {"from": np.nan, "to": np.nan, "frequency": np.nan,
                                          "growth_max": np.nan, "gain": np.nan, "burst": -1})
 
@@ -151,17 +153,18 @@ class Cycle(_Motion):
 
     @property
     def status(self) -> str:
-        """"periodic", or what was found instead."""
+        """"periodic", or what was found instead of a cycle."""
         return self.attributes.get("status", "")
 
     @property
     def period(self) -> float:
-        """s; NaN where no cycle was found."""
+        """Time after which the motion repeats itself, s; NaN where no cycle was found."""
         return self.attributes.get("period", np.nan)
 
     @property
     def multipliers(self) -> np.ndarray:
-        """What a disturbance is multiplied by in a period, complex, the largest first."""
+        """What a disturbance is multiplied by in a period, complex, the largest first; beyond 1 the cycle is
+        unstable."""
         group = self._group("multipliers")  # none in files of earlier versions
         return group["real"][:] + 1j * group["imaginary"][:] if group else np.zeros(0, dtype=complex)
 

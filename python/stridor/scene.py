@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Any, Mapping, Union
+from typing import Any, Literal, Mapping, Union
 
 from . import errors, invocation
 
 Place = Union[str, "os.PathLike[str]"]
+#: Keys of scenes and their values.
+Settings = Mapping[str, Any]
+#: A number in SI units, or a text with a unit, "70 mm".
+Quantity = Union[float, str]
+#: Geometry about which a system is linearised.
+About = Literal["undeformed", "deformed"]
+#: Values at equal distances or at equal ratios.
+Spacing = Literal["linear", "log"]
 
 
 class Scene:
@@ -19,7 +27,14 @@ class Scene:
     path : path
         A scene, YAML.
     settings : mapping, optional
-        Values of keys, as ``set`` takes them.
+        Values of keys, as `set` takes them.
+
+    Attributes
+    ----------
+    path : str
+        Path of the scene file.
+    settings : dict
+        Keys that are set, with their values.
 
     Examples
     --------
@@ -37,16 +52,45 @@ class Scene:
         self.settings: dict[str, Any] = dict(settings or {})
 
     def set(self, key: str, value: Any) -> "Scene":
-        """Sets a key, "contact.friction.coefficient"; numbers are SI, texts may carry a unit."""
+        """Sets a key for all that follows.
+
+        Parameters
+        ----------
+        key : str
+            Path of the key, "contact.friction.coefficient".
+        value : number, str, bool, list, mapping or None
+            Numbers are in SI units, texts may carry a unit.
+
+        Returns
+        -------
+        Scene
+            This scene, so that calls may follow one another.
+        """
         self.settings[key] = value
         return self
 
     def with_settings(self, settings: Mapping[str, Any] | None) -> "Scene":
-        """The same scene with more settings; this one stays as it is."""
+        """The same scene with more settings; this one stays as it is.
+
+        Parameters
+        ----------
+        settings : mapping or None
+            Keys and their values, as `set` takes them.
+
+        Returns
+        -------
+        Scene
+        """
         return Scene(self.path, {**self.settings, **(settings or {})})
 
     def check(self) -> list[errors.Problem]:
-        """All that is wrong with it; empty where nothing is."""
+        """All that is wrong with the scene; `stridor.check` says also what is hardly meant.
+
+        Returns
+        -------
+        list of Problem
+            Empty where nothing is wrong.
+        """
         try:
             invocation.call(["check", *self.words()])
         except errors.ConfigError as error:
@@ -54,7 +98,13 @@ class Scene:
         return []
 
     def words(self) -> list[str]:
-        """Arguments of the command line that say the scene."""
+        """Arguments of the command line that say the scene.
+
+        Returns
+        -------
+        list of str
+            Its path, then ``--set`` and ``key=value`` for each setting.
+        """
         words = [self.path]
         for key, value in self.settings.items():
             words += ["--set", invocation.setting(key, value)]
@@ -70,7 +120,11 @@ def load(path: Place) -> Scene:
     Parameters
     ----------
     path : path
-        Of the file (YAML); it is read when a verb takes the scene.
+        Path of the file (YAML), which is read when a verb takes the scene.
+
+    Returns
+    -------
+    Scene
 
     Raises
     ------
@@ -89,7 +143,17 @@ def load(path: Place) -> Scene:
 
 
 def example(name: str) -> str:
-    """The path of a scene that comes with the program, "ruler" or "beam_on_beam".
+    """The path of a scene that comes with the program.
+
+    Parameters
+    ----------
+    name : str
+        Name of its file without the ending, "ruler" or "beam_on_beam".
+
+    Returns
+    -------
+    str
+        Path of the file (YAML).
 
     Raises
     ------

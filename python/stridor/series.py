@@ -33,7 +33,9 @@ class Series:
     Attributes
     ----------
     name : str
+        Name of the channel or path of the dataset.
     units : str
+        "m/s^2"; "1" of numbers without dimension, "" where the file does not say.
     long_name : str
         What they are; "" where the file does not say.
     """
@@ -50,10 +52,12 @@ class Series:
 
     @property
     def shape(self) -> tuple[int, ...]:
+        """How many numbers along each axis, of rows those that are whole."""
         return (self._length, *self._opened().shape[1:])
 
     @property
     def dtype(self) -> np.dtype:
+        """Type of the numbers in the file."""
         return self._opened().dtype
 
     @property
@@ -71,7 +75,12 @@ class Series:
                      for axis, scale in enumerate(self.scales))
 
     def to_xarray(self) -> Any:
-        """A labelled array, read where it is used: `xarray.DataArray` with coordinates, units and long_name.
+        """A labelled array, read where it is used.
+
+        Returns
+        -------
+        xarray.DataArray
+            With coordinates, and ``units`` and ``long_name`` as attributes.
 
         Raises
         ------

@@ -202,14 +202,21 @@ class Others(unittest.TestCase):
             self.assertGreater(len(reasons[1]), 10)
             self.assertIn("1 value failed", repr(found))
 
+    def test_studies_of_precision_lie_over_run_times(self):
+        with stridor.precision(stridor.example("viscoelastic_sphere"), points=2) as found:
+            labelled = found.to_xarray()
+            self.assertEqual(labelled.error.dims, ("run_time",))
+            self.assertTrue(all(isinstance(method, str) for method in labelled.method.values))
+            self.assertIn("tolerance", repr(found))
+
     def test_files_without_a_class_give_their_first_group(self):
         with tempfile.TemporaryDirectory() as folder:
-            stridor.precision(stridor.example("viscoelastic_sphere"), points=2, output=folder)
-            with stridor.open(os.path.join(folder, "precision.h5")) as found:
-                labelled = found.to_xarray()
-                self.assertEqual(labelled.error.dims, ("run_time",))
-                self.assertTrue(all(isinstance(method, str) for method in labelled.method.values))
-                self.assertIn("settings", repr(found))
+            path = os.path.join(folder, "other.h5")
+            with h5py.File(path, "w") as file:
+                file["measured/values"] = np.arange(3.0)
+            with stridor.open(path) as found:
+                self.assertEqual(list(found.to_xarray()), ["values"])
+                self.assertIn("measured", repr(found))
 
     def test_every_series_of_a_cycle_has_its_coordinate(self):
         with tempfile.TemporaryDirectory() as folder:
