@@ -70,8 +70,8 @@ def complete(_app, name, source):
 
 
 def copy_mathjax(app, _error):
-    """The formulas' scripts, into the site."""
-    if app.builder.format != "html":
+    """The formulas' scripts, into the site, unless it is told to take them from elsewhere."""
+    if app.builder.format != "html" or not app.config.mathjax_path.startswith("mathjax/"):
         return
     if not (MATHJAX / "MathJax.js").exists():
         raise SystemExit(f"{MATHJAX} is missing: install libjs-mathjax")

@@ -36,9 +36,10 @@ try_packages() {
   apt-get install -qq --install-recommends ./*.deb >/dev/null
   run_test pictures
   run_test python
+  run_test documents
 
   say "purging"
-  apt-get purge -qq stridor python3-stridor >/dev/null
+  apt-get purge -qq stridor python3-stridor stridor-doc >/dev/null
   local left
   left=$(find / -xdev \( -path /home -o -path /srv -o -path /tmp -o -path /proc \) -prune -o -iname '*stridor*' -print)
   [[ -z $left ]] || fail "left behind: $left"
