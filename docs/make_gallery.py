@@ -1,15 +1,19 @@
 #!/usr/bin/env python3
 """Writes docs/gallery.md and scenes/examples/README.md from the scenes themselves.
 
-Usage: docs/make_gallery.py [--measure | --pictures] [STRIDOR]
+Usage: docs/make_gallery.py [--measure | --pictures | --check] [STRIDOR]
 
 What a card says stands in the comment at the top of its scene, how its result is shown in RESULTS.
+Reference values are those of its `expect:` block, else of REFERENCES, which --check compares with what
+the program finds (all but those that take long). Of the extreme scenes their heads say what they stress.
 With --measure every command is run as printed, the processor time of the first one kept in
 docs/figures/gallery/times.json, and the pictures are drawn anew, of the scene by `stridor draw` and
 of its result by the commands printed (takes python3-pil and about two minutes). With --pictures the
 times are kept, without either the pictures too.
 """
+import itertools
 import json
+import math
 import pathlib
 import re
 import resource
@@ -44,6 +48,8 @@ GROUPS = {
         "examples/from_calculix", "examples/from_abaqus", "examples/from_ansys",
         "examples/from_nastran"],
 }
+
+EXTREME = "Extreme cases"
 
 # How the result of a scene is shown: what kind of picture it is, what is seen in it, and the commands
 # that make it after the one of the card, or none where that makes it. {path} is the scene, {stem} its
@@ -246,6 +252,45 @@ RESULTS = {
 }
 
 
+
+def first_root(found):
+    return found["roots"][0]["value"]
+
+
+# What a card quotes where its scene has no `expect:` block: what it is, the command, which number of its JSON, value and
+# tolerance, and what it was compared with.
+THRESHOLD_OF_LOAD = "stridor threshold {path} --parameter parameters.load --from 0 --to 0.4"
+REFERENCES = {
+    "examples/two_springs_on_a_belt": (
+        "the µ from which it flutters", "stridor threshold {path} --parameter parameters.mu --from 0 --to 1.2",
+        first_root, 0.75, 1e-9, "where 1 − 4µ/3 passes 0"),
+    "examples/flutter": (
+        "the load from which it flutters", THRESHOLD_OF_LOAD,
+        first_root, 0.2, 1e-9, "half the difference of both stiffnesses"),
+    "examples/flutter_equal_damping": (
+        "the load from which it flutters", THRESHOLD_OF_LOAD, first_root, 0.2280350850, 1e-9, "√0.052"),
+    "examples/flutter_ziegler": (
+        "the load from which it flutters", THRESHOLD_OF_LOAD,
+        first_root, 0.1732146068, 1e-9, "by Routh's criterion"),
+    "examples/flutter_gyroscopic": (
+        "the growth rate at a load of 0.05, 1/s", "stridor eig {path}",
+        lambda found: max(found["eigenvalues"])[0], 0.01116627, 1e-8, "root of s⁴ + 2.41 s² + 0.01 s + 1.4025"),
+    "examples/gyroscopic": (
+        "the slowest decay at a load of 1, 1/s", "stridor eig {path} --set parameters.load=1",
+        lambda found: max(found["eigenvalues"])[0], -0.15743415, 1e-8,
+        "root of (s² + 0.4 s + 1)(s² + 0.4 s + 1.4) + 0.25 s²"),
+    "disc_and_pads": (
+        "the µ from which friction alone makes it grow",
+        "stridor threshold {path} --set 'terms=[friction]' --parameter parameters.mu --from 0.25 --to 0.45",
+        first_root, 0.3596654111, 1e-9, "[discs and pads](disc_and_pads.md)"),
+    "examples/brake/brake": (
+        "the frequency of the pair that squeals, Hz", "stridor eig {path} --below 9kHz",
+        lambda found: max(found["eigenvalues"])[1] / 2 / math.pi, 6322.3, 19,
+        "[another program's](meshes.md)"),
+}
+SLOW_REFERENCES = ["examples/brake/brake"]
+
+
 class Card:
     """What the top of a scene says: a description, commands, and what to look at."""
 
@@ -265,8 +310,7 @@ class Card:
         prose = [re.sub(r"\s+", " ", part).strip() for part in paragraphs if "   stridor " not in part]
         self.description = prose[0]
         self.look = " ".join(prose[1:])
-        self.expected = re.findall(
-            r"^  - \{result: \"?([^,\"]+)\"?, value: ([^,]+), tolerance: ([^}]+)\}", text, re.M)
+        self.expected = expected(text)
 
     @property
     def needed(self):
@@ -292,9 +336,50 @@ class Card:
                 for one in RESULTS[self.name][2]]
 
     @property
+    def references(self):
+        """Values that the result is held to, as texts."""
+        listed = [f"`{result}` {value} ± {tolerance}" for result, value, tolerance in self.expected]
+        if self.name in REFERENCES:
+            what, command, _, value, tolerance, source = REFERENCES[self.name]
+            own = command.format(path=self.path)
+            told = "" if own in [self.command, *self.shown] else f" (`{own}`)"
+            listed.append(f"{what} {value} ± {tolerance:g}{told}, {source}")
+        return listed
+
+    @property
     def sentence(self):
         """The first sentence of the description."""
         return re.split(r"(?<=[a-z0-9)\]])\. (?=[A-Z])", self.description)[0].rstrip(".") + "."
+
+
+class ExtremeCard:
+    """An extreme scene, whose head says what it stresses, how it ends, and with which setting it copes."""
+
+    def __init__(self, path):
+        self.stem = path.stem
+        self.path = f"scenes/extreme/{self.stem}.yaml"
+        self.name = f"extreme/{self.stem}"
+        text = path.read_text(encoding="utf-8")
+        head = dict(re.findall(r"^# (Stresses|Outcome|Copes): (.*)$", text, re.M))
+        self.stresses, self.outcome, copes = head["Stresses"], head["Outcome"], head.get("Copes", "")
+        self.settings = "".join(f" --set {one}" for one in copes.split())
+        self.references = [f"`{result}` {value} ± {tolerance}" for result, value, tolerance in expected(text)]
+
+    def command_with(self, settings):
+        return f"stridor run {self.path} -o {self.stem}.h5{settings}"
+
+    @property
+    def command(self):
+        return self.command_with("")
+
+
+def expected(text):
+    """Result, value and tolerance of each line of an `expect:` block."""
+    return re.findall(r"^  - \{result: \"?([^,\"]+)\"?, value: ([^,]+), tolerance: ([^}]+)\}", text, re.M)
+
+
+def extreme_cards():
+    return [ExtremeCard(path) for path in sorted((SOURCE / "scenes/extreme").glob("*.yaml"))]
 
 
 def cards():
@@ -306,14 +391,34 @@ def cards():
         sys.exit(f"GROUPS and scenes differ: {sorted(set(listed) ^ set(found))}")
     if sorted(listed) != sorted(RESULTS):
         sys.exit(f"GROUPS and RESULTS differ: {sorted(set(listed) ^ set(RESULTS))}")
-    return {name: Card(name) for name in listed}
+    all_cards = {name: Card(name) for name in listed}
+    without = [name for name, card in all_cards.items() if not card.references and name != "viscoelastic_contact"]
+    if without:
+        sys.exit(f"these scenes have neither `expect:` nor REFERENCES: {without}")
+    return all_cards
 
 
-def seconds_of(command, stridor, folder):
-    """Processor time of a command in a folder that has the scenes beside it."""
+def check(all_cards, stridor):
+    """Compares REFERENCES with what the program finds."""
+    wrong = []
+    for name in sorted(set(REFERENCES) - set(SLOW_REFERENCES)):
+        what, command, number_of, value, tolerance, _ = REFERENCES[name]
+        words = shlex.split(command.format(path=all_cards[name].path))
+        answer = subprocess.run([stridor, *words[1:], "--json"], cwd=SOURCE, check=True, capture_output=True).stdout
+        found = number_of(json.loads(answer))
+        if not abs(found - value) <= tolerance:
+            wrong.append(f"{name}: {what} is {found}, not {value} ± {tolerance}")
+    if wrong:
+        sys.exit("\n".join(wrong))
+
+
+def seconds_of(command, stridor, folder, codes=(0,)):
+    """Processor time of a command in a folder that has the scenes beside it, which ends with one of `codes`."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     words = shlex.split(command)
-    subprocess.run([stridor, *words[1:]], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    ended = subprocess.run([stridor, *words[1:]], cwd=folder, check=False, capture_output=True, text=True)
+    if ended.returncode not in codes:
+        sys.exit(f"{command}: {ended.returncode}: {ended.stderr}")
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
@@ -350,6 +455,21 @@ def draw_result(card, stridor, folder):
     keep(large, PICTURES / f"{card.stem}_result.png")
 
 
+def draw_extreme(card, stridor, folder):
+    """A small picture of an extreme run, of one that is refused or ends at once that with which it copes; its
+    processor time."""
+    seconds = seconds_of(card.command, stridor, folder, codes=(0, 2, 3))
+    large = folder / f"{card.stem}.png"
+    channels = [f"--channel {name}.force --channel {name}.slip_velocity" for name in ["contact", "contact[0]"]]
+    for settings, shown_there in itertools.product(["", card.settings], [*channels, "--channel upper.force"]):
+        seconds_of(card.command_with(f" --force{settings}"), stridor, folder, codes=(0, 2, 3))
+        seconds_of(f"stridor plot {card.stem}.h5 --kind history {shown_there} -o {large.name}", stridor, folder, codes=(0, 2, 4))
+        if large.exists():
+            keep(large, PICTURES / f"{card.stem}_result.png", (16,))
+            break
+    return seconds
+
+
 def run_all(all_cards, stridor, are_times_kept):
     PICTURES.mkdir(exist_ok=True)
     times = {}
@@ -363,6 +483,8 @@ def run_all(all_cards, stridor, are_times_kept):
             print(f"{times[card.name]:8.2f} s  {card.command}", flush=True)
             draw_scene(card, stridor, folder)
             draw_result(card, stridor, folder)
+        for card in extreme_cards():
+            draw_extreme(card, stridor, folder)
     if are_times_kept:
         TIMES.write_text(json.dumps(times, indent=1) + "\n", encoding="utf-8")
 
@@ -374,10 +496,10 @@ def shown(seconds):
 def gallery(all_cards, times):
     lines = ["# Gallery", "",
              "The scenes of the tree, with what each shows, the command to begin with and, below it, those that make",
-             "the picture of the result, all run from the folder that holds `scenes`; left out are those of `scenes/extreme`, which",
-             "try limits of the main scenes, and the parts of the brake one by one. Times are processor times of",
+             "the picture of the result, all run from the folder that holds `scenes`; left out are the parts of the brake one by one.",
+             "The last part are scenes at the edge of what is possible. Times are processor times of",
              "the first command, measured by `docs/make_gallery.py --measure`, which writes this page. Reference",
-             "values are those of the scene's `expect:` block, which `--verify` and the tests compare.", ""]
+             "values are those of the scene's `expect:` block, which `--verify` and the tests compare, else of the command that is named.", ""]
     for group, names in GROUPS.items():
         lines += [f"## {group}", ""]
         for name in names:
@@ -393,13 +515,29 @@ def gallery(all_cards, times):
                       f"![{kind} of {card.stem}](figures/gallery/{card.stem}_result.png)", "",
                       f"*{kind}.* {seen}", "",
                       f"[`{card.path}`](../{card.path}), {shown(times[name])}"]
-            if card.expected:
-                values = "; ".join(f"`{result}` {value} ± {tolerance}"
-                                   for result, value, tolerance in card.expected)
-                lines[-1] += f". Reference: {values}"
+            if card.references:
+                lines[-1] += f". Reference: {'; '.join(card.references)}"
             lines[-1] += "."
             lines.append("")
-    return "\n".join(lines)
+    return "\n".join(lines + extreme(times))
+
+
+def extreme(times):
+    """The cards of the extreme scenes, shorter ones."""
+    lines = [f"## {EXTREME}", "",
+             "Each differs from `plain` by what it stresses, and a test holds it to its end; [the table](stability.md) has forces,",
+             "energy balance and times side by side. Pictures: `stridor plot FILE.h5 --kind history --channel contact.force --channel contact.slip_velocity -o FIGURE.png`.", ""]
+    for card in extreme_cards():
+        lines += [f"### {card.stem}", "", f"Stresses {card.stresses}.", "", "```sh", card.command]
+        if card.settings:
+            lines.append(card.command_with(f" --force{card.settings}") + "  # copes")
+        lines += ["```", ""]
+        if (PICTURES / f"{card.stem}_result.png").exists():
+            lines += [f"![History of {card.stem}](figures/gallery/{card.stem}_result.png)", ""]
+        end = "Runs to its end" if card.outcome == "done" else "It " + card.outcome.replace("refused", "is refused")
+        lines += [f"*{end}.* [`{card.path}`](../{card.path}), {shown(times[card.name])}"
+                  + (f". Reference: {'; '.join(card.references)}" if card.references else "") + ".", ""]
+    return lines
 
 
 def index(all_cards, times):
@@ -420,9 +558,12 @@ def index(all_cards, times):
 def main():
     arguments = sys.argv[1:]
     all_cards = cards()
-    if arguments and arguments[0] in ("--measure", "--pictures"):
+    if arguments and arguments[0] in ("--measure", "--pictures", "--check"):
         option = arguments.pop(0)
         stridor = pathlib.Path(arguments[0] if arguments else SOURCE / "build/release/stridor")
+        if option == "--check":
+            check(all_cards, stridor.resolve())
+            return
         run_all(all_cards, stridor.resolve(), option == "--measure")
     times = json.loads(TIMES.read_text(encoding="utf-8"))
     (HERE / "gallery.md").write_text(gallery(all_cards, times), encoding="utf-8")
