@@ -289,6 +289,40 @@ class Readers(unittest.TestCase):
             rows, columns = re.findall(r"^\s*(\d+)\s+(\d+)\s*$", answer.stdout, re.MULTILINE)[-1]
             self.assertEqual(int(rows) * int(columns), size, answer.stderr)
 
+    # ------------------------------------------------------------------ the table of docs/files.md
+
+    def rows_of_the_page(self):
+        """Array, group, variable, dimensions, what ncdump and Octave call it and class of every row."""
+        text = (SCENES.parent / "docs" / "files.md").read_text(encoding="utf-8")
+        row = re.compile(r"^\| ([^|]+) \| `([^`]+)` \| `([^`]+)`, `([^`]+)` \(([^)]+)\) \| `([^`]+)` \| `x\.([^`]+)` \| `(\w+)` \|$", re.M)
+        names = {"run with `--predict`": "heard", "run, killed half-way": "killed", "threshold": "threshold",
+                 "stability map, points failed": "failed"}
+        names.update({kind: name for name, kind in reversed(self.kinds.items()) if name not in names.values()})
+        rows = {names[found[0]]: found[1:] for found in row.findall(text)}
+        self.assertEqual(set(rows), set(self.kinds))
+        return rows
+
+    def test_the_table_of_the_page_is_true(self):
+        import stridor
+        for name, (array, group, variable, dimensions, dumped, loaded, kind) in self.rows_of_the_page().items():
+            path = self.file(name)
+            with h5py.File(path, "r") as opened:
+                size = opened[array].size
+            with stridor.open(path) as opened:
+                self.assertEqual(type(opened).__name__, kind, name)
+            if xarray is not None:
+                with xarray.open_dataset(path, engine="h5netcdf", group=group, phony_dims="access") as dataset:
+                    self.assertEqual(dataset[variable].dims, tuple(dimensions.split(", ")), name)
+                    self.assertEqual(dataset[variable].size, size, name)
+            if shutil.which("ncdump") is not None:
+                answer = subprocess.run(["ncdump", "-h", path], capture_output=True, text=True, check=True)
+                self.assertIn(f" {dumped} ;", answer.stdout, name)
+            if shutil.which("octave-cli") is not None:
+                script = f"x = load('{path}'); disp(size(x.{loaded}))"
+                answer = subprocess.run(["octave-cli", "--eval", script], capture_output=True, text=True, check=False)
+                rows, columns = re.findall(r"^\s*(\d+)\s+(\d+)\s*$", answer.stdout, re.MULTILINE)[-1]
+                self.assertEqual(int(rows) * int(columns), size, f"{name}: {answer.stderr}")
+
     def test_rows_of_a_killed_run_are_whole_up_to_the_length_of_time(self):
         with h5py.File(self.file("killed"), "r") as opened:
             rows = len(opened["time"])
