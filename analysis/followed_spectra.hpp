@@ -16,7 +16,7 @@ namespace stridor {
 ///
 /// The first system takes all its eigenvalues by the dense method. Of any other one those in the
 /// window, and to a tenth above it, are found by shift and invert from the vectors at the nearest
-/// value known (pairs_near()): a factorisation for some 24 of them, where all take n times that.
+/// value known (pairs_near()): a factorisation for some 48 of them, where all take n times that.
 /// They are taken where every one has a scaled residual of 1e-6 and there are exactly as many as at
 /// that value within edges next to those of the window, in the widest strips without any at both;
 /// else the system takes all its eigenvalues too, as it may where more than two coincide. The

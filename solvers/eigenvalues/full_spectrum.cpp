@@ -42,11 +42,6 @@ TwoSidedPairs pairs_at(const SparseSystem& system, std::vector<Complex> s, doubl
 
 }  // namespace
 
-bool is_full(const SparseMatrix& matrix) {
-  const double places = static_cast<double>(matrix.rows()) * static_cast<double>(matrix.cols());
-  return static_cast<double>(matrix.nonZeros()) > 0.25 * places;
-}
-
 SparseSystem modal_system(const Pencil& pencil) {
   if (pencil.num_constraints() > 0)
     throw std::invalid_argument("modal system: the pencil has constraints");

@@ -6,8 +6,7 @@
 
 namespace stridor {
 
-/// Whether more than a quarter of a matrix, or of Q, is stored.
-bool is_full(const SparseMatrix& matrix);
+/// Whether Q is full.
 inline bool is_full(const SparseSystem& system) {
   return is_full(system.position);
 }

@@ -76,10 +76,8 @@ class Arnoldi {
     const auto state = basis_.col(num_applied_);
     const Eigen::VectorXcd x = state.head(size());
     const Eigen::VectorXcd v = scale_ * state.tail(size());
-    const SparseSystem& system = pencil_.system();
-    const Eigen::VectorXcd momentum = system.mass * (v + wanted_.shift * x).eval();
     Eigen::VectorXcd next(2 * size());
-    next.head(size()) = factor_.solve(-(momentum + system.velocity * x));
+    next.head(size()) = factor_.solve(-pencil_.momentum(v + wanted_.shift * x, x));
     next.tail(size()) = (wanted_.shift * next.head(size()) + x) / scale_;
     append(next, projection_.col(num_applied_).data());
     ++num_applied_;

@@ -9,7 +9,10 @@
 
 namespace stridor {
 
-/// P(s) = s² M + s P + Q at one s, factorised by UMFPACK.
+/// Whether more than a quarter of the places of a matrix are filled.
+bool is_full(const SparseMatrix& matrix);
+
+/// P(s) = s² M + s P + Q at one s, factorised by UMFPACK; as dense matrices where P or Q is full.
 class SparseFactor {
  public:
   ~SparseFactor();
@@ -31,7 +34,8 @@ class SparseFactor {
   std::unique_ptr<Numbers> numbers_;
 };
 
-/// M q̈ + P q̇ + Q q = 0 on one pattern, which is analysed once for all factorisations.
+/// M q̈ + P q̇ + Q q = 0 on one pattern, which is analysed once for all factorisations; of full
+/// matrices there is nothing to analyse.
 class SparsePencil {
  public:
   /// @throws std::invalid_argument if sizes differ or a number is not finite
@@ -45,6 +49,8 @@ class SparsePencil {
 
   /// P(s) x.
   Eigen::VectorXcd multiply(std::complex<double> s, const Eigen::VectorXcd& x) const;
+  /// M v + P x.
+  Eigen::VectorXcd momentum(const Eigen::VectorXcd& v, const Eigen::VectorXcd& x) const;
   /// (P(t) − P(s))/(t − s) x = ((s + t) M + P) x; the derivative where s and t are the same.
   Eigen::VectorXcd slope(std::complex<double> s, std::complex<double> t,
                          const Eigen::VectorXcd& x) const;
@@ -68,6 +74,7 @@ class SparsePencil {
 
  private:
   struct Pattern;
+  Eigen::VectorXcd position_times(const Eigen::VectorXcd& x) const;
   std::unique_ptr<Pattern> pattern_;
 };
 

@@ -362,7 +362,8 @@ SparseSpectrum SparseSearch::run() {
 }
 
 TwoSidedPairs SparseSearch::run(const TwoSidedPairs& guesses, double height) {
-  constexpr std::size_t most_at_once = 24;
+  // A factorisation of full matrices takes as long as the steps for some ten pairs more.
+  const std::size_t most_at_once = is_full(pencil_.system().position) ? 48 : 24;
   height_ = height;
   starts_at_pairs_ = true;
   for (Eigen::Index j = 0; j < guesses.size(); ++j)

@@ -119,7 +119,7 @@ class Search {
     EquilibriumEquations::Values present = equations_.evaluate(unknowns_);
     for (int iteration = 0; iteration < parameters_.max_iterations; ++iteration) {
       const bool is_converged = present.residual <= parameters_.tolerance;
-      Eigen::VectorXd step = equations_.newton_step(present);
+      Eigen::VectorXd step = equations_.newton_step(present, unknowns_);
       ++answer_.iterations;
       double fraction = 1.0;
       EquilibriumEquations::Values next = equations_.evaluate(unknowns_ - step);
@@ -127,7 +127,7 @@ class Search {
                            !(next.residual < good_reduction * present.residual);
       if (is_poor) {
         equations_.forget_factor();
-        step = equations_.newton_step(present);
+        step = equations_.newton_step(present, unknowns_);
         next = equations_.evaluate(unknowns_ - step);
       }
       while (!(next.residual < present.residual) && !is_converged && fraction > smallest_fraction) {

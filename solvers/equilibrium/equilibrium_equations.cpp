@@ -57,11 +57,22 @@ Eigen::VectorXd EquilibriumEquations::first_unknowns() const {
   return unknowns;
 }
 
+/// Whether the next step of Newton's method takes a derivative that is factored already.
+bool EquilibriumEquations::reuses_factor(Eigen::Index size) const {
+  constexpr Eigen::Index many = 100;  // below, a factor costs nothing
+  return ports_.is_modal && size >= many && factor_.has_value();
+}
+
 EquilibriumEquations::Values EquilibriumEquations::evaluate(const Eigen::VectorXd& unknowns) {
+  return evaluate(unknowns, !reuses_factor(unknowns.size()));
+}
+
+EquilibriumEquations::Values EquilibriumEquations::evaluate(const Eigen::VectorXd& unknowns,
+                                                            bool with_derivative) {
   const Eigen::Index size = unknowns.size();
   if (target_) state_.drive_displacement = unknowns(size - 1);
-  Values equations{Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size),
-                   Eigen::MatrixXd::Zero(size, size), 0.0};
+  Values equations{Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size), {}, 0.0};
+  if (with_derivative) equations.derivative.setZero(size, size);
   auto& [values, scale, derivative, residual, by_ports] = equations;
   const Eigen::Index num_unknown = ports_.num_unknown;
   const Eigen::Index num_rigid = ports_.num_rigid;
@@ -72,10 +83,11 @@ EquilibriumEquations::Values EquilibriumEquations::evaluate(const Eigen::VectorX
   const Eigen::VectorXd at_ports = ports_.at_ports(unknowns.head(num_unknown), rigid);
   if (num_contacts() > 0) {
     values.head(num_unknown) = unknowns.head(num_unknown) - ports_.loaded;
-    derivative.topLeftCorner(num_unknown, num_unknown).setIdentity();
+    if (with_derivative) derivative.topLeftCorner(num_unknown, num_unknown).setIdentity();
     if (!ports_.is_modal) {
       values.head(num_unknown) -= ports_.rigid_rows * rigid;
-      derivative.block(0, first_rigid(), num_unknown, num_rigid) = -ports_.rigid_rows;
+      if (with_derivative)
+        derivative.block(0, first_rigid(), num_unknown, num_rigid) = -ports_.rigid_rows;
     }
     length = at_ports.cwiseAbs().maxCoeff();
   }
@@ -138,28 +150,29 @@ double EquilibriumEquations::add_contact(Values& equations, Eigen::Index index,
   note_result(contact.result, local, force);
 
   auto& [values, scale, derivative, residual, by_ports] = equations;
-  const PortMatrix by_position = force * local.force_by_position;
-  const PortVector by_drive = contact.path_share * by_position.col(0);
   const auto flexibility = ports_.flexibility.middleCols(first, width);
   values.head(num_unknown) += flexibility * (force * local.force_row);
-  // ∂(λ b_E)/∂λ: the friction of a force law is not proportional to λ.
-  const PortVector by_force =
-      local.force_row + local.direction * law.friction_slope * local.tangent_row;
-  derivative.col(row).head(num_unknown) = flexibility * by_force;
-  if (target_) derivative.col(last).head(num_unknown) += flexibility * by_drive;
-
   const Eigen::Index num_rigid = ports_.num_rigid;
   const auto rigid = ports_.rigid_rows.middleRows(first, width).transpose();
   values.segment(first_rigid(), num_rigid) += rigid * (force * local.force_row);
   scale.segment(first_rigid(), num_rigid) +=
       rigid.cwiseAbs() * (force * local.force_row).cwiseAbs();
-  derivative.col(row).segment(first_rigid(), num_rigid) = rigid * by_force;
-  if (target_) derivative.col(last).segment(first_rigid(), num_rigid) += rigid * by_drive;
-  if (ports_.is_modal) {
-    by_ports.push_back(by_position);
-  } else {
-    derivative.block(0, first, num_unknown, width) += flexibility * by_position;
-    derivative.block(first_rigid(), first, num_rigid, width) = rigid * by_position;
+  if (derivative.size() > 0) {
+    const PortMatrix by_position = force * local.force_by_position;
+    const PortVector by_drive = contact.path_share * by_position.col(0);
+    // ∂(λ b_E)/∂λ: the friction of a force law is not proportional to λ.
+    const PortVector by_force =
+        local.force_row + local.direction * law.friction_slope * local.tangent_row;
+    derivative.col(row).head(num_unknown) = flexibility * by_force;
+    if (target_) derivative.col(last).head(num_unknown) += flexibility * by_drive;
+    derivative.col(row).segment(first_rigid(), num_rigid) = rigid * by_force;
+    if (target_) derivative.col(last).segment(first_rigid(), num_rigid) += rigid * by_drive;
+    if (ports_.is_modal) {
+      by_ports.push_back(by_position);
+    } else {
+      derivative.block(0, first, num_unknown, width) += flexibility * by_position;
+      derivative.block(first_rigid(), first, num_rigid, width) = rigid * by_position;
+    }
   }
 
   add_conditions(equations, index, local, law, force);
@@ -182,16 +195,20 @@ void EquilibriumEquations::add_conditions(Values& equations, Eigen::Index index,
   const Eigen::Index last = values.size() - 1;
   if (contact.result.is_closed) {
     values(row) = local.gap + law.indentation;
+  } else {
+    values(row) = force;
+  }
+  if (derivative.size() > 0 && contact.result.is_closed) {
     add_by_ports(equations, row, contact, -local.gap_row.transpose());
     derivative(row, row) = law.compliance;
     if (target_) derivative(row, last) = -local.gap_row[0] * contact.path_share;
-  } else {
-    values(row) = force;
+  } else if (derivative.size() > 0) {
     derivative(row, row) = 1.0;
   }
   if (!contact.has_two_tangents() && is_target(contact)) {
     const double segment_length = contact.result.positions.master.chord().norm();
     values(last) = segment_length * (local.projection.xi - target_->xi);
+    if (derivative.size() == 0) return;
     add_by_ports(equations, last, contact, segment_length * local.shift_row.transpose());
     derivative(last, last) = segment_length * local.shift_row[0] * contact.path_share;
   }
@@ -251,11 +268,14 @@ EquilibriumEquations::Factor EquilibriumEquations::factorise(const Values& equat
   return factor;
 }
 
-Eigen::VectorXd EquilibriumEquations::newton_step(const Values& equations) {
+Eigen::VectorXd EquilibriumEquations::newton_step(const Values& equations,
+                                                  const Eigen::VectorXd& unknowns) {
   if (equations.values.size() == 0) return {};
-  constexpr Eigen::Index many = 100;  // below, a factor costs nothing
-  was_step_approximate_ = ports_.is_modal && equations.values.size() >= many && factor_.has_value();
-  if (!was_step_approximate_) factor_ = factorise(equations);
+  was_step_approximate_ = reuses_factor(equations.values.size());
+  if (!was_step_approximate_) {
+    factor_ = equations.derivative.size() > 0 ? factorise(equations)
+                                              : factorise(evaluate(unknowns, true));
+  }
   return factor_->column_scale.cwiseProduct(
       factor_->lu.solve(factor_->row_scale.cwiseProduct(equations.values)).eval());
 }

@@ -33,6 +33,7 @@ class EquilibriumEquations {
     Eigen::VectorXd values;
     Eigen::VectorXd scale;       ///< what each of them is made of
     /// With respect to the unknowns; where those are displacements of modes, without `by_ports`.
+    /// Empty where it is not needed.
     Eigen::MatrixXd derivative;
     double residual = 0.0;  ///< largest value by scale
     /// How the force of each contact changes with the displacements of its ports, where the unknown
@@ -54,13 +55,15 @@ class EquilibriumEquations {
   /// To be called whenever a contact is on another segment.
   void gather() { ports_.gather(contacts); }
 
-  /// Also notes in `contacts` what they are like there.
+  /// Also notes in `contacts` what they are like there. Without the derivative where newton_step()
+  /// takes one that is factored already.
   Values evaluate(const Eigen::VectorXd& unknowns);
 
   /// Newton step. Where the unknowns are displacements of many modes, by the derivative that was
   /// factored last, until forget_factor().
+  /// @param equations at `unknowns`
   /// @throws NumericalError if the equations are singular, naming what is free
-  Eigen::VectorXd newton_step(const Values& equations);
+  Eigen::VectorXd newton_step(const Values& equations, const Eigen::VectorXd& unknowns);
   /// Whether the last step was by the derivative of other unknowns.
   bool was_step_approximate() const { return was_step_approximate_; }
   void forget_factor() { factor_.reset(); }
@@ -79,6 +82,8 @@ class EquilibriumEquations {
   std::vector<SoughtContact> contacts;
 
  private:
+  bool reuses_factor(Eigen::Index size) const;
+  Values evaluate(const Eigen::VectorXd& unknowns, bool with_derivative);
   Eigen::Index num_contacts() const { return static_cast<Eigen::Index>(contacts.size()); }
   /// A derivative, rows and columns brought to the same size first: they mix m, N and m kg^½.
   struct Factor {

@@ -93,8 +93,9 @@ class ClosedContacts {
     const bool is_on_modes = num_ports_ > pencil.num_modes();
     Eigen::MatrixXd contact_ports;
     if (is_on_modes) {
-      contact_ports = pencil.ports.topRows(num_ports_);
-      take_modes_as_ports(pencil, contact_ports);
+      const Eigen::MatrixXd body_ports = pencil.ports.bottomRows(pencil.num_body_ports);
+      contact_ports = std::move(pencil.ports);
+      take_modes_as_ports(pencil, contact_ports, body_ports);
     }
     const Eigen::Index m = pencil.num_ports();
     const auto on_ports = [&](Eigen::MatrixXd Contact::*of_contact,
@@ -141,7 +142,9 @@ class ClosedContacts {
   };
 
   /// y = q for the contacts; the ports of bodies stay the last ones.
-  void take_modes_as_ports(Pencil& pencil, const Eigen::MatrixXd& contact_ports) const {
+  /// @param contact_ports first rows: of the contacts
+  void take_modes_as_ports(Pencil& pencil, const Eigen::MatrixXd& contact_ports,
+                           const Eigen::MatrixXd& body_ports) const {
     const Eigen::Index n = pencil.num_modes();
     const auto on_modes = [&](const Eigen::MatrixXd& rows) {
       Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(rows.rows(), n + pencil.num_body_ports);
@@ -160,7 +163,7 @@ class ClosedContacts {
     pencil.compatibility = on_modes(pencil.compatibility);
     pencil.equilibrium = on_modes(pencil.equilibrium);
     Eigen::MatrixXd ports(n + pencil.num_body_ports, n);
-    ports << Eigen::MatrixXd::Identity(n, n), pencil.ports.bottomRows(pencil.num_body_ports);
+    ports << Eigen::MatrixXd::Identity(n, n), body_ports;
     pencil.ports = std::move(ports);
   }
 
@@ -209,7 +212,8 @@ Pencil linearise_constraints(const System& system, const Equilibrium& equilibriu
   const Eigen::Index num_ports = pencil.num_ports();
   for (Eigen::Index port = num_ports - pencil.num_body_ports; port < num_ports; ++port)
     kept_ports.push_back(port);
-  pencil.ports = pencil.ports(kept_ports, Eigen::all).eval();
+  if (static_cast<Eigen::Index>(kept_ports.size()) < num_ports)
+    pencil.ports = pencil.ports(kept_ports, Eigen::all).eval();
   pencil.compatibility = pencil.compatibility(kept_constraints, kept_ports).eval();
   pencil.equilibrium = pencil.equilibrium(kept_constraints, kept_ports).eval();
   const bool gives_way =

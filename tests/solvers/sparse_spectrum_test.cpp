@@ -33,8 +33,30 @@ LinearSystem dense(const SparseSystem& sparse) {
           Eigen::MatrixXd(sparse.position), Eigen::MatrixXd(0, n), Eigen::MatrixXd(0, n)};
 }
 
-TEST(SparsePencil, FactorSolvesAndKnowsItsDeterminant) {
-  const SparseSystem system = small_pads().system();
+/// A system with the same eigenvalues whose P and Q are full: reflected, (1 − 2 w wᵀ) A (1 − 2 w
+/// wᵀ).
+SparseSystem reflected(const SparseSystem& system) {
+  const Eigen::VectorXd w = Eigen::VectorXd::LinSpaced(system.size(), 1.0, 2.0).normalized();
+  const Eigen::MatrixXd turn =
+      Eigen::MatrixXd::Identity(w.size(), w.size()) - 2.0 * w * w.transpose();
+  const auto turned = [&](const SparseMatrix& matrix) -> SparseMatrix {
+    return (turn * Eigen::MatrixXd(matrix) * turn).sparseView(1.0, 0.0);
+  };
+  SparseSystem full;
+  full.mass = turned(system.mass);
+  full.velocity = turned(system.velocity);
+  full.position = turned(system.position);
+  return full;
+}
+
+class SparsePencilTest : public testing::TestWithParam<bool> {};
+
+INSTANTIATE_TEST_SUITE_P(Matrices, SparsePencilTest, testing::Bool(),
+                         [](const auto& test) { return test.param ? "Full" : "Sparse"; });
+
+TEST_P(SparsePencilTest, FactorSolvesAndKnowsItsDeterminant) {
+  const SparseSystem system = GetParam() ? reflected(small_pads().system()) : small_pads().system();
+  ASSERT_EQ(is_full(system.position), GetParam());
   const SparsePencil pencil(system);
   const Complex s(300.0, 2e4);
   const SparseFactor factor = pencil.factorise(s);
@@ -43,6 +65,7 @@ TEST(SparsePencil, FactorSolvesAndKnowsItsDeterminant) {
                              Eigen::MatrixXcd(dense(system).position.cast<Complex>());
   const Eigen::MatrixXcd x = Eigen::MatrixXcd::Random(system.size(), 3);
   EXPECT_LT((factor.solve(P * x) - x).norm(), 1e-8 * x.norm());
+  EXPECT_LT((factor.solve_adjoint(P.adjoint() * x) - x).norm(), 1e-8 * x.norm());
   EXPECT_LT((pencil.multiply(s, x.col(0)) - P * x.col(0)).norm(), 1e-13 * P.norm() * x.norm());
   // The determinant from another factorisation, pivot by pivot.
   const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(P);
@@ -61,6 +84,23 @@ TEST(SparsePencil, FactorSolvesAndKnowsItsDeterminant) {
              pencil.slope(s, t, x.col(0)))
                 .norm(),
             1e-11 * pencil.slope(s, t, x.col(0)).norm());
+}
+
+TEST(SparsePencil, PairsOfFullMatricesAreThoseOfTheSameSystemInOtherCoordinates) {
+  const SparseSystem system = small_pads().system();
+  const SparseSpectrum wanted = sparse_spectrum(system, SpectrumWindow::below(8000.0));
+  int factorisations = 0;
+  TwoSidedPairs guesses = wanted.pairs;
+  for (Complex& entry : guesses.right.reshaped())
+    entry = {1.0, entry.imag()};  // no vectors of these
+  const TwoSidedPairs found = pairs_near(reflected(system), guesses, wanted.rectangle.height,
+                                         factorisations, SpectrumWork::Sides::right);
+  std::vector<Complex> inside;
+  for (const Complex& s : found.s)
+    if (wanted.rectangle.contains(s)) inside.push_back(s);
+  ASSERT_EQ(inside.size(), wanted.eigenvalues.size());
+  for (std::size_t i = 0; i < inside.size(); ++i)
+    EXPECT_LT(std::abs(inside[i] - wanted.eigenvalues[i].s), 1e-9 * std::abs(inside[i]));
 }
 
 /// The unstable system of the disc with elastic pads against all eigenvalues of the dense problem.
