@@ -118,8 +118,17 @@ class Tracker {
   }
 
   void advance_to(double target) {
+    // Where eigenvalues meet some tens of steps are tried. Where Newton's method leads to other
+    // zeros of the secular function all along, the dense method gets by with large steps.
+    constexpr int most_tries = 2000;
+    int num_tries = 0;
     double next = target;
     while (value_ < target) {
+      if (++num_tries > most_tries && options_.method == LocusMethod::secular) {
+        throw SearchFailure(
+            Refusal::eigenvalues_incomplete,
+            fmt::format("locus: eigenvalues could not be followed from {:g} on", value_));
+      }
       if (try_step(next)) {
         next = target;
       } else if (next - value_ <= smallest_step_) {

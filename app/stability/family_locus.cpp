@@ -88,9 +88,9 @@ Locus trace(const PencilFamily& family, const NumericKey& varied, const std::vec
     family.place(range.front(), first);
     if (first.num_eigenvalues() > most_dense) throw;
     print_remark(
-        "the search for zeros of the secular function did not converge at {}: all {} eigenvalues "
-        "by the dense method; fewer modes (time.retain) are faster\n",
-        value_text(varied, range.front()), first.num_eigenvalues());
+        "{} ({}) as zeros of the secular function: all {} eigenvalues by the dense method; fewer "
+        "modes (time.retain) are faster\n",
+        error.what(), varied.path, first.num_eigenvalues());
   }
   LocusOptions dense = options;
   dense.method = LocusMethod::dense;
