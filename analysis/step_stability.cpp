@@ -198,7 +198,8 @@ std::vector<PathStability> stability_along_path(const System& system, const Time
     try {
       const Equilibrium equilibrium =
           find_equilibrium(system, sliding_state(system, place.drive_displacement));
-      place.failure = equilibrium.failure;
+      if (!equilibrium.failure.empty())
+        place.failure = with_code(equilibrium.failure, Refusal::no_equilibrium);
       for (const ContactEquilibrium& contact : equilibrium.contacts)
         place.positions.push_back(contact.position);
       if (equilibrium.status == EquilibriumStatus::converged) {
@@ -206,7 +207,7 @@ std::vector<PathStability> stability_along_path(const System& system, const Time
         place.stability = step_stability(step, place.contacts);
       }
     } catch (const NumericalError& error) {
-      place.failure = error.what();
+      place.failure = error.report();
     }
     path.push_back(std::move(place));
     if (least == most) break;

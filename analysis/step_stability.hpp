@@ -72,7 +72,7 @@ struct PathStability {
   std::vector<double> positions;    ///< of every contact along its undeformed master, m
   StepStability stability;
   Pencil contacts;      ///< rows there
-  std::string failure;  ///< why there is no equilibrium
+  std::string failure;  ///< why there is no equilibrium, with its code
 };
 
 /// Stability of the steps at places along the path of a run, in the sliding equilibria there, with

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "app/terminal/command.hpp"
+#include "app/terminal/command_problem.hpp"
 #include "app/terminal/manual.hpp"
 #include "app/terminal/progress.hpp"
 #include "app/terminal/remark.hpp"
@@ -22,7 +23,6 @@
 #include "core/blas_memory.hpp"
 #include "core/errors.hpp"
 #include "core/stop_token.hpp"
-#include "core/suggestion.hpp"
 #include "core/version.hpp"
 #include "io/hdf5/damage_guard.hpp"
 
@@ -78,47 +78,6 @@ std::string joined_arguments(int argc, char** argv) {
   return command;
 }
 
-/// Error of the verb that the user wrote, or "".
-std::string verb_problem(CLI::App& program, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return "";
-  std::vector<std::string> verbs;
-  for (const CLI::App* verb : verbs_of(program)) verbs.push_back(verb->get_name());
-  if (std::find(verbs.begin(), verbs.end(), argv[1]) != verbs.end()) return "";
-  return fmt::format("there is no verb '{}'{} (there are: {})", argv[1],
-                     did_you_mean(argv[1], verbs), fmt::join(verbs, ", "));
-}
-
-/// Error of an option that the verb does not have, or "".
-std::string option_problem(CLI::App& program, int argc, char** argv) {
-  const auto verbs = program.get_subcommands(
-      [&](const CLI::App* verb) { return argc > 1 && verb->get_name() == argv[1]; });
-  if (verbs.empty()) return "";
-  std::vector<std::string> known;
-  for (const CLI::Option* option : verbs.front()->get_options()) {
-    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
-  }
-  for (int i = 2; i < argc; ++i) {
-    const std::string written(argv[i]);
-    const std::string name = written.substr(0, written.find('='));
-    if (!name.starts_with("--") || std::find(known.begin(), known.end(), name) != known.end())
-      continue;
-    return fmt::format("{} has no option '{}'{}", argv[1], name, did_you_mean(name, known));
-  }
-  return "";
-}
-
-/// The error of a required option that is missing, with its meaning: "--kind is required: history,
-/// ...".
-std::string required_problem(CLI::App& program, const CLI::ParseError& error,
-                             const std::string& verb_name) {
-  const std::string what = error.what();
-  const auto verbs =
-      program.get_subcommands([&](const CLI::App* verb) { return verb->get_name() == verb_name; });
-  if (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr || verbs.empty()) return what;
-  const CLI::Option* option = verbs.front()->get_option_no_throw(what.substr(0, what.find(' ')));
-  return option == nullptr ? what : fmt::format("{}: {}", what, option->get_description());
-}
-
 void add_verbs(CLI::App& program, Action& action, const std::string& command) {
   add_run_command(program, action, command);
   add_check_command(program, action);
@@ -171,17 +130,12 @@ int run_verb(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const bool is_failure = error.get_exit_code() != 0;
-    if (is_failure) {
-      std::string problem = verb_problem(program, argc, argv);
-      if (problem.empty()) problem = option_problem(program, argc, argv);
-      const bool has_verb =
-          argc > 1 && argv[1][0] != '-' && verb_problem(program, argc, argv).empty();
-      const std::string verb = has_verb ? argv[1] : "";
-      if (problem.empty()) problem = required_problem(program, error, verb);
+    if (error.get_exit_code() != 0) {
+      const CommandProblem found = problem_of_command(program, error, {argv + 1, argv + argc});
       print_remark("stridor: {}\nTry 'stridor {}--help'.\n",
-                   with_code(problem, Refusal::unknown_option), has_verb ? verb + " " : "");
-      if (wants_json) finish_json({{Refusal::unknown_option, "", problem}});
+                   with_code(found.message, found.refusal),
+                   found.verb.empty() ? "" : found.verb + " ");
+      if (wants_json) finish_json({{found.refusal, "", found.message}});
       return static_cast<int>(ExitCode::bad_input);
     }
     return program.exit(error);

@@ -93,12 +93,18 @@ std::vector<SweepPoint> sample(const LoadedScene& scene, const NumericKey& key,
   return points;
 }
 
+/// Why no cycle was found, with its code, or "".
+std::string reason_of(const SweepPoint& point) {
+  if (point.cycle.failure.empty()) return "";
+  return with_code(cycle_failure(point.cycle, point.oscillator), Refusal::no_convergence);
+}
+
 Json points_json(const std::vector<SweepPoint>& points) {
   Json list = Json::array();
   for (const SweepPoint& point : points) {
     Json one = {{"value", point.value}, {"equilibrium_stable", point.is_stable}};
     one.update(cycle_json(point.cycle, point.oscillator));
-    if (!point.cycle.failure.empty()) one["failure"] = cycle_failure(point.cycle, point.oscillator);
+    if (!point.cycle.failure.empty()) one["failure"] = reason_of(point);
     list.push_back(std::move(one));
   }
   return list;
@@ -161,8 +167,7 @@ void write_file(const SweepOptions& options, const LoadedScene& loaded, const Nu
     add("status", "1", [](const SweepPoint& p) { return p.cycle.status; });
     Column reason{"/" + name + "/reason", "", {}};
     for (const SweepPoint& point : points) {
-      reason.texts.push_back(point.cycle.failure.empty() ? ""
-                                                         : cycle_failure(point.cycle, point.oscillator));
+      reason.texts.push_back(reason_of(point));
     }
     columns.push_back(std::move(reason));
     add("equilibrium_stable", "1", [](const SweepPoint& p) { return p.is_stable; });
@@ -216,8 +221,7 @@ ExitCode sweep_cycles(const SweepOptions& options, const LoadedScene& loaded) {
   for (const auto& [name, points] : branches) {
     for (const SweepPoint& point : points) {
       if (!point.cycle.failure.empty())
-        failures.push_back(value_text(key, point.value) + ": " +
-                           cycle_failure(point.cycle, point.oscillator));
+        failures.push_back(value_text(key, point.value) + ": " + reason_of(point));
     }
   }
   if (options.common.json) {

@@ -32,7 +32,8 @@ ErrorEstimate estimate_error(const StudiedScene& study,
   for (int turn = 1; turn <= turns; ++turn) {
     for (const auto& run : runs) {
       if (run->run_until(study.num_samples * turn / turns) != MarchEnd::finished) {
-        estimate.failure = run->failure().empty() ? "stopped on request" : run->failure();
+        estimate.failure = run->failure().empty() ? "stopped on request"
+                                                  : with_code(run->failure(), run->refusal());
         estimate.seconds = seconds_since(start);
         return estimate;
       }

@@ -69,8 +69,9 @@ Json row_json(const PrecisionRow& row, ContactAssumption own) {
               {"errors", row.is_stable ? errors_json(row.errors) : Json(nullptr)},
               {"stable", row.is_stable},
               {"on_front", row.is_on_front},
-              {"status", row.run->failure().empty() ? (row.is_stable ? "done" : "useless")
-                                                    : "failed: " + row.run->failure()}};
+              {"status", row.run->failure().empty()
+                             ? (row.is_stable ? "done" : "useless")
+                             : "failed: " + with_code(row.run->failure(), row.run->refusal())}};
   if (!row.is_measured()) {
     object["timed_steps"] = row.cost.steps;
     object["error_of"] = "the modal form at the same step";

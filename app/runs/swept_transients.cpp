@@ -70,7 +70,7 @@ void write_swept(const SweepOptions& options, const LoadedScene& loaded, const N
   Column num_bursts{"/num_bursts", "1", {}};
   for (const SweptTransient& point : points) {
     failed.values.push_back(point.failure.empty() ? 0.0 : 1.0);
-    reason.texts.push_back(point.failure);
+    reason.texts.push_back(point.reason());
     num_bursts.values.push_back(point.has_bursts()
                                     ? static_cast<double>(point.results["bursts"].size())
                                     : std::numeric_limits<double>::quiet_NaN());
@@ -157,7 +157,8 @@ void print_swept(const NumericKey& key, const SweptTransients& points) {
                text(100.0 * point.number_at("/free_fraction")), text(point.number_at("/wall_s")));
   }
   for (const SweptTransient& point : points) {
-    if (!point.failure.empty()) fmt::print("{}: {}\n", value_text(key, point.value), point.failure);
+    if (!point.failure.empty())
+      fmt::print("{}: {}\n", value_text(key, point.value), point.reason());
   }
 }
 
@@ -166,7 +167,7 @@ Json json_of_swept(const SweptTransients& points) {
   for (const SweptTransient& point : points) {
     Json row = {{"value", point.value}};
     row.update(point.results);
-    if (!point.failure.empty()) row["failure"] = point.failure;
+    if (!point.failure.empty()) row["failure"] = point.reason();
     rows.push_back(std::move(row));
   }
   return rows;

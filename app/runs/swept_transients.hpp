@@ -19,6 +19,8 @@ struct SweptTransient {
   std::string failure;                  ///< why it ended early, or did not start
   Refusal refusal = Refusal::diverged;  ///< its kind
 
+  /// Both, or "" where it came to its end.
+  std::string reason() const { return failure.empty() ? "" : with_code(failure, refusal); }
   /// A number among the results; NaN where there is none.
   double number_at(const char* pointer) const { return pointed_number(results, pointer); }
   /// Whether bursts were searched for in it.

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "core/refusals.hpp"
 #include "io/scene/oscillator_family.hpp"
 
 namespace stridor {
@@ -31,7 +32,8 @@ class GrowthOfMass : public GrowthField {
   bool solve(double x, double y) {
     const SlidingOscillator* of = family_->at(std::array{x, y});
     if (of == nullptr) {
-      failure_ = "the scene is no mass on a half-space with these values";
+      failure_ =
+          with_code("the scene is no mass on a half-space with these values", Refusal::wrong_value);
       return false;
     }
     // The indentation over R changes less from point to point than that in units of length.
@@ -39,7 +41,9 @@ class GrowthOfMass : public GrowthField {
     const double unit = oscillator.contact.indentation_unit;
     const SubstrateEquilibrium found = find_equilibrium(oscillator, last_ * unit);
     if (!found.converged) {
-      failure_ = "no sliding equilibrium: the search for the indentation did not converge";
+      failure_ =
+          with_code("no sliding equilibrium: the search for the indentation did not converge",
+                    Refusal::no_equilibrium);
       return false;
     }
     last_ = found.displacement.y() / unit;

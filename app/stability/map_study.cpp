@@ -84,7 +84,7 @@ LineResult trace_broken_line(StabilityFamily& family, const KeyAxis& axis, std::
           result.highest, verdict_limit(found, options.window, family.trusted_frequency(values)));
       growth = largest_growth(found);
     } catch (const NumericalError& error) {
-      result.failures.emplace(result.growth.size(), error.what());
+      result.failures.emplace(result.growth.size(), error.report());
     }
     result.growth.push_back(growth);
   }

@@ -167,7 +167,7 @@ std::optional<double> relative_difference(const std::vector<double>& a,
 
 std::string status_of(const Candidate& candidate) {
   if (candidate.end == MarchEnd::finished) return "done";
-  return "failed: " + candidate.transient->failure();
+  return "failed: " + with_code(candidate.transient->failure(), candidate.transient->refusal());
 }
 
 Json rows_of(const Candidates& candidates, const char* coordinates) {

@@ -12,6 +12,8 @@ namespace stridor {
 namespace {
 
 using namespace test;
+using ::testing::AllOf;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
@@ -106,9 +108,11 @@ TEST(CompareProgram, AnAssumptionThatFailsIsARowAndTheOthersGoOn) {
   const std::string& table = result.out;
   for (const char* name : {"subs_a ", "subs_b ", "subs_c "}) {
     const std::string row = table.substr(table.find(name));
-    EXPECT_THAT(row.substr(0, row.find('\n')), HasSubstr("failed: contact at t = 0.0002")) << name;
+    EXPECT_THAT(row.substr(0, row.find('\n')),
+                AllOf(HasSubstr("failed: contact at t = 0.0002"), EndsWith("[contact-pulls]")))
+        << name;
   }
-  EXPECT_THAT(table.substr(table.find("film ")), ::testing::EndsWith("  done\n"));
+  EXPECT_THAT(table.substr(table.find("film ")), EndsWith("  done\n"));
 }
 
 TEST(CompareProgram, RunsThatEndedBeforeTheWindowHaveNoEmptyPanels) {

@@ -345,6 +345,30 @@ TEST(Program, WrongUsageExits2) {
   EXPECT_EQ(Program({"--version"}).run().exit_code, 0);
 }
 
+/// Code of the one error that a command line which makes no command gets.
+std::string code_of_command(std::vector<std::string> words) {
+  words.emplace_back("--json");
+  const ProgramResult result = Program(std::move(words)).run();
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  const auto errors = nlohmann::json::parse(result.out)["errors"];
+  EXPECT_THAT(result.err, HasSubstr("[" + errors[0]["code"].get<std::string>() + "]"));
+  return errors.size() == 1 ? errors[0]["code"] : "";
+}
+
+TEST(Program, WrongUsageHasTheCodeOfItsKind) {
+  EXPECT_EQ(code_of_command({}), "unknown-option");  // --json comes first
+  EXPECT_EQ(code_of_command({"rum"}), "unknown-option");
+  EXPECT_EQ(code_of_command({"eig", main_scene, "--nonsense"}), "unknown-option");
+  EXPECT_EQ(code_of_command({"eig", main_scene, "more"}), "unknown-option");
+  EXPECT_EQ(code_of_command({"eig"}), "missing");
+  EXPECT_EQ(code_of_command({"report", "-o", "a.html"}), "missing");
+  EXPECT_EQ(code_of_command({"plot", "a.h5", "-o", "a.png"}), "missing");
+  EXPECT_EQ(code_of_command({"plot", "a.h5", "-o", "a.png", "--kind", "foo"}), "wrong-value");
+  EXPECT_EQ(code_of_command({"eig", main_scene, "--count", "many"}), "wrong-value");
+  EXPECT_EQ(code_of_command({"map", main_scene, "--x", "time.step", "1", "2"}), "wrong-size");
+  EXPECT_THAT(Program({}).run().err, HasSubstr("a verb is required: run, check,"));
+}
+
 TEST(Program, VerifyComparesWithTheExpectBlock) {
   const TemporaryFolder folder;
   const std::string met = "expect=[{result: steps, value: 5650, tolerance: 1000}]";

@@ -132,7 +132,7 @@ TEST(SweepProgram, ARunThatFailsIsARowAndTheOthersGoOn) {
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0]["status"], "done");
   EXPECT_EQ(rows[1]["status"], "failed");
-  EXPECT_THAT(rows[1]["failure"].get<std::string>(), HasSubstr("jams"));
+  EXPECT_THAT(rows[1]["failure"].get<std::string>(), HasSubstr("[contact-jams]"));
 
   std::vector<std::string> all = jamming;
   all[5] = "5";
