@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 
 namespace stridor {
 namespace {
@@ -21,8 +22,30 @@ std::size_t rank_of(const std::string& name) {
   return first.size() + 1 + static_cast<std::size_t>(unwanted - last.begin());
 }
 
+/// A quantity of a file in words, where its name is not.
+std::string in_words(const std::string& name) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 14> words{
+      {{"acceleration_rms", "r.m.s. acceleration"},
+       {"acceleration_peak", "largest acceleration"},
+       {"num_bursts", "number of bursts"},
+       {"force_min", "least contact force"},
+       {"force_max", "largest contact force"},
+       {"stick_fraction", "share in stick"},
+       {"free_fraction", "share without contact"},
+       {"violations", "steps against persistent sliding"},
+       {"x_rms", "r.m.s. displacement"},
+       {"x_mean", "mean displacement"},
+       {"x_min", "least displacement"},
+       {"x_max", "largest displacement"},
+       {"start_frequency", "frequency at the start"},
+       {"end_frequency", "frequency at the end"}}};
+  const auto* const found =
+      std::find_if(words.begin(), words.end(), [&](const auto& one) { return one.first == name; });
+  return found == words.end() ? name : std::string(found->second);
+}
+
 Json curve_json(const CurveColumn& column, std::size_t set, ReportPage& page) {
-  return {{"name", column.name},
+  return {{"name", in_words(column.name)},
           {"units", column.units},
           {"set", set},
           {"values", page.add_numbers(column.values)}};

@@ -111,20 +111,33 @@ Json windows_of(const std::vector<TimedWindow>& windows) {
   return rows;
 }
 
+/// Up to where a locus has looked, where its file says so.
+std::string reach_of(const ResultFile& file) {
+  const std::optional<double> highest = file.told("highest_frequency");
+  if (!highest) return "";
+  const std::optional<double> trusted = file.told("trusted_frequency");
+  std::string text = fmt::format(" Looked at: all up to {}", shown(*highest, "Hz"));
+  if (trusted && *highest < *trusted)
+    text += fmt::format("; the bodies resolve {}, --below {:.0f} looks up to there",
+                        shown(*trusted, "Hz"), *trusted);
+  return text + ".";
+}
+
 Json locus_verdict(const std::vector<TimedWindow>& windows, const std::string& parameter,
-                   const std::string& units) {
+                   const std::string& units, const std::string& reach) {
   if (windows.empty())
-    return verdict("stable", fmt::format("No vibration grows anywhere along {}.", parameter));
+    return verdict("stable",
+                   fmt::format("No vibration grows anywhere along {}.{}", parameter, reach));
   const auto worst = std::max_element(windows.begin(), windows.end(), [](const auto& a, const auto& b) {
     return a.window.growth_max < b.window.growth_max;
   });
   return verdict("unstable",
                  fmt::format("{} unstable {} of {}; the fastest growth, {:.4g} 1/s at {}, is "
-                             "between {:.6g} and {:.6g}{}.",
+                             "between {:.6g} and {:.6g}{}.{}",
                              windows.size(), windows.size() == 1 ? "window" : "windows", parameter,
                              worst->window.growth_max, shown(worst->window.frequency, "Hz"),
                              worst->window.from, worst->window.to,
-                             units.empty() || units == "1" ? "" : " " + units));
+                             units.empty() || units == "1" ? "" : " " + units, reach));
 }
 
 /// Where each window grows fastest, the fastest first.
@@ -209,7 +222,8 @@ Json locus_section(const ResultFile& file, const ReportContext& context) {
   Json section = section_head(file, "locus", what);
   section["remarks"] = Json::array();
   const std::vector<TimedWindow> windows = read_locus_windows(file.path());
-  section["verdict"] = locus_verdict(windows, parameter, file.array("/values").units);
+  section["verdict"] =
+      locus_verdict(windows, parameter, file.array("/values").units, reach_of(file));
   section["views"].push_back({{"type", "windows"},
                               {"parameter", parameter},
                               {"units", file.array("/values").units},

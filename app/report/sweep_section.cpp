@@ -126,7 +126,7 @@ std::string loudest_of(const CurveSet& set, const std::string& units) {
           (top == column.values.size() || column.values[i] > column.values[top]))
         top = i;
     if (top < column.values.size())
-      text += fmt::format("; {}the acceleration reaches most at {}, {}", way,
+      text += fmt::format("; {}the acceleration is largest at {}, {}", way,
                           shown(set.over[top], units), shown(column.values[top], column.units));
   }
   return text;
@@ -186,7 +186,7 @@ Json sweep_section(const ResultFile& file, const ReportContext& context) {
     CurveSet bursts = curve_set(file, "/bursts", "value");
     (void)bursts.take("number");
     Json points = curves_view(parameter, units, {bursts}, context.page);
-    points["title"] = "bursts of all runs";
+    points["title"] = "Bursts of all runs";
     points["points"] = true;
     section["views"].push_back(std::move(points));
     text += fmt::format("; {} bursts of vibration", bursts.over.size());

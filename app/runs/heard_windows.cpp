@@ -123,8 +123,8 @@ void print_heard_windows(const Json& results) {
                row["from"].get<double>(), row["to"].get<double>(), row["frequency"].get<double>(),
                gain, heard);
   }
-  for (const Json& number : results["unexplained"])
-    fmt::print("{:<24}burst {} belongs to no window\n", "unexplained", number.get<int>());
+  const auto others = results["unexplained"].get<std::vector<std::size_t>>();
+  if (!others.empty()) fmt::print("{:<24}{}\n", "unexplained", unexplained_text(others));
 }
 
 }  // namespace stridor

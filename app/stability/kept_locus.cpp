@@ -1,5 +1,6 @@
 #include "app/stability/kept_locus.hpp"
 
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -26,6 +27,9 @@ void write_locus(const std::string& path, const Locus& locus,
                                    {"about", source.options.about},
                                    {"method", locus.method}})
     attributes.emplace_back(name, text);
+  for (const auto& [name, value] :
+       {std::pair{"highest_frequency", source.highest}, {"trusted_frequency", source.trusted}})
+    if (std::isfinite(value)) attributes.emplace_back(name, value);
   write_locus_file(path, source.options.common.overwrite(), locus, windows, units, attributes);
 }
 

@@ -20,6 +20,8 @@ struct LocusSource {
   const StabilityOptions& options;
   const NumericKey& key;
   const std::string& command_line;
+  double highest;  ///< up to where all eigenvalues were looked at, Hz
+  double trusted;  ///< up to where the bodies resolve, Hz
 };
 
 /// Writes a file of the kind `locus`. @throws FileError as write_locus_file()

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/errors.hpp"
 #include "io/results/result_file.hpp"
@@ -11,7 +12,8 @@
 
 namespace stridor {
 
-std::vector<TimedWindow> read_predictions(const std::string& file, const SceneInFile& of_run) {
+std::vector<TimedWindow> read_predictions(const std::string& file, const SceneInFile& of_run,
+                                          double highest_burst) {
   const std::string parameter = read_locus_parameter(file);
   if (!parameter.empty() && !parameter.ends_with(".start") &&
       parameter != drive_displacement_name) {
@@ -26,11 +28,17 @@ std::vector<TimedWindow> read_predictions(const std::string& file, const SceneIn
   const SceneInFile of_locus{locus.text("scene_hash"), locus.text("scene_resolved")};
   // Another program's file may not say of which scene it is.
   std::vector<Problem> warnings;
-  if (!of_locus.hash.empty() && !has_same_mechanics(of_locus, of_run))
-    warnings.push_back({Refusal::contradiction, "--predict",
-                        fmt::format("'{}' is of another scene ({} instead of {}): other bodies, "
-                                    "contacts, drives or terms, whose windows may be elsewhere",
-                                    file, of_locus.hash, of_run.hash)});
+  // A file of an earlier version does not say.
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  const double highest = locus.told("highest_frequency").value_or(unknown);
+  const double needed = std::min(highest_burst, locus.told("trusted_frequency").value_or(unknown));
+  if (highest < needed)
+    warnings.push_back(
+        {Refusal::contradiction, "--predict",
+         fmt::format(
+             "'{}' looked up to {:.4g} Hz alone, bursts are sought up to {:.4g} Hz: windows "
+             "between are not in it; `locus --below {:.0f}` finds them",
+             file, highest, highest_burst, std::ceil(needed))});
   print_warnings(warnings);
   return windows;
 }
@@ -88,6 +96,19 @@ std::vector<std::size_t> unexplained(const std::vector<PredictedBurst>& predicti
   for (std::size_t k = 0; k < bursts.size(); ++k)
     if (!windows[k] && !bursts[k].burst.harmonic) numbers.push_back(bursts[k].number);
   return numbers;
+}
+
+std::string unexplained_text(const std::vector<std::size_t>& numbers) {
+  std::string text;
+  for (std::size_t first = 0; first < numbers.size();) {
+    std::size_t last = first;
+    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", numbers[first]);
+    if (last > first) text += fmt::format("{}{}", last == first + 1 ? ", " : " to ", numbers[last]);
+    first = last + 1;
+  }
+  return numbers.size() == 1 ? fmt::format("burst {} belongs to no window", text)
+                             : fmt::format("bursts {} belong to no window", text);
 }
 
 std::vector<SpectrogramMark> predicted_marks(const std::vector<PredictedBurst>& predictions) {

@@ -20,11 +20,14 @@ struct PredictedBurst {
 };
 
 /// The unstable windows of a locus, to be set beside the bursts of a run; a warning where the locus
-/// is not of the scene of the run (has_same_mechanics()).
+/// is not of the scene of the run (has_same_mechanics()), or looked less high than bursts are
+/// sought.
 /// @param file as given with --predict
+/// @param highest_burst upper end of the band in which bursts are sought, Hz
 /// @throws ConfigError where the locus is over something that a run does not pass through,
 ///         FileError where the file cannot be read or is no locus
-std::vector<TimedWindow> read_predictions(const std::string& file, const SceneInFile& of_run);
+std::vector<TimedWindow> read_predictions(const std::string& file, const SceneInFile& of_run,
+                                          double highest_burst);
 
 /// Gives every window the burst of like frequency that overlaps it most in time, and every burst to
 /// no more than the one window that it overlaps most.
@@ -39,7 +42,10 @@ std::vector<PredictedBurst> match_bursts(const std::vector<TimedWindow>& windows
 /// For every burst the index of the window among the predictions that explains it, if one does.
 std::vector<std::optional<std::size_t>> windows_of(const std::vector<PredictedBurst>& predictions,
                                                    const std::vector<NumberedBurst>& bursts);
-/// Numbers of the bursts to which no window belongs, and which are no harmonics of others.
+/// "bursts 1 to 3, 7 belong to no window".
+std::string unexplained_text(const std::vector<std::size_t>& numbers);
+/// Numbers, ascending, of the bursts to which no window belongs, and which are no harmonics of
+/// others.
 std::vector<std::size_t> unexplained(const std::vector<PredictedBurst>& predictions,
                                      const std::vector<NumberedBurst>& bursts);
 

@@ -109,6 +109,7 @@ std::vector<DiagramPanel> ResponsePicture::panels_of(const std::vector<const Add
       {"frequency (Hz)", "phase (deg)", x_kind, AxisKind::linear, false, {}},
       {"real part " + in, "imaginary part " + in, AxisKind::linear, AxisKind::linear, true, {}}};
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  constexpr double rounding = 1e-12;  // of the largest response, which has no phase
   double most = 0.0;
   for (const Added* one : row) most = std::max(most, largest_of(one->curve));
   for (const Added* one : row) {
@@ -118,6 +119,7 @@ std::vector<DiagramPanel> ResponsePicture::panels_of(const std::vector<const Add
     for (std::size_t i = 0; i < one->curve.values.size(); ++i) {
       const std::complex<double> value = one->curve.values[i];
       const double angle = std::arg(value) * 180.0 / std::numbers::pi;
+      // Beside none there is no difference.
       if (!phase.y.empty() && std::abs(angle - phase.y.back()) > 180.0) {
         phase.x.push_back(none);
         phase.y.push_back(none);
@@ -128,7 +130,7 @@ std::vector<DiagramPanel> ResponsePicture::panels_of(const std::vector<const Add
       }
       magnitude.y.push_back(std::abs(value));
       phase.x.push_back(one->frequencies[i]);
-      phase.y.push_back(angle);
+      phase.y.push_back(std::abs(value) > rounding * most ? angle : none);
       locus.x.push_back(value.real());
       locus.y.push_back(value.imag());
     }

@@ -35,6 +35,10 @@ std::string window_text(double highest) {
 
 std::string limit_text(double highest, double trusted) {
   if (!std::isfinite(highest)) return "";
+  if (highest < trusted && std::isfinite(trusted))
+    return fmt::format(
+        " (nothing above was asked for; the bodies resolve what is below {:.4g} kHz, --below)",
+        1e-3 * trusted);
   return highest < trusted
              ? " (nothing above was asked for)"
              : " (what the bodies resolve, by a rule of thumb: half the frequency of the highest "

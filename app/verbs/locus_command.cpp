@@ -184,7 +184,7 @@ ExitCode locus(LocusCommandOptions options) {
   found.windows = timed_windows(found.locus, range.key, scene, *family);
   if (options.output)
     write_locus(*options.output, found.locus, found.windows,
-                {scene, stability, range.key, options.command_line});
+                {scene, stability, range.key, options.command_line, found.highest, found.trusted});
   if (options.figure || options.history) {
     const LocusPicture picture = picture_of(found);
     if (options.figure) plot_locus(picture, *options.figure);

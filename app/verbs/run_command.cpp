@@ -284,7 +284,8 @@ std::optional<std::vector<TimedWindow>> predicted_windows(const RunOptions& opti
                       "sets windows beside bursts, but the scene seeks none; give it measure.band, "
                       "the frequencies in which they are sought");
   }
-  return read_predictions(*options.predict, {loaded.hash(), loaded.resolved()});
+  return read_predictions(*options.predict, {loaded.hash(), loaded.resolved()},
+                          loaded.scene.measure.band.back());
 }
 
 /// @param study of the scene, where the error is to be estimated

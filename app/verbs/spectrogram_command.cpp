@@ -179,8 +179,8 @@ void print_drawn(const PictureOptions& options, const RecordedStretch& run,
     fmt::print("no bursts of {} in the band {}\n", acceleration_name(run.file), *options.band);
   if (!options.predict) return;
   print_prediction(drawn.predictions);
-  for (const std::size_t number : unexplained(drawn.predictions, drawn.bursts))
-    fmt::print("burst {} belongs to no window\n", number);
+  const std::vector<std::size_t> others = unexplained(drawn.predictions, drawn.bursts);
+  if (!others.empty()) fmt::print("{}\n", unexplained_text(others));
 }
 
 }  // namespace
@@ -200,7 +200,9 @@ ExitCode draw_spectrogram(const PictureOptions& options) {
   drawn.series = spectral_series(run.file, shown_series(options, run, scene.spectrogram));
   if (options.predict) {
     const RunFileHeader& header = run.file.header();
-    drawn.windows = read_predictions(*options.predict, {header.scene_hash, header.scene_resolved});
+    const std::vector<double>& band = scene.measure.band;
+    drawn.windows = read_predictions(*options.predict, {header.scene_hash, header.scene_resolved},
+                                     band.empty() ? 0.5 / run.interval : band.back());
   }
   check_band(options, run, drawn.series);
   drawn.pieces = settle_pieces(

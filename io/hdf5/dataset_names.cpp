@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace stridor {
@@ -315,6 +316,9 @@ std::string text_for(const DatasetName& name, const std::vector<std::string>& pa
     const std::size_t place = text.find("{}");
     if (place != std::string::npos) text.replace(place, 2, parts[i]);
   }
+  // A contact that has no name of its own is called `contact`.
+  const std::size_t doubled = text.find("contact contact");
+  if (doubled != std::string::npos) text.erase(doubled, std::string_view("contact ").size());
   return text;
 }
 

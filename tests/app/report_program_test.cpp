@@ -400,7 +400,7 @@ TEST_F(ReportProgram, CyclesSweptUpAndDownShareTheirPictures) {
   }
   ASSERT_GE(names.size(), 3u);
   EXPECT_EQ((std::vector<std::string>{names.begin(), names.begin() + 3}),
-            (std::vector<std::string>{"amplitude", "x_rms", "frequency"}));
+            (std::vector<std::string>{"amplitude", "r.m.s. displacement", "frequency"}));
   for (const char* no_curve : {"status", "equilibrium_stable", "period"})
     EXPECT_EQ(std::count(names.begin(), names.end(), no_curve), 0) << no_curve;
 }
