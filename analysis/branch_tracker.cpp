@@ -118,9 +118,9 @@ class Tracker {
   }
 
   void advance_to(double target) {
-    // Where eigenvalues meet some tens of steps are tried. Where Newton's method leads to other
+    // Where eigenvalues cross some hundred steps are tried. Where Newton's method leads to other
     // zeros of the secular function all along, the dense method gets by with large steps.
-    constexpr int most_tries = 2000;
+    constexpr int most_tries = 10'000;
     int num_tries = 0;
     double next = target;
     while (value_ < target) {
@@ -291,7 +291,7 @@ class Tracker {
   void jump_to(double value) {
     constexpr int most_jumps = 10'000;
     if (++num_jumps_ > most_jumps) {
-      throw NumericalError(
+      throw SearchFailure(
           Refusal::eigenvalues_incomplete,
           fmt::format("locus: eigenvalues that nearly coincide cannot be told apart along {:g} to "
                       "{:g}; several "

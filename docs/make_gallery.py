@@ -404,8 +404,10 @@ def check(all_cards, stridor):
     for name in sorted(set(REFERENCES) - set(SLOW_REFERENCES)):
         what, command, number_of, value, tolerance, _ = REFERENCES[name]
         words = shlex.split(command.format(path=all_cards[name].path))
-        answer = subprocess.run([stridor, *words[1:], "--json"], cwd=SOURCE, check=True, capture_output=True).stdout
-        found = number_of(json.loads(answer))
+        answer = subprocess.run([stridor, *words[1:], "--json"], cwd=SOURCE, check=False, capture_output=True, text=True)
+        if answer.returncode != 0:
+            sys.exit(f"{name}: {answer.stderr}")
+        found = number_of(json.loads(answer.stdout))
         if not abs(found - value) <= tolerance:
             wrong.append(f"{name}: {what} is {found}, not {value} ± {tolerance}")
     if wrong:
@@ -484,7 +486,7 @@ def run_all(all_cards, stridor, are_times_kept):
             draw_scene(card, stridor, folder)
             draw_result(card, stridor, folder)
         for card in extreme_cards():
-            draw_extreme(card, stridor, folder)
+            times[card.name] = round(draw_extreme(card, stridor, folder), 2)
     if are_times_kept:
         TIMES.write_text(json.dumps(times, indent=1) + "\n", encoding="utf-8")
 

@@ -17,6 +17,7 @@
 #include "app/stability/prediction.hpp"
 #include "core/activity.hpp"
 #include "core/errors.hpp"
+#include "io/scene/scene_family.hpp"
 
 namespace stridor {
 namespace {
@@ -124,12 +125,15 @@ struct Heard {
 void judge_modes(const Json& section, Heard& heard) {
   double fastest = -std::numeric_limits<double>::infinity();
   double frequency = 0.0;
+  double looked_at = std::numeric_limits<double>::infinity();  // at every place, Hz
   std::size_t places = 0, growing = 0;
   for (const Json& view : section["views"]) {
     if (view["type"] != "modes") continue;
     places += view["frames"].size();
     for (const Json& frame : view["frames"]) {
       bool grows = false;
+      if (!frame["modes"].empty())
+        looked_at = std::min(looked_at, frame["modes"].back()["frequency"].get<double>());
       for (const Json& mode : frame["modes"]) {
         const auto growth = mode["growth"].get<double>();
         grows |= growth > 0.0;
@@ -145,9 +149,10 @@ void judge_modes(const Json& section, Heard& heard) {
   if (places > 1) {
     // Some places alone along a path, between which there are windows.
     heard.growth = fmt::format(
-        " Small vibrations about the sliding equilibrium grow at {} of the {} places whose modes "
-        "are shown; `stridor locus` finds all unstable windows between them.",
-        growing == 0 ? "none" : std::to_string(growing), places);
+        " Small vibrations about the sliding equilibrium, up to {}, grow at {} of the {} places "
+        "whose "
+        "modes are shown; `stridor locus --below` finds all unstable windows, also higher ones.",
+        shown(looked_at, "Hz"), growing == 0 ? "none" : std::to_string(growing), places);
     return;
   }
   // How far a run came that was killed is not known; its modes are those of its start.
@@ -157,7 +162,8 @@ void judge_modes(const Json& section, Heard& heard) {
                            " Small vibrations about the sliding equilibrium{} grow, fastest at {} "
                            "with {:.3g} 1/s.",
                            where, shown(frequency, "Hz"), fastest)
-                     : fmt::format(" No mode grows about the sliding equilibrium{}.", where);
+                     : fmt::format(" No mode up to {} grows about the sliding equilibrium{}.",
+                                   shown(looked_at, "Hz"), where);
 }
 
 /// The windows that `run --predict` set beside the bursts of a run.

@@ -119,7 +119,7 @@ std::string reach_of(const ResultFile& file) {
   std::string text = fmt::format(" Looked at: all up to {}", shown(*highest, "Hz"));
   if (trusted && *highest < *trusted)
     text += fmt::format("; the bodies resolve {}, --below {:.0f} looks up to there",
-                        shown(*trusted, "Hz"), *trusted);
+                        shown(*trusted, "Hz"), std::ceil(*trusted));
   return text + ".";
 }
 

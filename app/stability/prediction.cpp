@@ -28,7 +28,12 @@ std::vector<TimedWindow> read_predictions(const std::string& file, const SceneIn
   const SceneInFile of_locus{locus.text("scene_hash"), locus.text("scene_resolved")};
   // Another program's file may not say of which scene it is.
   std::vector<Problem> warnings;
-  // A file of an earlier version does not say.
+  if (!of_locus.hash.empty() && !has_same_mechanics(of_locus, of_run))
+    warnings.push_back({Refusal::contradiction, "--predict",
+                        fmt::format("'{}' is of another scene ({} instead of {}): other bodies, "
+                                    "contacts, drives or terms, whose windows may be elsewhere",
+                                    file, of_locus.hash, of_run.hash)});
+  // A file of an earlier version does not say how far it looked.
   constexpr double unknown = std::numeric_limits<double>::infinity();
   const double highest = locus.told("highest_frequency").value_or(unknown);
   const double needed = std::min(highest_burst, locus.told("trusted_frequency").value_or(unknown));
@@ -36,7 +41,7 @@ std::vector<TimedWindow> read_predictions(const std::string& file, const SceneIn
     warnings.push_back(
         {Refusal::contradiction, "--predict",
          fmt::format(
-             "'{}' looked up to {:.4g} Hz alone, bursts are sought up to {:.4g} Hz: windows "
+             "'{}' looked up to {:.6g} Hz alone, bursts are sought up to {:.6g} Hz: windows "
              "between are not in it; `locus --below {:.0f}` finds them",
              file, highest, highest_burst, std::ceil(needed))});
   print_warnings(warnings);

@@ -45,7 +45,9 @@ Refusal kind_of(const CLI::ParseError& error) {
   const auto is = [&](const char* name) { return error.get_name() == name; };
   if (is("RequiredError") || is("RequiresError")) return Refusal::missing;
   if (is("ValidationError") || is("ConversionError")) return Refusal::wrong_value;
-  if (is("ArgumentMismatch")) return Refusal::wrong_size;
+  // "--count: 1 required INT missing", or "At least 4 required but received 3".
+  if (is("ArgumentMismatch"))
+    return std::string(error.what()).ends_with("missing") ? Refusal::missing : Refusal::wrong_size;
   if (is("ExcludesError")) return Refusal::contradiction;
   return Refusal::unknown_option;
 }

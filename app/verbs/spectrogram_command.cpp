@@ -200,9 +200,10 @@ ExitCode draw_spectrogram(const PictureOptions& options) {
   drawn.series = spectral_series(run.file, shown_series(options, run, scene.spectrogram));
   if (options.predict) {
     const RunFileHeader& header = run.file.header();
+    // Where no band of the scene says where bursts are sought no locus looks too low.
     const std::vector<double>& band = scene.measure.band;
     drawn.windows = read_predictions(*options.predict, {header.scene_hash, header.scene_resolved},
-                                     band.empty() ? 0.5 / run.interval : band.back());
+                                     band.empty() || options.band ? 0.0 : band.back());
   }
   check_band(options, run, drawn.series);
   drawn.pieces = settle_pieces(

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -274,7 +275,11 @@ Eigen::VectorXcd SparsePencil::slope_adjoint(Complex s, Complex t,
 SparseFactor SparsePencil::factorise(Complex s) const {
   auto numbers = std::make_unique<SparseFactor::Numbers>();
   if (pattern_->full) {
-    numbers->full.emplace(pattern_->full_values(s));
+    try {
+      numbers->full.emplace(pattern_->full_values(s));
+    } catch (const std::bad_alloc&) {
+      fail(UMFPACK_ERROR_out_of_memory);
+    }
     return SparseFactor(std::move(numbers));
   }
   const auto control = controls();

@@ -367,6 +367,7 @@ TEST(Program, WrongUsageHasTheCodeOfItsKind) {
   EXPECT_EQ(code_of_command({"eig", main_scene, "--count", "many"}), "wrong-value");
   EXPECT_EQ(code_of_command({"map", main_scene, "--x", "time.step", "1", "2"}), "wrong-size");
   EXPECT_THAT(Program({}).run().err, HasSubstr("a verb is required: run, check,"));
+  EXPECT_THAT(Program({"eig", main_scene, "--count"}).run().err, HasSubstr("[missing]"));
 }
 
 TEST(Program, VerifyComparesWithTheExpectBlock) {

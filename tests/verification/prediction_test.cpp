@@ -16,7 +16,9 @@ namespace stridor {
 namespace {
 
 using namespace test;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Json = nlohmann::json;
 
 Json run_json(std::vector<std::string> arguments) {
@@ -155,6 +157,29 @@ TEST(Prediction, ARunSaysWhichWindowsWereHeardAndWhichBurstsNoneExplains) {
   const ProgramResult done = Program({"run", "--resume", run, "--predict", locus}).run();
   EXPECT_EQ(done.exit_code, 2);
   EXPECT_THAT(done.err, HasSubstr("holds a whole run"));
+}
+
+TEST(Prediction, WarnsOfALocusOfAnotherSceneAndOfOneThatLookedLessHigh) {
+  const TemporaryFolder folder;
+  const std::string scene = scene_path("beam_on_beam.yaml");
+  const auto said_with = [&](const std::string& name, std::vector<std::string> options) {
+    const std::string locus = (folder / (name + ".h5")).string();
+    std::vector<std::string> command{"locus",    scene, "--from",  "60 mm",    "--to", "61 mm",
+                                     "--points", "2",   "--about", "deformed", "-o",   locus};
+    command.insert(command.end(), options.begin(), options.end());
+    EXPECT_EQ(Program(command).run().exit_code, 0);
+    const ProgramResult run =
+        Program({"run", scene, "-o", (folder / ("run_" + name + ".h5")).string(), "--predict",
+                 locus, "--set", "time.end=0.02", "--set", "measure.from=0.01"})
+            .run();
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return run.err;
+  };
+  EXPECT_THAT(said_with("same", {}), Not(HasSubstr("warning")));
+  EXPECT_THAT(said_with("low", {"--count", "4"}),
+              AllOf(HasSubstr("looked up to "), HasSubstr("bursts are sought up to 15000 Hz")));
+  EXPECT_THAT(said_with("other", {"--set", "substructures.oblique.thickness=1.4 mm"}),
+              HasSubstr("is of another scene"));
 }
 
 TEST(Prediction, ARunThatWentOnSaysTheSameOfTheWholeAsOneWithoutAStop) {
