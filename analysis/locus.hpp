@@ -117,8 +117,9 @@ struct Locus {
 ///
 /// @param values  strictly ascending, at least one
 /// @throws std::invalid_argument if the values or an option are out of range, or as check_pencil()
-/// @throws NumericalError if the eigenvalues at the first value cannot be found, if several of them
-///         nearly coincide everywhere, or with the dense method as dense_eigenvalues()
+/// @throws SearchFailure if the eigenvalues at the first value cannot be found, cannot be followed
+///         from a value on (by the secular function), or nearly coincide everywhere;
+///         NumericalError with the dense method as dense_eigenvalues()
 Locus trace_locus(const PencilFamily& family, const std::vector<double>& values,
                   const LocusOptions& options = {});
 

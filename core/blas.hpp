@@ -17,6 +17,10 @@ bool is_blas_reentrant();
 /// thread before main().
 void keep_blas_in_this_thread();
 
+/// Complex numbers behind the end of a vector that must be readable: OpenBLAS 0.3.21 (zgemv for
+/// Haswell) reads some of them.
+constexpr int read_beyond_vectors = 16;
+
 /// Kernels to ask OpenBLAS for, as its variable OPENBLAS_CORETYPE names them; empty where those
 /// that it took are wide enough.
 ///

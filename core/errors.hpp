@@ -73,9 +73,8 @@ class NumericalError : public std::runtime_error {
       : std::runtime_error(message), refusal_(refusal) {}
 
   Refusal refusal() const { return refusal_; }
-  std::string report() const {
-    return with_code(what(), refusal_);
-  }  ///< what it says, with its code
+  /// What it says, with its code.
+  std::string report() const { return with_code(what(), refusal_); }
 
  private:
   Refusal refusal_;

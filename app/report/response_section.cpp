@@ -54,7 +54,7 @@ PagedResponse paged_response(const ResultFile& file, const std::string& output,
   return response;
 }
 
-/// What was measured and what was computed there, as a view of their own.
+/// A measured response and the computed one at its frequencies, as a view of their own.
 Json compared_view(const ResultFile& file, std::size_t number, const std::string& name,
                    ReportPage& page) {
   const std::string group = "/compared/" + std::to_string(number);

@@ -150,8 +150,8 @@ void judge_modes(const Json& section, Heard& heard) {
     // Some places alone along a path, between which there are windows.
     heard.growth = fmt::format(
         " Small vibrations about the sliding equilibrium, up to {}, grow at {} of the {} places "
-        "whose "
-        "modes are shown; `stridor locus --below` finds all unstable windows, also higher ones.",
+        "whose modes are shown; `stridor locus --below` finds all unstable windows, also higher "
+        "ones.",
         shown(looked_at, "Hz"), growing == 0 ? "none" : std::to_string(growing), places);
     return;
   }

@@ -218,14 +218,11 @@ ExitCode sweep_cycles(const SweepOptions& options, const LoadedScene& loaded) {
   if (options.output) write_file(options, loaded, key, branches);
   if (options.figure) draw(options, loaded, key, branches);
   std::vector<std::string> failures;
-  std::string first_failure;  // whose code is that of the sweep, where all have failed
   for (const auto& [name, points] : branches) {
     for (const SweepPoint& point : points) {
-      if (point.cycle.failure.empty()) continue;
-      if (failures.empty())
-        first_failure =
-            value_text(key, point.value) + ": " + cycle_failure(point.cycle, point.oscillator);
-      failures.push_back(value_text(key, point.value) + ": " + reason_of(point));
+      if (!point.cycle.failure.empty())
+        failures.push_back(value_text(key, point.value) + ": " +
+                           cycle_failure(point.cycle, point.oscillator));
     }
   }
   if (options.common.json) {
@@ -234,14 +231,15 @@ ExitCode sweep_cycles(const SweepOptions& options, const LoadedScene& loaded) {
     print_json(object);
   } else {
     print(branches);
-    for (const std::string& failure : failures) fmt::print("{}\n", failure);
+    for (const std::string& failure : failures)
+      fmt::print("{}\n", with_code(failure, Refusal::no_convergence));
     for (const auto& file : {options.output, options.figure})
       if (file) fmt::print("{}\n", *file);
   }
   if (failures.size() == values.size() * branches.size()) {
     throw NumericalError(
         Refusal::no_convergence,
-        fmt::format("none of the {} motions can be followed; {}", failures.size(), first_failure));
+        fmt::format("none of the {} motions can be followed; {}", failures.size(), failures[0]));
   }
   return ExitCode::done;
 }

@@ -6,6 +6,7 @@
 
 #include "app/results/file_attributes.hpp"
 #include "app/stability/passing_times.hpp"
+#include "app/stability/verdict.hpp"
 
 namespace stridor {
 
@@ -27,8 +28,9 @@ void write_locus(const std::string& path, const Locus& locus,
                                    {"about", source.options.about},
                                    {"method", locus.method}})
     attributes.emplace_back(name, text);
+  const double highest = verdict_limit(locus, source.options.window(), source.trusted);
   for (const auto& [name, value] :
-       {std::pair{"highest_frequency", source.highest}, {"trusted_frequency", source.trusted}})
+       {std::pair{"highest_frequency", highest}, {"trusted_frequency", source.trusted}})
     if (std::isfinite(value)) attributes.emplace_back(name, value);
   write_locus_file(path, source.options.common.overwrite(), locus, windows, units, attributes);
 }

@@ -20,7 +20,6 @@ struct LocusSource {
   const StabilityOptions& options;
   const NumericKey& key;
   const std::string& command_line;
-  double highest;  ///< up to where all eigenvalues were looked at, Hz
   double trusted;  ///< up to where the bodies resolve, Hz
 };
 

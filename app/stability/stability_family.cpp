@@ -1,6 +1,7 @@
 #include "app/stability/stability_family.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -145,6 +146,11 @@ std::vector<double> BodyStabilityFamily::kinks(std::size_t key, const std::vecto
   std::copy_if(surface.arc_length.begin(), surface.arc_length.end(), std::back_inserter(found),
                [&](double node) { return node > from && node < to; });
   return found;
+}
+
+double trusted_along(StabilityFamily& family, const std::vector<double>& range) {
+  return std::min(family.trusted_frequency(std::array{range.front()}),
+                  family.trusted_frequency(std::array{range.back()}));
 }
 
 }  // namespace stridor

@@ -93,4 +93,7 @@ class BodyStabilityFamily : public StabilityFamily {
   std::optional<std::string> start_key_;
 };
 
+/// Up to where the bodies resolve at both ends of a range of the only key, Hz.
+double trusted_along(StabilityFamily& family, const std::vector<double>& range);
+
 }  // namespace stridor

@@ -37,7 +37,7 @@ std::string limit_text(double highest, double trusted) {
   if (!std::isfinite(highest)) return "";
   if (highest < trusted && std::isfinite(trusted))
     return fmt::format(
-        " (nothing above was asked for; the bodies resolve what is below {:.4g} kHz, --below)",
+        " (nothing above was asked for; --below {:.4g}kHz looks as high as the bodies resolve)",
         1e-3 * trusted);
   return highest < trusted
              ? " (nothing above was asked for)"

@@ -1,4 +1,4 @@
-// What is wrong with a command line that makes no command.
+// Errors of a command line that makes no command.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,14 +9,16 @@
 
 namespace stridor {
 
+/// An error of the command line, for a message and a code.
 struct CommandProblem {
-  Refusal refusal;
+  Refusal refusal;  ///< its kind
   std::string message;
   std::string verb;  ///< that was given; empty where there is none like it
 };
 
-/// What the user sees of an error of parsing: an unknown verb or option with the nearest that there
-/// is, a required option with its meaning, else what CLI11 says.
+/// The error as the user is told: an unknown verb or option with the nearest that there is, a
+/// required option with its meaning, else the message of CLI11.
+/// @param error of program.parse()
 /// @param words behind the name of the program
 CommandProblem problem_of_command(CLI::App& program, const CLI::ParseError& error,
                                   const std::vector<std::string>& words);

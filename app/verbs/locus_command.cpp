@@ -177,14 +177,13 @@ ExitCode locus(LocusCommandOptions options) {
       std::ranges::all_of(found.locus.eigenvalues, [](const auto& all) { return all.empty(); }))
     throw ConfigError(Refusal::wrong_value, stability.below ? "--below" : "scene",
                       "there is no eigenvalue to draw; ask for a higher frequency");
-  found.trusted = std::min(family->trusted_frequency(std::array{range.values.front()}),
-                           family->trusted_frequency(std::array{range.values.back()}));
+  found.trusted = trusted_along(*family, range.values);
   found.highest = verdict_limit(found.locus, stability.window(), found.trusted);
 
   found.windows = timed_windows(found.locus, range.key, scene, *family);
   if (options.output)
     write_locus(*options.output, found.locus, found.windows,
-                {scene, stability, range.key, options.command_line, found.highest, found.trusted});
+                {scene, stability, range.key, options.command_line, found.trusted});
   if (options.figure || options.history) {
     const LocusPicture picture = picture_of(found);
     if (options.figure) plot_locus(picture, *options.figure);

@@ -99,7 +99,7 @@ Attributes data_attributes(const Json& settings, const RecordedStretch& run,
   return attributes;
 }
 
-/// What is drawn, and what is said of it.
+/// A spectrogram with its marks and its caption.
 struct DrawnSpectrogram {
   std::string series;
   PieceSettings pieces;

@@ -79,11 +79,6 @@ ExitCode threshold(const ThresholdOptions& options, const KeyRange& range, Growt
   return ExitCode::done;
 }
 
-double trusted_at_ends(StabilityFamily& family, const KeyRange& range) {
-  return std::min(family.trusted_frequency(std::array{range.values.front()}),
-                  family.trusted_frequency(std::array{range.values.back()}));
-}
-
 /// Along the values asked for, into the file where one is.
 Locus followed_locus(const ThresholdOptions& options, const StabilityScene& scene,
                      const KeyRange& range, StabilityFamily& family) {
@@ -91,12 +86,10 @@ Locus followed_locus(const ThresholdOptions& options, const StabilityScene& scen
   Locus locus = locus_along(family, range.key, 0, {range.values.front()}, range.values,
                             options.stability.locus_options());
   progress.reset();
-  if (options.output) {
-    const double trusted = trusted_at_ends(family, range);
+  if (options.output)
     write_locus(*options.output, locus, timed_windows(locus, range.key, scene, family),
                 {scene, options.stability, range.key, options.command_line,
-                 verdict_limit(locus, options.stability.window(), trusted), trusted});
-  }
+                 trusted_along(family, range.values)});
   return locus;
 }
 
@@ -112,7 +105,7 @@ ExitCode threshold(ThresholdOptions options) {
   }
   const Locus locus = followed_locus(options, scene, range, *family);
   const std::vector<StabilityChange> changes = stability_changes(locus);
-  const double trusted = trusted_at_ends(*family, range);
+  const double trusted = trusted_along(*family, range.values);
   const double highest = verdict_limit(locus, stability.window(), trusted);
 
   if (stability.common.json) {

@@ -176,7 +176,7 @@ PanelPlane add_panel_data(FigureScript& script, const DiagramPanel& panel, std::
   return plane;
 }
 
-/// What gnuplot is to plot of a diagram.
+/// The plots of a diagram, as gnuplot takes them.
 std::string panel_plots(const DiagramPanel& panel, std::size_t number) {
   std::string plots;
   for (std::size_t c = 0; c < panel.curves.size(); ++c) {

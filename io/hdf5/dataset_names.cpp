@@ -42,7 +42,7 @@ std::string channel_text(const std::string& channel) {
   return quantity + " of " + place + along;
 }
 
-/// What a dataset is called; a name in the path is `*`, its place in the text `{}`.
+/// The long name of a dataset; a name in the path is `*`, its place in the text `{}`.
 struct DatasetName {
   const char* path;
   const char* text;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/blas.hpp"
 #include "core/stop_token.hpp"
 #include "solvers/eigenvalues/complex_eigenpairs.hpp"
 
@@ -55,9 +56,7 @@ class Arnoldi {
     constexpr double long_enough = 0.01;  // to be orthogonal to 1e-14 after one round
     const double length = state.norm();
     const auto basis = basis_.leftCols(dim_);
-    // OpenBLAS (0.3.21, zgemv for Haswell) reads some numbers behind the end of the vector.
-    constexpr Eigen::Index read_beyond = 16;
-    Eigen::VectorXcd with_room = Eigen::VectorXcd::Zero(dim_ + read_beyond);
+    Eigen::VectorXcd with_room = Eigen::VectorXcd::Zero(dim_ + read_beyond_vectors);
     auto products = with_room.head(dim_);
     for (int round = 0; round < 2; ++round) {
       if (round > 0 && state.norm() > long_enough * length) break;

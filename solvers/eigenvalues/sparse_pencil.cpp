@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/blas.hpp"
 #include "core/errors.hpp"
 
 namespace stridor {
@@ -66,9 +67,7 @@ Eigen::VectorXcd product(const Eigen::MatrixXd& A, const Eigen::VectorXcd& x) {
 /// A⁻¹ b. Of a matrix of one column BLAS would pack A anew.
 Eigen::VectorXcd solve_one(const Eigen::PartialPivLU<Eigen::MatrixXcd>& factor,
                            const Eigen::VectorXcd& b) {
-  // OpenBLAS (0.3.21, zgemv for Haswell) reads some numbers behind the end of the vector.
-  constexpr Eigen::Index read_beyond = 16;
-  Eigen::VectorXcd with_room = Eigen::VectorXcd::Zero(b.size() + read_beyond);
+  Eigen::VectorXcd with_room = Eigen::VectorXcd::Zero(b.size() + read_beyond_vectors);
   auto x = with_room.head(b.size());
   x = factor.permutationP() * b;
   factor.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(x);
@@ -107,14 +106,12 @@ bool is_full(const SparseMatrix& matrix) {
   return static_cast<double>(matrix.nonZeros()) > 0.25 * places;
 }
 
-/// Of matrices that are full, these instead of places and values on them.
-struct FullTerms {
-  Eigen::MatrixXd velocity, position;
-};
-
 struct SparsePencil::Pattern {
+  struct FullTerms {
+    Eigen::MatrixXd velocity, position;
+  };
   SparseSystem system;
-  std::optional<FullTerms> full;
+  std::optional<FullTerms> full;  ///< of full matrices; what follows is then empty, but for norms
   SparseMatrix places;
   std::vector<double> mass, velocity, position;  ///< on the places
   double mass_norm = 0.0, velocity_norm = 0.0, position_norm = 0.0;
@@ -218,7 +215,7 @@ SparsePencil::SparsePencil(const SparseSystem& system) : pattern_(std::make_uniq
   pattern.velocity_norm = one_norm(system.velocity);
   pattern.position_norm = one_norm(system.position);
   if (is_full(system.velocity) || is_full(system.position)) {
-    pattern.full = FullTerms{system.velocity, system.position};
+    pattern.full = Pattern::FullTerms{system.velocity, system.position};
     return;
   }
   pattern.places =

@@ -193,22 +193,18 @@ void EquilibriumEquations::add_conditions(Values& equations, Eigen::Index index,
   const SoughtContact& contact = contacts[static_cast<std::size_t>(index)];
   const Eigen::Index row = ports_.num_unknown + index;
   const Eigen::Index last = values.size() - 1;
-  if (contact.result.is_closed) {
-    values(row) = local.gap + law.indentation;
-  } else {
-    values(row) = force;
-  }
-  if (derivative.size() > 0 && contact.result.is_closed) {
+  const bool with_derivative = derivative.size() > 0;
+  const bool is_closed = contact.result.is_closed;
+  values(row) = is_closed ? local.gap + law.indentation : force;
+  if (with_derivative) derivative(row, row) = is_closed ? law.compliance : 1.0;
+  if (with_derivative && is_closed) {
     add_by_ports(equations, row, contact, -local.gap_row.transpose());
-    derivative(row, row) = law.compliance;
     if (target_) derivative(row, last) = -local.gap_row[0] * contact.path_share;
-  } else if (derivative.size() > 0) {
-    derivative(row, row) = 1.0;
   }
   if (!contact.has_two_tangents() && is_target(contact)) {
     const double segment_length = contact.result.positions.master.chord().norm();
     values(last) = segment_length * (local.projection.xi - target_->xi);
-    if (derivative.size() == 0) return;
+    if (!with_derivative) return;
     add_by_ports(equations, last, contact, segment_length * local.shift_row.transpose());
     derivative(last, last) = segment_length * local.shift_row[0] * contact.path_share;
   }

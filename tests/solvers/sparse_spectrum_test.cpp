@@ -229,7 +229,7 @@ TEST(SparseSpectrum, NodesWithoutMassCondense) {
   }
 }
 
-/// What a count costs is mostly factorisations.
+/// Most of the cost of a count are factorisations.
 TEST(SparseSpectrum, FewFactorisationsFindAndCountAll) {
   const SparseSystem system = small_pads().system();
   const SparseSpectrum found = sparse_spectrum(system, SpectrumWindow::below(8000.0));
