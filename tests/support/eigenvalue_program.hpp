@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -14,11 +15,31 @@ namespace stridor::test {
 
 using Json = nlohmann::json;
 
+// The scenes of the paper.
+inline const std::string trailing = scene_path("beam_on_beam.yaml");
+inline const std::string leading = scene_path("beam_on_beam_leading.yaml");
+
+/// The JSON object that the program prints; null, with a failure, where it does not end well.
 inline Json json_of(std::vector<std::string> arguments) {
   arguments.emplace_back("--json");
   const ProgramResult result = Program(arguments).run();
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  return Json::parse(result.out);
+  return result.exit_code == 0 ? Json::parse(result.out) : Json();
+}
+
+struct Mode {
+  double growth;     ///< 1/s
+  double frequency;  ///< Hz
+};
+
+inline Mode mode_of(const Json& eigenvalue) {
+  return {eigenvalue[0].get<double>(), eigenvalue[1].get<double>() / (2.0 * std::numbers::pi)};
+}
+
+inline std::vector<Mode> modes_of(const Json& eigenvalues) {
+  std::vector<Mode> modes;
+  for (const Json& one : eigenvalues) modes.push_back(mode_of(one));
+  return modes;
 }
 
 struct Growth {
