@@ -30,6 +30,15 @@ inline BeamParameters paper_oblique(double angle = trailing_angle) {
   return beam;
 }
 
+/// Beam 1 by a small oblique mesh with more than one element through the thickness.
+inline BeamParameters small_beam(Support start = Support::free, Support end = Support::free,
+                                 double angle = 0.4) {
+  BeamParameters beam = paper_oblique(angle);
+  beam.mesh = {5, 2};
+  beam.supports = {start, end};
+  return beam;
+}
+
 /// Beam 2: horizontal, polycarbonate, clamped at x = 0; its top edge is the master surface.
 inline BeamParameters paper_cantilever() {
   BeamParameters beam;
