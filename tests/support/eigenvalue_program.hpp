@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <complex>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/program.hpp"
@@ -25,6 +27,25 @@ inline Json json_of(std::vector<std::string> arguments) {
   const ProgramResult result = Program(arguments).run();
   EXPECT_EQ(result.exit_code, 0) << result.err;
   return result.exit_code == 0 ? Json::parse(result.out) : Json();
+}
+
+/// The same with values set in the scene.
+inline Json scene_json(std::vector<std::string> arguments,
+                       const std::vector<std::string>& sets = {}) {
+  for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+  return json_of(std::move(arguments));
+}
+
+inline std::complex<double> complex_of(const Json& eigenvalue) {
+  return {eigenvalue[0].get<double>(), eigenvalue[1].get<double>()};
+}
+
+/// Those with positive imaginary part.
+inline std::vector<std::complex<double>> vibrations(const Json& eigenvalues) {
+  std::vector<std::complex<double>> found;
+  for (const Json& one : eigenvalues)
+    if (one[1] > 0.0) found.push_back(complex_of(one));
+  return found;
 }
 
 struct Mode {
