@@ -84,6 +84,15 @@ double sliding_through_both(const double* slave, std::size_t slave_stride, const
                  master_pull);
 }
 
+/// Calls work(k) for every node of a piece of surface, which has two at least: those of a straight
+/// segment without a loop.
+template <class Work>
+STRIDOR_INLINE void for_nodes(const SurfacePiece& piece, const Work& work) {
+  work(std::size_t{0});
+  work(std::size_t{1});
+  for (std::size_t k = 2; k < static_cast<std::size_t>(piece.stencil.count); ++k) work(k);
+}
+
 /// W from given ports of a body on, columns num_ports apart.
 const double* block_of(const Propagator& body, const double* compliances, int port_a, int port_b) {
   return compliances +
@@ -109,11 +118,15 @@ SlidingPoint::SlidingPoint(const ContactPoint& point, const MasterSurface& surfa
   watch(point.first_segment);
 }
 
-void SlidingPoint::watch(int segment) {
+void SlidingPoint::enter(int segment) {
   segment_ = segment;
   undeformed_ = surface_->undeformed_piece(segment);
   place_.master.stencil = undeformed_.stencil;
   slave_origin_ = point_.slave_position - surface_->positions[static_cast<std::size_t>(segment)];
+}
+
+void SlidingPoint::watch(int segment) {
+  enter(segment);
   for (int k = 0; k < undeformed_.stencil.count; ++k) {
     const PointRows& rows = surface_->rows[static_cast<std::size_t>(undeformed_.stencil.first + k)];
     master_->watch(master_port_ + 2 * k, rows.x);
@@ -126,12 +139,10 @@ void SlidingPoint::set_place(const double* slave, const double* master, double d
   const double* const s = slave + slave_port_;
   const double* const m = master + master_port_;
   place.slave = {slave_origin_.x() + driven + s[0], slave_origin_.y() + s[1]};
-  place.master.stencil = undeformed_.stencil;
-  for (int k = 0; k < undeformed_.stencil.count; ++k) {
-    const Eigen::Vector2d& node = undeformed_.nodes[static_cast<std::size_t>(k)];
-    place.master.nodes[static_cast<std::size_t>(k)] = {node.x() + m[2 * k],
-                                                       node.y() + m[2 * k + 1]};
-  }
+  for_nodes(undeformed_, [&](std::size_t k) STRIDOR_INLINE_LAMBDA {
+    const Eigen::Vector2d& node = undeformed_.nodes[k];
+    place.master.nodes[k] = {node.x() + m[2 * k], node.y() + m[2 * k + 1]};
+  });
 }
 
 Projection SlidingPoint::project_place(const Place& place, double driven) const {
@@ -180,13 +191,13 @@ void SlidingPoint::set_rows() {
   const Eigen::Vector2d& t = projection_.tangent;
   normal_.slave = {n.x(), n.y()};
   tangent_.slave = {t.x(), t.y()};
-  for (std::size_t k = 0; k < static_cast<std::size_t>(undeformed_.stencil.count); ++k) {
+  for_nodes(undeformed_, [&](std::size_t k) STRIDOR_INLINE_LAMBDA {
     const double weight = projection_.weights[k];
     normal_.master[2 * k] = -weight * n.x();
     normal_.master[2 * k + 1] = -weight * n.y();
     tangent_.master[2 * k] = -weight * t.x();
     tangent_.master[2 * k + 1] = -weight * t.y();
-  }
+  });
 }
 
 double SlidingPoint::undeformed_arm(const Eigen::Vector2d& direction, double driven) const {
@@ -242,7 +253,7 @@ double SlidingPoint::stretch() const {
 }
 
 ContactPlace SlidingPoint::present_place(double driven) const {
-  Place now;
+  Place now{{}, {undeformed_.stencil, {}}};
   set_place(slave_->current(), master_->current(), driven, now);
   const Projection here = project(now.master, now.slave, projection_.xi);
   return {here.normal.dot(now.slave - now.master.combine(here.weights)) -
@@ -302,10 +313,15 @@ void SlidingPoint::apply(double normal, double tangential, double* slave_forces,
                          double* master_forces) const {
   double* const slave = slave_forces + slave_port_;
   double* const master = master_forces + master_port_;
-  for (std::size_t k = 0; k < 2; ++k)
-    slave[k] = normal * normal_.slave[k] - tangential * tangent_.slave[k];
-  for (std::size_t k = 0; k < 2 * static_cast<std::size_t>(undeformed_.stencil.count); ++k)
-    master[k] = normal * normal_.master[k] - tangential * tangent_.master[k];
+  const auto set = [&](double* force, const double* on_normal, const double* on_tangent)
+                       STRIDOR_INLINE_LAMBDA {
+                         force[0] = normal * on_normal[0] - tangential * on_tangent[0];
+                         force[1] = normal * on_normal[1] - tangential * on_tangent[1];
+                       };
+  set(slave, normal_.slave.data(), tangent_.slave.data());
+  for_nodes(undeformed_, [&](std::size_t k) STRIDOR_INLINE_LAMBDA {
+    set(master + 2 * k, normal_.master.data() + 2 * k, tangent_.master.data() + 2 * k);
+  });
 }
 
 std::array<PortBlock, 2> SlidingPoint::blocks() const {
@@ -328,9 +344,7 @@ std::array<PortBlock, 2> SlidingPoint::blocks() const {
 }
 
 void SlidingPoint::restore(int segment, double xi, const Eigen::Vector2d& tangent) {
-  segment_ = segment;
-  undeformed_ = surface_->undeformed_piece(segment);
-  slave_origin_ = point_.slave_position - surface_->positions[static_cast<std::size_t>(segment)];
+  enter(segment);
   projection_ = {xi, tangent, turned_left(tangent), weights_at(undeformed_.stencil, xi).value};
   set_rows();
 }

@@ -109,6 +109,9 @@ class SlidingPoint {
   /// Calls visit(body, entries of this, entries of the other) for every body that both share.
   template <class Visit>
   void for_shared_bodies(const SlidingPoint& other, const Visit& visit) const;
+  /// Takes up the undeformed segment.
+  void enter(int segment);
+  /// The same, and has the master follow its nodes.
   void watch(int segment);
   void set_place(const double* slave, const double* master, double driven, Place& place) const;
   Projection project_place(const Place& place, double driven) const;
