@@ -4,17 +4,9 @@
 #include <vector>
 
 #include "analysis/spectrum_sampler.hpp"
+#include "analysis/window_ends.hpp"
 
 namespace stridor {
-
-/// Search for the ends and the largest growth of windows.
-struct WindowEffort {
-  double tolerance = 1e-13;  ///< of the ends, relative
-  int climbing_steps = 40;   ///< of golden sections towards the largest growth
-  /// How ends are approached: where spectra are dear by the pairs of eigenvalues that meet there.
-  /// Then parabolas also give the integral of the growth where its curvature adds little.
-  enum class Ends { halving, by_pairs } ends = Ends::halving;
-};
 
 /// Solves for all changes in the number of eigenvalues that grow, and appends a window for each
 /// eigenvalue from where it begins to grow to where it ends.

@@ -28,8 +28,6 @@ constexpr Eigen::Index most_modes = 1000;  ///< of the symmetric part in the fir
 constexpr double largest_residual = 1e-6;  ///< of a pair
 constexpr double refined_tolerance = 1e-9;  ///< of a pair that serves as a basis
 
-using Pair = SparsePair;
-
 /// The search of sparse_spectrum() and pairs_near().
 class SparseSearch {
  public:
@@ -65,10 +63,10 @@ class SparseSearch {
   Modes modes_;
   MassBasis basis_{pencil_.system().mass};
   double represented_ =
-      std::numeric_limits<double>::infinity();  ///< ω up to which basis_ has modes
-  std::vector<Pair> pairs_;                                       ///< near the window
+      std::numeric_limits<double>::infinity();  ///< ω up to where basis_ has modes
+  std::vector<SparsePair> pairs_;               ///< near the window
   std::vector<Complex> far_;                                      ///< approximations above
-  std::vector<Pair> rights_, lefts_;                              ///< of both sides, as found
+  std::vector<SparsePair> rights_, lefts_;                        ///< of both sides, as found
   std::mt19937 generator_{1};
   int factorisations_ = 0;
 };
@@ -113,7 +111,7 @@ void SparseSearch::add_modes_below(double omega) {
 /// A height with as many pairs below as are wanted.
 double SparseSearch::height_for_count() const {
   std::vector<double> heights;
-  for (const Pair& pair : pairs_)
+  for (const SparsePair& pair : pairs_)
     if (pair.s.imag() > 0.0) heights.push_back(pair.s.imag());
   for (const Complex& s : far_)
     if (s.imag() > 0.0) heights.push_back(s.imag());
@@ -163,7 +161,7 @@ void SparseSearch::search(std::size_t most_at_once) {
   rights_.clear();
   lefts_.clear();
   std::sort(pairs_.begin(), pairs_.end(),
-            [](const Pair& a, const Pair& b) { return a.s.imag() < b.s.imag(); });
+            [](const SparsePair& a, const SparsePair& b) { return a.s.imag() < b.s.imag(); });
   const std::size_t num = pairs_.size();
   const std::size_t num_groups =
       std::max<std::size_t>(1, (num + most_at_once - 1) / most_at_once);
@@ -229,7 +227,7 @@ void SparseSearch::search_group(std::size_t first, std::size_t last, double low,
   const SparseFactor factor = pencil_.factorise(wanted.shift);
   ++factorisations_;
   const NearestPairs found = nearest_pairs(pencil_, factor, wanted, start_of(first, last, factor));
-  for (const Pair& pair : found.pairs) {
+  for (const SparsePair& pair : found.pairs) {
     if (pair.s.imag() < -1e-3 * height_ || !is_near(pair.s) || starts_at_pairs_) continue;
     // Turned so that most of it is real.
     const Complex square = (pair.x.transpose() * pair.x)(0);
@@ -243,7 +241,7 @@ void SparseSearch::search_group(std::size_t first, std::size_t last, double low,
 /// inverse iteration.
 void SparseSearch::keep_sides(const NearestPairs& found, Complex shift, const SparseFactor& factor,
                               double begin, double end) {
-  for (const Pair& pair : found.pairs) {
+  for (const SparsePair& pair : found.pairs) {
     if (pair.s.imag() < begin || pair.s.imag() >= end || !is_near(pair.s)) continue;
     // Conjugates are counted with what is above the real axis. Pairs converge relative to their
     // distance from the shift.
@@ -289,7 +287,7 @@ SparseSpectrum SparseSearch::found_up_to(double height) const {
   const SparseMatrix& mass = pencil_.system().mass;
   spectrum.right.resize(size(), static_cast<Eigen::Index>(pairs_.size()));
   Eigen::Index num = 0;
-  for (const Pair& pair : pairs_) {
+  for (const SparsePair& pair : pairs_) {
     const double residual = pencil_.scaled_residual(pair.s, pair.x);
     // A projection may have eigenvalues near which the problem has none. In a rigid motion all
     // terms of the residual are rounding.
@@ -312,7 +310,7 @@ SparseSpectrum SparseSearch::found_up_to(double height) const {
 /// Compares with the argument principle.
 void SparseSearch::count(SparseSpectrum& spectrum) {
   std::vector<Complex> known = far_;
-  for (const Pair& pair : pairs_) known.push_back(pair.s);
+  for (const SparsePair& pair : pairs_) known.push_back(pair.s);
   const auto logarithm = [&](Complex s) {
     ++factorisations_;
     const SparseFactor factor = pencil_.factorise(s);
@@ -339,7 +337,7 @@ SparseSpectrum SparseSearch::run() {
     } else {
       // Approximations of what has not been found, beside what has.
       add_modes_below(std::numeric_limits<double>::infinity());
-      for (const Pair& pair : pairs_) basis_.add_complex(pair.x);
+      for (const SparsePair& pair : pairs_) basis_.add_complex(pair.x);
       project();
     }
     search(most_at_once);
