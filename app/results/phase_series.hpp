@@ -1,4 +1,4 @@
-// What a phase plot shows of a run.
+// The two series of a run that a phase plot sets against each other.
 #pragma once
 
 #include <string>

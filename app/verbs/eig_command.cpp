@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
-#include <filesystem>
 #include <numbers>
 #include <string>
 #include <vector>

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "app/results/phase_series.hpp"
@@ -215,7 +214,7 @@ Drawn draw_spectrum(const PlotOptions& options, const RecordedStretch& run) {
 
 // ---------------------------------------------------------------- the verb
 
-/// What is written, and as what.
+/// Refuses a form of --data, or outputs, that the kind of picture does not have.
 void check_outputs(const PlotOptions& options) {
   const bool is_of_channels = options.kind == "history" || options.kind == "spectrum";
   if (options.kind == "phase") refuse_option(options, "--data", options.data);

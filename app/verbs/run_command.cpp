@@ -1,10 +1,7 @@
 // stridor run: transient simulation of a scene.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <cstdio>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>

@@ -93,6 +93,13 @@ STRIDOR_INLINE void for_nodes(const SurfacePiece& piece, const Work& work) {
   for (std::size_t k = 2; k < static_cast<std::size_t>(piece.stencil.count); ++k) work(k);
 }
 
+/// λ_n and λ_t as the force on one point.
+STRIDOR_INLINE void set_force(double normal, const double* on_normal, double tangential,
+                              const double* on_tangent, double* force) {
+  force[0] = normal * on_normal[0] - tangential * on_tangent[0];
+  force[1] = normal * on_normal[1] - tangential * on_tangent[1];
+}
+
 /// W from given ports of a body on, columns num_ports apart.
 const double* block_of(const Propagator& body, const double* compliances, int port_a, int port_b) {
   return compliances +
@@ -138,6 +145,7 @@ void SlidingPoint::set_place(const double* slave, const double* master, double d
                              Place& place) const {
   const double* const s = slave + slave_port_;
   const double* const m = master + master_port_;
+  // The stencil is already that of the segment: of place_ since enter(), elsewhere by the caller.
   place.slave = {slave_origin_.x() + driven + s[0], slave_origin_.y() + s[1]};
   for_nodes(undeformed_, [&](std::size_t k) STRIDOR_INLINE_LAMBDA {
     const Eigen::Vector2d& node = undeformed_.nodes[k];
@@ -313,14 +321,10 @@ void SlidingPoint::apply(double normal, double tangential, double* slave_forces,
                          double* master_forces) const {
   double* const slave = slave_forces + slave_port_;
   double* const master = master_forces + master_port_;
-  const auto set = [&](double* force, const double* on_normal, const double* on_tangent)
-                       STRIDOR_INLINE_LAMBDA {
-                         force[0] = normal * on_normal[0] - tangential * on_tangent[0];
-                         force[1] = normal * on_normal[1] - tangential * on_tangent[1];
-                       };
-  set(slave, normal_.slave.data(), tangent_.slave.data());
+  set_force(normal, normal_.slave.data(), tangential, tangent_.slave.data(), slave);
   for_nodes(undeformed_, [&](std::size_t k) STRIDOR_INLINE_LAMBDA {
-    set(master + 2 * k, normal_.master.data() + 2 * k, tangent_.master.data() + 2 * k);
+    set_force(normal, normal_.master.data() + 2 * k, tangential, tangent_.master.data() + 2 * k,
+              master + 2 * k);
   });
 }
 

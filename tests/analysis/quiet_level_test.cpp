@@ -1,4 +1,4 @@
-// What bursts are told from: the envelope of a signal and its quiet level.
+// The envelope of a signal and its quiet level, above which bursts stand out.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -124,7 +124,7 @@ TEST(Linearise, AboutTheDeformedEquilibriumItPredictsTheBursts) {
 }
 
 TEST(Linearise, TheForceInEquilibriumChangesGrowthLittle) {
-  // What λ adds where the contact turns and shifts; 1.3 % at the weakest maximum, 36 1/s.
+  // The part that λ adds where the contact turns and shifts; 1.3 % at the weakest maximum, 36 1/s.
   const System system = paper_system_at(leading_angle);
   for (const auto& [position, growth, frequency] :
        {Growth{0.0635, 36.0, 3529.0}, Growth{0.083, 87.0, 3520.0}, Growth{0.091, 133.0, 3530.0}}) {

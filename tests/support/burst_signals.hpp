@@ -27,7 +27,7 @@ inline std::vector<double> white(std::size_t count, std::uint64_t seed) {
   return samples;
 }
 
-/// What the band leaves of white noise of variance 1.
+/// R.m.s. value of white noise of variance 1 after the band-pass filter.
 inline double band_rms(Band band) {
   double square = 0.0;
   constexpr int points = 20000;

@@ -1,4 +1,4 @@
-// What linearised contacts are tested with: all assumptions, no terms, and single eigenvalues.
+// Assumptions, terms and single eigenvalues for tests of linearised contacts.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -12,7 +12,7 @@
 
 namespace stridor::test {
 
-/// What is allowed of a number.
+/// Unit and range of the numbers that a key takes.
 struct NumberRules {
   std::string unit;
   Range range;

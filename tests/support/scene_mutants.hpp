@@ -19,7 +19,7 @@
 
 namespace stridor::test {
 
-/// What must be said of a spoilt scene, and where: at the name of a key or at a value.
+/// The message that a spoilt scene must bring, and its place: the name of a key or a value.
 struct Answer {
   enum class At { key, value };
 
