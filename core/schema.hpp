@@ -23,6 +23,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -50,6 +51,19 @@ struct PlainKey {
   std::string number_key = "";
   std::string list_key = "";
 };
+
+/// The words that stand for the values of an enum in a scene.
+template <class Enum>
+using ChoiceWords = std::vector<std::pair<std::string, Enum>>;
+
+/// The word of a value that is among them; empty for another.
+template <class Enum>
+std::string word_of(const ChoiceWords<Enum>& words, Enum value) {
+  for (const auto& [word, meaning] : words) {
+    if (meaning == value) return word;
+  }
+  return {};
+}
 
 /// Builder of the Schema of the struct T.
 template <class T>
@@ -115,24 +129,24 @@ class SchemaOf {
                RealKey{std::move(says.doc), "", {}, says.optional});
   }
 
-  /// An enum; `names` pairs what the user writes with what it means.
+  /// An enum, and the words that the user writes for its values.
   template <class Enum>
-  SchemaOf& choice(std::string name, Enum T::*member,
-                   std::vector<std::pair<std::string, Enum>> names, PlainKey says) {
+  SchemaOf& choice(std::string name, Enum T::*member, ChoiceWords<std::type_identity_t<Enum>> words,
+                   PlainKey says) {
     Key key;
     key.kind = KeyKind::choice;
     key.name = std::move(name);
     key.doc = std::move(says.doc);
     key.is_optional = says.optional;
-    for (const auto& entry : names) key.choices.push_back(entry.first);
-    key.assign = [member, names](void* object, const Value& value) {
-      for (const auto& [text, meaning] : names) {
+    for (const auto& entry : words) key.choices.push_back(entry.first);
+    key.assign = [member, words](void* object, const Value& value) {
+      for (const auto& [text, meaning] : words) {
         if (text == std::get<std::string>(value)) static_cast<T*>(object)->*member = meaning;
       }
     };
-    key.read = [member, names](const void* object) -> Value {
-      for (const auto& [text, meaning] : names) {
-        if (static_cast<const T*>(object)->*member == meaning) return text;
+    key.read = [member, words](const void* object) -> Value {
+      for (const auto& [word, meaning] : words) {
+        if (static_cast<const T*>(object)->*member == meaning) return word;
       }
       return {};
     };

@@ -314,7 +314,7 @@ void add_expectations(const std::string& resolved, const Json& results,
     rows.push_back({{"result", expectation.result},
                     {"expected", expectation.value},
                     {"tolerance", expectation.tolerance},
-                    {"value", value ? number(*value) : Json(nullptr)},
+                    {"value", number_or_null(value)},
                     {"is_met", is_met}});
   }
   section["expectations"] = rows;

@@ -99,8 +99,7 @@ Json step_stability_json(const StepStabilityReport& report) {
       row["radius"] = number(stability.radius);
       row["growth"] = number(stability.growth);
       row["frequency"] = stability.frequency;
-      row["growth_of_bodies"] =
-          stability.growth_of_bodies ? number(*stability.growth_of_bodies) : Json();
+      row["growth_of_bodies"] = number_or_null(stability.growth_of_bodies);
     }
     object["places"].push_back(row);
   }

@@ -94,11 +94,8 @@ Json cycle_json(const LimitCycle& cycle, const SlidingOscillator& oscillator) {
 }
 
 Json displacement_json(const CycleMeter::Reading& seen, const SlidingOscillator& oscillator) {
-  const auto or_null = [](const std::optional<double>& value) {
-    return value ? number(*value) : Json(nullptr);
-  };
-  return extremes_json(seen.smallest, seen.largest, or_null(seen.mean), or_null(seen.rms),
-                       oscillator);
+  return extremes_json(seen.smallest, seen.largest, number_or_null(seen.mean),
+                       number_or_null(seen.rms), oscillator);
 }
 
 Json indentation_json(double deepest, const SlidingMass& mass) {

@@ -23,10 +23,6 @@ SubstrateMotion make_motion(const SlidingOscillator& oscillator, const TimeParam
   return {oscillator.oscillator, time.tolerance};
 }
 
-Json or_null(const std::optional<double>& value, double unit = 1.0) {
-  return value ? number(unit * *value) : Json(nullptr);
-}
-
 }  // namespace
 
 EventDriver::EventDriver(const LoadedScene& loaded, const Model& model)
@@ -198,9 +194,9 @@ Json EventDriver::results(MarchEnd end,
                              : end == MarchEnd::stopped ? "stopped"
                                                         : "failed"},
                   {"contact_force", {{"min", number(force_min_)}, {"max", number(force_max_)}}},
-                  {"stick_fraction", or_null(seen.stick_fraction)},
-                  {"free_fraction", or_null(seen.free_fraction)},
-                  {"period", or_null(seen.period, oscillator_.time)},
+                  {"stick_fraction", number_or_null(seen.stick_fraction)},
+                  {"free_fraction", number_or_null(seen.free_fraction)},
+                  {"period", seen.period ? number(oscillator_.time * *seen.period) : Json(nullptr)},
                   {"x", displacement_json(seen, oscillator_)}};
   results.update(indentation_json(seen.deepest * length, oscillator_.mass));
   results.update(acceleration_json(acceleration));

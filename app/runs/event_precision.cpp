@@ -43,18 +43,6 @@ struct Setting {
   bool is_event_driven() const { return integrator == Integrator::event_driven; }
 };
 
-const char* name_of(Integrator integrator) {
-  switch (integrator) {
-    case Integrator::event_driven:
-      return "event_driven";
-    case Integrator::central_difference:
-      return "central_difference";
-    case Integrator::exact:
-      return "exact";
-  }
-  return "";
-}
-
 struct Study {
   const LoadedScene* loaded;
   Model model;
@@ -174,8 +162,8 @@ std::vector<Setting> settings_of(int points) {
 
 Json row_json(const Study& study, const Setting& setting) {
   const bool is_stable = std::isfinite(setting.error);
-  return {{"method", name_of(setting.integrator)},
-          {"integrator", name_of(setting.integrator)},
+  return {{"method", word_of(integrator_words(), setting.integrator)},
+          {"integrator", word_of(integrator_words(), setting.integrator)},
           {"modes", 2},
           {"step", setting.is_event_driven() ? Json(nullptr) : number(study.step(setting))},
           {"tolerance", setting.is_event_driven() ? number(setting.tolerance) : Json(nullptr)},
@@ -196,7 +184,7 @@ void draw(const Study& study, const std::vector<Setting>& settings,
   int colour = 0;
   for (const Integrator integrator :
        {Integrator::event_driven, Integrator::exact, Integrator::central_difference}) {
-    PanelCurve line{name_of(integrator), {}, {}, Mark::line, colour};
+    PanelCurve line{word_of(integrator_words(), integrator), {}, {}, Mark::line, colour};
     for (const Setting& setting : settings) {
       if (setting.integrator != integrator || !(setting.error > 0.0)) continue;
       line.x.push_back(setting.seconds);
@@ -254,7 +242,7 @@ EventPrecision measure_all(const Study& study, int points, std::optional<double>
     measure(study, setting);
     setting.error = relative_error(setting.x, reference);
     progress.report(static_cast<double>(i + 1) / static_cast<double>(found.settings.size()),
-                    name_of(setting.integrator));
+                    word_of(integrator_words(), setting.integrator));
   }
   progress.finish();
   for (Setting& setting : found.settings) {
@@ -277,7 +265,8 @@ void print_settings(const Study& study, const EventPrecision& found) {
              "error");
   for (const Setting& setting : found.settings) {
     const bool is_event_driven = setting.is_event_driven();
-    fmt::print("{:<20}{:>12}{:>12}{:>14.4g}{:>12.3g}{}\n", name_of(setting.integrator),
+    fmt::print("{:<20}{:>12}{:>12}{:>14.4g}{:>12.3g}{}\n",
+               word_of(integrator_words(), setting.integrator),
                is_event_driven ? "-" : fmt::format("{:.4g}", study.step(setting)),
                is_event_driven ? fmt::format("{:.1e}", setting.tolerance) : "-", setting.seconds,
                setting.error, &setting == found.tuned ? "  cheapest" : "");

@@ -13,23 +13,6 @@
 namespace stridor {
 namespace {
 
-const std::string& name_of(ContactAssumption assumption) {
-  const auto& names = assumption_names();
-  return std::find_if(names.begin(), names.end(),
-                      [&](const auto& entry) { return entry.second == assumption; })
-      ->first;
-}
-
-const char* name_of(Integrator integrator) {
-  return integrator == Integrator::exact ? "exact" : "central_difference";
-}
-
-const char* name_of(Coordinates coordinates) {
-  return coordinates == Coordinates::modal           ? "modal"
-         : coordinates == Coordinates::craig_bampton ? "craig_bampton"
-                                                     : "craig_bampton_fused";
-}
-
 std::string method_name(const PrecisionRow& row, ContactAssumption own) {
   std::string name = row.coordinates == Coordinates::craig_bampton         ? "published form"
                      : row.coordinates == Coordinates::craig_bampton_fused ? "published form, fused"
@@ -39,7 +22,8 @@ std::string method_name(const PrecisionRow& row, ContactAssumption own) {
     name += row.method.retained ? fmt::format(", to {}", quantity_text(*row.method.retained, "Hz"))
                                 : std::string(", all modes");
   }
-  if (row.method.assumption != own) name += ", " + name_of(row.method.assumption);
+  if (row.method.assumption != own)
+    name += ", " + word_of(assumption_names(), row.method.assumption);
   return name;
 }
 
@@ -51,9 +35,9 @@ Json errors_json(const RunErrors& errors) {
 
 Json row_json(const PrecisionRow& row, ContactAssumption own) {
   Json object{{"method", method_name(row, own)},
-              {"integrator", name_of(row.method.integrator)},
-              {"coordinates", name_of(row.coordinates)},
-              {"assumption", name_of(row.method.assumption)},
+              {"integrator", word_of(integrator_words(), row.method.integrator)},
+              {"coordinates", word_of(coordinates_words(), row.coordinates)},
+              {"assumption", word_of(assumption_names(), row.method.assumption)},
               {"retain", row.method.retained ? Json(*row.method.retained) : Json("all")},
               {"modes", row.modes},
               {"step", row.time.step},
@@ -125,10 +109,10 @@ Json published_json(const PrecisionResult& result) {
     if (best == nullptr) continue;
     // The first row of each form is the one at the largest step.
     const bool is_known = std::any_of(list.begin(), list.end(), [&](const Json& entry) {
-      return entry["coordinates"] == name_of(row.coordinates);
+      return entry["coordinates"] == word_of(coordinates_words(), row.coordinates);
     });
     if (is_known) continue;
-    list.push_back({{"coordinates", name_of(row.coordinates)},
+    list.push_back({{"coordinates", word_of(coordinates_words(), row.coordinates)},
                     {"step", row.time.step},
                     {"error", row.error},
                     {"least_wall_s", row.least_seconds()},
@@ -184,7 +168,7 @@ Json precision_json(const PrecisionStudy& study, const PrecisionOptions& options
               {"smoothing", study.norms.smoothing},
               {"sampling", study.interval},
               {"reference",
-               {{"integrator", name_of(reference.method.integrator)},
+               {{"integrator", word_of(integrator_words(), reference.method.integrator)},
                 {"modes", reference.modes},
                 {"step", reference.time.step},
                 {"wall_s", reference.seconds()},

@@ -21,10 +21,6 @@ std::string observed_name(const PeriodicMotion& cycle) {
                      observed_contact(cycle).name);
 }
 
-Json or_null(const std::optional<double>& value) {
-  return value ? number(*value) : Json(nullptr);
-}
-
 }  // namespace
 
 PeriodicMotion find_scene_cycle(const LoadedScene& loaded, Model& model) {
@@ -56,10 +52,10 @@ Json step_cycle_json(const PeriodicMotion& cycle) {
           {"x",
            {{"min", number(seen.smallest)},
             {"max", number(seen.largest)},
-            {"mean", or_null(seen.mean)},
-            {"rms", or_null(seen.rms)}}},
-          {"stick_fraction", or_null(seen.stick_fraction)},
-          {"free_fraction", or_null(seen.free_fraction)},
+            {"mean", number_or_null(seen.mean)},
+            {"rms", number_or_null(seen.rms)}}},
+          {"stick_fraction", number_or_null(seen.stick_fraction)},
+          {"free_fraction", number_or_null(seen.free_fraction)},
           {"multipliers", multipliers},
           {"residual", cycle.multipliers.empty() ? Json(nullptr) : number(cycle.residual)},
           {"steps", is_periodic ? Json(cycle.num_steps) : Json(nullptr)},

@@ -91,6 +91,10 @@ Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+Json number_or_null(const std::optional<double>& value) {
+  return value ? number(*value) : Json(nullptr);
+}
+
 double pointed_number(const Json& object, const char* pointer) {
   const Json::json_pointer at(pointer);
   return object.contains(at) && object[at].is_number() ? object[at].get<double>()

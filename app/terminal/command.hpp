@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,7 @@ void finish_json(const std::vector<Problem>& errors);
 
 /// A number for JSON; null where it is not finite.
 Json number(double value);
+Json number_or_null(const std::optional<double>& value);
 
 /// The number to which a pointer into an object leads; NaN where there is none.
 double pointed_number(const Json& object, const char* pointer);

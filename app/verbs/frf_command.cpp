@@ -209,7 +209,7 @@ Json responses_json(const FoundResponses& found) {
          {"peak",
           {{"frequency", found.frequencies[peak]},
            {"magnitude", number(std::abs(curve.values[peak]))}}},
-         {"truncation", curve.truncation ? number(*curve.truncation) : Json(nullptr)},
+         {"truncation", number_or_null(curve.truncation)},
          {"truncation_error",
           curve.truncation ? numbers_json(curve.truncation_error) : Json(nullptr)},
          {"real", numbers_json(curve.values, true)},

@@ -84,7 +84,7 @@ Json summary_json(const MeshSummary& summary) {
           {"skipped", summary.skipped}};
 }
 
-void print_summary(const MeshSummary& summary) {
+void print_mesh(const MeshSummary& summary) {
   std::string skipped;
   for (const std::string& word : summary.skipped)
     skipped += (skipped.empty() ? "" : ", ") + word;
@@ -164,7 +164,7 @@ ExitCode import_files(const ImportOptions& options) {
     print_json(object);
     return ExitCode::done;
   }
-  if (summary) print_summary(*summary);
+  if (summary) print_mesh(*summary);
   print_import(facts, "");
   fmt::print("\nIn a scene:\n\n{}", scene_lines(files, nodes));
   return ExitCode::done;

@@ -69,25 +69,34 @@ void leave_out_zero(Schema& schema, const std::string& name) {
 
 }  // namespace
 
+const ChoiceWords<Integrator>& integrator_words() {
+  static const ChoiceWords<Integrator> words{{"central_difference", Integrator::central_difference},
+                                             {"exact", Integrator::exact},
+                                             {"event_driven", Integrator::event_driven}};
+  return words;
+}
+
+const ChoiceWords<Coordinates>& coordinates_words() {
+  static const ChoiceWords<Coordinates> words{
+      {"modal", Coordinates::modal},
+      {"craig_bampton", Coordinates::craig_bampton},
+      {"craig_bampton_fused", Coordinates::craig_bampton_fused}};
+  return words;
+}
+
 const Schema& TimeParameters::schema() {
   static const Schema keys = [] {
     Schema made =
         SchemaOf<TimeParameters>("time")
             .choice(
-                "integrator", &TimeParameters::integrator,
-                {{"central_difference", Integrator::central_difference},
-                 {"exact", Integrator::exact},
-                 {"event_driven", Integrator::event_driven}},
+                "integrator", &TimeParameters::integrator, integrator_words(),
                 {.doc =
                      "central_difference: the published scheme; exact: the exact motion of every "
                      "mode from step to step, of modal coordinates only; event_driven: adaptive "
                      "steps of order 8 that end at every change between stick, slip and lift-off, "
                      "for one mass that moves in x and y on a half_space.",
                  .optional = true})
-            .choice("coordinates", &TimeParameters::coordinates,
-                    {{"modal", Coordinates::modal},
-                     {"craig_bampton", Coordinates::craig_bampton},
-                     {"craig_bampton_fused", Coordinates::craig_bampton_fused}},
+            .choice("coordinates", &TimeParameters::coordinates, coordinates_words(),
                     {.doc = "modal: one recurrence per mode; craig_bampton: the published dense "
                             "form, kept as a baseline; "
                             "craig_bampton_fused: the same with constants folded in.",

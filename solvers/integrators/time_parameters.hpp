@@ -14,11 +14,17 @@ enum class Integrator {
   event_driven,        ///< adaptive, order 8, of a SlidingOscillator: no steps of a given length
 };
 
+/// Of the key `integrator`.
+const ChoiceWords<Integrator>& integrator_words();
+
 enum class Coordinates {
   modal,                ///< one recurrence per mode
   craig_bampton,        ///< the published dense form, line by line
   craig_bampton_fused,  ///< the same with constants folded in advance
 };
+
+/// Of the key `coordinates`.
+const ChoiceWords<Coordinates>& coordinates_words();
 
 /// Retained modes; the truncated ones become residual flexibility. Given by a frequency or by an
 /// error, never both (see retained_frequency()).

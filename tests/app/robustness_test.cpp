@@ -26,8 +26,8 @@ using namespace test;
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
 
-const std::string contact_scene = scene_path("viscoelastic_contact.yaml");
-const std::string sphere_scene = scene_path("viscoelastic_sphere.yaml");
+const std::string rough_scene = scene_path("viscoelastic_contact.yaml");
+const std::string rubber_scene = scene_path("viscoelastic_sphere.yaml");
 
 using Arguments = std::vector<std::string>;
 
@@ -98,14 +98,14 @@ TEST(Robustness, DamagedContactLawsAreReadOrRefused) {
   const TemporaryFolder folder;
   const std::string file = folder / "law.h5";
   ASSERT_EQ(
-      Program({"contact", contact_scene, "--set", "contacts.tip.normal.solver.grid=16", "--table",
+      Program({"contact", rough_scene, "--set", "contacts.tip.normal.solver.grid=16", "--table",
                file, "--speeds", "0.01", "1", "4", "--indentations", "0.01", "0.1", "4"})
           .run()
           .exit_code,
       0);
   const std::string bad = folder / "bad.h5";
   expect_survives(contents_of(file), 60, bad,
-                  {"eig", sphere_scene, "--set", "contact.normal.form=" + bad});
+                  {"eig", rubber_scene, "--set", "contact.normal.form=" + bad});
 }
 
 TEST(Robustness, EveryVerbSaysThatAFolderCannotBeWritten) {
@@ -122,14 +122,14 @@ TEST(Robustness, EveryVerbSaysThatAFolderCannotBeWritten) {
   const std::string disc = scene_path("disc_and_pads.yaml");
   for (const Arguments& arguments :
        {Arguments{"run", scene_path("beam_on_beam.yaml"), "-o", at + ".h5"},
-        {"contact", contact_scene, "-o", at + ".h5"},
-        {"contact", contact_scene, "--table", at + ".h5"},
-        {"contact", contact_scene, "--master-curve", at + ".inc"},
-        {"cycle", sphere_scene, "-o", at + ".h5"},
-        {"map", sphere_scene, "--x", "parameters.v", "0.1", "1", "3", "--y", "parameters.tau0",
+        {"contact", rough_scene, "-o", at + ".h5"},
+        {"contact", rough_scene, "--table", at + ".h5"},
+        {"contact", rough_scene, "--master-curve", at + ".inc"},
+        {"cycle", rubber_scene, "-o", at + ".h5"},
+        {"map", rubber_scene, "--x", "parameters.v", "0.1", "1", "3", "--y", "parameters.tau0",
          "0.01", "0.1", "3", "-o", at + ".h5"},
-        {"locus", disc, "--parameter", "parameters.mu", "--from", "0.1", "--to",
-         "0.2", "--points", "2", "-o", at + ".h5"}}) {
+        {"locus", disc, "--parameter", "parameters.mu", "--from", "0.1", "--to", "0.2", "--points",
+         "2", "-o", at + ".h5"}}) {
     const ProgramResult result = Program(arguments).run();
     EXPECT_EQ(result.exit_code, 4) << arguments[0] << ": " << result.err;
     EXPECT_THAT(result.err, HasSubstr("locked")) << arguments[0];
@@ -214,7 +214,7 @@ TEST(Robustness, AnHdf5FileAsASceneIsCalledThat) {
 }
 
 TEST(Robustness, UnknownOptionsGetASuggestion) {
-  const ProgramResult result = Program({"eig", sphere_scene, "--coutn=3", "--json"}).run();
+  const ProgramResult result = Program({"eig", rubber_scene, "--coutn=3", "--json"}).run();
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("eig has no option '--coutn', did you mean '--count'?"));
 }
@@ -240,7 +240,7 @@ TEST(Robustness, EveryFailureWithJsonIsOneObject) {
       {{"compare", missing}, 4, "", "missing"},
       {{"spectrogram", missing}, 4, "", "missing"},
       {{"plot", missing, "--kind", "history", "-o", folder / "a.png"}, 4, "", "missing"},
-      {{"threshold", sphere_scene, "--parameter", "parameters.taw0", "--from", "0", "--to", "1"},
+      {{"threshold", rubber_scene, "--parameter", "parameters.taw0", "--from", "0", "--to", "1"},
        2,
        "",
        "taw0"},
@@ -296,8 +296,8 @@ TEST(Robustness, PathsWithSpacesAndUnicodeWorkEverywhere) {
   const TemporaryFolder folder;
   const fs::path place = folder / "Räume & 'Größen' 日本";
   fs::create_directory(place);
-  fs::copy_file(contact_scene, place / "Kontakt é.yaml");
-  fs::copy_file(sphere_scene, place / "Kugel é.yaml");
+  fs::copy_file(rough_scene, place / "Kontakt é.yaml");
+  fs::copy_file(rubber_scene, place / "Kugel é.yaml");
   const std::string law = place / "Gesetz é.h5";
   EXPECT_EQ(
       Program({"contact", place / "Kontakt é.yaml", "--set", "contacts.tip.normal.solver.grid=16",
@@ -340,9 +340,9 @@ TEST(Robustness, FullDisksAreReportedAndLeaveNoHalfFile) {
   if (!disk.is_mounted()) GTEST_SKIP() << "needs the right to mount a file system";
   const std::string at = folder / "disk" / "a";
   for (const Arguments& arguments :
-       {Arguments{"contact", contact_scene, "-o", at + ".h5"},
-        {"cycle", sphere_scene, "--set", "cycle.settle=0.5", "-o", at + ".h5"},
-        {"map", sphere_scene, "--x", "parameters.v", "1e-3", "1", "100", "--y", "parameters.tau0",
+       {Arguments{"contact", rough_scene, "-o", at + ".h5"},
+        {"cycle", rubber_scene, "--set", "cycle.settle=0.5", "-o", at + ".h5"},
+        {"map", rubber_scene, "--x", "parameters.v", "1e-3", "1", "100", "--y", "parameters.tau0",
          "0.01", "0.1", "100", "-o", at + ".h5"}}) {
     const ProgramResult result = Program(arguments).run();
     EXPECT_EQ(result.exit_code, 4) << arguments[0] << ": " << result.err;

@@ -33,7 +33,7 @@ Words lines_of(const std::string& text) {
   return lines;
 }
 
-std::string beams() {
+std::string beams_path() {
   return std::string(STRIDOR_SOURCE_DIR) + "/scenes/beam_on_beam.yaml";
 }
 
@@ -61,44 +61,46 @@ TEST(Completion, OfTheFirstWordIsAVerbWithWhatItDoes) {
 }
 
 TEST(Completion, OfAKeyIsAKeyOfTheSceneWithItsUnit) {
-  EXPECT_THAT(completed({"locus", beams(), "--parameter", "drive.sp"}), IsEmpty());
-  EXPECT_THAT(completed({"locus", beams(), "--parameter", "contact.start"}),
+  EXPECT_THAT(completed({"locus", beams_path(), "--parameter", "drive.sp"}), IsEmpty());
+  EXPECT_THAT(completed({"locus", beams_path(), "--parameter", "contact.start"}),
               ElementsAre("contact.start\tm", "contact.start.along\tm"));
-  EXPECT_THAT(completed({"run", beams(), "--set", "contact.start"}),
+  EXPECT_THAT(completed({"run", beams_path(), "--set", "contact.start"}),
               ElementsAre("contact.start=\tm", "contact.start.along=\tm", "contact.start.at="));
-  EXPECT_THAT(completed({"run", beams(), "--set", "contact.friction.coe"}),
+  EXPECT_THAT(completed({"run", beams_path(), "--set", "contact.friction.coe"}),
               ElementsAre("contact.friction.coefficient="));
-  EXPECT_THAT(completed({"run", beams(), "--set", "time.st"}), ElementsAre("time.step=\ts"));
+  EXPECT_THAT(completed({"run", beams_path(), "--set", "time.st"}), ElementsAre("time.step=\ts"));
   // What is varied is a number.
-  EXPECT_THAT(completed({"locus", beams(), "--parameter", "contact.friction.law"}), IsEmpty());
-  EXPECT_THAT(completed({"map", beams(), "--x", "contact.friction.coe"}),
+  EXPECT_THAT(completed({"locus", beams_path(), "--parameter", "contact.friction.law"}), IsEmpty());
+  EXPECT_THAT(completed({"map", beams_path(), "--x", "contact.friction.coe"}),
               ElementsAre("contact.friction.coefficient"));
 }
 
 TEST(Completion, OfAValueIsOneOfTheChoicesOfItsKey) {
-  EXPECT_THAT(completed({"run", beams(), "--set", "contact.assumption="}),
+  EXPECT_THAT(completed({"run", beams_path(), "--set", "contact.assumption="}),
               ElementsAre("contact.assumption=subs_a", "contact.assumption=subs_b",
                           "contact.assumption=subs_c", "contact.assumption=film"));
-  EXPECT_THAT(completed({"run", beams(), "--set=contact.assumption=f"}),
+  EXPECT_THAT(completed({"run", beams_path(), "--set=contact.assumption=f"}),
               ElementsAre("--set=contact.assumption=film"));
-  EXPECT_THAT(completed({"run", beams(), "--set", "contact.friction.coefficient="}),
+  EXPECT_THAT(completed({"run", beams_path(), "--set", "contact.friction.coefficient="}),
               ElementsAre("contact.friction.coefficient=0.3\tpresent value"));
-  EXPECT_THAT(completed({"run", beams(), "--set", "contact.friction.coefficient=0.25"}), IsEmpty());
+  EXPECT_THAT(completed({"run", beams_path(), "--set", "contact.friction.coefficient=0.25"}),
+              IsEmpty());
   EXPECT_THAT(completed({"run", "--set", "contact.friction.coefficient="}), IsEmpty());
-  EXPECT_THAT(completed({"locus", beams(), "--parameter=time.st"}),
+  EXPECT_THAT(completed({"locus", beams_path(), "--parameter=time.st"}),
               ElementsAre("--parameter=time.step\ts"));
 }
 
 TEST(Completion, LooksForTheSceneBehindTheWordToo) {
   const ProgramResult result =
-      Program({"complete", beams(), "--", "locus", "--parameter", "contact.friction.coe"}).run();
+      Program({"complete", beams_path(), "--", "locus", "--parameter", "contact.friction.coe"})
+          .run();
   EXPECT_EQ(result.out, "contact.friction.coefficient\n");
 }
 
 TEST(Completion, OfAFrequencyResponseIsAMotionOfTheScene) {
-  EXPECT_THAT(completed({"frf", beams(), "--input", "cantilever.free_end."}),
+  EXPECT_THAT(completed({"frf", beams_path(), "--input", "cantilever.free_end."}),
               ElementsAre("cantilever.free_end.x\tN", "cantilever.free_end.y\tN"));
-  EXPECT_THAT(completed({"frf", beams(), "--output", "oblique.tip.x"}),
+  EXPECT_THAT(completed({"frf", beams_path(), "--output", "oblique.tip.x"}),
               ElementsAre("oblique.tip.x.displacement\tm", "oblique.tip.x.velocity\tm/s",
                           "oblique.tip.x.acceleration\tm/s^2"));
   // Of files too, and along z where bodies move there.
@@ -108,7 +110,7 @@ TEST(Completion, OfAFrequencyResponseIsAMotionOfTheScene) {
               Contains(HasSubstr(".z\t")));
   EXPECT_THAT(completed({"frf", "none.yaml", "--input", ""}), IsEmpty());
   EXPECT_THAT(completed({"frf", "--output", ""}), IsEmpty());
-  EXPECT_THAT(completed({"run", beams(), "--output", ""}), IsEmpty());
+  EXPECT_THAT(completed({"run", beams_path(), "--output", ""}), IsEmpty());
 }
 
 class CompletionOfRuns : public Pictures {};
@@ -121,8 +123,9 @@ TEST_F(CompletionOfRuns, AChannelIsOneOfTheFile) {
 }
 
 TEST(Completion, OfAnOptionOrOneOfItsValues) {
-  EXPECT_THAT(completed({"eig", beams(), "--abo"}), ElementsAre(StartsWith("--about\t")));
-  EXPECT_THAT(completed({"eig", beams(), "--about", ""}), ElementsAre("undeformed", "deformed"));
+  EXPECT_THAT(completed({"eig", beams_path(), "--abo"}), ElementsAre(StartsWith("--about\t")));
+  EXPECT_THAT(completed({"eig", beams_path(), "--about", ""}),
+              ElementsAre("undeformed", "deformed"));
   EXPECT_THAT(completed({"plot", "run.h5", "--kind", "sp"}), ElementsAre("spectrogram", "spectrum"));
 }
 
@@ -130,7 +133,7 @@ TEST(Completion, IsEmptyWhereAFileStandsOrNothingIsKnown) {
   EXPECT_THAT(completed({"run", "scenes/"}), IsEmpty());
   EXPECT_THAT(completed({"run", "none.yaml", "--set", ""}), IsEmpty());
   EXPECT_THAT(completed({"nothing", "--set", ""}), IsEmpty());
-  EXPECT_THAT(completed({"run", beams(), "-o", ""}), IsEmpty());
+  EXPECT_THAT(completed({"run", beams_path(), "-o", ""}), IsEmpty());
   const TemporaryFolder folder;
   const std::string broken = (folder / "broken.yaml").string();
   std::ofstream(broken) << "format: [";
@@ -150,7 +153,7 @@ TEST(Completion, InFishAndZsh) {
   int num_tried = 0;
   if (std::system("command -v fish >/dev/null") == 0) {
     ++num_tried;
-    const std::string words = "stridor locus " + beams() + " --parameter contact.friction.c";
+    const std::string words = "stridor locus " + beams_path() + " --parameter contact.friction.c";
     const std::string command = link + "fish --no-config -c \"source '" + completions +
                                 "stridor.fish'; complete -C '" + words + "'\" > '" + out + "' 2>&1";
     ASSERT_EQ(std::system(command.c_str()), 0);
@@ -173,7 +176,7 @@ TEST(Completion, InFishAndZsh) {
         "_describe() { shift; print -l -- ${(P)1} }; _files() { print files }; words=(stridor "
         "locus --parameter "
         "contact.friction.c '" +
-        beams() + "'); CURRENT=4; () { source '" + completions + "_stridor' }";
+        beams_path() + "'); CURRENT=4; () { source '" + completions + "_stridor' }";
     const std::string file = (folder / "script.zsh").string();
     std::ofstream(file) << script;
     ASSERT_EQ(std::system((link + "zsh -f '" + file + "' > '" + out + "' 2>&1").c_str()), 0);
@@ -186,11 +189,12 @@ TEST(Completion, InFishAndZsh) {
 TEST(Completion, InBash) {
   const TemporaryFolder folder;
   const std::string out = (folder / "out").string();
-  const std::string script =
-      std::string("source '") + STRIDOR_SOURCE_DIR + "/cmake/completions/stridor.bash'; COMP_WORDS=('" +
-      STRIDOR_PROGRAM + "' locus '" + beams() +
-      "' --parameter contact.friction.c); COMP_CWORD=4; _stridor; printf '%s\\n' \"${COMPREPLY[@]}\" > '" + out +
-      "'";
+  const std::string script = std::string("source '") + STRIDOR_SOURCE_DIR +
+                             "/cmake/completions/stridor.bash'; COMP_WORDS=('" + STRIDOR_PROGRAM +
+                             "' locus '" + beams_path() +
+                             "' --parameter contact.friction.c); COMP_CWORD=4; _stridor; printf "
+                             "'%s\\n' \"${COMPREPLY[@]}\" > '" +
+                             out + "'";
   const std::string file = (folder / "script.sh").string();
   std::ofstream(file) << script;
   ASSERT_EQ(std::system(("bash '" + file + "'").c_str()), 0);

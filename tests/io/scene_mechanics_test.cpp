@@ -7,13 +7,13 @@
 namespace stridor {
 namespace {
 
-SceneInFile example_with(const std::vector<std::string>& sets) {
+SceneInFile beams_with(const std::vector<std::string>& sets) {
   const LoadedScene loaded = load_scene(std::string(STRIDOR_SOURCE_DIR) + "/scenes/beam_on_beam.yaml", sets);
   return {loaded.hash(), loaded.resolved()};
 }
 
 TEST(SceneMechanics, DoNotDependOnWhatIsRecordedMeasuredOrStepped) {
-  const SceneInFile given = example_with({});
+  const SceneInFile given = beams_with({});
   for (const std::vector<std::string>& sets :
        std::vector<std::vector<std::string>>{{},
                                              {"record.interval=20us"},
@@ -21,18 +21,18 @@ TEST(SceneMechanics, DoNotDependOnWhatIsRecordedMeasuredOrStepped) {
                                              {"measure.band=[1kHz, 5kHz]", "measure.from=0.2"},
                                              {"initial.state=equilibrium"},
                                              {"checkpoint.every=10s"}})
-    EXPECT_TRUE(has_same_mechanics(given, example_with(sets))) << ::testing::PrintToString(sets);
+    EXPECT_TRUE(has_same_mechanics(given, beams_with(sets))) << ::testing::PrintToString(sets);
 }
 
 TEST(SceneMechanics, DependOnBodiesContactsAndDrives) {
-  const SceneInFile given = example_with({});
+  const SceneInFile given = beams_with({});
   for (const char* set : {"contact.friction.coefficient=0.2", "drive.load=-0.3",
                           "substructures.cantilever.thickness=2.1mm", "contact.start=31mm"})
-    EXPECT_FALSE(has_same_mechanics(given, example_with({set}))) << set;
+    EXPECT_FALSE(has_same_mechanics(given, beams_with({set}))) << set;
 }
 
 TEST(SceneMechanics, OfEqualTextAndOtherHashHaveOtherFiles) {
-  SceneInFile given = example_with({});
+  SceneInFile given = beams_with({});
   const SceneInFile same = given;
   given.hash = "0";
   EXPECT_FALSE(has_same_mechanics(given, same));
