@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace stridor {
 namespace {
@@ -142,6 +143,20 @@ bool solve(SubstrateMotion& motion, const CyclePoint& scale, double longest, Lim
   return false;
 }
 
+/// The next turns of a motion; fewer where it comes to rest, nothing where it fails.
+/// @param longest time that a turn takes
+std::optional<std::vector<CyclePoint>> next_turns(SubstrateMotion& motion, std::size_t count,
+                                                  double longest) {
+  std::vector<CyclePoint> turns;
+  while (turns.size() < count) {
+    const SubstrateMotion::Stop stop = motion.advance(motion.time() + longest, true);
+    if (stop == SubstrateMotion::Stop::failed) return std::nullopt;
+    if (stop == SubstrateMotion::Stop::end) break;
+    turns.push_back(point_of(motion));
+  }
+  return turns;
+}
+
 }  // namespace
 
 std::string cycle_status_text(CycleStatus status) {
@@ -172,16 +187,12 @@ LimitCycle find_limit_cycle(const SubstrateOscillator& oscillator,
 
   // The last turns of the settled motion.
   const double longest = longest_loop(oscillator);
-  std::vector<CyclePoint> turns;
   motion.restart_statistics();
   const double from = motion.time();
   const auto num_turns = static_cast<std::size_t>(2 * options.most_loops + 1);
-  while (turns.size() < num_turns) {
-    const SubstrateMotion::Stop stop = motion.advance(motion.time() + longest, true);
-    if (stop == SubstrateMotion::Stop::failed) return failed(motion);
-    if (stop == SubstrateMotion::Stop::end) break;
-    turns.push_back(point_of(motion));
-  }
+  const std::optional<std::vector<CyclePoint>> made = next_turns(motion, num_turns, longest);
+  if (!made) return failed(motion);
+  const std::vector<CyclePoint>& turns = *made;
   measure(motion, cycle);
   const double width = cycle.x_max - cycle.x_min;
   const double indentation = 1e-2 * oscillator.contact.indentation_unit;

@@ -23,6 +23,40 @@ ViscoelasticContact no_contact() {
   return contact;
 }
 
+/// Cubic weights of values and slopes at both ends of an interval, and their derivatives; outside
+/// the table those of the line through the end.
+struct IntervalWeights {
+  std::size_t i = 0;  ///< knot at which the interval begins
+  double value[2]{};
+  double slope[2]{};
+  double value_by[2]{};
+  double slope_by[2]{};
+};
+
+IntervalWeights weights_at(const std::vector<double>& knots, double at) {
+  IntervalWeights w;
+  const auto after = std::upper_bound(knots.begin() + 1, knots.end() - 1, at);
+  w.i = static_cast<std::size_t>(after - knots.begin()) - 1;
+  const double h = knots[w.i + 1] - knots[w.i];
+  if (at < knots.front() || at > knots.back()) {
+    const std::size_t end = at < knots.front() ? 0 : 1;
+    w.value[end] = 1.0;
+    w.slope[end] = at - knots[w.i + end];
+    w.slope_by[end] = 1.0;
+    return w;
+  }
+  const double t = (at - knots[w.i]) / h;
+  w.value[1] = t * t * (3.0 - 2.0 * t);
+  w.value[0] = 1.0 - w.value[1];
+  w.slope[0] = h * t * (1.0 - t) * (1.0 - t);
+  w.slope[1] = -h * t * t * (1.0 - t);
+  w.value_by[1] = 6.0 * t * (1.0 - t) / h;
+  w.value_by[0] = -w.value_by[1];
+  w.slope_by[0] = (1.0 - t) * (1.0 - 3.0 * t);
+  w.slope_by[1] = t * (3.0 * t - 2.0);
+  return w;
+}
+
 }  // namespace
 
 FitCoefficients published_coefficients() {
@@ -249,45 +283,13 @@ TabulatedLaw::Surface TabulatedLaw::make_surface(const std::vector<double>& valu
 }
 
 LawValue TabulatedLaw::at(const Surface& surface, double x, double y) const {
-  // Cubic weights of values and slopes at both ends of an interval, and their derivatives; outside
-  // the table those of the line through the end.
-  struct Weights {
-    std::size_t i = 0;
-    double value[2]{};
-    double slope[2]{};
-    double value_by[2]{};
-    double slope_by[2]{};
-  };
-  const auto weights = [](const std::vector<double>& knots, double at) {
-    Weights w;
-    const auto after = std::upper_bound(knots.begin() + 1, knots.end() - 1, at);
-    w.i = static_cast<std::size_t>(after - knots.begin()) - 1;
-    const double h = knots[w.i + 1] - knots[w.i];
-    if (at < knots.front() || at > knots.back()) {
-      const std::size_t end = at < knots.front() ? 0 : 1;
-      w.value[end] = 1.0;
-      w.slope[end] = at - knots[w.i + end];
-      w.slope_by[end] = 1.0;
-      return w;
-    }
-    const double t = (at - knots[w.i]) / h;
-    w.value[1] = t * t * (3.0 - 2.0 * t);
-    w.value[0] = 1.0 - w.value[1];
-    w.slope[0] = h * t * (1.0 - t) * (1.0 - t);
-    w.slope[1] = -h * t * t * (1.0 - t);
-    w.value_by[1] = 6.0 * t * (1.0 - t) / h;
-    w.value_by[0] = -w.value_by[1];
-    w.slope_by[0] = (1.0 - t) * (1.0 - 3.0 * t);
-    w.slope_by[1] = t * (3.0 * t - 2.0);
-    return w;
-  };
-  Weights wx = weights(x_, x);
+  IntervalWeights wx = weights_at(x_, x);
   if (x < x_.front()) {
     // Linear in the speed itself, which has a limit at rest.
     wx.slope_by[0] = std::exp(x - x_.front());
     wx.slope[0] = std::expm1(x - x_.front());
   }
-  const Weights wy = weights(y_, y);
+  const IntervalWeights wy = weights_at(y_, y);
   double value = 0.0;
   double by_x = 0.0;
   double by_y = 0.0;

@@ -91,6 +91,16 @@ void remove_results(const Checker& at) {
                   errno_text(error), std::filesystem::file_size(at.path())));
 }
 
+/// The attributes of a series, with a long name where it brings none.
+void write_series_attributes(const Checker& at, hid_t dataset, const SeriesSpec& spec) {
+  bool has_long_name = false;
+  for (const auto& [name, value] : spec.attributes) {
+    has_long_name = has_long_name || name == "long_name";
+    write_attribute(at, dataset, spec.path, name, value);
+  }
+  if (!has_long_name) write_attribute(at, dataset, spec.path, "long_name", long_name_of(spec.path));
+}
+
 }  // namespace
 
 void check_object_path(const std::string& path) {
@@ -216,14 +226,7 @@ void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& heade
     for (Column& column : columns) {
       const SeriesSpec& spec = column.spec;
       column.dataset = create_series(spec.path, spec.kind, spec.units);
-      bool has_long_name = false;
-      for (const auto& [name, value] : spec.attributes) {
-        has_long_name = has_long_name || name == "long_name";
-        write_attribute(at, column.dataset.id(), spec.path, name, value);
-      }
-      if (!has_long_name) {
-        write_attribute(at, column.dataset.id(), spec.path, "long_name", long_name_of(spec.path));
-      }
+      write_series_attributes(at, column.dataset.id(), spec);
       at.check(H5DSattach_scale(column.dataset.id(), time_dataset.id(), 0), spec.path,
                "cannot be tied to /time");
     }

@@ -153,6 +153,16 @@ bool slide_on(PlanarProblem& contact, const Eigen::Matrix3d& delassus, double pe
   return compliance > 0.0;
 }
 
+/// States as a number, which tells whether any has changed.
+std::uint64_t states_of(std::span<const LocalProblem> contacts,
+                        std::span<const PlanarProblem> planar) {
+  std::uint64_t all = 0;
+  for (const LocalProblem& contact : contacts)
+    all = all * 31 + static_cast<unsigned>(contact.state);
+  for (const PlanarProblem& contact : planar) all = all * 31 + static_cast<unsigned>(contact.state);
+  return all;
+}
+
 }  // namespace
 
 bool solve_planar(PlanarProblem& contact, const Eigen::Matrix3d& delassus,
@@ -325,19 +335,12 @@ ContactAnswer ContactSolver::iterate(std::span<LocalProblem> contacts,
     const Eigen::Index row = first_planar(static_cast<int>(i));
     act(row, before_.segment<3>(row).eval());
   }
-  // States as a number, which tells whether any has changed.
-  const auto states = [&] {
-    std::uint64_t all = 0;
-    for (const LocalProblem& contact : contacts) all = all * 31 + static_cast<unsigned>(contact.state);
-    for (const PlanarProblem& contact : planar) all = all * 31 + static_cast<unsigned>(contact.state);
-    return all;
-  };
   // Sweeps that settle do so long before these.
   constexpr int most_from_last = 100;
   // Few sweeps are cheaper than what they would be extrapolated with.
   constexpr int first_taken_up = 5, last_taken_up = 60;
   acceleration_.forget();
-  std::uint64_t last_states = states();
+  std::uint64_t last_states = states_of(contacts, planar);
   double last_change = std::numeric_limits<double>::infinity();
   ContactAnswer answer{ContactStatus::not_converged, 0, 0};
   while (answer.sweeps < parameters_.max_sweeps) {
@@ -354,7 +357,7 @@ ContactAnswer ContactSolver::iterate(std::span<LocalProblem> contacts,
       answer.status = ContactStatus::converged;
       break;
     }
-    const std::uint64_t now = states();
+    const std::uint64_t now = states_of(contacts, planar);
     // An extrapolation has gone astray where the next sweep changes more.
     if (now != last_states || change > last_change) acceleration_.forget();
     last_states = now;

@@ -145,6 +145,26 @@ struct StiffnessParts {
 template <ElementShape shape>
 constexpr int num_modes = shape == ElementShape::hex8 ? 3 : 0;
 
+/// The stiffness of the nodes, with the modes, which belong to one element alone, condensed.
+/// @param whole rows of the nodes, then of the modes
+template <ElementShape shape, class Whole>
+ElementStiffness<shape> without_modes(const Whole& whole, std::int64_t label) {
+  using Sizes = ElementSizes<shape>;
+  constexpr int num_inner = Sizes::dimension * num_modes<shape>;
+  const Eigen::Matrix<double, num_inner, num_inner> inner =
+      whole.template bottomRightCorner<num_inner, num_inner>();
+  Eigen::Matrix<double, num_inner, Sizes::num_dofs> coupling =
+      whole.template bottomLeftCorner<num_inner, Sizes::num_dofs>();
+  const Eigen::LLT<Eigen::Matrix<double, num_inner, num_inner>> factor(inner);
+  if (factor.info() != Eigen::Success) refuse_element(shape, label);
+  factor.matrixL().solveInPlace(coupling);
+  ElementStiffness<shape> stiffness =
+      whole.template topLeftCorner<Sizes::num_dofs, Sizes::num_dofs>();
+  stiffness -= coupling.transpose().lazyProduct(coupling);
+  stiffness.template triangularView<Eigen::StrictlyLower>() = stiffness.transpose();
+  return stiffness;
+}
+
 }  // namespace
 
 template <ElementShape shape>
@@ -195,20 +215,7 @@ ElementStiffness<shape> element_stiffness(const ElementNodes<shape>& nodes,
   if constexpr (num_modes<shape> == 0) {
     return parts.interleaved();
   } else {
-    constexpr int num_inner = dimension * num_modes<shape>;
-    const auto whole = parts.interleaved();
-    const Eigen::Matrix<double, num_inner, num_inner> inner =
-        whole.template bottomRightCorner<num_inner, num_inner>();
-    Eigen::Matrix<double, num_inner, Sizes::num_dofs> coupling =
-        whole.template bottomLeftCorner<num_inner, Sizes::num_dofs>();
-    const Eigen::LLT<Eigen::Matrix<double, num_inner, num_inner>> factor(inner);
-    if (factor.info() != Eigen::Success) refuse_element(shape, label);
-    factor.matrixL().solveInPlace(coupling);
-    ElementStiffness<shape> stiffness =
-        whole.template topLeftCorner<Sizes::num_dofs, Sizes::num_dofs>();
-    stiffness -= coupling.transpose().lazyProduct(coupling);
-    stiffness.template triangularView<Eigen::StrictlyLower>() = stiffness.transpose();
-    return stiffness;
+    return without_modes<shape>(parts.interleaved(), label);
   }
 }
 
