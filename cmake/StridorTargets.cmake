@@ -33,12 +33,8 @@ target_precompile_headers(stridor_headers PRIVATE ${STRIDOR_HEADERS})
 
 # stridor_unity(TARGET NUM_SOURCES): lets the compiler read that many sources at a time, with the headers
 # that they share once. So names without linkage differ within a folder; a source that cannot be read
-# with others has the property SKIP_UNITY_BUILD_INCLUSION. With sanitizers it is half as many: what they
-# add to the code takes memory.
+# with others has the property SKIP_UNITY_BUILD_INCLUSION.
 function(stridor_unity target num_sources)
-  if(NOT CMAKE_BUILD_TYPE STREQUAL "Release")
-    math(EXPR num_sources "(${num_sources} + 1) / 2")
-  endif()
   set_target_properties(${target} PROPERTIES
     UNITY_BUILD ${STRIDOR_UNITY} UNITY_BUILD_MODE BATCH UNITY_BUILD_BATCH_SIZE ${num_sources})
   if(STRIDOR_UNITY)
