@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "app/runs/precision.hpp"
 #include "io/figures/axes.hpp"
