@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "core/fft_plan.hpp"
+#include "core/schema.hpp"
 
 namespace stridor {
 namespace {
@@ -122,10 +123,7 @@ const std::vector<std::pair<std::string, WindowKind>>& window_names() {
 }
 
 std::string window_name(WindowKind kind) {
-  for (const auto& [name, meaning] : window_names()) {
-    if (meaning == kind) return name;
-  }
-  return {};
+  return word_of(window_names(), kind);
 }
 
 std::size_t main_lobe_lines(WindowKind kind) {

@@ -37,7 +37,7 @@ inline SlipFriction friction_over(const PlanarProblem& contact, double distance)
           contact.friction_factor * sliding_friction_slope(*contact.creep, speed) / contact.step};
 }
 
-/// What is left of a contact when its gap is closed: (S + η) τ = b, λ = (p* − D_nt τ)/D_nn.
+/// The friction equations of a contact whose gap is closed: (S + η) τ = b, λ = (p* − D_nt τ)/D_nn.
 struct ClosedContact {
   Eigen::Matrix2d tangents;      ///< S = D_tt − D_tn D_nt/D_nn
   Eigen::Vector2d slip;          ///< b = σ* − D_tn p*/D_nn
@@ -326,7 +326,7 @@ ContactAnswer ContactSolver::iterate(std::span<LocalProblem> contacts,
     left_.segment<3>(row) << planar[i].penetration, planar[i].slip;
     before_.segment<3>(row) << planar[i].normal, planar[i].tangential;
   }
-  // What is left under all forces; a visit takes away what it changes.
+  // Penetration and slip under all forces; a visit subtracts its change.
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(2 * i);
     act(row, before_.segment<2>(row).eval());

@@ -259,7 +259,7 @@ TEST(Robustness, EveryFailureWithJsonIsOneObject) {
     ASSERT_EQ(object["errors"].size(), 1u) << result.out;
     const auto& error = object["errors"][0];
     EXPECT_EQ(error["key"], *key != '\0' ? key : error["key"]);
-    // What is said of a file is said without its name.
+    // Messages about a file leave its name out.
     EXPECT_THAT(exit_code == 4
                     ? error["file"].get<std::string>()
                     : error["key"].get<std::string>() + error["message"].get<std::string>(),

@@ -1,4 +1,4 @@
-// What the program gives shells and readers of manuals.
+// Completion in shells, and manual pages.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -69,7 +69,7 @@ TEST(Completion, OfAKeyIsAKeyOfTheSceneWithItsUnit) {
   EXPECT_THAT(completed({"run", beams_path(), "--set", "contact.friction.coe"}),
               ElementsAre("contact.friction.coefficient="));
   EXPECT_THAT(completed({"run", beams_path(), "--set", "time.st"}), ElementsAre("time.step=\ts"));
-  // What is varied is a number.
+  // Only numbers can be varied.
   EXPECT_THAT(completed({"locus", beams_path(), "--parameter", "contact.friction.law"}), IsEmpty());
   EXPECT_THAT(completed({"map", beams_path(), "--x", "contact.friction.coe"}),
               ElementsAre("contact.friction.coefficient"));

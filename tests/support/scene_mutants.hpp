@@ -259,7 +259,7 @@ class MutantMaker {
           put(item, "[1]", key.has_rows ? "" : "expected a text, got a list");
           put_null(item, At::value, entry);
         }
-        // What texts mean is known to the checks and to the model.
+        // The meaning of texts is known to the checks and to the model alone.
         for (const std::string text : {"a", "[a, b]"}) {
           put(path, text, "");
           mutants_.back().path.clear();
