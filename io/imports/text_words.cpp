@@ -28,9 +28,8 @@ bool TextLines::next_raw() {
 
 bool TextLines::next() {
   while (next_raw()) {
-    const std::string_view content = trimmed(line_);
-    if (content.empty()) continue;
-    if (!comment_.empty() && content.substr(0, comment_.size()) == comment_) continue;
+    if (line_.find_first_not_of(separators) == std::string_view::npos) continue;
+    if (!comment_.empty() && trimmed(line_).substr(0, comment_.size()) == comment_) continue;
     return true;
   }
   return false;

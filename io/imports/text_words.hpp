@@ -15,7 +15,8 @@ class TextLines {
  public:
   explicit TextLines(const SourceText& source) : source_(source) {}
 
-  /// The next line that is not blank, comments (see comment()) passed over.
+  /// The next line that holds a word (see words()); comments (see skip_lines_with()) are passed
+  /// over, and so are lines of commas alone, which spreadsheets write for empty rows.
   bool next();
   /// The next line whatever it holds.
   bool next_raw();

@@ -139,6 +139,8 @@ TEST(MatrixFileRefusals, OtherFormats) {
                         "Market, CalculiX"));
   EXPECT_THAT(refusal("\x1f\x8b\x08"), HasSubstr("this is a gzip archive"));
   EXPECT_THAT(refusal("  \n \n"), HasSubstr("the file is blank"));
+  EXPECT_THAT(refusal(" ,,\n"), HasSubstr("the file is blank"));
+  EXPECT_THAT(refusal(", \nhello\n"), HasSubstr("m:2:1: the file begins with 'hello'"));
   EXPECT_THAT(refusal(std::string("1 1 2\0", 6)), HasSubstr("m:1:6: a byte 0"));
 }
 
@@ -212,6 +214,9 @@ TEST(UnknownTables, OfEveryKindAreRead) {
   EXPECT_EQ(placed.unknowns, (std::vector<NodeUnknown>{{5, 1}, {5, 2}, {4, 3}}));
   EXPECT_EQ(placed.nodes.labels, (std::vector<std::int64_t>{4, 5}));
   EXPECT_EQ(placed.nodes.positions.row(1), Eigen::RowVector3d(1, 2, 3));
+  EXPECT_EQ(unknowns(",\nnode,direction\n2,1\n,\n2,3\n ,\n").unknowns,
+            (std::vector<NodeUnknown>{{2, 1}, {2, 3}}))
+      << "empty rows of a spreadsheet";
 }
 
 TEST(UnknownTables, RefuseWhatIsWrong) {
@@ -233,6 +238,8 @@ TEST(NodeTables, AreReadAndRefused) {
   const NodeTable nodes = read_node_table({"t", " NODE X Y Z THXY THYZ THZX\n3 1 2 0 0 0 0\n\n NODE X Y\n1 0 5\n"});
   EXPECT_EQ(nodes.labels, (std::vector<std::int64_t>{1, 3}));
   EXPECT_EQ(nodes.positions.row(0), Eigen::RowVector3d(0, 5, 0));
+  EXPECT_EQ(read_node_table({"t", ",,,\nnode,x,y,z\n,,,\n4,1,2,3\n,,,\n"}).labels,
+            (std::vector<std::int64_t>{4}));
   const auto refused = [](const std::string& text) {
     return message_of<ConfigError>([&] { read_node_table({"t", text}); });
   };
