@@ -43,15 +43,17 @@ function(stridor_unity target num_sources)
   endif()
 endfunction()
 
-# stridor_library(FOLDER SOURCES ... LINKS ... [PRIVATE_LINKS ...] [PRIVATE_HEADERS ...] [TOGETHER <number>])
+# stridor_library(FOLDER SOURCES ... LINKS ... [PRIVATE_LINKS ...] [PRIVATE_HEADERS ...] [TOGETHER <number>] [OWN_HEADERS])
 # TOGETHER says how many sources the compiler reads at a time; headers that need a private link are
-# PRIVATE_HEADERS.
+# PRIVATE_HEADERS. OWN_HEADERS: the target precompiles headers by itself, for other options.
 function(stridor_library folder)
-  cmake_parse_arguments(arg "" "TOGETHER" "SOURCES;LINKS;PRIVATE_LINKS;PRIVATE_HEADERS" ${ARGN})
+  cmake_parse_arguments(arg "OWN_HEADERS" "TOGETHER" "SOURCES;LINKS;PRIVATE_LINKS;PRIVATE_HEADERS" ${ARGN})
   add_library(stridor_${folder} STATIC ${arg_SOURCES})
   target_link_libraries(stridor_${folder}
     PUBLIC stridor_options ${arg_LINKS} PRIVATE ${arg_PRIVATE_LINKS})
-  target_precompile_headers(stridor_${folder} REUSE_FROM stridor_headers)
+  if(NOT arg_OWN_HEADERS)
+    target_precompile_headers(stridor_${folder} REUSE_FROM stridor_headers)
+  endif()
   if(CMAKE_VERIFY_INTERFACE_HEADER_SETS)
     # The preset headers: read together with others, a source may find what its header forgot to include.
     file(GLOB_RECURSE headers RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}" "*.hpp")
