@@ -22,7 +22,7 @@ target_include_directories(stridor_options SYSTEM INTERFACE
   "${CLI11_INCLUDE_DIR}" "${NLOHMANN_JSON_INCLUDE_DIR}")
 
 # Reading the headers of Eigen, fmt and gtest takes most of a compilation, so they are read once:
-# for the libraries, and once more for the tests, which are compiled with other options. Each source
+# for the libraries, and once more for what is compiled with other options. Each source
 # still includes what it uses; the dev preset compiles without these.
 set(STRIDOR_HEADERS <algorithm> <array> <cmath> <complex> <filesystem> <functional> <map> <memory>
   <optional> <span> <string> <vector> <Eigen/Dense> <Eigen/Sparse> <fmt/format.h>
@@ -30,6 +30,14 @@ set(STRIDOR_HEADERS <algorithm> <array> <cmath> <complex> <filesystem> <function
 add_library(stridor_headers OBJECT "${PROJECT_SOURCE_DIR}/cmake/headers.cpp")
 target_link_libraries(stridor_headers PRIVATE stridor_options Eigen3::Eigen fmt::fmt)
 target_precompile_headers(stridor_headers PRIVATE ${STRIDOR_HEADERS})
+
+# Sources that read scenes, write words and draw pictures take three to four times as long to compile with
+# optimisation and no longer to run without: what computes stands elsewhere. The preset release asks for -O0.
+set(STRIDOR_QUICK_OPTIONS -O1 CACHE STRING "How the compiler optimises sources in which no time goes")
+add_library(stridor_quick_headers OBJECT "${PROJECT_SOURCE_DIR}/cmake/headers.cpp")
+target_link_libraries(stridor_quick_headers PRIVATE stridor_options Eigen3::Eigen fmt::fmt)
+target_compile_options(stridor_quick_headers PRIVATE ${STRIDOR_QUICK_OPTIONS})
+target_precompile_headers(stridor_quick_headers PRIVATE ${STRIDOR_HEADERS} <nlohmann/json.hpp>)
 
 # stridor_unity(TARGET NUM_SOURCES): lets the compiler read that many sources at a time, with the headers
 # that they share once. So names without linkage differ within a folder; a source that cannot be read
@@ -43,15 +51,18 @@ function(stridor_unity target num_sources)
   endif()
 endfunction()
 
-# stridor_library(FOLDER SOURCES ... LINKS ... [PRIVATE_LINKS ...] [PRIVATE_HEADERS ...] [TOGETHER <number>] [OWN_HEADERS])
+# stridor_library(FOLDER SOURCES ... LINKS ... [PRIVATE_LINKS ...] [PRIVATE_HEADERS ...] [TOGETHER <number>] [QUICK])
 # TOGETHER says how many sources the compiler reads at a time; headers that need a private link are
-# PRIVATE_HEADERS. OWN_HEADERS: the target precompiles headers by itself, for other options.
+# PRIVATE_HEADERS. QUICK: compiled with STRIDOR_QUICK_OPTIONS.
 function(stridor_library folder)
-  cmake_parse_arguments(arg "OWN_HEADERS" "TOGETHER" "SOURCES;LINKS;PRIVATE_LINKS;PRIVATE_HEADERS" ${ARGN})
+  cmake_parse_arguments(arg "QUICK" "TOGETHER" "SOURCES;LINKS;PRIVATE_LINKS;PRIVATE_HEADERS" ${ARGN})
   add_library(stridor_${folder} STATIC ${arg_SOURCES})
   target_link_libraries(stridor_${folder}
     PUBLIC stridor_options ${arg_LINKS} PRIVATE ${arg_PRIVATE_LINKS})
-  if(NOT arg_OWN_HEADERS)
+  if(arg_QUICK)
+    target_compile_options(stridor_${folder} PRIVATE ${STRIDOR_QUICK_OPTIONS})
+    target_precompile_headers(stridor_${folder} REUSE_FROM stridor_quick_headers)
+  else()
     target_precompile_headers(stridor_${folder} REUSE_FROM stridor_headers)
   endif()
   if(CMAKE_VERIFY_INTERFACE_HEADER_SETS)
@@ -63,6 +74,15 @@ function(stridor_library folder)
   if(arg_TOGETHER)
     stridor_unity(stridor_${folder} ${arg_TOGETHER})
   endif()
+endfunction()
+
+# stridor_optimised_first(TARGET LIBRARY...): the objects of these libraries come first on the line of the
+# linker. Of a template function that several objects have it takes the first copy, which is not to be one
+# that is less optimised than the loops that call it.
+function(stridor_optimised_first target)
+  foreach(library ${ARGN})
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:stridor_${library}>)
+  endforeach()
 endfunction()
 
 # What is tested stands in the libraries; the tests themselves need not be fast, but must compile fast: with -O1
@@ -84,6 +104,9 @@ function(stridor_test name)
     set(arg_COST 0)
   endif()
   add_executable(${name} ${arg_SOURCES})
+  if(arg_LINKS MATCHES "stridor_(io|figures|app)")
+    stridor_optimised_first(${name} core substructures coupling solvers models analysis)
+  endif()
   target_link_libraries(${name} PRIVATE stridor_options ${arg_LINKS} Eigen3::Eigen fmt::fmt GTest::gtest GTest::gmock GTest::gtest_main)
   if(arg_FAST)
     target_compile_options(${name} PRIVATE -O1)

@@ -82,9 +82,9 @@ std::vector<int> outline(const Mesh& mesh, std::size_t element) {
   return around;
 }
 
-class MeshPicture {
+class MeshDrawing {
  public:
-  explicit MeshPicture(const Mesh& mesh)
+  explicit MeshDrawing(const Mesh& mesh)
       : mesh_(mesh), dimension_(mesh.dimension()), view_(view_of(dimension_)) {
     for (const auto& [name, sides] : mesh.surfaces) {
       const auto number = static_cast<int>(names_.size());
@@ -189,7 +189,7 @@ void add_polygon(FigureScript& script, int number, const Polygon& polygon, const
 }
 
 /// Named edges of a planar mesh.
-void add_lines(FigureScript& script, const MeshPicture& picture, const Layout& layout) {
+void add_lines(FigureScript& script, const MeshDrawing& picture, const Layout& layout) {
   for (const auto& [surface, points] : picture.lines()) {
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
       const Eigen::Vector2d from = layout(points[i]);
@@ -217,7 +217,7 @@ void add_legend(FigureScript& script, int& number, const std::vector<std::string
 }
 
 /// Directions of the axes, in the lower left corner.
-void add_triad(FigureScript& script, const MeshPicture& picture, double left, double bottom) {
+void add_triad(FigureScript& script, const MeshDrawing& picture, double left, double bottom) {
   const Eigen::Vector2d origin(left + 0.9, bottom + 0.9);
   for (int axis = 0; axis < picture.dimension(); ++axis) {
     const Eigen::Vector2d along = picture.view().col(axis).head<2>();
@@ -236,7 +236,7 @@ void add_triad(FigureScript& script, const MeshPicture& picture, double left, do
 void plot_mesh(const Mesh& mesh, const std::string& caption, const std::filesystem::path& figure) {
   check_figure_name(figure);
   if (mesh.num_elements() == 0) throw std::invalid_argument("plot_mesh: there are no elements");
-  const MeshPicture picture(mesh);
+  const MeshDrawing picture(mesh);
   Eigen::Vector2d low = picture.polygons().front().corners.front();
   Eigen::Vector2d high = low;
   for (const Polygon& polygon : picture.polygons()) {

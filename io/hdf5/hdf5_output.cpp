@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <sstream>
 
 #include "core/errors.hpp"
 #include "io/hdf5/dataset_names.hpp"
@@ -105,13 +104,6 @@ void Hdf5Writer::tie(const Handle& dataset, const std::string& path, const Handl
 void Hdf5Writer::make_default_plot(const std::string& signal,
                                    const std::vector<std::string>& axes) const {
   write_default_plot(at_, file_, signal, axes);
-}
-
-std::string scene_of_command(const std::string& command) {
-  std::istringstream words(command);
-  for (std::string word; words >> word;)
-    if (word.ends_with(".yaml") || word.ends_with(".yml")) return word;
-  return "";
 }
 
 void write_introduction(const Checker& at, hid_t file, const Attributes& attributes) {

@@ -1,21 +1,15 @@
 // The part of RunFileWriter that makes files, and opens those of interrupted runs.
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <hdf5.h>
 #include <hdf5_hl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <ctime>
 #include <filesystem>
 #include <set>
 #include <stdexcept>
 
 #include "io/hdf5/dataset_names.hpp"
 #include "io/hdf5/part_file.hpp"
-#include "io/hdf5/write_lock.hpp"
 #include "io/run_file/run_file_writer_impl.hpp"
 
 namespace stridor {
@@ -41,25 +35,6 @@ void write_text(const Checker& at, hid_t file, const Handle& links, const std::s
 }
 
 // ---------------------------------------------------------------- the temporary file
-
-// @throws FileError unless a file of this name may be made
-void check_target(const std::string& path, Overwrite overwrite) {
-  struct stat status = {};
-  const std::string folder = folder_of(path);
-  if (path.empty() || path.back() == '/')
-    throw FileError(Refusal::cannot_write, path, "", "is not the name of a file");
-  if (stat(folder.c_str(), &status) != 0) {
-    throw FileError(Refusal::cannot_write, path, "",
-                    fmt::format("the folder '{}' cannot be used: {}", folder, errno_text(errno)));
-  }
-  if (!S_ISDIR(status.st_mode))
-    throw FileError(Refusal::cannot_write, path, "", fmt::format("'{}' is not a folder", folder));
-  check_replaceable(path, overwrite);
-  if (access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw FileError(Refusal::cannot_write, path, "",
-                    fmt::format("cannot write in the folder '{}': {}", folder, errno_text(errno)));
-  }
-}
 
 // Takes what a run leaves at its end out of its file. In a file of its own, because HDF5 would use
 // the room that becomes free again while the file stays open, and StagedFile rules that out.
@@ -115,31 +90,6 @@ void check_object_path(const std::string& path) {
   }
 }
 
-void check_output(const std::string& path, Overwrite overwrite) {
-  check_target(path, overwrite);
-}
-
-void check_replaceable(const std::string& path, Overwrite overwrite) {
-  struct stat status = {};
-  if (stat(path.c_str(), &status) != 0) {
-    if (lstat(path.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) return;
-    std::error_code unknown;
-    throw FileError(Refusal::cannot_write, path, "",
-                    fmt::format("is a broken link, to '{}'; remove it, or name another file",
-                                std::filesystem::read_symlink(path, unknown).string()));
-  }
-  if (S_ISDIR(status.st_mode)) throw FileError(Refusal::cannot_write, path, "", "is a folder");
-  if (!S_ISREG(status.st_mode))
-    throw FileError(Refusal::cannot_write, path, "", "is not a regular file and is not replaced");
-  if (overwrite == Overwrite::no)
-    throw FileError(Refusal::file_exists, path, "", "exists; use --force to overwrite it");
-  const WriteLock none_writes(path);
-}
-
-std::string utc_now() {
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
-}
-
 void RunFileWriter::Impl::check_specs() const {
   if (options.block_rows == 0)
     throw std::invalid_argument("run file: block_rows must be at least 1");
@@ -189,7 +139,7 @@ std::optional<std::string> RunFileWriter::Impl::default_series() const {
 
 void RunFileWriter::Impl::create(Overwrite overwrite, const RunFileHeader& header,
                                  const std::vector<StaticArray>& statics) {
-  check_target(at.path(), overwrite);
+  check_output(at.path(), overwrite);
   PartFile part(at.path());
 
   staged.create(part.path());
