@@ -15,14 +15,14 @@
 namespace stridor {
 namespace {
 
-std::vector<std::string> names_of(const std::map<std::string, LumpedMassParameters>& masses) {
+std::vector<std::string> mass_names(const std::map<std::string, LumpedMassParameters>& masses) {
   std::vector<std::string> names;
   names.reserve(masses.size());
   for (const auto& entry : masses) names.push_back(entry.first);
   return names;
 }
 
-constexpr std::array direction_names{"x", "y", "z"};
+constexpr std::array axis_names{"x", "y", "z"};
 
 bool moves_along(const LumpedParameters& body, const std::string& direction) {
   return std::find(body.directions.begin(), body.directions.end(), direction) !=
@@ -40,7 +40,7 @@ int node_of(const LumpedParameters& body, const std::string& name, const std::st
   const auto found = body.masses.find(name);
   if (found != body.masses.end())
     return static_cast<int>(std::distance(body.masses.begin(), found));
-  const std::vector<std::string> names = names_of(body.masses);
+  const std::vector<std::string> names = mass_names(body.masses);
   throw ConfigError(Refusal::unknown_name, key,
                     fmt::format("there is no mass '{}'{} (there are: {})", name,
                                 did_you_mean(name, names), fmt::join(names, ", ")));
@@ -115,7 +115,7 @@ class SpringAssembly {
   /// What the spring exerts when its ground end moves by 1 m in a direction.
   void add_ground_end(const std::string& name, int node, const Eigen::Matrix3d& stiffness) {
     for (std::size_t moved = 0; moved < 3; ++moved) {
-      DofSum& load = body_.loads[name + "." + direction_names[moved]];
+      DofSum& load = body_.loads[name + "." + axis_names[moved]];
       for (std::size_t i = 0; i < 3; ++i) {
         const double force =
             stiffness(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(moved));
@@ -140,8 +140,8 @@ class SpringAssembly {
 void check_directions(const LumpedParameters& body, std::vector<Problem>& problems) {
   const std::vector<std::string>& given = body.directions;
   for (std::size_t i = 0; i < given.size(); ++i) {
-    const bool is_known = std::find(direction_names.begin(), direction_names.end(), given[i]) !=
-                          direction_names.end();
+    const bool is_known = std::find(axis_names.begin(), axis_names.end(), given[i]) !=
+                          axis_names.end();
     const auto here = given.begin() + static_cast<std::ptrdiff_t>(i);
     if (is_known && std::find(given.begin(), here, given[i]) == here) continue;
     problems.push_back({Refusal::wrong_value, fmt::format("directions.{}", i),
@@ -252,7 +252,7 @@ BodyMatrices LumpedParameters::make() const {
     body.points[name] = node;
     std::array<int, 3> dofs{BodyMatrices::held, BodyMatrices::held, BodyMatrices::held};
     for (std::size_t i = 0; i < 3; ++i) {
-      if (!moves_along(*this, direction_names[i])) continue;
+      if (!moves_along(*this, axis_names[i])) continue;
       dofs[i] = static_cast<int>(mass_of_dof.size());
       mass_of_dof.push_back(mass.mass);
     }
