@@ -112,7 +112,7 @@ class SpringAssembly {
     }
   }
 
-  /// What the spring exerts when its ground end moves by 1 m in a direction.
+  /// Forces of the spring while its ground end moves by 1 m in each direction.
   void add_ground_end(const std::string& name, int node, const Eigen::Matrix3d& stiffness) {
     for (std::size_t moved = 0; moved < 3; ++moved) {
       DofSum& load = body_.loads[name + "." + axis_names[moved]];
